@@ -1,0 +1,9 @@
+//! Render one eye, synthesize the other.
+//!
+//! The heart is [`synthesis`]: colour and depth of one eye in, the other eye out, with nothing known of scenes
+//! or windows. [`eyes`] says where the eyes are and how pixels move between them. [`scene`], [`render`] and
+//! [`stereo`] make frames to test it on, [`metrics`] measures them.
+
+pub mod eyes;
+pub mod gl;
+pub mod scene;
