@@ -1,0 +1,3 @@
+//! Procedural scenes.
+
+pub mod paint;
