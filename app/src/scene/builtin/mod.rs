@@ -7,6 +7,7 @@ use super::{Scene, ShadingStyle};
 
 pub mod build;
 pub mod paint;
+pub mod props;
 
 /// A scene that is generated, not loaded.
 #[derive(Clone, Copy, Debug)]
