@@ -272,7 +272,7 @@ pub fn bulb_string(
 /// A cup on a saucer, standing on the origin.
 pub fn cup(b: &mut SceneBuilder, china: usize, coffee: usize) {
     b.with_material(china);
-    let saucer = [(0.0, 0.004), (0.03, 0.004), (0.07, 0.014), (0.072, 0.017), (0.03, 0.009), (0.0, 0.009)];
+    let saucer = [(0.0, 0.004), (0.03, 0.004), (0.07, 0.014), (0.072, 0.017), (0.072, 0.017), (0.03, 0.009), (0.0, 0.009)];
     b.lathe(&saucer.map(|(r, y)| (r, y + 0.001)), 28);
     b.lathe(
         &[
@@ -281,6 +281,7 @@ pub fn cup(b: &mut SceneBuilder, china: usize, coffee: usize) {
             (0.032, 0.025),
             (0.041, 0.07),
             (0.042, 0.072),
+            (0.039, 0.072),
             (0.039, 0.072),
             (0.030, 0.03),
         ],
