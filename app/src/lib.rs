@@ -6,4 +6,6 @@
 
 pub mod eyes;
 pub mod gl;
+#[cfg(feature = "desktop")]
+pub mod platform;
 pub mod scene;
