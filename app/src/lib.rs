@@ -9,3 +9,4 @@ pub mod gl;
 #[cfg(feature = "desktop")]
 pub mod platform;
 pub mod scene;
+pub mod synthesis;
