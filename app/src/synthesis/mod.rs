@@ -11,6 +11,7 @@
 
 mod gather;
 mod near_field;
+mod offline;
 mod paper;
 #[cfg(test)]
 mod reference;
@@ -28,6 +29,7 @@ use crate::gl::{Context, GlError, Program};
 
 pub use gather::Gather;
 pub use near_field::{FrameMode, NearFieldPolicy};
+pub use offline::{Offline, SynthesizedImage};
 pub use paper::{ImBufferSize, Paper, PaperOptions};
 pub use rowgroup::Rowgroup;
 
@@ -127,7 +129,11 @@ pub struct SynthesisOptions {
 ///
 /// # Errors
 /// [`GlError::Unsupported`] for a compute pipeline without OpenGL ES 3.1.
-pub fn create(gl: &Rc<Context>, options: &SynthesisOptions, outputs: Outputs) -> Result<Box<dyn Synthesis>, GlError> {
+pub fn create(
+    gl: &Rc<Context>,
+    options: &SynthesisOptions,
+    outputs: Outputs,
+) -> Result<Box<dyn Synthesis>, GlError> {
     Ok(match options.pipeline {
         Pipeline::Gather => Box::new(Gather::new(gl, outputs)?),
         Pipeline::Rowgroup => Box::new(Rowgroup::new(gl, outputs)?),
@@ -230,7 +236,12 @@ fn draw_target(gl: &Context, warp: &Warp, target: Target, outputs: Outputs) {
     // SAFETY: the caller's framebuffer is alive.
     unsafe {
         raw.bind_framebuffer(glow::FRAMEBUFFER, target.framebuffer);
-        raw.viewport(target.origin[0], target.origin[1], warp.target_size[0] as i32, warp.target_size[1] as i32);
+        raw.viewport(
+            target.origin[0],
+            target.origin[1],
+            warp.target_size[0] as i32,
+            warp.target_size[1] as i32,
+        );
     }
     gl.draw_screen();
     // SAFETY: plain state.

@@ -95,7 +95,13 @@ pub(super) fn rowgroup_row(p: &[f64], width: usize) -> Vec<Entry> {
                 let left = (0..t).rev().find_map(|i| keys[i].map(|k| (i as f64 - k, k)));
                 let right = (t + 1..width).find_map(|i| keys[i].map(|k| (i as f64 - k, k)));
                 let source = match (left, right) {
-                    (Some(l), Some(r)) => if l.0 <= r.0 { l.1 } else { r.1 },
+                    (Some(l), Some(r)) => {
+                        if l.0 <= r.0 {
+                            l.1
+                        } else {
+                            r.1
+                        }
+                    }
                     (Some(l), None) => l.1,
                     (None, Some(r)) => r.1,
                     (None, None) => t.min(p.len() - 1) as f64,
@@ -127,7 +133,8 @@ pub(super) fn paper_row(p: &[f64], width: usize, strict: bool) -> Vec<ImBufferEn
             continue;
         }
         for i in reached + 1..target {
-            entries[i as usize] = Some(ImBufferEntry::Disocclusion { left: reached, width: target - reached });
+            entries[i as usize] =
+                Some(ImBufferEntry::Disocclusion { left: reached, width: target - reached });
         }
         let source = if strict {
             x as f64
