@@ -155,7 +155,8 @@ pub struct DepthRange {
 
 impl DepthRange {
     /// Unity's default planes, which the paper uses (0.3 m and 1000 m), in standard depth.
-    pub const PAPER: DepthRange = DepthRange { near: 0.3, far: 1000.0, convention: DepthConvention::Standard };
+    pub const PAPER: DepthRange =
+        DepthRange { near: 0.3, far: 1000.0, convention: DepthConvention::Standard };
 
     /// `(c, m)` of the affine law `1 / z = c + m * depth`, z in metres.
     pub fn inverse_distance_law(&self) -> (f64, f64) {
@@ -245,7 +246,9 @@ pub enum EyesError {
         off_axis: f32,
     },
     /// The left eye is right of the right eye, or the distance is beyond [`MAX_IPD`].
-    #[error("the interpupillary distance is {ipd:.4} m; it must be between 0 and 0.08 m, left eye on the left")]
+    #[error(
+        "the interpupillary distance is {ipd:.4} m; it must be between 0 and 0.08 m, left eye on the left"
+    )]
     Ipd {
         /// The distance found, in metres.
         ipd: f32,
@@ -261,7 +264,9 @@ pub enum EyesError {
         right: f32,
     },
     /// A frustum without area, or depth planes out of order.
-    #[error("the frustum is empty or the depth planes are out of order: need left < right, bottom < top and 0 < near < far")]
+    #[error(
+        "the frustum is empty or the depth planes are out of order: need left < right, bottom < top and 0 < near < far"
+    )]
     Empty,
 }
 
@@ -294,14 +299,26 @@ pub struct EyePair {
 
 impl EyePair {
     /// Parallel eyes around a head pose, with one frustum for both.
-    pub fn parallel(head: Pose, frustum: Frustum, ipd: f32, depth: DepthRange, size: [u32; 2], dominant: Eye) -> EyePair {
+    pub fn parallel(
+        head: Pose,
+        frustum: Frustum,
+        ipd: f32,
+        depth: DepthRange,
+        size: [u32; 2],
+        dominant: Eye,
+    ) -> EyePair {
         let poses = Eye::BOTH.map(|eye| head.translated_local(Vec3::X * (eye.side() * ipd * 0.5)));
         EyePair { poses, frusta: [frustum; 2], depth, size, dominant }
     }
 
     /// The image of one eye.
     pub fn view(&self, eye: Eye) -> View {
-        View { pose: self.poses[eye.index()], frustum: self.frusta[eye.index()], depth: self.depth, size: self.size }
+        View {
+            pose: self.poses[eye.index()],
+            frustum: self.frusta[eye.index()],
+            depth: self.depth,
+            size: self.size,
+        }
     }
 
     /// Distance between the eyes in metres along their X axis.
@@ -326,12 +343,17 @@ impl EyePair {
         let (s, t) = (self.view(self.dominant), self.view(target_eye));
         let range = &self.depth;
         let ordered = |f: &Frustum| f.width() > 0.0 && f.height() > 0.0;
-        if !ordered(&s.frustum) || !ordered(&t.frustum) || !(range.near > 0.0 && range.near < range.far) || self.size.contains(&0) {
+        if !ordered(&s.frustum)
+            || !ordered(&t.frustum)
+            || !(range.near > 0.0 && range.near < range.far)
+            || self.size.contains(&0)
+        {
             return Err(EyesError::Empty);
         }
         let angle = s.pose.orientation.angle_between(t.pose.orientation);
         // A tenth of a pixel at 2000 pixels and 90 degrees is 1e-4 rad; f32 acos alone is good to 5e-4.
-        let direction = (s.pose.forward() - t.pose.forward()).length().max((s.pose.right() - t.pose.right()).length());
+        let direction =
+            (s.pose.forward() - t.pose.forward()).length().max((s.pose.right() - t.pose.right()).length());
         if direction > 1e-4 {
             return Err(EyesError::Canted { degrees: angle.to_degrees() });
         }
@@ -349,7 +371,10 @@ impl EyePair {
         for axis in 0..2 {
             // The error adds up over the image: allow a twentieth of a pixel in all.
             if ((ds[axis] / dt[axis] - 1.0).abs() * self.size[axis] as f32) > 0.05 {
-                return Err(EyesError::Density { left: density(&self.frusta[0])[axis], right: density(&self.frusta[1])[axis] });
+                return Err(EyesError::Density {
+                    left: density(&self.frusta[0])[axis],
+                    right: density(&self.frusta[1])[axis],
+                });
             }
         }
         let pixels = |tangents: f32, axis: usize| (tangents / ds[axis] - 1e-3).ceil().max(0.0) as u32;
@@ -375,11 +400,7 @@ impl EyePair {
             bottom: s.frustum.bottom - bottom as f32 * ds[1],
             top: s.frustum.top + top as f32 * ds[1],
         };
-        let source = View {
-            frustum,
-            size: [self.size[0] + left + right, self.size[1] + bottom + top],
-            ..s
-        };
+        let source = View { frustum, size: [self.size[0] + left + right, self.size[1] + bottom + top], ..s };
         // x_t = (tan_t - left_t) f, tan_t = tan_s + side * IPD / z, x_s = (tan_s - left_s) f.
         let (c, m) = range.inverse_distance_law();
         let shift = (-target_eye.side() * ipd * f_px) as f64;
