@@ -261,17 +261,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    #[ignore = "prints how long the windows take"]
-    fn speed() {
-        let (a, b) = (image(1024, 1024, 5), image(1024, 1024, 6));
-        for window in [SsimWindow::Gaussian11, SsimWindow::Uniform7] {
-            for _ in 0..3 {
-                let start = std::time::Instant::now();
-                let value = ssim(&a, &b, window, Channels::Rgb).unwrap();
-                println!("{window:?} {value:.6} {:?}", start.elapsed());
-            }
-        }
-    }
 }
