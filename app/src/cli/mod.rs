@@ -1,0 +1,3 @@
+//! The subcommands of the program `yoro`, one file each.
+
+pub mod compare;
