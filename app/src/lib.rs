@@ -8,4 +8,5 @@ pub mod eyes;
 pub mod gl;
 #[cfg(feature = "desktop")]
 pub mod platform;
+pub mod render;
 pub mod scene;
