@@ -15,5 +15,6 @@ pub mod metrics;
 pub mod picture;
 #[cfg(feature = "desktop")]
 pub mod platform;
+pub mod render;
 pub mod scene;
 pub mod synthesis;

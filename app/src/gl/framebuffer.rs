@@ -13,7 +13,7 @@ pub struct RenderTarget {
     color: Vec<Texture>,
     depth: Option<Texture>,
     formats: Vec<(Format, Filter)>,
-    depth_format: Option<Format>,
+    depth_format: Option<(Format, Filter)>,
     size: [u32; 2],
 }
 
@@ -28,6 +28,23 @@ impl RenderTarget {
         size: [u32; 2],
         formats: &[(Format, Filter)],
         depth_format: Option<Format>,
+    ) -> Result<RenderTarget, GlError> {
+        RenderTarget::with_depth(gl, size, formats, depth_format.map(|format| (format, Filter::Nearest)))
+    }
+
+    /// A target of depth alone, to be sampled with comparison.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`].
+    pub fn shadow_map(gl: &Rc<Context>, size: [u32; 2], format: Format) -> Result<RenderTarget, GlError> {
+        RenderTarget::with_depth(gl, size, &[], Some((format, Filter::Compare)))
+    }
+
+    fn with_depth(
+        gl: &Rc<Context>,
+        size: [u32; 2],
+        formats: &[(Format, Filter)],
+        depth_format: Option<(Format, Filter)>,
     ) -> Result<RenderTarget, GlError> {
         // SAFETY: plain creation.
         let raw = unsafe { gl.raw().create_framebuffer() }
@@ -62,7 +79,7 @@ impl RenderTarget {
         }
         self.depth = self
             .depth_format
-            .map(|format| Texture::new(&self.gl, size, format, Filter::Nearest))
+            .map(|(format, filter)| Texture::new(&self.gl, size, format, filter))
             .transpose()?;
         let gl = self.gl.raw();
         // SAFETY: attachments are live textures of this object.
@@ -96,7 +113,7 @@ impl RenderTarget {
             return Err(GlError::Unsupported(format!(
                 "the GL driver cannot render to {:?} with depth {:?} (status 0x{status:x}); EXT_color_buffer_float may be missing: update the driver",
                 self.formats.iter().map(|f| f.0).collect::<Vec<_>>(),
-                self.depth_format
+                self.depth_format.map(|f| f.0)
             )));
         }
         self.size = size;

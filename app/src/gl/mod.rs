@@ -7,6 +7,7 @@ mod framebuffer;
 mod mesh;
 mod profiler;
 mod program;
+mod state;
 mod texture;
 
 use std::cell::{Cell, RefCell};
@@ -19,6 +20,7 @@ pub use framebuffer::RenderTarget;
 pub use mesh::Mesh;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ShaderSource, UniformValue, shader_files};
+pub use state::{Blend, DepthTest, RasterState};
 pub use texture::{Filter, Format, Texture};
 
 /// What can go wrong with GL.
