@@ -13,4 +13,6 @@ pub mod gl;
 pub mod metrics;
 #[cfg(feature = "desktop")]
 pub mod picture;
+#[cfg(feature = "desktop")]
+pub mod report;
 pub mod scene;
