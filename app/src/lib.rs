@@ -16,5 +16,7 @@ pub mod picture;
 #[cfg(feature = "desktop")]
 pub mod platform;
 pub mod render;
+#[cfg(feature = "desktop")]
+pub mod report;
 pub mod scene;
 pub mod synthesis;
