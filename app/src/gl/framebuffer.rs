@@ -6,6 +6,24 @@ use glow::HasContext;
 
 use super::{Context, Filter, Format, GlError, Texture};
 
+/// A rectangle of a framebuffer to draw into.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Destination {
+    /// The framebuffer; `None` for the window's.
+    pub framebuffer: Option<glow::Framebuffer>,
+    /// Lower left corner in pixels.
+    pub origin: [u32; 2],
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+}
+
+impl Destination {
+    /// All of a render target.
+    pub fn whole(target: &RenderTarget) -> Destination {
+        Destination { framebuffer: Some(target.raw()), origin: [0, 0], size: target.size() }
+    }
+}
+
 /// A framebuffer with its own textures. Resizing to the size it has costs nothing.
 pub struct RenderTarget {
     gl: Rc<Context>,

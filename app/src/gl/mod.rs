@@ -16,7 +16,7 @@ use std::rc::Rc;
 use glow::HasContext;
 
 pub use capabilities::{Capabilities, GlApi};
-pub use framebuffer::RenderTarget;
+pub use framebuffer::{Destination, RenderTarget};
 pub use mesh::Mesh;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ShaderSource, UniformValue, shader_files};

@@ -2,9 +2,11 @@
 
 use std::rc::Rc;
 
-use super::{Outputs, Source, Synthesis, Target, draw_target, output_defines, screen_state, set_warp};
+use super::{Outputs, Source, Synthesis, draw_target, output_defines, set_warp};
 use crate::eyes::Warp;
-use crate::gl::{Context, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
+use crate::gl::{
+    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+};
 
 /// Columns and rows of a tile; `include/tiles.glsl`.
 const TILE: [u32; 2] = [16, 8];
@@ -48,10 +50,10 @@ impl Synthesis for Gather {
         self.span_map.resize(tiles(warp.target_size[0]))
     }
 
-    fn synthesize(&mut self, source: Source, warp: &Warp, target: Target) -> Result<(), GlError> {
+    fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError> {
         self.prepare(warp)?;
         let gl = &self.gl;
-        screen_state(gl, false);
+        gl.set_raster_state(&RasterState::SCREEN);
         gl.pass("gather tiles", || {
             self.tile_map.bind();
             set_warp(self.bounds.bind(), source, warp, [0, 0]);
@@ -66,7 +68,7 @@ impl Synthesis for Gather {
         gl.pass("gather march", || {
             set_warp(self.march.bind(), source, warp, target.origin);
             self.march.texture("span_map", 2, self.span_map.color(0).raw());
-            draw_target(gl, warp, target, self.outputs);
+            draw_target(gl, target, self.outputs);
         });
         Ok(())
     }

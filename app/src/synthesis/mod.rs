@@ -22,10 +22,9 @@ mod tests;
 use std::rc::Rc;
 
 use glam::{IVec2, Vec2};
-use glow::HasContext;
 
 use crate::eyes::{DepthConvention, Eye, Warp};
-use crate::gl::{Context, GlError, Program};
+use crate::gl::{Context, Destination, GlError, Program, RasterState};
 
 pub use gather::Gather;
 pub use near_field::{FrameMode, NearFieldPolicy};
@@ -89,15 +88,6 @@ pub struct Source {
     pub depth: glow::Texture,
 }
 
-/// Where the synthesized eye goes.
-#[derive(Clone, Copy, Debug)]
-pub struct Target {
-    /// Framebuffer, `None` for the default one. Its attachments fit the pipeline's [`Outputs`].
-    pub framebuffer: Option<glow::Framebuffer>,
-    /// Lower left corner in pixels; the size is [`Warp::target_size`].
-    pub origin: [i32; 2],
-}
-
 /// A way to synthesize the other eye.
 pub trait Synthesis {
     /// Gets ready for images of these sizes: allocates intermediate buffers. Costs nothing when the sizes are
@@ -107,12 +97,13 @@ pub trait Synthesis {
     /// [`GlError`] when the sizes are beyond the driver's limits.
     fn prepare(&mut self, warp: &Warp) -> Result<(), GlError>;
 
-    /// Synthesizes the other eye. Overwrites the whole target rectangle. Leaves the target bound, blending,
-    /// depth test, scissor test and face culling off.
+    /// Synthesizes the other eye into a rectangle of [`Warp::target_size`], all of which is overwritten; the
+    /// framebuffer's attachments fit the pipeline's [`Outputs`]. Leaves the target bound and blending, depth
+    /// test, scissor test and face culling off.
     ///
     /// # Errors
     /// As [`Synthesis::prepare`].
-    fn synthesize(&mut self, source: Source, warp: &Warp, target: Target) -> Result<(), GlError>;
+    fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError>;
 }
 
 /// Settings of all pipelines.
@@ -193,7 +184,7 @@ impl ForwardLaw {
 }
 
 /// Sets the uniforms and textures that `include/warp.glsl` declares. Texture units 0 and 1.
-fn set_warp(program: &Program, source: Source, warp: &Warp, origin: [i32; 2]) {
+fn set_warp(program: &Program, source: Source, warp: &Warp, origin: [u32; 2]) {
     let law = ForwardLaw::new(warp);
     let size = |s: [u32; 2]| IVec2::new(s[0] as i32, s[1] as i32);
     program
@@ -204,48 +195,17 @@ fn set_warp(program: &Program, source: Source, warp: &Warp, origin: [i32; 2]) {
         .set("law", Vec2::new(law.offset as f32, law.scale as f32))
         .set("mirrored", law.mirrored)
         .set("row_offset", warp.row_offset)
-        .set("target_origin", IVec2::from(origin))
+        .set("target_origin", IVec2::from(origin.map(|n| n as i32)))
         .set("far_displacement", law.far as f32)
         .set("near_displacement", law.near as f32);
 }
 
-/// State of a full-screen pass that writes colour, and depth when asked, unconditionally.
-fn screen_state(gl: &Context, depth: bool) {
-    let raw = gl.raw();
-    // SAFETY: plain state.
-    unsafe {
-        raw.disable(glow::BLEND);
-        raw.disable(glow::CULL_FACE);
-        raw.disable(glow::SCISSOR_TEST);
-        raw.disable(glow::STENCIL_TEST);
-        raw.color_mask(true, true, true, true);
-        if depth {
-            raw.enable(glow::DEPTH_TEST);
-            raw.depth_func(glow::ALWAYS);
-            raw.depth_mask(true);
-        } else {
-            raw.disable(glow::DEPTH_TEST);
-        }
-    }
-}
-
 /// Binds the target and draws the pass that writes it.
-fn draw_target(gl: &Context, warp: &Warp, target: Target, outputs: Outputs) {
-    let raw = gl.raw();
-    screen_state(gl, outputs.depth);
-    // SAFETY: the caller's framebuffer is alive.
-    unsafe {
-        raw.bind_framebuffer(glow::FRAMEBUFFER, target.framebuffer);
-        raw.viewport(
-            target.origin[0],
-            target.origin[1],
-            warp.target_size[0] as i32,
-            warp.target_size[1] as i32,
-        );
-    }
+fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
+    gl.set_raster_state(if outputs.depth { &RasterState::SCREEN_DEPTH } else { &RasterState::SCREEN });
+    gl.bind_framebuffer(target.framebuffer, target.origin, target.size);
     gl.draw_screen();
-    // SAFETY: plain state.
-    unsafe { raw.disable(glow::DEPTH_TEST) };
+    gl.set_raster_state(&RasterState::SCREEN);
 }
 
 /// The defines that select a shader's outputs.

@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use super::{Outputs, Source, Synthesis, SynthesisOptions, Target, create};
+use super::{Outputs, Source, Synthesis, SynthesisOptions, create};
 use crate::eyes::Warp;
-use crate::gl::{Context, Filter, Format, GlError, RenderTarget, Texture};
+use crate::gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
 /// A pipeline with textures of its own. Rows of all arrays run from the bottom, as in GL.
 pub struct Offline {
@@ -59,8 +59,8 @@ impl Offline {
             )?,
         };
         self.target.resize(warp.target_size)?;
-        let target = Target { framebuffer: Some(self.target.raw()), origin: [0, 0] };
-        self.pipeline.synthesize(source, warp, target)?;
+        let target = Destination::whole(&self.target);
+        self.pipeline.synthesize(source, warp, &target)?;
         Ok(SynthesizedImage {
             rgba: self.target.read_rgba8(0, [0, 0], warp.target_size),
             source_map: self.target.read_u32(1, [0, 0], warp.target_size),

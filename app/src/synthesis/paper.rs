@@ -5,9 +5,11 @@ use std::rc::Rc;
 use glam::{IVec2, Vec2};
 use glow::HasContext;
 
-use super::{Outputs, Source, Synthesis, Target, draw_target, output_defines, screen_state, set_warp};
+use super::{Outputs, Source, Synthesis, draw_target, output_defines, set_warp};
 use crate::eyes::Warp;
-use crate::gl::{Context, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
+use crate::gl::{
+    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+};
 
 /// Rows per workgroup of Algorithm 2, one invocation each.
 const ROWS: u32 = 64;
@@ -113,11 +115,11 @@ impl Synthesis for Paper {
         self.imbuffer.resize([pixels(warp.target_size[0], self.scale.x), rows])
     }
 
-    fn synthesize(&mut self, source: Source, warp: &Warp, target: Target) -> Result<(), GlError> {
+    fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError> {
         self.prepare(warp)?;
         let gl = &self.gl;
         let raw = gl.raw();
-        screen_state(gl, false);
+        gl.set_raster_state(&RasterState::SCREEN);
         gl.pass("paper reproject", || {
             self.written_to.bind();
             set_warp(self.reproject.bind(), source, warp, [0, 0]);
@@ -143,7 +145,7 @@ impl Synthesis for Paper {
             self.set_imbuffer(&self.patch);
             self.patch.set("kernel_height", self.options.kernel_height.clamp(1, 15) as i32);
             self.patch.texture("imbuffer", 2, self.imbuffer.color(0).raw());
-            draw_target(gl, warp, target, self.outputs);
+            draw_target(gl, target, self.outputs);
         });
         Ok(())
     }

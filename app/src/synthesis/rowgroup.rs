@@ -4,9 +4,9 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::{Outputs, Source, Synthesis, Target, draw_target, output_defines, set_warp};
+use super::{Outputs, Source, Synthesis, draw_target, output_defines, set_warp};
 use crate::eyes::Warp;
-use crate::gl::{Context, Filter, Format, GlError, Program, ShaderSource, Texture};
+use crate::gl::{Context, Destination, Filter, Format, GlError, Program, ShaderSource, Texture};
 
 /// Invocations per row.
 const THREADS: u32 = 64;
@@ -70,7 +70,7 @@ impl Synthesis for Rowgroup {
         Ok(())
     }
 
-    fn synthesize(&mut self, source: Source, warp: &Warp, target: Target) -> Result<(), GlError> {
+    fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError> {
         self.prepare(warp)?;
         let Some(map) = self.source_map.as_ref().map(Texture::raw) else { return Ok(()) };
         let gl = &self.gl;
@@ -87,7 +87,7 @@ impl Synthesis for Rowgroup {
         gl.pass("rowgroup resolve", || {
             set_warp(self.resolve.bind(), source, warp, target.origin);
             self.resolve.texture("source_map", 2, map);
-            draw_target(gl, warp, target, self.outputs);
+            draw_target(gl, target, self.outputs);
         });
         Ok(())
     }
