@@ -19,4 +19,5 @@ pub mod render;
 #[cfg(feature = "desktop")]
 pub mod report;
 pub mod scene;
+pub mod stereo;
 pub mod synthesis;

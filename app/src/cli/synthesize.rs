@@ -79,7 +79,7 @@ pub struct SynthesizeArgs {
     /// Distance between the eyes in metres
     #[arg(long, default_value_t = 0.063, value_parser = parse_ipd)]
     ipd: f32,
-    /// Also write the holes, white, as PNG
+    /// Also write the mask of holes as PNG: black where nothing of the source is seen
     #[arg(long, value_name = "FILE|FOLDER")]
     mask_out: Option<PathBuf>,
     /// Also write the disparity in pixels, as EXR
@@ -229,7 +229,7 @@ fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::R
         picture::save_color(&named(&job.out), &rgb_image(&result.rgba, size))?;
         if let Some(path) = &job.mask {
             let holes = GrayImage::from_fn(size[0], size[1], |x, y| {
-                Luma([if entries[(y * size[0] + x) as usize].hole { 255 } else { 0 }])
+                Luma([if entries[(y * size[0] + x) as usize].hole { 0 } else { 255 }])
             });
             picture::save_gray(&named(path), &holes)?;
         }
