@@ -14,5 +14,9 @@ pub mod metrics;
 #[cfg(feature = "desktop")]
 pub mod picture;
 #[cfg(feature = "desktop")]
+pub mod platform;
+pub mod render;
+#[cfg(feature = "desktop")]
 pub mod report;
 pub mod scene;
+pub mod synthesis;
