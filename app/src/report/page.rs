@@ -294,8 +294,10 @@ struct Mark {
 
 const LINE_HEIGHT: u32 = 24;
 const PLOT_TOP: u32 = 10;
-const PLOT_LEFT: f64 = 150.0;
-const PLOT_WIDTH: f64 = 400.0;
+const PLOT_LEFT: f64 = 142.0;
+const PLOT_WIDTH: f64 = 264.0;
+/// Characters that fit to the left of a plot.
+const PLOT_LABEL: usize = 17;
 
 /// What a plot shows of a row.
 struct Figure {
@@ -329,7 +331,7 @@ const FIGURES: [Figure; 3] = [
         line_at: None,
     },
     Figure {
-        title: "Frame time over two full renders (less is better)",
+        title: "Frame time / two renders (less is better)",
         caption: "Baseline: two full renders = 1. The paper's: frame rates of seven devices.",
         decimals: 2,
         ours: |row| row.cost_ratio,
@@ -385,7 +387,7 @@ fn plot(report: &RunReport, rows: &[Row], figure: &Figure) -> Plot {
             marks.push(mark(format!("m{}", method % 6), &row.method, ours(row)));
         }
         let y = PLOT_TOP + LINE_HEIGHT * index as u32 + LINE_HEIGHT / 2;
-        Line { y, label: scene.name.clone(), marks }
+        Line { y, label: shortened(&scene.name, PLOT_LABEL), marks }
     });
     Plot {
         title: figure.title,
@@ -396,10 +398,17 @@ fn plot(report: &RunReport, rows: &[Row], figure: &Figure) -> Plot {
     }
 }
 
-/// 1, 2 or 5 times a power of ten: four to ten steps in `range`.
+fn shortened(text: &str, length: usize) -> String {
+    if text.chars().count() <= length {
+        return text.to_string();
+    }
+    text.chars().take(length - 1).chain(['…']).collect()
+}
+
+/// 1, 2 or 5 times a power of ten: three to eight steps in `range`.
 fn tick_step(range: f64) -> f64 {
-    let power = 10f64.powf((range / 4.0).log10().floor());
-    [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|step| range / step >= 4.0).unwrap_or(power)
+    let power = 10f64.powf((range / 3.0).log10().floor());
+    [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|step| range / step >= 3.0).unwrap_or(power)
 }
 
 #[cfg(test)]
@@ -465,7 +474,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_few() {
-        for (range, step) in [(1.0, 0.2), (0.35, 0.05), (20.0, 5.0), (8.0, 2.0), (0.04, 0.01)] {
+        for (range, step) in [(1.0, 0.2), (0.35, 0.1), (20.0, 5.0), (8.0, 2.0), (0.04, 0.01)] {
             assert!((tick_step(range) - step).abs() < 1e-12, "{range}: {}", tick_step(range));
         }
     }
