@@ -68,20 +68,26 @@ vec3 reflected(Surface s, vec3 to_eye, vec3 to_light, float visibility) {
 #ifdef SHADOWS
 float sun_visibility(vec3 position, vec3 normal) {
     // Moving the point off its surface by a texel instead of a large depth bias keeps contact shadows attached.
-    vec3 p = (shadow_matrix * vec4(position + normal * shadow_texel.y * 1.5, 1.0)).xyz;
+    vec3 p = (shadow_matrix * vec4(position + normal * shadow_texel.y * 2.0, 1.0)).xyz;
     p.z -= shadow_texel.z;
-    float t = 0.75 * shadow_texel.x;
-    float lit = texture(shadow_map, p + vec3(-t, -t, 0.0)) + texture(shadow_map, p + vec3(t, -t, 0.0))
-        + texture(shadow_map, p + vec3(-t, t, 0.0)) + texture(shadow_map, p + vec3(t, t, 0.0));
+    float lit = 0.0;
+    for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+            lit += texture(shadow_map, p + vec3(vec2(x, y) * shadow_texel.x, 0.0));
+        }
+    }
     bool inside = all(lessThan(abs(p - 0.5), vec3(0.5)));
-    return inside ? 0.25 * lit : 1.0;
+    return inside ? lit / 9.0 : 1.0;
 }
 #endif
 
 vec3 shade(Surface s, vec3 position, float occlusion) {
     vec3 to_eye = -normalize(position);
     float up = 0.5 * s.normal.y + 0.5;
-    vec3 ambient = mix(ground, mix(zenith, horizon, 0.4), up);
+    // Eyes adapt to the colour of the sky: half of it goes, or shadows would be blue.
+    vec3 overhead = mix(zenith, horizon, 0.4);
+    overhead = mix(vec3(luma(overhead)), overhead, 0.5);
+    vec3 ambient = mix(ground, overhead, up);
     float nv = max(dot(s.normal, to_eye), 0.0);
 #if defined(STYLE_ANIME)
     ambient *= vec3(1.02, 0.92, 1.12);
@@ -115,8 +121,9 @@ vec3 shade(Surface s, vec3 position, float occlusion) {
         }
     }
 #if defined(STYLE_ANIME)
-    float rim = smoothstep(0.62, 0.72, 1.0 - nv) * up;
-    color += rim * 0.35 * (0.3 + s.albedo) * horizon;
+    // Not on level ground, which towards the horizon is all rim.
+    float rim = smoothstep(0.62, 0.72, 1.0 - nv) * up * (1.0 - smoothstep(0.8, 0.95, s.normal.y));
+    color += rim * 0.3 * (0.3 + s.albedo) * horizon;
 #endif
 #if defined(STYLE_CARTOON) || defined(STYLE_ANIME)
     color = max(mix(vec3(luma(color)), color, 1.2), 0.0);

@@ -19,6 +19,11 @@ uniform int line_width;  // pixels
 layout(location = 0) out vec4 out_color;
 
 #ifdef SSAO
+#if SSAO_SCALE == 1
+float occlusion(ivec2 p, float z) {
+    return texelFetch(occlusion_map, p, 0).x;
+}
+#else
 // The four half-resolution texels around the pixel, weighted by how much they are on its surface.
 float occlusion(ivec2 p, float z) {
     ivec2 last = textureSize(occlusion_map, 0) - 1;
@@ -34,6 +39,7 @@ float occlusion(ivec2 p, float z) {
         same_surface(code, unpack_code(t01)), same_surface(code, unpack_code(t11))) + 1e-4;
     return dot(weights, vec4(t00.x, t10.x, t01.x, t11.x)) / dot(weights, vec4(1.0));
 }
+#endif
 #endif
 
 #ifdef STYLE_ANIME

@@ -1,4 +1,4 @@
-// Ambient occlusion at half the resolution, after McGuire et al., "Scalable Ambient Obscurance" (HPG 2012).
+// Ambient occlusion at 1 / SCALE of the resolution, after McGuire et al., "Scalable Ambient Obscurance" (HPG 2012).
 #include "include/view.glsl"
 #include "include/normal.glsl"
 #include "include/occlusion.glsl"
@@ -13,7 +13,7 @@ layout(location = 0) out vec4 out_occlusion;
 void main() {
     ivec2 size = textureSize(depth_map, 0);
     vec2 texel = 1.0 / vec2(size);
-    ivec2 p = min(ivec2(gl_FragCoord.xy) * 2, size - 1);
+    ivec2 p = min(ivec2(gl_FragCoord.xy) * SCALE, size - 1);
     float depth = texelFetch(depth_map, p, 0).x;
     float z = axis_distance(depth);
     vec3 position = view_ray((vec2(p) + 0.5) * texel) * z;

@@ -34,6 +34,7 @@ pub fn shading_defines(
     define(scene.has_sun() && settings.shadow_map_size > 0, "SHADOWS");
     define(settings.ssao, "SSAO");
     define(!gl.capabilities().float_render_targets, "NO_FLOAT_TARGETS");
+    defines.push(("SSAO_SCALE", settings.ssao_scale().to_string()));
     defines.push(("MAX_POINT_LIGHTS", MAX_POINT_LIGHTS.to_string()));
     defines
 }

@@ -46,6 +46,8 @@ pub struct RenderSettings {
     pub shadow_map_size: u32,
     /// Ambient occlusion.
     pub ssao: bool,
+    /// Ambient occlusion at half the resolution: a quarter of the cost, softer at edges.
+    pub ssao_half_size: bool,
     /// Radius of ambient occlusion in metres.
     pub ssao_radius: f32,
     /// Glow around what is brighter than white.
@@ -59,13 +61,20 @@ pub struct RenderSettings {
 impl Default for RenderSettings {
     fn default() -> RenderSettings {
         RenderSettings {
-            shadow_map_size: 2048,
+            shadow_map_size: 4096,
             ssao: true,
+            ssao_half_size: false,
             ssao_radius: 0.5,
             bloom: true,
             point_lights: MAX_POINT_LIGHTS,
-            exposure: 0.85,
+            exposure: 1.0,
         }
+    }
+}
+
+impl RenderSettings {
+    fn ssao_scale(&self) -> u32 {
+        if self.ssao_half_size { 2 } else { 1 }
     }
 }
 
@@ -96,7 +105,7 @@ impl ViewTargets {
             gl: gl.clone(),
             convention,
             g_buffer: g_buffer(gl, size, convention)?,
-            ssao: settings.ssao.then(|| SsaoTargets::new(gl, size)).transpose()?,
+            ssao: settings.ssao.then(|| SsaoTargets::new(gl, size, settings.ssao_scale())).transpose()?,
             hdr: RenderTarget::new(gl, size, &[(hdr, Filter::Linear)], None)?,
             bloom: settings.bloom.then(|| BloomTargets::new(gl, size, hdr)).transpose()?,
             color: RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Linear)], None)?,
@@ -160,7 +169,6 @@ fn hdr_format(gl: &Context) -> Format {
 /// Renders views of one scene: its programs, made for the scene's style and materials, and the scene's shadow
 /// map. Nothing is compiled or allocated after [`Renderer::new`].
 pub struct Renderer {
-    gl: Rc<Context>,
     settings: RenderSettings,
     scene_id: u64,
     shadow: Option<ShadowMap>,
@@ -190,12 +198,11 @@ impl Renderer {
             hdr.push(("BLOOM", String::new()));
         }
         Ok(Renderer {
-            gl: gl.clone(),
             settings: settings.clone(),
             scene_id: scene.id,
             shadow,
             geometry: GeometryPass::new(gl, scene)?,
-            ssao: settings.ssao.then(|| SsaoPass::new(gl, settings.ssao_radius)).transpose()?,
+            ssao: settings.ssao.then(|| SsaoPass::new(gl, settings.ssao_radius, settings.ssao_scale())).transpose()?,
             lighting: LightingPass::new(gl, scene, settings)?,
             bloom,
             tonemap: TonemapPass::new(gl, &hdr)?,

@@ -33,7 +33,7 @@ impl ShadowMap {
     /// As [`Program::new`] and [`RenderTarget::new`].
     pub fn new(gl: &Rc<Context>, scene: &GpuScene, size: u32) -> Result<ShadowMap, GlError> {
         let size = size.min(gl.capabilities().max_texture_size);
-        let target = RenderTarget::shadow_map(gl, [size, size], Format::Depth24)?;
+        let target = RenderTarget::shadow_map(gl, [size, size], Format::Depth16)?;
         let program = |features: Features| {
             let source =
                 ShaderSource::Raster { vertex: "render/geometry.vert", fragment: "render/shadow.frag" };

@@ -14,23 +14,25 @@ const SAMPLES: usize = 12;
 /// Turns of the spiral on which they lie, without a common divisor with their number.
 const TURNS: f32 = 5.0;
 
-/// The two half-size images of the pass.
+/// The two images of the pass.
 pub struct SsaoTargets {
     raw: RenderTarget,
     blurred: RenderTarget,
+    scale: u32,
 }
 
 impl SsaoTargets {
-    /// Targets for a view of `size` pixels.
+    /// Targets for a view of `size` pixels, smaller by `scale`.
     ///
     /// # Errors
     /// As [`RenderTarget::new`].
-    pub fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<SsaoTargets, GlError> {
+    pub fn new(gl: &Rc<Context>, size: [u32; 2], scale: u32) -> Result<SsaoTargets, GlError> {
         let formats = [(Format::Rgba8, Filter::Nearest)];
-        let size = size.map(|n| n.div_ceil(2));
+        let size = size.map(|n| n.div_ceil(scale));
         Ok(SsaoTargets {
             raw: RenderTarget::new(gl, size, &formats, None)?,
             blurred: RenderTarget::new(gl, size, &formats, None)?,
+            scale,
         })
     }
 
@@ -39,7 +41,7 @@ impl SsaoTargets {
     /// # Errors
     /// As [`RenderTarget::new`].
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
-        let size = size.map(|n| n.div_ceil(2));
+        let size = size.map(|n| n.div_ceil(self.scale));
         self.raw.resize(size)?;
         self.blurred.resize(size)
     }
@@ -50,7 +52,7 @@ impl SsaoTargets {
     }
 }
 
-/// Ambient occlusion at half resolution: 12 depth samples and a 4x4 blur that stays on a surface.
+/// Ambient occlusion: 12 depth samples a pixel and a 4x4 blur that stays on a surface.
 ///
 /// Reads the g-buffer's depth and normals, writes occlusion and distance (see `include/occlusion.glsl`).
 pub struct SsaoPass {
@@ -62,12 +64,16 @@ pub struct SsaoPass {
 }
 
 impl SsaoPass {
-    /// Occlusion by what is within `radius` metres.
+    /// Occlusion by what is within `radius` metres, at 1 / `scale` of the resolution (1 or 2).
     ///
     /// # Errors
     /// As [`Program::new`].
-    pub fn new(gl: &Rc<Context>, radius: f32) -> Result<SsaoPass, GlError> {
-        let defines = [("SAMPLES", SAMPLES.to_string()), ("STRENGTH", "3.2".to_owned())];
+    pub fn new(gl: &Rc<Context>, radius: f32, scale: u32) -> Result<SsaoPass, GlError> {
+        let defines = [
+            ("SAMPLES", SAMPLES.to_string()),
+            ("STRENGTH", "3.2".to_owned()),
+            ("SCALE", scale.to_string()),
+        ];
         let point = |i: usize| {
             let r = (i as f32 + 0.5) / SAMPLES as f32;
             let (sin, cos) = (r * TURNS * TAU).sin_cos();
