@@ -7,6 +7,7 @@ use super::{Scene, ShadingStyle};
 
 pub mod build;
 pub mod paint;
+pub mod voxel;
 
 /// A scene that is generated, not loaded.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +38,14 @@ impl Builtin {
 pub const DEFAULT_SEED: u64 = 1;
 
 /// All built-in scenes.
-pub const BUILTINS: &[Builtin] = &[];
+pub const BUILTINS: &[Builtin] = &[Builtin {
+    name: "voxel",
+    title: "A voxel landscape with a ruined temple, a bridge, woods and a castle",
+    stands_for: "LostEmpire",
+    style: ShadingStyle::Voxel,
+    kilo_triangles: 2800,
+    build: voxel::build,
+}];
 
 /// No built-in scene has this name.
 #[derive(Debug, thiserror::Error)]
