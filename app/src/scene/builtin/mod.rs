@@ -7,6 +7,8 @@ use super::{Scene, ShadingStyle};
 
 pub mod build;
 pub mod paint;
+pub mod props;
+pub mod sculpt;
 pub mod voxel;
 
 /// A scene that is generated, not loaded.

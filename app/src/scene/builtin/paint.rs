@@ -1100,7 +1100,7 @@ pub fn text_width(height: f32, text: &str) -> f32 {
 
 /// The strokes of a letter: pairs of digits are points on a grid 4 wide and 6 high from its lower left
 /// corner, a blank lifts the pen.
-fn glyph(letter: char) -> &'static str {
+pub fn glyph(letter: char) -> &'static str {
     match letter {
         'A' => "0004264440 0242",
         'B' => "00063645443303 3342413000",

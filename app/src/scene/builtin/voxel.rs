@@ -863,7 +863,8 @@ fn lamp_post(s: &mut SceneBuilder, wood: usize, iron: usize, glow: usize, foot: 
     s.within(moved(foot.x, foot.y, foot.z), |s| {
         s.with_material(wood);
         s.cuboid(vec3(-0.06, -0.2, -0.06), vec3(0.06, 2.5, 0.06));
-        s.cuboid((arm * -0.1 - 0.045).with_y(2.34), (arm * 0.72 + 0.045).with_y(2.43));
+        let (back, tip) = (arm * -0.1, arm * 0.72);
+        s.cuboid((back.min(tip) - 0.045).with_y(2.34), (back.max(tip) + 0.045).with_y(2.43));
         s.with_material(iron);
         let hook = arm * 0.66;
         s.cuboid(hook + vec3(-0.008, 2.05, -0.008), hook + vec3(0.008, 2.34, 0.008));
