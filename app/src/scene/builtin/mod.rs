@@ -8,6 +8,7 @@ use super::{Scene, ShadingStyle};
 pub mod build;
 pub mod paint;
 pub mod props;
+pub mod prototype;
 pub mod sculpt;
 pub mod voxel;
 
@@ -40,14 +41,24 @@ impl Builtin {
 pub const DEFAULT_SEED: u64 = 1;
 
 /// All built-in scenes.
-pub const BUILTINS: &[Builtin] = &[Builtin {
-    name: "voxel",
-    title: "A voxel landscape with a ruined temple, a bridge, woods and a castle",
-    stands_for: "LostEmpire",
-    style: ShadingStyle::Voxel,
-    kilo_triangles: 2800,
-    build: voxel::build,
-}];
+pub const BUILTINS: &[Builtin] = &[
+    Builtin {
+        name: "voxel",
+        title: "A voxel landscape with a ruined temple, a bridge, woods and a castle",
+        stands_for: "LostEmpire",
+        style: ShadingStyle::Voxel,
+        kilo_triangles: 2800,
+        build: voxel::build,
+    },
+    Builtin {
+        name: "prototype",
+        title: "A game level of grid textures: ramps, stairs, railings, dummies",
+        stands_for: "Prototype",
+        style: ShadingStyle::LowPoly,
+        kilo_triangles: 22,
+        build: prototype::build,
+    },
+];
 
 /// No built-in scene has this name.
 #[derive(Debug, thiserror::Error)]
