@@ -6,10 +6,12 @@ use std::ops::RangeInclusive;
 use super::{Scene, ShadingStyle};
 
 pub mod build;
+pub mod figure;
 pub mod paint;
 pub mod props;
 pub mod prototype;
 pub mod sculpt;
+pub mod talk;
 pub mod voxel;
 
 /// A scene that is generated, not loaded.
@@ -57,6 +59,14 @@ pub const BUILTINS: &[Builtin] = &[
         style: ShadingStyle::LowPoly,
         kilo_triangles: 22,
         build: prototype::build,
+    },
+    Builtin {
+        name: "talk",
+        title: "Two stylised figures talking across a table in a room with a garden",
+        stands_for: "Chat",
+        style: ShadingStyle::Cartoon,
+        kilo_triangles: 100,
+        build: talk::build,
     },
 ];
 
