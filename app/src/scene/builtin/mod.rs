@@ -65,7 +65,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "Two stylised figures talking across a table in a room with a garden",
         stands_for: "Chat",
         style: ShadingStyle::Cartoon,
-        kilo_triangles: 100,
+        kilo_triangles: 110,
         build: talk::build,
     },
 ];

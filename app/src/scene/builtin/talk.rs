@@ -186,7 +186,7 @@ fn dressed(s: &mut SceneBuilder, look: &Look, sole: usize, j: &Joints, hands: [H
         .limb(j.shoulders[0], j.shoulders[1], 0.062, 0.062)
         .limb(j.neck - Vec3::Y * 0.04, j.neck, 0.075, 0.06);
     s.with_material(look.top);
-    figure::clad(s, &top, 0.016, axis, 4.0, 0.5);
+    figure::clad(s, &top, 0.021, axis, 4.0, 0.5);
     for side in 0..2 {
         let mut sleeve = Clay::new(0.04);
         sleeve.limb(j.shoulders[side], j.elbows[side], 0.06, 0.05).limb(
@@ -199,7 +199,7 @@ fn dressed(s: &mut SceneBuilder, look: &Look, sole: usize, j: &Joints, hands: [H
         let back = (j.elbows[side] - j.wrists[side]).normalize_or(Vec3::Y);
         sleeve.limb(j.wrists[side] + back * 0.035, j.wrists[side] + back * 0.01, 0.042, 0.042);
         let center = (j.shoulders[side] + j.wrists[side]) * 0.5;
-        figure::clad(s, &sleeve, 0.014, center - Vec3::Z * 0.2, 4.0, 0.5);
+        figure::clad(s, &sleeve, 0.018, center - Vec3::Z * 0.2, 4.0, 0.5);
     }
     // The collar.
     s.within(
@@ -224,20 +224,20 @@ fn dressed(s: &mut SceneBuilder, look: &Look, sole: usize, j: &Joints, hands: [H
         );
     }
     s.with_material(look.trousers);
-    figure::clad(s, &legs, 0.017, axis, 4.0, 0.4);
+    figure::clad(s, &legs, 0.022, axis, 4.0, 0.4);
     s.object(&format!("{name}-feet"));
     for side in 0..2 {
         let toe = vec3(if side == 0 { 0.25 } else { -0.25 }, 0.0, 1.0);
-        figure::shoe(s, [look.shoe, sole], j.ankles[side], toe, 1.0, 0.012);
+        figure::shoe(s, [look.shoe, sole], j.ankles[side], toe, 1.0, 0.015);
     }
     s.object(&format!("{name}-hands")).with_material(look.skin);
     for hand in hands {
-        figure::hand(s, &hand, 0.0062);
+        figure::hand(s, &hand, 0.0074);
     }
     s.object(&format!("{name}-head"));
     s.within(figure::head_frame(j), |s| {
         s.with_material(look.face);
-        figure::head(s, look.radii, look.nose, 0.0085);
+        figure::head(s, look.radii, look.nose, 0.0105);
         s.with_material(look.skin);
         figure::ears(s, look.radii);
     });
@@ -248,7 +248,7 @@ fn long_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
     cap.ball(vec3(0.0, 0.16 * r.y, -0.12 * r.z), r * vec3(1.07, 0.98, 1.06));
     cap.ball(vec3(0.0, -0.25 * r.y, -0.5 * r.z), r * vec3(1.0, 0.8, 0.66));
     cap.carve(vec3(0.0, -0.5 * r.y, 1.0 * r.z), r * vec3(0.86, 1.05, 0.85));
-    cap.mesh(s, 0.009, |p, _| vec2(p.x.atan2(p.z), p.y * 3.0));
+    cap.mesh(s, 0.011, |p, _| vec2(p.x.atan2(p.z), p.y * 3.0));
     // The bun.
     let mut bun = Clay::new(0.02);
     bun.ball(vec3(0.0, 0.95 * r.y, -0.75 * r.z), Vec3::splat(0.055));
@@ -280,7 +280,7 @@ fn long_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
         let tip = figure::on_head(r, tip_turn, tip_rise, 1.07);
         let bend = figure::on_head(r, turn * 0.75, 0.85, 1.22);
         let low = figure::on_head(r, tip_turn, tip_rise + 0.3, 1.18);
-        figure::lock(s, [root, bend, low, tip], 0.019, 0.45, [8, 12]);
+        figure::lock(s, [root, bend, low, tip], 0.019, 0.45, [6, 10]);
     }
     for side in [-1.0, 1.0] {
         for i in 0..7 {
@@ -288,7 +288,7 @@ fn long_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
             let root = figure::on_head(r, turn, 0.35, 1.02);
             let mid = figure::on_head(r, turn, -0.2, 1.16);
             let tip = figure::on_head(r, turn * 0.97, -1.0, 1.1) + Vec3::NEG_Y * around(rng, 0.075, 0.02);
-            figure::lock(s, [root, mid, tip + vec3(side * 0.03, 0.06, -0.01), tip], 0.02, 0.5, [8, 12]);
+            figure::lock(s, [root, mid, tip + vec3(side * 0.03, 0.06, -0.01), tip], 0.02, 0.5, [6, 10]);
         }
     }
 }
@@ -297,7 +297,7 @@ fn short_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
     let mut cap = Clay::new(0.025);
     cap.ball(vec3(0.0, 0.2 * r.y, -0.14 * r.z), r * vec3(1.05, 0.92, 1.03));
     cap.carve(vec3(0.0, -0.75 * r.y, 0.75 * r.z), r * vec3(1.2, 1.2, 1.0));
-    cap.mesh(s, 0.009, |p, _| vec2(p.x.atan2(p.z), p.y * 3.0));
+    cap.mesh(s, 0.011, |p, _| vec2(p.x.atan2(p.z), p.y * 3.0));
     // Curls over the top and the sides.
     for i in 0..72 {
         let turn = i as f32 * 2.399_963;
@@ -321,7 +321,7 @@ fn short_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
             ],
             0.017,
             0.8,
-            [7, 9],
+            [6, 7],
         );
     }
 }
@@ -727,7 +727,7 @@ fn bookcase(s: &mut SceneBuilder, p: &Palette, covers: &[usize], rng: &mut Pcg32
             );
             s.within(at, |s| {
                 s.with_material(covers[rng.random_range(0..covers.len())]);
-                s.beveled_cuboid(Vec3::ZERO, size, 0.003);
+                s.cuboid_faces(Vec3::ZERO, size, BoxFaces::ALL.without(BoxFaces::BACK));
                 s.with_material(p.paper);
                 s.cuboid_faces(
                     vec3(0.004, size.y - 0.004, 0.004),
@@ -885,6 +885,30 @@ fn furniture(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
     }
 }
 
+/// A tree that is only seen from afar: a trunk, a few boughs, leaf cards in clumps.
+fn tree(s: &mut SceneBuilder, bark: usize, leaves: usize, height: f32, rng: &mut Pcg32) {
+    let fork = vec3(0.0, height * 0.34, 0.0);
+    s.with_material(bark).cylinder(Vec3::ZERO, fork, height * 0.03, height * 0.02, 9, false);
+    for i in 0..8 {
+        let turn = i as f32 * 2.4;
+        let out = vec3(turn.cos(), 0.0, turn.sin()) * height * 0.24 * (1.0 - 0.08 * i as f32);
+        let clump = fork + out + Vec3::Y * height * (0.12 + 0.06 * i as f32);
+        s.with_material(bark);
+        s.tapered_tube(
+            &[fork, fork.lerp(clump, 0.6) - Vec3::Y * 0.06 * height, clump],
+            &|t| height * (0.014 - 0.011 * t),
+            6,
+            false,
+        );
+        s.with_material(leaves);
+        for _ in 0..42 {
+            let outward = props::random_direction(rng);
+            let center = clump + outward * vec3(1.0, 0.8, 1.0) * height * 0.14;
+            props::leaf_card(s, center, outward, height * 0.055, rng);
+        }
+    }
+}
+
 fn garden(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
     let grass = props::textured(s, paint::grass("grass", 512, seed + 20, vec3(0.38, 0.56, 0.24)), 3.0, 0.95);
     let hills = props::textured(s, paint::grass("hills", 256, seed + 21, vec3(0.42, 0.56, 0.4)), 30.0, 0.95);
@@ -904,16 +928,7 @@ fn garden(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
             .enumerate()
     {
         s.object(&format!("tree-{i}"));
-        let tree = props::Tree {
-            height,
-            trunk: height * 0.32,
-            spread: height * 0.36,
-            cards: 620,
-            card_size: height * 0.05,
-            bark,
-            leaves: p.card,
-        };
-        s.within(placed(vec3(x, -0.3, z), i as f32), |s| props::tree(s, &tree, rng));
+        s.within(placed(vec3(x, -0.3, z), i as f32), |s| tree(s, bark, p.card, height, rng));
     }
     // A picket fence.
     s.object("fence").with_material(p.white);
@@ -940,16 +955,17 @@ pub fn build(seed: u64) -> Scene {
     let lamp = |position: Vec3, color: Vec3, range: f32| PointLight { position, color, range };
     let walk = [
         (1.9, 3.6, -0.3),
-        (1.6, 3.1, -0.25),
-        (1.25, 2.65, -0.2),
-        (0.85, 2.3, -0.15),
-        (0.4, 2.05, -0.05),
-        (-0.05, 1.9, 0.05),
-        (-0.5, 1.75, 0.15),
-        (-0.9, 1.55, 0.3),
-        (-1.2, 1.25, 0.45),
-        (-1.45, 0.9, 0.6),
-        (-1.7, 0.55, 0.75),
+        (1.65, 3.1, -0.3),
+        (1.4, 2.6, -0.35),
+        (1.1, 2.15, -0.4),
+        (0.75, 1.75, -0.45),
+        (0.4, 1.4, -0.45),
+        (0.05, 1.2, -0.4),
+        (-0.25, 1.12, -0.1),
+        (-0.55, 1.1, 0.25),
+        (-0.85, 1.1, 0.5),
+        (-1.15, 1.0, 0.7),
+        (-1.4, 0.8, 0.85),
     ];
     Scene {
         name: "talk".into(),
