@@ -18,6 +18,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Render(cli::render::RenderArgs),
     Synthesize(cli::synthesize::SynthesizeArgs),
     Compare(cli::compare::CompareArgs),
     Info(cli::info::InfoArgs),
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         .init();
     cli::catch_interrupt();
     let result = match &arguments.command {
+        Command::Render(args) => cli::render::run(args),
         Command::Synthesize(args) => cli::synthesize::run(args),
         Command::Compare(args) => cli::compare::run(args),
         Command::Info(args) => cli::info::run(args),

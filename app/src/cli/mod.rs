@@ -2,6 +2,8 @@
 
 pub mod compare;
 pub mod info;
+pub mod render;
+pub mod stage;
 pub mod synthesize;
 
 use std::sync::atomic::{AtomicBool, Ordering};
