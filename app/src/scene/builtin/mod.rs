@@ -8,9 +8,14 @@ use super::{Scene, ShadingStyle};
 mod atrium;
 pub mod build;
 mod conference;
+pub mod figure;
 pub mod paint;
 pub mod props;
+pub mod prototype;
+pub mod sculpt;
 mod street;
+pub mod talk;
+pub mod voxel;
 
 /// A scene that is generated, not loaded.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +70,30 @@ pub const BUILTINS: &[Builtin] = &[
         style: ShadingStyle::Realistic,
         kilo_triangles: 125,
         build: conference::build,
+    },
+    Builtin {
+        name: "voxel",
+        title: "A voxel landscape with a ruined temple, a bridge, woods and a castle",
+        stands_for: "LostEmpire",
+        style: ShadingStyle::Voxel,
+        kilo_triangles: 2800,
+        build: voxel::build,
+    },
+    Builtin {
+        name: "prototype",
+        title: "A game level of grid textures: ramps, stairs, railings, dummies",
+        stands_for: "Prototype",
+        style: ShadingStyle::LowPoly,
+        kilo_triangles: 22,
+        build: prototype::build,
+    },
+    Builtin {
+        name: "talk",
+        title: "Two stylised figures talking across a table in a room with a garden",
+        stands_for: "Chat",
+        style: ShadingStyle::Cartoon,
+        kilo_triangles: 110,
+        build: talk::build,
     },
 ];
 
