@@ -12,6 +12,7 @@ pub mod figure;
 pub mod paint;
 pub mod props;
 pub mod prototype;
+mod scifi_city;
 pub mod sculpt;
 mod street;
 pub mod talk;
@@ -54,6 +55,14 @@ pub const BUILTINS: &[Builtin] = &[
         style: ShadingStyle::Realistic,
         kilo_triangles: 1240,
         build: street::build,
+    },
+    Builtin {
+        name: "scifi-city",
+        title: "A neon street between towers at night",
+        stands_for: "SciFiCity",
+        style: ShadingStyle::Realistic,
+        kilo_triangles: 610,
+        build: scifi_city::build,
     },
     Builtin {
         name: "atrium",
