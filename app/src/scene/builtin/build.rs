@@ -112,6 +112,11 @@ impl SceneBuilder {
         self.materials.len() - 1
     }
 
+    /// Changes a material that was added before.
+    pub fn edit_material(&mut self, material: usize, edit: impl FnOnce(&mut Material)) {
+        edit(&mut self.materials[material]);
+    }
+
     /// Draws with this material from now on.
     pub fn with_material(&mut self, material: usize) -> &mut Self {
         debug_assert!(material < self.materials.len());

@@ -213,7 +213,7 @@ pub fn fronds(b: &mut SceneBuilder, leaf: usize, count: usize, length: f32, widt
         };
         b.surface(4, 10, false, |u, v| {
             let across = u * 2.0 - 1.0;
-            let breadth = width * 0.5 * (v * PI).sin().powf(0.6) * (1.0 - 0.55 * v) + 0.002;
+            let breadth = width * 0.5 * (v * PI).sin().max(0.0).powf(0.6) * (1.0 - 0.55 * v) + 0.002;
             let fold = Vec3::Y * (across.abs() * breadth * 0.45);
             (spine(v) - side * (across * breadth) + fold, vec2(across * breadth, v * reach))
         });
@@ -272,7 +272,15 @@ pub fn bulb_string(
 /// A cup on a saucer, standing on the origin.
 pub fn cup(b: &mut SceneBuilder, china: usize, coffee: usize) {
     b.with_material(china);
-    let saucer = [(0.0, 0.004), (0.03, 0.004), (0.07, 0.014), (0.072, 0.017), (0.03, 0.009), (0.0, 0.009)];
+    let saucer = [
+        (0.0, 0.004),
+        (0.03, 0.004),
+        (0.07, 0.014),
+        (0.072, 0.017),
+        (0.072, 0.017),
+        (0.03, 0.009),
+        (0.0, 0.009),
+    ];
     b.lathe(&saucer.map(|(r, y)| (r, y + 0.001)), 28);
     b.lathe(
         &[
@@ -281,6 +289,7 @@ pub fn cup(b: &mut SceneBuilder, china: usize, coffee: usize) {
             (0.032, 0.025),
             (0.041, 0.07),
             (0.042, 0.072),
+            (0.039, 0.072),
             (0.039, 0.072),
             (0.030, 0.03),
         ],
