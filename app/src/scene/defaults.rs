@@ -140,8 +140,11 @@ fn place(eye: Vec3, rays: &Rays, reach: f32) -> Option<Place> {
         }
     }
     distances.sort_by(f32::total_cmp);
+    // Among houses the street, not the empty inside of one; on a roof there is little to see around.
+    let street = seen > 0.4 && rays.cast(eye, Vec3::Y, reach).is_none();
+    let score = seen * (distances[16] / 8.0).min(1.0) * if street { 3.0 } else { 1.0 };
     // Nothing nearer than half a metre: the eyes need room, and the synthesis too.
-    (distances[0] >= 0.5).then(|| Place { eye, score: seen * (distances[16] / 8.0).min(1.0) })
+    (distances[0] >= 0.5).then_some(Place { eye, score })
 }
 
 /// Sun, sky and point lights for a model that states none. Glowing surfaces become point lights. Where the

@@ -307,7 +307,8 @@ struct Normalizer<R> {
     libraries: Vec<String>,
     curves: bool,
     error: Option<SceneError>,
-    /// The first face that refers to a vertex further down: right only if that follows before the group ends.
+    /// The first face that refers to a vertex further down: right only if that
+    /// follows before the faces of the next group.
     beyond: Option<SceneError>,
 }
 
