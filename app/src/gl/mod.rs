@@ -5,8 +5,10 @@
 mod capabilities;
 mod framebuffer;
 mod mesh;
+mod pixel_buffer;
 mod profiler;
 mod program;
+mod state;
 mod texture;
 
 use std::cell::{Cell, RefCell};
@@ -15,10 +17,12 @@ use std::rc::Rc;
 use glow::HasContext;
 
 pub use capabilities::{Capabilities, GlApi};
-pub use framebuffer::RenderTarget;
+pub use framebuffer::{Destination, RenderTarget};
 pub use mesh::Mesh;
+pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ShaderSource, UniformValue, shader_files};
+pub use state::{Blend, DepthTest, RasterState};
 pub use texture::{Filter, Format, Texture};
 
 /// What can go wrong with GL.

@@ -77,6 +77,8 @@ pub enum Filter {
     Material,
     /// As [`Filter::Material`], with nearest magnification.
     MaterialNearest,
+    /// Depth compared with a reference (LEQUAL), 2x2 results averaged: a shadow map behind `sampler2DShadow`.
+    Compare,
 }
 
 /// A 2-D texture.
@@ -102,7 +104,7 @@ impl Texture {
         let levels = if mipmapped { 32 - width.max(height).leading_zeros() } else { 1 };
         let (min, mag, wrap) = match filter {
             Filter::Nearest => (glow::NEAREST, glow::NEAREST, glow::CLAMP_TO_EDGE),
-            Filter::Linear => (glow::LINEAR, glow::LINEAR, glow::CLAMP_TO_EDGE),
+            Filter::Linear | Filter::Compare => (glow::LINEAR, glow::LINEAR, glow::CLAMP_TO_EDGE),
             Filter::Material => (glow::LINEAR_MIPMAP_LINEAR, glow::LINEAR, glow::REPEAT),
             Filter::MaterialNearest => (glow::LINEAR_MIPMAP_LINEAR, glow::NEAREST, glow::REPEAT),
         };
@@ -127,6 +129,11 @@ impl Texture {
                 (glow::TEXTURE_WRAP_T, wrap),
             ] {
                 raw_gl.tex_parameter_i32(glow::TEXTURE_2D, name, value as i32);
+            }
+            if filter == Filter::Compare {
+                let mode = glow::COMPARE_REF_TO_TEXTURE as i32;
+                raw_gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_COMPARE_MODE, mode);
+                raw_gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_COMPARE_FUNC, glow::LEQUAL as i32);
             }
             let anisotropy = gl.capabilities().max_anisotropy.min(8.0);
             if mipmapped && anisotropy > 1.0 {

@@ -47,7 +47,9 @@ fn orbit(bounds: &Bounds) -> Vec<Viewpoint> {
     let distance = (2.1 * radius).max(1e-3);
     // From the front first, a little from the side.
     let azimuth = |i: usize| std::f32::consts::PI - 0.4 + i as f32 * TAU / COUNT as f32;
-    (0..COUNT).map(|i| Viewpoint { position: target + direction(azimuth(i), 18.0) * distance, target }).collect()
+    (0..COUNT)
+        .map(|i| Viewpoint { position: target + direction(azimuth(i), 18.0) * distance, target })
+        .collect()
 }
 
 /// A place to stand.
@@ -82,7 +84,9 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
         let here = eyes[eyes.len() - 1];
         let free = places.iter().filter(|p| eyes.iter().all(|e| e.distance(p.eye) >= apart));
         // The nearest that can be walked to, so that the camera path stays clear of walls.
-        let next = free.filter(|p| visible(here, p.eye)).min_by(|a, b| a.eye.distance(here).total_cmp(&b.eye.distance(here)));
+        let next = free
+            .filter(|p| visible(here, p.eye))
+            .min_by(|a, b| a.eye.distance(here).total_cmp(&b.eye.distance(here)));
         match next {
             Some(p) => eyes.push(p.eye),
             None => break,
@@ -101,7 +105,10 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
             };
             let ahead = match heading {
                 Some(h) if i >= eyes.len() => Vec3::new(
-                    h.x * around.cos() - h.z * around.sin(), 0.0, h.x * around.sin() + h.z * around.cos()),
+                    h.x * around.cos() - h.z * around.sin(),
+                    0.0,
+                    h.x * around.sin() + h.z * around.cos(),
+                ),
                 _ => (0..16).map(view).max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Vec3::NEG_Z, |v| v.0),
             };
             if i < eyes.len() {
@@ -134,7 +141,8 @@ fn place(eye: Vec3, rays: &Rays, reach: f32) -> Option<Place> {
     let mut seen = 0.0;
     for i in 0..16 {
         for elevation in [0.0, 20.0] {
-            let distance = rays.cast(eye, direction(i as f32 * TAU / 16.0, elevation), reach).map(|h| h.distance);
+            let distance =
+                rays.cast(eye, direction(i as f32 * TAU / 16.0, elevation), reach).map(|h| h.distance);
             seen += distance.map_or(0.2, |d| if (1.0..60.0).contains(&d) { 1.0 } else { 0.1 }) / 32.0;
             distances.push(distance.unwrap_or(30.0));
         }
@@ -153,8 +161,15 @@ pub(super) fn light(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> (Sk
     let bounds = model.bounds();
     let lights = glowing(model, &bounds);
     let reach = (bounds.max - bounds.min).length() * 2.0 + 1.0;
-    let upward: Vec<Vec3> = [25.0, 55.0].into_iter().flat_map(|e| (0..8).map(move |i| direction(i as f32 * TAU / 8.0, e))).chain([Vec3::Y]).collect();
-    let open = viewpoints.iter().flat_map(|v| upward.iter().map(|d| (v.position, *d))).filter(|&(p, d)| rays.cast(p, d, reach).is_none());
+    let upward: Vec<Vec3> = [25.0, 55.0]
+        .into_iter()
+        .flat_map(|e| (0..8).map(move |i| direction(i as f32 * TAU / 8.0, e)))
+        .chain([Vec3::Y])
+        .collect();
+    let open = viewpoints
+        .iter()
+        .flat_map(|v| upward.iter().map(|d| (v.position, *d)))
+        .filter(|&(p, d)| rays.cast(p, d, reach).is_none());
     let sky_share = open.count() as f32 / (viewpoints.len() * upward.len()).max(1) as f32;
     if sky_share > 0.2 {
         return (Sky::default(), lights);
@@ -237,6 +252,9 @@ fn glowing(model: &Model, bounds: &Bounds) -> Vec<PointLight> {
 fn mean_linear(rgba: &[u8]) -> Vec3 {
     // Every 37th pixel says enough.
     let picked = || rgba.chunks_exact(4).step_by(37);
-    let sum: Vec3 = picked().map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32)).map(|p| Vec3::from((p / 255.0).to_array().map(to_linear))).sum();
+    let sum: Vec3 = picked()
+        .map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32))
+        .map(|p| Vec3::from((p / 255.0).to_array().map(to_linear)))
+        .sum();
     sum / picked().count().max(1) as f32
 }

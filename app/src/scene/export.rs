@@ -22,10 +22,13 @@ use super::textures::unique;
 pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, SceneError> {
     let mut taken = HashSet::new();
     let name = unique(&mut taken, scene.name.clone());
-    let made = |path: &Path| fs::create_dir_all(path).map_err(|source| SceneError::Write { path: path.into(), source });
+    let made = |path: &Path| {
+        fs::create_dir_all(path).map_err(|source| SceneError::Write { path: path.into(), source })
+    };
     made(folder)?;
     let mut taken = HashSet::new();
-    let textures: Vec<String> = scene.model.textures.iter().map(|t| unique(&mut taken, t.name.clone())).collect();
+    let textures: Vec<String> =
+        scene.model.textures.iter().map(|t| unique(&mut taken, t.name.clone())).collect();
     if !textures.is_empty() {
         made(&folder.join("textures"))?;
     }
@@ -33,7 +36,9 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Sc
         let [w, h] = texture.size;
         let picture = image::RgbaImage::from_raw(w, h, texture.rgba.clone());
         write(&folder.join(format!("textures/{file}.png")), |out| {
-            let picture = picture.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidData, "the picture's size does not fit its data"))?;
+            let picture = picture.ok_or_else(|| {
+                io::Error::new(io::ErrorKind::InvalidData, "the picture's size does not fit its data")
+            })?;
             let encoder = image::codecs::png::PngEncoder::new(out);
             let has_alpha = picture.pixels().any(|p| p[3] != 255);
             let encoded = if has_alpha {
@@ -45,7 +50,8 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Sc
         })?;
     }
     let mut taken = HashSet::new();
-    let materials: Vec<String> = scene.model.materials.iter().map(|m| unique(&mut taken, m.name.clone())).collect();
+    let materials: Vec<String> =
+        scene.model.materials.iter().map(|m| unique(&mut taken, m.name.clone())).collect();
     write(&folder.join(format!("{name}.mtl")), |out| {
         for (material, name) in scene.model.materials.iter().zip(&materials) {
             write_material(out, material, name, &textures)?;
@@ -57,11 +63,26 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Sc
         style: scene.style,
         sky: Some(scene.sky),
         lights: Some(scene.lights.clone()),
-        materials: scene.model.materials.iter().zip(&materials).map(|(m, name)| (name.clone(), notes(m))).collect::<BTreeMap<_, _>>(),
-        nearest: scene.model.textures.iter().zip(&textures).filter(|(t, _)| t.nearest).map(|(_, n)| n.clone()).collect(),
+        materials: scene
+            .model
+            .materials
+            .iter()
+            .zip(&materials)
+            .map(|(m, name)| (name.clone(), notes(m)))
+            .collect::<BTreeMap<_, _>>(),
+        nearest: scene
+            .model
+            .textures
+            .iter()
+            .zip(&textures)
+            .filter(|(t, _)| t.nearest)
+            .map(|(_, n)| n.clone())
+            .collect(),
     };
     write(&folder.join(format!("{name}.scene.json")), |out| Ok(serde_json::to_writer_pretty(out, &notes)?))?;
-    write(&folder.join(format!("{name}.camera.json")), |out| Ok(serde_json::to_writer_pretty(out, &scene.viewpoints)?))?;
+    write(&folder.join(format!("{name}.camera.json")), |out| {
+        Ok(serde_json::to_writer_pretty(out, &scene.viewpoints)?)
+    })?;
     write(&folder.join("LICENSE.txt"), |out| writeln!(out, "{}", license.trim_end()))?;
     let obj = folder.join(format!("{name}.obj"));
     write(&obj, |out| write_obj(out, scene, &name, &materials))?;
@@ -80,7 +101,11 @@ fn write_obj(out: &mut dyn Write, scene: &Scene, name: &str, materials: &[String
         writeln!(out, "v {} {} {}\nvt {} {}\nvn {} {} {}", p.x, p.y, p.z, t.x, t.y, n.x, n.y, n.z)?;
     }
     for part in &model.parts {
-        let group: String = part.name.chars().map(|c| if c.is_control() || c == '#' || c == '\\' { '_' } else { c }).collect();
+        let group: String = part
+            .name
+            .chars()
+            .map(|c| if c.is_control() || c == '#' || c == '\\' { '_' } else { c })
+            .collect();
         writeln!(out, "g {group}\nusemtl {}", materials[part.material])?;
         for t in model.indices[part.indices.clone()].chunks_exact(3) {
             let [a, b, c] = [t[0], t[1], t[2]].map(|i| i as u64 + 1);

@@ -1,5 +1,6 @@
 //! What is looked at: models, files, built-in scenes, camera paths.
 
+pub mod builtin;
 mod defaults;
 mod error;
 pub mod export;
