@@ -20,6 +20,7 @@ struct Arguments {
 enum Command {
     Synthesize(cli::synthesize::SynthesizeArgs),
     Compare(cli::compare::CompareArgs),
+    Scenes(cli::scenes::ScenesArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Synthesize(args) => cli::synthesize::run(args),
         Command::Compare(args) => cli::compare::run(args),
+        Command::Scenes(args) => cli::scenes::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {

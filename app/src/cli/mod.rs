@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod info;
+pub mod scenes;
 pub mod synthesize;
 
 use std::sync::atomic::{AtomicBool, Ordering};
