@@ -61,6 +61,8 @@ pub const BUILTINS: &[Builtin] = &[
         style: ShadingStyle::Realistic,
         kilo_triangles: 360,
         build: atrium::build,
+    },
+    Builtin {
         name: "voxel",
         title: "A voxel landscape with a ruined temple, a bridge, woods and a castle",
         stands_for: "LostEmpire",
