@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::load::{MaterialNotes, SceneNotes};
 use super::model::{Alpha, Material, Scene};
 use super::textures::unique;
-use crate::files::{FileError, write_with};
+use crate::files::{FileError, create_folder, write_with};
 
 /// Writes `NAME.obj`, `NAME.mtl`, `textures/*.png`, `NAME.camera.json`, `NAME.scene.json` and `LICENSE.txt` into
 /// a folder, which is made if necessary; [`crate::scene::load`] gives the same scene again. `license` is the text
@@ -19,6 +19,7 @@ use crate::files::{FileError, write_with};
 /// # Errors
 /// [`FileError`].
 pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, FileError> {
+    create_folder(folder)?;
     let mut taken = HashSet::new();
     let name = unique(&mut taken, scene.name.clone());
     let mut taken = HashSet::new();
