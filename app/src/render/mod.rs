@@ -12,6 +12,8 @@ mod lighting;
 mod scene;
 mod shadow;
 mod ssao;
+#[cfg(all(test, feature = "desktop"))]
+mod tests;
 mod tonemap;
 mod transparent;
 mod uniforms;
@@ -219,7 +221,10 @@ impl Renderer {
             scene_id: scene.id,
             shadow,
             geometry: GeometryPass::new(gl, scene)?,
-            ssao: settings.ssao.then(|| SsaoPass::new(gl, settings.ssao_radius, settings.ssao_scale())).transpose()?,
+            ssao: settings
+                .ssao
+                .then(|| SsaoPass::new(gl, settings.ssao_radius, settings.ssao_scale()))
+                .transpose()?,
             lighting: LightingPass::new(gl, scene, settings)?,
             bloom,
             tonemap: TonemapPass::new(gl, &hdr)?,

@@ -69,11 +69,8 @@ impl SsaoPass {
     /// # Errors
     /// As [`Program::new`].
     pub fn new(gl: &Rc<Context>, radius: f32, scale: u32) -> Result<SsaoPass, GlError> {
-        let defines = [
-            ("SAMPLES", SAMPLES.to_string()),
-            ("STRENGTH", "3.2".to_owned()),
-            ("SCALE", scale.to_string()),
-        ];
+        let defines =
+            [("SAMPLES", SAMPLES.to_string()), ("STRENGTH", "3.2".to_owned()), ("SCALE", scale.to_string())];
         let point = |i: usize| {
             let r = (i as f32 + 0.5) / SAMPLES as f32;
             let (sin, cos) = (r * TURNS * TAU).sin_cos();
