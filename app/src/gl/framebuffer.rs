@@ -4,12 +4,32 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::{Context, Filter, Format, GlError, Texture};
+use super::{Context, Filter, Format, GlError, PixelBuffer, Texture};
+
+/// A rectangle of a framebuffer to draw into.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Destination {
+    /// The framebuffer; `None` for the window's.
+    pub framebuffer: Option<glow::Framebuffer>,
+    /// Lower left corner in pixels.
+    pub origin: [u32; 2],
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+}
+
+impl Destination {
+    /// All of a render target.
+    pub fn whole(target: &RenderTarget) -> Destination {
+        Destination { framebuffer: Some(target.raw()), origin: [0, 0], size: target.size() }
+    }
+}
 
 /// A framebuffer with its own textures. Resizing to the size it has costs nothing.
 pub struct RenderTarget {
     gl: Rc<Context>,
     raw: glow::Framebuffer,
+    /// The colour attachments alone, where there is depth, too.
+    raw_color_only: Option<glow::Framebuffer>,
     color: Vec<Texture>,
     depth: Option<Texture>,
     formats: Vec<(Format, Filter)>,
@@ -46,13 +66,19 @@ impl RenderTarget {
         formats: &[(Format, Filter)],
         depth_format: Option<(Format, Filter)>,
     ) -> Result<RenderTarget, GlError> {
-        // SAFETY: plain creation.
-        let raw = unsafe { gl.raw().create_framebuffer() }
-            .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
-        gl.count(1);
+        let framebuffer = || -> Result<_, GlError> {
+            // SAFETY: plain creation.
+            let raw = unsafe { gl.raw().create_framebuffer() }
+                .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
+            gl.count(1);
+            Ok(raw)
+        };
+        let raw = framebuffer()?;
+        let raw_color_only = (depth_format.is_some() && !formats.is_empty()).then(framebuffer).transpose()?;
         let mut target = RenderTarget {
             gl: gl.clone(),
             raw,
+            raw_color_only,
             color: Vec::new(),
             depth: None,
             formats: formats.to_vec(),
@@ -81,10 +107,27 @@ impl RenderTarget {
             .depth_format
             .map(|(format, filter)| Texture::new(&self.gl, size, format, filter))
             .transpose()?;
+        if let Some(color_only) = self.raw_color_only {
+            self.attach(color_only, false);
+        }
+        let status = self.attach(self.raw, true);
+        if status != glow::FRAMEBUFFER_COMPLETE {
+            return Err(GlError::Unsupported(format!(
+                "the GL driver cannot render to {:?} with depth {:?} (status 0x{status:x}); EXT_color_buffer_float may be missing: update the driver",
+                self.formats.iter().map(|f| f.0).collect::<Vec<_>>(),
+                self.depth_format.map(|f| f.0)
+            )));
+        }
+        self.size = size;
+        Ok(())
+    }
+
+    /// Attaches the textures to a framebuffer, leaves it bound and returns its status.
+    fn attach(&self, framebuffer: glow::Framebuffer, with_depth: bool) -> u32 {
         let gl = self.gl.raw();
         // SAFETY: attachments are live textures of this object.
-        let status = unsafe {
-            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
+        unsafe {
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
             let mut buffers = [glow::NONE; 8];
             for (i, texture) in self.color.iter().enumerate() {
                 buffers[i] = glow::COLOR_ATTACHMENT0 + i as u32;
@@ -96,7 +139,7 @@ impl RenderTarget {
                     0,
                 );
             }
-            if let Some(depth) = &self.depth {
+            if let Some(depth) = self.depth.as_ref().filter(|_| with_depth) {
                 let raw = Some(depth.raw());
                 gl.framebuffer_texture_2d(
                     glow::FRAMEBUFFER,
@@ -108,16 +151,44 @@ impl RenderTarget {
             }
             gl.draw_buffers(if self.color.is_empty() { &buffers[..1] } else { &buffers[..self.color.len()] });
             gl.check_framebuffer_status(glow::FRAMEBUFFER)
-        };
-        if status != glow::FRAMEBUFFER_COMPLETE {
-            return Err(GlError::Unsupported(format!(
-                "the GL driver cannot render to {:?} with depth {:?} (status 0x{status:x}); EXT_color_buffer_float may be missing: update the driver",
-                self.formats.iter().map(|f| f.0).collect::<Vec<_>>(),
-                self.depth_format.map(|f| f.0)
-            )));
         }
-        self.size = size;
-        Ok(())
+    }
+
+    /// All of the target without its depth attachment: for passes that sample its depth texture.
+    pub fn color_only(&self) -> Destination {
+        Destination { framebuffer: self.raw_color_only.or(Some(self.raw)), origin: [0, 0], size: self.size }
+    }
+
+    /// Copies the rectangle of colour attachment 0 whose lower left corner is `crop` into a destination of the
+    /// same size as the rectangle.
+    pub fn copy_color(&self, crop: [u32; 2], to: &Destination) {
+        let gl = self.gl.raw();
+        let [x, y] = crop.map(|n| n as i32);
+        let ([tx, ty], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
+        // SAFETY: both framebuffers are live; GL clips rectangles that do not fit.
+        unsafe {
+            gl.disable(glow::SCISSOR_TEST);
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.raw));
+            gl.read_buffer(glow::COLOR_ATTACHMENT0);
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, to.framebuffer);
+            let (mask, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
+            gl.blit_framebuffer(x, y, x + w, y + h, tx, ty, tx + w, ty + h, mask, filter);
+        }
+    }
+
+    /// Starts to read all of colour attachment 0, as RGBA8, into a buffer; does not wait.
+    pub fn read_into(&self, buffer: &PixelBuffer) {
+        let gl = self.gl.raw();
+        let [w, h] = self.size.map(|n| n as i32);
+        // SAFETY: GL refuses a buffer that is too small.
+        unsafe {
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
+            gl.read_buffer(glow::COLOR_ATTACHMENT0);
+            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, Some(buffer.raw()));
+            let data = glow::PixelPackData::BufferOffset(0);
+            gl.read_pixels(0, 0, w, h, glow::RGBA, glow::UNSIGNED_BYTE, data);
+            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+        }
     }
 
     /// Binds the framebuffer and sets the viewport to all of it.
@@ -197,8 +268,10 @@ impl RenderTarget {
 
 impl Drop for RenderTarget {
     fn drop(&mut self) {
-        // SAFETY: created in `new`, deleted once.
-        unsafe { self.gl.raw().delete_framebuffer(self.raw) };
-        self.gl.count(-1);
+        for framebuffer in [Some(self.raw), self.raw_color_only].into_iter().flatten() {
+            // SAFETY: created in `new`, deleted once.
+            unsafe { self.gl.raw().delete_framebuffer(framebuffer) };
+            self.gl.count(-1);
+        }
     }
 }

@@ -5,6 +5,7 @@
 mod capabilities;
 mod framebuffer;
 mod mesh;
+mod pixel_buffer;
 mod profiler;
 mod program;
 mod state;
@@ -16,8 +17,9 @@ use std::rc::Rc;
 use glow::HasContext;
 
 pub use capabilities::{Capabilities, GlApi};
-pub use framebuffer::RenderTarget;
+pub use framebuffer::{Destination, RenderTarget};
 pub use mesh::Mesh;
+pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ShaderSource, UniformValue, shader_files};
 pub use state::{Blend, DepthTest, RasterState};

@@ -13,6 +13,8 @@ pub enum DepthTest {
     Less,
     /// Larger passes and is written.
     Greater,
+    /// Everything passes and is written.
+    Always,
 }
 
 /// How a fragment meets what is there.
@@ -40,6 +42,8 @@ pub struct RasterState {
 impl RasterState {
     /// A pass over the whole screen.
     pub const SCREEN: RasterState = RasterState { depth: DepthTest::Off, blend: Blend::Off, cull: false };
+    /// A pass over the whole screen that writes depth, too.
+    pub const SCREEN_DEPTH: RasterState = RasterState { depth: DepthTest::Always, ..RasterState::SCREEN };
 }
 
 impl Context {
@@ -50,7 +54,11 @@ impl Context {
         unsafe {
             let toggle = |capability, on| if on { gl.enable(capability) } else { gl.disable(capability) };
             toggle(glow::DEPTH_TEST, state.depth != DepthTest::Off);
-            gl.depth_func(if state.depth == DepthTest::Greater { glow::GREATER } else { glow::LESS });
+            gl.depth_func(match state.depth {
+                DepthTest::Off | DepthTest::Less => glow::LESS,
+                DepthTest::Greater => glow::GREATER,
+                DepthTest::Always => glow::ALWAYS,
+            });
             gl.depth_mask(true);
             gl.color_mask(true, true, true, true);
             toggle(glow::BLEND, state.blend != Blend::Off);

@@ -34,6 +34,7 @@ use transparent::TransparentPass;
 use uniforms::Lights;
 
 use crate::eyes::{DepthConvention, View};
+pub use crate::gl::Destination;
 use crate::gl::{Context, Filter, Format, GlError, RenderTarget, Texture};
 
 /// The most point lights that light one view.
@@ -76,24 +77,6 @@ impl Default for RenderSettings {
 impl RenderSettings {
     fn ssao_scale(&self) -> u32 {
         if self.ssao_half_size { 2 } else { 1 }
-    }
-}
-
-/// A rectangle of a framebuffer to draw into.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Destination {
-    /// The framebuffer; `None` for the window's.
-    pub framebuffer: Option<glow::Framebuffer>,
-    /// Lower left corner in pixels.
-    pub origin: [u32; 2],
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-}
-
-impl Destination {
-    /// All of a render target.
-    pub fn whole(target: &RenderTarget) -> Destination {
-        Destination { framebuffer: Some(target.raw()), origin: [0, 0], size: target.size() }
     }
 }
 
