@@ -11,12 +11,13 @@ mod conference;
 pub mod figure;
 pub mod paint;
 pub mod props;
-pub mod prototype;
+mod prototype;
 mod scifi_city;
 pub mod sculpt;
+mod stage;
 mod street;
-pub mod talk;
-pub mod voxel;
+mod talk;
+mod voxel;
 
 /// A scene that is generated, not loaded.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +104,14 @@ pub const BUILTINS: &[Builtin] = &[
         style: ShadingStyle::Cartoon,
         kilo_triangles: 110,
         build: talk::build,
+    },
+    Builtin {
+        name: "stage",
+        title: "An anime-style singer on a concert stage at nightfall",
+        stands_for: "UnityChan",
+        style: ShadingStyle::Anime,
+        kilo_triangles: 120,
+        build: stage::build,
     },
 ];
 
