@@ -18,8 +18,10 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Render(cli::render::RenderArgs),
     Synthesize(cli::synthesize::SynthesizeArgs),
     Compare(cli::compare::CompareArgs),
+    Scenes(cli::scenes::ScenesArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -36,8 +38,10 @@ fn main() -> ExitCode {
         .init();
     cli::catch_interrupt();
     let result = match &arguments.command {
+        Command::Render(args) => cli::render::run(args),
         Command::Synthesize(args) => cli::synthesize::run(args),
         Command::Compare(args) => cli::compare::run(args),
+        Command::Scenes(args) => cli::scenes::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {

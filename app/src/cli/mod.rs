@@ -2,6 +2,9 @@
 
 pub mod compare;
 pub mod info;
+pub mod render;
+pub mod scenes;
+pub mod stage;
 pub mod synthesize;
 
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -47,7 +47,9 @@ fn orbit(bounds: &Bounds) -> Vec<Viewpoint> {
     let distance = (2.1 * radius).max(1e-3);
     // From the front first, a little from the side.
     let azimuth = |i: usize| std::f32::consts::PI - 0.4 + i as f32 * TAU / COUNT as f32;
-    (0..COUNT).map(|i| Viewpoint { position: target + direction(azimuth(i), 18.0) * distance, target }).collect()
+    (0..COUNT)
+        .map(|i| Viewpoint { position: target + direction(azimuth(i), 18.0) * distance, target })
+        .collect()
 }
 
 /// A place to stand.
@@ -69,25 +71,17 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
         places.extend(floors(bounds, rays, column, reach).filter_map(|eye| place(eye, rays, reach)));
     }
     let best = places.iter().map(|p| p.score).fold(0.0, f32::max);
-    places.retain(|p| p.score > 0.0 && p.score >= 0.5 * best);
+    places.retain(|p| p.score > 0.0 && p.score >= 0.4 * best);
     places.sort_by(|a, b| b.score.total_cmp(&a.score));
     // Too few places are roofs and niches of an object, not a scene to walk in.
     if places.len() < 4 {
         return Vec::new();
     }
-    let apart = (size.max_element() / 16.0).max(0.4);
-    let visible = |a: Vec3, b: Vec3| rays.cast(a, b - a, 1.0).is_none();
-    let mut eyes = vec![places[0].eye];
-    while eyes.len() < COUNT {
-        let here = eyes[eyes.len() - 1];
-        let free = places.iter().filter(|p| eyes.iter().all(|e| e.distance(p.eye) >= apart));
-        // The nearest that can be walked to, so that the camera path stays clear of walls.
-        let next = free.filter(|p| visible(here, p.eye)).min_by(|a, b| a.eye.distance(here).total_cmp(&b.eye.distance(here)));
-        match next {
-            Some(p) => eyes.push(p.eye),
-            None => break,
-        }
-    }
+    // As far apart as leaves enough of them.
+    let extent = size.max_element();
+    let routes = [8.0, 12.0, 18.0].map(|parts| route(&places, (extent / parts).max(0.4), rays));
+    let enough = routes.iter().find(|r| r.len() == COUNT);
+    let Some(eyes) = enough.or(routes.iter().max_by_key(|r| r.len())) else { return Vec::new() };
     let mut heading: Option<Vec3> = None;
     (0..COUNT)
         .map(|i| {
@@ -101,7 +95,10 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
             };
             let ahead = match heading {
                 Some(h) if i >= eyes.len() => Vec3::new(
-                    h.x * around.cos() - h.z * around.sin(), 0.0, h.x * around.sin() + h.z * around.cos()),
+                    h.x * around.cos() - h.z * around.sin(),
+                    0.0,
+                    h.x * around.sin() + h.z * around.cos(),
+                ),
                 _ => (0..16).map(view).max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Vec3::NEG_Z, |v| v.0),
             };
             if i < eyes.len() {
@@ -110,6 +107,22 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
             Viewpoint { position: eye, target: eye + ahead * 4.0 - Vec3::Y * 0.3 }
         })
         .collect()
+}
+
+/// A way from the best place to the nearest that can be seen from there and so on: a camera path along it stays
+/// clear of walls.
+fn route(places: &[Place], apart: f32, rays: &Rays) -> Vec<Vec3> {
+    let mut eyes = vec![places[0].eye];
+    while eyes.len() < COUNT {
+        let here = eyes[eyes.len() - 1];
+        let visible = |p: &&Place| rays.cast(here, p.eye - here, 1.0).is_none();
+        let free = places.iter().filter(|p| eyes.iter().all(|e| e.distance(p.eye) >= apart)).filter(visible);
+        match free.min_by(|a, b| a.eye.distance(here).total_cmp(&b.eye.distance(here))) {
+            Some(p) => eyes.push(p.eye),
+            None => break,
+        }
+    }
+    eyes
 }
 
 /// Eye positions above every floor of a column, from the top, that has room for a head above.
@@ -134,14 +147,18 @@ fn place(eye: Vec3, rays: &Rays, reach: f32) -> Option<Place> {
     let mut seen = 0.0;
     for i in 0..16 {
         for elevation in [0.0, 20.0] {
-            let distance = rays.cast(eye, direction(i as f32 * TAU / 16.0, elevation), reach).map(|h| h.distance);
+            let distance =
+                rays.cast(eye, direction(i as f32 * TAU / 16.0, elevation), reach).map(|h| h.distance);
             seen += distance.map_or(0.2, |d| if (1.0..60.0).contains(&d) { 1.0 } else { 0.1 }) / 32.0;
             distances.push(distance.unwrap_or(30.0));
         }
     }
     distances.sort_by(f32::total_cmp);
+    // Among houses the street, not the empty inside of one; on a roof there is little to see around.
+    let street = seen > 0.4 && rays.cast(eye, Vec3::Y, reach).is_none();
+    let score = seen * (distances[16] / 8.0).min(1.0) * if street { 3.0 } else { 1.0 };
     // Nothing nearer than half a metre: the eyes need room, and the synthesis too.
-    (distances[0] >= 0.5).then(|| Place { eye, score: seen * (distances[16] / 8.0).min(1.0) })
+    (distances[0] >= 0.5).then_some(Place { eye, score })
 }
 
 /// Sun, sky and point lights for a model that states none. Glowing surfaces become point lights. Where the
@@ -150,8 +167,15 @@ pub(super) fn light(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> (Sk
     let bounds = model.bounds();
     let lights = glowing(model, &bounds);
     let reach = (bounds.max - bounds.min).length() * 2.0 + 1.0;
-    let upward: Vec<Vec3> = [25.0, 55.0].into_iter().flat_map(|e| (0..8).map(move |i| direction(i as f32 * TAU / 8.0, e))).chain([Vec3::Y]).collect();
-    let open = viewpoints.iter().flat_map(|v| upward.iter().map(|d| (v.position, *d))).filter(|&(p, d)| rays.cast(p, d, reach).is_none());
+    let upward: Vec<Vec3> = [25.0, 55.0]
+        .into_iter()
+        .flat_map(|e| (0..8).map(move |i| direction(i as f32 * TAU / 8.0, e)))
+        .chain([Vec3::Y])
+        .collect();
+    let open = viewpoints
+        .iter()
+        .flat_map(|v| upward.iter().map(|d| (v.position, *d)))
+        .filter(|&(p, d)| rays.cast(p, d, reach).is_none());
     let sky_share = open.count() as f32 / (viewpoints.len() * upward.len()).max(1) as f32;
     if sky_share > 0.2 {
         return (Sky::default(), lights);
@@ -234,6 +258,9 @@ fn glowing(model: &Model, bounds: &Bounds) -> Vec<PointLight> {
 fn mean_linear(rgba: &[u8]) -> Vec3 {
     // Every 37th pixel says enough.
     let picked = || rgba.chunks_exact(4).step_by(37);
-    let sum: Vec3 = picked().map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32)).map(|p| Vec3::from((p / 255.0).to_array().map(to_linear))).sum();
+    let sum: Vec3 = picked()
+        .map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32))
+        .map(|p| Vec3::from((p / 255.0).to_array().map(to_linear)))
+        .sum();
     sum / picked().count().max(1) as f32
 }

@@ -78,7 +78,11 @@ fn all_ways_to_write_a_corner() {
     let given = "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 2\nvn 1 0 0\n";
     for face in ["1/1/1 2/2/1 3/3/1", "-4/-3/-2 -3/-2/-2 -2/-1/-2", "1/1/-2 2/2/1 -2/3/-2"] {
         let model = obj(&square(&format!("{given}f {face}\n")));
-        assert_eq!(model.vertices[2], Vertex { position: Vec3::new(1., 1., 0.), normal: Vec3::Z, uv: Vec2::ONE }, "{face}");
+        assert_eq!(
+            model.vertices[2],
+            Vertex { position: Vec3::new(1., 1., 0.), normal: Vec3::Z, uv: Vec2::ONE },
+            "{face}"
+        );
     }
     let model = obj(&square(&format!("{given}f 1//2 2//2 3//2\nf 1/1 3/3 4/0/0\n")));
     assert_eq!(model.vertices[0].normal, Vec3::X);
@@ -121,7 +125,9 @@ fn lines_of_every_system() {
 
 #[test]
 fn groups_objects_and_materials_without_library() {
-    let model = obj(&square("usemtl a\no one\nf 1 2 3\nusemtl b\nf 1 3 4\ng two\nusemtl\ta\nf 2 3 4\ng one\nf 1 2 4"));
+    let model = obj(&square(
+        "usemtl a\no one\nf 1 2 3\nusemtl b\nf 1 3 4\ng two\nusemtl\ta\nf 2 3 4\ng one\nf 1 2 4",
+    ));
     let names: Vec<_> = model.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["a", "b"]);
     let parts: Vec<_> = model.parts.iter().map(|p| (p.name.as_str(), p.material, p.indices.len())).collect();
@@ -137,7 +143,9 @@ fn smoothing_off_makes_faces_flat() {
 
 #[test]
 fn vertex_colours_become_a_palette() {
-    let model = obj("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 1 1 0 0 1 1\nv 2 2 0\nf 1 2 3\nf 2 4 4 3\nf 5 5 4\nf 1 2 5");
+    let model = obj(
+        "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 1 1 0 0 1 1\nv 2 2 0\nf 1 2 3\nf 2 4 4 3\nf 5 5 4\nf 1 2 5",
+    );
     let texture = &model.textures[model.materials[0].diffuse_map.unwrap()];
     let uv = model.vertices[model.indices[0] as usize].uv;
     let [w, h] = texture.size.map(|s| s as f32);
@@ -200,7 +208,7 @@ fn paths_that_are_no_models() {
 #[test]
 fn forward_references_within_a_group() {
     assert_eq!(obj(&format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
-    refused(format!("f 1 2 3\ng x\n{SQUARE}f 1 2 3"), &["line 1", "vertex 1"]);
+    refused(format!("f 1 2 3\ng x\nf 1 2 3\n{SQUARE}"), &["line 1", "vertex 1"]);
 }
 
 #[test]
@@ -208,7 +216,9 @@ fn libraries_are_found_and_missing_ones_replaced() {
     let folder = Folder::new();
     folder.put("Lib One.mtl", "newmtl red\nKd 1 0 0\n");
     folder.put("two.mtl", "newmtl Green\nKd 0 1 0\nnewmtl red\nKd 0 0 0");
-    let text = square("mtllib lib one.mtl\nmtllib TWO.MTL missing.mtl\nusemtl red\nf 1 2 3\nusemtl Green\nf 1 3 4\nusemtl none\nf 2 3 4");
+    let text = square(
+        "mtllib lib one.mtl\nmtllib TWO.MTL missing.mtl\nusemtl red\nf 1 2 3\nusemtl Green\nf 1 3 4\nusemtl none\nf 2 3 4",
+    );
     let model = load(&folder.put("a.obj", text)).unwrap().model;
     let colours: Vec<_> = model.materials.iter().map(|m| m.diffuse).collect();
     assert_eq!(colours, [Vec3::X, Vec3::Y, Material::default().diffuse]);
@@ -224,11 +234,25 @@ fn libraries_are_found_and_missing_ones_replaced() {
 fn textures_are_found_however_they_are_written() {
     let folder = Folder::new();
     folder.picture("Textures/My Wood.PNG", 4, |_, _| [200, 100, 50, 255]);
-    for name in ["Textures/My Wood.PNG", "textures\\my wood.png", "C:\\art\\maps\\my wood.png", "/home/x/Textures/My Wood.PNG", "my wood.png", "-s 2 2 -o 0.5 0 textures/my wood.png"] {
+    for name in [
+        "Textures/My Wood.PNG",
+        "textures\\my wood.png",
+        "C:\\art\\maps\\my wood.png",
+        "/home/x/Textures/My Wood.PNG",
+        "my wood.png",
+        "-s 2 2 -o 0.5 0 textures/my wood.png",
+    ] {
         folder.put("a.mtl", format!("newmtl m\nmap_Kd {name}\n"));
-        let model = load(&folder.put("a.obj", square("mtllib a.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3"))).unwrap().model;
+        let model = load(
+            &folder.put("a.obj", square("mtllib a.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3")),
+        )
+        .unwrap()
+        .model;
         assert_eq!(model.materials[0].diffuse_map, Some(0), "{name}");
-        assert_eq!((model.textures[0].size, &model.textures[0].rgba[..4]), ([4, 4], [200, 100, 50, 255].as_slice()));
+        assert_eq!(
+            (model.textures[0].size, &model.textures[0].rgba[..4]),
+            ([4, 4], [200, 100, 50, 255].as_slice())
+        );
         let moved = name.starts_with("-s");
         assert_eq!(model.vertices[2].uv, if moved { Vec2::new(2.5, 2.0) } else { Vec2::ONE });
     }
@@ -277,16 +301,17 @@ fn bad_pictures_are_named() {
     let folder = Folder::new();
     folder.put("a.mtl", "newmtl m\nmap_Kd p.png");
     let scene = folder.put("a.obj", square("mtllib a.mtl\nusemtl m\nf 1 2 3"));
-    let mut png = fs::read(folder.picture("p.png", 64, |x, y| [x as u8, y as u8, (x * y) as u8, 255])).unwrap();
+    let mut png =
+        fs::read(folder.picture("p.png", 64, |x, y| [x as u8, y as u8, (x * y) as u8, 255])).unwrap();
     png.truncate(png.len() / 2);
     folder.put("p.png", &png);
     let message = load(&scene).unwrap_err().to_string();
     assert!(message.contains("p.png") && message.contains("replace"), "{message}");
-    // A header that promises 100000 x 100000 pixels.
+    // A header that promises 30000 x 30000 pixels.
     let mut huge = b"BM".to_vec();
     huge.extend([0, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0]);
-    huge.extend(100_000i32.to_le_bytes());
-    huge.extend(100_000i32.to_le_bytes());
+    huge.extend(30_000i32.to_le_bytes());
+    huge.extend(30_000i32.to_le_bytes());
     huge.extend([1, 0, 24, 0]);
     huge.extend([0; 24]);
     folder.put("p.png", &huge);
@@ -303,7 +328,10 @@ fn cameras_beside_the_model() {
     let scene = folder.put("a.obj", square("f 1 2 3"));
     assert_eq!(load(&scene).unwrap().viewpoints.len(), 8);
     folder.put("camera.json", r#"[{"position": [1, 2, 3], "target": [0, 0, 0]}]"#);
-    assert_eq!(load(&scene).unwrap().viewpoints, [Viewpoint { position: Vec3::new(1., 2., 3.), target: Vec3::ZERO }]);
+    assert_eq!(
+        load(&scene).unwrap().viewpoints,
+        [Viewpoint { position: Vec3::new(1., 2., 3.), target: Vec3::ZERO }]
+    );
     for (text, word) in [
         ("", "EOF"),
         ("[]", "no viewpoint"),
@@ -315,7 +343,10 @@ fn cameras_beside_the_model() {
     ] {
         folder.put("a.camera.json", text);
         let message = load(&scene).unwrap_err().to_string();
-        assert!(message.contains("a.camera.json") && message.contains(word) && message.contains("remove it"), "{message}");
+        assert!(
+            message.contains("a.camera.json") && message.contains(word) && message.contains("remove it"),
+            "{message}"
+        );
     }
 }
 
@@ -325,7 +356,10 @@ fn notes_beside_the_model() {
     let scene = folder.put("a.obj", square("f 1 2 3"));
     folder.put("scene.json", r#"{"style": "anime", "scale": 2, "lights": []}"#);
     let s = load(&scene).unwrap();
-    assert_eq!((s.style, s.model.bounds().max, s.lights.len()), (ShadingStyle::Anime, Vec3::new(2., 2., 0.), 0));
+    assert_eq!(
+        (s.style, s.model.bounds().max, s.lights.len()),
+        (ShadingStyle::Anime, Vec3::new(2., 2., 0.), 0)
+    );
     for (text, word) in [
         (r#"{"colour": 1}"#, "unknown field"),
         (r#"{"scale": 0}"#, "greater than 0"),
@@ -382,7 +416,9 @@ fn rooms_are_walked_and_have_lamps() {
 fn glowing_surfaces_are_lights() {
     let folder = Folder::new();
     folder.put("a.mtl", "newmtl lamp\nKe 1 1 0.5\n");
-    let room = "mtllib a.mtl\n".to_owned() + &box_obj([-4.0, 0.0, -3.0], [4.0, 3.0, 3.0]) + "usemtl lamp\nv 0 2.9 0\nv 0 2.9 1\nv 1 2.9 1\nv 1 2.9 0\nf -1 -2 -3 -4\n";
+    let room = "mtllib a.mtl\n".to_owned()
+        + &box_obj([-4.0, 0.0, -3.0], [4.0, 3.0, 3.0])
+        + "usemtl lamp\nv 0 2.9 0\nv 0 2.9 1\nv 1 2.9 1\nv 1 2.9 0\nf -1 -2 -3 -4\n";
     let s = load(&folder.put("a.obj", room)).unwrap();
     assert!((1..=4).contains(&s.lights.len()), "{:?}", s.lights);
     assert!(s.lights.iter().all(|l| l.position.y < 2.9 && l.color.z < l.color.x));
@@ -431,7 +467,13 @@ fn rich_scene() -> Scene {
                 normal_map: Some(2),
                 ..material("wall")
             },
-            Material { diffuse: Vec3::ONE, alpha: Alpha::Cutout(0.3), double_sided: true, diffuse_map: Some(1), ..material("leaf") },
+            Material {
+                diffuse: Vec3::ONE,
+                alpha: Alpha::Cutout(0.3),
+                double_sided: true,
+                diffuse_map: Some(1),
+                ..material("leaf")
+            },
             Material { alpha: Alpha::Blend(0.4), ..material("glass") },
             Material { emissive: Vec3::new(2.0, 1.5, 0.1), emissive_map: Some(3), ..material("tv") },
             Material { diffuse_map: Some(1), ..material("opaque_leaf") },
@@ -460,7 +502,9 @@ fn rich_scene() -> Scene {
         style: ShadingStyle::LowPoly,
         sky: Sky { sun_color: Vec3::new(1.0, 0.3, 0.1), ..Sky::default() },
         lights: vec![PointLight { position: Vec3::ONE, color: Vec3::new(5.0, 4.0, 3.0), range: 7.5 }],
-        viewpoints: (0..8).map(|i| Viewpoint { position: Vec3::new(i as f32 * 0.1, 1.6, 5.0), target: Vec3::Y }).collect(),
+        viewpoints: (0..8)
+            .map(|i| Viewpoint { position: Vec3::new(i as f32 * 0.1, 1.6, 5.0), target: Vec3::Y })
+            .collect(),
     }
 }
 
@@ -486,12 +530,22 @@ fn what_is_exported_is_loaded_again() {
         assert_eq!(texture(&again.model, a.specular_map), texture(&scene.model, b.specular_map));
         assert_eq!(texture(&again.model, a.emissive_map), texture(&scene.model, b.emissive_map));
         assert_eq!(texture(&again.model, a.normal_map), texture(&scene.model, b.normal_map));
-        let without = |m: &Material| Material { diffuse_map: None, specular_map: None, emissive_map: None, normal_map: None, ..m.clone() };
+        let without = |m: &Material| Material {
+            diffuse_map: None,
+            specular_map: None,
+            emissive_map: None,
+            normal_map: None,
+            ..m.clone()
+        };
         assert_eq!(without(a), without(b));
     }
-    let mut files: Vec<_> = fs::read_dir(&target).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    let mut files: Vec<_> =
+        fs::read_dir(&target).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     files.sort();
-    assert_eq!(files, ["LICENSE.txt", "rich.camera.json", "rich.mtl", "rich.obj", "rich.scene.json", "textures"]);
+    assert_eq!(
+        files,
+        ["LICENSE.txt", "rich.camera.json", "rich.mtl", "rich.obj", "rich.scene.json", "textures"]
+    );
     assert_eq!(fs::read_to_string(target.join("LICENSE.txt")).unwrap(), "MIT OR Apache-2.0\n");
 }
 
@@ -500,7 +554,7 @@ fn an_export_that_fails_says_where() {
     let folder = Folder::new();
     let file = folder.put("file", "");
     let message = export(&rich_scene(), &file, "x").unwrap_err().to_string();
-    assert!(message.contains("file") && message.contains("cannot be written"), "{message}");
+    assert!(message.contains("file is not a folder"), "{message}");
 }
 
 /// A triangle with normals and texture coordinates, one with indices, and a picture, as glTF.
@@ -511,14 +565,17 @@ fn gltf_text(folder: &Folder, embedded: bool) -> (String, Vec<u8>) {
     data.extend(floats(&[0., 0., 1., 0., 0., 1.]));
     data.extend([0, 0, 1, 0, 2, 0, 0, 0]);
     let picture = fs::read(folder.picture("pic.png", 4, |_, _| [90, 80, 70, 255])).unwrap();
-    let uri = |bytes: &[u8], kind: &str| format!("data:{kind};base64,{}", base64::engine::general_purpose::STANDARD.encode(bytes));
+    let uri = |bytes: &[u8], kind: &str| {
+        format!("data:{kind};base64,{}", base64::engine::general_purpose::STANDARD.encode(bytes))
+    };
     let (buffer, image) = if embedded {
         (uri(&data, "application/octet-stream"), uri(&picture, "image/png"))
     } else {
         folder.put("my data.bin", &data);
         ("my%20data.bin".into(), "pic.png".into())
     };
-    let text = format!(r#"{{
+    let text = format!(
+        r#"{{
         "asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0, 2, 3]}}],
         "extensionsUsed": ["KHR_lights_punctual"],
         "extensions": {{"KHR_lights_punctual": {{"lights": [{{"type": "point", "intensity": 40, "color": [1, 0.5, 0]}}]}}}},
@@ -536,7 +593,9 @@ fn gltf_text(folder: &Folder, embedded: bool) -> (String, Vec<u8>) {
             {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"}},
             {{"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"}},
             {{"bufferView": 3, "componentType": 5123, "count": 3, "type": "SCALAR"}}]
-    }}"#, data.len());
+    }}"#,
+        data.len()
+    );
     (text, data)
 }
 
@@ -549,9 +608,12 @@ fn check_gltf(scene: &Scene) {
     assert_eq!((corner.normal, corner.uv), (Vec3::Z, Vec2::ONE));
     let material = &m.materials[0];
     assert_eq!((material.alpha, material.double_sided, material.roughness), (Alpha::Cutout(0.25), true, 0.5));
-    assert_eq!((material.diffuse, material.emissive), (Vec3::ONE, Vec3::X));
+    assert!(material.diffuse.distance(Vec3::ONE) < 1e-6 && material.emissive.distance(Vec3::X) < 1e-6);
     assert_eq!(m.textures[material.diffuse_map.unwrap()].rgba[..4], [90, 80, 70, 255]);
-    assert_eq!(scene.viewpoints, [Viewpoint { position: Vec3::new(0., 1., 5.), target: Vec3::new(0., 1., 1.) }]);
+    assert_eq!(
+        scene.viewpoints,
+        [Viewpoint { position: Vec3::new(0., 1., 5.), target: Vec3::new(0., 1., 1.) }]
+    );
     assert_eq!((scene.lights[0].position, scene.lights[0].color.x), (Vec3::new(0., 3., 0.), 8.0));
 }
 
@@ -595,10 +657,10 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     };
     changed("\"count\": 3", "\"count\": 4", "accessor 0");
     changed("\"count\": 3", "\"count\": 18446744073709551615", "accessor 0");
-    changed("\"byteLength\": 36", "\"byteLength\": 36000", "buffer view 0");
+    changed("\"byteLength\": 36", "\"byteLength\": 36000", "accessor 0");
     changed("\"byteLength\": 104", "\"byteLength\": 9999", "instead of 9999");
     changed("\"VEC3\"", "\"VEC2\"", "accessor 0");
-    changed("\"mesh\": 0", "\"mesh\": 7", "meshes");
+    changed("\"mesh\": 0", "\"mesh\": 7", "nodes[1].mesh");
     changed("\"indices\": 3", "\"indices\": 0", "accessor 0");
     changed("data:application/octet-stream;base64,", "data:x;base64,***", "damaged");
     changed("data:application/octet-stream;base64,", "gone.bin?", "gone.bin");
@@ -606,6 +668,8 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     for bad in ["", "{}", "[]", "null", "glTF", "{\"asset\": {\"version\": \"2.0\"}}"] {
         assert!(load(&folder.put("a.gltf", bad)).unwrap_err().to_string().contains("a.gltf"));
     }
+    let without_bounds = good.replacen(r#", "min": [0,0,0], "max": [1,1,0]"#, "", 1);
+    assert!(without_bounds.len() < good.len() && load(&folder.put("a.gltf", without_bounds)).is_ok());
     // A circle of nodes ends.
     let circle = good.replacen("\"mesh\": 0,", "\"mesh\": 0, \"children\": [0],", 1);
     assert!(load(&folder.put("a.gltf", circle)).is_ok());

@@ -50,7 +50,9 @@ pub fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     let damaged = |what: &str| unusable(format!("{what}; export the model again"));
     let bytes = read_file(path)?;
     // The crate subtracts the header's size from this length unseen.
-    if bytes.starts_with(b"glTF") && bytes.get(8..12).is_none_or(|l| u32::from_le_bytes([l[0], l[1], l[2], l[3]]) < 20) {
+    if bytes.starts_with(b"glTF")
+        && bytes.get(8..12).is_none_or(|l| u32::from_le_bytes([l[0], l[1], l[2], l[3]]) < 20)
+    {
         return Err(damaged("the binary header is cut off"));
     }
     let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(&bytes)
@@ -58,7 +60,12 @@ pub fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     drop(bytes);
     check(path, &document)?;
 
-    let mut reader = Reader { path, buffers: buffers(path, &document, blob)?, textures: TextureSet::default(), images: HashMap::new() };
+    let mut reader = Reader {
+        path,
+        buffers: buffers(path, &document, blob)?,
+        textures: TextureSet::default(),
+        images: HashMap::new(),
+    };
     let mut meshes = Vec::new();
     let mut materials = Vec::new();
     let mut wanted = Vec::new();
@@ -94,7 +101,11 @@ pub fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
                 if let Some(mut raw) = reader.primitive(&primitive, &to_world)? {
                     corners += raw.indices.len().max(raw.vertices.len());
                     if corners > MAX_ELEMENTS {
-                        return Err(SceneError::TooLarge { path: path.into(), limit: MAX_ELEMENTS, what: "corners of triangles" });
+                        return Err(SceneError::TooLarge {
+                            path: path.into(),
+                            limit: MAX_ELEMENTS,
+                            what: "corners of triangles",
+                        });
                     }
                     raw.name = name.into();
                     raw.material = primitive.material().index().unwrap_or(materials.len() - 1);
@@ -111,9 +122,9 @@ pub fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
         }
         if let Some(light) = node.light() {
             let stated = document.as_json().extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-            let directional = stated.and_then(|l| l.lights.get(light.index())).is_some_and(|l| {
-                matches!(l.type_, Checked::Valid(khr_lights::Type::Directional))
-            });
+            let directional = stated
+                .and_then(|l| l.lights.get(light.index()))
+                .is_some_and(|l| matches!(l.type_, Checked::Valid(khr_lights::Type::Directional)));
             let color = Vec3::from(light.color()).max(Vec3::ZERO);
             if directional {
                 sun = sun.or(Some((forward, color)));
@@ -149,7 +160,11 @@ fn lights(lamps: Vec<(Vec3, Vec3, Option<f32>)>) -> Vec<PointLight> {
         .map(|(position, intensity, range)| {
             let color = intensity * (8.0 / brightest);
             let fades = (color.max_element() / 0.01).sqrt().max(1.0);
-            PointLight { position, color, range: range.filter(|r| r.is_finite() && *r > 0.0).map_or(fades, |r| r.min(fades)) }
+            PointLight {
+                position,
+                color,
+                range: range.filter(|r| r.is_finite() && *r > 0.0).map_or(fades, |r| r.min(fades)),
+            }
         })
         .collect();
     lights.sort_by(|a, b| b.color.max_element().total_cmp(&a.color.max_element()));
@@ -159,7 +174,10 @@ fn lights(lamps: Vec<(Vec3, Vec3, Option<f32>)>) -> Vec<PointLight> {
 fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     let size = file_size(path)?;
     if size > MAX_BUFFER {
-        return Err(SceneError::unusable(path, format!("it has {size} bytes, at most {MAX_BUFFER} can be read: split the model")));
+        return Err(SceneError::unusable(
+            path,
+            format!("it has {size} bytes, at most {MAX_BUFFER} can be read: split the model"),
+        ));
     }
     let read = |source| SceneError::Read { path: path.into(), source };
     let mut bytes = Vec::new();
@@ -171,9 +189,24 @@ fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
 fn check(path: &Path, document: &Document) -> Result<(), SceneError> {
     let root = document.as_json();
     let mut fault = None;
+    // The validation itself indexes with these unseen.
+    let primitives =
+        root.meshes.iter().enumerate().flat_map(|(i, m)| m.primitives.iter().map(move |p| (i, p)));
+    for (i, p) in primitives {
+        if p.attributes.values().any(|a| a.value() >= root.accessors.len()) {
+            return Err(SceneError::unusable(
+                path,
+                format!("mesh {i} names an accessor that does not exist; export the model again"),
+            ));
+        }
+    }
     root.validate(root, gltf::json::Path::new, &mut |at, error| {
-        if error != Fault::Unsupported && fault.is_none() {
-            fault = Some(format!("{}: {error}", at()));
+        let at = at().to_string();
+        // Bounds of positions, and positions themselves, may be left out: nothing here needs them.
+        let needless =
+            error == Fault::Missing && [".min", ".max", "[\"POSITION\"]"].iter().any(|e| at.ends_with(e));
+        if error != Fault::Unsupported && !needless && fault.is_none() {
+            fault = Some(format!("{at}: {error}"));
         }
     });
     for (i, image) in root.images.iter().enumerate() {
@@ -182,12 +215,28 @@ fn check(path: &Path, document: &Document) -> Result<(), SceneError> {
         }
     }
     if let Some(fault) = fault {
-        return Err(SceneError::unusable(path, format!("this is no valid glTF 2.0 ({fault}); export the model again")));
+        return Err(SceneError::unusable(
+            path,
+            format!("this is no valid glTF 2.0 ({fault}); export the model again"),
+        ));
     }
     // Materials look plainer without their extensions; geometry cannot be read.
-    let readable = |e: &str| e.starts_with("KHR_materials_") || ["KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization", "EXT_texture_webp", "KHR_texture_basisu"].contains(&e);
+    let readable = |e: &str| {
+        e.starts_with("KHR_materials_")
+            || [
+                "KHR_texture_transform",
+                "KHR_lights_punctual",
+                "KHR_mesh_quantization",
+                "EXT_texture_webp",
+                "KHR_texture_basisu",
+            ]
+            .contains(&e)
+    };
     match root.extensions_required.iter().find(|e| !readable(e)) {
-        Some(e) => Err(SceneError::unusable(path, format!("it needs the extension {e}, which is not supported: export the model without it"))),
+        Some(e) => Err(SceneError::unusable(
+            path,
+            format!("it needs the extension {e}, which is not supported: export the model without it"),
+        )),
         None => Ok(()),
     }
 }
@@ -202,14 +251,24 @@ fn buffers(path: &Path, document: &Document, mut blob: Option<Vec<u8>>) -> Resul
                     SceneError::unusable(path, "its binary part is missing; export the model again")
                 })?,
                 gltf::buffer::Source::Uri(uri) => match data_uri(uri) {
-                    Some(data) => data.ok_or_else(|| SceneError::unusable(path, "an embedded buffer is damaged; export the model again"))?,
+                    Some(data) => data.ok_or_else(|| {
+                        SceneError::unusable(path, "an embedded buffer is damaged; export the model again")
+                    })?,
                     None => read_file(&external(path, uri).ok_or_else(|| {
-                        SceneError::unusable(path, format!("its buffer {uri} is missing: put it beside the file"))
+                        SceneError::unusable(
+                            path,
+                            format!("its buffer {uri} is missing: put it beside the file"),
+                        )
                     })?)?,
                 },
             };
             if data.len() < buffer.length() {
-                let what = format!("buffer {} has {} bytes instead of {}; copy or export it again", buffer.index(), data.len(), buffer.length());
+                let what = format!(
+                    "buffer {} has {} bytes instead of {}; copy or export it again",
+                    buffer.index(),
+                    data.len(),
+                    buffer.length()
+                );
                 return Err(SceneError::unusable(path, what));
             }
             Ok(data)
@@ -233,7 +292,8 @@ fn percent_decoded(text: &str) -> Vec<u8> {
     let mut i = 0;
     while i < bytes.len() {
         let code = (bytes[i] == b'%').then(|| bytes.get(i + 1..i + 3)).flatten();
-        let byte = code.and_then(|c| std::str::from_utf8(c).ok()).and_then(|c| u8::from_str_radix(c, 16).ok());
+        let byte =
+            code.and_then(|c| std::str::from_utf8(c).ok()).and_then(|c| u8::from_str_radix(c, 16).ok());
         out.push(byte.unwrap_or(bytes[i]));
         i += if byte.is_some() { 3 } else { 1 };
     }
@@ -310,17 +370,26 @@ impl Reader<'_> {
 
     fn source(&mut self, texture: gltf::Texture) -> Result<Option<Source>, SceneError> {
         let Some(image) = texture.source() else {
-            log::warn!("{}: texture {} is in a format that is not supported; it is left out", self.path.display(), texture.index());
+            log::warn!(
+                "{}: texture {} is in a format that is not supported; it is left out",
+                self.path.display(),
+                texture.index()
+            );
             return Ok(None);
         };
         if let Some(known) = self.images.get(&image.index()) {
             return Ok(known.clone());
         }
-        let name = image.name().filter(|n| !n.is_empty()).map_or_else(|| format!("image-{}", image.index()), |n| n.replace('/', "_"));
+        let name = image
+            .name()
+            .filter(|n| !n.is_empty())
+            .map_or_else(|| format!("image-{}", image.index()), |n| n.replace('/', "_"));
         let embedded = match image.source() {
             gltf::image::Source::View { view, .. } => Some(self.view(&view)?.to_vec()),
             gltf::image::Source::Uri { uri, .. } => match data_uri(uri) {
-                Some(data) => Some(data.ok_or_else(|| self.damaged(format!("the embedded picture {name} is damaged")))?),
+                Some(data) => {
+                    Some(data.ok_or_else(|| self.damaged(format!("the embedded picture {name} is damaged")))?)
+                }
                 None => None,
             },
         };
@@ -344,7 +413,8 @@ impl Reader<'_> {
 
     fn material(&mut self, m: &gltf::Material) -> Result<(Material, Wanted), SceneError> {
         let pbr = m.pbr_metallic_roughness();
-        let [r, g, b, opacity] = pbr.base_color_factor().map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 });
+        let [r, g, b, opacity] =
+            pbr.base_color_factor().map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 });
         let base = Vec3::new(r, g, b);
         let unit = |v: f32| if v.is_finite() { v.clamp(0.0, 1.0) } else { 1.0 };
         let (metallic, roughness) = (unit(pbr.metallic_factor()), unit(pbr.roughness_factor()));
@@ -359,10 +429,18 @@ impl Reader<'_> {
                 wanted.set = t.tex_coord().unwrap_or(wanted.set);
                 let (sin, cos) = t.rotation().sin_cos();
                 let scale = t.scale();
-                wanted.placement = Some([Vec2::new(cos, -sin) * scale[0], Vec2::new(sin, cos) * scale[1], t.offset().into()]);
+                wanted.placement = Some([
+                    Vec2::new(cos, -sin) * scale[0],
+                    Vec2::new(sin, cos) * scale[1],
+                    t.offset().into(),
+                ]);
             }
         } else {
-            wanted.set = m.emissive_texture().map(|i| i.tex_coord()).or(m.normal_texture().map(|n| n.tex_coord())).unwrap_or(0);
+            wanted.set = m
+                .emissive_texture()
+                .map(|i| i.tex_coord())
+                .or(m.normal_texture().map(|n| n.tex_coord()))
+                .unwrap_or(0);
         }
         let base_map = base_info.map_or(Ok(None), |i| self.source(i.texture()))?;
         let orm = orm_info.map_or(Ok(None), |i| self.source(i.texture()))?;
@@ -391,7 +469,9 @@ impl Reader<'_> {
             }
         }
         let strength = m.normal_texture().map_or(1.0, |n| n.scale());
-        wanted.normal = normal.map(|source| self.textures.request(Recipe::Bump { source, strength: strength.to_bits(), normal: true }));
+        wanted.normal = normal.map(|source| {
+            self.textures.request(Recipe::Bump { source, strength: strength.to_bits(), normal: true })
+        });
         wanted.emissive = emissive_map.map(|s| self.textures.request(Recipe::Color(s)));
         let glow = Vec3::from(m.emissive_factor()) * m.emissive_strength().unwrap_or(1.0);
         let alpha = match m.alpha_mode() {
@@ -418,9 +498,14 @@ impl Reader<'_> {
     fn primitive(&self, primitive: &Primitive, to_world: &Mat4) -> Result<Option<RawMesh>, SceneError> {
         let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(None) };
         let positions = self.floats::<3>(&positions)?;
-        let normals = primitive.get(&Semantic::Normals).map(|a| self.floats::<3>(&a)).transpose()?.unwrap_or_default();
+        let normals =
+            primitive.get(&Semantic::Normals).map(|a| self.floats::<3>(&a)).transpose()?.unwrap_or_default();
         let set = self.texture_set(primitive);
-        let uvs = primitive.get(&Semantic::TexCoords(set)).map(|a| self.floats::<2>(&a)).transpose()?.unwrap_or_default();
+        let uvs = primitive
+            .get(&Semantic::TexCoords(set))
+            .map(|a| self.floats::<2>(&a))
+            .transpose()?
+            .unwrap_or_default();
         let linear = Mat3::from_mat4(*to_world);
         let turned = linear.determinant() < 0.0;
         // Normals turn with the inverse transpose; the cofactors are that without the division.
@@ -445,7 +530,9 @@ impl Reader<'_> {
         let mut indices = match primitive.mode() {
             Mode::Triangles => list,
             Mode::TriangleStrip => {
-                let odd_turned = |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+                let odd_turned = |(i, t): (usize, &[u32])| {
+                    if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }
+                };
                 list.windows(3).enumerate().flat_map(odd_turned).collect()
             }
             Mode::TriangleFan => match list.split_first() {
@@ -516,7 +603,9 @@ impl Reader<'_> {
             DataType::U32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
             DataType::F32 => f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
         };
-        Ok((0..accessor.count()).map(|i| std::array::from_fn(|k| value(&data[i * stride + k * width..]) * scale)).collect())
+        Ok((0..accessor.count())
+            .map(|i| std::array::from_fn(|k| value(&data[i * stride + k * width..]) * scale))
+            .collect())
     }
 
     fn indices(&self, accessor: &gltf::Accessor, vertices: usize) -> Result<Vec<u32>, SceneError> {
@@ -530,7 +619,10 @@ impl Reader<'_> {
                 _ => return None,
             })
         };
-        let list: Option<Vec<u32>> = (0..accessor.count()).map(at).map(|i| i.filter(|&i| (i as usize) < vertices)).collect();
-        list.ok_or_else(|| self.damaged(format!("accessor {} names vertices that do not exist", accessor.index())))
+        let list: Option<Vec<u32>> =
+            (0..accessor.count()).map(at).map(|i| i.filter(|&i| (i as usize) < vertices)).collect();
+        list.ok_or_else(|| {
+            self.damaged(format!("accessor {} names vertices that do not exist", accessor.index()))
+        })
     }
 }

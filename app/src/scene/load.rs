@@ -106,7 +106,9 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         check_notes(&file, &notes)?;
         let scale = notes.scale.unwrap_or(1.0);
         model.vertices.iter_mut().for_each(|v| v.position *= scale);
-        cameras.iter_mut().for_each(|v| *v = Viewpoint { position: v.position * scale, target: v.target * scale });
+        cameras
+            .iter_mut()
+            .for_each(|v| *v = Viewpoint { position: v.position * scale, target: v.target * scale });
         for m in &mut model.materials {
             if let Some(n) = notes.materials.get(&m.name) {
                 (m.alpha, m.double_sided) = (n.alpha.into(), n.double_sided);
@@ -126,7 +128,10 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     if !(1e-3..1e6).contains(&extent) || bounds.center().length() > 1e7 {
         return Err(SceneError::unusable(
             path,
-            format!("it is {extent} m large, {} m away from the origin: write {{\"scale\": ...}} into a scene.json beside it, in metres per unit", bounds.center().length()),
+            format!(
+                "it is {extent} m large, {} m away from the origin: write {{\"scale\": ...}} into a scene.json beside it, in metres per unit",
+                bounds.center().length()
+            ),
         ));
     }
     if extent > 1000.0 {
@@ -158,7 +163,10 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
 }
 
 /// Reads `NAME.suffix`, or else `suffix`, beside a file; none if there is neither.
-fn sidecar<T: serde::de::DeserializeOwned>(path: &Path, suffix: &str) -> Result<Option<(PathBuf, T)>, SceneError> {
+fn sidecar<T: serde::de::DeserializeOwned>(
+    path: &Path,
+    suffix: &str,
+) -> Result<Option<(PathBuf, T)>, SceneError> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let candidates = [path.with_file_name(format!("{stem}.{suffix}")), path.with_file_name(suffix)];
     let Some(file) = candidates.into_iter().find(|c| c.is_file()) else { return Ok(None) };
@@ -202,7 +210,9 @@ fn check_notes(file: &Path, notes: &SceneNotes) -> Result<(), SceneError> {
             return fault("sun_direction must have the length 1");
         }
     }
-    let usable = |l: &PointLight| l.position.is_finite() && l.color.is_finite() && l.color.min_element() >= 0.0 && l.range > 0.0;
+    let usable = |l: &PointLight| {
+        l.position.is_finite() && l.color.is_finite() && l.color.min_element() >= 0.0 && l.range > 0.0
+    };
     if !notes.lights.iter().flatten().all(usable) {
         return fault("lights need finite positions, colours of 0 or more and a range greater than 0");
     }

@@ -92,7 +92,10 @@ fn statements(text: &str) -> Vec<String> {
 
 /// Cuts at a `#` that stands at the start or after a blank: names may contain one.
 pub(super) fn without_comment(line: &str) -> &str {
-    let start = line.match_indices('#').map(|(i, _)| i).find(|&i| i == 0 || line.as_bytes()[i - 1].is_ascii_whitespace());
+    let start = line
+        .match_indices('#')
+        .map(|(i, _)| i)
+        .find(|&i| i == 0 || line.as_bytes()[i - 1].is_ascii_whitespace());
     start.map_or(line, |i| &line[..i])
 }
 
@@ -109,7 +112,8 @@ pub(super) fn abridged(statement: &str) -> String {
 fn canonical(statement: &str) -> Option<String> {
     let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
     let rest = rest.trim();
-    let numbers: Vec<f32> = rest.split_whitespace().map_while(|w| w.parse().ok()).filter(|n: &f32| n.is_finite()).collect();
+    let numbers: Vec<f32> =
+        rest.split_whitespace().map_while(|w| w.parse().ok()).filter(|n: &f32| n.is_finite()).collect();
     let lower = keyword.to_ascii_lowercase();
     let name = match lower.as_str() {
         "newmtl" => return Some(format!("newmtl {}", if rest.is_empty() { "unnamed" } else { rest })),
@@ -148,8 +152,10 @@ fn entry(m: &tobj::Material) -> MtlEntry {
     let default = Material::default();
     let (diffuse, specular) = (map(m.diffuse_texture.as_ref()), map(m.specular_texture.as_ref()));
     let emissive = map(extra("map_ke"));
-    let colour = |c: Option<[f32; 3]>, otherwise: Vec3| c.map_or(otherwise, |c| Vec3::from(c).max(Vec3::ZERO));
-    let mut kd = colour(m.diffuse, if diffuse.is_some() { Vec3::ONE } else { default.diffuse }).min(Vec3::ONE);
+    let colour =
+        |c: Option<[f32; 3]>, otherwise: Vec3| c.map_or(otherwise, |c| Vec3::from(c).max(Vec3::ZERO));
+    let mut kd =
+        colour(m.diffuse, if diffuse.is_some() { Vec3::ONE } else { default.diffuse }).min(Vec3::ONE);
     // Exporters that leave Kd black beside a map mean the map.
     if diffuse.is_some() && kd == Vec3::ZERO {
         kd = Vec3::ONE;
@@ -158,7 +164,9 @@ fn entry(m: &tobj::Material) -> MtlEntry {
     if m.specular.is_none() && m.illumination_model.is_some_and(|i| i < 2) {
         ks = Vec3::ZERO;
     }
-    if let Some(metallic) = number("pm").map(|p| p.clamp(0.0, 1.0)).filter(|&p| p > 0.0 && m.specular.is_none()) {
+    if let Some(metallic) =
+        number("pm").map(|p| p.clamp(0.0, 1.0)).filter(|&p| p > 0.0 && m.specular.is_none())
+    {
         ks = ks.lerp(kd, metallic);
         kd *= 1.0 - metallic;
     }
@@ -201,7 +209,8 @@ pub(super) fn obj_default() -> Material {
 
 /// Splits a map statement's value into options, before or after the name, and the name, which may contain blanks.
 pub(super) fn map_statement(value: &str) -> Option<MapStatement> {
-    let mut map = MapStatement { file: String::new(), bump: 1.0, scale: Vec2::ONE, offset: Vec2::ZERO, channel: None };
+    let mut map =
+        MapStatement { file: String::new(), bump: 1.0, scale: Vec2::ONE, offset: Vec2::ZERO, channel: None };
     let mut rest = value.trim();
     while let Some(after) = option(rest, &mut map) {
         rest = after;
@@ -250,7 +259,9 @@ fn option<'a>(text: &'a str, map: &mut MapStatement) -> Option<&'a str> {
                 values.push(n);
                 rest = after;
             }
-            let pair = |fill: f32| Vec2::new(values.first().copied().unwrap_or(fill), values.get(1).copied().unwrap_or(fill));
+            let pair = |fill: f32| {
+                Vec2::new(values.first().copied().unwrap_or(fill), values.get(1).copied().unwrap_or(fill))
+            };
             match name {
                 "-s" => map.scale = pair(1.0),
                 "-o" => map.offset = pair(0.0),
@@ -296,7 +307,9 @@ mod tests {
 
     #[test]
     fn damaged_statements_are_left_out() {
-        let e = one("Kd 1 0 0\nnewmtl a\nKd 0.5\nKs 1 2\nKe red\nNs\nd x\nillum many\nmap_Kd\nKd spectral f.rfl\n\u{0}\u{1} 3");
+        let e = one(
+            "Kd 1 0 0\nnewmtl a\nKd 0.5\nKs 1 2\nKe red\nNs\nd x\nillum many\nmap_Kd\nKd spectral f.rfl\n\u{0}\u{1} 3",
+        );
         assert_eq!(e.material.diffuse, Vec3::splat(0.5));
         assert_eq!(e.material.specular, Material::default().specular);
         assert_eq!(e.diffuse, None);
@@ -305,7 +318,9 @@ mod tests {
 
     #[test]
     fn maps_in_any_spelling() {
-        let e = one("newmtl a\nmap_kd a.png\nMAP_KS s.png\nmap_Ke e.png\nmap_Bump -bm 0.3 b.png\nnorm n.png\nmap_d d.png # mask");
+        let e = one(
+            "newmtl a\nmap_kd a.png\nMAP_KS s.png\nmap_Ke e.png\nmap_Bump -bm 0.3 b.png\nnorm n.png\nmap_d d.png # mask",
+        );
         let file = |m: &Option<MapStatement>| m.as_ref().unwrap().file.clone();
         assert_eq!(
             [&e.diffuse, &e.specular, &e.emissive, &e.bump, &e.normal, &e.alpha].map(file),
@@ -320,7 +335,10 @@ mod tests {
     fn map_options_before_and_after_the_name() {
         let map = |s: &str| map_statement(s).unwrap();
         let m = map("-s 2 3 1 -o 0.5 0 0 -clamp on -blendu off -mm 0 1 my wall 2.png");
-        assert_eq!((m.file.as_str(), m.scale, m.offset), ("my wall 2.png", Vec2::new(2.0, 3.0), Vec2::new(0.5, 0.0)));
+        assert_eq!(
+            (m.file.as_str(), m.scale, m.offset),
+            ("my wall 2.png", Vec2::new(2.0, 3.0), Vec2::new(0.5, 0.0))
+        );
         let m = map(r"C:\tex\a -b.png -bm 0.2 -imfchan r");
         assert_eq!((m.file.as_str(), m.bump, m.channel), (r"C:\tex\a -b.png", 0.2, Some('r')));
         assert_eq!(map("\"quoted name.png\"").file, "quoted name.png");

@@ -65,7 +65,8 @@ pub fn load_obj(path: &Path) -> Result<Model, SceneError> {
             log::warn!("{}: the material {name} is not defined; a default takes its place", path.display());
         }
         let shown = if name.is_empty() { "default".to_owned() } else { name.clone() };
-        materials.push(Material { name: shown, ..entry.map_or_else(mtl::obj_default, |e| e.material.clone()) });
+        materials
+            .push(Material { name: shown, ..entry.map_or_else(mtl::obj_default, |e| e.material.clone()) });
         wanted.push(entry.map_or_else(Wanted::default, |e| Wanted::new(path, e, &mut textures)));
     }
     let mut built = textures.build()?;
@@ -112,7 +113,9 @@ fn libraries(path: &Path, input: &Normalizer<impl BufRead>) -> HashMap<String, M
         files.extend(found);
     }
     if files.is_empty() && input.materials.names.iter().any(|n| !n.is_empty()) {
-        files.extend(path.with_extension("mtl").file_name().and_then(|n| find_file(folder, &n.to_string_lossy())));
+        files.extend(
+            path.with_extension("mtl").file_name().and_then(|n| find_file(folder, &n.to_string_lossy())),
+        );
     }
     let mut entries = HashMap::new();
     for file in files {
@@ -145,7 +148,12 @@ impl Wanted {
             let map = map.as_ref()?;
             let found = find_file(folder, &map.file).map(Source::File);
             if found.is_none() {
-                log::warn!("{}: the texture {} of {} is missing", path.display(), map.file, entry.material.name);
+                log::warn!(
+                    "{}: the texture {} of {} is missing",
+                    path.display(),
+                    map.file,
+                    entry.material.name
+                );
             }
             found
         };
@@ -161,7 +169,8 @@ impl Wanted {
             source(map).map(|source| Recipe::Bump { source, strength, normal })
         };
         let normal = bump(&entry.normal, true).or_else(|| bump(&entry.bump, false));
-        let placed = [&entry.diffuse, &entry.bump, &entry.normal, &entry.alpha, &entry.specular, &entry.emissive];
+        let placed =
+            [&entry.diffuse, &entry.bump, &entry.normal, &entry.alpha, &entry.specular, &entry.emissive];
         let placement = placed.into_iter().flatten().next().map(|m| (m.scale, m.offset));
         let mut request = |recipe: Option<Recipe>| recipe.map(|r| textures.request(r));
         Wanted {
@@ -197,7 +206,13 @@ fn palette() -> TextureImage {
         let (x, y) = (i % edge, i / edge);
         [level(x % LEVELS), level(y % LEVELS), level(y / LEVELS * 8 + x / LEVELS), 255]
     });
-    TextureImage { name: "vertex-colours".into(), size: [edge; 2], rgba: rgba.collect(), srgb: true, nearest: true }
+    TextureImage {
+        name: "vertex-colours".into(),
+        size: [edge; 2],
+        rgba: rgba.collect(),
+        srgb: true,
+        nearest: true,
+    }
 }
 
 /// Middle of a colour's texel in the palette.
@@ -210,7 +225,13 @@ fn palette_uv(color: Vec3) -> Vec2 {
     Vec2::new((x as f32 + 0.5) / edge, 1.0 - (y as f32 + 0.5) / edge)
 }
 
-fn raw_mesh(mesh: tobj::Mesh, part: &PartKey, name: String, placement: Option<(Vec2, Vec2)>, painted: bool) -> RawMesh {
+fn raw_mesh(
+    mesh: tobj::Mesh,
+    part: &PartKey,
+    name: String,
+    placement: Option<(Vec2, Vec2)>,
+    painted: bool,
+) -> RawMesh {
     let triple = |v: &[f32], i: usize| Vec3::new(v[i * 3], v[i * 3 + 1], v[i * 3 + 2]);
     let (scale, offset) = placement.unwrap_or((Vec2::ONE, Vec2::ZERO));
     let mut vertices: Vec<Vertex> = (0..mesh.positions.len() / 3)
@@ -307,7 +328,8 @@ struct Normalizer<R> {
     libraries: Vec<String>,
     curves: bool,
     error: Option<SceneError>,
-    /// The first face that refers to a vertex further down: right only if that follows before the group ends.
+    /// The first face that refers to a vertex further down: right only if that
+    /// follows before the faces of the next group.
     beyond: Option<SceneError>,
 }
 
@@ -358,9 +380,13 @@ impl<R: BufRead> Normalizer<R> {
                 return Err(self.fault("the line is too long for a model; is this an OBJ file?"));
             }
             if self.statement[start..].contains(&0) {
-                return Err(self.fault("there are zero bytes, so this is a binary or UTF-16 file; save it as OBJ text in UTF-8"));
+                return Err(self.fault(
+                    "there are zero bytes, so this is a binary or UTF-16 file; save it as OBJ text in UTF-8",
+                ));
             }
-            while self.statement.last().is_some_and(|b| b.is_ascii_whitespace()) && self.statement.len() > start {
+            while self.statement.last().is_some_and(|b| b.is_ascii_whitespace())
+                && self.statement.len() > start
+            {
                 self.statement.pop();
             }
             if n > 0 && self.statement.len() > start && self.statement.last() == Some(&b'\\') {
@@ -378,7 +404,8 @@ impl<R: BufRead> Normalizer<R> {
         let text = String::from_utf8_lossy(&taken);
         let text = if self.line == 1 { text.trim_start_matches('\u{feff}') } else { &text };
         // Old Macintosh files end lines with CR alone.
-        let result = text.split('\r').try_for_each(|line| self.translate_line(mtl::without_comment(line).trim()));
+        let result =
+            text.split('\r').try_for_each(|line| self.translate_line(mtl::without_comment(line).trim()));
         self.statement = taken;
         result
     }
@@ -414,13 +441,18 @@ impl<R: BufRead> Normalizer<R> {
     }
 
     fn vector(&mut self, keyword: &str, rest: &str) -> Result<(), SceneError> {
-        let mut numbers = [f32::NAN; 7];
+        // Passed on as they are written: printing numbers anew takes longer than all the rest.
+        let mut words = [""; 7];
         let mut n = 0;
         for word in rest.split_ascii_whitespace().take(7) {
-            numbers[n] = number(word).ok_or_else(|| {
-                let hint = if word.contains(',') { " (decimals need a point)" } else { "" };
-                self.fault(format!("`{}` is not a number{hint}", mtl::abridged(word)))
-            })?;
+            words[n] = match number(word) {
+                Some(x) if x.is_nan() => "nan",
+                Some(_) => word,
+                None => {
+                    let hint = if word.contains(',') { " (decimals need a point)" } else { "" };
+                    return Err(self.fault(format!("`{}` is not a number{hint}", mtl::abridged(word))));
+                }
+            };
             n += 1;
         }
         let (kind, needed) = match keyword {
@@ -436,16 +468,20 @@ impl<R: BufRead> Normalizer<R> {
         }
         self.counts[kind] += 1;
         if self.counts[kind] > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge { path: self.path.clone(), limit: MAX_ELEMENTS, what: "vertices" });
+            return Err(SceneError::TooLarge {
+                path: self.path.clone(),
+                limit: MAX_ELEMENTS,
+                what: "vertices",
+            });
         }
-        let [a, b, c, colour @ ..] = numbers;
+        let [a, b, c, colour @ ..] = words;
         let written = match kind {
             0 if self.coloured => {
-                let [r, g, b2] = if n >= 6 { [colour[0], colour[1], colour[2]] } else { [1.0; 3] };
+                let [r, g, b2] = if n >= 6 { [colour[0], colour[1], colour[2]] } else { ["1"; 3] };
                 writeln!(self.out, "v {a} {b} {c} {r} {g} {b2}")
             }
             0 => writeln!(self.out, "v {a} {b} {c}"),
-            1 => writeln!(self.out, "vt {a} {}", if n < 2 { 0.0 } else { b }),
+            1 => writeln!(self.out, "vt {a} {}", if n < 2 { "0" } else { b }),
             _ => writeln!(self.out, "vn {a} {b} {c}"),
         };
         written.map_err(|source| SceneError::Read { path: self.path.clone(), source })
@@ -478,7 +514,11 @@ impl<R: BufRead> Normalizer<R> {
         }
         self.corners += corners;
         if self.corners > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge { path: self.path.clone(), limit: MAX_ELEMENTS, what: "corners of faces" });
+            return Err(SceneError::TooLarge {
+                path: self.path.clone(),
+                limit: MAX_ELEMENTS,
+                what: "corners of faces",
+            });
         }
         if corners < 3 {
             // Points and lines; the part that was begun for them stays open.
@@ -512,7 +552,8 @@ impl<R: BufRead> Normalizer<R> {
             return Ok(None);
         }
         let corner = || mtl::abridged(corner);
-        let index: i64 = text.parse().map_err(|_| self.fault(format!("`{}` is not the corner of a face", corner())))?;
+        let index: i64 =
+            text.parse().map_err(|_| self.fault(format!("`{}` is not the corner of a face", corner())))?;
         let count = self.counts[kind];
         match index {
             // Some exporters write 0 for what is missing.
@@ -520,10 +561,16 @@ impl<R: BufRead> Normalizer<R> {
             0 => Err(self.fault(format!("`{}` names {what} 0, but they are counted from 1", corner()))),
             i if i < 0 => match usize::try_from(i.unsigned_abs()).ok().filter(|&back| back <= count) {
                 Some(back) => Ok(Some(count - back + 1)),
-                None => Err(self.fault(format!("`{}` refers {} back, but there are only {count} before", corner(), i.unsigned_abs()))),
+                None => Err(self.fault(format!(
+                    "`{}` refers {} back, but there are only {count} before",
+                    corner(),
+                    i.unsigned_abs()
+                ))),
             },
             i => {
-                let fault = |s: &Self| s.fault(format!("`{}` names {what} {i}, but there are only {count}", corner()));
+                let fault = |s: &Self| {
+                    s.fault(format!("`{}` names {what} {i}, but there are only {count}", corner()))
+                };
                 let i = usize::try_from(i).unwrap_or(usize::MAX);
                 if i > MAX_ELEMENTS {
                     return Err(fault(self));
@@ -553,7 +600,10 @@ impl<R: BufRead> BufRead for Normalizer<R> {
             self.given = 0;
             // Many at once: tobj asks line by line.
             while self.out.len() < 1 << 16 {
-                match self.next_statement().and_then(|more| if more { self.translate().map(|()| true) } else { Ok(false) }) {
+                match self
+                    .next_statement()
+                    .and_then(|more| if more { self.translate().map(|()| true) } else { Ok(false) })
+                {
                     Ok(true) => {}
                     Ok(false) => break,
                     Err(error) => {

@@ -146,7 +146,10 @@ mod tests {
 
     #[test]
     fn two_viewpoints_make_a_straight_even_way() {
-        let path = CameraPath::new(&[view([0.0, 0.0, 0.0], [0.0, 0.0, -5.0]), view([4.0, 0.0, 0.0], [4.0, 0.0, -5.0])]);
+        let path = CameraPath::new(&[
+            view([0.0, 0.0, 0.0], [0.0, 0.0, -5.0]),
+            view([4.0, 0.0, 0.0], [4.0, 0.0, -5.0]),
+        ]);
         for i in 0..=10 {
             let t = i as f32 / 10.0;
             let v = path.viewpoint(t);

@@ -45,9 +45,9 @@ pub(super) fn triangulate(points: &[Vec3], mut emit: impl FnMut([usize; 3])) {
         let (a, b, c) = (ring[(i + m - 1) % m], ring[i], ring[(i + 1) % m]);
         let ear = tests_left > 0
             && turn(a, b, c) > 0.0
-            && ring.iter().all(|&p| {
-                p == a || p == b || p == c || !inside(flat[p], flat[a], flat[b], flat[c])
-            });
+            && ring
+                .iter()
+                .all(|&p| p == a || p == b || p == c || !inside(flat[p], flat[a], flat[b], flat[c]));
         if ear || tests_left == 0 {
             emit([a, b, c]);
             ring.remove(i);
@@ -90,7 +90,6 @@ fn inside(p: DVec2, a: DVec2, b: DVec2, c: DVec2) -> bool {
     p != a && p != b && p != c && side(a, b) >= 0.0 && side(b, c) >= 0.0 && side(c, a) >= 0.0
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,7 +116,10 @@ mod tests {
             assert_eq!(triangles.len(), points.len() - 2);
             let total: Vec3 = triangles.iter().map(|&t| area_vector(&points, t)).sum();
             let sum: f32 = triangles.iter().map(|&t| area_vector(&points, t).length()).sum();
-            assert!((total.length() - area).abs() < 1e-4 && (sum - area).abs() < 1e-4, "{total} {sum}, not {area}");
+            assert!(
+                (total.length() - area).abs() < 1e-4 && (sum - area).abs() < 1e-4,
+                "{total} {sum}, not {area}"
+            );
         }
     }
 
@@ -125,7 +127,20 @@ mod tests {
     fn concave_polygons_are_covered_once() {
         let l = [[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]];
         let arrow = [[0., 0.], [2., 1.], [0., 2.], [1., 1.]];
-        let comb = [[0., 0.], [5., 0.], [5., 3.], [4., 3.], [4., 1.], [3., 1.], [3., 3.], [2., 3.], [2., 1.], [1., 1.], [1., 3.], [0., 3.]];
+        let comb = [
+            [0., 0.],
+            [5., 0.],
+            [5., 3.],
+            [4., 3.],
+            [4., 1.],
+            [3., 1.],
+            [3., 3.],
+            [2., 3.],
+            [2., 1.],
+            [1., 1.],
+            [1., 3.],
+            [0., 3.],
+        ];
         for axis in 0..3 {
             let lift = |p: &[f32; 2]| match axis {
                 0 => Vec3::new(1.0, p[0], p[1]),
@@ -149,7 +164,8 @@ mod tests {
         assert_eq!(cut(&nan).len(), 38);
         let same = vec![Vec3::ONE; 40];
         assert_eq!(cut(&same).len(), 38);
-        let crossing: Vec<Vec3> = (0..200).map(|i| Vec3::new((i * 37 % 100) as f32, (i * 61 % 90) as f32, 0.0)).collect();
+        let crossing: Vec<Vec3> =
+            (0..200).map(|i| Vec3::new((i * 37 % 100) as f32, (i * 61 % 90) as f32, 0.0)).collect();
         assert_eq!(cut(&crossing).len(), 198);
         let large: Vec<Vec3> = (0..100_000).map(|i| Vec3::new((i % 7) as f32, i as f32, 0.0)).collect();
         assert_eq!(cut(&large).len(), 99_998);

@@ -33,7 +33,8 @@ pub(super) struct Hit {
 
 impl<'a> Rays<'a> {
     pub fn new(model: &'a Model) -> Rays<'a> {
-        let mut rays = Rays { model, triangles: (0..model.triangle_count() as u32).collect(), nodes: Vec::new() };
+        let mut rays =
+            Rays { model, triangles: (0..model.triangle_count() as u32).collect(), nodes: Vec::new() };
         let mut triangles = std::mem::take(&mut rays.triangles);
         if !triangles.is_empty() {
             rays.split(&mut triangles, 0);
@@ -48,15 +49,22 @@ impl<'a> Rays<'a> {
     }
 
     fn split(&mut self, triangles: &mut [u32], first: usize) {
-        let bounds =
-            triangles.iter().fold(Bounds::EMPTY, |b, &t| self.corners(t).into_iter().fold(b, Bounds::including));
+        let bounds = triangles
+            .iter()
+            .fold(Bounds::EMPTY, |b, &t| self.corners(t).into_iter().fold(b, Bounds::including));
         let node = self.nodes.len();
         self.nodes.push(Node { bounds, next: first as u32, count: triangles.len() as u32 });
         if triangles.len() <= LEAF {
             return;
         }
         let size = bounds.max - bounds.min;
-        let axis = if size.x >= size.y && size.x >= size.z { 0 } else if size.y >= size.z { 1 } else { 2 };
+        let axis = if size.x >= size.y && size.x >= size.z {
+            0
+        } else if size.y >= size.z {
+            1
+        } else {
+            2
+        };
         let middle = triangles.len() / 2;
         let key = |t: &u32| self.corners(*t).iter().map(|p| p[axis]).sum::<f32>();
         triangles.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));

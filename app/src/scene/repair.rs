@@ -34,7 +34,11 @@ pub(super) const NO_NORMAL: Vec3 = Vec3::NAN;
 pub(super) const NO_UV: Vec2 = Vec2::NAN;
 
 /// Makes the model; textures are left to the caller, who must have set the materials' maps.
-pub(super) fn assemble(path: &Path, mut meshes: Vec<RawMesh>, materials: Vec<Material>) -> Result<Model, SceneError> {
+pub(super) fn assemble(
+    path: &Path,
+    mut meshes: Vec<RawMesh>,
+    materials: Vec<Material>,
+) -> Result<Model, SceneError> {
     let before: usize = meshes.iter().map(|m| m.indices.len() / 3).sum();
     meshes.par_iter_mut().for_each(clean);
     let kept: usize = meshes.iter().map(|m| m.indices.len() / 3).sum();
@@ -103,7 +107,7 @@ fn generate(meshes: &mut [RawMesh], materials: &[Material]) {
         if no_uv && !mapped[mesh.material] {
             mesh.vertices.iter_mut().filter(|v| v.uv.is_nan()).for_each(|v| v.uv = Vec2::ZERO);
         }
-        if !no_normal && !(no_uv && mapped[mesh.material]) {
+        if !(no_normal || no_uv && mapped[mesh.material]) {
             return;
         }
         let mut vertices = Vec::with_capacity(mesh.vertices.len());
@@ -208,8 +212,11 @@ impl Neighbours {
 fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> Model {
     let mut model = Model { materials, ..Model::default() };
     let mut first: HashMap<(usize, &str), usize> = HashMap::new();
-    let place: Vec<usize> =
-        meshes.iter().enumerate().map(|(i, m)| *first.entry((m.material, m.name.as_str())).or_insert(i)).collect();
+    let place: Vec<usize> = meshes
+        .iter()
+        .enumerate()
+        .map(|(i, m)| *first.entry((m.material, m.name.as_str())).or_insert(i))
+        .collect();
     let mut order: Vec<usize> = (0..meshes.len()).filter(|&i| !meshes[i].indices.is_empty()).collect();
     order.sort_by_key(|&i| (meshes[i].material, place[i]));
     model.indices.reserve_exact(meshes.iter().map(|m| m.indices.len()).sum());
@@ -228,7 +235,11 @@ fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> Model {
         let end = model.indices.len();
         match model.parts.last_mut() {
             Some(last) if last.material == mesh.material && last.name == mesh.name => last.indices.end = end,
-            _ => model.parts.push(Part { name: mesh.name.clone(), material: mesh.material, indices: start..end }),
+            _ => model.parts.push(Part {
+                name: mesh.name.clone(),
+                material: mesh.material,
+                indices: start..end,
+            }),
         }
     }
     model
@@ -240,7 +251,12 @@ mod tests {
 
     fn mesh(points: &[[f32; 3]], indices: &[u32]) -> RawMesh {
         let vertex = |p: &[f32; 3]| Vertex { position: (*p).into(), normal: NO_NORMAL, uv: NO_UV };
-        RawMesh { name: "m".into(), vertices: points.iter().map(vertex).collect(), indices: indices.to_vec(), ..Default::default() }
+        RawMesh {
+            name: "m".into(),
+            vertices: points.iter().map(vertex).collect(),
+            indices: indices.to_vec(),
+            ..Default::default()
+        }
     }
 
     fn mapped() -> Material {
@@ -286,7 +302,10 @@ mod tests {
         assert_eq!((model.triangle_count(), model.vertices.len()), (1, 3));
         assert_eq!(model.bounds().max, Vec3::new(1.0, 1.0, 0.0));
         let nothing = RawMesh { indices: vec![0, 0, 1], ..m };
-        assert!(matches!(assemble(Path::new("x"), vec![nothing], vec![Material::default()]), Err(SceneError::Empty { .. })));
+        assert!(matches!(
+            assemble(Path::new("x"), vec![nothing], vec![Material::default()]),
+            Err(SceneError::Empty { .. })
+        ));
     }
 
     #[test]
@@ -314,7 +333,8 @@ mod tests {
         };
         let meshes = vec![part("a", 1), part("b", 0), part("c", 1), part("a", 1)];
         let model = assemble(Path::new("x"), meshes, vec![Material::default(), mapped()]).unwrap();
-        let parts: Vec<_> = model.parts.iter().map(|p| (p.name.as_str(), p.material, p.indices.clone())).collect();
+        let parts: Vec<_> =
+            model.parts.iter().map(|p| (p.name.as_str(), p.material, p.indices.clone())).collect();
         assert_eq!(parts, [("b", 0, 0..3), ("a", 1, 3..9), ("c", 1, 9..12)]);
     }
 }

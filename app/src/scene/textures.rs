@@ -107,7 +107,9 @@ impl TextureSet {
     pub fn build(&self) -> Result<Built, SceneError> {
         let sizes = self.recipes.par_iter().map(|r| self.size(r.main())).collect::<Result<Vec<_>, _>>()?;
         let mut edge = MAX_EDGE;
-        let pixels = |edge: u32| sizes.iter().flatten().map(|&s| fitted(s, edge)).map(|[w, h]| w as u64 * h as u64).sum::<u64>();
+        let pixels = |edge: u32| {
+            sizes.iter().flatten().map(|&s| fitted(s, edge)).map(|[w, h]| w as u64 * h as u64).sum::<u64>()
+        };
         while edge > 64 && pixels(edge) > PIXEL_BUDGET {
             edge /= 2;
         }
@@ -162,7 +164,8 @@ impl TextureSet {
             Recipe::Metal { base, base_factor, orm, metallic, specular } => {
                 let base = base.as_ref().map_or(Ok(None), |b| self.decode(b, edge))?;
                 let factor = Vec3::from(base_factor.map(f32::from_bits));
-                self.decode(orm, edge)?.map(|orm| metal(base, factor, &orm, f32::from_bits(*metallic), *specular))
+                self.decode(orm, edge)?
+                    .map(|orm| metal(base, factor, &orm, f32::from_bits(*metallic), *specular))
             }
         })
     }
@@ -183,13 +186,18 @@ impl TextureSet {
         });
         match found {
             Ok(Some((w, h))) if w.max(h) > MAX_SOURCE_EDGE || w as u64 * h as u64 > MAX_SOURCE_PIXELS => {
-                let what = format!("{w} x {h} pixels are too many, {MAX_SOURCE_EDGE} x {} at most: scale it down",
-                    MAX_SOURCE_PIXELS / MAX_SOURCE_EDGE as u64);
+                let what = format!(
+                    "{w} x {h} pixels are too many, {MAX_SOURCE_EDGE} x {} at most: scale it down",
+                    MAX_SOURCE_PIXELS / MAX_SOURCE_EDGE as u64
+                );
                 Err(SceneError::Texture { path: path.into(), what })
             }
             Ok(Some((w, h))) => Ok(Some([w, h])),
             Ok(None) | Err(ImageError::Unsupported(_)) => {
-                log::warn!("the texture {} has an unknown format and is left out: convert it to PNG or JPEG", path.display());
+                log::warn!(
+                    "the texture {} has an unknown format and is left out: convert it to PNG or JPEG",
+                    path.display()
+                );
                 Ok(None)
             }
             Err(e) => Err(SceneError::Texture { path: path.into(), what: e.to_string() }),
@@ -214,7 +222,10 @@ impl TextureSet {
                 Ok(Some(if [w, h] == size { image } else { image::imageops::thumbnail(&image, w, h) }))
             }
             Err(ImageError::Unsupported(_)) => {
-                log::warn!("the texture {} is of an unknown kind and is left out: convert it to PNG", self.path(source).display());
+                log::warn!(
+                    "the texture {} is of an unknown kind and is left out: convert it to PNG",
+                    self.path(source).display()
+                );
                 Ok(None)
             }
             Err(e) => Err(SceneError::Texture { path: self.path(source).into(), what: e.to_string() }),
@@ -251,7 +262,8 @@ impl Recipe {
 
 /// Makes a name unique by a number, and fit for a file name.
 pub(super) fn unique(taken: &mut HashSet<String>, name: String) -> String {
-    let safe: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    let safe: String =
+        name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
     let safe = if safe.trim_matches(['.', '_']).is_empty() { "unnamed".to_owned() } else { safe };
     let numbered = (2..).map(|i| format!("{safe}-{i}"));
     // Some file systems do not distinguish case.
@@ -271,7 +283,9 @@ fn fitted([w, h]: [u32; 2], edge: u32) -> [u32; 2] {
 /// good part is either clearly opaque or nearly everything is translucent.
 fn alpha_use(image: &RgbaImage) -> AlphaUse {
     let total = image.pixels().len().max(1) as f32;
-    let share = |range: std::ops::RangeInclusive<u8>| image.pixels().filter(|p| range.contains(&p[3])).count() as f32 / total;
+    let share = |range: std::ops::RangeInclusive<u8>| {
+        image.pixels().filter(|p| range.contains(&p[3])).count() as f32 / total
+    };
     let opaque = share(224..=255);
     if opaque > 0.998 {
         return AlphaUse::Opaque;
@@ -303,7 +317,8 @@ fn masked(color: Option<RgbaImage>, mask: &RgbaImage, channel: Option<char>) -> 
         None if from_alpha => p[3],
         _ => (luminance(p) * 255.0).round() as u8,
     };
-    let mut image = color.unwrap_or_else(|| RgbaImage::from_pixel(mask.width(), mask.height(), Rgba([255; 4])));
+    let mut image =
+        color.unwrap_or_else(|| RgbaImage::from_pixel(mask.width(), mask.height(), Rgba([255; 4])));
     let (w, h) = image.dimensions();
     for (x, y, p) in image.enumerate_pixels_mut() {
         p[3] = opacity(at(mask, x, y, w, h));
@@ -361,8 +376,15 @@ pub(super) fn to_srgb(c: f32) -> f32 {
 
 /// The diffuse or specular colour of glTF's metallic-roughness model (its appendix B.3: dielectrics reflect 4 %),
 /// and the mean of the roughness in the green of `orm`.
-fn metal(base: Option<RgbaImage>, factor: Vec3, orm: &RgbaImage, metallic: f32, specular: bool) -> (RgbaImage, f32) {
-    let roughness = orm.pixels().map(|p| p[1] as f64).sum::<f64>() / (orm.pixels().len().max(1) as f64 * 255.0);
+fn metal(
+    base: Option<RgbaImage>,
+    factor: Vec3,
+    orm: &RgbaImage,
+    metallic: f32,
+    specular: bool,
+) -> (RgbaImage, f32) {
+    let roughness =
+        orm.pixels().map(|p| p[1] as f64).sum::<f64>() / (orm.pixels().len().max(1) as f64 * 255.0);
     let mut image = base.unwrap_or_else(|| RgbaImage::from_pixel(orm.width(), orm.height(), Rgba([255; 4])));
     let (w, h) = image.dimensions();
     let linear: Vec<f32> = (0..256).map(|c| to_linear(c as f32 / 255.0)).collect();
@@ -370,7 +392,11 @@ fn metal(base: Option<RgbaImage>, factor: Vec3, orm: &RgbaImage, metallic: f32, 
         let m = at(orm, x, y, w, h)[2] as f32 / 255.0 * metallic;
         for c in 0..3 {
             let color = linear[p[c] as usize];
-            let mixed = if specular { 0.04 + (color * factor[c] - 0.04) * m } else { color * (1.0 - METAL_DIFFUSE_LOSS * m) };
+            let mixed = if specular {
+                0.04 + (color * factor[c] - 0.04) * m
+            } else {
+                color * (1.0 - METAL_DIFFUSE_LOSS * m)
+            };
             p[c] = (to_srgb(mixed.clamp(0.0, 1.0)) * 255.0).round() as u8;
         }
         if specular {
@@ -388,10 +414,12 @@ pub(super) fn find_file(folder: &Path, name: &str) -> Option<PathBuf> {
         return Some(exact);
     }
     let name = name.replace('\\', "/");
-    let names: Vec<&str> = name.split('/').filter(|n| !n.is_empty() && *n != "." && !n.ends_with(':')).collect();
+    let names: Vec<&str> =
+        name.split('/').filter(|n| !n.is_empty() && *n != "." && !n.ends_with(':')).collect();
     let last = *names.last()?;
     let shorter = (0..names.len()).map(|i| names[i..].to_vec());
-    let usual = ["textures", "texture", "tex", "maps", "images", "../textures"].map(|f| f.split('/').chain([last]).collect());
+    let usual = ["textures", "texture", "tex", "maps", "images", "../textures"]
+        .map(|f| f.split('/').chain([last]).collect());
     shorter.chain(usual).find_map(|names| descend(folder, &names)).filter(|p| p.is_file())
 }
 
@@ -405,7 +433,8 @@ fn descend(folder: &Path, names: &[&str]) -> Option<PathBuf> {
             let listed = if path.as_os_str().is_empty() { Path::new(".") } else { &path };
             let wanted = name.to_lowercase();
             // Sorted: which of `A.png` and `a.PNG` is taken must not depend on the file system.
-            let mut found: Vec<_> = std::fs::read_dir(listed).ok()?.flatten().map(|e| e.file_name()).collect();
+            let mut found: Vec<_> =
+                std::fs::read_dir(listed).ok()?.flatten().map(|e| e.file_name()).collect();
             found.retain(|n| n.to_string_lossy().to_lowercase() == wanted);
             path.join(found.into_iter().min()?)
         };
@@ -427,7 +456,16 @@ mod tests {
         assert_eq!(with(|_| 255), AlphaUse::Opaque);
         assert_eq!(with(|_| 0), AlphaUse::Opaque);
         assert_eq!(with(|x| if x < 60 { 0 } else { 255 }), AlphaUse::Mask);
-        assert_eq!(with(|x| if x < 20 { 128 } else if x < 60 { 0 } else { 255 }), AlphaUse::Mask);
+        assert_eq!(
+            with(|x| if x < 20 {
+                128
+            } else if x < 60 {
+                0
+            } else {
+                255
+            }),
+            AlphaUse::Mask
+        );
         assert_eq!(with(|_| 128), AlphaUse::Blend);
         assert_eq!(with(|x| (x * 2) as u8), AlphaUse::Blend);
     }
@@ -435,7 +473,15 @@ mod tests {
     #[test]
     fn heights_become_normals_and_normals_stay() {
         // Rising to the right and upwards in the picture.
-        let ramp = picture(16, 16, |x, y| [(x * 8 + (15 - y) * 4) as u8; 3].map(|c| c).into_iter().chain([255]).collect::<Vec<_>>().try_into().unwrap());
+        let ramp = picture(16, 16, |x, y| {
+            [(x * 8 + (15 - y) * 4) as u8; 3]
+                .map(|c| c)
+                .into_iter()
+                .chain([255])
+                .collect::<Vec<_>>()
+                .try_into()
+                .unwrap()
+        });
         let n = normal_map(ramp.clone(), 1.0, false);
         let p = n.get_pixel(8, 8);
         assert!(p[0] < 120 && p[1] < 126 && p[0] < p[1] && p[2] > 200, "{p:?}");
@@ -449,7 +495,9 @@ mod tests {
     #[test]
     fn masks_come_from_alpha_or_brightness() {
         let color = picture(4, 4, |x, _| [x as u8, 2, 3, 255]);
-        let grey = picture(2, 2, |x, _| [x as u8 * 255; 3].into_iter().chain([255]).collect::<Vec<_>>().try_into().unwrap());
+        let grey = picture(2, 2, |x, _| {
+            [x as u8 * 255; 3].into_iter().chain([255]).collect::<Vec<_>>().try_into().unwrap()
+        });
         let m = masked(Some(color), &grey, None);
         assert_eq!((m.get_pixel(1, 0).0, m.get_pixel(2, 0).0), ([1, 2, 3, 0], [2, 2, 3, 255]));
         let alpha = picture(1, 1, |_, _| [255, 255, 255, 7]);
@@ -462,10 +510,16 @@ mod tests {
         let base = picture(2, 1, |_, _| [200, 100, 50, 255]);
         let orm = picture(2, 1, |x, _| [0, 128, x as u8 * 255, 255]);
         let (diffuse, roughness) = metal(Some(base.clone()), Vec3::ONE, &orm, 1.0, false);
-        assert_eq!((diffuse.get_pixel(0, 0).0, diffuse.get_pixel(1, 0).0), ([200, 100, 50, 255], [115, 54, 24, 255]));
+        assert_eq!(
+            (diffuse.get_pixel(0, 0).0, diffuse.get_pixel(1, 0).0),
+            ([200, 100, 50, 255], [116, 55, 25, 255])
+        );
         assert!((roughness - 0.5).abs() < 0.01);
         let (specular, _) = metal(Some(base), Vec3::ONE, &orm, 1.0, true);
-        assert_eq!((specular.get_pixel(0, 0).0, specular.get_pixel(1, 0).0), ([56, 56, 56, 255], [200, 100, 50, 255]));
+        assert_eq!(
+            (specular.get_pixel(0, 0).0, specular.get_pixel(1, 0).0),
+            ([56, 56, 56, 255], [200, 100, 50, 255])
+        );
     }
 
     #[test]

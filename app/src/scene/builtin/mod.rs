@@ -7,9 +7,16 @@ use super::{Scene, ShadingStyle};
 
 mod atrium;
 pub mod build;
+mod conference;
+pub mod figure;
 pub mod paint;
 pub mod props;
+mod prototype;
+pub mod sculpt;
+mod stage;
 mod street;
+mod talk;
+mod voxel;
 
 /// A scene that is generated, not loaded.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +63,46 @@ pub const BUILTINS: &[Builtin] = &[
         style: ShadingStyle::Realistic,
         kilo_triangles: 360,
         build: atrium::build,
+    },
+    Builtin {
+        name: "conference",
+        title: "A conference room with screens, blinds and plants",
+        stands_for: "Conference room",
+        style: ShadingStyle::Realistic,
+        kilo_triangles: 125,
+        build: conference::build,
+    },
+    Builtin {
+        name: "voxel",
+        title: "A voxel landscape with a ruined temple, a bridge, woods and a castle",
+        stands_for: "LostEmpire",
+        style: ShadingStyle::Voxel,
+        kilo_triangles: 2800,
+        build: voxel::build,
+    },
+    Builtin {
+        name: "prototype",
+        title: "A game level of grid textures: ramps, stairs, railings, dummies",
+        stands_for: "Prototype",
+        style: ShadingStyle::LowPoly,
+        kilo_triangles: 22,
+        build: prototype::build,
+    },
+    Builtin {
+        name: "talk",
+        title: "Two stylised figures talking across a table in a room with a garden",
+        stands_for: "Chat",
+        style: ShadingStyle::Cartoon,
+        kilo_triangles: 110,
+        build: talk::build,
+    },
+    Builtin {
+        name: "stage",
+        title: "An anime-style singer on a concert stage at nightfall",
+        stands_for: "UnityChan",
+        style: ShadingStyle::Anime,
+        kilo_triangles: 120,
+        build: stage::build,
     },
 ];
 

@@ -638,7 +638,7 @@ pub fn voxel(name: &str, seed: u32, block: Block) -> TextureImage {
         let [x, y] = (uv * N as f32).as_uvec2().into();
         let n = noise(x, y);
         let b = blotch(uv);
-        let grass = vec3(0.36, 0.58, 0.22);
+        let grass = vec3(0.4, 0.55, 0.27);
         let dirt = vec3(0.46, 0.33, 0.22);
         let seam = |columns: u32, rows: u32| {
             let row = y / (N / rows);
@@ -658,7 +658,7 @@ pub fn voxel(name: &str, seed: u32, block: Block) -> TextureImage {
                 let stone = worley(seed, UVec2::splat(4), 0.8, uv);
                 let gap = stone.second - stone.nearest < 0.12;
                 let c = shade(Vec3::splat(0.55), n * 0.12 + (unit(stone.id) - 0.5) * 0.4);
-                if gap { c * 0.5 } else { c }
+                if gap { c * 0.62 } else { c }
             }
             Block::StoneBrick | Block::MossyBrick => {
                 let c =
@@ -706,6 +706,68 @@ pub fn voxel(name: &str, seed: u32, block: Block) -> TextureImage {
             }
         };
         color.extend(1.0)
+    });
+    image.nearest = true;
+    image
+}
+
+/// Plants that stand on voxels as crossed cards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Plant {
+    /// Blades of grass.
+    Grass,
+    /// A poppy.
+    Poppy,
+    /// A yellow flower.
+    Buttercup,
+    /// Fern.
+    Fern,
+    /// Leaves that hang down a wall; repeats upwards.
+    Vine,
+}
+
+/// A voxel plant, 16 by 16 texels, unfiltered, alpha 0 or 1.
+pub fn voxel_plant(name: &str, seed: u32, plant: Plant) -> TextureImage {
+    const N: u32 = 16;
+    let green = match plant {
+        Plant::Grass | Plant::Poppy | Plant::Buttercup => vec3(0.33, 0.54, 0.2),
+        Plant::Fern => vec3(0.24, 0.46, 0.2),
+        Plant::Vine => vec3(0.22, 0.42, 0.15),
+    };
+    let mut image = picture(name, [N; 2], |uv| {
+        let [x, y] = (uv * N as f32).as_uvec2().into();
+        let n = unit(hash_cell(seed, x, y)) - 0.5;
+        let leaf = Some(shade(green, n * 0.5 + (y as f32 / 16.0 - 0.5) * 0.4));
+        let from_middle = x.abs_diff(8);
+        let petal = |center: [u32; 2], radius: u32, color: Vec3, heart: Vec3| {
+            let d = x.abs_diff(center[0]).max(y.abs_diff(center[1]));
+            let corner = x.abs_diff(center[0]) + y.abs_diff(center[1]) == 2 * radius;
+            if d == 0 { Some(heart) } else { (d <= radius && !corner).then(|| shade(color, n * 0.3)) }
+        };
+        let stalk = (from_middle == 0 || (y < 5 && from_middle == 4 - y.min(4))).then_some(()).and(leaf);
+        let color = match plant {
+            Plant::Grass => {
+                let blade = hash_cell(seed, x, 1);
+                let lean = y / 6 * (blade & 1);
+                let root = hash_cell(seed, (x + lean) % N, 2);
+                (root % 3 != 0 && y < 5 + root % 10).then_some(()).and(leaf)
+            }
+            Plant::Poppy => petal([8, 11], 2, vec3(0.85, 0.16, 0.12), vec3(0.15, 0.1, 0.1))
+                .or((y < 10).then_some(()).and(stalk)),
+            Plant::Buttercup => petal([8, 9], 1, vec3(0.95, 0.82, 0.2), vec3(0.8, 0.55, 0.1))
+                .or((y < 9).then_some(()).and(stalk)),
+            Plant::Fern => {
+                let frond = y.abs_diff(from_middle * 3 / 2) < 2 || y.abs_diff(3 + from_middle / 2) < 2;
+                (from_middle < 8 && frond && (x + y) % 3 != 0 || (from_middle == 0 && y < 12))
+                    .then_some(())
+                    .and(leaf)
+            }
+            Plant::Vine => {
+                let run = hash_cell(seed, x / 2, 3) % 3 != 0;
+                (run && hash_cell(seed, x, y + 50) % 4 != 0).then_some(()).and(leaf)
+            }
+        };
+        color.map_or(green.extend(0.0), |c| c.extend(1.0))
     });
     image.nearest = true;
     image
