@@ -4,6 +4,20 @@
 //! or windows. [`eyes`] says where the eyes are and how pixels move between them. [`scene`], [`render`] and
 //! [`stereo`] make frames to test it on, [`metrics`] measures them.
 
+#[cfg(feature = "desktop")]
+pub mod cli;
 pub mod eyes;
+#[cfg(feature = "desktop")]
+pub mod files;
 pub mod gl;
+pub mod metrics;
+#[cfg(feature = "desktop")]
+pub mod picture;
+#[cfg(feature = "desktop")]
+pub mod platform;
+pub mod render;
+#[cfg(feature = "desktop")]
+pub mod report;
 pub mod scene;
+pub mod stereo;
+pub mod synthesis;

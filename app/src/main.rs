@@ -1,3 +1,52 @@
 //! The desktop program.
 
-fn main() {}
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use yoro::cli;
+
+/// Render one eye, synthesize the other
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// Say more (-v: what is in use, -vv: everything)
+    #[arg(short, long, action = clap::ArgAction::Count, global = true)]
+    verbose: u8,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Render(cli::render::RenderArgs),
+    Synthesize(cli::synthesize::SynthesizeArgs),
+    Compare(cli::compare::CompareArgs),
+    Info(cli::info::InfoArgs),
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let level = match arguments.verbose {
+        0 => "warn",
+        1 => "info",
+        _ => "debug",
+    };
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(level))
+        .format_timestamp(None)
+        .format_target(false)
+        .init();
+    cli::catch_interrupt();
+    let result = match &arguments.command {
+        Command::Render(args) => cli::render::run(args),
+        Command::Synthesize(args) => cli::synthesize::run(args),
+        Command::Compare(args) => cli::compare::run(args),
+        Command::Info(args) => cli::info::run(args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(if cli::interrupted() { 130 } else { 2 })
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! The subcommands of the program `yoro`, one file each.
+
+pub mod compare;
+pub mod info;
+pub mod render;
+pub mod stage;
+pub mod synthesize;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use anyhow::bail;
+use clap::builder::RangedU64ValueParser;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::eyes::MAX_IPD;
+use crate::platform::{Backend, Headless, PlatformError};
+use crate::synthesis::{ImBufferSize, PaperOptions, Pipeline, SynthesisOptions};
+
+/// Where the GL context comes from.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct GlArgs {
+    /// Where to take the GL context from
+    #[arg(long = "gl", value_enum, default_value_t, value_name = "BACKEND")]
+    pub backend: Backend,
+}
+
+impl GlArgs {
+    /// Opens the context and says once what it is.
+    pub fn open(&self) -> Result<Headless, PlatformError> {
+        let headless = Headless::open(self.backend)?;
+        log::info!("{}", headless.gl().capabilities().summary());
+        Ok(headless)
+    }
+}
+
+/// The synthesis pipeline and its knobs.
+#[derive(clap::Args, Clone, Debug)]
+pub struct SynthesisArgs {
+    /// How the other eye is synthesized
+    #[arg(long, value_enum, default_value_t)]
+    pub pipeline: Pipeline,
+    /// paper: ImBuffer resolution, as a divisor (1, 2, 4, 8, 16) or a fixed size (512x512)
+    #[arg(long, value_parser = parse_imbuffer, default_value = "1", value_name = "N|WxH")]
+    pub imbuffer: ImBufferSize,
+    /// paper: do not interpolate between ImBuffer entries
+    #[arg(long)]
+    pub no_linear_interpolation: bool,
+    /// paper: rows of the patcher's kernel
+    #[arg(long, default_value_t = 3, value_parser = RangedU64ValueParser::<u32>::new().range(1..=15), value_name = "ROWS")]
+    pub kernel_height: u32,
+    /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says
+    #[arg(long)]
+    pub strict: bool,
+}
+
+impl SynthesisArgs {
+    /// As the library takes them.
+    pub fn options(&self) -> SynthesisOptions {
+        SynthesisOptions {
+            pipeline: self.pipeline,
+            paper: PaperOptions {
+                imbuffer: self.imbuffer,
+                linear_interpolation: !self.no_linear_interpolation,
+                kernel_height: self.kernel_height,
+                strict: self.strict,
+            },
+        }
+    }
+}
+
+fn parse_imbuffer(text: &str) -> Result<ImBufferSize, String> {
+    let number = |t: &str| t.parse::<u32>().ok().filter(|n| (1..=8192).contains(n));
+    match text.split_once('x') {
+        Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| ImBufferSize::Fixed([w, h])),
+        None => number(text).filter(|n| *n <= 64).map(ImBufferSize::Divisor),
+    }
+    .ok_or_else(|| "give a divisor from 1 to 64, such as 2, or a size, such as 512x512".into())
+}
+
+/// Parses an IPD in metres.
+fn parse_ipd(text: &str) -> Result<f32, String> {
+    let ipd: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=MAX_IPD).contains(&ipd) {
+        Ok(ipd)
+    } else {
+        Err(format!("give metres from 0 to {MAX_IPD}: 0.063 is 63 mm"))
+    }
+}
+
+/// Parses a finite number above zero.
+fn parse_positive(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("give a number above 0".into()),
+    }
+}
+
+/// Parses an angle in degrees that a flat image can have, and returns radians.
+fn parse_fov(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if (1.0..=170.0).contains(&value) => Ok(value.to_radians()),
+        _ => Err("give degrees from 1 to 170".into()),
+    }
+}
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Makes Ctrl-C and SIGTERM end the program at the next step instead of at once, so that no half-made file
+/// stays; a second one ends it at once.
+pub fn catch_interrupt() {
+    let handler = || {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        log::debug!("Ctrl-C is not caught: {error}");
+    }
+}
+
+/// Whether the user has asked to stop.
+pub fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
+/// Ends a long loop when the user has asked for it.
+fn stop_if_interrupted() -> anyhow::Result<()> {
+    if interrupted() {
+        bail!("interrupted: nothing of an unfinished step was written");
+    }
+    Ok(())
+}
+
+/// A progress bar on stderr; hidden when that is not a terminal.
+fn progress_bar(steps: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {wide_msg}");
+    let bar = ProgressBar::new(steps).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}

@@ -1,0 +1,222 @@
+//! `yoro render`: stereo pictures of a scene.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::ensure;
+use glam::Vec3;
+use image::RgbImage;
+use serde::Serialize;
+
+use crate::cli::stage::{self, EyeArgs, Stage, StereoArgs};
+use crate::cli::{GlArgs, progress_bar, stop_if_interrupted};
+use crate::eyes::Eye;
+use crate::metrics::{Channels, Quality, error_map};
+use crate::picture;
+use crate::render::RenderSettings;
+use crate::scene::{CameraPath, ShadingStyle, builtin};
+use crate::stereo::{self, Method, StereoFrame};
+
+/// A picture made from the two eyes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Output {
+    /// The left eye
+    Left,
+    /// The right eye
+    Right,
+    /// Left and right side by side
+    SideBySide,
+    /// Side by side with the eyes swapped, to be viewed with crossed eyes
+    CrossEyed,
+    /// For red and cyan glasses
+    Anaglyph,
+    /// Four times the difference between the second eye and the really rendered one
+    Difference,
+    /// The error map 1 - SSIM of the second eye against the really rendered one
+    ErrorMap,
+}
+
+impl Output {
+    fn needs_truth(self) -> bool {
+        matches!(self, Output::Difference | Output::ErrorMap)
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Output::Left => "left",
+            Output::Right => "right",
+            Output::SideBySide => "side-by-side",
+            Output::CrossEyed => "cross-eyed",
+            Output::Anaglyph => "anaglyph",
+            Output::Difference => "difference",
+            Output::ErrorMap => "error-map",
+        }
+    }
+}
+
+/// Render stereo pictures of a built-in scene, or of an OBJ or glTF file
+#[derive(clap::Args, Clone, Debug)]
+pub struct RenderArgs {
+    /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file
+    scene: String,
+    /// How the two eyes are made
+    #[arg(long, value_enum, default_value_t = Method::Yoro)]
+    method: Method,
+    /// Which of the scene's viewpoints, from 0
+    #[arg(long, default_value_t = 0, conflicts_with_all = ["frames", "position"], value_name = "N")]
+    pose: usize,
+    /// Instead: this many frames along the scene's camera path
+    #[arg(long, value_name = "N", conflicts_with = "position", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    frames: Option<u32>,
+    /// Instead: the head's position in metres
+    #[arg(long, value_parser = stage::parse_point, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    position: Option<Vec3>,
+    /// The point that the head looks at
+    #[arg(long, value_parser = stage::parse_point, value_name = "X,Y,Z", requires = "position", allow_hyphen_values = true)]
+    target: Option<Vec3>,
+    /// Another shading style than the scene's own
+    #[arg(long, value_enum)]
+    style: Option<ShadingStyle>,
+    /// Seed of a built-in scene
+    #[arg(long, default_value_t = builtin::DEFAULT_SEED)]
+    seed: u64,
+    /// Folder for the pictures
+    #[arg(long, default_value = "out", value_name = "FOLDER")]
+    out: PathBuf,
+    /// Which pictures
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Output::Left, Output::Right, Output::SideBySide])]
+    outputs: Vec<Output>,
+    /// Measure the second eye against the really rendered one
+    #[arg(long)]
+    measure: bool,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    eyes: EyeArgs,
+    #[command(flatten)]
+    stereo: StereoArgs,
+    #[command(flatten)]
+    gl: GlArgs,
+}
+
+#[derive(Serialize)]
+struct FrameReport {
+    frame: usize,
+    milliseconds: f64,
+    pictures: Vec<PathBuf>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    quality: Option<Quality>,
+    /// Baseline: the same image to both eyes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    same_image: Option<Quality>,
+}
+
+/// Renders and writes the pictures.
+pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
+    args.eyes.check()?;
+    let scene = stage::load_scene(&args.scene, args.seed, args.style)?;
+    let path = CameraPath::new(&scene.viewpoints);
+    let heads = match (stage::viewpoint(args.position, args.target), args.frames) {
+        (Some(viewpoint), _) => vec![viewpoint.pose()],
+        (None, Some(n)) => path.poses(n as usize),
+        (None, None) => {
+            let count = scene.viewpoints.len();
+            ensure!(
+                args.pose < count,
+                "--pose {} does not exist: {} has poses 0 to {}",
+                args.pose,
+                scene.name,
+                count - 1
+            );
+            vec![scene.viewpoints[args.pose].pose()]
+        }
+    };
+    let options = args.stereo.options();
+    log::info!("{options:?}");
+    log::info!("{}", args.eyes.distances(options.guard_band));
+    let headless = args.gl.open()?;
+    let gl = headless.gl();
+    let settings = RenderSettings::default();
+    let Stage { scene, mut renderer } = Stage::new(gl, scene, &settings)?;
+    let mut method = stereo::create(gl, args.method, &settings, &options)?;
+    let measured = args.measure || args.outputs.iter().any(|o| o.needs_truth());
+    let mut truth =
+        measured.then(|| stereo::create(gl, Method::Conventional, &settings, &options)).transpose()?;
+    let mut frame = StereoFrame::new(gl, args.eyes.size)?;
+    let mut reports = Vec::new();
+    let bar = progress_bar(heads.len() as u64);
+    for (i, &head) in heads.iter().enumerate() {
+        stop_if_interrupted()?;
+        let pair = args.eyes.pair(head);
+        let start = Instant::now();
+        method.render(&mut renderer, &scene, &pair, &mut frame)?;
+        gl.finish();
+        let milliseconds = start.elapsed().as_secs_f64() * 1e3;
+        let eyes = Eye::BOTH.map(|eye| stage::eye_image(&frame, eye));
+        let second = pair.dominant.other();
+        let mut quality = None;
+        let mut truth_image = None;
+        if let Some(truth) = &mut truth {
+            truth.render(&mut renderer, &scene, &pair, &mut frame)?;
+            let real = stage::eye_image(&frame, second);
+            quality = Some([
+                Quality::of(&eyes[second.index()], &real, Channels::Rgb)?,
+                Quality::of(&eyes[pair.dominant.index()], &real, Channels::Rgb)?,
+            ]);
+            truth_image = Some(real);
+        }
+        let stem = if heads.len() > 1 { format!("{}-{i:04}", scene.name) } else { scene.name.clone() };
+        let mut pictures = Vec::new();
+        for &output in &args.outputs {
+            let path = stage::picture_path(&args.out, &stem, output.name());
+            picture::save_color(&path, &compose(output, &eyes, second, truth_image.as_ref())?)?;
+            pictures.push(path);
+        }
+        let [quality, same_image] = quality.map_or([None, None], |q| q.map(Some));
+        reports.push(FrameReport { frame: i, milliseconds, pictures, quality, same_image });
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    print(args, &reports)
+}
+
+fn compose(
+    output: Output,
+    eyes: &[RgbImage; 2],
+    second: Eye,
+    truth: Option<&RgbImage>,
+) -> anyhow::Result<RgbImage> {
+    let [left, right] = eyes;
+    let against = |f: fn(&RgbImage, &RgbImage) -> anyhow::Result<RgbImage>| {
+        f(&eyes[second.index()], truth.unwrap_or(&eyes[second.index()]))
+    };
+    Ok(match output {
+        Output::Left => left.clone(),
+        Output::Right => right.clone(),
+        Output::SideBySide => picture::side_by_side(left, right)?,
+        Output::CrossEyed => picture::cross_eyed(left, right)?,
+        Output::Anaglyph => picture::anaglyph(left, right)?,
+        Output::Difference => against(|a, b| Ok(picture::difference(a, b)?))?,
+        Output::ErrorMap => against(|a, b| Ok(error_map(a, b)?))?,
+    })
+}
+
+fn print(args: &RenderArgs, reports: &[FrameReport]) -> anyhow::Result<()> {
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(reports)?);
+        return Ok(());
+    }
+    for report in reports {
+        for picture in &report.pictures {
+            println!("{}", picture.display());
+        }
+        if let (Some(q), Some(s)) = (report.quality, report.same_image) {
+            println!(
+                "frame {}: {:.2} dB, SSIM {:.4} (same image to both eyes: {:.2} dB, {:.4})",
+                report.frame, q.psnr.0, q.ssim_gaussian, s.psnr.0, s.ssim_gaussian
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,212 @@
+//! What `render`, `run` and their like share: a scene on the GPU, eyes to look at it with, options.
+
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use anyhow::{bail, ensure};
+use glam::Vec3;
+use image::RgbImage;
+
+use crate::cli::synthesize::rgb_image;
+use crate::cli::{SynthesisArgs, parse_fov, parse_ipd, parse_positive};
+use crate::eyes::{
+    DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, full_overlap_distance,
+    minimum_object_distance,
+};
+use crate::gl::Context;
+use crate::render::{GpuScene, RenderSettings, Renderer};
+use crate::scene::{self, Scene, ShadingStyle, Viewpoint, builtin};
+use crate::stereo::{AntiAliasing, StereoFrame, StereoOptions};
+use crate::synthesis::{NearFieldPolicy, Pipeline};
+
+/// The eyes and what they see of the world.
+#[derive(clap::Args, Clone, Debug)]
+pub struct EyeArgs {
+    /// Size of each eye's image in pixels
+    #[arg(long, default_value = "1024x1024", value_parser = parse_size, value_name = "WxH")]
+    pub size: [u32; 2],
+    /// Vertical field of view in degrees
+    #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov)]
+    pub fov_y: f32,
+    /// Distance between the eyes in metres
+    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd)]
+    pub ipd: f32,
+    /// The eye that is rendered
+    #[arg(long, value_parser = parse_eye, default_value = "right")]
+    pub dominant: Eye,
+    /// Near plane in metres
+    #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive)]
+    pub near: f32,
+    /// Far plane in metres; `inf` for none
+    #[arg(long, default_value_t = DepthRange::PAPER.far)]
+    pub far: f32,
+    /// Reversed depth, 1 near to 0 far, in float
+    #[arg(long)]
+    pub reversed_z: bool,
+    /// Outer and inner half-angles of asymmetric frusta in degrees, such as 52,42; instead of the width that
+    /// follows from --fov-y-degrees
+    #[arg(long, value_parser = parse_half_angles, value_name = "OUTER,INNER")]
+    pub half_angles_degrees: Option<[f32; 2]>,
+}
+
+impl EyeArgs {
+    /// The two eyes around a head pose.
+    pub fn pair(&self, head: Pose) -> EyePair {
+        let convention = if self.reversed_z { DepthConvention::Reversed } else { DepthConvention::Standard };
+        let depth = DepthRange { near: self.near, far: self.far, convention };
+        let symmetric = Frustum::symmetric(self.fov_y, self.size[0] as f32 / self.size[1] as f32);
+        let mut pair = EyePair::parallel(head, symmetric, self.ipd, depth, self.size, self.dominant);
+        if let Some([outer, inner]) = self.half_angles_degrees.map(|a| a.map(|d| d.to_radians().tan())) {
+            pair.frusta[0] = Frustum { left: -outer, right: inner, ..symmetric };
+            pair.frusta[1] = Frustum { left: -inner, right: outer, ..symmetric };
+        }
+        pair
+    }
+
+    /// Refuses what no pair of eyes can be made of.
+    pub fn check(&self) -> anyhow::Result<()> {
+        ensure!(self.near < self.far, "--near {} must be less than --far {}", self.near, self.far);
+        Ok(())
+    }
+
+    /// One line about how near objects may come.
+    pub fn distances(&self, guard: GuardBand) -> String {
+        let fov_x = 2.0 * ((0.5 * self.fov_y).tan() * self.size[0] as f32 / self.size[1] as f32).atan();
+        let guard = match guard {
+            GuardBand::None => "no guard band".to_owned(),
+            GuardBand::Distance(z) => format!("guard band complete from {z} m"),
+            GuardBand::Pixels(n) => format!("guard band of {n} pixels"),
+        };
+        format!(
+            "minimum object distance {:.3} m (IPD/2 cot(fov/2)), disparity of half the image at {:.3} m, {guard}",
+            minimum_object_distance(self.ipd, fov_x),
+            full_overlap_distance(self.ipd, fov_x)
+        )
+    }
+}
+
+/// How stereo frames are made.
+#[derive(clap::Args, Clone, Debug)]
+pub struct StereoArgs {
+    #[command(flatten)]
+    synthesis: SynthesisArgs,
+    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in
+    /// metres (`1.0`) [default: 1.0; paper: none]
+    #[arg(long, value_parser = parse_guard_band, value_name = "none|Npx|METRES")]
+    guard_band: Option<GuardBand>,
+    /// When to anti-alias [default: after; paper: before]
+    #[arg(long, value_enum)]
+    anti_aliasing: Option<AntiAliasing>,
+    /// Hybrid near field: render objects nearer than this (metres) for both eyes
+    #[arg(long, value_parser = parse_positive, value_name = "METRES")]
+    near_field: Option<f32>,
+    /// Never switch to two real renders, however near everything is
+    #[arg(long)]
+    no_switch: bool,
+}
+
+impl StereoArgs {
+    /// The options for the pipeline that was chosen.
+    pub fn options(&self) -> StereoOptions {
+        self.options_of(self.synthesis.pipeline)
+    }
+
+    /// The options for any pipeline, with the knobs that were given.
+    pub fn options_of(&self, pipeline: Pipeline) -> StereoOptions {
+        let mut options = StereoOptions::of_pipeline(pipeline);
+        options.synthesis.paper = self.synthesis.options().paper;
+        options.guard_band = self.guard_band.unwrap_or(options.guard_band);
+        options.anti_aliasing = self.anti_aliasing.unwrap_or(options.anti_aliasing);
+        options.near_field = self.near_field;
+        options.policy = (!self.no_switch).then(NearFieldPolicy::default);
+        options
+    }
+}
+
+/// A scene on the GPU with its renderer.
+pub struct Stage {
+    /// The scene.
+    pub scene: GpuScene,
+    /// Its renderer.
+    pub renderer: Renderer,
+}
+
+impl Stage {
+    /// Uploads a scene and compiles what it needs.
+    pub fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> anyhow::Result<Stage> {
+        let scene = GpuScene::upload(gl, scene)?;
+        let renderer = Renderer::new(gl, settings, &scene)?;
+        Ok(Stage { scene, renderer })
+    }
+}
+
+/// A built-in scene by name, or a file.
+pub fn load_scene(name: &str, seed: u64, style: Option<ShadingStyle>) -> anyhow::Result<Scene> {
+    let path = Path::new(name);
+    let looks_like_path = path.components().count() > 1 || path.extension().is_some() || path.exists();
+    let mut scene = match builtin::build(name, seed) {
+        Ok(scene) => scene,
+        Err(_) if looks_like_path => scene::load(path)?,
+        Err(error) => bail!("{error} Or give an OBJ, glTF or GLB file."),
+    };
+    scene.style = style.unwrap_or(scene.style);
+    Ok(scene)
+}
+
+/// One eye of a finished frame as an image.
+pub fn eye_image(frame: &StereoFrame, eye: Eye) -> RgbImage {
+    let target = frame.eye(eye);
+    rgb_image(&target.read_rgba8(0, [0, 0], target.size()), target.size())
+}
+
+/// A viewpoint from the command line.
+pub fn viewpoint(position: Option<Vec3>, target: Option<Vec3>) -> Option<Viewpoint> {
+    let position = position?;
+    Some(Viewpoint { position, target: target.unwrap_or(position + Vec3::NEG_Z) })
+}
+
+/// Where a scene's pictures go.
+pub fn picture_path(folder: &Path, stem: &str, kind: &str) -> PathBuf {
+    folder.join(format!("{stem}.{kind}.png"))
+}
+
+/// Parses `x,y,z` in metres.
+pub fn parse_point(text: &str) -> Result<Vec3, String> {
+    let numbers: Vec<f32> = text.split(',').filter_map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        &[x, y, z] if Vec3::new(x, y, z).is_finite() => Ok(Vec3::new(x, y, z)),
+        _ => Err("give three numbers in metres, such as 1.5,1.6,-2".into()),
+    }
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let number = |t: &str| t.parse::<u32>().ok().filter(|n| (16..=4096).contains(n));
+    let (w, h) = text.split_once('x').unwrap_or((text, text));
+    number(w)
+        .zip(number(h))
+        .map(|(w, h)| [w, h])
+        .ok_or_else(|| "give pixels from 16 to 4096, such as 1024x1024".into())
+}
+
+fn parse_eye(text: &str) -> Result<Eye, String> {
+    Eye::BOTH.into_iter().find(|eye| eye.name() == text).ok_or_else(|| "give left or right".into())
+}
+
+fn parse_half_angles(text: &str) -> Result<[f32; 2], String> {
+    let parse = |t: &str| t.trim().parse::<f32>().ok().filter(|d| (1.0..=85.0).contains(d));
+    text.split_once(',')
+        .and_then(|(a, b)| parse(a).zip(parse(b)))
+        .map(|(a, b)| [a, b])
+        .ok_or_else(|| "give two angles from 1 to 85 degrees, outwards and inwards, such as 52,42".into())
+}
+
+fn parse_guard_band(text: &str) -> Result<GuardBand, String> {
+    if text == "none" {
+        return Ok(GuardBand::None);
+    }
+    let band = match text.strip_suffix("px") {
+        Some(pixels) => pixels.parse().ok().filter(|n| *n <= 1024).map(GuardBand::Pixels),
+        None => text.parse().ok().filter(|z| (0.05..=1000.0).contains(z)).map(GuardBand::Distance),
+    };
+    band.ok_or_else(|| "give none, pixels such as 40px, or metres such as 1.0".into())
+}

@@ -1,0 +1,313 @@
+//! `yoro synthesize`: the other eye from a colour and a depth image.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail, ensure};
+use image::{GrayImage, Luma, Rgb, RgbImage};
+
+use crate::cli::{
+    GlArgs, SynthesisArgs, parse_fov, parse_ipd, parse_positive, progress_bar, stop_if_interrupted,
+};
+use crate::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
+use crate::files;
+use crate::picture::{self, DepthImage, DepthSamples};
+use crate::synthesis::{Offline, SourceMapEntry, SynthesizedImage};
+
+/// What the values of a depth image mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum DepthEncoding {
+    /// Depth buffer, 0 near to 1 far; needs --near and --far
+    StandardZ,
+    /// Depth buffer, 1 near to 0 far; needs --near and --far
+    ReversedZ,
+    /// Distance along the viewing axis in metres (PNG: times --metres-at-white)
+    Metres,
+    /// Disparity in pixels: --disparity-offset + --disparity-scale * value
+    Disparity,
+}
+
+/// Which eye the images show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum SourceEye {
+    /// The left eye: the right one is synthesized
+    Left,
+    /// The right eye: the left one is synthesized
+    Right,
+    /// A camera between the eyes: both are synthesized, to OUT.left.png and OUT.right.png
+    Center,
+}
+
+/// Synthesize the other eye from a colour image and a depth image, or from folders of them
+#[derive(clap::Args, Clone, Debug)]
+pub struct SynthesizeArgs {
+    /// Colour image of the rendered eye, or a folder
+    #[arg(long, value_name = "FILE|FOLDER")]
+    color: PathBuf,
+    /// Depth image of the same size: 8 or 16-bit PNG, or EXR; or a folder with files of the same names
+    #[arg(long, value_name = "FILE|FOLDER")]
+    depth: PathBuf,
+    /// Where to write the synthesized eye (.png), or a folder
+    #[arg(long, value_name = "FILE|FOLDER")]
+    out: PathBuf,
+    /// Which eye the images show
+    #[arg(long, value_enum, default_value_t = SourceEye::Right)]
+    dominant: SourceEye,
+    /// What the depth values mean
+    #[arg(long, value_enum, default_value_t = DepthEncoding::StandardZ)]
+    depth_encoding: DepthEncoding,
+    /// The stored value is raised to this power first
+    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
+    depth_gamma: f32,
+    /// Near plane in metres
+    #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive)]
+    near: f32,
+    /// Far plane in metres; `inf` for none
+    #[arg(long, default_value_t = DepthRange::PAPER.far)]
+    far: f32,
+    /// metres: distance of the largest value of an integer PNG
+    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
+    metres_at_white: f32,
+    /// disparity: pixels at value 0
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    disparity_offset: f32,
+    /// disparity: pixels per unit (a PNG's largest value is 1)
+    #[arg(long, default_value_t = 1.0)]
+    disparity_scale: f32,
+    /// Vertical field of view of the images in degrees
+    #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov)]
+    fov_y: f32,
+    /// Distance between the eyes in metres
+    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd)]
+    ipd: f32,
+    /// Also write the mask of holes as PNG: black where nothing of the source is seen
+    #[arg(long, value_name = "FILE|FOLDER")]
+    mask_out: Option<PathBuf>,
+    /// Also write the disparity in pixels, as EXR
+    #[arg(long, value_name = "FILE|FOLDER")]
+    disparity_out: Option<PathBuf>,
+    /// Also write the column in the colour image that each pixel comes from, as EXR
+    #[arg(long, value_name = "FILE|FOLDER")]
+    source_out: Option<PathBuf>,
+    #[command(flatten)]
+    synthesis: SynthesisArgs,
+    #[command(flatten)]
+    gl: GlArgs,
+}
+
+/// One image group: where it comes from and where it goes.
+struct Job {
+    color: PathBuf,
+    depth: PathBuf,
+    out: PathBuf,
+    mask: Option<PathBuf>,
+    disparity: Option<PathBuf>,
+    source: Option<PathBuf>,
+}
+
+/// Synthesizes one image or a folder of them.
+pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
+    ensure!(args.near < args.far, "--near {} must be less than --far {}", args.near, args.far);
+    let jobs = jobs(args)?;
+    let headless = args.gl.open()?;
+    let mut offline = Offline::new(headless.gl(), &args.synthesis.options())?;
+    let bar = progress_bar(jobs.len() as u64);
+    for job in &jobs {
+        stop_if_interrupted()?;
+        bar.set_message(job.color.display().to_string());
+        run_job(args, job, &mut offline)?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    match jobs.as_slice() {
+        [job] => println!("{}", job.out.display()),
+        _ => println!("{} images in {}", jobs.len(), args.out.display()),
+    }
+    Ok(())
+}
+
+fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
+    for path in [&args.color, &args.depth] {
+        ensure!(path.exists(), "{} does not exist: check the path", path.display());
+    }
+    if !args.color.is_dir() {
+        ensure!(
+            !args.depth.is_dir(),
+            "{} is a folder and {} is a file: give two files or two folders",
+            args.depth.display(),
+            args.color.display()
+        );
+        return Ok(vec![Job {
+            color: args.color.clone(),
+            depth: args.depth.clone(),
+            out: args.out.clone(),
+            mask: args.mask_out.clone(),
+            disparity: args.disparity_out.clone(),
+            source: args.source_out.clone(),
+        }]);
+    }
+    ensure!(
+        args.depth.is_dir(),
+        "{} is a folder and {} is a file: give two files or two folders",
+        args.color.display(),
+        args.depth.display()
+    );
+    let colors = files::find(&args.color, &picture::EXTENSIONS)?;
+    let depths = files::find(&args.depth, &picture::EXTENSIONS)?;
+    ensure!(
+        !colors.is_empty(),
+        "{} holds no images ({})",
+        args.color.display(),
+        picture::EXTENSIONS.join(", ")
+    );
+    colors
+        .iter()
+        .map(|name| {
+            let stem = name.with_extension("");
+            let depth = depths.iter().find(|d| d.with_extension("") == stem).with_context(|| {
+                format!(
+                    "{} has no depth image of that name in {}",
+                    args.color.join(name).display(),
+                    args.depth.display()
+                )
+            })?;
+            let within = |folder: &Option<PathBuf>, extension: &str| {
+                folder.as_ref().map(|folder| folder.join(name).with_extension(extension))
+            };
+            Ok(Job {
+                color: args.color.join(name),
+                depth: args.depth.join(depth),
+                out: args.out.join(name).with_extension("png"),
+                mask: within(&args.mask_out, "png"),
+                disparity: within(&args.disparity_out, "exr"),
+                source: within(&args.source_out, "exr"),
+            })
+        })
+        .collect()
+}
+
+fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::Result<()> {
+    let color = picture::load_color(&job.color)?;
+    let depth = picture::load_depth(&job.depth)?;
+    if color.dimensions() != depth.image.dimensions() {
+        let ((cw, ch), (dw, dh)) = (color.dimensions(), depth.image.dimensions());
+        bail!(
+            "{} is {cw}x{ch} pixels and {} is {dw}x{dh}: colour and depth must have one size",
+            job.color.display(),
+            job.depth.display()
+        );
+    }
+    let (nearness, law) = decode_depth(args, &depth.image, depth.samples, &job.depth)?;
+    let rgba: Vec<u8> = color.rows().rev().flatten().flat_map(|p| [p[0], p[1], p[2], 255]).collect();
+    let size = [color.width(), color.height()];
+    let targets: &[(Eye, f64)] = match args.dominant {
+        SourceEye::Right => &[(Eye::Left, 1.0)],
+        SourceEye::Left => &[(Eye::Right, 1.0)],
+        SourceEye::Center => &[(Eye::Left, 0.5), (Eye::Right, 0.5)],
+    };
+    for &(eye, share) in targets {
+        let sign = -eye.side() as f64 * share;
+        let warp = Warp {
+            source_size: size,
+            target_size: size,
+            law: DisparityLaw { offset: law.offset * sign, scale: law.scale * sign },
+            row_offset: 0,
+            target_eye: eye,
+            convention: DepthConvention::Reversed,
+        };
+        let result = offline.run(&rgba, &nearness, &warp)?;
+        let named = |path: &Path| match args.dominant {
+            SourceEye::Center => {
+                let extension = path.extension().unwrap_or_default().to_string_lossy();
+                path.with_extension(format!("{}.{extension}", eye.name()))
+            }
+            _ => path.to_owned(),
+        };
+        let entries = entries(&result, &warp);
+        let map = |value: fn(&SourceMapEntry) -> f32| {
+            DepthImage::from_fn(size[0], size[1], |x, y| Luma([value(&entries[(y * size[0] + x) as usize])]))
+        };
+        picture::save_color(&named(&job.out), &rgb_image(&result.rgba, size))?;
+        if let Some(path) = &job.mask {
+            let holes = GrayImage::from_fn(size[0], size[1], |x, y| {
+                Luma([if entries[(y * size[0] + x) as usize].hole { 0 } else { 255 }])
+            });
+            picture::save_gray(&named(path), &holes)?;
+        }
+        if let Some(path) = &job.disparity {
+            picture::save_depth(&named(path), &map(|e| e.displacement))?;
+        }
+        if let Some(path) = &job.source {
+            picture::save_depth(&named(path), &map(|e| e.column))?;
+        }
+    }
+    Ok(())
+}
+
+/// GL's RGBA rows from the bottom as an image.
+pub(super) fn rgb_image(rgba: &[u8], size: [u32; 2]) -> RgbImage {
+    let row = size[0] as usize * 4;
+    RgbImage::from_fn(size[0], size[1], |x, y| {
+        let i = (size[1] - 1 - y) as usize * row + x as usize * 4;
+        Rgb([rgba[i], rgba[i + 1], rgba[i + 2]])
+    })
+}
+
+/// The source map, rows from the top.
+fn entries(result: &SynthesizedImage, warp: &Warp) -> Vec<SourceMapEntry> {
+    let rows = result.source_map.chunks_exact(warp.target_size[0] as usize).rev();
+    rows.flat_map(|row| (0u32..).zip(row).map(|(x, &entry)| SourceMapEntry::decode(entry, x, warp))).collect()
+}
+
+/// Nearness from 0 (infinitely far, or the law's offset) to 1, rows from the bottom, and the disparity in pixels
+/// that it stands for.
+fn decode_depth(
+    args: &SynthesizeArgs,
+    image: &DepthImage,
+    samples: DepthSamples,
+    path: &Path,
+) -> anyhow::Result<(Vec<f32>, DisparityLaw)> {
+    let focal_length = 0.5 * image.height() as f64 / (0.5 * args.fov_y as f64).tan();
+    let reach = focal_length * args.ipd as f64;
+    let stored = image.rows().rev().flatten().map(|p| p.0[0].powf(args.depth_gamma));
+    let range = |convention| DepthRange { near: args.near, far: args.far, convention };
+    let (values, law): (Vec<f32>, _) = match args.depth_encoding {
+        DepthEncoding::StandardZ => {
+            let (c, m) = range(DepthConvention::Reversed).inverse_distance_law();
+            (stored.map(|v| 1.0 - v).collect(), DisparityLaw { offset: reach * c, scale: reach * m })
+        }
+        DepthEncoding::ReversedZ => {
+            let (c, m) = range(DepthConvention::Reversed).inverse_distance_law();
+            (stored.collect(), DisparityLaw { offset: reach * c, scale: reach * m })
+        }
+        DepthEncoding::Metres => {
+            let unit = match samples {
+                DepthSamples::Normalized { .. } => args.metres_at_white,
+                DepthSamples::Float => 1.0,
+            };
+            // Zero marks "no depth" in many depth images: infinitely far.
+            let inverse = |v: f32| if v > 0.0 { 1.0 / (v * unit).max(1e-3) } else { 0.0 };
+            (stored.map(inverse).collect(), DisparityLaw { offset: 0.0, scale: reach })
+        }
+        DepthEncoding::Disparity => {
+            let (offset, scale) = (args.disparity_offset as f64, args.disparity_scale as f64);
+            ensure!(
+                scale >= 0.0,
+                "--disparity-scale {scale} is negative: larger values must be nearer; invert the depth image"
+            );
+            (stored.collect(), DisparityLaw { offset, scale })
+        }
+    };
+    let largest = values.iter().copied().fold(0.0, f32::max);
+    let smallest = values.iter().copied().fold(0.0, f32::min);
+    if !largest.is_finite() || smallest < 0.0 {
+        bail!(
+            "{} has values outside of what its encoding allows ({smallest} to {largest}): check --depth-encoding and --depth-gamma",
+            path.display()
+        );
+    }
+    if largest <= 1.0 {
+        return Ok((values, law));
+    }
+    let law = DisparityLaw { offset: law.offset, scale: law.scale * largest as f64 };
+    Ok((values.into_iter().map(|v| v / largest).collect(), law))
+}

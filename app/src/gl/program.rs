@@ -1,0 +1,276 @@
+//! Shader programs from files of `shaders-glsl/`.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
+use glow::HasContext;
+use include_dir::{Dir, include_dir};
+
+use super::{Context, GlApi, GlError};
+
+static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/../shaders-glsl");
+
+/// Environment variable that names a directory from which shaders are read instead of the embedded ones.
+const SHADER_DIRECTORY: &str = "YORO_SHADERS";
+
+/// The paths of all embedded shader files, relative to `shaders-glsl/`.
+pub fn shader_files() -> Vec<&'static str> {
+    fn collect(dir: &'static Dir, files: &mut Vec<&'static str>) {
+        files.extend(dir.files().filter_map(|f| f.path().to_str()));
+        dir.dirs().for_each(|d| collect(d, files));
+    }
+    let mut files = Vec::new();
+    collect(&SHADERS, &mut files);
+    files.sort_unstable();
+    files
+}
+
+fn read_shader(path: &str) -> Result<String, GlError> {
+    if let Some(dir) = std::env::var_os(SHADER_DIRECTORY) {
+        let file = PathBuf::from(dir).join(path);
+        return std::fs::read_to_string(&file)
+            .map_err(|_| GlError::MissingShader(file.display().to_string()));
+    }
+    let file = SHADERS.get_file(path).and_then(|f| f.contents_utf8());
+    file.map(str::to_owned).ok_or_else(|| GlError::MissingShader(path.to_owned()))
+}
+
+/// Which files and defines make a program.
+#[derive(Clone, Copy, Debug)]
+pub enum ShaderSource<'a> {
+    /// Vertex and fragment shader.
+    Raster {
+        /// Vertex shader file.
+        vertex: &'a str,
+        /// Fragment shader file.
+        fragment: &'a str,
+    },
+    /// `screen.vert` and a fragment shader.
+    Screen(&'a str),
+    /// Compute shader file.
+    Compute(&'a str),
+}
+
+/// A shader's text with its includes resolved.
+struct Assembled {
+    text: String,
+    /// File name by source string number.
+    files: Vec<String>,
+}
+
+/// Puts `#version`, the defines and the precision statements first, then the file with its `#include`s
+/// resolved (each file once), with `#line` so that the driver's messages can be traced.
+fn assemble(gl: &Context, path: &str, defines: &[(&str, String)]) -> Result<Assembled, GlError> {
+    let version = match gl.capabilities().api {
+        GlApi::Es if !gl.capabilities().compute => "300 es",
+        _ => "310 es",
+    };
+    let mut out = Assembled { text: format!("#version {version}\n"), files: vec!["defines".into()] };
+    for (name, value) in defines {
+        let _ = writeln!(out.text, "#define {name} {value}");
+    }
+    out.text.push_str(
+        "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp usampler2D;\nprecision highp sampler2DShadow;\n",
+    );
+    include(path, &mut out)?;
+    Ok(out)
+}
+
+fn include(path: &str, out: &mut Assembled) -> Result<(), GlError> {
+    if out.files.iter().any(|f| f == path) {
+        return Ok(());
+    }
+    let source = read_shader(path)?;
+    let number = out.files.len();
+    out.files.push(path.to_owned());
+    let _ = writeln!(out.text, "#line 1 {number}");
+    for (i, line) in source.lines().enumerate() {
+        let directive = line.trim_start();
+        if let Some(name) = directive.strip_prefix("#include") {
+            include(name.trim().trim_matches('"'), out)?;
+            let _ = writeln!(out.text, "#line {} {number}", i + 2);
+        } else if directive.starts_with("#version") {
+            out.text.push('\n');
+        } else {
+            out.text.push_str(line);
+            out.text.push('\n');
+        }
+    }
+    Ok(())
+}
+
+/// Replaces `NUMBER:LINE` at the start of a driver's messages (Mesa, most mobile drivers) by the file's name.
+fn name_files(log: &str, files: &[String]) -> String {
+    let mut named = String::new();
+    for line in log.trim_end_matches(['\0', '\n']).lines() {
+        let body = line.trim_start_matches("ERROR: ");
+        let digits = body.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
+        let file = body[..digits].parse::<usize>().ok().and_then(|n| files.get(n));
+        match file {
+            Some(file) => drop(writeln!(named, "{file}{}", &body[digits..])),
+            None => drop(writeln!(named, "{line}")),
+        }
+    }
+    named.trim_end().to_owned()
+}
+
+/// A linked program with its uniforms.
+pub struct Program {
+    gl: Rc<Context>,
+    raw: glow::Program,
+    uniforms: HashMap<String, glow::UniformLocation>,
+}
+
+impl Program {
+    /// Compiles and links.
+    ///
+    /// # Errors
+    /// [`GlError::Shader`] with file, line and the driver's log; [`GlError::MissingShader`];
+    /// [`GlError::Unsupported`] for a compute shader without OpenGL ES 3.1.
+    pub fn new(
+        gl: &Rc<Context>,
+        source: ShaderSource,
+        defines: &[(&str, String)],
+    ) -> Result<Program, GlError> {
+        let stages: Vec<(u32, &'static str, &str)> = match source {
+            ShaderSource::Raster { vertex, fragment } => vec![
+                (glow::VERTEX_SHADER, "vertex shader", vertex),
+                (glow::FRAGMENT_SHADER, "fragment shader", fragment),
+            ],
+            ShaderSource::Screen(fragment) => vec![
+                (glow::VERTEX_SHADER, "vertex shader", "screen.vert"),
+                (glow::FRAGMENT_SHADER, "fragment shader", fragment),
+            ],
+            ShaderSource::Compute(file) => vec![(glow::COMPUTE_SHADER, "compute shader", file)],
+        };
+        if matches!(source, ShaderSource::Compute(_)) && !gl.capabilities().compute {
+            return Err(GlError::Unsupported(format!(
+                "{} has no compute shaders (OpenGL ES 3.1); use --pipeline gather",
+                gl.capabilities().renderer
+            )));
+        }
+        let raw_gl = gl.raw();
+        let object = |reason| GlError::Object { what: "a shader".into(), reason };
+        let mut shaders = Vec::new();
+        let mut last_file = "";
+        // SAFETY: names are created here and used while alive.
+        unsafe {
+            let raw = raw_gl.create_program().map_err(object)?;
+            gl.count(1);
+            let mut program = Program { gl: gl.clone(), raw, uniforms: HashMap::new() };
+            for (kind, stage, file) in stages {
+                last_file = file;
+                let assembled = assemble(gl, file, defines)?;
+                let shader = raw_gl.create_shader(kind).map_err(object)?;
+                raw_gl.shader_source(shader, &assembled.text);
+                raw_gl.compile_shader(shader);
+                raw_gl.attach_shader(raw, shader);
+                shaders.push(shader);
+                if !raw_gl.get_shader_compile_status(shader) {
+                    let log = name_files(&raw_gl.get_shader_info_log(shader), &assembled.files);
+                    shaders.iter().for_each(|&s| raw_gl.delete_shader(s));
+                    return Err(GlError::Shader { stage, file: file.to_owned(), log });
+                }
+            }
+            raw_gl.link_program(raw);
+            shaders.iter().for_each(|&s| raw_gl.delete_shader(s));
+            if !raw_gl.get_program_link_status(raw) {
+                let log = raw_gl.get_program_info_log(raw);
+                return Err(GlError::Shader { stage: "program", file: last_file.to_owned(), log });
+            }
+            for i in 0..raw_gl.get_program_parameter_i32(raw, glow::ACTIVE_UNIFORMS) as u32 {
+                if let Some(uniform) = raw_gl.get_active_uniform(raw, i)
+                    && let Some(location) = raw_gl.get_uniform_location(raw, &uniform.name)
+                {
+                    let name = uniform.name.trim_end_matches("[0]").to_owned();
+                    program.uniforms.insert(name, location);
+                }
+            }
+            Ok(program)
+        }
+    }
+
+    /// Makes the program current.
+    pub fn bind(&self) -> &Program {
+        // SAFETY: a linked program.
+        unsafe { self.gl.raw().use_program(Some(self.raw)) };
+        self
+    }
+
+    /// Sets a uniform of the current program by name. A name that the compiler has removed is ignored, since
+    /// variants of one shader use different uniforms. Arrays go by their name without brackets.
+    pub fn set(&self, name: &str, value: impl UniformValue) -> &Program {
+        if let Some(location) = self.uniforms.get(name) {
+            // SAFETY: the location belongs to this program, which the caller has bound.
+            unsafe { value.set(self.gl.raw(), location) };
+        }
+        self
+    }
+
+    /// Points a sampler at a texture unit and binds a texture there.
+    pub fn texture(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
+        super::texture::bind_texture(&self.gl, unit, texture);
+        self.set(name, unit as i32)
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // SAFETY: created in `new`, deleted once.
+        unsafe { self.gl.raw().delete_program(self.raw) };
+        self.gl.count(-1);
+    }
+}
+
+/// A value that can be given to a uniform.
+pub trait UniformValue {
+    /// Uploads the value.
+    ///
+    /// # Safety
+    /// The location belongs to the current program.
+    unsafe fn set(self, gl: &glow::Context, location: &glow::UniformLocation);
+}
+
+macro_rules! uniform {
+    ($ty:ty, |$gl:ident, $location:ident, $v:ident| $body:expr) => {
+        impl UniformValue for $ty {
+            unsafe fn set(self, $gl: &glow::Context, $location: &glow::UniformLocation) {
+                let $v = self;
+                // SAFETY: promised by the caller.
+                unsafe { $body }
+            }
+        }
+    };
+}
+
+uniform!(f32, |gl, l, v| gl.uniform_1_f32(Some(l), v));
+uniform!(i32, |gl, l, v| gl.uniform_1_i32(Some(l), v));
+uniform!(u32, |gl, l, v| gl.uniform_1_u32(Some(l), v));
+uniform!(bool, |gl, l, v| gl.uniform_1_i32(Some(l), v as i32));
+uniform!(IVec2, |gl, l, v| gl.uniform_2_i32(Some(l), v.x, v.y));
+uniform!(Vec2, |gl, l, v| gl.uniform_2_f32(Some(l), v.x, v.y));
+uniform!(Vec3, |gl, l, v| gl.uniform_3_f32(Some(l), v.x, v.y, v.z));
+uniform!(Vec4, |gl, l, v| gl.uniform_4_f32(Some(l), v.x, v.y, v.z, v.w));
+uniform!(Mat4, |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, v.as_ref()));
+uniform!(&[Vec3], |gl, l, v| gl.uniform_3_f32_slice(Some(l), bytemuck::cast_slice(v)));
+uniform!(&[Vec4], |gl, l, v| gl.uniform_4_f32_slice(Some(l), bytemuck::cast_slice(v)));
+uniform!(&[f32], |gl, l, v| gl.uniform_1_f32_slice(Some(l), v));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn driver_messages_name_the_file() {
+        let files = ["defines".to_owned(), "a/b.frag".to_owned()];
+        assert_eq!(
+            name_files("1:7(3): error: `x' undeclared\n\0", &files),
+            "a/b.frag:7(3): error: `x' undeclared"
+        );
+        assert_eq!(name_files("ERROR: 1:7: 'x' : undeclared", &files), "a/b.frag:7: 'x' : undeclared");
+        assert_eq!(name_files("something else", &files), "something else");
+    }
+}

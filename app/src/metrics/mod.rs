@@ -1,0 +1,320 @@
+//! How alike two images are, and statistics of samples.
+//!
+//! All figures are computed in f64 on display-referred 8-bit values, data range 255. PSNR and SSIM agree with
+//! scikit-image's `peak_signal_noise_ratio` and `structural_similarity`.
+
+mod error_map;
+mod psnr;
+mod ssim;
+pub mod stats;
+
+pub use error_map::{error_color, error_map};
+pub use psnr::{Psnr, psnr, psnr_where};
+pub use ssim::{SsimWindow, dissimilarity_map, ssim, ssim_where};
+
+use image::{GrayImage, RgbImage};
+use serde::{Deserialize, Serialize};
+
+/// Why two images could not be compared.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MetricsError {
+    /// The sizes differ.
+    #[error("the two images differ in size ({}x{} and {}x{}): compare images of one size", a.0, a.1, b.0, b.1)]
+    SizesDiffer {
+        /// Size of the first in pixels.
+        a: (u32, u32),
+        /// Size of the second in pixels.
+        b: (u32, u32),
+    },
+    /// There is less image than the window of SSIM needs.
+    #[error("an image of {width}x{height} pixels is too small: SSIM needs at least {window}x{window}")]
+    TooSmall {
+        /// In pixels.
+        width: u32,
+        /// In pixels.
+        height: u32,
+        /// Width of the window in pixels.
+        window: u32,
+    },
+    /// The mask belongs to another image.
+    #[error("the mask has {mask} pixels and the images have {image}: give the mask of these images")]
+    MaskSize {
+        /// Pixels of the mask.
+        mask: usize,
+        /// Pixels of an image.
+        image: usize,
+    },
+}
+
+/// What of an image is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channels {
+    /// Red, green and blue: PSNR of the error over all three, SSIM as the mean of three.
+    Rgb,
+    /// Luma of ITU-R BT.601, not rounded: .299 R + .587 G + .114 B.
+    Luma,
+}
+
+impl Channels {
+    /// Each plane as weights of red, green and blue.
+    fn planes(self) -> &'static [[f64; 3]] {
+        match self {
+            Channels::Rgb => &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            Channels::Luma => &[[0.299, 0.587, 0.114]],
+        }
+    }
+}
+
+/// The likeness of one image to another.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quality {
+    /// Peak signal-to-noise ratio.
+    pub psnr: Psnr,
+    /// SSIM with the window [`SsimWindow::Gaussian11`].
+    pub ssim_gaussian: f64,
+    /// SSIM with the window [`SsimWindow::Uniform7`].
+    pub ssim_uniform: f64,
+}
+
+impl Quality {
+    /// Measures `a` against `b`.
+    pub fn of(a: &RgbImage, b: &RgbImage, channels: Channels) -> Result<Quality, MetricsError> {
+        Ok(Quality {
+            psnr: psnr(a, b, channels)?,
+            ssim_gaussian: ssim(a, b, SsimWindow::Gaussian11, channels)?,
+            ssim_uniform: ssim(a, b, SsimWindow::Uniform7, channels)?,
+        })
+    }
+
+    /// The mean of each figure; `None` of nothing. Identical pairs have no finite PSNR and are left out of its
+    /// mean (which is infinite when all are identical), not out of the SSIM's.
+    pub fn mean<'a>(all: impl IntoIterator<Item = &'a Quality>) -> Option<Quality> {
+        let all: Vec<&Quality> = all.into_iter().collect();
+        let mean_of = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
+        if all.is_empty() {
+            return None;
+        }
+        Some(Quality {
+            psnr: Psnr::mean(all.iter().map(|q| q.psnr)),
+            ssim_gaussian: mean_of(all.iter().map(|q| q.ssim_gaussian).collect()),
+            ssim_uniform: mean_of(all.iter().map(|q| q.ssim_uniform).collect()),
+        })
+    }
+}
+
+/// The likeness of the part of an image that a mask selects.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PartQuality {
+    /// Share of the image's pixels, 0 to 1.
+    pub share: f64,
+    /// PSNR over these pixels (RGB); `None` without any.
+    pub psnr: Option<Psnr>,
+    /// Mean of the gaussian SSIM map (RGB) over these pixels, without the border; `None` without any.
+    pub ssim_gaussian: Option<f64>,
+}
+
+/// Everything that `yoro compare` says of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// No sample differs; the PSNR is infinite then.
+    pub identical: bool,
+    /// Of red, green and blue.
+    pub rgb: Quality,
+    /// Of luma.
+    pub luma: Quality,
+    /// In the disoccluded pixels, when a mask was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holes: Option<PartQuality>,
+    /// In all other pixels, when a mask was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elsewhere: Option<PartQuality>,
+}
+
+impl Comparison {
+    /// Measures `a` against `b`. `holes`: row by row from the top, true where a pixel was disoccluded.
+    pub fn of(a: &RgbImage, b: &RgbImage, holes: Option<&[bool]>) -> Result<Comparison, MetricsError> {
+        let rgb = Quality::of(a, b, Channels::Rgb)?;
+        let luma = Quality::of(a, b, Channels::Luma)?;
+        let part = |wanted: bool| -> Result<Option<PartQuality>, MetricsError> {
+            let Some(holes) = holes else { return Ok(None) };
+            let selected: Vec<bool> = holes.iter().map(|hole| *hole == wanted).collect();
+            let count = selected.iter().filter(|selected| **selected).count();
+            Ok(Some(PartQuality {
+                share: count as f64 / selected.len() as f64,
+                psnr: psnr_where(a, b, &selected)?,
+                ssim_gaussian: ssim_where(a, b, SsimWindow::Gaussian11, &selected)?,
+            }))
+        };
+        Ok(Comparison { identical: a == b, rgb, luma, holes: part(true)?, elsewhere: part(false)? })
+    }
+}
+
+/// Which pixels of a mask image are holes: the dark ones (below 128), as in the paper's data set, or the bright
+/// ones.
+pub fn holes_of_mask(mask: &GrayImage, dark_is_hole: bool) -> Vec<bool> {
+    mask.as_raw().iter().map(|value| (*value < 128) == dark_is_hole).collect()
+}
+
+fn check_sizes(a: &RgbImage, b: &RgbImage) -> Result<(), MetricsError> {
+    if a.dimensions() != b.dimensions() {
+        return Err(MetricsError::SizesDiffer { a: a.dimensions(), b: b.dimensions() });
+    }
+    Ok(())
+}
+
+fn check_mask(image: &RgbImage, mask: &[bool]) -> Result<(), MetricsError> {
+    let pixels = image.width() as usize * image.height() as usize;
+    if mask.len() != pixels {
+        return Err(MetricsError::MaskSize { mask: mask.len(), image: pixels });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use image::Rgb;
+
+    /// A deterministic image: curved ramps with noise from a linear congruential generator.
+    pub(crate) fn image(width: u32, height: u32, seed: u32) -> RgbImage {
+        let mut state = seed;
+        RgbImage::from_fn(width, height, |x, y| {
+            Rgb(std::array::from_fn(|c| {
+                let c = c as u32;
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                ((x * x / 3 + y * 5 * (c + 1) + x * y * c / 4) % 200 + (state >> 24) % 56) as u8
+            }))
+        })
+    }
+
+    /// Two images whose upper third is equal.
+    fn pair(width: u32, height: u32) -> (RgbImage, RgbImage) {
+        let (a, mut b) = (image(width, height, 1), image(width, height, 2));
+        for y in 0..height / 3 {
+            for x in 0..width {
+                b.put_pixel(x, y, *a.get_pixel(x, y));
+            }
+        }
+        (a, b)
+    }
+
+    fn near(ours: f64, reference: f64) {
+        assert!((ours - reference).abs() < 1e-9, "{ours} is not {reference}");
+    }
+
+    /// One size of the pair above and what scikit-image 0.26.0 says of it.
+    struct Reference {
+        size: (u32, u32),
+        /// RGB, luma.
+        psnr: [f64; 2],
+        /// RGB, luma: gaussian_weights=True, sigma=1.5, use_sample_covariance=False, data_range=255.
+        gaussian: [f64; 2],
+        /// RGB, luma: data_range=255 and nothing else.
+        uniform: [f64; 2],
+        /// 1 - the mean over the channels of the full gaussian map at (0, h - 1), (5, 5), (w - 1, h / 2).
+        map: [f64; 3],
+    }
+
+    const SCIKIT_IMAGE_0_26_0: [Reference; 3] = [
+        Reference {
+            size: (11, 11),
+            psnr: [22.436064937286627, 25.5520034376151],
+            gaussian: [0.6315887840681788, 0.7739511834064171],
+            uniform: [0.7290220082400328, 0.8511770855005183],
+            map: [0.7967303481905438, 0.36841121593182125, 0.41685734196112734],
+        },
+        Reference {
+            size: (37, 29),
+            psnr: [22.63676727865191, 26.22265739787936],
+            gaussian: [0.8608354980372629, 0.8952099254609682],
+            uniform: [0.8952734827572782, 0.9257179020852229],
+            map: [0.3231752776669259, 0.005744667808455617, 0.16642644066096712],
+        },
+        Reference {
+            size: (64, 48),
+            psnr: [22.905875909725136, 26.447811319976402],
+            gaussian: [0.9178394903630238, 0.9322869859396969],
+            uniform: [0.9318994575348345, 0.9446394648830406],
+            map: [0.553440771315032, 0.0, 0.06366941743673571],
+        },
+    ];
+
+    #[test]
+    fn agrees_with_scikit_image() {
+        for reference in &SCIKIT_IMAGE_0_26_0 {
+            let (w, h) = reference.size;
+            let (a, b) = pair(w, h);
+            for (i, channels) in [Channels::Rgb, Channels::Luma].into_iter().enumerate() {
+                let quality = Quality::of(&a, &b, channels).unwrap();
+                near(quality.psnr.0, reference.psnr[i]);
+                near(quality.ssim_gaussian, reference.gaussian[i]);
+                near(quality.ssim_uniform, reference.uniform[i]);
+            }
+            let map = dissimilarity_map(&a, &b).unwrap();
+            for ((x, y), expected) in [(0, h - 1), (5, 5), (w - 1, h / 2)].into_iter().zip(reference.map) {
+                near(map[(y * w + x) as usize], expected);
+            }
+        }
+    }
+
+    #[test]
+    fn identical_images() {
+        let a = image(20, 20, 3);
+        let same = Comparison::of(&a, &a, None).unwrap();
+        assert!(same.identical);
+        assert_eq!(same.rgb, Quality { psnr: Psnr(f64::INFINITY), ssim_gaussian: 1.0, ssim_uniform: 1.0 });
+        let json = serde_json::to_string(&same).unwrap();
+        assert!(json.contains(r#""identical":true,"rgb":{"psnr":null,"#), "{json}");
+        assert_eq!(serde_json::from_str::<Comparison>(&json).unwrap(), same);
+    }
+
+    #[test]
+    fn a_mask_splits_the_error() {
+        let (a, mut b) = (image(32, 24, 1), image(32, 24, 1));
+        let mut mask = GrayImage::from_pixel(32, 24, image::Luma([255]));
+        for (x, y) in [(8, 9), (9, 9), (20, 12)] {
+            b.get_pixel_mut(x, y).0[1] ^= 16;
+            mask.put_pixel(x, y, image::Luma([0]));
+        }
+        let holes = holes_of_mask(&mask, true);
+        let parts = Comparison::of(&a, &b, Some(&holes)).unwrap();
+        let (inside, outside) = (parts.holes.unwrap(), parts.elsewhere.unwrap());
+        // One channel of three is off by 16.
+        near(inside.psnr.unwrap().0, 10.0 * (255.0f64 * 255.0 * 3.0 / 256.0).log10());
+        assert_eq!(outside.psnr, Some(Psnr(f64::INFINITY)));
+        near(inside.share, 3.0 / 768.0);
+        assert!(inside.ssim_gaussian.unwrap() < outside.ssim_gaussian.unwrap());
+
+        let nothing = Comparison::of(&a, &b, Some(&[false; 768])).unwrap();
+        assert_eq!(nothing.holes.unwrap().psnr, None);
+        assert_eq!(nothing.holes.unwrap().ssim_gaussian, None);
+        near(nothing.elsewhere.unwrap().psnr.unwrap().0, nothing.rgb.psnr.0);
+        near(nothing.elsewhere.unwrap().ssim_gaussian.unwrap(), nothing.rgb.ssim_gaussian);
+        assert_eq!(
+            Comparison::of(&a, &b, Some(&[true; 5])).unwrap_err(),
+            MetricsError::MaskSize { mask: 5, image: 768 }
+        );
+    }
+
+    #[test]
+    fn sizes_are_checked() {
+        let a = image(20, 20, 1);
+        let error = Quality::of(&a, &image(20, 21, 1), Channels::Rgb).unwrap_err();
+        assert_eq!(error, MetricsError::SizesDiffer { a: (20, 20), b: (20, 21) });
+        let small = image(10, 30, 1);
+        let error = Quality::of(&small, &small, Channels::Rgb).unwrap_err();
+        assert_eq!(error, MetricsError::TooSmall { width: 10, height: 30, window: 11 });
+        assert!(ssim(&small, &small, SsimWindow::Uniform7, Channels::Rgb).is_ok());
+    }
+
+    #[test]
+    fn the_mean_leaves_identical_pairs_out_of_the_psnr_only() {
+        let quality = |psnr, ssim| Quality { psnr: Psnr(psnr), ssim_gaussian: ssim, ssim_uniform: ssim };
+        let all = [quality(30.0, 0.8), quality(f64::INFINITY, 1.0), quality(34.0, 0.9)];
+        let mean = Quality::mean(&all).unwrap();
+        near(mean.psnr.0, 32.0);
+        near(mean.ssim_gaussian, 0.9);
+        assert_eq!(Quality::mean(&all[1..2]).unwrap().psnr, Psnr(f64::INFINITY));
+        assert_eq!(Quality::mean(&[]), None);
+    }
+}

@@ -1,0 +1,90 @@
+//! The lighting pass.
+
+use std::rc::Rc;
+
+use super::geometry::style_defines;
+use super::scene::GpuScene;
+use super::shadow::ShadowMap;
+use super::uniforms::{Lights, set_view};
+use super::{MAX_POINT_LIGHTS, RenderSettings};
+use crate::eyes::View;
+use crate::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
+
+/// Lights each pixel once.
+///
+/// Reads the g-buffer (16 bytes a pixel), ambient occlusion and the shadow map; writes scene-referred colour.
+pub struct LightingPass {
+    gl: Rc<Context>,
+    program: Program,
+}
+
+/// The defines of `include/shade.glsl` and `include/hdr.glsl` for a scene.
+pub fn shading_defines(
+    gl: &Context,
+    scene: &GpuScene,
+    settings: &RenderSettings,
+) -> Vec<(&'static str, String)> {
+    let mut defines = style_defines(scene.style);
+    let mut define = |on: bool, name| {
+        if on {
+            defines.push((name, String::new()));
+        }
+    };
+    define(scene.has_sun(), "SUN");
+    define(scene.has_sun() && settings.shadow_map_size > 0, "SHADOWS");
+    define(settings.ssao, "SSAO");
+    define(!gl.capabilities().float_render_targets, "NO_FLOAT_TARGETS");
+    defines.push(("SSAO_SCALE", settings.ssao_scale().to_string()));
+    defines.push(("MAX_POINT_LIGHTS", MAX_POINT_LIGHTS.to_string()));
+    defines
+}
+
+impl LightingPass {
+    /// Compiles the variant for the scene's style and light.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    pub fn new(
+        gl: &Rc<Context>,
+        scene: &GpuScene,
+        settings: &RenderSettings,
+    ) -> Result<LightingPass, GlError> {
+        let defines = shading_defines(gl, scene, settings);
+        let program = Program::new(gl, ShaderSource::Screen("render/lighting.frag"), &defines)?;
+        Ok(LightingPass { gl: gl.clone(), program })
+    }
+
+    /// Lights a g-buffer into `target`.
+    #[allow(clippy::too_many_arguments, reason = "a pass names what it reads")]
+    pub fn run(
+        &self,
+        target: &RenderTarget,
+        g_buffer: &RenderTarget,
+        occlusion: Option<&Texture>,
+        shadow: Option<&ShadowMap>,
+        scene: &GpuScene,
+        view: &View,
+        lights: &Lights,
+    ) {
+        self.gl.pass("lighting", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            target.bind();
+            let program = self.program.bind();
+            program
+                .texture("depth_map", 0, g_buffer.depth().raw())
+                .texture("albedo_map", 1, g_buffer.color(0).raw())
+                .texture("normal_map", 2, g_buffer.color(1).raw())
+                .texture("emissive_map", 3, g_buffer.color(2).raw())
+                .set("line_width", (view.size[1] as f32 / 900.0).round().max(1.0) as i32);
+            if let Some(occlusion) = occlusion {
+                program.texture("occlusion_map", 4, occlusion.raw());
+            }
+            if let Some(shadow) = shadow {
+                shadow.set(program, 5, view.pose.position);
+            }
+            set_view(program, view);
+            lights.set(program, &scene.sky);
+            self.gl.draw_screen();
+        });
+    }
+}

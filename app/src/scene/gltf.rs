@@ -1,0 +1,613 @@
+//! glTF 2.0, text and binary.
+//!
+//! The `gltf` crate reads and validates the JSON; buffers, accessors and pictures are read here, every range
+//! checked: its own readers panic on damaged ones.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use base64::Engine as _;
+use glam::{Mat3, Mat4, Vec2, Vec3};
+use gltf::accessor::{DataType, Dimensions};
+use gltf::json::extensions::scene::khr_lights_punctual as khr_lights;
+use gltf::json::validation::{Checked, Error as Fault, Validate as _};
+use gltf::mesh::Mode;
+use gltf::{Document, Primitive, Semantic};
+
+use super::error::{MAX_ELEMENTS, SceneError, file_size};
+use super::model::{Alpha, Material, Model, PointLight, Sky, Vertex, Viewpoint};
+use super::repair::{NO_NORMAL, NO_UV, RawMesh, assemble};
+use super::textures::{AlphaUse, Built, METAL_DIFFUSE_LOSS, Recipe, Source, TextureSet, find_file, to_srgb};
+
+/// Largest buffer, in bytes.
+const MAX_BUFFER: u64 = 4 << 30;
+
+/// What a glTF file contains; sky and lights only if it states some.
+#[derive(Debug)]
+pub struct GltfScene {
+    /// Triangles, materials and pictures.
+    pub model: Model,
+    /// The cameras of the scene.
+    pub cameras: Vec<Viewpoint>,
+    /// Its directional light as the sun.
+    pub sky: Option<Sky>,
+    /// Its point and spot lights, without their cones.
+    pub lights: Option<Vec<PointLight>>,
+}
+
+/// Reads a `.gltf` or `.glb` file in the pose it is stored in; animations, skins and morph targets are ignored.
+///
+/// Metallic-roughness materials become diffuse and specular colours; where a texture says what is metal, both are
+/// computed pixel by pixel, and the roughness is its mean.
+///
+/// # Errors
+/// [`SceneError`] for files that are damaged, incomplete or need extensions that change geometry (Draco, meshopt).
+pub fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
+    file_size(path)?;
+    let unusable = |what: String| SceneError::unusable(path, what);
+    let damaged = |what: &str| unusable(format!("{what}; export the model again"));
+    let bytes = read_file(path)?;
+    // The crate subtracts the header's size from this length unseen.
+    if bytes.starts_with(b"glTF")
+        && bytes.get(8..12).is_none_or(|l| u32::from_le_bytes([l[0], l[1], l[2], l[3]]) < 20)
+    {
+        return Err(damaged("the binary header is cut off"));
+    }
+    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(&bytes)
+        .map_err(|e| damaged(&format!("this is no valid glTF 2.0 ({e})")))?;
+    drop(bytes);
+    check(path, &document)?;
+
+    let mut reader = Reader {
+        path,
+        buffers: buffers(path, &document, blob)?,
+        textures: TextureSet::default(),
+        images: HashMap::new(),
+    };
+    let mut meshes = Vec::new();
+    let mut materials = Vec::new();
+    let mut wanted = Vec::new();
+    for material in document.materials() {
+        let (material, maps) = reader.material(&material)?;
+        materials.push(material);
+        wanted.push(maps);
+    }
+    // Behind the others: the one of primitives without.
+    materials.push(Material::default());
+    wanted.push(Wanted::default());
+
+    let mut cameras = Vec::new();
+    let mut lamps = Vec::new();
+    let mut sun = None;
+    let mut corners = 0;
+    let mut visited = vec![false; document.nodes().len()];
+    let scene = document.default_scene().or_else(|| document.scenes().next());
+    let mut open: Vec<(gltf::Node, Mat4)> = match scene {
+        Some(scene) => scene.nodes().map(|n| (n, Mat4::IDENTITY)).collect(),
+        None => document.nodes().map(|n| (n, Mat4::IDENTITY)).collect(),
+    };
+    open.reverse();
+    while let Some((node, parent)) = open.pop() {
+        // A node has one parent; a damaged file may have circles.
+        if std::mem::replace(&mut visited[node.index()], true) {
+            continue;
+        }
+        let to_world = parent * Mat4::from_cols_array_2d(&node.transform().matrix());
+        if let Some(mesh) = node.mesh() {
+            let name = node.name().or(mesh.name()).unwrap_or("mesh");
+            for primitive in mesh.primitives() {
+                if let Some(mut raw) = reader.primitive(&primitive, &to_world)? {
+                    corners += raw.indices.len().max(raw.vertices.len());
+                    if corners > MAX_ELEMENTS {
+                        return Err(SceneError::TooLarge {
+                            path: path.into(),
+                            limit: MAX_ELEMENTS,
+                            what: "corners of triangles",
+                        });
+                    }
+                    raw.name = name.into();
+                    raw.material = primitive.material().index().unwrap_or(materials.len() - 1);
+                    let placement = wanted[raw.material].placement;
+                    place(&mut raw, placement);
+                    meshes.push(raw);
+                }
+            }
+        }
+        let position = to_world.w_axis.truncate();
+        let forward = to_world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
+        if node.camera().is_some() && position.is_finite() {
+            cameras.push(Viewpoint { position, target: position + forward * 4.0 });
+        }
+        if let Some(light) = node.light() {
+            let stated = document.as_json().extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+            let directional = stated
+                .and_then(|l| l.lights.get(light.index()))
+                .is_some_and(|l| matches!(l.type_, Checked::Valid(khr_lights::Type::Directional)));
+            let color = Vec3::from(light.color()).max(Vec3::ZERO);
+            if directional {
+                sun = sun.or(Some((forward, color)));
+            } else if position.is_finite() && light.intensity() > 0.0 && color.is_finite() {
+                lamps.push((position, color * light.intensity(), light.range()));
+            }
+        }
+        open.extend(node.children().map(|child| (child, to_world)));
+    }
+    let built = reader.textures.build()?;
+    for (material, wanted) in materials.iter_mut().zip(&wanted) {
+        wanted.apply(material, &built);
+    }
+    if !meshes.iter().any(|m| m.material == materials.len() - 1) {
+        materials.pop();
+    }
+    let mut model = assemble(path, meshes, materials)?;
+    model.textures = built.images;
+    let sky = sun.map(|(forward, color)| Sky {
+        sun_direction: -forward,
+        sun_color: Sky::default().sun_color.max_element() * color / color.max_element().max(1e-6),
+        ..Sky::default()
+    });
+    Ok(GltfScene { model, cameras, sky, lights: (!lamps.is_empty()).then(|| lights(lamps)) })
+}
+
+/// glTF states candela without saying how bright the picture is to be, and exporters disagree by orders of
+/// magnitude: the brightest light is made one that lights a room, the others in proportion.
+fn lights(lamps: Vec<(Vec3, Vec3, Option<f32>)>) -> Vec<PointLight> {
+    let brightest = lamps.iter().map(|l| l.1.max_element()).fold(1e-6, f32::max);
+    let mut lights: Vec<PointLight> = lamps
+        .into_iter()
+        .map(|(position, intensity, range)| {
+            let color = intensity * (8.0 / brightest);
+            let fades = (color.max_element() / 0.01).sqrt().max(1.0);
+            PointLight {
+                position,
+                color,
+                range: range.filter(|r| r.is_finite() && *r > 0.0).map_or(fades, |r| r.min(fades)),
+            }
+        })
+        .collect();
+    lights.sort_by(|a, b| b.color.max_element().total_cmp(&a.color.max_element()));
+    lights
+}
+
+fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let size = file_size(path)?;
+    if size > MAX_BUFFER {
+        return Err(SceneError::unusable(
+            path,
+            format!("it has {size} bytes, at most {MAX_BUFFER} can be read: split the model"),
+        ));
+    }
+    let read = |source| SceneError::Read { path: path.into(), source };
+    let mut bytes = Vec::new();
+    File::open(path).map_err(read)?.take(MAX_BUFFER).read_to_end(&mut bytes).map_err(read)?;
+    Ok(bytes)
+}
+
+/// The crate's validation, except for extensions, and what it does not check but relies on.
+fn check(path: &Path, document: &Document) -> Result<(), SceneError> {
+    let root = document.as_json();
+    let mut fault = None;
+    root.validate(root, gltf::json::Path::new, &mut |at, error| {
+        if error != Fault::Unsupported && fault.is_none() {
+            fault = Some(format!("{}: {error}", at()));
+        }
+    });
+    for (i, image) in root.images.iter().enumerate() {
+        if image.uri.is_none() && (image.buffer_view.is_none() || image.mime_type.is_none()) {
+            fault = fault.or(Some(format!("images[{i}] has no data or no type")));
+        }
+    }
+    if let Some(fault) = fault {
+        return Err(SceneError::unusable(
+            path,
+            format!("this is no valid glTF 2.0 ({fault}); export the model again"),
+        ));
+    }
+    // Materials look plainer without their extensions; geometry cannot be read.
+    let readable = |e: &str| {
+        e.starts_with("KHR_materials_")
+            || [
+                "KHR_texture_transform",
+                "KHR_lights_punctual",
+                "KHR_mesh_quantization",
+                "EXT_texture_webp",
+                "KHR_texture_basisu",
+            ]
+            .contains(&e)
+    };
+    match root.extensions_required.iter().find(|e| !readable(e)) {
+        Some(e) => Err(SceneError::unusable(
+            path,
+            format!("it needs the extension {e}, which is not supported: export the model without it"),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The bytes of all buffers.
+fn buffers(path: &Path, document: &Document, mut blob: Option<Vec<u8>>) -> Result<Vec<Vec<u8>>, SceneError> {
+    document
+        .buffers()
+        .map(|buffer| {
+            let data = match buffer.source() {
+                gltf::buffer::Source::Bin => blob.take().ok_or_else(|| {
+                    SceneError::unusable(path, "its binary part is missing; export the model again")
+                })?,
+                gltf::buffer::Source::Uri(uri) => match data_uri(uri) {
+                    Some(data) => data.ok_or_else(|| {
+                        SceneError::unusable(path, "an embedded buffer is damaged; export the model again")
+                    })?,
+                    None => read_file(&external(path, uri).ok_or_else(|| {
+                        SceneError::unusable(
+                            path,
+                            format!("its buffer {uri} is missing: put it beside the file"),
+                        )
+                    })?)?,
+                },
+            };
+            if data.len() < buffer.length() {
+                let what = format!(
+                    "buffer {} has {} bytes instead of {}; copy or export it again",
+                    buffer.index(),
+                    data.len(),
+                    buffer.length()
+                );
+                return Err(SceneError::unusable(path, what));
+            }
+            Ok(data)
+        })
+        .collect()
+}
+
+/// The bytes of a `data:` URI, none inside if they are damaged; none for other URIs.
+fn data_uri(uri: &str) -> Option<Option<Vec<u8>>> {
+    let (head, data) = uri.strip_prefix("data:")?.split_once(',')?;
+    Some(if head.ends_with(";base64") {
+        base64::engine::general_purpose::STANDARD.decode(data.trim()).ok()
+    } else {
+        Some(percent_decoded(data))
+    })
+}
+
+fn percent_decoded(text: &str) -> Vec<u8> {
+    let bytes = text.as_bytes();
+    let mut out = Vec::with_capacity(bytes.len());
+    let mut i = 0;
+    while i < bytes.len() {
+        let code = (bytes[i] == b'%').then(|| bytes.get(i + 1..i + 3)).flatten();
+        let byte =
+            code.and_then(|c| std::str::from_utf8(c).ok()).and_then(|c| u8::from_str_radix(c, 16).ok());
+        out.push(byte.unwrap_or(bytes[i]));
+        i += if byte.is_some() { 3 } else { 1 };
+    }
+    out
+}
+
+fn external(path: &Path, uri: &str) -> Option<std::path::PathBuf> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    find_file(folder, &String::from_utf8_lossy(&percent_decoded(uri))).or_else(|| find_file(folder, uri))
+}
+
+/// The textures of one material, by their number in the [`TextureSet`].
+#[derive(Default)]
+struct Wanted {
+    diffuse: Option<usize>,
+    specular: Option<usize>,
+    emissive: Option<usize>,
+    normal: Option<usize>,
+    /// Factor of the roughness, if a texture gives its mean.
+    roughness: Option<f32>,
+    blended: bool,
+    /// Set of texture coordinates and their transform; those of the base colour for all.
+    set: u32,
+    placement: Option<[Vec2; 3]>,
+}
+
+impl Wanted {
+    fn apply(&self, material: &mut Material, built: &Built) {
+        material.diffuse_map = built.index(self.diffuse);
+        material.specular_map = built.index(self.specular);
+        material.emissive_map = built.index(self.emissive);
+        material.normal_map = built.index(self.normal);
+        if let (Some(factor), Some(map)) = (self.roughness, built.get(self.specular)) {
+            material.roughness = (factor * map.roughness).clamp(0.0, 1.0);
+        }
+        if let (true, Alpha::Blend(opacity)) = (self.blended && self.diffuse.is_some(), material.alpha) {
+            // Exporters mark as blended whatever has an alpha channel; leaves are better cut out.
+            material.alpha = match built.get(self.diffuse).map(|f| f.alpha) {
+                Some(AlphaUse::Mask) if opacity >= 1.0 => Alpha::Cutout(0.5),
+                Some(AlphaUse::Opaque) | None if opacity >= 1.0 => Alpha::Opaque,
+                _ => Alpha::Blend(opacity),
+            };
+        }
+    }
+}
+
+/// Applies the columns of a texture transform (KHR_texture_transform), which counts rows from the top.
+fn place(mesh: &mut RawMesh, placement: Option<[Vec2; 3]>) {
+    let [x, y, offset] = placement.unwrap_or([Vec2::X, Vec2::Y, Vec2::ZERO]);
+    for v in &mut mesh.vertices {
+        let uv = x * v.uv.x + y * v.uv.y + offset;
+        v.uv = Vec2::new(uv.x, 1.0 - uv.y);
+    }
+}
+
+struct Reader<'a> {
+    path: &'a Path,
+    buffers: Vec<Vec<u8>>,
+    textures: TextureSet,
+    /// Sources of pictures by their number.
+    images: HashMap<usize, Option<Source>>,
+}
+
+impl Reader<'_> {
+    fn damaged(&self, what: String) -> SceneError {
+        SceneError::unusable(self.path, format!("{what}; export the model again"))
+    }
+
+    fn view(&self, view: &gltf::buffer::View) -> Result<&[u8], SceneError> {
+        let end = view.offset().checked_add(view.length());
+        let range = end.and_then(|end| self.buffers.get(view.buffer().index())?.get(view.offset()..end));
+        range.ok_or_else(|| self.damaged(format!("buffer view {} reaches beyond its buffer", view.index())))
+    }
+
+    fn source(&mut self, texture: gltf::Texture) -> Result<Option<Source>, SceneError> {
+        let Some(image) = texture.source() else {
+            log::warn!(
+                "{}: texture {} is in a format that is not supported; it is left out",
+                self.path.display(),
+                texture.index()
+            );
+            return Ok(None);
+        };
+        if let Some(known) = self.images.get(&image.index()) {
+            return Ok(known.clone());
+        }
+        let name = image
+            .name()
+            .filter(|n| !n.is_empty())
+            .map_or_else(|| format!("image-{}", image.index()), |n| n.replace('/', "_"));
+        let embedded = match image.source() {
+            gltf::image::Source::View { view, .. } => Some(self.view(&view)?.to_vec()),
+            gltf::image::Source::Uri { uri, .. } => match data_uri(uri) {
+                Some(data) => {
+                    Some(data.ok_or_else(|| self.damaged(format!("the embedded picture {name} is damaged")))?)
+                }
+                None => None,
+            },
+        };
+        let source = match (embedded, image.source()) {
+            (Some(bytes), _) => {
+                self.textures.memory.push((self.path.join(name), bytes));
+                Some(Source::Memory(self.textures.memory.len() - 1))
+            }
+            (None, gltf::image::Source::Uri { uri, .. }) => {
+                let found = external(self.path, uri).map(Source::File);
+                if found.is_none() {
+                    log::warn!("{}: the texture {uri} is missing", self.path.display());
+                }
+                found
+            }
+            (None, gltf::image::Source::View { .. }) => None,
+        };
+        self.images.insert(image.index(), source.clone());
+        Ok(source)
+    }
+
+    fn material(&mut self, m: &gltf::Material) -> Result<(Material, Wanted), SceneError> {
+        let pbr = m.pbr_metallic_roughness();
+        let [r, g, b, opacity] =
+            pbr.base_color_factor().map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 });
+        let base = Vec3::new(r, g, b);
+        let unit = |v: f32| if v.is_finite() { v.clamp(0.0, 1.0) } else { 1.0 };
+        let (metallic, roughness) = (unit(pbr.metallic_factor()), unit(pbr.roughness_factor()));
+        let srgb = |v: Vec3| Vec3::from(v.to_array().map(to_srgb));
+        let mut wanted = Wanted::default();
+
+        let base_info = pbr.base_color_texture();
+        let orm_info = pbr.metallic_roughness_texture();
+        if let Some(info) = base_info.as_ref().or(orm_info.as_ref()) {
+            wanted.set = info.tex_coord();
+            if let Some(t) = info.texture_transform() {
+                wanted.set = t.tex_coord().unwrap_or(wanted.set);
+                let (sin, cos) = t.rotation().sin_cos();
+                let scale = t.scale();
+                wanted.placement = Some([
+                    Vec2::new(cos, -sin) * scale[0],
+                    Vec2::new(sin, cos) * scale[1],
+                    t.offset().into(),
+                ]);
+            }
+        } else {
+            wanted.set = m
+                .emissive_texture()
+                .map(|i| i.tex_coord())
+                .or(m.normal_texture().map(|n| n.tex_coord()))
+                .unwrap_or(0);
+        }
+        let base_map = base_info.map_or(Ok(None), |i| self.source(i.texture()))?;
+        let orm = orm_info.map_or(Ok(None), |i| self.source(i.texture()))?;
+        let normal = m.normal_texture().map_or(Ok(None), |n| self.source(n.texture()))?;
+        let emissive_map = m.emissive_texture().map_or(Ok(None), |i| self.source(i.texture()))?;
+
+        let mut diffuse = base;
+        let mut specular = Vec3::splat(0.04).lerp(base, metallic);
+        match orm {
+            Some(orm) if metallic > 0.0 => {
+                let recipe = |specular| Recipe::Metal {
+                    base: base_map.clone(),
+                    base_factor: base.to_array().map(f32::to_bits),
+                    orm: orm.clone(),
+                    metallic: metallic.to_bits(),
+                    specular,
+                };
+                wanted.diffuse = Some(self.textures.request(recipe(false)));
+                wanted.specular = Some(self.textures.request(recipe(true)));
+                wanted.roughness = Some(roughness);
+                specular = Vec3::ONE;
+            }
+            _ => {
+                diffuse *= 1.0 - METAL_DIFFUSE_LOSS * metallic;
+                wanted.diffuse = base_map.map(|s| self.textures.request(Recipe::Color(s)));
+            }
+        }
+        let strength = m.normal_texture().map_or(1.0, |n| n.scale());
+        wanted.normal = normal.map(|source| {
+            self.textures.request(Recipe::Bump { source, strength: strength.to_bits(), normal: true })
+        });
+        wanted.emissive = emissive_map.map(|s| self.textures.request(Recipe::Color(s)));
+        let glow = Vec3::from(m.emissive_factor()) * m.emissive_strength().unwrap_or(1.0);
+        let alpha = match m.alpha_mode() {
+            gltf::material::AlphaMode::Opaque => Alpha::Opaque,
+            gltf::material::AlphaMode::Mask => Alpha::Cutout(unit(m.alpha_cutoff().unwrap_or(0.5))),
+            gltf::material::AlphaMode::Blend => {
+                wanted.blended = true;
+                if opacity >= 1.0 && wanted.diffuse.is_none() { Alpha::Opaque } else { Alpha::Blend(opacity) }
+            }
+        };
+        let material = Material {
+            name: m.name().map_or_else(|| format!("material-{}", m.index().unwrap_or(0)), str::to_owned),
+            diffuse: srgb(diffuse),
+            specular: srgb(specular),
+            emissive: if glow.is_finite() { srgb(glow.max(Vec3::ZERO)) } else { Vec3::ZERO },
+            roughness,
+            alpha,
+            double_sided: m.double_sided(),
+            ..Material::default()
+        };
+        Ok((material, wanted))
+    }
+
+    fn primitive(&self, primitive: &Primitive, to_world: &Mat4) -> Result<Option<RawMesh>, SceneError> {
+        let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(None) };
+        let positions = self.floats::<3>(&positions)?;
+        let normals =
+            primitive.get(&Semantic::Normals).map(|a| self.floats::<3>(&a)).transpose()?.unwrap_or_default();
+        let set = self.texture_set(primitive);
+        let uvs = primitive
+            .get(&Semantic::TexCoords(set))
+            .map(|a| self.floats::<2>(&a))
+            .transpose()?
+            .unwrap_or_default();
+        let linear = Mat3::from_mat4(*to_world);
+        let turned = linear.determinant() < 0.0;
+        // Normals turn with the inverse transpose; the cofactors are that without the division.
+        let normal_matrix = Mat3::from_cols(
+            linear.y_axis.cross(linear.z_axis),
+            linear.z_axis.cross(linear.x_axis),
+            linear.x_axis.cross(linear.y_axis),
+        ) * if turned { -1.0 } else { 1.0 };
+        let vertices: Vec<Vertex> = positions
+            .iter()
+            .enumerate()
+            .map(|(i, p)| Vertex {
+                position: to_world.transform_point3((*p).into()),
+                normal: normals.get(i).map_or(NO_NORMAL, |n| normal_matrix * Vec3::from(*n)),
+                uv: uvs.get(i).map_or(NO_UV, |t| (*t).into()),
+            })
+            .collect();
+        let list = match primitive.indices() {
+            Some(accessor) => self.indices(&accessor, vertices.len())?,
+            None => (0..vertices.len() as u32).collect(),
+        };
+        let mut indices = match primitive.mode() {
+            Mode::Triangles => list,
+            Mode::TriangleStrip => {
+                let odd_turned = |(i, t): (usize, &[u32])| {
+                    if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }
+                };
+                list.windows(3).enumerate().flat_map(odd_turned).collect()
+            }
+            Mode::TriangleFan => match list.split_first() {
+                Some((&center, rim)) => rim.windows(2).flat_map(|t| [center, t[0], t[1]]).collect(),
+                None => Vec::new(),
+            },
+            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => return Ok(None),
+        };
+        indices.truncate(indices.len() / 3 * 3);
+        if turned {
+            indices.chunks_exact_mut(3).for_each(|t| t.swap(1, 2));
+        }
+        // The specification wants flat normals where none are given.
+        Ok(Some(RawMesh { vertices, indices, flat: true, ..RawMesh::default() }))
+    }
+
+    fn texture_set(&self, primitive: &Primitive) -> u32 {
+        let pbr = primitive.material().pbr_metallic_roughness();
+        let info = pbr.base_color_texture().or(pbr.metallic_roughness_texture());
+        info.map_or(0, |i| i.texture_transform().and_then(|t| t.tex_coord()).unwrap_or(i.tex_coord()))
+    }
+
+    /// The bytes of an accessor's elements, one after the other with `stride` between their starts.
+    fn elements(&self, accessor: &gltf::Accessor) -> Result<Option<(&[u8], usize)>, SceneError> {
+        let fault = |what: &str| self.damaged(format!("accessor {} {what}", accessor.index()));
+        if accessor.sparse().is_some() {
+            return Err(fault("is sparse, which is not supported"));
+        }
+        let Some(view) = accessor.view() else { return Ok(None) };
+        let size = accessor.size();
+        let stride = view.stride().unwrap_or(size);
+        if accessor.count() == 0 {
+            return Ok(None);
+        }
+        let length = (accessor.count() - 1).checked_mul(stride).and_then(|n| n.checked_add(size));
+        let end = length.and_then(|n| n.checked_add(accessor.offset()));
+        let data = end.and_then(|end| self.view(&view).ok()?.get(accessor.offset()..end));
+        match data {
+            Some(data) if stride >= size => Ok(Some((data, stride))),
+            _ => Err(fault("reaches beyond its buffer")),
+        }
+    }
+
+    fn floats<const N: usize>(&self, accessor: &gltf::Accessor) -> Result<Vec<[f32; N]>, SceneError> {
+        let wanted = if N == 2 { Dimensions::Vec2 } else { Dimensions::Vec3 };
+        if accessor.dimensions() != wanted {
+            return Err(self.damaged(format!("accessor {} has the wrong type", accessor.index())));
+        }
+        let Some((data, stride)) = self.elements(accessor)? else { return Ok(Vec::new()) };
+        let kind = accessor.data_type();
+        let width = kind.size();
+        let scale = if accessor.normalized() {
+            match kind {
+                DataType::I8 => 1.0 / 127.0,
+                DataType::U8 => 1.0 / 255.0,
+                DataType::I16 => 1.0 / 32767.0,
+                DataType::U16 => 1.0 / 65535.0,
+                DataType::U32 | DataType::F32 => 1.0,
+            }
+        } else {
+            1.0
+        };
+        let value = |b: &[u8]| match kind {
+            DataType::I8 => b[0] as i8 as f32,
+            DataType::U8 => b[0] as f32,
+            DataType::I16 => i16::from_le_bytes([b[0], b[1]]) as f32,
+            DataType::U16 => u16::from_le_bytes([b[0], b[1]]) as f32,
+            DataType::U32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
+            DataType::F32 => f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        };
+        Ok((0..accessor.count())
+            .map(|i| std::array::from_fn(|k| value(&data[i * stride + k * width..]) * scale))
+            .collect())
+    }
+
+    fn indices(&self, accessor: &gltf::Accessor, vertices: usize) -> Result<Vec<u32>, SceneError> {
+        let Some((data, stride)) = self.elements(accessor)? else { return Ok(Vec::new()) };
+        let at = |i: usize| {
+            let b = &data[i * stride..];
+            Some(match (accessor.dimensions(), accessor.data_type()) {
+                (Dimensions::Scalar, DataType::U8) => b[0] as u32,
+                (Dimensions::Scalar, DataType::U16) => u16::from_le_bytes([b[0], b[1]]) as u32,
+                (Dimensions::Scalar, DataType::U32) => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+                _ => return None,
+            })
+        };
+        let list: Option<Vec<u32>> =
+            (0..accessor.count()).map(at).map(|i| i.filter(|&i| (i as usize) < vertices)).collect();
+        list.ok_or_else(|| {
+            self.damaged(format!("accessor {} names vertices that do not exist", accessor.index()))
+        })
+    }
+}

@@ -1,0 +1,73 @@
+//! Both eyes rendered, one after the other: the ground truth.
+
+use std::rc::Rc;
+
+use super::{AntiAliasing, Finish, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use crate::eyes::{DepthConvention, Eye, EyePair};
+use crate::gl::{Context, Destination, GlError};
+use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+
+/// Two full renders.
+pub struct Conventional {
+    targets: ViewTargets,
+    finish: Finish,
+}
+
+impl Conventional {
+    /// Makes the targets.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses a target or a program.
+    pub fn new(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        options: &StereoOptions,
+    ) -> Result<Conventional, GlError> {
+        Ok(Conventional {
+            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
+            finish: Finish::new(gl, options.anti_aliasing != AntiAliasing::Off)?,
+        })
+    }
+
+    /// Renders one eye into the frame.
+    pub(super) fn render_eye(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        eye: Eye,
+        frame: &StereoFrame,
+    ) -> Result<(), StereoError> {
+        let view = pair.view(eye);
+        renderer.render(&mut self.targets, scene, &view, Selection::All)?;
+        let color = self.targets.color_target();
+        if scene.has_transparent() {
+            let depth = DepthImage { texture: self.targets.depth(), origin: [0, 0] };
+            renderer.draw_transparent(&Destination::whole(color), depth, scene, &view)?;
+        }
+        self.finish.run(color, [0, 0], frame.eye(eye));
+        Ok(())
+    }
+
+    /// The targets that hold the eye that was rendered last.
+    pub(super) fn targets(&self) -> &ViewTargets {
+        &self.targets
+    }
+}
+
+impl StereoMethod for Conventional {
+    fn render(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        frame: &mut StereoFrame,
+    ) -> Result<(), StereoError> {
+        frame.resize(pair.size)?;
+        // The dominant eye last, so that its depth is at hand.
+        for eye in [pair.dominant.other(), pair.dominant] {
+            self.render_eye(renderer, scene, pair, eye, frame)?;
+        }
+        Ok(())
+    }
+}

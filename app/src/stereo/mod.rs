@@ -1,0 +1,179 @@
+//! How a frame gets its two eyes, one file a method.
+
+mod conventional;
+mod mono;
+mod near_field;
+mod yoro;
+
+use std::rc::Rc;
+
+use crate::eyes::{Eye, EyePair, EyesError, GuardBand};
+use crate::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use crate::render::{Fxaa, GpuScene, RenderSettings, Renderer};
+use crate::synthesis::{NearFieldPolicy, Pipeline, SynthesisOptions};
+
+pub use conventional::Conventional;
+pub use mono::Mono;
+pub use yoro::Yoro;
+
+/// Why a stereo frame could not be rendered.
+#[derive(Debug, thiserror::Error)]
+pub enum StereoError {
+    /// The pair of eyes does not fit the method.
+    #[error(transparent)]
+    Eyes(#[from] EyesError),
+    /// GL refused.
+    #[error(transparent)]
+    Gl(#[from] GlError),
+}
+
+/// A way to make both eyes of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "desktop", derive(clap::ValueEnum))]
+pub enum Method {
+    /// Both eyes rendered: the ground truth.
+    Conventional,
+    /// The dominant eye's image shown to both: the lower bound.
+    Mono,
+    /// The dominant eye rendered, the other synthesized.
+    Yoro,
+}
+
+/// When anti-aliasing runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "desktop", derive(clap::ValueEnum))]
+pub enum AntiAliasing {
+    /// After synthesis, on each eye.
+    #[default]
+    After,
+    /// Before synthesis, on the rendered eye only, as in the paper.
+    Before,
+    /// Not at all.
+    Off,
+}
+
+/// Settings of all methods.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct StereoOptions {
+    /// Synthesis pipeline and its knobs.
+    pub synthesis: SynthesisOptions,
+    /// How much wider the dominant eye is rendered.
+    pub guard_band: GuardBand,
+    /// When anti-aliasing runs.
+    pub anti_aliasing: AntiAliasing,
+    /// Hybrid near field: objects nearer than this (metres) are rendered for both eyes.
+    pub near_field: Option<f32>,
+    /// Render both eyes of frames that are mostly too near; `None` never does.
+    pub policy: Option<NearFieldPolicy>,
+}
+
+impl Default for StereoOptions {
+    fn default() -> StereoOptions {
+        StereoOptions {
+            synthesis: SynthesisOptions::default(),
+            guard_band: GuardBand::Distance(1.0),
+            anti_aliasing: AntiAliasing::default(),
+            near_field: None,
+            policy: Some(NearFieldPolicy::default()),
+        }
+    }
+}
+
+impl StereoOptions {
+    /// The default with another pipeline. The paper's pipeline comes as in the paper: no guard band,
+    /// anti-aliasing before synthesis.
+    pub fn of_pipeline(pipeline: Pipeline) -> StereoOptions {
+        let synthesis = SynthesisOptions { pipeline, ..SynthesisOptions::default() };
+        let options = StereoOptions { synthesis, ..StereoOptions::default() };
+        match pipeline {
+            Pipeline::Paper => {
+                StereoOptions { guard_band: GuardBand::None, anti_aliasing: AntiAliasing::Before, ..options }
+            }
+            _ => options,
+        }
+    }
+}
+
+/// The finished images of a frame: [`Format::Rgba8`], display-referred sRGB with luma in alpha.
+pub struct StereoFrame {
+    eyes: [RenderTarget; 2],
+}
+
+impl StereoFrame {
+    /// A frame of two images of `size` pixels.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`].
+    pub fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<StereoFrame, GlError> {
+        let eye = || RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Linear)], None);
+        Ok(StereoFrame { eyes: [eye()?, eye()?] })
+    }
+
+    /// Gives the images another size; nothing happens at the same size.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::resize`].
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
+        self.eyes.iter_mut().try_for_each(|eye| eye.resize(size))
+    }
+
+    /// One eye's image.
+    pub fn eye(&self, eye: Eye) -> &RenderTarget {
+        &self.eyes[eye.index()]
+    }
+}
+
+/// A method with its own programs and targets.
+pub trait StereoMethod {
+    /// Renders both eyes of a frame. `frame` is resized to the pair's size.
+    ///
+    /// # Errors
+    /// [`StereoError`] for a pair of eyes that the method cannot do, or when GL refuses.
+    fn render(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        frame: &mut StereoFrame,
+    ) -> Result<(), StereoError>;
+}
+
+/// Makes a method; everything is compiled here.
+///
+/// # Errors
+/// [`GlError`] when the driver cannot run it.
+pub fn create(
+    gl: &Rc<Context>,
+    method: Method,
+    settings: &RenderSettings,
+    options: &StereoOptions,
+) -> Result<Box<dyn StereoMethod>, GlError> {
+    Ok(match method {
+        Method::Conventional => Box::new(Conventional::new(gl, settings, options)?),
+        Method::Mono => Box::new(Mono::new(gl, settings, options)?),
+        Method::Yoro => Box::new(Yoro::new(gl, settings, options)?),
+    })
+}
+
+/// The last step of an eye: anti-aliasing, or a plain copy, of a part of an image into the frame.
+struct Finish {
+    gl: Rc<Context>,
+    fxaa: Option<Fxaa>,
+}
+
+impl Finish {
+    fn new(gl: &Rc<Context>, anti_alias: bool) -> Result<Finish, GlError> {
+        Ok(Finish { gl: gl.clone(), fxaa: anti_alias.then(|| Fxaa::new(gl)).transpose()? })
+    }
+
+    /// Fills `to` from the part of `from` whose lower left corner is `crop`.
+    fn run(&self, from: &RenderTarget, crop: [u32; 2], to: &RenderTarget) {
+        match &self.fxaa {
+            Some(fxaa) => fxaa.run(from.color(0), crop, &Destination::whole(to)),
+            None => self.gl.pass("copy", || from.copy_color(crop, &Destination::whole(to))),
+        }
+    }
+}

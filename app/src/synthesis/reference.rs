@@ -1,0 +1,150 @@
+//! Plain f64 versions of the pipelines, for tests: what the shaders must compute, without tiles or threads.
+
+use super::ForwardLaw;
+use crate::eyes::Warp;
+
+/// One target pixel: a source column in forward columns, and whether it is a hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Entry {
+    pub hole: bool,
+    pub source: f64,
+}
+
+const MAX_STRETCH: f64 = 2.0;
+
+/// Displaced positions of one source row in forward columns.
+pub(super) fn positions(depth_row: &[f32], warp: &Warp) -> Vec<f64> {
+    let law = ForwardLaw::new(warp);
+    let columns = depth_row.len();
+    (0..columns)
+        .map(|x| {
+            let column = if law.mirrored { columns - 1 - x } else { x };
+            x as f64 + law.offset + law.scale * depth_row[column] as f64
+        })
+        .collect()
+}
+
+/// The gather pipeline's march over the whole row for each target pixel.
+pub(super) fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
+    (0..width)
+        .map(|t| {
+            let target = t as f64;
+            let hit = |source: f64| Entry { hole: false, source };
+            if p[0] > target && p[0] - target <= 0.5 {
+                return hit(0.0);
+            }
+            let mut edge = if p[0] > target { Some((p[0], 0)) } else { None };
+            for x in 1..p.len() {
+                let (a, b) = (p[x - 1], p[x]);
+                if a > target {
+                    continue;
+                }
+                if b > target {
+                    if b - a < MAX_STRETCH {
+                        return hit((x - 1) as f64 + (target - a) / (b - a));
+                    } else if target - a < 0.5 {
+                        return hit((x - 1) as f64);
+                    } else if b - target <= 0.5 {
+                        return hit(x as f64);
+                    }
+                    let displacement = a - (x - 1) as f64;
+                    if edge.is_none_or(|(d, _)| displacement < d) {
+                        edge = Some((displacement, x - 1));
+                    }
+                } else if target - a < 0.5 && b < a {
+                    return hit((x - 1) as f64);
+                }
+            }
+            let last = p.len() - 1;
+            match edge {
+                Some((_, x)) => Entry { hole: true, source: x as f64 },
+                None if p[last] <= target && target - p[last] < 0.5 => hit(last as f64),
+                None => Entry { hole: true, source: last as f64 },
+            }
+        })
+        .collect()
+}
+
+/// The rowgroup pipeline: every segment of the row drawn into the targets, the smallest source column wins.
+pub(super) fn rowgroup_row(p: &[f64], width: usize) -> Vec<Entry> {
+    let mut keys: Vec<Option<f64>> = vec![None; width];
+    let mut put = |t: f64, source: f64| {
+        if t >= 0.0 && t < width as f64 {
+            let key = &mut keys[t as usize];
+            *key = Some(key.map_or(source, |k: f64| k.min(source)));
+        }
+    };
+    for x in 0..p.len() {
+        let next = (x + 1).min(p.len() - 1);
+        let (a, b) = (p[x], p[next]);
+        if b - a > 0.0 && b - a < MAX_STRETCH {
+            let mut t = a.ceil();
+            while t < b.ceil() {
+                put(t, x as f64 + (t - a) / (b - a));
+                t += 1.0;
+            }
+        } else {
+            put((a + 0.5).floor(), x as f64);
+            put((b + 0.5).floor(), next as f64);
+        }
+    }
+    (0..width)
+        .map(|t| match keys[t] {
+            Some(source) => Entry { hole: false, source },
+            None => {
+                let left = (0..t).rev().find_map(|i| keys[i].map(|k| (i as f64 - k, k)));
+                let right = (t + 1..width).find_map(|i| keys[i].map(|k| (i as f64 - k, k)));
+                let source = match (left, right) {
+                    (Some(l), Some(r)) => {
+                        if l.0 <= r.0 {
+                            l.1
+                        } else {
+                            r.1
+                        }
+                    }
+                    (Some(l), None) => l.1,
+                    (None, Some(r)) => r.1,
+                    (None, None) => t.min(p.len() - 1) as f64,
+                };
+                Entry { hole: true, source }
+            }
+        })
+        .collect()
+}
+
+/// One ImBuffer entry of Algorithm 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum ImBufferEntry {
+    Valid(f64),
+    Disocclusion { left: i64, width: i64 },
+}
+
+/// Algorithm 2 at scale 1, as corrected: first writer wins in forward order, the tracker follows the running
+/// maximum, valid entries are never overwritten.
+pub(super) fn paper_row(p: &[f64], width: usize, strict: bool) -> Vec<ImBufferEntry> {
+    let mut entries: Vec<Option<ImBufferEntry>> = vec![None; width];
+    let mut reached = -1i64;
+    for (x, &position) in p.iter().enumerate() {
+        let target = (position + 0.5).floor() as i64;
+        if target < 0 || target >= width as i64 {
+            continue;
+        }
+        if matches!(entries[target as usize], Some(ImBufferEntry::Valid(_))) {
+            continue;
+        }
+        for i in reached + 1..target {
+            entries[i as usize] =
+                Some(ImBufferEntry::Disocclusion { left: reached, width: target - reached });
+        }
+        let source = if strict {
+            x as f64
+        } else {
+            (x as f64 + target as f64 - position).clamp(0.0, (p.len() - 1) as f64)
+        };
+        entries[target as usize] = Some(ImBufferEntry::Valid(source));
+        reached = reached.max(target);
+    }
+    let width = width as i64;
+    let rest = ImBufferEntry::Disocclusion { left: reached, width: width - reached };
+    entries.into_iter().map(|e| e.unwrap_or(rest)).collect()
+}

@@ -1,0 +1,18 @@
+#include "include/warp.glsl"
+
+// Colour of a disocclusion at forward target column `x`: the background next to it, from source column `edge`.
+// Five rows, spread with the distance from the edge, so that the edge's pixels do not smear into streaks; taps
+// that are nearer than the edge by more than a pixel of disparity belong to the foreground and are left out.
+vec4 fill_hole(float x, int edge, int row) {
+    float background = displacement_at(edge, row);
+    float spread = 0.5 * clamp(abs(x - float(edge) - background), 1.0, 12.0);
+    vec4 sum = vec4(0.0);
+    float weights = 0.0;
+    for (int j = -2; j <= 2; ++j) {
+        int tap_row = clamp(row + int(round(float(j) * spread)), 0, source_size.y - 1);
+        float weight = displacement_at(edge, tap_row) > background + 1.0 ? 0.0 : (j == 0 ? 2.0 : 1.0);
+        sum += weight * color_texel(edge, tap_row);
+        weights += weight;
+    }
+    return sum / weights;
+}

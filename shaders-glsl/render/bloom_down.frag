@@ -1,0 +1,24 @@
+// One step of the bloom pyramid: half the size. The first keeps only what is bright.
+#include "include/color.glsl"
+#include "include/hdr.glsl"
+
+uniform sampler2D source;
+uniform vec2 texel;  // of the target
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    vec2 uv = gl_FragCoord.xy * texel;
+#ifdef FIRST
+    vec3 c = hdr_decode(texture(source, uv).rgb);
+    float bright = max(c.r, max(c.g, c.b));
+    // A knee, and a ceiling so that a single very bright pixel does not flicker from eye to eye.
+    c *= max(bright - 1.0, 0.0) / max(bright, 1e-4);
+    out_color = vec4(min(c, vec3(4.0)), 1.0);
+#else
+    vec2 h = 0.5 * texel;
+    vec3 c = texture(source, uv + vec2(-h.x, -h.y)).rgb + texture(source, uv + vec2(h.x, -h.y)).rgb
+        + texture(source, uv + vec2(-h.x, h.y)).rgb + texture(source, uv + vec2(h.x, h.y)).rgb;
+    out_color = vec4(0.25 * c, 1.0);
+#endif
+}

@@ -1,0 +1,81 @@
+#version 310 es
+// Gather, pass 3: for each target pixel, walk along the source row from the nearest candidate outwards.
+//
+// The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
+// fetched with linear filtering. Where the row jumps over the pixel from a farther to a nearer surface there is a
+// disocclusion: the farthest such jump is remembered and the hole is filled from its background side.
+
+#include "include/tiles.glsl"
+#include "include/fill.glsl"
+
+uniform highp usampler2D span_map;
+
+layout(location = 0) out vec4 color;
+#ifdef SOURCE_MAP
+layout(location = 1) out uint source_entry;
+#endif
+
+void main() {
+    ivec2 pixel = target_pixel();
+    int row = pixel.y;
+    float target = float(pixel.x);
+    uint packed_span = texelFetch(span_map, pixel / TILE, 0).r;
+    vec2 span = packed_span == EMPTY_TILE ? vec2(far_displacement) : unpack_interval(packed_span);
+
+    int last_column = source_size.x - 1;
+    int x = clamp(int(floor(target - span.y)) - 1, 0, last_column);
+    int last = clamp(int(ceil(target - span.x)) + 1, 0, last_column);
+    float source = -1.0;
+    int edge = -1;
+    float edge_displacement = 1e9;
+
+    float a = float(x) + displacement_at(x, row);
+    if (x == 0 && a > target) {
+        // Left of everything: the border of the image is the only background there is.
+        source = a - target <= 0.5 ? 0.0 : -1.0;
+        edge = 0;
+        edge_displacement = a;
+    }
+    for (++x; x <= last && source < 0.0; ++x) {
+        float b = float(x) + displacement_at(x, row);
+        if (a <= target) {
+            float stretch = b - a;
+            if (b > target) {
+                if (stretch < MAX_STRETCH) {
+                    source = float(x - 1) + (target - a) / stretch;
+                } else if (target - a < 0.5) {
+                    source = float(x - 1);
+                } else if (b - target <= 0.5) {
+                    source = float(x);
+                } else if (a - float(x - 1) < edge_displacement) {
+                    edge_displacement = a - float(x - 1);
+                    edge = x - 1;
+                }
+            } else if (target - a < 0.5 && stretch < 0.0) {
+                source = float(x - 1);
+            }
+        }
+        a = b;
+    }
+    if (source < 0.0 && edge < 0) {
+        // Right of everything that the interval holds.
+        edge = last;
+        if (a <= target && target - a < 0.5) {
+            source = float(last);
+        }
+    }
+
+    bool hole = source < 0.0;
+    if (hole) {
+        source = float(edge);
+        color = fill_hole(target, edge, row);
+    } else {
+        color = color_at(source, row);
+    }
+#ifdef WRITE_DEPTH
+    gl_FragDepth = depth_at(int(source + 0.5), row);
+#endif
+#ifdef SOURCE_MAP
+    source_entry = uint(source * FIXED + 0.5) | (hole ? HOLE : 0u);
+#endif
+}
