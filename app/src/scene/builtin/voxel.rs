@@ -191,9 +191,9 @@ fn ground(seed: u32, x: i32, z: i32) -> f32 {
     let blend = |h: f32, level: f32, distance: f32, width: f32| {
         level + (h - level) * smoothstep(0.0, width, distance)
     };
-    h = blend(h, CASTLE_GROUND as f32, ((p - CASTLE.as_vec2()).length() - 46.0).max(0.0), 34.0);
-    h = blend(h, TERRACE as f32, outside(p, vec2(-44.0, -130.0), vec2(44.0, 8.0)), 16.0);
-    h = blend(h, 7.0, outside(p, vec2(-26.0, 46.0), vec2(58.0, 96.0)), 22.0);
+    h = blend(h, CASTLE_GROUND as f32 + 0.5, ((p - CASTLE.as_vec2()).length() - 46.0).max(0.0), 34.0);
+    h = blend(h, TERRACE as f32 + 0.5, outside(p, vec2(-44.0, -130.0), vec2(44.0, 8.0)), 16.0);
+    h = blend(h, 7.5, outside(p, vec2(-26.0, 46.0), vec2(58.0, 96.0)), 22.0);
     let bank = (p.y - river_z(p.x)).abs();
     let bed = -5.0 + 2.0 * detail;
     bed + (h - bed) * smoothstep(9.0, 17.0, bank + 4.0 * (detail - 0.5))
@@ -648,7 +648,9 @@ fn woods(w: &mut World, rng: &mut Pcg32) {
         if placed == TREES {
             break;
         }
-        let (x, z) = (rng.random_range(-HALF + 10..HALF - 10), rng.random_range(-HALF + 10..HALF - 10));
+        // Every other tree stands where the walk can see it.
+        let reach = if placed % 2 == 0 { 130 } else { HALF - 10 };
+        let (x, z) = (rng.random_range(-reach..reach), rng.random_range(-reach..reach));
         let density = w.noise(ivec3(x, 0, z), 34.0, 31);
         let y = w.top(x, z);
         let grows = [Block::GrassTop, Block::Dirt].map(code).contains(&w.get(ivec3(x, y, z)));
