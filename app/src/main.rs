@@ -21,6 +21,7 @@ enum Command {
     Render(cli::render::RenderArgs),
     Synthesize(cli::synthesize::SynthesizeArgs),
     Compare(cli::compare::CompareArgs),
+    Scenes(cli::scenes::ScenesArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
         Command::Render(args) => cli::render::run(args),
         Command::Synthesize(args) => cli::synthesize::run(args),
         Command::Compare(args) => cli::compare::run(args),
+        Command::Scenes(args) => cli::scenes::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {

@@ -3,6 +3,7 @@
 pub mod compare;
 pub mod info;
 pub mod render;
+pub mod scenes;
 pub mod stage;
 pub mod synthesize;
 

@@ -208,3 +208,158 @@ impl Culler {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use rand::{Rng, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    use super::*;
+    use crate::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
+    use crate::render::uniforms::eye_to_clip;
+    use crate::scene::{Material, Part};
+
+    fn random_model(rng: &mut Pcg64) -> Model {
+        let mut model = Model { materials: vec![Material::default(); 5], ..Model::default() };
+        for (p, count) in [1, 3, 9000, 700, 0, 12, 5000, 2, 2, 2, 300, 4097].into_iter().enumerate() {
+            let center = Vec3::new(rng.random_range(-50.0..50.0), 0.0, rng.random_range(-50.0..50.0));
+            let start = model.indices.len();
+            for _ in 0..count {
+                let at = center + Vec3::new(rng.random(), rng.random(), rng.random()) * 8.0;
+                for corner in [Vec3::ZERO, Vec3::X, Vec3::Y] {
+                    model.indices.push(model.vertices.len() as u32);
+                    model.vertices.push(Vertex { position: at + corner, ..Vertex::default() });
+                }
+            }
+            // Material 3 is used by no part.
+            let material = [0, 1, 2, 4][p % 4];
+            model.parts.push(Part {
+                name: format!("part {p}"),
+                material,
+                indices: start..model.indices.len(),
+            });
+        }
+        model
+    }
+
+    #[test]
+    fn every_triangle_is_in_one_cluster_of_its_material() {
+        let model = random_model(&mut Pcg64::seed_from_u64(1));
+        let built = build(&model);
+        let mut expected: HashMap<[u32; 3], usize> = HashMap::new();
+        for part in &model.parts {
+            for triangle in model.indices[part.indices.clone()].chunks_exact(3) {
+                expected.insert(triangle.try_into().unwrap(), part.material);
+            }
+        }
+        assert_eq!(built.indices.len(), model.indices.len());
+        let mut next = 0;
+        for batch in &built.batches {
+            for cluster in &built.clusters[batch.clusters.clone()] {
+                assert_eq!(cluster.start, next, "clusters leave no gap");
+                next = cluster.end;
+                assert!(cluster.end - cluster.start <= 3 * SPLIT_ABOVE as u32);
+                for triangle in built.indices[cluster.start as usize..cluster.end as usize].chunks_exact(3) {
+                    assert_eq!(expected.remove(triangle), Some(batch.material));
+                    for &v in triangle {
+                        assert_eq!(cluster.bounds.distance(model.vertices[v as usize].position), 0.0);
+                    }
+                }
+            }
+        }
+        assert!(expected.is_empty());
+        let used: Vec<_> = built.batches.iter().map(|b| b.material).collect();
+        assert_eq!(used, [0, 1, 2, 4]);
+    }
+
+    #[test]
+    fn large_parts_do_not_share_clusters() {
+        let mut rng = Pcg64::seed_from_u64(2);
+        let mut model = random_model(&mut rng);
+        model.parts.iter_mut().for_each(|p| p.material = 0);
+        let built = build(&model);
+        let part_of =
+            |vertex: u32| model.parts.iter().position(|p| p.indices.contains(&(vertex as usize))).unwrap();
+        for cluster in &built.clusters {
+            let mut parts: Vec<_> = built.indices[cluster.start as usize..cluster.end as usize]
+                .iter()
+                .map(|&v| part_of(v))
+                .collect();
+            parts.sort_unstable();
+            parts.dedup();
+            let large = parts.iter().filter(|&&p| model.parts[p].indices.len() > 3 * GATHER_UP_TO).count();
+            assert!(large == 0 || parts.len() == 1);
+        }
+    }
+
+    fn random_view(rng: &mut Pcg64) -> View {
+        let mut point =
+            |r: f32| Vec3::new(rng.random_range(-r..r), rng.random_range(-r..r), rng.random_range(-r..r));
+        let pose = Pose::look_at(point(30.0), point(30.0));
+        let depth = DepthRange {
+            near: 0.1,
+            far: [20.0, 1000.0, f32::INFINITY][rng.random_range(0..3)],
+            convention: [DepthConvention::Standard, DepthConvention::Reversed][rng.random_range(0..2)],
+        };
+        let frustum = Frustum { left: -1.2, right: 0.4, bottom: -0.3, top: 0.9 };
+        View { pose, frustum, depth, size: [160, 120] }
+    }
+
+    #[test]
+    fn nothing_visible_is_culled_and_most_invisible_is() {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let (mut hidden, mut culled) = (0, 0);
+        for _ in 0..300 {
+            let view = random_view(&mut rng);
+            let culler = Culler::new(view.pose.position, &eye_to_clip(&view), Selection::All);
+            let matrix = view.view_projection();
+            for _ in 0..20 {
+                let mut coordinate = |r: f32| rng.random_range(-r..r);
+                let center = Vec3::new(coordinate(60.0), coordinate(60.0), coordinate(60.0));
+                let half = Vec3::new(coordinate(4.0), coordinate(4.0), coordinate(4.0)).abs();
+                let bounds = Bounds { min: center - half, max: center + half };
+                let visible = (0..200).any(|_| {
+                    let t = Vec3::new(rng.random(), rng.random(), rng.random());
+                    let clip = matrix * (bounds.min + (bounds.max - bounds.min) * t).extend(1.0);
+                    clip.w > 0.0 && clip.truncate().abs().max_element() <= clip.w
+                });
+                if visible {
+                    assert!(culler.sees(&bounds), "{view:?} {bounds:?}");
+                    assert!(culler.sees_sphere(center, half.length()));
+                } else {
+                    hidden += 1;
+                    culled += !culler.sees(&bounds) as usize;
+                }
+            }
+        }
+        assert!(culled * 10 > hidden * 9, "{culled} of {hidden}");
+    }
+
+    #[test]
+    fn ranges_are_merged_and_selections_are_complementary() {
+        let mut rng = Pcg64::seed_from_u64(4);
+        let model = random_model(&mut rng);
+        let built = build(&model);
+        for _ in 0..50 {
+            let view = random_view(&mut rng);
+            let (from, distance) = (view.pose.position, rng.random_range(1.0..40.0));
+            let drawn = |selection| {
+                let culler = Culler::new(from, &eye_to_clip(&view), selection);
+                let ranges: Vec<_> = culler.visible(&built.clusters).collect();
+                assert!(ranges.windows(2).all(|w| w[0].end < w[1].start), "adjacent ranges are one");
+                ranges.iter().map(|r| r.len()).sum::<usize>()
+            };
+            let near = drawn(Selection::Nearer { from, distance });
+            let far = drawn(Selection::Farther { from, distance });
+            assert_eq!(near + far, drawn(Selection::All));
+        }
+    }
+
+    #[test]
+    fn float_keys_keep_the_order() {
+        let values = [f32::NEG_INFINITY, -3.5, -1e-20, -0.0, 0.0, 1e-20, 2.0, f32::INFINITY];
+        assert!(values.windows(2).all(|w| ordered(w[0]) <= ordered(w[1]) || w[0] == w[1]));
+    }
+}

@@ -12,6 +12,8 @@ mod lighting;
 mod scene;
 mod shadow;
 mod ssao;
+#[cfg(all(test, feature = "desktop"))]
+mod tests;
 mod tonemap;
 mod transparent;
 mod uniforms;

@@ -247,3 +247,26 @@ fn flip_rows(bytes: &mut [u8], row: usize) {
         low += 1;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_reversed() {
+        let mut bytes = [1, 2, 3, 4, 5, 6];
+        flip_rows(&mut bytes, 2);
+        assert_eq!(bytes, [5, 6, 3, 4, 1, 2]);
+        flip_rows(&mut bytes, 3);
+        assert_eq!(bytes, [4, 1, 2, 5, 6, 3]);
+        flip_rows(&mut bytes, 6);
+        assert_eq!(bytes, [4, 1, 2, 5, 6, 3]);
+    }
+
+    #[test]
+    fn srgb_curve() {
+        assert_eq!(linear(Vec3::new(0.0, 1.0, 0.04045)).x, 0.0);
+        assert!((linear(Vec3::ONE) - Vec3::ONE).length() < 1e-6);
+        assert!((linear(Vec3::splat(0.5)).x - 0.21404).abs() < 1e-4);
+    }
+}

@@ -138,3 +138,15 @@ impl TransparentPass {
 fn back_to_front(order: &mut [(f32, u32, u32)]) {
     order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn farthest_first_and_equal_distances_in_a_fixed_order() {
+        let mut order = [(1.0, 2, 7), (9.0, 0, 1), (4.0, 1, 5), (4.0, 1, 3), (4.0, 0, 2)];
+        back_to_front(&mut order);
+        assert_eq!(order, [(9.0, 0, 1), (4.0, 0, 2), (4.0, 1, 3), (4.0, 1, 5), (1.0, 2, 7)]);
+    }
+}

@@ -73,12 +73,6 @@ impl Lights {
         Lights { positions, colors, count }
     }
 
-    /// Number of lights chosen.
-    #[cfg(test)]
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
     /// Sets what `include/shade.glsl` needs of the sky and these lights.
     pub fn set(&self, program: &Program, sky: &Sky) {
         program
@@ -90,5 +84,38 @@ impl Lights {
             .set("light_positions", &self.positions[..])
             .set("light_colors", &self.colors[..])
             .set("light_count", self.count as i32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eyes::{DepthRange, Frustum, Pose};
+    use crate::render::Selection;
+
+    #[test]
+    fn the_strongest_lights_in_view_are_chosen() {
+        let view = View {
+            pose: Pose::IDENTITY,
+            frustum: Frustum::symmetric(1.0, 1.0),
+            depth: DepthRange::PAPER,
+            size: [64, 64],
+        };
+        let culler = Culler::new(Vec3::ZERO, &eye_to_clip(&view), Selection::All);
+        let light = |z: f32, strength: f32| PointLight {
+            position: Vec3::new(0.0, 0.0, z),
+            color: Vec3::splat(strength),
+            range: 4.0,
+        };
+        // Behind the eye; far and weak; then forty that grow stronger.
+        let mut lights = vec![light(20.0, 1000.0), light(-100.0, 1.0)];
+        lights.extend((0..40).map(|i| light(-5.0, 1.0 + i as f32)));
+        let chosen = Lights::choose(&lights, Vec3::ZERO, &culler, 16);
+        assert_eq!(chosen.count, 16);
+        let strengths: Vec<_> = chosen.colors[..16].iter().map(|c| c.x).collect();
+        assert_eq!(strengths, (0..16).map(|i| 40.0 - i as f32).collect::<Vec<_>>());
+        assert_eq!(Lights::choose(&lights, Vec3::ZERO, &culler, 100).count, MAX_POINT_LIGHTS);
+        assert_eq!(Lights::choose(&lights, Vec3::ZERO, &culler, 0).count, 0);
+        assert_eq!(Lights::choose(&lights[..2], Vec3::ZERO, &culler, 8).count, 1);
     }
 }

@@ -71,27 +71,17 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
         places.extend(floors(bounds, rays, column, reach).filter_map(|eye| place(eye, rays, reach)));
     }
     let best = places.iter().map(|p| p.score).fold(0.0, f32::max);
-    places.retain(|p| p.score > 0.0 && p.score >= 0.5 * best);
+    places.retain(|p| p.score > 0.0 && p.score >= 0.4 * best);
     places.sort_by(|a, b| b.score.total_cmp(&a.score));
     // Too few places are roofs and niches of an object, not a scene to walk in.
     if places.len() < 4 {
         return Vec::new();
     }
-    let apart = (size.max_element() / 16.0).max(0.4);
-    let visible = |a: Vec3, b: Vec3| rays.cast(a, b - a, 1.0).is_none();
-    let mut eyes = vec![places[0].eye];
-    while eyes.len() < COUNT {
-        let here = eyes[eyes.len() - 1];
-        let free = places.iter().filter(|p| eyes.iter().all(|e| e.distance(p.eye) >= apart));
-        // The nearest that can be walked to, so that the camera path stays clear of walls.
-        let next = free
-            .filter(|p| visible(here, p.eye))
-            .min_by(|a, b| a.eye.distance(here).total_cmp(&b.eye.distance(here)));
-        match next {
-            Some(p) => eyes.push(p.eye),
-            None => break,
-        }
-    }
+    // As far apart as leaves enough of them.
+    let extent = size.max_element();
+    let routes = [8.0, 12.0, 18.0].map(|parts| route(&places, (extent / parts).max(0.4), rays));
+    let enough = routes.iter().find(|r| r.len() == COUNT);
+    let Some(eyes) = enough.or(routes.iter().max_by_key(|r| r.len())) else { return Vec::new() };
     let mut heading: Option<Vec3> = None;
     (0..COUNT)
         .map(|i| {
@@ -117,6 +107,22 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
             Viewpoint { position: eye, target: eye + ahead * 4.0 - Vec3::Y * 0.3 }
         })
         .collect()
+}
+
+/// A way from the best place to the nearest that can be seen from there and so on: a camera path along it stays
+/// clear of walls.
+fn route(places: &[Place], apart: f32, rays: &Rays) -> Vec<Vec3> {
+    let mut eyes = vec![places[0].eye];
+    while eyes.len() < COUNT {
+        let here = eyes[eyes.len() - 1];
+        let visible = |p: &&Place| rays.cast(here, p.eye - here, 1.0).is_none();
+        let free = places.iter().filter(|p| eyes.iter().all(|e| e.distance(p.eye) >= apart)).filter(visible);
+        match free.min_by(|a, b| a.eye.distance(here).total_cmp(&b.eye.distance(here))) {
+            Some(p) => eyes.push(p.eye),
+            None => break,
+        }
+    }
+    eyes
 }
 
 /// Eye positions above every floor of a column, from the top, that has room for a head above.
@@ -148,8 +154,11 @@ fn place(eye: Vec3, rays: &Rays, reach: f32) -> Option<Place> {
         }
     }
     distances.sort_by(f32::total_cmp);
+    // Among houses the street, not the empty inside of one; on a roof there is little to see around.
+    let street = seen > 0.4 && rays.cast(eye, Vec3::Y, reach).is_none();
+    let score = seen * (distances[16] / 8.0).min(1.0) * if street { 3.0 } else { 1.0 };
     // Nothing nearer than half a metre: the eyes need room, and the synthesis too.
-    (distances[0] >= 0.5).then(|| Place { eye, score: seen * (distances[16] / 8.0).min(1.0) })
+    (distances[0] >= 0.5).then_some(Place { eye, score })
 }
 
 /// Sun, sky and point lights for a model that states none. Glowing surfaces become point lights. Where the

@@ -82,14 +82,6 @@ pub enum SceneError {
         /// What is wrong.
         what: String,
     },
-    /// An export that failed.
-    #[error("{path} cannot be written ({source}): check the folder's permissions and the free space")]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The system's reason.
-        source: io::Error,
-    },
 }
 
 impl SceneError {

@@ -1,14 +1,13 @@
 //! Scenes to files that other programs read: OBJ, MTL and PNG, and beside them what those cannot say.
 
 use std::collections::{BTreeMap, HashSet};
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::error::SceneError;
 use super::load::{MaterialNotes, SceneNotes};
 use super::model::{Alpha, Material, Scene};
 use super::textures::unique;
+use crate::files::{FileError, create_folder, write_with};
 
 /// Writes `NAME.obj`, `NAME.mtl`, `textures/*.png`, `NAME.camera.json`, `NAME.scene.json` and `LICENSE.txt` into
 /// a folder, which is made if necessary; [`crate::scene::load`] gives the same scene again. `license` is the text
@@ -18,24 +17,18 @@ use super::textures::unique;
 /// the OBJ file.
 ///
 /// # Errors
-/// [`SceneError::Write`].
-pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, SceneError> {
+/// [`FileError`].
+pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, FileError> {
+    create_folder(folder)?;
     let mut taken = HashSet::new();
     let name = unique(&mut taken, scene.name.clone());
-    let made = |path: &Path| {
-        fs::create_dir_all(path).map_err(|source| SceneError::Write { path: path.into(), source })
-    };
-    made(folder)?;
     let mut taken = HashSet::new();
     let textures: Vec<String> =
         scene.model.textures.iter().map(|t| unique(&mut taken, t.name.clone())).collect();
-    if !textures.is_empty() {
-        made(&folder.join("textures"))?;
-    }
     for (texture, file) in scene.model.textures.iter().zip(&textures) {
         let [w, h] = texture.size;
         let picture = image::RgbaImage::from_raw(w, h, texture.rgba.clone());
-        write(&folder.join(format!("textures/{file}.png")), |out| {
+        write_with(&folder.join(format!("textures/{file}.png")), |out| {
             let picture = picture.ok_or_else(|| {
                 io::Error::new(io::ErrorKind::InvalidData, "the picture's size does not fit its data")
             })?;
@@ -52,7 +45,7 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Sc
     let mut taken = HashSet::new();
     let materials: Vec<String> =
         scene.model.materials.iter().map(|m| unique(&mut taken, m.name.clone())).collect();
-    write(&folder.join(format!("{name}.mtl")), |out| {
+    write_with(&folder.join(format!("{name}.mtl")), |out| {
         for (material, name) in scene.model.materials.iter().zip(&materials) {
             write_material(out, material, name, &textures)?;
         }
@@ -79,13 +72,15 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Sc
             .map(|(_, n)| n.clone())
             .collect(),
     };
-    write(&folder.join(format!("{name}.scene.json")), |out| Ok(serde_json::to_writer_pretty(out, &notes)?))?;
-    write(&folder.join(format!("{name}.camera.json")), |out| {
+    write_with(&folder.join(format!("{name}.scene.json")), |out| {
+        Ok(serde_json::to_writer_pretty(out, &notes)?)
+    })?;
+    write_with(&folder.join(format!("{name}.camera.json")), |out| {
         Ok(serde_json::to_writer_pretty(out, &scene.viewpoints)?)
     })?;
-    write(&folder.join("LICENSE.txt"), |out| writeln!(out, "{}", license.trim_end()))?;
+    write_with(&folder.join("LICENSE.txt"), |out| writeln!(out, "{}", license.trim_end()))?;
     let obj = folder.join(format!("{name}.obj"));
-    write(&obj, |out| write_obj(out, scene, &name, &materials))?;
+    write_with(&obj, |out| write_obj(out, scene, &name, &materials))?;
     Ok(obj)
 }
 
@@ -93,7 +88,7 @@ fn notes(material: &Material) -> MaterialNotes {
     MaterialNotes { alpha: material.alpha.into(), double_sided: material.double_sided }
 }
 
-fn write_obj(out: &mut dyn Write, scene: &Scene, name: &str, materials: &[String]) -> io::Result<()> {
+fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[String]) -> io::Result<()> {
     let model = &scene.model;
     writeln!(out, "# {name}: {} triangles; metres, Y up\nmtllib {name}.mtl", model.triangle_count())?;
     for v in &model.vertices {
@@ -115,7 +110,7 @@ fn write_obj(out: &mut dyn Write, scene: &Scene, name: &str, materials: &[String
     Ok(())
 }
 
-fn write_material(out: &mut dyn Write, m: &Material, name: &str, textures: &[String]) -> io::Result<()> {
+fn write_material(out: &mut impl Write, m: &Material, name: &str, textures: &[String]) -> io::Result<()> {
     writeln!(out, "newmtl {name}")?;
     for (keyword, c) in [("Kd", m.diffuse), ("Ks", m.specular), ("Ke", m.emissive)] {
         writeln!(out, "{keyword} {} {} {}", c.x, c.y, c.z)?;
@@ -139,21 +134,4 @@ fn write_material(out: &mut dyn Write, m: &Material, name: &str, textures: &[Str
     }
     map("norm", m.normal_map)?;
     writeln!(out)
-}
-
-/// Writes a file under a temporary name beside it and renames it; nothing is left behind on failure.
-fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), SceneError> {
-    let file = path.file_name().unwrap_or_default().to_string_lossy();
-    let temporary = path.with_file_name(format!(".{file}.{}.part", std::process::id()));
-    let written = File::create(&temporary).and_then(|file| {
-        let mut out = BufWriter::with_capacity(1 << 20, file);
-        content(&mut out)?;
-        out.into_inner().map_err(|e| e.into_error())?.sync_all()?;
-        fs::rename(&temporary, path)
-    });
-    written.map_err(|source| {
-        // The first failure is the one to tell.
-        let _ = fs::remove_file(&temporary);
-        SceneError::Write { path: path.into(), source }
-    })
 }

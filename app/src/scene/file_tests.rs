@@ -208,7 +208,7 @@ fn paths_that_are_no_models() {
 #[test]
 fn forward_references_within_a_group() {
     assert_eq!(obj(&format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
-    refused(format!("f 1 2 3\ng x\n{SQUARE}f 1 2 3"), &["line 1", "vertex 1"]);
+    refused(format!("f 1 2 3\ng x\nf 1 2 3\n{SQUARE}"), &["line 1", "vertex 1"]);
 }
 
 #[test]
@@ -307,11 +307,11 @@ fn bad_pictures_are_named() {
     folder.put("p.png", &png);
     let message = load(&scene).unwrap_err().to_string();
     assert!(message.contains("p.png") && message.contains("replace"), "{message}");
-    // A header that promises 100000 x 100000 pixels.
+    // A header that promises 30000 x 30000 pixels.
     let mut huge = b"BM".to_vec();
     huge.extend([0, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0]);
-    huge.extend(100_000i32.to_le_bytes());
-    huge.extend(100_000i32.to_le_bytes());
+    huge.extend(30_000i32.to_le_bytes());
+    huge.extend(30_000i32.to_le_bytes());
     huge.extend([1, 0, 24, 0]);
     huge.extend([0; 24]);
     folder.put("p.png", &huge);
@@ -554,7 +554,7 @@ fn an_export_that_fails_says_where() {
     let folder = Folder::new();
     let file = folder.put("file", "");
     let message = export(&rich_scene(), &file, "x").unwrap_err().to_string();
-    assert!(message.contains("file") && message.contains("cannot be written"), "{message}");
+    assert!(message.contains("file is not a folder"), "{message}");
 }
 
 /// A triangle with normals and texture coordinates, one with indices, and a picture, as glTF.
@@ -608,7 +608,7 @@ fn check_gltf(scene: &Scene) {
     assert_eq!((corner.normal, corner.uv), (Vec3::Z, Vec2::ONE));
     let material = &m.materials[0];
     assert_eq!((material.alpha, material.double_sided, material.roughness), (Alpha::Cutout(0.25), true, 0.5));
-    assert_eq!((material.diffuse, material.emissive), (Vec3::ONE, Vec3::X));
+    assert!(material.diffuse.distance(Vec3::ONE) < 1e-6 && material.emissive.distance(Vec3::X) < 1e-6);
     assert_eq!(m.textures[material.diffuse_map.unwrap()].rgba[..4], [90, 80, 70, 255]);
     assert_eq!(
         scene.viewpoints,
@@ -657,10 +657,10 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     };
     changed("\"count\": 3", "\"count\": 4", "accessor 0");
     changed("\"count\": 3", "\"count\": 18446744073709551615", "accessor 0");
-    changed("\"byteLength\": 36", "\"byteLength\": 36000", "buffer view 0");
+    changed("\"byteLength\": 36", "\"byteLength\": 36000", "accessor 0");
     changed("\"byteLength\": 104", "\"byteLength\": 9999", "instead of 9999");
     changed("\"VEC3\"", "\"VEC2\"", "accessor 0");
-    changed("\"mesh\": 0", "\"mesh\": 7", "meshes");
+    changed("\"mesh\": 0", "\"mesh\": 7", "nodes[1].mesh");
     changed("\"indices\": 3", "\"indices\": 0", "accessor 0");
     changed("data:application/octet-stream;base64,", "data:x;base64,***", "damaged");
     changed("data:application/octet-stream;base64,", "gone.bin?", "gone.bin");
@@ -668,6 +668,8 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     for bad in ["", "{}", "[]", "null", "glTF", "{\"asset\": {\"version\": \"2.0\"}}"] {
         assert!(load(&folder.put("a.gltf", bad)).unwrap_err().to_string().contains("a.gltf"));
     }
+    let without_bounds = good.replacen(r#", "min": [0,0,0], "max": [1,1,0]"#, "", 1);
+    assert!(without_bounds.len() < good.len() && load(&folder.put("a.gltf", without_bounds)).is_ok());
     // A circle of nodes ends.
     let circle = good.replacen("\"mesh\": 0,", "\"mesh\": 0, \"children\": [0],", 1);
     assert!(load(&folder.put("a.gltf", circle)).is_ok());

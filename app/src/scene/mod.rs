@@ -3,6 +3,7 @@
 pub mod builtin;
 mod defaults;
 mod error;
+#[cfg(feature = "desktop")]
 pub mod export;
 #[cfg(all(test, feature = "desktop"))]
 mod file_tests;
@@ -18,6 +19,7 @@ mod repair;
 mod textures;
 
 pub use error::SceneError;
+#[cfg(feature = "desktop")]
 pub use export::export;
 pub use load::load;
 pub use model::*;

@@ -328,7 +328,8 @@ struct Normalizer<R> {
     libraries: Vec<String>,
     curves: bool,
     error: Option<SceneError>,
-    /// The first face that refers to a vertex further down: right only if that follows before the group ends.
+    /// The first face that refers to a vertex further down: right only if that
+    /// follows before the faces of the next group.
     beyond: Option<SceneError>,
 }
 
@@ -440,13 +441,18 @@ impl<R: BufRead> Normalizer<R> {
     }
 
     fn vector(&mut self, keyword: &str, rest: &str) -> Result<(), SceneError> {
-        let mut numbers = [f32::NAN; 7];
+        // Passed on as they are written: printing numbers anew takes longer than all the rest.
+        let mut words = [""; 7];
         let mut n = 0;
         for word in rest.split_ascii_whitespace().take(7) {
-            numbers[n] = number(word).ok_or_else(|| {
-                let hint = if word.contains(',') { " (decimals need a point)" } else { "" };
-                self.fault(format!("`{}` is not a number{hint}", mtl::abridged(word)))
-            })?;
+            words[n] = match number(word) {
+                Some(x) if x.is_nan() => "nan",
+                Some(_) => word,
+                None => {
+                    let hint = if word.contains(',') { " (decimals need a point)" } else { "" };
+                    return Err(self.fault(format!("`{}` is not a number{hint}", mtl::abridged(word))));
+                }
+            };
             n += 1;
         }
         let (kind, needed) = match keyword {
@@ -468,14 +474,14 @@ impl<R: BufRead> Normalizer<R> {
                 what: "vertices",
             });
         }
-        let [a, b, c, colour @ ..] = numbers;
+        let [a, b, c, colour @ ..] = words;
         let written = match kind {
             0 if self.coloured => {
-                let [r, g, b2] = if n >= 6 { [colour[0], colour[1], colour[2]] } else { [1.0; 3] };
+                let [r, g, b2] = if n >= 6 { [colour[0], colour[1], colour[2]] } else { ["1"; 3] };
                 writeln!(self.out, "v {a} {b} {c} {r} {g} {b2}")
             }
             0 => writeln!(self.out, "v {a} {b} {c}"),
-            1 => writeln!(self.out, "vt {a} {}", if n < 2 { 0.0 } else { b }),
+            1 => writeln!(self.out, "vt {a} {}", if n < 2 { "0" } else { b }),
             _ => writeln!(self.out, "vn {a} {b} {c}"),
         };
         written.map_err(|source| SceneError::Read { path: self.path.clone(), source })

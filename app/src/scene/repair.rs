@@ -107,7 +107,7 @@ fn generate(meshes: &mut [RawMesh], materials: &[Material]) {
         if no_uv && !mapped[mesh.material] {
             mesh.vertices.iter_mut().filter(|v| v.uv.is_nan()).for_each(|v| v.uv = Vec2::ZERO);
         }
-        if !no_normal && !(no_uv && mapped[mesh.material]) {
+        if !(no_normal || no_uv && mapped[mesh.material]) {
             return;
         }
         let mut vertices = Vec::with_capacity(mesh.vertices.len());

@@ -512,7 +512,7 @@ mod tests {
         let (diffuse, roughness) = metal(Some(base.clone()), Vec3::ONE, &orm, 1.0, false);
         assert_eq!(
             (diffuse.get_pixel(0, 0).0, diffuse.get_pixel(1, 0).0),
-            ([200, 100, 50, 255], [115, 54, 24, 255])
+            ([200, 100, 50, 255], [116, 55, 25, 255])
         );
         assert!((roughness - 0.5).abs() < 0.01);
         let (specular, _) = metal(Some(base), Vec3::ONE, &orm, 1.0, true);

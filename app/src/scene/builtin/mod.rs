@@ -7,6 +7,7 @@ use super::{Scene, ShadingStyle};
 
 mod atrium;
 pub mod build;
+mod conference;
 pub mod figure;
 pub mod paint;
 pub mod props;
@@ -62,6 +63,14 @@ pub const BUILTINS: &[Builtin] = &[
         style: ShadingStyle::Realistic,
         kilo_triangles: 360,
         build: atrium::build,
+    },
+    Builtin {
+        name: "conference",
+        title: "A conference room with screens, blinds and plants",
+        stands_for: "Conference room",
+        style: ShadingStyle::Realistic,
+        kilo_triangles: 125,
+        build: conference::build,
     },
     Builtin {
         name: "voxel",
