@@ -121,6 +121,24 @@ struct Outfit {
 
 fn outfit(s: &mut SceneBuilder, seed: u32) -> Outfit {
     let skin = vec3(0.98, 0.84, 0.76);
+    // A little light of its own keeps the drawn face readable on its shadow side.
+    let fair = |s: &mut SceneBuilder, name: &str, image: Option<crate::scene::TextureImage>| {
+        let map = image.map(|image| s.texture(image));
+        let tone = if map.is_some() { Vec3::ONE } else { skin };
+        s.material(
+            Material {
+                name: name.into(),
+                diffuse: tone * 0.9,
+                specular: Vec3::splat(0.04),
+                emissive: tone * 0.28,
+                roughness: 0.7,
+                diffuse_map: map,
+                emissive_map: map,
+                ..Material::default()
+            },
+            1.0,
+        )
+    };
     let face = paint::face(
         "singer-face",
         1024,
@@ -170,8 +188,8 @@ fn outfit(s: &mut SceneBuilder, seed: u32) -> Outfit {
         )
     };
     Outfit {
-        face: props::pictured(s, face, 0.6, 0.0),
-        skin: props::plain(s, "singer-skin", skin, 0.6),
+        face: fair(s, "singer-face", Some(face)),
+        skin: fair(s, "singer-skin", None),
         hair: props::pictured(s, hair, 0.4, 0.0),
         white: props::plain(s, "blouse", vec3(0.96, 0.95, 0.98), 0.8),
         teal: two_sided(s, "teal-cloth", TEAL),
@@ -323,7 +341,7 @@ fn singer(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
             0.029,
             0.022,
         );
-        figure::clad(s, &arm, 0.0135, j.shoulders[side], 2.0, 0.5);
+        figure::clad(s, &arm, 0.0105, j.shoulders[side], 2.0, 0.5);
         let mut thigh = Clay::new(0.03);
         thigh.limb(j.hips[side], j.knees[side], 0.079, 0.053);
         figure::clad(s, &thigh, 0.019, axis, 2.0, 0.5);
@@ -417,7 +435,7 @@ fn singer(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
         },
     ];
     for hand in hands {
-        figure::hand(s, &hand, 0.0064);
+        figure::hand(s, &hand, 0.0058);
     }
     // The microphone in her right hand.
     s.object("singer-microphone").with_material(p.black);

@@ -128,6 +128,18 @@ impl World {
             .unwrap_or(-DEPTH)
     }
 
+    /// The highest voxel of a column that one can stand on: not of a tree.
+    fn footing(&self, x: i32, z: i32) -> i32 {
+        let tree = [Block::Leaves, Block::Blossom, Block::LogSide].map(code);
+        (-DEPTH..self.top(x, z) + 1)
+            .rev()
+            .find(|&y| {
+                let voxel = self.get(ivec3(x, y, z));
+                !matches!(voxel, AIR | WATER) && !tree.contains(&voxel)
+            })
+            .unwrap_or(-DEPTH)
+    }
+
     fn chance(&self, p: IVec3, purpose: u32) -> f32 {
         unit(hash_cell(hash_cell(self.seed, purpose, p.y as u32), p.x as u32, p.z as u32))
     }
@@ -966,7 +978,7 @@ pub fn build(seed: u64) -> Scene {
     }
     for z in [56, 66, 78] {
         let x = path_bend(z) - 5;
-        let foot = vec3(x as f32 + 0.5, w.top(x, z) as f32 + 1.0, z as f32 + 0.5) * EDGE;
+        let foot = vec3(x as f32 + 0.5, w.footing(x, z) as f32 + 1.0, z as f32 + 0.5) * EDGE;
         s.object(&format!("lamp-path-{z}"));
         let p = lamp_post(&mut s, wood, iron, glow, foot, Vec3::X);
         lights.push(PointLight { position: p, color: warm, range: 9.0 });
@@ -1063,7 +1075,8 @@ fn walk(w: &World) -> Vec<Viewpoint> {
     ];
     let height = |x: f32, z: f32| {
         // The mean over a stride: heads do not jump a voxel at a time.
-        let around: f32 = (-4..=4).map(|d| (w.top(x.floor() as i32, z.floor() as i32 + d) + 1) as f32).sum();
+        let around: f32 =
+            (-4..=4).map(|d| (w.footing(x.floor() as i32, z.floor() as i32 + d) + 1) as f32).sum();
         around / 9.0 * EDGE + 1.65
     };
     steps
