@@ -110,7 +110,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "An anime-style singer on a concert stage at nightfall",
         stands_for: "UnityChan",
         style: ShadingStyle::Anime,
-        kilo_triangles: 120,
+        kilo_triangles: 140,
         build: stage::build,
     },
 ];
