@@ -76,7 +76,7 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "conference",
         title: "A conference room with screens, blinds and plants",
-        stands_for: "Conference room",
+        stands_for: "Conference",
         style: ShadingStyle::Realistic,
         kilo_triangles: 125,
         build: conference::build,
@@ -110,7 +110,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "An anime-style singer on a concert stage at nightfall",
         stands_for: "UnityChan",
         style: ShadingStyle::Anime,
-        kilo_triangles: 120,
+        kilo_triangles: 140,
         build: stage::build,
     },
 ];

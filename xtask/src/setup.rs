@@ -1,0 +1,237 @@
+//! What the program needs of the system: EGL, OpenGL ES, a driver, OSMesa.
+
+use std::collections::BTreeSet;
+use std::env;
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use anyhow::{Context as _, bail};
+
+/// Something that the system must have, and who brings it.
+struct Need {
+    /// For people.
+    what: &'static str,
+    /// Any of these files is enough; a trailing `*` stands for any ending.
+    any_of: &'static [&'static str],
+    /// Debian and Ubuntu.
+    apt: &'static [&'static str],
+}
+
+const EGL: Need = Need { what: "libEGL", any_of: &["libEGL.so.1"], apt: &["libegl1"] };
+const GLES: Need = Need { what: "OpenGL ES", any_of: &["libGLESv2.so.2"], apt: &["libgles2"] };
+/// libEGL is a dispatcher that needs one of these, or Mesa's own, which is always numbered 1.0.0.
+const VENDOR: Need = Need {
+    what: "an EGL vendor library",
+    any_of: &["libEGL_mesa.so.0", "libEGL_nvidia.so.0", "libEGL.so.1.0.0"],
+    apt: &["libegl-mesa0"],
+};
+/// Mesa has its rasterizer in a DRI module or, since 24.2, in libgallium.
+const DRIVER: Need = Need {
+    what: "a GL driver",
+    any_of: &["libgallium-*", "dri/swrast_dri.so", "libEGL_nvidia.so.0"],
+    apt: &["libgl1-mesa-dri"],
+};
+const OSMESA: Need =
+    Need { what: "OSMesa", any_of: &["libOSMesa.so.8", "libOSMesa.so.6"], apt: &["libosmesa6"] };
+
+/// Which of the optional libraries are here after set-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Libraries {
+    /// Mesa dropped it in version 25.1, so that new distributions do not have it. Only `--gl osmesa` and its
+    /// tests need it.
+    pub osmesa: bool,
+}
+
+impl Libraries {
+    /// Nothing is missing, not even what one can do without.
+    pub fn complete(self) -> bool {
+        self.osmesa
+    }
+}
+
+/// Installs what is missing, and says nothing when nothing is.
+///
+/// # Errors
+/// One sentence that says what to install when this program cannot.
+pub fn ensure() -> anyhow::Result<Libraries> {
+    if !cfg!(target_os = "linux") {
+        bail!(
+            "OpenGL ES without a window is supported on Linux only: use Linux, a container, or WSL on Windows"
+        );
+    }
+    let folders = library_folders();
+    let missing = missing(&folders);
+    if missing.is_empty() {
+        return Ok(Libraries { osmesa: true });
+    }
+    let names: Vec<&str> = missing.iter().map(|need| need.what).collect();
+    eprintln!("missing: {}", names.join(", "));
+    if find_program("apt-get").is_none() {
+        let release = fs::read_to_string("/etc/os-release").unwrap_or_default();
+        return conclude(&missing, &format!("install it with {}", advice(&release)));
+    }
+    let installed = install(&missing);
+    let still_missing = self::missing(&library_folders());
+    match installed {
+        Ok(()) => conclude(&still_missing, "apt-get installed what it has, but it is not there"),
+        Err(error) => conclude(&still_missing, &format!("{error:#}")),
+    }
+}
+
+/// What is left is an error unless it is optional.
+fn conclude(missing: &[&Need], remedy: &str) -> anyhow::Result<Libraries> {
+    let required: Vec<&str> =
+        missing.iter().filter(|need| need.what != OSMESA.what).map(|need| need.what).collect();
+    if !required.is_empty() {
+        bail!("{} missing: {remedy}", required.join(", "));
+    }
+    let osmesa = missing.is_empty();
+    if !osmesa {
+        eprintln!("warning: OSMesa is missing, so that --gl osmesa does not work here; {remedy}");
+    }
+    Ok(Libraries { osmesa })
+}
+
+fn missing(folders: &[PathBuf]) -> Vec<&'static Need> {
+    static NEEDS: [Need; 5] = [EGL, VENDOR, GLES, DRIVER, OSMESA];
+    NEEDS.iter().filter(|need| !need.any_of.iter().any(|name| exists(folders, name))).collect()
+}
+
+/// Where the dynamic linker looks, as far as that can be told from outside.
+fn library_folders() -> Vec<PathBuf> {
+    let mut folders: BTreeSet<PathBuf> = BTreeSet::new();
+    if let Some(path) = env::var_os("LD_LIBRARY_PATH") {
+        folders.extend(env::split_paths(&path).filter(|folder| folder.is_absolute()));
+    }
+    // Each line of the cache ends with ` => /path/to/library`. Some users have no sbin in their PATH.
+    let cache = ["ldconfig", "/sbin/ldconfig"].into_iter().find_map(|program| {
+        let output = Command::new(program).arg("-p").stderr(Stdio::null()).output().ok()?;
+        output.status.success().then_some(output.stdout)
+    });
+    let cache = String::from_utf8_lossy(cache.as_deref().unwrap_or_default()).into_owned();
+    let native = env::consts::ARCH != "x86_64";
+    for line in cache.lines().filter(|line| native || line.contains("x86-64")) {
+        let library = line.rsplit_once(" => ").map(|(_, path)| PathBuf::from(path.trim()));
+        folders.extend(library.as_deref().and_then(|path| path.parent()).map(PathBuf::from));
+    }
+    let multiarch = format!("/usr/lib/{}-linux-gnu", env::consts::ARCH);
+    folders.extend([multiarch.as_str(), "/usr/lib64", "/usr/lib", "/usr/local/lib"].map(PathBuf::from));
+    folders.into_iter().collect()
+}
+
+fn exists(folders: &[PathBuf], name: &str) -> bool {
+    folders.iter().any(|folder| match name.strip_suffix('*') {
+        Some(start) => fs::read_dir(folder).is_ok_and(|entries| {
+            entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with(start))
+        }),
+        None => folder.join(name).exists(),
+    })
+}
+
+fn find_program(name: &str) -> Option<PathBuf> {
+    let path = env::var_os("PATH")?;
+    env::split_paths(&path).map(|folder| folder.join(name)).find(|program| program.is_file())
+}
+
+fn is_root() -> bool {
+    let id = Command::new("id").arg("-u").output();
+    id.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == "0")
+}
+
+/// `apt-get update`, then an installation for each thing by itself, so that what is there is installed even
+/// when a package does not exist in this distribution.
+fn install(missing: &[&Need]) -> anyhow::Result<()> {
+    let packages: Vec<&str> = missing.iter().flat_map(|need| need.apt).copied().collect();
+    let by_hand = format!("apt-get install {}", packages.join(" "));
+    let sudo = match (is_root(), find_program("sudo")) {
+        (true, _) => false,
+        (false, Some(_)) => true,
+        (false, None) => bail!("not root and no sudo here: have root run `{by_hand}`"),
+    };
+    if let Err(error) = apt_get(sudo, &["update"]) {
+        // Old lists are often good enough, and a third party's broken source is no reason to stop.
+        eprintln!("warning: {error:#}");
+    }
+    let mut failures = Vec::new();
+    for need in missing {
+        let mut arguments = vec!["install", "--yes", "--no-install-recommends"];
+        arguments.extend(need.apt);
+        failures.extend(apt_get(sudo, &arguments).err());
+    }
+    match failures.pop() {
+        Some(error) => Err(error.context(format!("try `{by_hand}` by hand"))),
+        None => Ok(()),
+    }
+}
+
+fn apt_get(sudo: bool, arguments: &[&str]) -> anyhow::Result<()> {
+    // sudo drops the environment; `env` sets it on the other side.
+    let words: &[&str] = if sudo { &["sudo", "env"] } else { &["env"] };
+    let mut command = Command::new(words[0]);
+    command.args(&words[1..]).args(["DEBIAN_FRONTEND=noninteractive", "apt-get", "--quiet"]).args(arguments);
+    eprintln!("$ {}apt-get {}", if sudo { "sudo " } else { "" }, arguments.join(" "));
+    // What the caller prints stays clean.
+    let status = command.stdin(Stdio::null()).stdout(std::io::stderr()).status();
+    let status = status.with_context(|| format!("{} cannot be started", words[0]))?;
+    if !status.success() {
+        bail!("apt-get {} failed", arguments.join(" "));
+    }
+    Ok(())
+}
+
+/// How everything is installed on a distribution without apt, by its os-release file.
+fn advice(release: &str) -> &'static str {
+    let value = |key: &str| {
+        let line = release.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+        line.unwrap_or_default().trim_matches('"').to_owned()
+    };
+    let ids = format!("{} {}", value("ID"), value("ID_LIKE"));
+    let is = |name: &str| ids.split_whitespace().any(|id| id == name);
+    if is("fedora") || is("rhel") || is("centos") {
+        "`sudo dnf install libglvnd-egl libglvnd-gles mesa-libEGL mesa-dri-drivers mesa-libOSMesa`"
+    } else if is("arch") {
+        "`sudo pacman -S --needed libglvnd mesa`"
+    } else if is("alpine") {
+        "`doas apk add mesa-egl mesa-gles mesa-dri-gallium mesa-osmesa`"
+    } else if is("suse") || is("opensuse") {
+        "`sudo zypper install Mesa-libEGL1 Mesa-libGLESv2-2 Mesa-dri libOSMesa8`"
+    } else {
+        "your package manager: Mesa with EGL, OpenGL ES, llvmpipe and OSMesa"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn advice_fits_the_distribution() {
+        assert!(advice("NAME=\"Fedora Linux\"\nID=fedora\n").contains("dnf"));
+        assert!(advice("ID=\"rocky\"\nID_LIKE=\"rhel centos fedora\"\n").contains("dnf"));
+        assert!(advice("ID=manjaro\nID_LIKE=arch").contains("pacman"));
+        assert!(advice("ID=alpine").contains("apk"));
+        assert!(advice("VERSION_ID=1\nID=slackware").contains("your package manager"));
+    }
+
+    #[test]
+    fn finds_files_by_name_and_by_beginning() {
+        let folder = env::temp_dir().join(format!("xtask-setup-{}", std::process::id()));
+        fs::create_dir_all(folder.join("dri")).unwrap();
+        for name in ["libEGL.so.1", "libgallium-24.2.so", "dri/other_dri.so"] {
+            fs::write(folder.join(name), "").unwrap();
+        }
+        let found = missing(std::slice::from_ref(&folder));
+        fs::remove_dir_all(&folder).unwrap();
+        let names: Vec<&str> = found.iter().map(|need| need.what).collect();
+        assert_eq!(names, [VENDOR.what, GLES.what, OSMESA.what]);
+    }
+
+    #[test]
+    fn only_osmesa_is_optional() {
+        assert_eq!(conclude(&[], "").unwrap(), Libraries { osmesa: true });
+        assert_eq!(conclude(&[&OSMESA], "").unwrap(), Libraries { osmesa: false });
+        let error = conclude(&[&EGL, &OSMESA], "do this").unwrap_err().to_string();
+        assert_eq!(error, "libEGL missing: do this");
+    }
+}
