@@ -730,8 +730,8 @@ pub enum Plant {
 pub fn voxel_plant(name: &str, seed: u32, plant: Plant) -> TextureImage {
     const N: u32 = 16;
     let green = match plant {
-        Plant::Grass | Plant::Poppy | Plant::Buttercup => vec3(0.33, 0.54, 0.2),
-        Plant::Fern => vec3(0.24, 0.46, 0.2),
+        Plant::Grass | Plant::Poppy | Plant::Buttercup => vec3(0.48, 0.68, 0.34),
+        Plant::Fern => vec3(0.34, 0.56, 0.28),
         Plant::Vine => vec3(0.22, 0.42, 0.15),
     };
     let mut image = picture(name, [N; 2], |uv| {
