@@ -1,0 +1,12 @@
+//! The program `yoro` from end to end.
+
+mod program;
+
+mod compare;
+mod interrupt;
+mod memory;
+mod mistakes;
+mod pair;
+mod render;
+mod scenes;
+mod synthesize;
