@@ -18,6 +18,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Run(cli::run::RunArgs),
     Render(cli::render::RenderArgs),
     Synthesize(cli::synthesize::SynthesizeArgs),
     Compare(cli::compare::CompareArgs),
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         .init();
     cli::catch_interrupt();
     let result = match &arguments.command {
+        Command::Run(args) => cli::run::run(args),
         Command::Render(args) => cli::render::run(args),
         Command::Synthesize(args) => cli::synthesize::run(args),
         Command::Compare(args) => cli::compare::run(args),

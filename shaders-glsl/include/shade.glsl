@@ -116,7 +116,8 @@ vec3 shade(Surface s, vec3 position, float occlusion) {
         fade = max(1.0 - fade * fade, 0.0);
         // A loop, because CPU rasterizers run both sides of an `if` but leave a loop that no pixel needs.
         for (int near = fade > 0.0 ? 1 : 0; near > 0; --near) {
-            float strength = fade * fade / (d2 + 0.02);
+            // No lamp is a point: the offset keeps the wall behind it from turning white.
+            float strength = fade * fade / (d2 + 0.06);
             color += strength * light_colors[i].rgb * reflected(s, to_eye, offset * inversesqrt(d2), 1.0);
         }
     }

@@ -5,16 +5,24 @@ uniform sampler2D occlusion_map;
 
 layout(location = 0) out vec4 out_occlusion;
 
+// Of the differences to both sides, the one that stays on the surface.
+float slope(float before, float center, float after) {
+    float a = center - before, b = after - center;
+    return abs(a) < abs(b) ? a : b;
+}
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     ivec2 last = textureSize(occlusion_map, 0) - 1;
     vec4 center = texelFetch(occlusion_map, p, 0);
     float code = unpack_code(center);
+#define CODE(x, y) unpack_code(texelFetch(occlusion_map, clamp(p + ivec2(x, y), ivec2(0), last), 0))
+    vec2 gradient = vec2(slope(CODE(-1, 0), code, CODE(1, 0)), slope(CODE(0, -1), code, CODE(0, 1)));
     vec2 sum = vec2(center.x, 1.0) * 0.01;
     for (int y = -2; y < 2; ++y) {
         for (int x = -2; x < 2; ++x) {
             vec4 texel = texelFetch(occlusion_map, clamp(p + ivec2(x, y), ivec2(0), last), 0);
-            float weight = same_surface(code, unpack_code(texel));
+            float weight = same_surface(code + dot(gradient, vec2(x, y)), unpack_code(texel));
             sum += weight * vec2(texel.x, 1.0);
         }
     }

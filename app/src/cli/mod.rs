@@ -2,7 +2,9 @@
 
 pub mod compare;
 pub mod info;
+pub mod machine;
 pub mod render;
+pub mod run;
 pub mod scenes;
 pub mod stage;
 pub mod synthesize;

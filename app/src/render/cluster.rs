@@ -76,7 +76,7 @@ pub fn build(model: &Model) -> Clusters {
     built
 }
 
-fn corners<'a>(model: &'a Model, triangle: u32) -> impl Iterator<Item = &'a Vertex> {
+fn corners(model: &Model, triangle: u32) -> impl Iterator<Item = &Vertex> {
     let i = triangle as usize;
     model.indices[i..i + 3].iter().map(|&v| &model.vertices[v as usize])
 }

@@ -38,7 +38,7 @@ impl Features {
             material.normal_map.is_some(),
             matches!(material.alpha, Alpha::Cutout(_)),
         ];
-        Features(Features::NAMES.iter().zip(present).fold(0, |bits, ((f, _), on)| bits | f.0 * on as u8))
+        Features(Features::NAMES.iter().zip(present).fold(0, |bits, ((f, _), on)| bits | (f.0 * on as u8)))
     }
 
     /// Place among the combinations.
@@ -154,7 +154,9 @@ impl GpuScene {
         let Scene { name, mut model, style, sky, lights, viewpoints } = scene;
         let bounds = model.bounds();
         let triangle_count = model.triangle_count();
-        let cluster::Clusters { clusters, batches, indices } = cluster::build(&model);
+        let cluster::Clusters { clusters, mut batches, indices } = cluster::build(&model);
+        // What is cut out comes last: much of it is hidden by then, and `discard` defeats early depth tests.
+        batches.sort_by_key(|b| matches!(model.materials[b.material].alpha, Alpha::Cutout(_)));
         model.indices = Vec::new();
         let mesh = Mesh::new(gl, &model.vertices, &indices)?;
         model.vertices = Vec::new();

@@ -8,6 +8,14 @@ use crate::eyes::Warp;
 pub(super) struct Entry {
     pub hole: bool,
     pub source: f64,
+    /// A silhouette in front: its column, and how much of the pixel it covers.
+    pub rim: Option<(usize, f64)>,
+}
+
+impl Entry {
+    fn new(hole: bool, source: f64) -> Entry {
+        Entry { hole, source, rim: None }
+    }
 }
 
 const MAX_STRETCH: f64 = 2.0;
@@ -29,37 +37,47 @@ pub(super) fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
     (0..width)
         .map(|t| {
             let target = t as f64;
-            let hit = |source: f64| Entry { hole: false, source };
-            if p[0] > target && p[0] - target <= 0.5 {
-                return hit(0.0);
-            }
+            let mut rim = None;
+            let mut hit = None;
             let mut edge = if p[0] > target { Some((p[0], 0)) } else { None };
+            if p[0] > target && p[0] - target <= 0.5 {
+                hit = Some(0.0);
+            }
             for x in 1..p.len() {
                 let (a, b) = (p[x - 1], p[x]);
+                if hit.is_some() {
+                    break;
+                }
                 if a > target {
                     continue;
                 }
                 if b > target {
                     if b - a < MAX_STRETCH {
-                        return hit((x - 1) as f64 + (target - a) / (b - a));
-                    } else if target - a < 0.5 {
-                        return hit((x - 1) as f64);
-                    } else if b - target <= 0.5 {
-                        return hit(x as f64);
+                        hit = Some((x - 1) as f64 + (target - a) / (b - a));
+                        continue;
+                    }
+                    if b - target < 1.0 {
+                        rim = rim.or(Some((x, 1.0 - (b - target))));
                     }
                     let displacement = a - (x - 1) as f64;
-                    if edge.is_none_or(|(d, _)| displacement < d) {
+                    if target - a < 0.5 {
+                        hit = Some((x - 1) as f64);
+                    } else if edge.is_none_or(|(d, _)| displacement < d) {
                         edge = Some((displacement, x - 1));
                     }
-                } else if target - a < 0.5 && b < a {
-                    return hit((x - 1) as f64);
+                } else if target - a < 1.0 && b < a {
+                    rim = rim.or(Some((x - 1, 1.0 - (target - a))));
                 }
             }
             let last = p.len() - 1;
-            match edge {
-                Some((_, x)) => Entry { hole: true, source: x as f64 },
-                None if p[last] <= target && target - p[last] < 0.5 => hit(last as f64),
-                None => Entry { hole: true, source: last as f64 },
+            let entry = match (hit, edge) {
+                (Some(source), _) => Entry::new(false, source),
+                (None, Some((_, x))) => Entry::new(true, x as f64),
+                (None, None) => Entry::new(!(p[last] <= target && target - p[last] < 0.5), last as f64),
+            };
+            match rim {
+                Some((x, coverage)) if coverage >= 0.5 => Entry { hole: false, source: x as f64, rim },
+                _ => Entry { rim, ..entry },
             }
         })
         .collect()
@@ -90,7 +108,7 @@ pub(super) fn rowgroup_row(p: &[f64], width: usize) -> Vec<Entry> {
     }
     (0..width)
         .map(|t| match keys[t] {
-            Some(source) => Entry { hole: false, source },
+            Some(source) => Entry::new(false, source),
             None => {
                 let left = (0..t).rev().find_map(|i| keys[i].map(|k| (i as f64 - k, k)));
                 let right = (t + 1..width).find_map(|i| keys[i].map(|k| (i as f64 - k, k)));
@@ -106,7 +124,7 @@ pub(super) fn rowgroup_row(p: &[f64], width: usize) -> Vec<Entry> {
                     (None, Some(r)) => r.1,
                     (None, None) => t.min(p.len() - 1) as f64,
                 };
-                Entry { hole: true, source }
+                Entry::new(true, source)
             }
         })
         .collect()

@@ -103,7 +103,7 @@ fn agrees_with_reference(gl: &Rc<Context>, pipeline: Pipeline, reference: Refere
                     different += 1;
                     continue;
                 }
-                if !hole {
+                if !hole && entry.rim.is_none() {
                     let color = fetch(source_row, source, mirrored);
                     for c in 0..4 {
                         let value = result.rgba[(y * wt + x) * 4 + c] as f64;
@@ -119,6 +119,50 @@ fn agrees_with_reference(gl: &Rc<Context>, pipeline: Pipeline, reference: Refere
         let total = result.source_map.len();
         assert!(different * 1000 <= total, "{pipeline:?}, case {seed}: {different} of {total} pixels differ");
     }
+}
+
+/// Half a red pixel before blue: where a silhouette covers a share of a pixel, the colour is that mixture.
+#[test]
+fn gather_blends_silhouettes_by_coverage() {
+    on_every_backend(|gl| {
+        let [w, h] = [64u32, 9];
+        let mut seen = 0;
+        for tenth in 0..10 {
+            // Displacement of the square: 4 pixels and some tenths; of the background: none.
+            let scale = 4.0 + tenth as f64 / 10.0;
+            let warp = Warp {
+                source_size: [w, h],
+                target_size: [w, h],
+                law: DisparityLaw { offset: 0.0, scale },
+                row_offset: 0,
+                target_eye: Eye::Left,
+                convention: DepthConvention::Reversed,
+            };
+            let square = |i: u32| (20..40).contains(&(i % w));
+            let depth: Vec<f32> = (0..w * h).map(|i| if square(i) { 1.0 } else { 0.0 }).collect();
+            let rgba: Vec<u8> = (0..w * h)
+                .flat_map(|i| if square(i) { [255, 0, 0, 255] } else { [0, 0, 255, 255] })
+                .collect();
+            let result =
+                Offline::new(gl, &options(Pipeline::Gather)).unwrap().run(&rgba, &depth, &warp).unwrap();
+            for x in 0..w {
+                // The first and the last red sample lie at these places; coverage falls to nothing within a pixel.
+                let (first, last) = (20.0 + scale, 39.0 + scale);
+                let x_f = x as f64;
+                let covered = (1.0 - (first - x_f).max(0.0)).min(1.0 - (x_f - last).max(0.0)).clamp(0.0, 1.0);
+                let got = &result.rgba[((4 * w + x) * 4) as usize..][..3];
+                let want = [covered * 255.0, 0.0, (1.0 - covered) * 255.0];
+                seen += (covered > 0.0 && covered < 1.0) as usize;
+                for c in 0..3 {
+                    assert!(
+                        (got[c] as f64 - want[c]).abs() < 1.6,
+                        "scale {scale}, column {x}: {got:?} for {want:?}"
+                    );
+                }
+            }
+        }
+        assert!(seen >= 18, "{seen} partly covered pixels");
+    });
 }
 
 #[test]

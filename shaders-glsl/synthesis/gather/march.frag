@@ -2,7 +2,7 @@
 // Gather, pass 3: for each target pixel, walk along the source row from the nearest candidate outwards.
 //
 // The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
-// fetched with linear filtering. Where the row jumps over the pixel from a farther to a nearer surface there is a
+// fetched with linear filtering. A silhouette that crosses the pixel is blended over what lies behind. Where the row jumps over the pixel from a farther to a nearer surface there is a
 // disocclusion: the farthest such jump is remembered and the hole is filled from its background side.
 
 #include "include/tiles.glsl"
@@ -28,6 +28,9 @@ void main() {
     float source = -1.0;
     int edge = -1;
     float edge_displacement = 1e9;
+    // The nearest silhouette beside the pixel: its column, and how much of the pixel it covers.
+    int rim = 0;
+    float coverage = 0.0;
 
     float a = float(x) + displacement_at(x, row);
     if (x == 0 && a > target) {
@@ -43,16 +46,21 @@ void main() {
             if (b > target) {
                 if (stretch < MAX_STRETCH) {
                     source = float(x - 1) + (target - a) / stretch;
-                } else if (target - a < 0.5) {
-                    source = float(x - 1);
-                } else if (b - target <= 0.5) {
-                    source = float(x);
-                } else if (a - float(x - 1) < edge_displacement) {
-                    edge_displacement = a - float(x - 1);
-                    edge = x - 1;
+                } else {
+                    if (b - target < 1.0 && coverage == 0.0) {
+                        rim = x;
+                        coverage = 1.0 - (b - target);
+                    }
+                    if (target - a < 0.5) {
+                        source = float(x - 1);
+                    } else if (a - float(x - 1) < edge_displacement) {
+                        edge_displacement = a - float(x - 1);
+                        edge = x - 1;
+                    }
                 }
-            } else if (target - a < 0.5 && stretch < 0.0) {
-                source = float(x - 1);
+            } else if (target - a < 1.0 && stretch < 0.0 && coverage == 0.0) {
+                rim = x - 1;
+                coverage = 1.0 - (target - a);
             }
         }
         a = b;
@@ -71,6 +79,15 @@ void main() {
         color = fill_hole(target, edge, row);
     } else {
         color = color_at(source, row);
+    }
+    // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
+    // it covers on average.
+    for (int i = 0; i < (coverage > 0.0 ? 1 : 0); ++i) {
+        color = mix(color, color_texel(rim, row), coverage);
+    }
+    if (coverage >= 0.5) {
+        source = float(rim);
+        hole = false;
     }
 #ifdef WRITE_DEPTH
     gl_FragDepth = depth_at(int(source + 0.5), row);

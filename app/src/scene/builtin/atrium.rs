@@ -185,7 +185,7 @@ fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
         frond,
         stem: plain(b, "stem", vec3(0.32, 0.36, 0.17), 0.7),
         leaves: props::foliage(b, "leaves", seed, vec3(0.23, 0.42, 0.15)),
-        flame: glowing(b, "flame", vec3(1.0, 0.75, 0.4), 3.0),
+        flame: glowing(b, "flame", vec3(1.0, 0.75, 0.4), 1.85),
         water,
         iron: metal(b, "iron", vec3(0.13, 0.12, 0.12), 0.5),
         niche: plain(b, "niche", vec3(0.3, 0.24, 0.18), 0.95),

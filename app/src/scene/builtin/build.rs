@@ -524,24 +524,31 @@ impl SceneBuilder {
             return;
         }
         let last = path.len() - 1;
-        let direction =
-            |i: usize| (path[(i + 1).min(last)] - path[i.saturating_sub(1)]).normalize_or(Vec3::Y);
-        // Carrying one normal along the path keeps the tube from twisting.
+        let along = |i: usize| (path[i + 1] - path[i]).normalize_or(Vec3::Y);
+        let direction = |i: usize| {
+            let (before, after) = (along(i.saturating_sub(1)), along(i.min(last - 1)));
+            (before + after).try_normalize().unwrap_or(after)
+        };
+        // Turning one normal along with the path keeps the tube from twisting.
         let mut side = direction(0).any_orthonormal_vector();
         let mut distance = 0.0;
         let mut points = Vec::with_capacity((sides + 1) * path.len());
         for (i, &center) in path.iter().enumerate() {
             let forward = direction(i);
-            side = (side - forward * side.dot(forward))
-                .try_normalize()
-                .unwrap_or(forward.any_orthonormal_vector());
+            side = Quat::from_rotation_arc(direction(i.saturating_sub(1)), forward) * side;
+            side = (side - forward * side.dot(forward)).normalize_or(forward.any_orthonormal_vector());
+            // A mitre: the cut through a bent tube is wider than the tube.
+            let bend = (along(i.min(last - 1)) - along(i.saturating_sub(1))).normalize_or_zero();
+            let mitre = 1.0 / along(i.min(last - 1)).dot(forward).max(0.5) - 1.0;
             let other = forward.cross(side);
             distance += if i == 0 { 0.0 } else { center.distance(path[i - 1]) };
             let r = radius(i as f32 / last as f32);
             for k in 0..=sides {
                 let turn = k as f32 / sides as f32;
                 let (sin, cos) = if k == sides { (0.0, 1.0) } else { (turn * TAU).sin_cos() };
-                points.push((center + (side * cos + other * sin) * r, vec2(turn * TAU * r, distance)));
+                let out = (side * cos + other * sin) * r;
+                let out = out + bend * (out.dot(bend) * mitre);
+                points.push((center + out, vec2(turn * TAU * r, distance)));
             }
         }
         self.grid(sides, last, true, &points);

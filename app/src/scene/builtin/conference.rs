@@ -167,14 +167,14 @@ fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
     let table = textured(b, veneer, 1.6, 0.22);
     b.edit_material(table, |m| m.specular = Vec3::splat(0.28));
     Palette {
-        wall: textured(b, paint::plaster("wall", 512, s + 4, vec3(0.85, 0.84, 0.81)), 2.5, 0.9),
+        wall: textured(b, emulsion(s + 4), 1.6, 0.9),
         carpet: textured(b, carpet(s + 5), 2.0, 0.95),
         skirting: plain(b, "skirting", vec3(0.3, 0.29, 0.28), 0.5),
         ceiling: textured(b, panels, 0.6, 0.9),
         ceiling_bar: plain(b, "ceiling-bar", vec3(0.88, 0.88, 0.87), 0.5),
         lamp: glowing(b, "ceiling-lamp", vec3(1.0, 0.97, 0.92), 1.8),
         pendant: metal(b, "pendant", vec3(0.72, 0.5, 0.3), 0.28),
-        bulb: glowing(b, "bulb", vec3(1.0, 0.86, 0.6), 2.6),
+        bulb: glowing(b, "bulb", vec3(1.0, 0.86, 0.6), 1.8),
         wood: textured(b, wood, 0.9, 0.5),
         batten: textured(b, oak, 0.8, 0.5),
         table,
@@ -228,19 +228,28 @@ fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
     }
 }
 
+/// Rolled emulsion paint: almost flat.
+fn emulsion(seed: u32) -> paint::Surface {
+    paint::surface("wall", [256, 256], 0.0014, |uv| {
+        let grain = paint::fbm(seed, glam::UVec2::splat(48), 2, uv);
+        let stain = paint::fbm(seed + 1, glam::UVec2::splat(3), 4, uv);
+        (vec3(0.84, 0.83, 0.8) * (0.96 + 0.03 * grain + 0.05 * stain), grain)
+    })
+}
+
 /// Carpet tiles of two tones, 50 cm each, turned against each other.
 fn carpet(seed: u32) -> paint::Surface {
     paint::surface("carpet", [512, 512], 0.004, |uv| {
         let cell = (uv * 4.0).floor();
         let local = (uv * 4.0).fract();
         let turned = (cell.x + cell.y) as u32 % 2 == 0;
-        let along = if turned { uv.x } else { uv.y };
-        let stripe = ((along * 96.0).sin() * 0.5 + 0.5) * 0.25;
-        let pile = paint::fbm(seed, glam::UVec2::splat(64), 3, uv);
-        let tone = paint::unit(paint::hash_cell(seed, cell.x as u32, cell.y as u32)) * 0.12;
+        let loops = if turned { uv * vec2(96.0, 48.0) } else { uv * vec2(48.0, 96.0) };
+        let bump = (loops.x * TAU).sin() * (loops.y * TAU).sin() * 0.5 + 0.5;
+        let fleck = paint::unit(paint::hash_cell(seed, loops.x as u32, loops.y as u32));
+        let tone = paint::unit(paint::hash_cell(seed, cell.x as u32, cell.y as u32)) * 0.14;
         let seam = local.min_element() < 0.012;
-        let base = vec3(0.3, 0.33, 0.38) * (0.75 + stripe + 0.45 * pile + tone);
-        (if seam { base * 0.75 } else { base }, pile + stripe)
+        let base = vec3(0.3, 0.33, 0.37) * (0.72 + 0.2 * bump + 0.3 * fleck + tone);
+        (if seam { base * 0.75 } else { base }, bump)
     })
 }
 

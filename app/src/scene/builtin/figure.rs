@@ -62,10 +62,10 @@ pub fn head(s: &mut SceneBuilder, radii: Vec3, nose: f32, cell: f32) {
     let r = radii;
     let mut clay = Clay::new(0.035);
     clay.ball(vec3(0.0, 0.1 * r.y, -0.06 * r.z), vec3(r.x, r.y * 0.9, r.z))
-        .ball(vec3(0.0, -0.4 * r.y, 0.16 * r.z), vec3(r.x * 0.74, r.y * 0.55, r.z * 0.74))
-        .ball(vec3(0.0, -0.76 * r.y, 0.42 * r.z), vec3(r.x * 0.26, r.y * 0.16, r.z * 0.28));
+        .ball(vec3(0.0, -0.4 * r.y, 0.16 * r.z), vec3(r.x * 0.68, r.y * 0.55, r.z * 0.72))
+        .ball(vec3(0.0, -0.8 * r.y, 0.46 * r.z), vec3(r.x * 0.2, r.y * 0.15, r.z * 0.26));
     for side in [-1.0, 1.0] {
-        clay.ball(vec3(side * 0.42 * r.x, -0.35 * r.y, 0.5 * r.z), vec3(r.x, r.y, r.z) * 0.36);
+        clay.ball(vec3(side * 0.42 * r.x, -0.35 * r.y, 0.5 * r.z), vec3(r.x, r.y, r.z) * 0.34);
     }
     clay.limb(vec3(0.0, -0.4 * r.y, -0.2 * r.z), vec3(0.0, -1.5 * r.y, -0.42 * r.z), 0.38 * r.x, 0.42 * r.x);
     let mut detail = Clay::new(0.012);
@@ -167,11 +167,12 @@ pub fn lock(s: &mut SceneBuilder, points: [Vec3; 4], radius: f32, flat: f32, cel
         a * (u * u * u) + b * (3.0 * u * u * t) + c * (3.0 * u * t * t) + d * (t * t * t)
     };
     let [sides, segments] = cells;
-    let out = points[1] - points[0];
+    let mut lift = points[1] - points[0];
     s.surface(sides, segments, true, |u, v| {
         let t = v.min(0.999);
         let forward = (curve((t + 0.01).min(1.0)) - curve((t - 0.01).max(0.0))).normalize_or(Vec3::NEG_Y);
-        let lift = out.reject_from_normalized(forward).normalize_or(forward.any_orthonormal_vector());
+        // Carried from row to row, so that a curl does not turn the tube inside out.
+        lift = lift.reject_from_normalized(forward).normalize_or(forward.any_orthonormal_vector());
         let across = forward.cross(lift);
         let r = radius * (1.0 - 0.35 * (1.0 - v).powi(3)) * (1.0 - v * v * v).max(0.0);
         let angle = if u == 1.0 { 0.0 } else { u * TAU };

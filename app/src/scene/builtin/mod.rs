@@ -12,6 +12,7 @@ pub mod figure;
 pub mod paint;
 pub mod props;
 mod prototype;
+mod scifi_city;
 pub mod sculpt;
 mod stage;
 mod street;
@@ -57,6 +58,14 @@ pub const BUILTINS: &[Builtin] = &[
         build: street::build,
     },
     Builtin {
+        name: "scifi-city",
+        title: "A neon street between towers at night",
+        stands_for: "SciFiCity",
+        style: ShadingStyle::Realistic,
+        kilo_triangles: 610,
+        build: scifi_city::build,
+    },
+    Builtin {
         name: "atrium",
         title: "A court with columns, arches, curtains and banners",
         stands_for: "Sponza",
@@ -67,7 +76,7 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "conference",
         title: "A conference room with screens, blinds and plants",
-        stands_for: "Conference room",
+        stands_for: "Conference",
         style: ShadingStyle::Realistic,
         kilo_triangles: 125,
         build: conference::build,
@@ -101,7 +110,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "An anime-style singer on a concert stage at nightfall",
         stands_for: "UnityChan",
         style: ShadingStyle::Anime,
-        kilo_triangles: 120,
+        kilo_triangles: 140,
         build: stage::build,
     },
 ];

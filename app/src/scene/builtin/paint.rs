@@ -255,7 +255,7 @@ pub fn cobblestones(name: &str, size: u32, seed: u32, color: Vec3, count: u32) -
 
 /// Rough plaster with faint stains.
 pub fn plaster(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
-    surface(name, [size; 2], 0.012, |uv| {
+    surface(name, [size; 2], 0.004, |uv| {
         let stain = fbm(seed, UVec2::splat(3), 5, uv);
         let grain = fbm(seed + 7, UVec2::splat(48), 3, uv);
         (shade(color, (stain - 0.5) * 0.22 + (grain - 0.5) * 0.12), grain + 0.6 * stain)
@@ -896,14 +896,14 @@ pub fn face(name: &str, size: u32, face: &Face) -> TextureImage {
                 out(-angle.cos() * 1.03, angle.sin() * 1.0)
             });
             let t = i as f32 / steps as f32;
-            canvas.line(a, b, rx * (0.1 + 0.14 * t), ink);
+            canvas.line(a, b, rx * (0.13 + 0.2 * t), ink);
             let [a, b] = [i, i + 1].map(|i| {
                 let angle = (0.25 + i as f32 / steps as f32 * 0.6) * std::f32::consts::PI;
                 out(-angle.cos() * 1.0, -angle.sin() * 1.0)
             });
             canvas.line(a, b, rx * 0.06, (face.skin * 0.6).extend(0.8));
         }
-        canvas.line(out(0.98, 0.25), out(1.3, 0.5), rx * 0.13, ink);
+        canvas.line(out(0.96, 0.2), out(1.32, 0.42), rx * 0.17, ink);
         canvas.line(out(0.8, 0.7), out(1.15, 0.95), rx * 0.1, ink);
         for i in 0..10 {
             let [a, b] = [i, i + 1].map(|i| {

@@ -317,7 +317,9 @@ pub fn tube_text(b: &mut SceneBuilder, text: &str, height: f32, radius: f32) {
                 .chunks_exact(2)
                 .map(|p| vec3(x + f32::from(p[0] - b'0') * unit, f32::from(p[1] - b'0') * unit, 0.0))
                 .collect();
-            b.tube(&rounded(&corners, unit * 0.9), radius, 8, true);
+            for bent in split_at_points(&corners) {
+                b.tube(&rounded(bent, unit * 0.9), radius, 6, true);
+            }
         }
         x += letter_width(letter) * unit;
     }
@@ -332,6 +334,20 @@ pub fn tube_text_width(text: &str, height: f32) -> f32 {
     (text.chars().map(letter_width).sum::<f32>() - 1.6) * height / 6.0
 }
 
+/// The pieces of a polyline between acute corners: a tube cannot be bent so far.
+fn split_at_points(corners: &[Vec3]) -> Vec<&[Vec3]> {
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    for k in 1..corners.len() - 1 {
+        if (corners[k] - corners[k - 1]).angle_between(corners[k + 1] - corners[k]) > 0.6 * PI {
+            pieces.push(&corners[start..=k]);
+            start = k;
+        }
+    }
+    pieces.push(&corners[start..]);
+    pieces
+}
+
 /// A polyline with its corners cut into arcs, as glass tubes are bent.
 fn rounded(corners: &[Vec3], radius: f32) -> Vec<Vec3> {
     let mut path = vec![corners[0]];
@@ -339,8 +355,8 @@ fn rounded(corners: &[Vec3], radius: f32) -> Vec<Vec3> {
         let [a, p, c] = [corners[k - 1], corners[k], corners[k + 1]];
         let cut = radius.min(a.distance(p) * 0.45).min(c.distance(p) * 0.45);
         let (start, end) = (p + (a - p).normalize() * cut, p + (c - p).normalize() * cut);
-        for i in 0..=5 {
-            let t = i as f32 / 5.0;
+        for i in 0..=4 {
+            let t = i as f32 / 4.0;
             path.push(start.lerp(p, t).lerp(p.lerp(end, t), t));
         }
     }

@@ -28,6 +28,8 @@ struct Palette {
     cone: [usize; 2],
     gold: usize,
     crowd: [usize; 3],
+    crowd_skin: [usize; 2],
+    crowd_hair: [usize; 2],
     sticks: [usize; 4],
 }
 
@@ -49,7 +51,7 @@ fn palette(s: &mut SceneBuilder) -> Palette {
     let grille = paint::surface("grille", [128, 128], 0.02, |uv| {
         let p = uv * 16.0 - (uv * 16.0).floor() - 0.5;
         let hole = paint::smoothstep(0.36, 0.3, p.length());
-        (Vec3::splat(0.16 - 0.12 * hole), 1.0 - hole)
+        (Vec3::splat(0.3 - 0.2 * hole), 1.0 - hole)
     });
     let cone = |s: &mut SceneBuilder, name: &str, color: Vec3| {
         s.material(
@@ -66,9 +68,9 @@ fn palette(s: &mut SceneBuilder) -> Palette {
         )
     };
     Palette {
-        black: props::plain(s, "black", Vec3::splat(0.07), 0.6),
+        black: props::plain(s, "black", Vec3::splat(0.13), 0.6),
         steel: props::metal(s, "truss", Vec3::splat(0.66), 0.4),
-        dark: props::metal(s, "dark-metal", Vec3::splat(0.22), 0.5),
+        dark: props::metal(s, "dark-metal", Vec3::splat(0.34), 0.5),
         lens: [
             props::glowing(s, "lens-warm", vec3(1.0, 0.85, 0.6), 3.0),
             props::glowing(s, "lens-pink", vec3(1.0, 0.35, 0.65), 3.0),
@@ -82,9 +84,17 @@ fn palette(s: &mut SceneBuilder) -> Palette {
         cone: [cone(s, "beam-pink", vec3(1.0, 0.4, 0.8)), cone(s, "beam-cyan", vec3(0.4, 0.8, 1.0))],
         gold: props::metal(s, "cymbal", vec3(0.86, 0.68, 0.3), 0.3),
         crowd: [
-            props::plain(s, "crowd-a", vec3(0.13, 0.12, 0.18), 0.9),
-            props::plain(s, "crowd-b", vec3(0.2, 0.14, 0.16), 0.9),
-            props::plain(s, "crowd-c", vec3(0.12, 0.16, 0.2), 0.9),
+            props::plain(s, "crowd-a", vec3(0.3, 0.28, 0.42), 0.9),
+            props::plain(s, "crowd-b", vec3(0.45, 0.28, 0.32), 0.9),
+            props::plain(s, "crowd-c", vec3(0.26, 0.38, 0.45), 0.9),
+        ],
+        crowd_skin: [
+            props::plain(s, "crowd-skin-a", vec3(0.85, 0.66, 0.56), 0.8),
+            props::plain(s, "crowd-skin-b", vec3(0.55, 0.38, 0.3), 0.8),
+        ],
+        crowd_hair: [
+            props::plain(s, "crowd-hair-a", vec3(0.16, 0.11, 0.1), 0.8),
+            props::plain(s, "crowd-hair-b", vec3(0.42, 0.24, 0.14), 0.8),
         ],
         sticks: [
             props::glowing(s, "stick-pink", vec3(1.0, 0.3, 0.6), 2.6),
@@ -111,6 +121,24 @@ struct Outfit {
 
 fn outfit(s: &mut SceneBuilder, seed: u32) -> Outfit {
     let skin = vec3(0.98, 0.84, 0.76);
+    // A little light of its own keeps the drawn face readable on its shadow side.
+    let fair = |s: &mut SceneBuilder, name: &str, image: Option<crate::scene::TextureImage>| {
+        let map = image.map(|image| s.texture(image));
+        let tone = if map.is_some() { Vec3::ONE } else { skin };
+        s.material(
+            Material {
+                name: name.into(),
+                diffuse: tone * 0.9,
+                specular: Vec3::splat(0.04),
+                emissive: tone * 0.28,
+                roughness: 0.7,
+                diffuse_map: map,
+                emissive_map: map,
+                ..Material::default()
+            },
+            1.0,
+        )
+    };
     let face = paint::face(
         "singer-face",
         1024,
@@ -160,8 +188,8 @@ fn outfit(s: &mut SceneBuilder, seed: u32) -> Outfit {
         )
     };
     Outfit {
-        face: props::pictured(s, face, 0.6, 0.0),
-        skin: props::plain(s, "singer-skin", skin, 0.6),
+        face: fair(s, "singer-face", Some(face)),
+        skin: fair(s, "singer-skin", None),
         hair: props::pictured(s, hair, 0.4, 0.0),
         white: props::plain(s, "blouse", vec3(0.96, 0.95, 0.98), 0.8),
         teal: two_sided(s, "teal-cloth", TEAL),
@@ -205,7 +233,7 @@ fn singer_hair(s: &mut SceneBuilder, o: &Outfit, r: Vec3, rng: &mut Pcg32) {
     cap.ball(vec3(0.0, 0.18 * r.y, -0.12 * r.z), r * vec3(1.09, 1.0, 1.08));
     cap.ball(vec3(0.0, -0.3 * r.y, -0.45 * r.z), r * vec3(0.98, 0.8, 0.68));
     cap.carve(vec3(0.0, -0.55 * r.y, 1.0 * r.z), r * vec3(0.93, 1.18, 0.92));
-    cap.mesh(s, 0.009, |p, _| vec2(p.x.atan2(p.z), p.y * 3.0));
+    cap.mesh(s, 0.011, |p, _| vec2(p.x.atan2(p.z), p.y * 3.0));
     // The fringe: pointed locks that end above the eyes.
     for i in 0..15 {
         let t = i as f32 / 14.0;
@@ -216,7 +244,7 @@ fn singer_hair(s: &mut SceneBuilder, o: &Outfit, r: Vec3, rng: &mut Pcg32) {
         let tip = figure::on_head(r, tip_turn, tip_rise, 1.1);
         let bend = figure::on_head(r, turn * 0.8, 0.95, 1.24);
         let low = figure::on_head(r, tip_turn, tip_rise + 0.35, 1.22);
-        figure::lock(s, [root, bend, low, tip], 0.0205, 0.4, [8, 12]);
+        figure::lock(s, [root, bend, low, tip], 0.0205, 0.4, [7, 10]);
     }
     // Long locks in front of the ears.
     for side in [-1.0, 1.0] {
@@ -225,7 +253,7 @@ fn singer_hair(s: &mut SceneBuilder, o: &Outfit, r: Vec3, rng: &mut Pcg32) {
             let root = figure::on_head(r, turn, 0.5, 1.05);
             let mid = figure::on_head(r, turn, -0.3, 1.2);
             let tip = mid + vec3(-side * 0.012, -0.2 + 0.03 * i as f32, 0.03);
-            figure::lock(s, [root, mid, mid + vec3(side * 0.015, -0.1, 0.01), tip], 0.019, 0.5, [8, 14]);
+            figure::lock(s, [root, mid, mid + vec3(side * 0.015, -0.1, 0.01), tip], 0.019, 0.5, [7, 11]);
         }
         // An ahoge and the twin tails.
         let tie = vec3(side * 1.02, 0.62, -0.42) * r;
@@ -238,7 +266,7 @@ fn singer_hair(s: &mut SceneBuilder, o: &Outfit, r: Vec3, rng: &mut Pcg32) {
             let tip = tie + vec3(side * around(rng, 0.17, 0.07), -length, around(rng, -0.12, 0.07));
             let low =
                 tie + sweep + offset * 1.8 + vec3(side * around(rng, 0.05, 0.05), -length * 0.62, -0.04);
-            figure::lock(s, [tie, tie + sweep + offset, low, tip], around(rng, 0.027, 0.004), 0.7, [8, 20]);
+            figure::lock(s, [tie, tie + sweep + offset, low, tip], around(rng, 0.027, 0.004), 0.7, [7, 17]);
         }
         let at = Affine3A::from_rotation_translation(
             Quat::from_rotation_y(side * 0.7),
@@ -303,7 +331,7 @@ fn singer(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
         let down = (j.elbows[side] - j.shoulders[side]).normalize_or(Vec3::NEG_Y);
         blouse.ball(j.shoulders[side] + down * 0.035, vec3(0.062, 0.06, 0.06));
     }
-    figure::clad(s, &blouse, 0.0115, axis, 4.0, 0.5);
+    figure::clad(s, &blouse, 0.0145, axis, 4.0, 0.5);
     s.with_material(o.skin);
     for side in 0..2 {
         let mut arm = Clay::new(0.02);
@@ -313,10 +341,10 @@ fn singer(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
             0.029,
             0.022,
         );
-        figure::clad(s, &arm, 0.011, j.shoulders[side], 2.0, 0.5);
+        figure::clad(s, &arm, 0.0105, j.shoulders[side], 2.0, 0.5);
         let mut thigh = Clay::new(0.03);
         thigh.limb(j.hips[side], j.knees[side], 0.079, 0.053);
-        figure::clad(s, &thigh, 0.015, axis, 2.0, 0.5);
+        figure::clad(s, &thigh, 0.019, axis, 2.0, 0.5);
     }
     for side in 0..2 {
         // Cuffs that widen towards the hand, stockings, boots.
@@ -324,21 +352,21 @@ fn singer(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
         let mut cuff = Clay::new(0.01);
         cuff.limb(from, to, 0.033, 0.046);
         s.with_material(o.white);
-        figure::clad(s, &cuff, 0.011, from, 2.0, 0.2);
+        figure::clad(s, &cuff, 0.0135, from, 2.0, 0.2);
         s.with_material(o.teal);
         let mut band = Clay::new(0.01);
         let back = (from - to).normalize_or(Vec3::Y);
         band.limb(to + back * 0.03, to + back * 0.02, 0.049, 0.05);
-        figure::clad(s, &band, 0.009, from, 2.0, 0.2);
+        figure::clad(s, &band, 0.012, from, 2.0, 0.2);
         s.with_material(o.stocking);
         let mut stocking = Clay::new(0.02);
         let upper = j.hips[side].lerp(j.knees[side], 0.5);
         stocking.limb(upper, j.knees[side], 0.0705, 0.057).limb(j.knees[side], j.ankles[side], 0.057, 0.04);
-        figure::clad(s, &stocking, 0.0135, axis, 3.0, 0.5);
+        figure::clad(s, &stocking, 0.0175, axis, 3.0, 0.5);
         s.with_material(o.teal);
         let mut garter = Clay::new(0.005);
         garter.limb(upper + Vec3::Y * 0.004, upper - Vec3::Y * 0.012, 0.0745, 0.073);
-        figure::clad(s, &garter, 0.012, axis, 3.0, 0.5);
+        figure::clad(s, &garter, 0.0145, axis, 3.0, 0.5);
         s.with_material(o.boot);
         let mut boot = Clay::new(0.03);
         let shin = j.knees[side].lerp(j.ankles[side], 0.3);
@@ -347,11 +375,11 @@ fn singer(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
         boot.limb(shin, j.ankles[side], 0.061, 0.047)
             .limb(heel - toe * 0.02, heel + toe * 0.1 - Vec3::Y * 0.02, 0.045, 0.036)
             .ball(heel + toe * 0.12 - Vec3::Y * 0.022, vec3(0.041, 0.034, 0.045));
-        figure::clad(s, &boot, 0.0125, axis, 3.0, 0.5);
+        figure::clad(s, &boot, 0.0165, axis, 3.0, 0.5);
         s.with_material(o.teal);
         let mut rim = Clay::new(0.01);
         rim.limb(shin + Vec3::Y * 0.004, shin - Vec3::Y * 0.018, 0.069, 0.066);
-        figure::clad(s, &rim, 0.012, axis, 3.0, 0.5);
+        figure::clad(s, &rim, 0.0145, axis, 3.0, 0.5);
         s.within(placed(heel.with_y(0.0), toe.x.atan2(toe.z)), |s| {
             s.with_material(o.teal).beveled_cuboid(
                 vec3(-0.036, 0.0, -0.06),
@@ -407,7 +435,7 @@ fn singer(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
         },
     ];
     for hand in hands {
-        figure::hand(s, &hand, 0.0064);
+        figure::hand(s, &hand, 0.0058);
     }
     // The microphone in her right hand.
     s.object("singer-microphone").with_material(p.black);
@@ -525,10 +553,10 @@ fn drums(s: &mut SceneBuilder, p: &Palette, shell: usize, skin: usize) {
 }
 
 fn stage(s: &mut SceneBuilder, p: &Palette, seed: u32) -> Vec<PointLight> {
-    let deck = props::textured(s, paint::planks("deck", 512, seed + 1, vec3(0.2, 0.18, 0.22), 6), 1.5, 0.25);
+    let deck = props::textured(s, paint::planks("deck", 512, seed + 1, vec3(0.34, 0.3, 0.36), 6), 1.5, 0.25);
     let skirting = props::textured(
         s,
-        paint::metal_panels("skirting", 512, seed + 2, vec3(0.26, 0.26, 0.32), [4, 2]),
+        paint::metal_panels("skirting", 512, seed + 2, vec3(0.45, 0.45, 0.52), [4, 2]),
         2.0,
         0.4,
     );
@@ -765,7 +793,7 @@ fn crowd(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
                 2.9 + 1.05 * row as f32 + around(rng, 0.0, 0.2),
             );
             let free = x.abs() < if z < 10.6 { 1.85 } else { 0.0 };
-            if free || rng.random::<f32>() < 0.12 {
+            if free || rng.random::<f32>() < 0.3 {
                 continue;
             }
             index += 1;
@@ -789,13 +817,17 @@ fn crowd(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
                         8,
                     );
                 });
-                s.ellipsoid(Vec3::Y * (tall - 0.11), vec3(0.088, 0.118, 0.1), 6, 8);
+                let skin = p.crowd_skin[index * 7 / 3 % 2];
+                s.with_material(skin).ellipsoid(Vec3::Y * (tall - 0.11), vec3(0.084, 0.115, 0.095), 6, 8);
+                s.with_material(p.crowd_hair[index % 2]);
+                s.ellipsoid(vec3(0.0, tall - 0.075, -0.025), vec3(0.094, 0.1, 0.1), 5, 8);
+                s.with_material(skin);
                 let waving = rng.random::<f32>() < 0.7;
                 for side in [-1.0, 1.0] {
                     let root = vec3(side * 0.19, shoulder - 0.05, 0.0);
                     if waving && side > 0.0 {
                         let hand = root + vec3(around(rng, 0.08, 0.12), 0.42, 0.18);
-                        s.tube(&[root, root + vec3(side * 0.1, 0.12, 0.16), hand], 0.04, 6, false);
+                        s.tube(&[root, root + vec3(side * 0.1, 0.12, 0.16), hand], 0.04, 5, false);
                         let tip = hand + vec3(around(rng, 0.0, 0.12), 0.3, around(rng, 0.03, 0.06));
                         s.with_material(p.black).cylinder(
                             hand - (tip - hand) * 0.3,
@@ -806,8 +838,8 @@ fn crowd(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
                             true,
                         );
                         s.with_material(p.sticks[rng.random_range(0..4)])
-                            .cylinder(hand, tip, 0.017, 0.014, 7, true);
-                        s.with_material(material);
+                            .cylinder(hand, tip, 0.017, 0.014, 6, true);
+                        s.with_material(skin);
                     } else {
                         s.tube(
                             &[
@@ -816,7 +848,7 @@ fn crowd(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
                                 root + vec3(side * 0.02, -0.5, 0.16),
                             ],
                             0.042,
-                            6,
+                            5,
                             false,
                         );
                     }
@@ -836,7 +868,7 @@ fn crowd(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
 }
 
 fn town(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
-    let ground = props::textured(s, paint::asphalt("ground", 512, seed + 5, Vec3::splat(0.2)), 4.0, 0.9);
+    let ground = props::textured(s, paint::asphalt("ground", 512, seed + 5, Vec3::splat(0.34)), 4.0, 0.9);
     s.object("ground").with_material(ground);
     s.rectangle(vec3(-300.0, 0.0, 300.0), Vec3::X * 600.0, Vec3::NEG_Z * 600.0);
     let facades =
@@ -976,8 +1008,8 @@ pub fn build(seed: u64) -> Scene {
     ];
     for (i, z) in [3.0, 6.0, 9.0].into_iter().enumerate() {
         for x in [-2.6, 2.6] {
-            let color = [vec3(1.4, 0.4, 0.9), vec3(0.4, 1.1, 1.5)][(i + (x > 0.0) as usize) % 2];
-            lights.push(PointLight { position: vec3(x, 2.3, z), color, range: 5.0 });
+            let color = [vec3(3.4, 1.0, 2.2), vec3(1.0, 2.6, 3.4)][(i + (x > 0.0) as usize) % 2];
+            lights.push(PointLight { position: vec3(x, 2.3, z), color, range: 7.0 });
         }
     }
     s.within(moved(0.0, STAGE, 0.0), |s| singer(s, &p, noise, &mut rng));
@@ -1010,10 +1042,10 @@ pub fn build(seed: u64) -> Scene {
         style: ShadingStyle::Anime,
         sky: Sky {
             sun_direction: vec3(0.4, 0.7, 0.6).normalize(),
-            sun_color: vec3(1.5, 1.4, 1.6),
-            zenith: vec3(0.05, 0.06, 0.2),
+            sun_color: vec3(1.9, 1.75, 1.9),
+            zenith: vec3(0.1, 0.11, 0.3),
             horizon: vec3(0.42, 0.2, 0.36),
-            ground: vec3(0.12, 0.09, 0.14),
+            ground: vec3(0.24, 0.17, 0.26),
         },
         lights,
         viewpoints: walk

@@ -310,18 +310,18 @@ fn short_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
         let out = (c - vec3(0.0, 0.1 * r.y, 0.0)).normalize_or(Vec3::Y);
         let side = out.any_orthonormal_vector();
         let side = Quat::from_axis_angle(out, around(rng, 0.0, PI)) * side;
-        let k = 0.03;
+        let k = 0.036;
         figure::lock(
             s,
             [
                 c - out * 0.01,
-                c + (out * 1.1 + side) * k,
-                c + (out * 0.9 - side * 1.3) * k,
-                c + (side * 0.8 - out * 0.2) * k,
+                c + (out * 1.3 - side * 0.3) * k,
+                c + (out * 1.3 + side * 1.5) * k,
+                c + (side * 1.3 - out * 0.2) * k,
             ],
-            0.017,
+            0.0155,
             0.8,
-            [6, 7],
+            [6, 9],
         );
     }
 }
@@ -463,10 +463,14 @@ fn chair(s: &mut SceneBuilder, p: &Palette) {
 
 fn table(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     s.object("table").with_material(p.wood);
-    s.lathe(
-        &[(0.0, 0.69), (0.42, 0.69), (0.44, 0.7), (0.445, 0.712), (0.44, 0.722), (0.43, 0.725), (0.0, 0.725)],
-        56,
-    );
+    s.lathe(&[(0.0, 0.69), (0.42, 0.69), (0.44, 0.7), (0.445, 0.712), (0.44, 0.722), (0.43, 0.725)], 56);
+    let rim: Vec<Vec3> = (0..56)
+        .map(|i| {
+            let turn = i as f32 / 56.0 * TAU;
+            vec3(0.43 * turn.cos(), 0.725, 0.43 * turn.sin())
+        })
+        .collect();
+    s.fan(&rim, Vec3::Y);
     s.with_material(p.dark_wood);
     s.lathe(
         &[(0.03, 0.06), (0.05, 0.1), (0.032, 0.2), (0.028, 0.4), (0.04, 0.52), (0.03, 0.62), (0.09, 0.69)],
@@ -494,7 +498,18 @@ fn table(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     // A plate of biscuits, a tea pot, a small vase, an open book.
     s.within(moved(0.02, 0.725, -0.2), |s| {
         s.with_material(p.china);
-        s.lathe(&[(0.0, 0.004), (0.06, 0.004), (0.1, 0.016), (0.102, 0.02), (0.06, 0.01), (0.0, 0.01)], 32);
+        s.lathe(
+            &[
+                (0.0, 0.004),
+                (0.06, 0.004),
+                (0.1, 0.016),
+                (0.102, 0.02),
+                (0.102, 0.02),
+                (0.06, 0.01),
+                (0.0, 0.01),
+            ],
+            32,
+        );
         s.with_material(p.wood);
         for i in 0..6 {
             let turn = i as f32 * 1.05;

@@ -128,6 +128,18 @@ impl World {
             .unwrap_or(-DEPTH)
     }
 
+    /// The highest voxel of a column that one can stand on: not of a tree.
+    fn footing(&self, x: i32, z: i32) -> i32 {
+        let tree = [Block::Leaves, Block::Blossom, Block::LogSide].map(code);
+        (-DEPTH..self.top(x, z) + 1)
+            .rev()
+            .find(|&y| {
+                let voxel = self.get(ivec3(x, y, z));
+                !matches!(voxel, AIR | WATER) && !tree.contains(&voxel)
+            })
+            .unwrap_or(-DEPTH)
+    }
+
     fn chance(&self, p: IVec3, purpose: u32) -> f32 {
         unit(hash_cell(hash_cell(self.seed, purpose, p.y as u32), p.x as u32, p.z as u32))
     }
@@ -191,9 +203,9 @@ fn ground(seed: u32, x: i32, z: i32) -> f32 {
     let blend = |h: f32, level: f32, distance: f32, width: f32| {
         level + (h - level) * smoothstep(0.0, width, distance)
     };
-    h = blend(h, CASTLE_GROUND as f32, ((p - CASTLE.as_vec2()).length() - 46.0).max(0.0), 34.0);
-    h = blend(h, TERRACE as f32, outside(p, vec2(-44.0, -130.0), vec2(44.0, 8.0)), 16.0);
-    h = blend(h, 7.0, outside(p, vec2(-26.0, 46.0), vec2(58.0, 96.0)), 22.0);
+    h = blend(h, CASTLE_GROUND as f32 + 0.5, ((p - CASTLE.as_vec2()).length() - 46.0).max(0.0), 34.0);
+    h = blend(h, TERRACE as f32 + 0.5, outside(p, vec2(-44.0, -130.0), vec2(44.0, 8.0)), 16.0);
+    h = blend(h, 7.5, outside(p, vec2(-26.0, 46.0), vec2(58.0, 96.0)), 22.0);
     let bank = (p.y - river_z(p.x)).abs();
     let bed = -5.0 + 2.0 * detail;
     bed + (h - bed) * smoothstep(9.0, 17.0, bank + 4.0 * (detail - 0.5))
@@ -648,7 +660,9 @@ fn woods(w: &mut World, rng: &mut Pcg32) {
         if placed == TREES {
             break;
         }
-        let (x, z) = (rng.random_range(-HALF + 10..HALF - 10), rng.random_range(-HALF + 10..HALF - 10));
+        // Every other tree stands where the walk can see it.
+        let reach = if placed % 2 == 0 { 130 } else { HALF - 10 };
+        let (x, z) = (rng.random_range(-reach..reach), rng.random_range(-reach..reach));
         let density = w.noise(ivec3(x, 0, z), 34.0, 31);
         let y = w.top(x, z);
         let grows = [Block::GrassTop, Block::Dirt].map(code).contains(&w.get(ivec3(x, y, z)));
@@ -964,7 +978,7 @@ pub fn build(seed: u64) -> Scene {
     }
     for z in [56, 66, 78] {
         let x = path_bend(z) - 5;
-        let foot = vec3(x as f32 + 0.5, w.top(x, z) as f32 + 1.0, z as f32 + 0.5) * EDGE;
+        let foot = vec3(x as f32 + 0.5, w.footing(x, z) as f32 + 1.0, z as f32 + 0.5) * EDGE;
         s.object(&format!("lamp-path-{z}"));
         let p = lamp_post(&mut s, wood, iron, glow, foot, Vec3::X);
         lights.push(PointLight { position: p, color: warm, range: 9.0 });
@@ -1061,7 +1075,8 @@ fn walk(w: &World) -> Vec<Viewpoint> {
     ];
     let height = |x: f32, z: f32| {
         // The mean over a stride: heads do not jump a voxel at a time.
-        let around: f32 = (-4..=4).map(|d| (w.top(x.floor() as i32, z.floor() as i32 + d) + 1) as f32).sum();
+        let around: f32 =
+            (-4..=4).map(|d| (w.footing(x.floor() as i32, z.floor() as i32 + d) + 1) as f32).sum();
         around / 9.0 * EDGE + 1.65
     };
     steps
