@@ -516,7 +516,7 @@ fn outer_wall(b: &mut SceneBuilder, p: &Palette, side: &Side, i: usize, rng: &mu
     let (x0, x1) = (i as f32 * side.bay, (i + 1) as f32 * side.bay);
     let (middle, z) = ((x0 + x1) * 0.5, -HALF_WALL - AISLE);
     b.object(&format!("{} outer wall {i}", side.name)).with_material(p.ashlar);
-    let niche = i % 2 == 0;
+    let niche = i.is_multiple_of(2);
     if niche {
         b.set_uv_offset(vec2(middle, 0.0));
         b.within(moved(middle, 0.0, z), |b| {

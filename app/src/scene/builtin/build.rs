@@ -525,9 +525,19 @@ impl SceneBuilder {
         }
         let last = path.len() - 1;
         let along = |i: usize| (path[i + 1] - path[i]).normalize_or(Vec3::Y);
+        let radius_at = |i: usize| radius(i as f32 / last as f32);
+        // Between long pieces there is a bend with a mitre; short pieces are a curve.
+        let is_bend = |i: usize| {
+            i > 0
+                && i < last
+                && [i - 1, i].iter().all(|&k| path[k].distance(path[k + 1]) > 4.0 * radius_at(i))
+        };
         let direction = |i: usize| {
-            let (before, after) = (along(i.saturating_sub(1)), along(i.min(last - 1)));
-            (before + after).try_normalize().unwrap_or(after)
+            if is_bend(i) {
+                (along(i - 1) + along(i)).try_normalize().unwrap_or(along(i))
+            } else {
+                (path[(i + 1).min(last)] - path[i.saturating_sub(1)]).normalize_or(Vec3::Y)
+            }
         };
         // Turning one normal along with the path keeps the tube from twisting.
         let mut side = direction(0).any_orthonormal_vector();
@@ -537,12 +547,14 @@ impl SceneBuilder {
             let forward = direction(i);
             side = Quat::from_rotation_arc(direction(i.saturating_sub(1)), forward) * side;
             side = (side - forward * side.dot(forward)).normalize_or(forward.any_orthonormal_vector());
-            // A mitre: the cut through a bent tube is wider than the tube.
-            let bend = (along(i.min(last - 1)) - along(i.saturating_sub(1))).normalize_or_zero();
-            let mitre = 1.0 / along(i.min(last - 1)).dot(forward).max(0.5) - 1.0;
             let other = forward.cross(side);
             distance += if i == 0 { 0.0 } else { center.distance(path[i - 1]) };
-            let r = radius(i as f32 / last as f32);
+            let r = radius_at(i);
+            let (bend, mitre) = if is_bend(i) {
+                ((along(i) - along(i - 1)).normalize_or_zero(), 1.0 / along(i).dot(forward).max(0.5) - 1.0)
+            } else {
+                (Vec3::ZERO, 0.0)
+            };
             for k in 0..=sides {
                 let turn = k as f32 / sides as f32;
                 let (sin, cos) = if k == sides { (0.0, 1.0) } else { (turn * TAU).sin_cos() };

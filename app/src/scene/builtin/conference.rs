@@ -242,7 +242,7 @@ fn carpet(seed: u32) -> paint::Surface {
     paint::surface("carpet", [512, 512], 0.004, |uv| {
         let cell = (uv * 4.0).floor();
         let local = (uv * 4.0).fract();
-        let turned = (cell.x + cell.y) as u32 % 2 == 0;
+        let turned = ((cell.x + cell.y) as u32).is_multiple_of(2);
         let loops = if turned { uv * vec2(96.0, 48.0) } else { uv * vec2(48.0, 96.0) };
         let bump = (loops.x * TAU).sin() * (loops.y * TAU).sin() * 0.5 + 0.5;
         let fleck = paint::unit(paint::hash_cell(seed, loops.x as u32, loops.y as u32));

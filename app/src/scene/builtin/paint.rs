@@ -334,7 +334,7 @@ pub fn fabric(name: &str, size: u32, seed: u32, color: Vec3, threads: u32) -> Su
         let p = uv * threads as f32;
         let cell = p.floor();
         let local = (p - cell - 0.5).abs();
-        let over = (cell.x + cell.y) as u32 % 2 == 0;
+        let over = ((cell.x + cell.y) as u32).is_multiple_of(2);
         let (across, along) = if over { (local.x, local.y) } else { (local.y, local.x) };
         let height = (1.0 - 3.0 * across * across) * (1.0 - along * along);
         let worn = fbm(seed, UVec2::splat(5), 4, uv);
@@ -730,8 +730,8 @@ pub enum Plant {
 pub fn voxel_plant(name: &str, seed: u32, plant: Plant) -> TextureImage {
     const N: u32 = 16;
     let green = match plant {
-        Plant::Grass | Plant::Poppy | Plant::Buttercup => vec3(0.33, 0.54, 0.2),
-        Plant::Fern => vec3(0.24, 0.46, 0.2),
+        Plant::Grass | Plant::Poppy | Plant::Buttercup => vec3(0.48, 0.68, 0.34),
+        Plant::Fern => vec3(0.34, 0.56, 0.28),
         Plant::Vine => vec3(0.22, 0.42, 0.15),
     };
     let mut image = picture(name, [N; 2], |uv| {
@@ -750,7 +750,7 @@ pub fn voxel_plant(name: &str, seed: u32, plant: Plant) -> TextureImage {
                 let blade = hash_cell(seed, x, 1);
                 let lean = y / 6 * (blade & 1);
                 let root = hash_cell(seed, (x + lean) % N, 2);
-                (root % 3 != 0 && y < 5 + root % 10).then_some(()).and(leaf)
+                (!root.is_multiple_of(3) && y < 5 + root % 10).then_some(()).and(leaf)
             }
             Plant::Poppy => petal([8, 11], 2, vec3(0.85, 0.16, 0.12), vec3(0.15, 0.1, 0.1))
                 .or((y < 10).then_some(()).and(stalk)),
@@ -763,8 +763,8 @@ pub fn voxel_plant(name: &str, seed: u32, plant: Plant) -> TextureImage {
                     .and(leaf)
             }
             Plant::Vine => {
-                let run = hash_cell(seed, x / 2, 3) % 3 != 0;
-                (run && hash_cell(seed, x, y + 50) % 4 != 0).then_some(()).and(leaf)
+                let run = !hash_cell(seed, x / 2, 3).is_multiple_of(3);
+                (run && !hash_cell(seed, x, y + 50).is_multiple_of(4)).then_some(()).and(leaf)
             }
         };
         color.map_or(green.extend(0.0), |c| c.extend(1.0))

@@ -366,7 +366,7 @@ fn tower(
         BoxFaces::LEFT.and(BoxFaces::RIGHT).and(BoxFaces::FRONT).and(BoxFaces::BACK),
     );
     // Far from the walk, panels may be larger.
-    let coarse = near < -48.0 || near > 16.0;
+    let coarse = !(-48.0..=16.0).contains(&near);
     let mut y = base;
     let mut floor = 0;
     while y < DETAILED - 1.0 {

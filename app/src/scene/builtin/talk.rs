@@ -146,11 +146,10 @@ fn looks(s: &mut SceneBuilder, seed: u32) -> [Look; 2] {
         }
     };
     let hair = |name: &str, color: Vec3, s: &mut SceneBuilder| {
-        let c = cloth(s, name, move |uv| {
+        cloth(s, name, move |uv| {
             let strand = paint::fbm(seed + 5, glam::UVec2::new(24, 2), 4, uv);
             color * (0.7 + 0.6 * strand)
-        });
-        c
+        })
     };
     [
         Look {

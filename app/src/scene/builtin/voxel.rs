@@ -348,7 +348,7 @@ fn temple(w: &mut World, rng: &mut Pcg32) {
     }
     for _ in 0..26 {
         let (x, z) = (rng.random_range(-28..=28), rng.random_range(-90..=-38));
-        if (x as i32).abs() > 13 {
+        if !(-13..=13).contains(&x) {
             rubble(w, rng, ivec3(x, floor, z), 3);
         }
     }
