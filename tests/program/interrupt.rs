@@ -17,7 +17,8 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 fn ends_soon_and_leaves_whole_files_only() {
     let dir = tempfile::tempdir().unwrap();
     let arguments = ["render", "prototype", "--frames", "5000", "--size", "64x64"];
-    let mut child = yoro(arguments).current_dir(dir.path()).stdout(Stdio::null()).spawn().unwrap();
+    let mut child =
+        yoro(arguments).current_dir(dir.path()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let out = dir.path().join("out");
     let start = Instant::now();
     while files(&out).len() < 12 {

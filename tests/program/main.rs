@@ -8,5 +8,6 @@ mod memory;
 mod mistakes;
 mod pair;
 mod render;
+mod run;
 mod scenes;
 mod synthesize;

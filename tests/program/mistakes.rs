@@ -63,6 +63,7 @@ fn scenes_that_are_none() {
         run(at, &format!("render {scene} --size 64x64 --out out")).refuses(naming);
     }
     assert!(!at.join("out").exists());
+    run(at, "run prototype bistroo").refuses(&["\"bistroo\""]);
     run(at, "render prototype --pose 99 --out out").refuses(&["--pose 99", "poses 0 to"]);
 }
 
@@ -72,10 +73,11 @@ fn outputs_that_cannot_be_written() {
     let at = dir.path();
     color_and_depth(at);
     fs::write(at.join("file"), "made earlier").unwrap();
+    fs::create_dir(at.join("folder.png")).unwrap();
     let synthesize = "synthesize --color color.png --depth depth.png --depth-encoding metres";
     for (out, naming) in [
         ("file/out.png", &["file is not a folder"][..]),
-        (".", &[". is a folder"]),
+        ("folder.png", &["folder.png is a folder"]),
         ("out.gif", &["out.gif", ".png"]),
         ("/proc/out.png", &["cannot write /proc/out.png"]),
     ] {
@@ -83,6 +85,7 @@ fn outputs_that_cannot_be_written() {
     }
     run(at, "render prototype --size 64x64 --out file").refuses(&["file is not a folder"]);
     run(at, "render prototype --size 64x64 --out /proc/out").refuses(&["/proc/out"]);
+    run(at, "run prototype --out file").refuses(&["file is not a folder"]);
     run(at, "scenes export prototype file").refuses(&["file is not a folder"]);
     assert_eq!(fs::read(at.join("file")).unwrap(), b"made earlier");
 }

@@ -72,7 +72,7 @@ fn every_output_and_measure() {
     let json = succeed(dir.path(), &line).json();
     let (quality, baseline) = (&json[0]["quality"], &json[0]["same_image"]);
     let ssim = |quality: &serde_json::Value| quality["ssim_gaussian"].as_f64().unwrap();
-    assert!(ssim(quality) > 0.9 && ssim(quality) > ssim(baseline) + 0.02, "{json:#}");
+    assert!(ssim(quality) > ssim(baseline) + 0.05, "{json:#}");
     for output in outputs {
         let image = picture::load_color(&dir.path().join(format!("out/prototype.{output}.png"))).unwrap();
         let width = if output.contains("side") || output.contains("cross") { 192 } else { 96 };
