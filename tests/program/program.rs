@@ -28,8 +28,9 @@ impl Run {
     pub fn refuses(&self, naming: &[&str]) {
         let text = &self.stderr;
         assert_eq!(self.code, Some(2), "{text}");
-        // The parser of the command line adds how to get help, in lines of their own.
-        let hint = |line: &&str| line.starts_with("Usage:") || line.starts_with("For more information");
+        // The parser of the command line adds what is possible and how to get help, in lines of their own.
+        let hints = ["Usage:", "For more information", "  "];
+        let hint = |line: &&str| hints.iter().any(|hint| line.starts_with(hint));
         let mut lines = text.lines().filter(|line| !line.is_empty() && !hint(line));
         let sentence = lines.next().unwrap_or_default();
         let rest: Vec<&str> = lines.collect();
