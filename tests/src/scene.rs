@@ -64,7 +64,7 @@ pub fn every_material(style: ShadingStyle) -> Scene {
 /// of 48.
 pub fn keep_plain_and_full(scene: &mut Scene) {
     let mut index = 0..;
-    scene.model.parts.retain(|_| index.next().is_some_and(|i: usize| i % 16 == 0 || i % 16 == 15));
+    scene.model.parts.retain(|_| index.next().is_some_and(|i: usize| i.is_multiple_of(16) || i % 16 == 15));
 }
 
 /// Appends a square by its centre and two half-axes.
