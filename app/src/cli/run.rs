@@ -1,6 +1,6 @@
 //! `yoro run`: the main job on the built-in scenes, with pictures, figures and a report page.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -11,6 +11,7 @@ use indicatif::ProgressBar;
 use crate::cli::stage::{self, EyeArgs, Stage, StereoArgs};
 use crate::cli::{GlArgs, machine, progress_bar, stop_if_interrupted};
 use crate::eyes::{Eye, EyePair};
+use crate::files;
 use crate::gl::{Context, Profiling};
 use crate::metrics::stats::{Summary, median};
 use crate::picture;
@@ -70,6 +71,12 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
         given => given.to_vec(),
     };
+    // Minutes of work do not end at a name or a folder that could have been told at once.
+    let known = |name: &str| BUILTINS.iter().any(|b| b.name == name) || Path::new(name).exists();
+    for name in names.iter().filter(|name| !known(name)) {
+        stage::load_scene(name, args.seed, None)?;
+    }
+    files::create_folder(&args.out)?;
     let headless = args.gl.open()?;
     let gl = headless.gl();
     // Per scene: preparing, a warm-up, the timed rounds, the passes.
