@@ -175,9 +175,9 @@ fn decode_bytes(path: &Path, bytes: Vec<u8>) -> Result<DynamicImage, PictureErro
     let damaged =
         |error: image::ImageError| PictureError::Damaged { path: path.into(), reason: error.to_string() };
     let format = image::guess_format(&bytes)
-        // TGA has no signature.
-        .or_else(|_| ImageFormat::from_path(path))
         .ok()
+        // TGA has no signature; anything else without one is not what its name says.
+        .or_else(|| ImageFormat::from_path(path).ok().filter(|format| *format == ImageFormat::Tga))
         .filter(ImageFormat::reading_enabled)
         .ok_or_else(|| PictureError::UnknownFormat { path: path.into() })?;
     let (width, height) =

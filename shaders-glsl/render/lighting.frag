@@ -43,7 +43,9 @@ float occlusion(ivec2 p, float z) {
 #endif
 
 #ifdef STYLE_ANIME
-// 1 where surfaces part: another material, or an inverse distance that is not linear over the screen.
+// 1 where surfaces part: another material, or an inverse distance that is not linear over the screen. Of two
+// surfaces the nearer one carries the line: it must stay with the outline that it draws when the pixels move to
+// the other eye.
 float ink(ivec2 p, float depth, float id) {
     ivec2 last = textureSize(depth_map, 0) - 1;
     float c = inverse_distance.x + inverse_distance.y * depth;
@@ -52,7 +54,7 @@ float ink(ivec2 p, float depth, float id) {
         ivec2 step = i == 0 ? ivec2(line_width, 0) : ivec2(0, line_width);
         ivec2 q0 = max(p - step, ivec2(0)), q1 = min(p + step, last);
         float d0 = texelFetch(depth_map, q0, 0).x, d1 = texelFetch(depth_map, q1, 0).x;
-        float bend = abs(inverse_distance.y * (d0 + d1 - 2.0 * depth)) / c;
+        float bend = inverse_distance.y * (2.0 * depth - d0 - d1) / c;
         line = max(line, smoothstep(0.03, 0.06, bend));
         float i0 = texelFetch(emissive_map, q0, 0).a, i1 = texelFetch(emissive_map, q1, 0).a;
         // Of two neighbours in one distance, the line is drawn on one side only.

@@ -1,1 +1,36 @@
-//! End-to-end tests of the library and of the program.
+//! What the tests in `tests/tests` share: contexts, a small scene, golden images.
+
+pub mod golden;
+pub mod scene;
+
+use std::rc::Rc;
+
+use anyhow::Context as _;
+use yoro::gl::Context;
+use yoro::platform::{Backend, Headless};
+
+/// Set by `cargo xtask test` on systems that have no OSMesa any more (Mesa 25.1 dropped it).
+const WITHOUT_OSMESA: &str = "YORO_TEST_WITHOUT_OSMESA";
+
+/// The backends that are tested here.
+pub fn backends() -> Vec<Backend> {
+    if std::env::var_os(WITHOUT_OSMESA).is_some() {
+        return vec![Backend::Egl];
+    }
+    vec![Backend::Egl, Backend::Osmesa]
+}
+
+/// Runs a test body on every backend; afterwards there is no GL error and no GL object left.
+///
+/// # Errors
+/// The body's, with the backend's name; when there is no context.
+pub fn on_every_backend(body: impl Fn(&Rc<Context>) -> anyhow::Result<()>) -> anyhow::Result<()> {
+    for backend in backends() {
+        let headless = Headless::open(backend)?;
+        let gl = headless.gl();
+        body(gl).with_context(|| format!("{backend:?}"))?;
+        anyhow::ensure!(gl.take_errors().is_none(), "{backend:?}: GL errors");
+        anyhow::ensure!(gl.object_count() == 0, "{backend:?}: {} GL objects left", gl.object_count());
+    }
+    Ok(())
+}

@@ -74,7 +74,10 @@ pub fn ensure() -> anyhow::Result<Libraries> {
     let installed = install(&missing);
     let still_missing = self::missing(&library_folders());
     match installed {
-        Ok(()) => conclude(&still_missing, "apt-get installed what it has, but it is not there"),
+        Ok(()) => conclude(
+            &still_missing,
+            "apt-get has nothing more to install: reinstall Mesa, or a driver of the GPU",
+        ),
         Err(error) => conclude(&still_missing, &format!("{error:#}")),
     }
 }

@@ -26,19 +26,19 @@ pub struct EyeArgs {
     #[arg(long, default_value = "1024x1024", value_parser = parse_size, value_name = "WxH")]
     pub size: [u32; 2],
     /// Vertical field of view in degrees
-    #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov)]
+    #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
     pub fov_y: f32,
     /// Distance between the eyes in metres
-    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd)]
+    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd, allow_negative_numbers = true)]
     pub ipd: f32,
     /// The eye that is rendered
     #[arg(long, value_parser = parse_eye, default_value = "right")]
     pub dominant: Eye,
     /// Near plane in metres
-    #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive)]
+    #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive, allow_negative_numbers = true)]
     pub near: f32,
     /// Far plane in metres; `inf` for none
-    #[arg(long, default_value_t = DepthRange::PAPER.far)]
+    #[arg(long, default_value_t = DepthRange::PAPER.far, allow_negative_numbers = true)]
     pub far: f32,
     /// Reversed depth, 1 near to 0 far, in float
     #[arg(long)]

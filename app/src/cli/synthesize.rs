@@ -56,16 +56,16 @@ pub struct SynthesizeArgs {
     #[arg(long, value_enum, default_value_t = DepthEncoding::StandardZ)]
     depth_encoding: DepthEncoding,
     /// The stored value is raised to this power first
-    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
+    #[arg(long, default_value_t = 1.0, value_parser = parse_positive, allow_negative_numbers = true)]
     depth_gamma: f32,
     /// Near plane in metres
-    #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive)]
+    #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive, allow_negative_numbers = true)]
     near: f32,
     /// Far plane in metres; `inf` for none
-    #[arg(long, default_value_t = DepthRange::PAPER.far)]
+    #[arg(long, default_value_t = DepthRange::PAPER.far, allow_negative_numbers = true)]
     far: f32,
     /// metres: distance of the largest value of an integer PNG
-    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
+    #[arg(long, default_value_t = 1.0, value_parser = parse_positive, allow_negative_numbers = true)]
     metres_at_white: f32,
     /// disparity: pixels at value 0
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
@@ -74,10 +74,10 @@ pub struct SynthesizeArgs {
     #[arg(long, default_value_t = 1.0)]
     disparity_scale: f32,
     /// Vertical field of view of the images in degrees
-    #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov)]
+    #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
     fov_y: f32,
     /// Distance between the eyes in metres
-    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd)]
+    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd, allow_negative_numbers = true)]
     ipd: f32,
     /// Also write the mask of holes as PNG: black where nothing of the source is seen
     #[arg(long, value_name = "FILE|FOLDER")]

@@ -12,6 +12,7 @@ mod state;
 mod texture;
 
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use glow::HasContext;
@@ -72,6 +73,7 @@ pub struct Context {
     capabilities: Capabilities,
     profiler: RefCell<profiler::Profiler>,
     objects: Cell<usize>,
+    shader_files: RefCell<BTreeSet<String>>,
     empty_vertex_array: glow::VertexArray,
 }
 
@@ -97,7 +99,15 @@ impl Context {
                 .map_err(|reason| GlError::Object { what: "a vertex array".into(), reason })?
         };
         let profiler = RefCell::new(profiler::Profiler::new(&capabilities));
-        Ok(Rc::new(Context { raw, capabilities, profiler, objects: Cell::new(0), empty_vertex_array }))
+        let shader_files = RefCell::default();
+        Ok(Rc::new(Context {
+            raw,
+            capabilities,
+            profiler,
+            objects: Cell::new(0),
+            shader_files,
+            empty_vertex_array,
+        }))
     }
 
     /// The glow context, for calls that have no wrapper here.
@@ -113,6 +123,11 @@ impl Context {
     /// Number of live textures, framebuffers, programs, buffers and vertex arrays of this library.
     pub fn object_count(&self) -> usize {
         self.objects.get()
+    }
+
+    /// The shader files, includes among them, that programs were made of so far, as [`shader_files`] names them.
+    pub fn used_shader_files(&self) -> Vec<String> {
+        self.shader_files.borrow().iter().cloned().collect()
     }
 
     fn count(&self, change: isize) {

@@ -156,6 +156,7 @@ impl Program {
         let object = |reason| GlError::Object { what: "a shader".into(), reason };
         let mut shaders = Vec::new();
         let mut last_file = "";
+        let mut files = Vec::new();
         // SAFETY: names are created here and used while alive.
         unsafe {
             let raw = raw_gl.create_program().map_err(object)?;
@@ -174,6 +175,8 @@ impl Program {
                     shaders.iter().for_each(|&s| raw_gl.delete_shader(s));
                     return Err(GlError::Shader { stage, file: file.to_owned(), log });
                 }
+                // The first is the text that comes before all files.
+                files.extend(assembled.files.into_iter().skip(1));
             }
             raw_gl.link_program(raw);
             shaders.iter().for_each(|&s| raw_gl.delete_shader(s));
@@ -181,6 +184,7 @@ impl Program {
                 let log = raw_gl.get_program_info_log(raw);
                 return Err(GlError::Shader { stage: "program", file: last_file.to_owned(), log });
             }
+            gl.shader_files.borrow_mut().extend(files);
             for i in 0..raw_gl.get_program_parameter_i32(raw, glow::ACTIVE_UNIFORMS) as u32 {
                 if let Some(uniform) = raw_gl.get_active_uniform(raw, i)
                     && let Some(location) = raw_gl.get_uniform_location(raw, &uniform.name)

@@ -75,7 +75,7 @@ impl Paper {
         let mut scatter = strict.clone();
         scatter.push(("ROWS", ROWS.to_string()));
         let mut patch = output_defines(outputs);
-        if options.linear_interpolation {
+        if options.linear_interpolation && options.imbuffer != ImBufferSize::Divisor(1) {
             patch.push(("LINEAR", String::new()));
         }
         let map = |format| RenderTarget::new(gl, [1, 1], &[(format, Filter::Nearest)], None);

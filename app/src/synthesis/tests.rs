@@ -11,7 +11,12 @@ use crate::platform::{Backend, Headless};
 
 /// Runs a test body on EGL and on OSMesa.
 fn on_every_backend(body: impl Fn(&Rc<Context>)) {
+    // `cargo xtask test` says so on systems that have no OSMesa any more.
+    let without_osmesa = std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some();
     for backend in [Backend::Egl, Backend::Osmesa] {
+        if backend == Backend::Osmesa && without_osmesa {
+            continue;
+        }
         let headless = Headless::open(backend).expect("EGL and OSMesa are set up by `cargo xtask setup`");
         body(headless.gl());
         assert_eq!(headless.gl().take_errors(), None, "{backend:?}");

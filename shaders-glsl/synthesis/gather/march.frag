@@ -74,12 +74,8 @@ void main() {
     }
 
     bool hole = source < 0.0;
-    if (hole) {
-        source = float(edge);
-        color = fill_hole(target, edge, row);
-    } else {
-        color = color_at(source, row);
-    }
+    source = hole ? float(edge) : source;
+    color = fill_hole(hole, color_at(source, row), target, edge, row);
     // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
     // it covers on average.
     for (int i = 0; i < (coverage > 0.0 ? 1 : 0); ++i) {

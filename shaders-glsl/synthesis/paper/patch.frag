@@ -33,35 +33,41 @@ void main() {
     float last_column = float(source_size.x - 1);
     float source;
 
-    if (is_valid(entry)) {
-        float moved = entry_displacement(entry, cell.x);
+    bool valid = is_valid(entry);
+    float moved = entry_displacement(entry, cell.x);
 #ifdef LINEAR
-        // Between two entries of one surface the displacement is linear; across an edge it is not.
-        float fraction = position.x - 0.5 - float(cell.x);
-        int neighbour = cell.x + (fraction < 0.0 ? -1 : 1);
-        if (neighbour >= 0 && neighbour < imbuffer_target_size.x) {
-            uint other = entry_at(neighbour, cell.y);
-            float other_moved = entry_displacement(other, neighbour);
-            if (is_valid(other) && abs(other_moved - moved) < 0.5) {
-                moved = mix(moved, other_moved, abs(fraction));
-            }
-        }
+    // Between two entries of one surface the displacement is linear; across an edge it is not. (At full
+    // resolution there is nothing to interpolate, and LINEAR is not defined.)
+    float fraction = position.x - 0.5 - float(cell.x);
+    int neighbour = clamp(cell.x + (fraction < 0.0 ? -1 : 1), 0, imbuffer_target_size.x - 1);
+    uint other = entry_at(neighbour, cell.y);
+    float other_moved = entry_displacement(other, neighbour);
+    if (is_valid(other) && abs(other_moved - moved) < 0.5) {
+        moved = mix(moved, other_moved, abs(fraction));
+    }
 #endif
-        source = clamp(float(pixel.x) - moved * imbuffer_scale.x, 0.0, last_column);
-        color = color_at(source, row);
-    } else {
-        int left = disocclusion_left(entry);
-        int width = disocclusion_width(entry);
-        int right = left + width;
-        // The background is left of a disocclusion, unless the hole reaches the image's border.
-        int edge = left >= 0 ? left : min(right, imbuffer_target_size.x - 1);
+    source = float(pixel.x) - moved * imbuffer_scale.x;
+
+    int left = disocclusion_left(entry);
+    int width = disocclusion_width(entry);
+    int right = left + width;
+    // The background is left of a disocclusion, unless the hole reaches the image's border.
+    int edge = left >= 0 ? left : min(right, imbuffer_target_size.x - 1);
+    if (!valid) {
+        uint edge_entry = entry_at(edge, cell.y);
+        float edge_source = is_valid(edge_entry) ? entry_source(edge_entry) : float(edge);
+        source = (edge_source + 0.5) * imbuffer_scale.x - 0.5;
+    }
+    source = clamp(source, 0.0, last_column);
+    color = color_at(source, row);
+
+    // Rare work stands in a loop with a dynamic count; see include/fill.glsl.
+    for (int once = valid ? 1 : 0; once < 1; ++once) {
         int direction = left >= 0 ? -1 : 1;
         float foreground = 1e9;
         if (left >= 0 && right < imbuffer_target_size.x) {
             uint right_entry = entry_at(right, cell.y);
-            if (is_valid(right_entry)) {
-                foreground = entry_displacement(right_entry, right);
-            }
+            foreground = is_valid(right_entry) ? entry_displacement(right_entry, right) : foreground;
         }
         float base = 0.5 + 0.3 * clamp((position.x - float(edge)) / float(width), 0.0, 1.0);
         vec4 sum = vec4(0.0);
@@ -87,15 +93,12 @@ void main() {
                 remaining -= weight;
             }
         }
-        uint edge_entry = entry_at(edge, cell.y);
-        float edge_source = is_valid(edge_entry) ? entry_source(edge_entry) : float(edge);
-        source = clamp((edge_source + 0.5) * imbuffer_scale.x - 0.5, 0.0, last_column);
-        color = remaining < 1.0 ? sum / (1.0 - remaining) : color_at(source, row);
+        color = remaining < 1.0 ? sum / (1.0 - remaining) : color;
     }
 #ifdef WRITE_DEPTH
     gl_FragDepth = depth_at(int(source + 0.5), row);
 #endif
 #ifdef SOURCE_MAP
-    source_entry = uint(source * FIXED + 0.5) | (is_valid(entry) ? 0u : HOLE);
+    source_entry = uint(source * FIXED + 0.5) | (valid ? 0u : HOLE);
 #endif
 }

@@ -1,0 +1,40 @@
+//! `yoro compare`.
+
+use image::Rgb;
+use yoro::picture;
+
+use crate::pair;
+use crate::program::{run, succeed};
+
+#[test]
+fn files_and_folders() {
+    let dir = tempfile::tempdir().unwrap();
+    let color = pair::color(0.5);
+    let mut other = color.clone();
+    other.put_pixel(80, 60, Rgb([255, 0, 255]));
+    for (name, image) in
+        [("a/one.png", &color), ("a/two.png", &color), ("b/one.png", &color), ("b/two.png", &other)]
+    {
+        picture::save_color(&dir.path().join(name), image).unwrap();
+    }
+    let same = succeed(dir.path(), "compare a/one.png b/one.png --json").json();
+    assert_eq!(same["pairs"][0]["identical"], true);
+    assert_eq!(same["mean"]["rgb"]["psnr"], serde_json::Value::Null);
+    assert_eq!(same["mean"]["rgb"]["ssim_gaussian"], 1.0);
+    let text = succeed(dir.path(), "compare a/one.png b/one.png").stdout;
+    assert!(text.contains("SSIM") && text.contains("identical"), "{text}");
+
+    let both = succeed(dir.path(), "compare a b --json --map maps").json();
+    assert_eq!(both["pairs"].as_array().unwrap().len(), 2);
+    assert_eq!(both["pairs"][1]["identical"], false);
+    assert_eq!(both["mean"]["identical_pairs"], 1);
+    let psnr = both["pairs"][1]["rgb"]["psnr"].as_f64().unwrap();
+    assert!((40.0..60.0).contains(&psnr), "{psnr}");
+    let map = picture::load_color(&dir.path().join("maps/two.png")).unwrap();
+    assert_eq!(map.dimensions(), color.dimensions());
+    assert!(map.get_pixel(80, 60).0[0] > map.get_pixel(10, 10).0[0]);
+
+    run(dir.path(), "compare a b/one.png").refuses(&["a is a folder and b/one.png is a file"]);
+    picture::save_color(&dir.path().join("small.png"), &image::RgbImage::new(50, 50)).unwrap();
+    run(dir.path(), "compare a/one.png small.png").refuses(&["small.png", "160x120", "50x50"]);
+}

@@ -1,0 +1,166 @@
+//! A newcomer's mistakes: each is answered with one sentence, and spoils no file.
+
+use std::fs;
+use std::path::Path;
+
+use image::RgbImage;
+use yoro::picture;
+
+use crate::pair;
+use crate::program::{finish, run, succeed, yoro};
+
+fn color_and_depth(dir: &Path) {
+    picture::save_color(&dir.join("color.png"), &pair::color(0.5)).unwrap();
+    picture::save_depth(&dir.join("depth.png"), &pair::metres(0.5)).unwrap();
+}
+
+#[test]
+fn pictures_that_are_none() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    color_and_depth(at);
+    fs::write(at.join("text.png"), "this is no picture").unwrap();
+    let whole = fs::read(at.join("color.png")).unwrap();
+    fs::write(at.join("half.png"), &whole[..whole.len() / 2]).unwrap();
+    picture::save_color(&at.join("small.png"), &RgbImage::new(64, 48)).unwrap();
+    fs::write(at.join("out.png"), "made earlier").unwrap();
+    for (color, depth, naming) in [
+        ("nowhere.png", "depth.png", &["nowhere.png does not exist", "check the path"][..]),
+        ("color.png", "nowhere.exr", &["nowhere.exr does not exist"]),
+        ("text.png", "depth.png", &["text.png is not a picture", "PNG"]),
+        ("half.png", "depth.png", &["half.png is damaged"]),
+        ("small.png", "depth.png", &["small.png is 64x48", "depth.png is 160x120", "one size"]),
+        ("color.png", "color.png", &["color.png is a colour image", "grey"]),
+        ("color.png", ".", &[". is a folder and color.png is a file"]),
+    ] {
+        run(at, &format!("synthesize --color {color} --depth {depth} --out out.png")).refuses(naming);
+        run(at, &format!("synthesize --color {color} --depth {depth} --out new/out.png")).refuses(naming);
+    }
+    assert_eq!(fs::read(at.join("out.png")).unwrap(), b"made earlier");
+    assert!(!at.join("new").exists(), "a folder for nothing");
+    run(at, "compare color.png nowhere.png").refuses(&["nowhere.png does not exist"]);
+    run(at, "compare color.png text.png").refuses(&["text.png is not a picture"]);
+}
+
+#[test]
+fn scenes_that_are_none() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    fs::write(at.join("damaged.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 zero\nf 1 2 3\n").unwrap();
+    fs::write(at.join("beyond.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n").unwrap();
+    fs::write(at.join("empty.obj"), "# nothing\n").unwrap();
+    fs::write(at.join("scene.blend"), "BLENDER").unwrap();
+    fs::create_dir(at.join("folder.obj")).unwrap();
+    for (scene, naming) in [
+        ("bistroo", &["\"bistroo\"", "choose one of", "prototype"][..]),
+        ("nowhere.obj", &["nowhere.obj"]),
+        ("damaged.obj", &["damaged.obj, line 3"]),
+        ("beyond.obj", &["beyond.obj, line 4"]),
+        ("empty.obj", &["empty.obj contains no triangle"]),
+        ("folder.obj", &["folder.obj is not a file"]),
+        ("scene.blend", &["scene.blend is not a scene", ".obj"]),
+    ] {
+        run(at, &format!("render {scene} --size 64x64 --out out")).refuses(naming);
+    }
+    assert!(!at.join("out").exists());
+    run(at, "run prototype bistroo").refuses(&["\"bistroo\""]);
+    run(at, "render prototype --pose 99 --out out").refuses(&["--pose 99", "poses 0 to"]);
+}
+
+#[test]
+fn outputs_that_cannot_be_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    color_and_depth(at);
+    fs::write(at.join("file"), "made earlier").unwrap();
+    fs::create_dir(at.join("folder.png")).unwrap();
+    let synthesize = "synthesize --color color.png --depth depth.png --depth-encoding metres";
+    for (out, naming) in [
+        ("file/out.png", &["file is not a folder"][..]),
+        ("folder.png", &["folder.png is a folder"]),
+        ("out.gif", &["out.gif", ".png"]),
+        ("/proc/out.png", &["cannot write /proc/out.png"]),
+    ] {
+        run(at, &format!("{synthesize} --out {out}")).refuses(naming);
+    }
+    run(at, "render prototype --size 64x64 --out file").refuses(&["file is not a folder"]);
+    run(at, "render prototype --size 64x64 --out /proc/out").refuses(&["/proc/out"]);
+    run(at, "run prototype --out file").refuses(&["file is not a folder"]);
+    run(at, "scenes export prototype file").refuses(&["file is not a folder"]);
+    assert_eq!(fs::read(at.join("file")).unwrap(), b"made earlier");
+}
+
+#[test]
+fn options_out_of_range() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    color_and_depth(at);
+    for (line, naming) in [
+        ("render prototype --ipd 0.2", &["--ipd", "0.063"][..]),
+        ("render prototype --ipd -0.01", &["--ipd"]),
+        ("render prototype --ipd 63mm", &["--ipd"]),
+        ("render prototype --size 8x8", &["--size", "16 to 4096"]),
+        ("render prototype --size 100000x100000", &["--size", "16 to 4096"]),
+        ("render prototype --size big", &["--size", "1024x1024"]),
+        ("render prototype --near 10 --far 5", &["--near 10 must be less than --far 5"]),
+        ("render prototype --near 0", &["--near"]),
+        ("render prototype --far nan", &["--far"]),
+        ("render prototype --fov-y-degrees 190", &["--fov-y-degrees", "1 to 170"]),
+        ("render prototype --frames 0", &["--frames"]),
+        ("render prototype --pipeline magic", &["--pipeline", "gather"]),
+        ("render prototype --imbuffer 0", &["--imbuffer", "512x512"]),
+        ("render prototype --position 1,2", &["--position", "three numbers"]),
+        ("render prototype --half-angles-degrees 95,10", &["--half-angles-degrees", "1 to 85"]),
+        ("render prototype --guard-band wide", &["--guard-band", "none"]),
+        ("render", &["<SCENE>"]),
+        ("rendr prototype", &["rendr", "render"]),
+        ("synthesize --color color.png --depth depth.png --out o.png --near 5 --far 1", &["--near 5"]),
+        ("synthesize --color color.png --depth depth.png --out o.png --depth-gamma 0", &["--depth-gamma"]),
+    ] {
+        run(at, line).refuses(naming);
+    }
+    assert_eq!(fs::read_dir(at).unwrap().count(), 2, "something was written");
+}
+
+#[test]
+fn no_gl_at_all() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::create_dir(dir.path().join("out")).unwrap();
+    let picture = dir.path().join("out/prototype.left.png");
+    fs::write(&picture, "made earlier").unwrap();
+    let without_egl = |line: &str| {
+        let nowhere = dir.path().join("nowhere.json");
+        let mut command = yoro(line.split(' '));
+        finish(command.current_dir(dir.path()).env("__EGL_VENDOR_LIBRARY_FILENAMES", nowhere))
+    };
+    without_egl("render prototype --gl egl").refuses(&[
+        "no OpenGL ES context by EGL",
+        "apt install",
+        "--gl osmesa",
+    ]);
+    assert_eq!(fs::read(&picture).unwrap(), b"made earlier");
+    if std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_none() {
+        let run = without_egl("info --gl auto");
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        assert!(run.stdout.contains("osmesa: "), "{}", run.stdout);
+    }
+}
+
+#[test]
+fn rows_too_long_for_the_rowgroup_pipeline() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let egl = &succeed(at, "info --gl egl --json").json()["egl"];
+    let number = |name: &str| egl[name].as_u64().unwrap() as u32;
+    let width = number("max_compute_shared_memory") / 4 + 64;
+    if width > number("max_texture_size").min(picture::MAX_SIZE) {
+        eprintln!("no picture is too wide for the shared memory of this driver");
+        return;
+    }
+    picture::save_color(&at.join("color.png"), &RgbImage::new(width, 4)).unwrap();
+    picture::save_gray(&at.join("depth.png"), &image::GrayImage::new(width, 4)).unwrap();
+    let line = "synthesize --gl egl --color color.png --depth depth.png --out out.png --pipeline";
+    run(at, &format!("{line} rowgroup")).refuses(&[&width.to_string(), "shared memory", "--pipeline gather"]);
+    assert!(!at.join("out.png").exists());
+    succeed(at, &format!("{line} gather"));
+}

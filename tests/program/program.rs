@@ -1,0 +1,71 @@
+//! Runs the program.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+/// What a finished run said.
+pub struct Run {
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Run {
+    fn new(output: Output) -> Run {
+        let text = |bytes| String::from_utf8(bytes).expect("the program prints UTF-8");
+        Run { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+
+    /// Standard output as JSON.
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e}: {}", self.stdout))
+    }
+
+    /// Fails unless the run failed as a user's mistake should: exit code 2, one sentence on stderr that contains
+    /// all of `naming`, nothing of Rust's own.
+    #[track_caller]
+    pub fn refuses(&self, naming: &[&str]) {
+        let text = &self.stderr;
+        assert_eq!(self.code, Some(2), "{text}");
+        // The parser of the command line adds what is possible and how to get help, in lines of their own.
+        let hints = ["Usage:", "For more information", "  "];
+        let hint = |line: &&str| hints.iter().any(|hint| line.starts_with(hint));
+        let mut lines = text.lines().filter(|line| !line.is_empty() && !hint(line));
+        let sentence = lines.next().unwrap_or_default();
+        let rest: Vec<&str> = lines.collect();
+        assert!(sentence.starts_with("error: "), "{text}");
+        assert!(rest.is_empty(), "more than one sentence: {text}");
+        for name in naming {
+            assert!(text.contains(name), "{name:?} is not in: {text}");
+        }
+        for internal in ["panicked", "stack backtrace", "RUST_BACKTRACE", "src/", "unwrap", "Some(", "Err("] {
+            assert!(!text.contains(internal), "{text}");
+        }
+    }
+}
+
+/// The program with arguments, without the tester's settings.
+pub fn yoro<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_yoro"));
+    command.args(arguments).stdin(Stdio::null()).env_remove("RUST_LOG").env_remove("RUST_BACKTRACE");
+    command
+}
+
+/// Runs the program with a line of arguments, split at spaces, in a folder.
+pub fn run(folder: &Path, line: &str) -> Run {
+    finish(yoro(line.split_whitespace()).current_dir(folder))
+}
+
+/// As [`run`]; the exit code must be 0.
+#[track_caller]
+pub fn succeed(folder: &Path, line: &str) -> Run {
+    let run = run(folder, line);
+    assert_eq!(run.code, Some(0), "yoro {line}: {}", run.stderr);
+    run
+}
+
+/// Runs a command to its end.
+pub fn finish(command: &mut Command) -> Run {
+    Run::new(command.output().expect("the program starts"))
+}

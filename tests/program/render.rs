@@ -1,0 +1,86 @@
+//! `yoro render` on files.
+
+use std::fs;
+use std::path::Path;
+
+use image::{Rgb, RgbImage};
+use yoro::picture;
+
+use crate::program::succeed;
+
+/// A textured wall in front of a red one; `mtllib` and the texture are written by those who want them.
+const OBJ: &str = "mtllib room.mtl
+v -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2
+v -9 -9 -6\nv 9 -9 -6\nv 9 9 -6\nv -9 9 -6
+vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1
+usemtl picture\nf 1/1 2/2 3/3 4/4
+usemtl red\nf 5/1 6/2 7/3 8/4
+";
+const MTL: &str = "newmtl picture\nKd 1 1 1\nmap_Kd picture.png\nnewmtl red\nKd 0.8 0.1 0.1\n";
+const LOOK: &str = "--position 0,0,0 --target 0,0,-1 --size 96x64";
+
+fn write_texture(dir: &Path) {
+    let texture =
+        RgbImage::from_fn(64, 64, |x, _| if x < 32 { Rgb([20, 220, 40]) } else { Rgb([30, 60, 230]) });
+    picture::save_color(&dir.join("picture.png"), &texture).unwrap();
+}
+
+fn right_eye(dir: &Path) -> RgbImage {
+    picture::load_color(&dir.join("out/room.right.png")).unwrap()
+}
+
+/// Which channel is the largest.
+fn hue(image: &RgbImage, x: u32, y: u32) -> usize {
+    let pixel = image.get_pixel(x, y).0;
+    (0..3).max_by_key(|&c| pixel[c]).unwrap()
+}
+
+#[test]
+fn materials_and_textures_of_an_obj_file() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("room.obj"), OBJ).unwrap();
+    fs::write(dir.path().join("room.mtl"), MTL).unwrap();
+    write_texture(dir.path());
+    let run = succeed(dir.path(), &format!("render room.obj {LOOK}"));
+    assert_eq!(run.stderr, "");
+    assert_eq!(run.stdout, "out/room.left.png\nout/room.right.png\nout/room.side-by-side.png\n");
+    let image = right_eye(dir.path());
+    assert_eq!(image.dimensions(), (96, 64));
+    // The right eye is 31.5 mm to the right: the middle of the near wall is a little left of the middle.
+    assert_eq!([hue(&image, 40, 32), hue(&image, 56, 32), hue(&image, 5, 32)], [1, 2, 0]);
+    let both = picture::load_color(&dir.path().join("out/room.side-by-side.png")).unwrap();
+    assert_eq!(both.dimensions(), (192, 64));
+}
+
+#[test]
+fn missing_materials_and_textures_are_warned_of() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("room.obj"), OBJ).unwrap();
+    let run = succeed(dir.path(), &format!("render room.obj {LOOK}"));
+    assert!(run.stderr.contains("WARN") && run.stderr.contains("room.mtl"), "{}", run.stderr);
+    fs::write(dir.path().join("room.mtl"), MTL).unwrap();
+    let run = succeed(dir.path(), &format!("render room.obj {LOOK}"));
+    assert!(run.stderr.contains("WARN") && run.stderr.contains("picture.png"), "{}", run.stderr);
+    assert_eq!(hue(&right_eye(dir.path()), 5, 32), 0, "the material that is there is used");
+}
+
+#[test]
+fn every_output_and_measure() {
+    let dir = tempfile::tempdir().unwrap();
+    let outputs = ["left", "right", "side-by-side", "cross-eyed", "anaglyph", "difference", "error-map"];
+    let line = format!("render prototype --size 96x96 --measure --json --outputs {}", outputs.join(","));
+    let json = succeed(dir.path(), &line).json();
+    let (quality, baseline) = (&json[0]["quality"], &json[0]["same_image"]);
+    let ssim = |quality: &serde_json::Value| quality["ssim_gaussian"].as_f64().unwrap();
+    assert!(ssim(quality) > ssim(baseline) + 0.05, "{json:#}");
+    for output in outputs {
+        let image = picture::load_color(&dir.path().join(format!("out/prototype.{output}.png"))).unwrap();
+        let width = if output.contains("side") || output.contains("cross") { 192 } else { 96 };
+        assert_eq!(image.dimensions(), (width, 96), "{output}");
+        let first = image.get_pixel(0, 0);
+        assert!(image.pixels().any(|p| p != first), "{output} is one colour");
+    }
+    let json =
+        succeed(dir.path(), "render prototype --size 96x96 --measure --json --method conventional").json();
+    assert_eq!(ssim(&json[0]["quality"]), 1.0, "{json:#}");
+}

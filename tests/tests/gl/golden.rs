@@ -1,0 +1,96 @@
+//! Built-in scenes look as they did.
+
+use std::rc::Rc;
+
+use image::{Rgb, RgbImage};
+use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
+use yoro::gl::Context;
+use yoro::platform::Headless;
+use yoro::render::{GpuScene, RenderSettings, Renderer};
+use yoro::scene::builtin;
+use yoro::stereo::{self, Method, StereoFrame, StereoOptions};
+use yoro::synthesis::Pipeline;
+use yoro_tests::{backends, golden};
+
+const SIZE: [u32; 2] = [256, 256];
+
+/// Both eyes, left first, of a built-in scene's first viewpoint; the right one is rendered.
+fn render(gl: &Rc<Context>, name: &str, pipelines: &[Pipeline]) -> anyhow::Result<Vec<[RgbImage; 2]>> {
+    let scene = builtin::build(name, builtin::DEFAULT_SEED)?;
+    let head = scene.viewpoints[0].pose();
+    let frustum = Frustum::symmetric(60f32.to_radians(), 1.0);
+    let pair = EyePair::parallel(head, frustum, 0.063, DepthRange::PAPER, SIZE, Eye::Right);
+    let settings = RenderSettings::default();
+    let scene = GpuScene::upload(gl, scene)?;
+    let mut renderer = Renderer::new(gl, &settings, &scene)?;
+    let mut frame = StereoFrame::new(gl, SIZE)?;
+    pipelines
+        .iter()
+        .map(|&pipeline| {
+            // Never two real renders, however near everything is.
+            let options = StereoOptions { policy: None, ..StereoOptions::of_pipeline(pipeline) };
+            let mut method = stereo::create(gl, Method::Yoro, &settings, &options)?;
+            method.render(&mut renderer, &scene, &pair, &mut frame)?;
+            Ok(Eye::BOTH.map(|eye| read(&frame, eye)))
+        })
+        .collect()
+}
+
+fn read(frame: &StereoFrame, eye: Eye) -> RgbImage {
+    let [w, h] = SIZE;
+    let rgba = frame.eye(eye).read_rgba8(0, [0, 0], SIZE);
+    RgbImage::from_fn(w, h, |x, y| {
+        let i = (((h - 1 - y) * w + x) * 4) as usize;
+        Rgb([rgba[i], rgba[i + 1], rgba[i + 2]])
+    })
+}
+
+/// Compares everything before it fails, so that one run shows all that has changed.
+fn check(images: &[(String, &RgbImage)]) {
+    let failures: Vec<String> = images
+        .iter()
+        .filter_map(|(name, image)| golden::check(name, image).err())
+        .map(|error| format!("{error:#}"))
+        .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn every_pipeline() {
+    let headless = Headless::open(backends()[0]).unwrap();
+    let frames = render(headless.gl(), "prototype", &Pipeline::ALL).unwrap();
+    let mut images = vec![("prototype-rendered".to_owned(), &frames[0][1])];
+    for (pipeline, [left, _]) in Pipeline::ALL.iter().zip(&frames) {
+        images.push((format!("prototype-{}", pipeline.name()), left));
+    }
+    check(&images);
+}
+
+#[test]
+fn scenes_by_the_default() {
+    let headless = Headless::open(backends()[0]).unwrap();
+    for name in ["talk", "stage"] {
+        let frames = render(headless.gl(), name, &[Pipeline::default()]).unwrap();
+        check(&[(name.to_owned(), &frames[0][0])]);
+    }
+}
+
+#[test]
+fn backends_agree() {
+    let frames: Vec<_> = backends()
+        .into_iter()
+        .map(|backend| {
+            let headless = Headless::open(backend).unwrap();
+            render(headless.gl(), "prototype", &Pipeline::ALL).unwrap()
+        })
+        .collect();
+    for other in &frames[1..] {
+        for (pipeline, (a, b)) in Pipeline::ALL.iter().zip(frames[0].iter().zip(other)) {
+            for eye in Eye::BOTH {
+                if let Err(error) = golden::compare(&b[eye.index()], &a[eye.index()]) {
+                    panic!("{} eye by {}: {error}", eye.name(), pipeline.name());
+                }
+            }
+        }
+    }
+}

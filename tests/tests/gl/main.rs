@@ -1,0 +1,6 @@
+//! The library on a real GL context: golden images, shader variants, GL objects.
+
+mod golden;
+mod objects;
+mod refusals;
+mod shaders;

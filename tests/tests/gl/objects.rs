@@ -1,0 +1,102 @@
+//! Frames leave nothing behind.
+
+use std::rc::Rc;
+
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
+use yoro::gl::Context;
+use yoro::platform::Headless;
+use yoro::render::{GpuScene, RenderSettings, Renderer};
+use yoro::scene::ShadingStyle;
+use yoro::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
+use yoro::synthesis::{ImBufferSize, Pipeline};
+use yoro_tests::{backends, scene};
+
+/// Every way to make a frame, by name.
+fn ways() -> Vec<(&'static str, Method, StereoOptions)> {
+    let of = StereoOptions::of_pipeline;
+    let mut small_imbuffer = of(Pipeline::Paper);
+    small_imbuffer.synthesis.paper.imbuffer = ImBufferSize::Divisor(4);
+    let near_field = StereoOptions {
+        near_field: Some(2.5),
+        policy: None,
+        anti_aliasing: AntiAliasing::Before,
+        guard_band: GuardBand::Pixels(4),
+        ..StereoOptions::default()
+    };
+    vec![
+        ("conventional", Method::Conventional, StereoOptions::default()),
+        ("mono", Method::Mono, StereoOptions::default()),
+        ("gather", Method::Yoro, of(Pipeline::Gather)),
+        ("rowgroup", Method::Yoro, of(Pipeline::Rowgroup)),
+        ("paper", Method::Yoro, of(Pipeline::Paper)),
+        ("paper 1/4", Method::Yoro, small_imbuffer),
+        ("near field", Method::Yoro, near_field),
+    ]
+}
+
+/// Few pixels and few programs: it is the number of frames that counts here.
+fn tiny(gl: &Rc<Context>) -> (GpuScene, RenderSettings) {
+    let mut scene = scene::every_material(ShadingStyle::Realistic);
+    scene::keep_plain_and_full(&mut scene);
+    let settings = RenderSettings { shadow_map_size: 64, ..RenderSettings::default() };
+    (GpuScene::upload(gl, scene).unwrap(), settings)
+}
+
+/// The eyes of a moving head.
+fn pair(frame: u32, dominant: Eye) -> EyePair {
+    let position = glam::Vec3::new((frame as f32 * 0.1).sin() * 0.3, 0.0, 0.0);
+    let head = Pose { position, ..Pose::IDENTITY };
+    let depth = DepthRange { near: 0.1, far: 100.0, convention: DepthConvention::Reversed };
+    EyePair::parallel(head, Frustum::symmetric(1.2, 1.0), 0.063, depth, [32, 32], dominant)
+}
+
+#[test]
+fn a_thousand_frames_make_as_many_objects_as_ten() {
+    for backend in backends() {
+        let headless = Headless::open(backend).unwrap();
+        let gl = headless.gl();
+        let (scene, settings) = tiny(gl);
+        let mut renderer = Renderer::new(gl, &settings, &scene).unwrap();
+        for (name, method, options) in ways() {
+            let mut method = stereo::create(gl, method, &settings, &options).unwrap();
+            let mut frame = StereoFrame::new(gl, [32, 32]).unwrap();
+            let mut after_ten = 0;
+            for i in 0..1000 {
+                method.render(&mut renderer, &scene, &pair(i, Eye::Right), &mut frame).unwrap();
+                if i == 9 {
+                    after_ten = gl.object_count();
+                }
+            }
+            assert_eq!(gl.take_errors(), None, "{backend:?}, {name}");
+            assert_eq!(gl.object_count(), after_ten, "{backend:?}, {name}");
+        }
+        drop((renderer, scene));
+        assert_eq!(gl.object_count(), 0, "{backend:?}");
+    }
+}
+
+#[test]
+fn other_sizes_and_eyes_replace_objects() {
+    let headless = Headless::open(backends()[0]).unwrap();
+    let gl = headless.gl();
+    let (scene, settings) = tiny(gl);
+    let mut renderer = Renderer::new(gl, &settings, &scene).unwrap();
+    for (name, method, options) in ways() {
+        let mut method = stereo::create(gl, method, &settings, &options).unwrap();
+        let mut frame = StereoFrame::new(gl, [32, 32]).unwrap();
+        let mut counts = Vec::new();
+        for round in 0..3 {
+            for (size, dominant) in [([32, 32], Eye::Left), ([50, 20], Eye::Right), ([17, 64], Eye::Left)] {
+                for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+                    let mut pair = EyePair { size, ..pair(round, dominant) };
+                    pair.depth.convention = convention;
+                    pair.frusta = [Frustum::symmetric(1.2, size[0] as f32 / size[1] as f32); 2];
+                    method.render(&mut renderer, &scene, &pair, &mut frame).unwrap();
+                }
+            }
+            counts.push(gl.object_count());
+        }
+        assert_eq!(gl.take_errors(), None, "{name}");
+        assert!(counts.iter().all(|count| *count == counts[0]), "{name}: {counts:?}");
+    }
+}
