@@ -345,7 +345,8 @@ impl EyePair {
         let ordered = |f: &Frustum| f.width() > 0.0 && f.height() > 0.0;
         if !ordered(&s.frustum)
             || !ordered(&t.frustum)
-            || !(range.near > 0.0 && range.near < range.far)
+            || range.near <= 0.0
+            || range.near >= range.far
             || self.size.contains(&0)
         {
             return Err(EyesError::Empty);

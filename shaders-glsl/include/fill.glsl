@@ -1,12 +1,12 @@
 #include "include/warp.glsl"
 
-// Colour of a disocclusion at forward target column `x`: the background next to it, from source column `edge`.
+// Colour of a disocclusion at forward target column `x`: the background next to it, from source column `edge`
+// with its displacement.
 // Five rows, spread with the distance from the edge, so that the edge's pixels do not smear into streaks; taps
 // that are nearer than the edge by more than a pixel of disparity belong to the foreground and are left out.
 // `color` is the colour at the edge, and the result where `hole` is false: rare work stands in a loop with a
 // dynamic count, since CPU rasterizers and wide GPUs pay for both sides of an if.
-vec4 fill_hole(bool hole, vec4 color, float x, int edge, int row) {
-    float background = displacement_at(edge, row);
+vec4 fill_hole(bool hole, vec4 color, float x, int edge, float background, int row) {
     float spread = 0.5 * clamp(abs(x - float(edge) - background), 1.0, 12.0);
     vec4 sum = 2.0 * color;
     float weights = 2.0;

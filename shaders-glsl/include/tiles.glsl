@@ -3,7 +3,7 @@
 // Tiles in forward columns and source rows. A tile holds two displacements, relative to the far plane's, in
 // 1/16 pixel, in one 32-bit integer: ES renders to R32UI everywhere.
 
-const ivec2 TILE = ivec2(16, 8);
+const ivec2 TILE = ivec2(8, 8);
 const uint EMPTY_TILE = 0x0000ffffu;
 
 // Displacement of the far plane: the smallest there is.

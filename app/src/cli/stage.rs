@@ -71,7 +71,8 @@ impl EyeArgs {
 
     /// One line about how near objects may come.
     pub fn distances(&self, guard: GuardBand) -> String {
-        let fov_x = 2.0 * ((0.5 * self.fov_y).tan() * self.size[0] as f32 / self.size[1] as f32).atan();
+        let frustum = self.pair(Pose::IDENTITY).frusta[self.dominant.index()];
+        let fov_x = frustum.right.atan() - frustum.left.atan();
         let guard = match guard {
             GuardBand::None => "no guard band".to_owned(),
             GuardBand::Distance(z) => format!("guard band complete from {z} m"),

@@ -111,15 +111,16 @@ pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
     let headless = args.gl.open()?;
     let mut offline = Offline::new(headless.gl(), &args.synthesis.options())?;
     let bar = progress_bar(jobs.len() as u64);
+    let mut written = Vec::new();
     for job in &jobs {
         stop_if_interrupted()?;
         bar.set_message(job.color.display().to_string());
-        run_job(args, job, &mut offline)?;
+        written = run_job(args, job, &mut offline)?;
         bar.inc(1);
     }
     bar.finish_and_clear();
     match jobs.as_slice() {
-        [job] => println!("{}", job.out.display()),
+        [_] => written.iter().for_each(|path| println!("{}", path.display())),
         _ => println!("{} images in {}", jobs.len(), args.out.display()),
     }
     Ok(())
@@ -185,7 +186,8 @@ fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
         .collect()
 }
 
-fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::Result<()> {
+/// Returns the paths of the synthesized images.
+fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::Result<Vec<PathBuf>> {
     let color = picture::load_color(&job.color)?;
     let depth = picture::load_depth(&job.depth)?;
     if color.dimensions() != depth.image.dimensions() {
@@ -204,6 +206,7 @@ fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::R
         SourceEye::Left => &[(Eye::Right, 1.0)],
         SourceEye::Center => &[(Eye::Left, 0.5), (Eye::Right, 0.5)],
     };
+    let mut written = Vec::new();
     for &(eye, share) in targets {
         let sign = -eye.side() as f64 * share;
         let warp = Warp {
@@ -226,6 +229,7 @@ fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::R
         let map = |value: fn(&SourceMapEntry) -> f32| {
             DepthImage::from_fn(size[0], size[1], |x, y| Luma([value(&entries[(y * size[0] + x) as usize])]))
         };
+        written.push(named(&job.out));
         picture::save_color(&named(&job.out), &rgb_image(&result.rgba, size))?;
         if let Some(path) = &job.mask {
             let holes = GrayImage::from_fn(size[0], size[1], |x, y| {
@@ -240,7 +244,7 @@ fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::R
             picture::save_depth(&named(path), &map(|e| e.column))?;
         }
     }
-    Ok(())
+    Ok(written)
 }
 
 /// GL's RGBA rows from the bottom as an image.

@@ -184,8 +184,9 @@ impl Context {
     /// The GL errors since the last call, as one sentence; for tests and debugging.
     pub fn take_errors(&self) -> Option<String> {
         let mut names = Vec::new();
-        // SAFETY: no arguments. A lost context returns errors for ever, hence the bound.
+        // A lost context returns errors for ever, hence the bound.
         while names.len() < 16 {
+            // SAFETY: no arguments.
             match unsafe { self.raw.get_error() } {
                 glow::NO_ERROR => break,
                 glow::INVALID_ENUM => names.push("INVALID_ENUM"),

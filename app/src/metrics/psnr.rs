@@ -29,7 +29,9 @@ impl Psnr {
 /// Two decimals, or `inf`; width and alignment are obeyed.
 impl fmt::Display for Psnr {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(&if self.is_infinite() { "inf".to_string() } else { format!("{:.2}", self.0) })
+        let digits = f.precision().unwrap_or(2);
+        let text = if self.is_infinite() { "inf".to_string() } else { format!("{:.digits$}", self.0) };
+        write!(f, "{text:>width$}", width = f.width().unwrap_or(0))
     }
 }
 

@@ -22,8 +22,8 @@ pub(super) struct EglContext {
 }
 
 impl EglContext {
-    /// Tries the surfaceless platform, then each device, then the default display; the error lists what each
-    /// of them said.
+    /// Tries each device (GPUs come before a CPU rasterizer), then Mesa's surfaceless platform, then the default
+    /// display; the error lists what each of them said.
     pub(super) fn open() -> Result<(EglContext, glow::Context), String> {
         // SAFETY: loads the system's libEGL, whose initialisers are trusted as the driver's are.
         let load = || unsafe { Egl::load_required() };
@@ -31,8 +31,8 @@ impl EglContext {
         let mut failures = Vec::new();
         type Find = fn(&Egl, usize) -> Result<Option<egl::Display>, String>;
         let platforms: [(&str, Find); 3] = [
-            ("surfaceless", surfaceless_display),
             ("device", device_display),
+            ("surfaceless", surfaceless_display),
             ("default display", default_display),
         ];
         for (name, find) in platforms {

@@ -48,7 +48,7 @@ pub enum PlatformError {
 /// Keeps a context current on this thread until it is dropped.
 #[allow(dead_code, reason = "held for its Drop")]
 enum Holder {
-    Egl(egl::EglContext),
+    Egl(Box<egl::EglContext>),
     Osmesa(osmesa::OsmesaContext),
 }
 
@@ -68,7 +68,7 @@ impl Headless {
         match backend {
             Backend::Egl => {
                 let (holder, raw) = egl::EglContext::open().map_err(PlatformError::Egl)?;
-                Headless::new(Backend::Egl, Holder::Egl(holder), raw)
+                Headless::new(Backend::Egl, Holder::Egl(Box::new(holder)), raw)
             }
             Backend::Osmesa => {
                 let (holder, raw) = osmesa::OsmesaContext::open().map_err(PlatformError::Osmesa)?;

@@ -10,7 +10,7 @@ use super::textures::unique;
 use crate::files::{FileError, create_folder, write_with};
 
 /// Writes `NAME.obj`, `NAME.mtl`, `textures/*.png`, `NAME.camera.json`, `NAME.scene.json` and `LICENSE.txt` into
-/// a folder, which is made if necessary; [`crate::scene::load`] gives the same scene again. `license` is the text
+/// a folder, which is made if necessary; [`crate::scene::load()`] gives the same scene again. `license` is the text
 /// of the licence file.
 ///
 /// Every file is written under a temporary name and renamed, so that none is ever half there. Returns the path of

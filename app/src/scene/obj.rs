@@ -1,6 +1,6 @@
 //! OBJ files with their MTL libraries.
 //!
-//! [`tobj`] reads the numbers and builds the single index. Statements reach it through [`Normalizer`], because on
+//! [`tobj`] reads the numbers and builds the single index. Statements reach it through a normalizer, because on
 //! its own it has no line numbers, joins materials that it does not know, lets vertices with and without normals
 //! run out of step, overflows on absurd indices, and knows neither continued lines nor trailing comments nor
 //! smoothing groups. Polygons are cut here: tobj cuts them as fans, which is wrong for concave ones.

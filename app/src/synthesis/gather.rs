@@ -9,10 +9,10 @@ use crate::gl::{
 };
 
 /// Columns and rows of a tile; `include/tiles.glsl`.
-const TILE: [u32; 2] = [16, 8];
+const TILE: [u32; 2] = [8, 8];
 
 /// Tile bounds, tile spans, march. Reads depth about four times and colour once per target pixel, writes the
-/// target; the intermediate buffers are 4 bytes per tile of 16 x 8 pixels.
+/// target; the intermediate buffers are 4 bytes per tile of 8 x 8 pixels.
 pub struct Gather {
     gl: Rc<Context>,
     outputs: Outputs,

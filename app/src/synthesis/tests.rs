@@ -110,13 +110,9 @@ fn agrees_with_reference(gl: &Rc<Context>, pipeline: Pipeline, reference: Refere
                 }
                 if !hole && entry.rim.is_none() {
                     let color = fetch(source_row, source, mirrored);
-                    for c in 0..4 {
-                        let value = result.rgba[(y * wt + x) * 4 + c] as f64;
-                        assert!(
-                            (value - color[c]).abs() <= 1.6,
-                            "{pipeline:?} ({x}, {y}): {value} for {}",
-                            color[c]
-                        );
+                    for (value, want) in result.rgba[(y * wt + x) * 4..].iter().zip(color) {
+                        let error = (*value as f64 - want).abs();
+                        assert!(error <= 1.6, "{pipeline:?} ({x}, {y}): {value} for {want}");
                     }
                 }
             }

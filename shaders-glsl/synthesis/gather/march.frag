@@ -23,59 +23,78 @@ void main() {
     vec2 span = packed_span == EMPTY_TILE ? vec2(far_displacement) : unpack_interval(packed_span);
 
     int last_column = source_size.x - 1;
-    int x = clamp(int(floor(target - span.y)) - 1, 0, last_column);
+    int x = clamp(int(floor(target - span.y)), 0, last_column);
     int last = clamp(int(ceil(target - span.x)) + 1, 0, last_column);
     float source = -1.0;
+    float depth = 0.0;
     int edge = -1;
     float edge_displacement = 1e9;
-    // The nearest silhouette beside the pixel: its column, and how much of the pixel it covers.
+    float edge_depth = 0.0;
+    // The nearest silhouette beside the pixel: its column and depth, and how much of the pixel it covers.
     int rim = 0;
+    float rim_depth = 0.0;
     float coverage = 0.0;
 
-    float a = float(x) + displacement_at(x, row);
+    float depth_a = depth_at(x, row);
+    float a = float(x) + displacement(depth_a);
     if (x == 0 && a > target) {
         // Left of everything: the border of the image is the only background there is.
         source = a - target <= 0.5 ? 0.0 : -1.0;
+        depth = depth_a;
         edge = 0;
         edge_displacement = a;
+        edge_depth = depth_a;
     }
     for (++x; x <= last && source < 0.0; ++x) {
-        float b = float(x) + displacement_at(x, row);
+        float depth_b = depth_at(x, row);
+        float b = float(x) + displacement(depth_b);
         if (a <= target) {
             float stretch = b - a;
             if (b > target) {
                 if (stretch < MAX_STRETCH) {
-                    source = float(x - 1) + (target - a) / stretch;
+                    float t = (target - a) / stretch;
+                    source = float(x - 1) + t;
+                    depth = mix(depth_a, depth_b, t);
                 } else {
                     if (b - target < 1.0 && coverage == 0.0) {
                         rim = x;
+                        rim_depth = depth_b;
                         coverage = 1.0 - (b - target);
                     }
                     if (target - a < 0.5) {
                         source = float(x - 1);
+                        depth = depth_a;
                     } else if (a - float(x - 1) < edge_displacement) {
                         edge_displacement = a - float(x - 1);
                         edge = x - 1;
+                        edge_depth = depth_a;
                     }
                 }
             } else if (target - a < 1.0 && stretch < 0.0 && coverage == 0.0) {
                 rim = x - 1;
+                rim_depth = depth_a;
                 coverage = 1.0 - (target - a);
             }
         }
         a = b;
+        depth_a = depth_b;
     }
     if (source < 0.0 && edge < 0) {
         // Right of everything that the interval holds.
         edge = last;
+        edge_depth = depth_a;
         if (a <= target && target - a < 0.5) {
             source = float(last);
+            depth = depth_a;
         }
     }
 
     bool hole = source < 0.0;
-    source = hole ? float(edge) : source;
-    color = fill_hole(hole, color_at(source, row), target, edge, row);
+    if (hole) {
+        source = float(edge);
+        depth = edge_depth;
+    }
+    color = fill_hole(hole, color_at(source, row), target, edge, displacement(edge_depth), row);
     // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
     // it covers on average.
     for (int i = 0; i < (coverage > 0.0 ? 1 : 0); ++i) {
@@ -83,10 +102,11 @@ void main() {
     }
     if (coverage >= 0.5) {
         source = float(rim);
+        depth = rim_depth;
         hole = false;
     }
 #ifdef WRITE_DEPTH
-    gl_FragDepth = depth_at(int(source + 0.5), row);
+    gl_FragDepth = depth;
 #endif
 #ifdef SOURCE_MAP
     source_entry = uint(source * FIXED + 0.5) | (hole ? HOLE : 0u);

@@ -231,7 +231,7 @@ mod tests {
                 a.dot(b.cross(c)) / 6.0
             })
             .sum();
-        assert!((volume / 0.5236 - 1.0).abs() < 0.03, "{volume}");
+        assert!((volume / std::f32::consts::FRAC_PI_6 - 1.0).abs() < 0.03, "{volume}");
         for v in &model.vertices {
             assert!((v.position.distance(vec3(1.0, 2.0, 3.0)) - 0.5).abs() < 2e-3);
         }
