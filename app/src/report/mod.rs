@@ -299,11 +299,13 @@ impl RunReport {
         table::text(self)
     }
 
-    /// Writes `report.html` and `report.json` into `folder` and returns the path of the page.
+    /// Writes `report.html`, `report.json` and `report.md` (the table) into `folder` and returns the path of the
+    /// page.
     pub fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
         let page = folder.join("report.html");
         files::write(&page, self.to_html()?.as_bytes())?;
         files::write(&folder.join("report.json"), self.to_json()?.as_bytes())?;
+        files::write(&folder.join("report.md"), self.to_markdown().as_bytes())?;
         Ok(page)
     }
 }
