@@ -23,7 +23,8 @@ void main() {
     vec2 span = packed_span == EMPTY_TILE ? vec2(far_displacement) : unpack_interval(packed_span);
 
     int last_column = source_size.x - 1;
-    int x = clamp(int(floor(target - span.y)), 0, last_column);
+    // A hundredth of a pixel for rounding: a crossing that starts at the interval's end must not be missed.
+    int x = clamp(int(floor(target - span.y - 0.01)), 0, last_column);
     int last = clamp(int(ceil(target - span.x)) + 1, 0, last_column);
     float source = -1.0;
     float depth = 0.0;
