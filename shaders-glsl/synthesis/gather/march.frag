@@ -20,12 +20,17 @@ void main() {
     int row = pixel.y;
     float target = float(pixel.x);
     uint packed_span = texelFetch(span_map, pixel / TILE, 0).r;
-    vec2 span = packed_span == EMPTY_TILE ? vec2(far_displacement) : unpack_interval(packed_span);
+    vec2 span = unpack_interval(packed_span);
 
     int last_column = source_size.x - 1;
     // A hundredth of a pixel for rounding: a crossing that starts at the interval's end must not be missed.
     int x = clamp(int(floor(target - span.y - 0.01)), 0, last_column);
     int last = clamp(int(ceil(target - span.x)) + 1, 0, last_column);
+    if (packed_span == EMPTY_TILE) {
+        // Beyond one of the source's borders: nothing but its outermost column is there to fill from.
+        x = target < 0.5 * float(target_size.x) ? 0 : last_column;
+        last = x;
+    }
     float source = -1.0;
     float depth = 0.0;
     int edge = -1;

@@ -1,5 +1,6 @@
 #version 310 es
-// Gather, pass 1: smallest and largest displacement of each source tile.
+// Gather, pass 1: smallest and largest displacement of each source tile and of the column after it, so that every
+// pair of neighbours, and with it every disocclusion, lies within one tile.
 
 #include "include/tiles.glsl"
 
@@ -11,7 +12,7 @@ void main() {
     float high = -1e9;
     for (int j = 0; j < TILE.y; ++j) {
         int row = min(corner.y + j, source_size.y - 1);
-        for (int i = 0; i < TILE.x; ++i) {
+        for (int i = 0; i <= TILE.x; ++i) {
             float moved = displacement_at(min(corner.x + i, source_size.x - 1), row);
             low = min(low, moved);
             high = max(high, moved);
