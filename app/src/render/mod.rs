@@ -50,7 +50,7 @@ pub struct RenderSettings {
     pub ssao: bool,
     /// Ambient occlusion at half the resolution: a quarter of the cost, softer at edges.
     pub ssao_half_size: bool,
-    /// Radius of ambient occlusion in metres.
+    /// Radius of ambient occlusion in metres; at most a tenth of the scene's diagonal is used.
     pub ssao_radius: f32,
     /// Glow around what is brighter than white.
     pub bloom: bool,
@@ -195,6 +195,9 @@ impl Renderer {
         if !gl.capabilities().float_render_targets {
             hdr.push(("NO_FLOAT_TARGETS", String::new()));
         }
+        // Half a metre around a small object would darken all of it.
+        let bounds = scene.bounds();
+        let ssao_radius = settings.ssao_radius.min(0.1 * (bounds.max - bounds.min).length().max(1e-3));
         let bloom = settings.bloom.then(|| BloomPass::new(gl, &hdr)).transpose()?;
         if settings.bloom {
             hdr.push(("BLOOM", String::new()));
@@ -204,10 +207,7 @@ impl Renderer {
             scene_id: scene.id,
             shadow,
             geometry: GeometryPass::new(gl, scene)?,
-            ssao: settings
-                .ssao
-                .then(|| SsaoPass::new(gl, settings.ssao_radius, settings.ssao_scale()))
-                .transpose()?,
+            ssao: settings.ssao.then(|| SsaoPass::new(gl, ssao_radius, settings.ssao_scale())).transpose()?,
             lighting: LightingPass::new(gl, scene, settings)?,
             bloom,
             tonemap: TonemapPass::new(gl, &hdr)?,
