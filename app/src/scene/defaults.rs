@@ -182,9 +182,9 @@ pub(super) fn light(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> (Sk
     }
     let sky = Sky {
         sun_color: if sky_share > 0.0 { Sky::default().sun_color } else { Vec3::ZERO },
-        zenith: Vec3::new(0.26, 0.26, 0.27),
-        horizon: Vec3::new(0.22, 0.21, 0.2),
-        ground: Vec3::new(0.16, 0.14, 0.12),
+        zenith: Vec3::new(0.40, 0.40, 0.41),
+        horizon: Vec3::new(0.34, 0.33, 0.31),
+        ground: Vec3::new(0.25, 0.22, 0.19),
         ..Sky::default()
     };
     let lights = if lights.is_empty() { lamps(rays, viewpoints, reach) } else { lights };
