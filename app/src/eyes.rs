@@ -321,6 +321,11 @@ impl EyePair {
         }
     }
 
+    /// The point halfway between the eyes.
+    pub fn middle(&self) -> Vec3 {
+        (self.poses[0].position + self.poses[1].position) * 0.5
+    }
+
     /// Distance between the eyes in metres along their X axis.
     pub fn ipd(&self) -> f32 {
         (self.poses[1].position - self.poses[0].position).dot(self.poses[0].right())

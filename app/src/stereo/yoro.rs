@@ -98,7 +98,7 @@ impl Yoro {
         pair: &EyePair,
         views: &SynthesisViews,
     ) -> Result<(), StereoError> {
-        let middle = (pair.poses[0].position + pair.poses[1].position) * 0.5;
+        let middle = pair.middle();
         let selection = match &self.near_layer {
             Some(near) => Selection::Farther { from: middle, distance: near.distance },
             None => Selection::All,
@@ -148,7 +148,7 @@ impl StereoMethod for Yoro {
         let mut dominant_depth = self.targets.depth();
         let mut other = &self.other;
         if let Some(near) = &mut self.near_layer {
-            let middle = (pair.poses[0].position + pair.poses[1].position) * 0.5;
+            let middle = pair.middle();
             let selection = Selection::Nearer { from: middle, distance: near.distance };
             let far = [(dominant.color(0), dominant_depth), (other.color(0), other.depth())];
             for (i, view) in [&views.source, &views.target].into_iter().enumerate() {
