@@ -73,7 +73,8 @@ impl GeometryPass {
     pub fn draw(&self, target: &RenderTarget, scene: &GpuScene, views: &[View], slice: [f32; 2]) {
         let Some(first) = views.first() else { return };
         let range = first.depth;
-        let sliced = |view: &View| View { depth: DepthRange { near: slice[0], far: slice[1], ..range }, ..*view };
+        let sliced =
+            |view: &View| View { depth: DepthRange { near: slice[0], far: slice[1], ..range }, ..*view };
         // One of each for an eye; what a single view does not use repeats the first.
         let of = |i: usize| views.get(i).unwrap_or(first);
         let eyes: [Vec3; 2] = std::array::from_fn(|i| of(i).pose.position);

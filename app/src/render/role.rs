@@ -131,9 +131,11 @@ impl Role<'_> {
                 program.texture_of("far_field", ROLE_UNIT, far).set("far_field_crop", crop);
             }
             Role::Reprojected(reprojection) => {
-                program
-                    .texture_of("dominant_color", ROLE_UNIT, reprojection.color)
-                    .texture_of("disocclusion", ROLE_UNIT + 1, reprojection.disocclusion);
+                program.texture_of("dominant_color", ROLE_UNIT, reprojection.color).texture_of(
+                    "disocclusion",
+                    ROLE_UNIT + 1,
+                    reprojection.disocclusion,
+                );
                 reprojection.set_law(program);
             }
         }

@@ -88,7 +88,7 @@ impl Method {
     pub fn supported(self, capabilities: &Capabilities) -> Result<(), GlError> {
         if self == Method::Multiview && !capabilities.multiview {
             return Err(GlError::Unsupported(format!(
-                "{} ({}) has no GL_OVR_multiview2; use --method instanced, or a driver that has it (Mesa from 24.2 on)",
+                "{} ({}) has no GL_OVR_multiview2; use --method instanced, or a driver that has it, such as Mesa 25",
                 capabilities.renderer, capabilities.version_string
             )));
         }

@@ -12,8 +12,8 @@ use super::{AntiAliasing, Finish, StereoError, StereoFrame, StereoMethod, Stereo
 use crate::eyes::{DepthConvention, DisparityLaw, EyePair, GuardBand};
 use crate::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 use crate::render::{
-    DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings, Renderer, Reprojection,
-    Role, RoleKind,
+    DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings, Renderer,
+    Reprojection, Role, RoleKind,
 };
 
 /// Two g-buffers; ambient occlusion and lighting once, and again for disocclusions.
