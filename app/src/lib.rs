@@ -5,6 +5,8 @@
 //! [`stereo`] make frames to test it on, [`metrics`] measures them.
 
 #[cfg(feature = "desktop")]
+pub mod bench;
+#[cfg(feature = "desktop")]
 pub mod cli;
 pub mod eyes;
 #[cfg(feature = "desktop")]
