@@ -23,6 +23,7 @@ enum Command {
     Synthesize(cli::synthesize::SynthesizeArgs),
     Compare(cli::compare::CompareArgs),
     Scenes(cli::scenes::ScenesArgs),
+    View(cli::view::ViewArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Command::Synthesize(args) => cli::synthesize::run(args),
         Command::Compare(args) => cli::compare::run(args),
         Command::Scenes(args) => cli::scenes::run(args),
+        Command::View(args) => cli::view::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {
