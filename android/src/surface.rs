@@ -30,7 +30,8 @@ impl Display {
         let egl = Egl::new(egl::Static);
         let failed = |what: &'static str| move |error: egl::Error| format!("{what} failed: {error}");
         // SAFETY: the default display is no pointer to anything of ours.
-        let display = unsafe { egl.get_display(egl::DEFAULT_DISPLAY) }.ok_or("this device has no EGL display")?;
+        let display =
+            unsafe { egl.get_display(egl::DEFAULT_DISPLAY) }.ok_or("this device has no EGL display")?;
         egl.initialize(display).map_err(failed("eglInitialize"))?;
         egl.bind_api(egl::OPENGL_ES_API).map_err(failed("eglBindAPI"))?;
         let attributes = [
