@@ -7,7 +7,10 @@ use anyhow::Context as _;
 use zip::{CompressionMethod, ZipArchive};
 
 use super::super::{ARCHITECTURES, PAGE};
-use super::Report;
+use super::{Report, some};
+
+/// Mapped out of the APK.
+const RESOURCES: &str = "resources.arsc";
 
 /// What is in an APK.
 #[derive(Debug, Default)]
@@ -77,8 +80,12 @@ impl Archive {
             })
             .map(|(name, _)| name.as_str())
             .collect();
-        let problem = (!wrong.is_empty())
-            .then(|| format!("{} must lie at a multiple of 4 bytes, libraries of 16 KiB", wrong.join(", ")));
+        let problem = if !wrong.is_empty() {
+            Some(format!("{} must lie at a multiple of 4 bytes, libraries of 16 KiB", some(&wrong)))
+        } else {
+            let compressed = self.entries.get(RESOURCES).is_some_and(|entry| !entry.stored);
+            compressed.then(|| format!("{RESOURCES} is compressed: Android 11 and later refuse it"))
+        };
         let (total, count) = (self.entries.len(), stored.len());
         report.row("alignment", format!("{total} files, {count} of them uncompressed"), problem);
     }
@@ -127,15 +134,20 @@ pub mod tests {
 
     #[test]
     fn uncompressed_files_lie_on_words() {
-        let mut names = LIBRARIES.to_vec();
-        names.push("resources.arsc");
         // Some name length brings the last file's content to an odd place.
         let odd = (0..4).any(|n| {
-            let long = format!("{}resources.arsc", "x".repeat(n));
+            let long = format!("{}{RESOURCES}", "x".repeat(n));
             problems(&archive(&[long.as_str()], CompressionMethod::Stored, 1))
                 .contains(&"alignment".to_owned())
         });
         assert!(odd);
+    }
+
+    #[test]
+    fn resources_are_not_compressed() {
+        let mut names = LIBRARIES.to_vec();
+        names.push(RESOURCES);
+        assert_eq!(problems(&archive(&names, CompressionMethod::Deflated, 1)), ["alignment"]);
     }
 
     #[test]

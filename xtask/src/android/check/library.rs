@@ -9,7 +9,7 @@ use goblin::elf::{Elf, Sym, dynamic, header};
 
 use super::super::symbols::Public;
 use super::super::{ARCHITECTURES, Architecture, MIN_API, PAGE};
-use super::Report;
+use super::{Report, some};
 
 /// What NativeActivity looks for.
 const ENTRY: &str = "ANativeActivity_onCreate";
@@ -137,7 +137,7 @@ fn symbols(
             Public::Lists => " (or missing in xtask/android/symbols)",
             Public::Stubs(_) => "",
         };
-        format!("{} not public since API {MIN_API} in what it needs{lists}", unknown.join(", "))
+        format!("{} not public since API {MIN_API} in what it needs{lists}", some(&unknown))
     });
     report.row(format!("{folder} symbols"), format!("{} of the system", undefined.len()), problem);
     Ok(())

@@ -71,6 +71,15 @@ impl fmt::Display for Report {
     }
 }
 
+/// A list, cut where nobody would read on.
+fn some(names: &[&str]) -> String {
+    const SHOWN: usize = 5;
+    match names.len().checked_sub(SHOWN) {
+        Some(more @ 1..) => format!("{} and {more} more", names[..SHOWN].join(", ")),
+        _ => names.join(", "),
+    }
+}
+
 /// Looks at everything.
 ///
 /// # Errors
@@ -78,7 +87,7 @@ impl fmt::Display for Report {
 pub fn check(path: &Path) -> anyhow::Result<Report> {
     let shown = path.display();
     let bytes = fs::read(path)
-        .with_context(|| format!("{shown} cannot be read: `cargo xtask apk --release` makes an APK"))?;
+        .with_context(|| format!("{shown} cannot be read (`cargo xtask apk` says where it puts an APK)"))?;
     let archive = Archive::read(&bytes).with_context(|| {
         format!("{shown} is damaged or no APK: build it anew by `cargo xtask apk --release`")
     })?;
@@ -99,4 +108,42 @@ pub fn check(path: &Path) -> anyhow::Result<Report> {
         library::check(name, content, &public, &mut report)?;
     }
     Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lists_are_cut() {
+        assert_eq!(some(&["a", "b"]), "a, b");
+        assert_eq!(some(&["a", "b", "c", "d", "e"]), "a, b, c, d, e");
+        assert_eq!(some(&["a", "b", "c", "d", "e", "f", "g"]), "a, b, c, d, e and 2 more");
+    }
+
+    #[test]
+    fn what_is_no_apk_is_refused_with_a_remedy() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("some.apk");
+        let refusal = || check(&path).unwrap_err().to_string();
+        assert!(refusal().contains("some.apk cannot be read"));
+        fs::write(&path, "no archive").unwrap();
+        assert!(refusal().contains("some.apk is damaged or no APK"));
+        let files = archive::tests::archive(&["a.txt"], zip::CompressionMethod::Stored, 1);
+        fs::write(&path, files).unwrap();
+        assert!(refusal().contains("without AndroidManifest.xml"));
+    }
+
+    #[test]
+    fn one_problem_is_enough() {
+        let mut report = Report::default();
+        report.equal("first", "as it should be", "as it should be");
+        assert!(report.passed());
+        report.equal("second", "", "something");
+        assert!(!report.passed());
+        assert_eq!(
+            report.to_string(),
+            "  ok    first   as it should be\n  FAIL  second  none: should be something\n"
+        );
+    }
 }
