@@ -10,7 +10,7 @@ mod table;
 use std::path::{Path, PathBuf};
 
 use image::RgbImage;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::eyes::Eye;
 use crate::files::{self, FileError};
@@ -57,7 +57,7 @@ pub struct RunReport {
 }
 
 /// Where and how a run took place.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Model name of the processor.
     pub cpu: String,
@@ -78,7 +78,7 @@ pub struct Machine {
 }
 
 /// One setting of the run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// Its name, with the unit.
     pub name: String,
