@@ -13,6 +13,7 @@ use super::keystore::Keystore;
 use super::stand_in::StandIn;
 use super::toolchain::{self, Rust, Surroundings, Toolchain};
 use super::{PAGE, check, target_folder};
+use crate::cargo::Equipped;
 
 const CARGO_APK: &str = "0.10.0";
 /// `apk_name` of android/Cargo.toml.
@@ -93,6 +94,20 @@ pub fn apk(options: Options) -> anyhow::Result<PathBuf> {
     }
     println!("{} in {:.0} s", apk.display(), start.elapsed().as_secs_f64());
     Ok(apk)
+}
+
+/// The release APK for the tests. What it needs is installed without asking, as for all tests.
+///
+/// # Errors
+/// When it cannot be built although everything is there.
+pub fn for_tests() -> anyhow::Result<Equipped> {
+    let surroundings = Surroundings::here();
+    let (toolchain, _) = Toolchain::choose(&surroundings);
+    if let Err(error) = toolchain::ensure(&toolchain, &surroundings, true) {
+        eprintln!("warning: the APK cannot be built here, so that its tests are left out: {error:#}");
+        return Ok(Equipped::Missing);
+    }
+    Ok(Equipped::At(apk(Options { release: true, yes: true })?))
 }
 
 fn root() -> PathBuf {
