@@ -67,7 +67,9 @@ pub fn apk(options: Options) -> anyhow::Result<PathBuf> {
                 .env("ANDROID_HOME", &stand_in.sdk)
                 .env("ANDROID_NDK_ROOT", &stand_in.ndk)
                 .env("RUSTC_BOOTSTRAP", "1")
-                .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort");
+                .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
+                // Without backtraces: there are no symbols to show.
+                .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", "");
             Rust::with_source(&surroundings)
         }
     };
