@@ -89,7 +89,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Apk { release, yes } => {
             android::apk(android::Options { release, yes })?;
         }
-        Task::Doctor => return Ok(android::doctor()),
+        Task::Doctor => return android::doctor(),
         Task::CheckApk { file } => {
             let report = android::check::check(&file)?;
             print!("{report}");

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
-use super::keystore::Keystore;
+use super::keystore::{self, Keystore};
 use super::stand_in::StandIn;
 use super::toolchain::{self, Rust, Surroundings, Toolchain};
 use super::{PAGE, check, target_folder};
@@ -119,9 +119,7 @@ fn root() -> PathBuf {
 /// cargo-apk of the one version that this works with, in the project's own folder.
 fn cargo_apk(folder: &Path) -> anyhow::Result<PathBuf> {
     let program = folder.join("bin/cargo-apk");
-    let version = Command::new(&program).args(["apk", "version"]).output();
-    let wanted = format!("cargo-apk {CARGO_APK}");
-    if version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == wanted) {
+    if is_cargo_apk(&program) {
         return Ok(program);
     }
     // It only starts other programs: optimising it would take longer than it saves.
@@ -138,6 +136,26 @@ fn cargo_apk(folder: &Path) -> anyhow::Result<PathBuf> {
         bail!("cargo-apk {CARGO_APK} cannot be installed: see above");
     }
     Ok(program)
+}
+
+fn is_cargo_apk(program: &Path) -> bool {
+    let version = Command::new(program).args(["apk", "version"]).output();
+    let wanted = format!("cargo-apk {CARGO_APK}");
+    version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == wanted)
+}
+
+/// What the building brings along by itself, for people: cargo-apk and the key.
+///
+/// # Errors
+/// When the target folder is not known.
+pub fn extras() -> anyhow::Result<[(&'static str, String); 2]> {
+    let program = target_folder()?.join("tools/bin/cargo-apk");
+    let tool = if is_cargo_apk(&program) {
+        program.display().to_string()
+    } else {
+        format!("version {CARGO_APK} will be installed: {}", program.display())
+    };
+    Ok([("cargo-apk", tool), ("release key", keystore::describe())])
 }
 
 /// What is asked of the linker with any NDK: pages of 16 KiB, and no name that a public library does not have.

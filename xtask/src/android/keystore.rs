@@ -9,6 +9,14 @@ use anyhow::{Context as _, bail};
 /// The variable that names the release's keystore; with `_PASSWORD` at its end, the password's.
 const RELEASE: &str = "CARGO_APK_RELEASE_KEYSTORE";
 
+/// Which key a release would be signed with, for people.
+pub fn describe() -> String {
+    match env::var_os(RELEASE) {
+        Some(path) => format!("{} ({RELEASE})", PathBuf::from(path).display()),
+        None => format!("this machine's debug key: {RELEASE} is not set"),
+    }
+}
+
 /// A keystore with one key, and its password.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Keystore {
