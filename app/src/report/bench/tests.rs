@@ -1,0 +1,1 @@
+//! Synthetic results, whose figures are known, through data, tables and page.
