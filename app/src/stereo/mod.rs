@@ -8,7 +8,7 @@ mod yoro;
 use std::rc::Rc;
 
 use crate::eyes::{Eye, EyePair, EyesError, GuardBand};
-use crate::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use crate::gl::{Capabilities, Context, Destination, Filter, Format, GlError, RenderTarget};
 use crate::render::{Fxaa, GpuScene, RenderSettings, Renderer};
 use crate::synthesis::{NearFieldPolicy, Pipeline, SynthesisOptions};
 
@@ -32,12 +32,60 @@ pub enum StereoError {
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "desktop", derive(clap::ValueEnum))]
 pub enum Method {
-    /// Both eyes rendered: the ground truth.
+    /// Both eyes rendered, one after the other: the ground truth.
     Conventional,
+    /// Both eyes in one set of draw calls, by instancing.
+    Instanced,
+    /// Both eyes in one set of draw calls, by GL_OVR_multiview2.
+    Multiview,
+    /// The far field rendered once for both eyes, the near field for each (Fink et al. 2019).
+    Hybrid,
+    /// The dominant eye's shading reprojected to the other eye's geometry; only disocclusions are shaded.
+    ShadingReprojection,
     /// The dominant eye's image shown to both: the lower bound.
     Mono,
     /// The dominant eye rendered, the other synthesized.
     Yoro,
+}
+
+impl Method {
+    /// All methods: those that render both eyes first.
+    pub const ALL: [Method; 7] = [
+        Method::Conventional,
+        Method::Instanced,
+        Method::Multiview,
+        Method::Hybrid,
+        Method::ShadingReprojection,
+        Method::Mono,
+        Method::Yoro,
+    ];
+
+    /// The name on the command line and in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Conventional => "conventional",
+            Method::Instanced => "instanced",
+            Method::Multiview => "multiview",
+            Method::Hybrid => "hybrid",
+            Method::ShadingReprojection => "shading-reprojection",
+            Method::Mono => "mono",
+            Method::Yoro => "yoro",
+        }
+    }
+
+    /// Whether a driver can run the method; what a pipeline of [`Method::Yoro`] needs is its own to say.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] with what is missing and the remedy.
+    pub fn supported(self, capabilities: &Capabilities) -> Result<(), GlError> {
+        if self == Method::Multiview && !capabilities.multiview {
+            return Err(GlError::Unsupported(format!(
+                "{} ({}) has no GL_OVR_multiview2; use --method instanced, or a driver that has it (Mesa from 24.2 on)",
+                capabilities.renderer, capabilities.version_string
+            )));
+        }
+        Ok(())
+    }
 }
 
 /// When anti-aliasing runs.
@@ -151,7 +199,11 @@ pub fn create(
     settings: &RenderSettings,
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
+    method.supported(gl.capabilities())?;
     Ok(match method {
+        Method::Instanced | Method::Multiview | Method::Hybrid | Method::ShadingReprojection => {
+            return Err(GlError::Unsupported(format!("{} is not built in yet", method.name())));
+        }
         Method::Conventional => Box::new(Conventional::new(gl, settings, options)?),
         Method::Mono => Box::new(Mono::new(gl, settings, options)?),
         Method::Yoro => Box::new(Yoro::new(gl, settings, options)?),
