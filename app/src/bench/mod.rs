@@ -4,6 +4,7 @@
 //! each round of a setting every [`Contender`] takes its turn, and the round is appended to a file of
 //! [records](record) when it is over.
 
+pub mod bandwidth;
 mod contender;
 pub mod record;
 

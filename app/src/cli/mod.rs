@@ -5,6 +5,7 @@ pub mod dataset;
 pub mod info;
 pub mod machine;
 pub mod render;
+pub mod report;
 pub mod run;
 pub mod scenes;
 pub mod stage;

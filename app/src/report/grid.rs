@@ -108,6 +108,17 @@ impl Table {
         self.lines.push(Line { cells, first: true });
     }
 
+    /// Removes the last column.
+    pub fn drop_last_column(&mut self) {
+        self.columns.pop();
+        for line in &mut self.lines {
+            match line.cells.last_mut() {
+                Some(last) if last.span > 1 => last.span -= 1,
+                _ => drop(line.cells.pop()),
+            }
+        }
+    }
+
     /// Appends a row that says why it has no figures, after its first cells.
     pub fn push_reason(&mut self, mut cells: Vec<Cell>, reason: &str) {
         let span = self.columns.len().saturating_sub(cells.len()).max(1);

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -55,8 +56,10 @@ pub enum Panel {
 /// How values become positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
+    /// Equal steps are equally far apart.
     #[default]
     Linear,
+    /// Equal factors are equally far apart.
     Logarithmic,
 }
 
@@ -216,7 +219,8 @@ fn rgb(color: u32) -> RGBColor {
 fn text(size: i32, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
     // The backend divides by 1.24.
     let style: TextStyle = ("sans-serif", f64::from(size) * 1.24).into_text_style(&(0, 0));
-    style.color(&rgb(palette::TEXT.0)).pos(Pos::new(horizontal, vertical))
+    let color = rgb(palette::TEXT.0).to_backend_color();
+    TextStyle { color, ..style }.pos(Pos::new(horizontal, vertical))
 }
 
 fn text_width(text: &str) -> i32 {

@@ -59,6 +59,11 @@ impl Measured {
         values.flatten().filter_map(|value| *value).filter(|value| value.is_finite()).collect()
     }
 
+    /// The values of a metric in the first round, in the order of the setting's frames.
+    pub fn by_frame(&self, metric: &str) -> &[Option<f64>] {
+        self.rounds.iter().find_map(|(_, values)| values.get(metric)).map_or(&[], Vec::as_slice)
+    }
+
     /// Names of the metrics that it has values of.
     pub fn metrics(&self) -> impl Iterator<Item = &str> {
         self.rounds.iter().flat_map(|(_, values)| values.keys()).map(String::as_str)
@@ -111,9 +116,11 @@ impl SettingData {
 
     /// What to call it: the scene, and the point of a sweep.
     pub fn label(&self) -> String {
-        let Setting { scene, label, point, .. } = &self.setting;
+        let Setting { suite, scene, label, point } = &self.setting;
         match (label, point) {
             (Some(label), _) => format!("{scene}, {label}"),
+            // All of them have the same few lights.
+            (None, Some(_)) if suite == "lights" => scene.clone(),
             (None, Some(point)) => format!("{scene}, {point}"),
             (None, None) => scene.clone(),
         }
@@ -128,11 +135,7 @@ impl SettingData {
 impl Suite {
     /// Names of the contenders, measured or not, in the order of measurement.
     pub fn contenders(&self) -> Vec<&str> {
-        let of_setting = |setting: &'_ SettingData| {
-            let names: Vec<&str> = setting.contenders.iter().map(|measured| measured.name.as_str()).collect();
-            names
-        };
-        let measured = self.settings.iter().flat_map(of_setting);
+        let measured = self.settings.iter().flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()));
         let refused = self.settings.iter().flat_map(|s| s.unsupported.iter().map(|(name, _)| name.as_str()));
         unique(measured.chain(refused))
     }

@@ -2,7 +2,7 @@
 
 use super::data::{Measured, SettingData, Suite, geometric_mean, mean};
 use crate::bench::{bandwidth, metric};
-use crate::report::bd_rate::{bd_rate, line_through};
+use crate::report::bd_rate::{BdRate, bd_rate, line_through};
 use crate::report::grid::{Cell, Table};
 use crate::report::paper;
 use crate::report::plot::{Axis, DotRow, Figure, Mark, Panel, Series};
@@ -56,18 +56,19 @@ const PAPERS: &str = "the paper's ";
 /// Suites by name in the paper's order, with what makes their sections. One suite can have several: the paper
 /// looks at frame time, quality and overhead of the same eight scenes in three places.
 #[allow(clippy::type_complexity)]
-const ORDER: [(&str, fn(&Suite) -> Section); 12] = [
+const ORDER: [(&str, fn(&Suite) -> Section); 13] = [
     ("scenes", frame_time),
     ("complexity", complexity),
     ("scenes", quality),
     ("scenes", overhead),
-    ("few-lights", few_lights),
+    ("lights", few_lights),
     ("styles", styles),
     ("ipd", ipd),
     ("distance", distance),
     ("patchers", patchers),
     ("imbuffer", imbuffer),
     ("resolution", resolution),
+    ("flicker", flicker),
     ("bandwidth", bandwidth_section),
 ];
 
@@ -102,6 +103,8 @@ fn fixed(value: Option<f64>, decimals: usize) -> Option<String> {
 
 /// `530` or `12.3`: four digits say enough of a time.
 fn milliseconds(value: f64) -> String {
+    // No minus before a zero.
+    let value = if value.abs() < 0.005 { 0.0 } else { value };
     if value >= 100.0 { format!("{value:.0}") } else { format!("{value:.2}") }
 }
 
@@ -504,7 +507,6 @@ fn quality(suite: &Suite) -> Section {
     table.note = "RGB; SSIM with a gaussian window 11x11. ∞: identical images.".into();
     section.table(table);
     section.table(parts_table(suite, &contenders));
-    section.table(flicker_table(suite));
     section.table(metric_table(suite, "Every scene and method in full", &contenders));
     section
 }
@@ -555,23 +557,61 @@ fn parts_table(suite: &Suite, contenders: &[&str]) -> Table {
     table
 }
 
-fn flicker_table(suite: &Suite) -> Table {
+fn flicker(suite: &Suite) -> Section {
+    let mut section = Section::new(
+        "flicker",
+        "Flicker",
+        "Change of the synthesized eye from frame to frame, along a piece of the camera path at walking pace, that \
+         the really rendered eye does not have. The paper has none.",
+    );
+    for (id, title, name) in [
+        ("all", "Flicker of all pixels", metric::FLICKER),
+        ("holes", "Flicker in holes", metric::FLICKER_HOLES),
+        ("edges", "Flicker at edges", metric::FLICKER_EDGES),
+    ] {
+        let panel = scene_dots(
+            suite,
+            Axis::new("flicker, of 255").from_zero(),
+            &suite.measured(name),
+            |setting, contender| setting.find(contender)?.mean(name),
+            |_| Vec::new(),
+        );
+        section.figure(id, title, "Less is better.", panel);
+    }
     let columns = [
         ("all", metric::FLICKER, 3),
         ("in holes", metric::FLICKER_HOLES, 3),
         ("at edges", metric::FLICKER_EDGES, 3),
         ("elsewhere", metric::FLICKER_REST, 3),
-        ("the scene's own change: all", metric::CHANGE, 3),
-        ("in holes", metric::CHANGE_HOLES, 3),
-        ("at edges", metric::CHANGE_EDGES, 3),
-        ("elsewhere", metric::CHANGE_REST, 3),
     ];
+    let mut table =
+        means_table(suite, "Flicker, of 255, means over the scenes", &suite.measured(metric::FLICKER), &columns);
+    let changes = [metric::CHANGE, metric::CHANGE_HOLES, metric::CHANGE_EDGES, metric::CHANGE_REST];
+    let changes = changes.map(|name| mean(suite.values(CONVENTIONAL, |measured| measured.mean(name))));
+    if changes.iter().any(Option::is_some) {
+        let mut cells = vec![Cell::plain("the scene's own change")];
+        cells.extend(changes.map(|change| Cell::base(fixed(change, 3))));
+        cells.truncate(table.columns.len());
+        table.push_first(cells);
+    }
+    section.table(table);
+    let of_scenes = ("", |_: &SettingData| None, None);
     let contenders = suite.measured(metric::FLICKER);
-    let mut table = means_table(suite, "Flicker along the camera path, of 255", &contenders, &columns);
-    table.note = "Change from frame to frame that the really rendered eye does not have; less is better. The \
-                  paper has none."
-        .into();
-    table
+    let mut table = scene_table(
+        suite,
+        "Flicker of all pixels / in holes",
+        &contenders,
+        |setting, name| {
+            let measured = setting.find(name)?;
+            let holes = fixed(measured.mean(metric::FLICKER_HOLES), 2).unwrap_or_else(|| "–".into());
+            Some(format!("{:.2} / {holes}", measured.mean(metric::FLICKER)?))
+        },
+        |name| fixed(mean(suite.values(name, |measured| measured.mean(metric::FLICKER))), 2),
+        of_scenes,
+    );
+    table.drop_last_column();
+    section.table(table);
+    section
 }
 
 /// A row for each contender and a column for each metric that was measured, means over the settings.
@@ -794,55 +834,54 @@ fn styles(suite: &Suite) -> Section {
         "Shading styles",
         "The same synthesis under five styles of shading. In the paper each style is another scene of its own.",
     );
-    let style_of = |setting: &SettingData| -> Option<String> {
-        let style = setting.facts.as_ref().map(|facts| facts.style);
-        let of_facts = || serde_json::to_value(style?).ok()?.as_str().map(str::to_owned);
-        setting.setting.label.clone().or_else(of_facts)
+    let with_style = |style: &str| -> Vec<&SettingData> {
+        suite.settings.iter().filter(|setting| setting.setting.label.as_deref() == Some(style)).collect()
     };
-    let paper_style = |setting: &SettingData, value: fn(&(&str, f64, f64)) -> f64| {
-        let style = style_of(setting)?;
-        paper::STYLES.iter().find(|(name, ..)| *name == style).map(value)
+    let value = |style: &str, contender: &str, name: &str| {
+        mean(with_style(style).iter().filter_map(|setting| setting.find(contender)?.mean(name)).collect())
     };
-    for (name, axis, caption) in QUALITY_FIGURES {
-        let contenders: Vec<&str> =
-            suite.measured(name).into_iter().filter(|name| *name != CONVENTIONAL).collect();
-        let panel = scene_dots(
-            suite,
-            Axis::new(axis),
-            &contenders,
-            |setting, contender| setting.find(contender)?.mean(name),
-            |setting| {
-                let value = match name {
-                    metric::SSIM => paper_style(setting, |style| style.1),
-                    metric::PSNR => paper_style(setting, |style| style.2),
-                    _ => None,
-                };
-                value.map(|value| ("yoro-paper", value)).into_iter().collect()
-            },
-        );
-        section.figure(name, axis, caption, panel);
-    }
+    let paper_style = |style: &str| paper::STYLES.iter().find(|(name, ..)| *name == style);
     let contenders: Vec<&str> =
         suite.measured(metric::SSIM).into_iter().filter(|name| *name != CONVENTIONAL).collect();
-    section.table(scene_table(
-        suite,
-        "PSNR in dB / SSIM",
-        &contenders,
-        |setting, name| psnr_ssim(setting.find(name)?),
-        |name| {
-            let ssim = mean(suite.values(name, |measured| measured.mean(metric::SSIM)))?;
-            let psnr = fixed(mean(suite.values(name, |measured| measured.mean(metric::PSNR))), 2);
-            Some(format!("{} / {ssim:.4}", psnr.unwrap_or_else(|| "∞".into())))
-        },
-        (
-            "the paper's YORO",
-            |setting| {
-                let (psnr, ssim) = (paper_style(setting, |s| s.2)?, paper_style(setting, |s| s.1)?);
-                Some(format!("{psnr:.1} / {ssim:.3}"))
-            },
-            None,
-        ),
-    ));
+    for (name, axis, caption) in QUALITY_FIGURES {
+        let rows = suite.labels().into_iter().map(|style| {
+            let paper = paper_style(style).and_then(|(_, ssim, psnr)| match name {
+                metric::SSIM => Some(*ssim),
+                metric::PSNR => Some(*psnr),
+                _ => None,
+            });
+            let paper = paper.map(|value| Mark {
+                method: "yoro-paper".into(),
+                papers: true,
+                label: format!("{PAPERS}YORO"),
+                value,
+            });
+            let ours = contenders.iter().rev().filter_map(|contender| {
+                let value = value(style, contender, name)?;
+                Some(Mark { method: (*contender).into(), papers: false, label: (*contender).into(), value })
+            });
+            DotRow { label: style.into(), marks: paper.into_iter().chain(ours).collect() }
+        });
+        let panel = Panel::Dots { value: Axis::new(axis), rows: rows.collect() };
+        section.figure(name, axis, &format!("{caption} Means over the scenes."), panel);
+    }
+    let mut columns = vec!["<style"];
+    columns.extend(&contenders);
+    columns.push("the paper's YORO");
+    let mut table = Table::new("PSNR in dB / SSIM, means over the scenes", &columns);
+    for style in suite.labels() {
+        let mut cells = vec![Cell::plain(style)];
+        for name in &contenders {
+            let pair = value(style, name, metric::PSNR).zip(value(style, name, metric::SSIM));
+            cells.push(cell(name, pair.map(|(psnr, ssim)| format!("{psnr:.2} / {ssim:.4}"))));
+        }
+        cells.push(Cell::paper(paper_style(style).map(|(_, ssim, psnr)| format!("{psnr:.1} / {ssim:.3}"))));
+        table.push(cells);
+    }
+    push_refusals(&mut table, suite);
+    table.note = format!("Scenes: {}.", suite.scenes().join(", "));
+    section.table(table);
+    section.table(metric_table(suite, "Every scene and style in full", &contenders));
     section
 }
 
@@ -876,14 +915,13 @@ fn quality_sweep(
         let mut table = sweep_table(suite, title, name, &x.name, &label);
         let papers = papers(name);
         if !papers.is_empty() {
-            let width = table.columns.len();
             table.columns.push(crate::report::grid::Column { name: "the paper's YORO".into(), left: false });
             for (line, point) in table.lines.iter_mut().zip(suite.points()) {
                 let value = papers.iter().find(|(at, _)| (at - point).abs() < 1e-6).map(|(_, value)| *value);
                 let decimals = if name == metric::SSIM { 4 } else { 2 };
                 line.cells.push(Cell::paper(fixed(value, decimals)));
             }
-            for line in table.lines.iter_mut().filter(|line| line.cells.len() < width) {
+            for line in table.lines.iter_mut().skip(suite.points().len()) {
                 if let Some(last) = line.cells.last_mut() {
                     last.span += 1;
                 }
@@ -939,15 +977,16 @@ fn patchers(suite: &Suite) -> Section {
         paper::PATCHERS.iter().find(|patcher| patcher.name == name)
     };
     let dots = |axis: Axis, ours: &dyn Fn(&str) -> Option<f64>, papers: fn(&paper::PaperPatcher) -> f64| {
-        let mark = |name: &str, papers: bool, value: f64| Mark {
+        // The patcher is the row; colours say whose figure it is.
+        let mark = |papers: bool, value: f64| Mark {
             method: if papers { "yoro-paper".into() } else { "yoro-gather".into() },
             papers,
             label: if papers { "the paper's".into() } else { "here".into() },
-            value: { let _ = name; value },
+            value,
         };
         let rows = contenders.iter().map(|name| {
-            let paper = paper_of(name).map(|patcher| mark(name, true, papers(patcher)));
-            let ours = ours(name).map(|value| mark(name, false, value));
+            let paper = paper_of(name).map(|patcher| mark(true, papers(patcher)));
+            let ours = ours(name).map(|value| mark(false, value));
             DotRow { label: (*name).into(), marks: paper.into_iter().chain(ours).collect() }
         });
         Panel::Dots { value: axis, rows: rows.collect() }
@@ -1008,11 +1047,9 @@ fn resolution(suite: &Suite) -> Section {
     let mut section = Section::new(
         "resolution",
         "Resolution",
-        "What a method costs does not depend on the scene's pixels and triangles in equal parts.",
+        "Cost and quality against the width of each eye's image. The paper measured at its devices' own resolution \
+         only.",
     );
-    section.intro = "Cost and quality against the width of each eye's image. The paper measured at its devices' own \
-                     resolution only."
-        .into();
     let x = Axis::new("width of an eye, pixels");
     time_sweep(&mut section, suite, x.clone(), |point| format!("{point}"));
     quality_sweep(&mut section, suite, &x, |_| Vec::new(), |point| format!("{point}"));
@@ -1047,16 +1084,14 @@ fn time_sweep(section: &mut Section, suite: &Suite, x: Axis, label: impl Fn(f64)
     section.table(sweep_table(suite, "Median frame time, ms", metric::FRAME_MS, &quantity, label));
 }
 
-/// Both eyes' mean quality and the rate of a contender over the quantizers of a scene.
-fn rate_points(suite: &Suite, scene: &str, contender: &str, metrics: [&str; 2]) -> Vec<(f64, f64)> {
-    let here = suite.settings.iter().filter(|setting| setting.setting.scene == scene);
-    let mut points: Vec<(f64, f64)> = here
-        .filter_map(|setting| {
-            let measured = setting.find(contender)?;
-            let quality = metrics.map(|name| measured.mean(name));
-            Some((measured.mean(bandwidth::metric::KBIT_S)?, (quality[0]? + quality[1]?) / 2.0))
-        })
-        .collect();
+/// Rate and both eyes' mean quality of a stream, by quantizer.
+fn rate_points(setting: &SettingData, stream: &str, metrics: [&str; 2]) -> Vec<(f64, f64)> {
+    let Some(measured) = setting.find(stream) else { return Vec::new() };
+    let rates = measured.by_frame(bandwidth::metric::KBIT_S);
+    let quality = metrics.map(|name| measured.by_frame(name));
+    let points = rates.iter().zip(quality[0]).zip(quality[1]);
+    let mut points: Vec<(f64, f64)> =
+        points.filter_map(|((rate, a), b)| Some(((*rate)?, ((*a)? + (*b)?) / 2.0))).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points
 }
@@ -1070,54 +1105,92 @@ fn bandwidth_section(suite: &Suite) -> Section {
          eyes. The paper compares bit rates alone; at one quantizer the two do not look the same, so that the \
          quality of both eyes after decoding is measured here, and rates are compared at equal quality.",
     );
-    let contenders = suite.measured(KBIT_S);
+    let streams = suite.measured(KBIT_S);
     let both_psnr = [PSNR_DOMINANT, PSNR_OTHER];
     let both_ssim = [SSIM_DOMINANT, SSIM_OTHER];
-    for scene in suite.scenes() {
-        let series = contenders.iter().rev().map(|name| Series {
+    for setting in &suite.settings {
+        let series = streams.iter().rev().map(|name| Series {
             method: (*name).into(),
             papers: false,
             label: (*name).into(),
-            points: rate_points(suite, scene, name, both_psnr),
+            points: rate_points(setting, name, both_psnr),
         });
         let panel = Panel::Curves {
             x: Axis::new("bit rate, kbit/s").logarithmic(),
             y: Axis::new("PSNR of both eyes, dB"),
             series: series.collect(),
         };
+        let scene = setting.label();
         let caption = "Mean of both eyes after decoding, against the uncompressed renders.";
-        section.figure(&super::slug(scene), &format!("Rate and distortion: {scene}"), caption, panel);
+        section.figure(&super::slug(&scene), &format!("Rate and distortion: {scene}"), caption, panel);
     }
+    section.table(rate_table(suite));
 
-    let mut rates = Table::new(
-        "Bit rate at one quantizer, kbit/s",
-        &[
-            "<scene", "QP", "stereo RGB", "RGB + depth", "of it depth", "difference", "PSNR of both eyes: stereo RGB",
-            "RGB + depth", "the paper's stereo RGB", "the paper's RGB + depth", "the paper's difference",
-        ],
-    );
-    let tested: Vec<&str> = contenders.iter().copied().filter(|name| *name != STEREO_RGB).collect();
-    let mut differences = Vec::new();
-    for scene in suite.scenes() {
-        let mut settings: Vec<&SettingData> =
-            suite.settings.iter().filter(|setting| setting.setting.scene == scene).collect();
-        settings.sort_by(|a, b| a.setting.point.partial_cmp(&b.setting.point).unwrap_or(std::cmp::Ordering::Equal));
-        for (i, setting) in settings.into_iter().enumerate() {
-            let (stereo, depth) = (setting.find(STEREO_RGB), setting.find(bandwidth::RGB_DEPTH));
-            let rate = |measured: Option<&Measured>| measured.and_then(|m| m.mean(KBIT_S));
-            let both = |measured: Option<&Measured>| {
-                measured.and_then(|m| Some((m.mean(PSNR_DOMINANT)? + m.mean(PSNR_OTHER)?) / 2.0))
+    let columns = [
+        "<scene", "<stream", "by PSNR of both eyes", "over dB", "by SSIM of both eyes", "over SSIM",
+        "best PSNR of the other eye, dB",
+    ];
+    let mut equal = Table::new("Bit rate at equal quality against stereo RGB (BD-rate)", &columns);
+    for setting in &suite.settings {
+        for (i, name) in streams.iter().filter(|name| **name != STEREO_RGB).enumerate() {
+            let compare = |metrics: [&str; 2]| {
+                bd_rate(&rate_points(setting, STEREO_RGB, metrics), &rate_points(setting, name, metrics))
             };
-            let difference = rate(depth).zip(rate(stereo)).map(|(depth, stereo)| depth / stereo - 1.0);
+            let (psnr, ssim) = (compare(both_psnr), compare(both_ssim));
+            let best = rate_points(setting, name, [PSNR_OTHER; 2]).into_iter().map(|p| p.1).reduce(f64::max);
+            let share = |bd: Option<BdRate>| {
+                bd.map_or_else(|| "no quality in common".to_owned(), |bd| percent(bd.share))
+            };
+            let over = |bd: Option<BdRate>, decimals: usize| {
+                bd.map(|bd| format!("{:.2$} – {:.2$}", bd.quality[0], bd.quality[1], decimals))
+            };
+            let cells = vec![
+                Cell::plain(setting.label()),
+                Cell::plain(*name),
+                Cell::ours(Some(share(psnr))),
+                Cell::plain(over(psnr, 1).unwrap_or_default()),
+                Cell::ours(Some(share(ssim))),
+                Cell::plain(over(ssim, 3).unwrap_or_default()),
+                Cell::ours(fixed(best, 2)),
+            ];
+            if i == 0 { equal.push_first(cells) } else { equal.push(cells) }
+        }
+    }
+    equal.note = "Bjøntegaard's mean difference; negative: fewer bits than stereo RGB for the same quality. A curve \
+                  counts only over the qualities that both reach: what synthesis cannot show, no bit rate buys."
+        .into();
+    section.table(equal);
+    section
+}
+
+/// Bit rates at one quantizer, as the paper compares them.
+fn rate_table(suite: &Suite) -> Table {
+    use bandwidth::{RGB_DEPTH, STEREO_RGB, metric::*};
+    let columns = [
+        "<scene", "QP", "stereo RGB, kbit/s", "RGB + depth, kbit/s", "of it depth", "difference",
+        "stereo RGB: both eyes, dB", "RGB + depth: both eyes, dB", "the paper's stereo RGB",
+        "the paper's RGB + depth", "the paper's difference",
+    ];
+    let mut table = Table::new("Bit rate at one quantizer", &columns);
+    let mut differences = Vec::new();
+    for setting in &suite.settings {
+        let Some((stereo, depth)) = setting.find(STEREO_RGB).zip(setting.find(RGB_DEPTH)) else { continue };
+        let paper = paper::BANDWIDTH.iter().find(|(name, ..)| *name == setting.stands_for());
+        for (i, quantizer) in stereo.by_frame(QP).iter().enumerate() {
+            let value = |measured: &Measured, name: &str| measured.by_frame(name).get(i).copied().flatten();
+            let both = |measured: &Measured| {
+                Some((value(measured, PSNR_DOMINANT)? + value(measured, PSNR_OTHER)?) / 2.0)
+            };
+            let rates = (value(stereo, KBIT_S), value(depth, KBIT_S));
+            let difference = rates.0.zip(rates.1).map(|(stereo, depth)| depth / stereo - 1.0);
             differences.extend(difference);
-            let paper = paper::BANDWIDTH.iter().find(|(name, ..)| *name == setting.stands_for());
             let paper = paper.filter(|_| i == 0);
             let cells = vec![
-                Cell::plain(scene),
-                Cell::plain(setting.setting.point.map(|qp| qp.to_string()).unwrap_or_default()),
-                Cell::base(fixed(rate(stereo), 0)),
-                Cell::ours(fixed(rate(depth), 0)),
-                Cell::plain(fixed(depth.and_then(|m| m.mean(KBIT_S_DEPTH)), 0).unwrap_or_default()),
+                Cell::plain(setting.label()),
+                Cell::plain(quantizer.map(|qp| qp.to_string()).unwrap_or_default()),
+                Cell::base(fixed(rates.0, 0)),
+                Cell::ours(fixed(rates.1, 0)),
+                Cell::plain(fixed(value(depth, KBIT_S_DEPTH), 0).unwrap_or_default()),
                 Cell::ours(difference.map(percent)),
                 Cell::base(fixed(both(stereo), 2)),
                 Cell::ours(fixed(both(depth), 2)),
@@ -1125,48 +1198,18 @@ fn bandwidth_section(suite: &Suite) -> Section {
                 Cell::paper(fixed(paper.map(|p| p.1), 0)),
                 Cell::paper(paper.map(|p| percent(p.1 / p.2 - 1.0))),
             ];
-            if i == 0 { rates.push_first(cells) } else { rates.push(cells) }
+            if i == 0 { table.push_first(cells) } else { table.push(cells) }
         }
     }
-    push_refusals(&mut rates, suite);
-    let paper_mean = mean(paper::BANDWIDTH.iter().map(|(_, depth, stereo)| depth / stereo - 1.0).collect());
-    rates.note = format!(
-        "Mean difference here {}; the paper's {}. The paper's rates belong to no quantizer that it names and stand in \
-         each scene's first row.",
+    push_refusals(&mut table, suite);
+    let papers = mean(paper::BANDWIDTH.iter().map(|(_, depth, stereo)| depth / stereo - 1.0).collect());
+    table.note = format!(
+        "Mean difference here {}; the paper's {}. The paper names neither quantizer nor resolution: its rates stand \
+         in each scene's first row.",
         mean(differences).map_or_else(|| "–".into(), percent),
-        paper_mean.map_or_else(String::new, percent),
+        papers.map_or_else(|| "–".into(), percent),
     );
-    section.table(rates);
-
-    let mut equal = Table::new(
-        "Bit rate at equal quality: Bjøntegaard's mean difference (BD-rate) against stereo RGB",
-        &["<scene", "<stream", "by PSNR of both eyes", "over dB", "by SSIM of both eyes", "over SSIM", "best PSNR of the synthesized eye, dB"],
-    );
-    for scene in suite.scenes() {
-        for (i, name) in tested.iter().enumerate() {
-            let compare = |metrics: [&str; 2]| {
-                bd_rate(&rate_points(suite, scene, STEREO_RGB, metrics), &rate_points(suite, scene, name, metrics))
-            };
-            let (psnr, ssim) = (compare(both_psnr), compare(both_ssim));
-            let best = rate_points(suite, scene, name, [PSNR_OTHER; 2]).into_iter().map(|p| p.1).reduce(f64::max);
-            let none = || Some("no quality in common".to_owned());
-            let cells = vec![
-                Cell::plain(scene),
-                Cell::plain(*name),
-                Cell::ours(psnr.map(|bd| percent(bd.share)).or_else(none)),
-                Cell::plain(psnr.map(|bd| format!("{:.1} – {:.1}", bd.quality[0], bd.quality[1])).unwrap_or_default()),
-                Cell::ours(ssim.map(|bd| percent(bd.share)).or_else(none)),
-                Cell::plain(ssim.map(|bd| format!("{:.3} – {:.3}", bd.quality[0], bd.quality[1])).unwrap_or_default()),
-                Cell::ours(fixed(best, 2)),
-            ];
-            if i == 0 { equal.push_first(cells) } else { equal.push(cells) }
-        }
-    }
-    equal.note = "Negative: fewer bits than stereo RGB for the same quality. A curve counts only over the qualities \
-                  that both reach: what synthesis cannot show, no bit rate buys."
-        .into();
-    section.table(equal);
-    section
+    table
 }
 
 /// Every metric of a suite that has no section of its own.
