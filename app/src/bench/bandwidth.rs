@@ -72,7 +72,7 @@ pub const SSIM_EVERY: usize = 6;
 /// What is coded how often.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandwidthOptions {
-    /// Quantizers of colour, 0 to 51; four or more for a rate-distortion curve.
+    /// Quantizers of colour, 12 to 51; four or more for a rate-distortion curve.
     pub quantizers: Vec<u8>,
     /// Quantizer of the depth stream less that of colour.
     pub depth_offset: i8,
@@ -353,10 +353,11 @@ struct Coder {
 
 impl Coder {
     fn new(quantizer: u8) -> anyhow::Result<Coder> {
-        // Quality is what is compared, so the quantizer is held and the rate is what comes of it. One thread: a
-        // repeated run gives the same bytes.
+        // Quality is what is compared, so the quantizer is held and the rate is what comes of it: of the encoder's
+        // modes this one moves the quantizer within its range only, and never skips a frame for it. One thread, so
+        // that a repeated run gives the same bytes.
         let config = EncoderConfig::new()
-            .rate_control_mode(RateControlMode::Quality)
+            .rate_control_mode(RateControlMode::Bufferbased)
             .qp(QpRange::new(quantizer, quantizer))
             .bitrate(BitRate::from_bps(100_000_000))
             .max_frame_rate(FrameRate::from_hz(FRAME_RATE))

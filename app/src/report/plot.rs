@@ -495,9 +495,11 @@ mod tests {
             assert!(svg.contains(needed), "{needed}: {svg}");
         }
         assert!(!svg.contains("NaN") && svg.trim_end().ends_with("</svg>"));
-        // The line through (1, 20) and (2, 40): y halves its distance to the axis.
-        let points = svg.lines().find(|l| l.contains("#3D3F44") && l.contains("polyline") && l.contains(&format!(",{} ", MARGIN + LINE + LINE / 2)));
-        assert!(points.is_some(), "the highest point touches the top of the frame: {svg}");
+        // 40 ms is the top of the frame, 20 ms half-way down.
+        let line = |dash: &str| svg.lines().find(|l| l.starts_with("<polyline") && l.contains("#3D3F44") && l.contains(dash));
+        let top = MARGIN + LINE + LINE / 2;
+        let (start, end) = (format!(",{} ", top + CURVES_HEIGHT / 2), format!(",{top} "));
+        assert!(line(&start).is_some_and(|l| l.contains(&end)), "{svg}");
     }
 
     #[test]
