@@ -165,6 +165,13 @@ impl Context {
         self.profiler.borrow_mut().take(&self.raw)
     }
 
+    /// Ends a frame of [`Profiling::Queries`]. When the oldest frame that was not told yet is finished, `times` gets its
+    /// passes in the order in which they ran, and the result is true. Never waits; frames of which the driver
+    /// says that their times are spoilt are left out.
+    pub fn take_frame_times(&self, times: &mut Vec<PassTime>) -> bool {
+        self.profiler.borrow_mut().take_frame(&self.raw, times)
+    }
+
     /// Blocks until the GPU has done everything.
     pub fn finish(&self) {
         // SAFETY: no arguments.
