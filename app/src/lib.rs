@@ -2,7 +2,8 @@
 //!
 //! The heart is [`synthesis`]: colour and depth of one eye in, the other eye out, with nothing known of scenes
 //! or windows. [`eyes`] says where the eyes are and how pixels move between them. [`scene`], [`render`] and
-//! [`stereo`] make frames to test it on, [`metrics`] measures them.
+//! [`stereo`] make frames to test it on, [`metrics`] measures them. [`viewer`] brings them before a person's eyes,
+//! and [`telemetry`] watches.
 
 #[cfg(feature = "desktop")]
 pub mod bench;
@@ -23,3 +24,5 @@ pub mod report;
 pub mod scene;
 pub mod stereo;
 pub mod synthesis;
+pub mod telemetry;
+pub mod viewer;

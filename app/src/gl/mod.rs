@@ -165,11 +165,10 @@ impl Context {
         self.profiler.borrow_mut().take(&self.raw)
     }
 
-    /// Ends a frame of [`Profiling::Queries`]. When the oldest frame that was not told yet is finished, `times` gets its
-    /// passes in the order in which they ran, and the result is true. Never waits; frames of which the driver
-    /// says that their times are spoilt are left out.
-    pub fn take_frame_times(&self, times: &mut Vec<PassTime>) -> bool {
-        self.profiler.borrow_mut().take_frame(&self.raw, times)
+    /// Ends a frame for those who time every frame without waiting ([`Profiling::Queries`]): adds the pass times of
+    /// one frame, some frames ago, to `times`, and returns the number of frames added, 1 or 0.
+    pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> u32 {
+        self.profiler.borrow_mut().end_frame(&self.raw, times)
     }
 
     /// Blocks until the GPU has done everything.

@@ -7,21 +7,20 @@ use glow::HasContext;
 
 use super::{Capabilities, GlApi};
 
-/// GL_EXT_disjoint_timer_query: something, such as a change of the clock rate, spoilt the queries.
+/// EXT_disjoint_timer_query: whether the clock was disturbed since the last question.
 const GPU_DISJOINT: u32 = 0x8FBB;
-/// How many frames a GPU may be behind before its frames are timed no more.
-const MAX_PENDING_FRAMES: usize = 8;
+/// Results are asked for this many frames late, when they are there without waiting.
+const FRAMES_LATE: usize = 4;
 
 /// How passes are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profiling {
     /// Not at all.
     Off,
+    /// Timer queries where they can be trusted, else nothing. Never waits: for programs that show frames.
+    Queries,
     /// Timer queries where they can be trusted, else [`Profiling::Finish`].
     Auto,
-    /// Timer queries where they can be trusted, else nothing; read some frames later, so that nothing ever waits:
-    /// for programs that must not miss a frame. See [`super::Context::take_frame_times`].
-    Queries,
     /// glFinish before and after each pass, and a CPU clock. The only right way on a CPU rasterizer, whose
     /// timer queries cover the last tile alone.
     Finish,
@@ -45,21 +44,15 @@ enum Record {
 pub(super) struct Profiler {
     mode: Profiling,
     queries: bool,
-    disjoint: bool,
+    api: GlApi,
     depth: usize,
     started: Option<Instant>,
     records: Vec<(&'static str, Record)>,
+    /// Records of frames whose results are not read yet, oldest first.
+    frames: VecDeque<Vec<(&'static str, Record)>>,
+    /// Frames among those whose results are worthless, since the clock was disturbed.
+    disturbed: usize,
     pool: Vec<glow::Query>,
-    late: VecDeque<Late>,
-    late_frames: usize,
-    in_late_pass: bool,
-    /// How many of the oldest late frames are spoilt.
-    spoilt: usize,
-}
-
-enum Late {
-    Pass(&'static str, glow::Query),
-    FrameEnd,
 }
 
 impl Profiler {
@@ -67,94 +60,37 @@ impl Profiler {
         Profiler {
             mode: Profiling::Off,
             queries: capabilities.timer_queries,
-            disjoint: capabilities.api == GlApi::Es,
+            api: capabilities.api,
             depth: 0,
             started: None,
             records: Vec::with_capacity(64),
+            frames: VecDeque::with_capacity(FRAMES_LATE + 4),
+            disturbed: 0,
             pool: Vec::new(),
-            late: VecDeque::with_capacity(256),
-            late_frames: 0,
-            in_late_pass: false,
-            spoilt: 0,
         }
     }
 
     pub(super) fn set(&mut self, gl: &glow::Context, mode: Profiling) {
-        if self.mode == mode {
-            return;
-        }
         self.mode = mode;
         self.take(gl);
-        self.drop_late();
     }
 
-    /// Forgets the frames whose times are not known yet. A query may be used again before its result was read.
-    fn drop_late(&mut self) {
-        let queries = self.late.drain(..).filter_map(|entry| match entry {
-            Late::Pass(_, query) => Some(query),
-            Late::FrameEnd => None,
-        });
-        self.pool.extend(queries);
-        (self.late_frames, self.spoilt) = (0, 0);
-    }
-
-    /// Ends a frame of [`Profiling::Queries`]; fills `times` with the oldest frame's when they are known.
-    pub(super) fn take_frame(&mut self, gl: &glow::Context, times: &mut Vec<PassTime>) -> bool {
-        times.clear();
-        if self.mode != Profiling::Queries || !self.queries {
-            return false;
+    fn is_on(&self) -> bool {
+        match self.mode {
+            Profiling::Off => false,
+            Profiling::Queries => self.queries,
+            Profiling::Auto | Profiling::Finish => true,
         }
-        if self.late_frames < MAX_PENDING_FRAMES {
-            self.late.push_back(Late::FrameEnd);
-            self.late_frames += 1;
-        }
-        let last = self.late.iter().map_while(|entry| match entry {
-            Late::Pass(_, query) => Some(*query),
-            Late::FrameEnd => None,
-        });
-        // Queries finish in the order in which they began.
-        // SAFETY: the queries have ended and are live; asking whether a result is there does not wait for it.
-        unsafe {
-            if let Some(last) = last.last()
-                && gl.get_query_parameter_u32(last, glow::QUERY_RESULT_AVAILABLE) == 0
-            {
-                return false;
-            }
-            if self.disjoint && gl.get_parameter_i32(GPU_DISJOINT) != 0 {
-                self.spoilt = self.late_frames;
-            }
-        }
-        while let Some(Late::Pass(name, query)) = self.late.pop_front() {
-            // SAFETY: the result is there.
-            let nanoseconds = unsafe { gl.get_query_parameter_u64(query, glow::QUERY_RESULT) };
-            self.pool.push(query);
-            times.push(PassTime { name, time: Duration::from_nanos(nanoseconds) });
-        }
-        self.late_frames -= 1;
-        if self.spoilt > 0 {
-            self.spoilt -= 1;
-            times.clear();
-        }
-        !times.is_empty()
     }
 
     pub(super) fn begin(&mut self, gl: &glow::Context, name: &'static str) {
         self.depth += 1;
-        if self.mode == Profiling::Off || self.depth > 1 {
+        if !self.is_on() || self.depth > 1 {
             return;
         }
         // SAFETY: one query at a time is active, since inner passes return above.
         unsafe {
-            if self.mode == Profiling::Queries {
-                if self.queries && self.late_frames < MAX_PENDING_FRAMES {
-                    let query = self.pool.pop().map_or_else(|| gl.create_query(), Ok);
-                    if let Ok(query) = query {
-                        gl.begin_query(glow::TIME_ELAPSED, query);
-                        self.late.push_back(Late::Pass(name, query));
-                        self.in_late_pass = true;
-                    }
-                }
-            } else if self.queries && self.mode == Profiling::Auto {
+            if self.queries && self.mode != Profiling::Finish {
                 let query = self.pool.pop().map_or_else(|| gl.create_query(), Ok);
                 if let Ok(query) = query {
                     gl.begin_query(glow::TIME_ELAPSED, query);
@@ -170,17 +106,11 @@ impl Profiler {
 
     pub(super) fn end(&mut self, gl: &glow::Context) {
         self.depth -= 1;
-        if self.mode == Profiling::Off || self.depth > 0 {
+        if !self.is_on() || self.depth > 0 {
             return;
         }
         // SAFETY: ends the query that `begin` started.
         unsafe {
-            if self.mode == Profiling::Queries {
-                if std::mem::take(&mut self.in_late_pass) {
-                    gl.end_query(glow::TIME_ELAPSED);
-                }
-                return;
-            }
             match self.records.last_mut() {
                 Some((_, Record::Query(_))) => gl.end_query(glow::TIME_ELAPSED),
                 Some((_, Record::Clock(time))) => {
@@ -194,75 +124,68 @@ impl Profiler {
 
     pub(super) fn delete(&mut self, gl: &glow::Context) {
         self.take(gl);
-        self.drop_late();
         // SAFETY: each query was created here and is deleted once.
         self.pool.drain(..).for_each(|query| unsafe { gl.delete_query(query) });
     }
 
     pub(super) fn take(&mut self, gl: &glow::Context) -> Vec<PassTime> {
         let mut times = Vec::with_capacity(self.records.len());
-        for (name, record) in self.records.drain(..) {
-            let time = match record {
-                Record::Clock(time) => time,
-                Record::Query(query) => {
-                    // SAFETY: the query has ended; reading its result waits for it.
-                    let nanoseconds = unsafe { gl.get_query_parameter_u64(query, glow::QUERY_RESULT) };
-                    self.pool.push(query);
-                    Duration::from_nanos(nanoseconds)
-                }
-            };
-            times.push(PassTime { name, time });
+        while let Some(mut frame) = self.frames.pop_front() {
+            read(gl, &mut frame, &mut self.pool, &mut times);
         }
+        read(gl, &mut self.records, &mut self.pool, &mut times);
         times
+    }
+
+    pub(super) fn end_frame(&mut self, gl: &glow::Context, times: &mut Vec<PassTime>) -> u32 {
+        if self.records.is_empty() {
+            return 0;
+        }
+        let ready = |frame: &Vec<(&'static str, Record)>| match frame.last() {
+            // SAFETY: the query has ended; queries of one kind finish in order.
+            Some((_, Record::Query(query))) => unsafe {
+                gl.get_query_parameter_u32(*query, glow::QUERY_RESULT_AVAILABLE) != 0
+            },
+            _ => true,
+        };
+        let (before, mut count) = (times.len(), 0);
+        let mut spare = Vec::new();
+        if self.frames.len() >= FRAMES_LATE && self.frames.front().is_some_and(ready) {
+            spare = self.frames.pop_front().unwrap_or_default();
+            read(gl, &mut spare, &mut self.pool, times);
+            count = 1;
+        }
+        // SAFETY: the extension that gives ES its timer queries has this state.
+        if self.queries && self.api == GlApi::Es && unsafe { gl.get_parameter_i32(GPU_DISJOINT) } != 0 {
+            self.disturbed = self.frames.len() + count as usize + 1;
+        }
+        if count > 0 && self.disturbed > 0 {
+            self.disturbed -= 1;
+            times.truncate(before);
+            count = 0;
+        }
+        self.frames.push_back(std::mem::replace(&mut self.records, spare));
+        count
     }
 }
 
-#[cfg(all(test, feature = "desktop"))]
-mod tests {
-    use super::*;
-    use crate::platform::{Backend, Headless};
-
-    #[test]
-    fn late_times_come_frame_by_frame_without_waiting() {
-        let headless = Headless::open(Backend::Auto).unwrap();
-        let (gl, capabilities) = (headless.gl().raw(), headless.gl().capabilities().clone());
-        // What a CPU rasterizer's timers say is wrong, but it has them.
-        let mut profiler = Profiler::new(&Capabilities { timer_queries: true, ..capabilities });
-        profiler.set(gl, Profiling::Queries);
-        let (mut times, mut frames) = (Vec::new(), 0);
-        for _ in 0..40 {
-            for name in ["geometry", "fxaa"] {
-                profiler.begin(gl, name);
-                profiler.begin(gl, "inner");
-                profiler.end(gl);
-                profiler.end(gl);
+/// Reads results, waiting for those that are not there yet, and takes back their queries.
+fn read(
+    gl: &glow::Context,
+    records: &mut Vec<(&'static str, Record)>,
+    pool: &mut Vec<glow::Query>,
+    times: &mut Vec<PassTime>,
+) {
+    for (name, record) in records.drain(..) {
+        let time = match record {
+            Record::Clock(time) => time,
+            Record::Query(query) => {
+                // SAFETY: the query has ended; reading its result waits for it.
+                let nanoseconds = unsafe { gl.get_query_parameter_u64(query, glow::QUERY_RESULT) };
+                pool.push(query);
+                Duration::from_nanos(nanoseconds)
             }
-            // SAFETY: no arguments.
-            unsafe { gl.flush() };
-            if profiler.take_frame(gl, &mut times) {
-                frames += 1;
-                assert_eq!(times.iter().map(|t| t.name).collect::<Vec<_>>(), ["geometry", "fxaa"]);
-            }
-            assert!(profiler.late_frames <= MAX_PENDING_FRAMES);
-        }
-        assert!(frames > 0);
-        assert!(profiler.pool.len() + profiler.late.len() <= 3 * MAX_PENDING_FRAMES);
-        assert!(headless.gl().take_errors().is_none());
-        profiler.delete(gl);
-    }
-
-    #[test]
-    fn without_timers_nothing_is_timed() {
-        let headless = Headless::open(Backend::Auto).unwrap();
-        let (gl, capabilities) = (headless.gl().raw(), headless.gl().capabilities().clone());
-        let mut profiler = Profiler::new(&Capabilities { timer_queries: false, ..capabilities });
-        profiler.set(gl, Profiling::Queries);
-        let mut times = Vec::new();
-        for _ in 0..10 {
-            profiler.begin(gl, "geometry");
-            profiler.end(gl);
-            assert!(!profiler.take_frame(gl, &mut times));
-        }
-        assert!(profiler.late.is_empty());
+        };
+        times.push(PassTime { name, time });
     }
 }
