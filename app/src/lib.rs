@@ -9,10 +9,14 @@
 pub mod bench;
 #[cfg(feature = "desktop")]
 pub mod cli;
+#[cfg(feature = "desktop")]
+pub mod dataset;
 pub mod eyes;
 #[cfg(feature = "desktop")]
 pub mod files;
 pub mod gl;
+#[cfg(feature = "desktop")]
+pub mod inpaint;
 pub mod metrics;
 #[cfg(feature = "desktop")]
 pub mod picture;

@@ -22,6 +22,7 @@ enum Command {
     Render(cli::render::RenderArgs),
     Synthesize(cli::synthesize::SynthesizeArgs),
     Compare(cli::compare::CompareArgs),
+    Dataset(cli::dataset::DatasetArgs),
     Scenes(cli::scenes::ScenesArgs),
     Info(cli::info::InfoArgs),
 }
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Render(args) => cli::render::run(args),
         Command::Synthesize(args) => cli::synthesize::run(args),
         Command::Compare(args) => cli::compare::run(args),
+        Command::Dataset(args) => cli::dataset::run(args),
         Command::Scenes(args) => cli::scenes::run(args),
         Command::Info(args) => cli::info::run(args),
     };

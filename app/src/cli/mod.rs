@@ -1,6 +1,7 @@
 //! The subcommands of the program `yoro`, one file each.
 
 pub mod compare;
+pub mod dataset;
 pub mod info;
 pub mod machine;
 pub mod render;

@@ -1,5 +1,6 @@
 //! GL contexts without a window, for the desktop program.
 
+use std::ffi::CStr;
 use std::rc::Rc;
 
 use super::{egl, osmesa};
@@ -85,7 +86,13 @@ impl Headless {
     }
 
     fn new(backend: Backend, holder: Holder, raw: glow::Context) -> Result<Headless, PlatformError> {
-        Ok(Headless { context: Some(Context::new(raw)?), backend, _holder: holder })
+        let load = |name: &CStr| match &holder {
+            Holder::Egl(egl) => egl.entry_point(name),
+            Holder::Osmesa(osmesa) => osmesa.entry_point(name),
+        };
+        // SAFETY: both loaders give the entry points of the context that they have made current.
+        let context = unsafe { Context::with_loader(raw, load) }?;
+        Ok(Headless { context: Some(context), backend, _holder: holder })
     }
 
     /// The GL context.
