@@ -11,3 +11,4 @@ mod render;
 mod run;
 mod scenes;
 mod synthesize;
+mod view;

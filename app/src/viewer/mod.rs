@@ -21,6 +21,8 @@ mod loading;
 mod optics;
 mod params;
 mod settings;
+#[cfg(all(test, feature = "desktop"))]
+mod tests;
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -226,6 +228,13 @@ impl Viewer {
         };
         let source = SceneSource::find(&settings.scene, settings.seed, folders)?;
         let optics = Optics::new(&params, screen.metres());
+        log::info!("settings: {settings}");
+        log::info!(
+            "viewer: {} {}, screen {:.1?} mm",
+            params.vendor,
+            params.model,
+            screen.metres().map(|m| m * 1e3)
+        );
         Ok(Viewer {
             screen,
             optics,
@@ -458,7 +467,7 @@ impl Viewer {
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
         self.now_ns = timing.now_ns;
-        self.take_scene()?;
+        self.poll_scene()?;
         let head = self.head(timing).0;
         let pair = self.eyes(head);
         self.write_text();
@@ -624,8 +633,11 @@ impl Viewer {
         }
     }
 
-    /// Uploads the scene when its thread is done.
-    fn take_scene(&mut self) -> Result<(), ViewerError> {
+    /// Uploads the scene if its thread is done; [`Viewer::render`] does so by itself.
+    ///
+    /// # Errors
+    /// [`ViewerError::Gl`].
+    pub fn poll_scene(&mut self) -> Result<(), ViewerError> {
         let Some(graphics) = &mut self.graphics else { return Ok(()) };
         let Some(result) = self.loader.as_ref().and_then(Loader::poll) else { return Ok(()) };
         self.loader = None;

@@ -411,6 +411,8 @@ impl Display for Settings {
         for (i, key) in KEYS.iter().enumerate() {
             let space = if i == 0 { "" } else { " " };
             match table.get(*key) {
+                // As they were given, not as doubles.
+                Some(Value::Float(number)) => write!(f, "{space}{key}={}", *number as f32)?,
                 Some(value) => write!(f, "{space}{key}={value}")?,
                 None => write!(f, "{space}{key}=auto")?,
             }

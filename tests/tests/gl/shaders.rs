@@ -78,6 +78,15 @@ fn rendering(gl: &Rc<Context>) -> anyhow::Result<()> {
     Ok(())
 }
 
+fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
+    for defines in [vec![], vec![("CHROMATIC", String::new())]] {
+        let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
+        Program::new(gl, source, &defines)?;
+    }
+    Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
+    Ok(())
+}
+
 fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
     let settings = RenderSettings::default();
     for anti_aliasing in [AntiAliasing::After, AntiAliasing::Before, AntiAliasing::Off] {
@@ -95,6 +104,7 @@ fn every_file_in_every_variant() {
         synthesis(gl)?;
         rendering(gl)?;
         stereo(gl)?;
+        viewer(gl)?;
         // Only the renderer's unit tests read depth back.
         Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?;
         let used: BTreeSet<String> = gl.used_shader_files().into_iter().collect();
