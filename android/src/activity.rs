@@ -9,7 +9,9 @@ use android_activity::{AndroidApp, MainEvent, PollEvent, WindowManagerFlags};
 use yoro::gl::{Context, Destination};
 use yoro::platform::android::{Window, WindowError};
 use yoro::scene::builtin::BUILTINS;
-use yoro::viewer::{Action, Event, FrameTiming, Rotation, Screen, Settings, Viewer, ViewerError, list_scenes};
+use yoro::viewer::{
+    Action, Event, FrameTiming, Rotation, Screen, Settings, Viewer, ViewerError, list_scenes,
+};
 
 use crate::device::Device;
 use crate::input::Input;
@@ -84,7 +86,10 @@ impl Activity {
         if let Some(scenes) = folders.first()
             && let Err(error) = std::fs::create_dir_all(scenes)
         {
-            log::warn!("the folder {} cannot be made ({error}): scenes cannot be pushed there", scenes.display());
+            log::warn!(
+                "the folder {} cannot be made ({error}): scenes cannot be pushed there",
+                scenes.display()
+            );
         }
         let sources = Sources {
             file: external.map(|folder| folder.join(settings::FILE_NAME)),
@@ -209,7 +214,8 @@ impl Activity {
     /// What the user has changed since the settings were read.
     fn changes(&self) -> Vec<settings::Pair> {
         let Some(viewer) = &self.viewer else { return self.sources.saved.clone() };
-        let method = (viewer.method() != self.settings.method).then(|| ("method", viewer.method().name().to_owned()));
+        let method =
+            (viewer.method() != self.settings.method).then(|| ("method", viewer.method().name().to_owned()));
         let default_ipd = self.settings.ipd.unwrap_or(viewer.optics().params().inter_lens);
         let ipd = (viewer.ipd() != default_ipd).then(|| ("ipd", viewer.ipd().to_string()));
         [method, ipd].into_iter().flatten().map(|(key, value)| (key.to_owned(), value)).collect()

@@ -88,6 +88,7 @@ fn ask(java: &Java, thermal: &mut Thermal) -> Report {
         thermal_status: thermal.status(),
         thermal_headroom: thermal.headroom(),
     };
-    let refresh_hz = java.display().map(|display| display.refresh_hz).filter(|hz| (10.0..1000.0).contains(hz));
+    let refresh_hz =
+        java.display().map(|display| display.refresh_hz).filter(|hz| (10.0..1000.0).contains(hz));
     Report { state, refresh_hz }
 }

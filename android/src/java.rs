@@ -81,15 +81,31 @@ impl Java {
     pub fn display(&self) -> Option<Display> {
         self.ask("the display", |env, activity| {
             let manager = env
-                .call_method(activity, jni_str!("getWindowManager"), jni_sig!("()Landroid/view/WindowManager;"), &[])?
+                .call_method(
+                    activity,
+                    jni_str!("getWindowManager"),
+                    jni_sig!("()Landroid/view/WindowManager;"),
+                    &[],
+                )?
                 .l()?;
             let display = env
-                .call_method(&manager, jni_str!("getDefaultDisplay"), jni_sig!("()Landroid/view/Display;"), &[])?
+                .call_method(
+                    &manager,
+                    jni_str!("getDefaultDisplay"),
+                    jni_sig!("()Landroid/view/Display;"),
+                    &[],
+                )?
                 .l()?;
-            let refresh_hz = env.call_method(&display, jni_str!("getRefreshRate"), jni_sig!("()F"), &[])?.f()?;
+            let refresh_hz =
+                env.call_method(&display, jni_str!("getRefreshRate"), jni_sig!("()F"), &[])?.f()?;
             let rotation = env.call_method(&display, jni_str!("getRotation"), jni_sig!("()I"), &[])?.i()?;
             let resources = env
-                .call_method(activity, jni_str!("getResources"), jni_sig!("()Landroid/content/res/Resources;"), &[])?
+                .call_method(
+                    activity,
+                    jni_str!("getResources"),
+                    jni_sig!("()Landroid/content/res/Resources;"),
+                    &[],
+                )?
                 .l()?;
             let metrics = env
                 .call_method(
@@ -114,18 +130,21 @@ impl Java {
             if intent.is_null() {
                 return Ok(Vec::new());
             }
-            let bundle =
-                env.call_method(&intent, jni_str!("getExtras"), jni_sig!("()Landroid/os/Bundle;"), &[])?.l()?;
+            let bundle = env
+                .call_method(&intent, jni_str!("getExtras"), jni_sig!("()Landroid/os/Bundle;"), &[])?
+                .l()?;
             if bundle.is_null() {
                 return Ok(Vec::new());
             }
-            let keys = env.call_method(&bundle, jni_str!("keySet"), jni_sig!("()Ljava/util/Set;"), &[])?.l()?;
+            let keys =
+                env.call_method(&bundle, jni_str!("keySet"), jni_sig!("()Ljava/util/Set;"), &[])?.l()?;
             let iterator =
                 env.call_method(&keys, jni_str!("iterator"), jni_sig!("()Ljava/util/Iterator;"), &[])?.l()?;
             let mut pairs = Vec::new();
             while env.call_method(&iterator, jni_str!("hasNext"), jni_sig!("()Z"), &[])?.z()? {
-                let key =
-                    env.call_method(&iterator, jni_str!("next"), jni_sig!("()Ljava/lang/Object;"), &[])?.l()?;
+                let key = env
+                    .call_method(&iterator, jni_str!("next"), jni_sig!("()Ljava/lang/Object;"), &[])?
+                    .l()?;
                 let value = env
                     .call_method(
                         &bundle,
@@ -156,7 +175,13 @@ impl Java {
                     &[JValue::Object(name.as_ref())],
                 )?
                 .l()?;
-            env.call_method(&manager, jni_str!("getIntProperty"), jni_sig!("(I)I"), &[JValue::Int(property as i32)])?.i()
+            env.call_method(
+                &manager,
+                jni_str!("getIntProperty"),
+                jni_sig!("(I)I"),
+                &[JValue::Int(property as i32)],
+            )?
+            .i()
         });
         value.filter(|value| *value != i32::MIN)
     }
@@ -214,9 +239,16 @@ impl Java {
             let window = env
                 .call_method(activity, jni_str!("getWindow"), jni_sig!("()Landroid/view/Window;"), &[])?
                 .l()?;
-            let view =
-                env.call_method(&window, jni_str!("getDecorView"), jni_sig!("()Landroid/view/View;"), &[])?.l()?;
-            env.call_method(&view, jni_str!("setSystemUiVisibility"), jni_sig!("(I)V"), &[JValue::Int(FLAGS)])?.v()
+            let view = env
+                .call_method(&window, jni_str!("getDecorView"), jni_sig!("()Landroid/view/View;"), &[])?
+                .l()?;
+            env.call_method(
+                &view,
+                jni_str!("setSystemUiVisibility"),
+                jni_sig!("(I)V"),
+                &[JValue::Int(FLAGS)],
+            )?
+            .v()
         });
     }
 

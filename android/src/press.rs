@@ -29,9 +29,8 @@ impl Press {
     /// It moves; a drag is no press.
     pub fn moved(&mut self, position: [f32; 2], dpi: f32) {
         let slop = SLOP_INCHES * if dpi > 0.0 { dpi } else { 400.0 };
-        let is_drag = |down: &Down| {
-            (down.position[0] - position[0]).hypot(down.position[1] - position[1]) > slop
-        };
+        let is_drag =
+            |down: &Down| (down.position[0] - position[0]).hypot(down.position[1] - position[1]) > slop;
         if self.down.as_ref().is_some_and(is_drag) {
             self.down = None;
         }

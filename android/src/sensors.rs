@@ -28,7 +28,8 @@ impl Sensors {
     /// Starts what sensors there are, for a thread with a looper; says in the log which.
     pub fn start(looper: NonNull<ffi::ALooper>) -> Option<Sensors> {
         // SAFETY: the name is that of our own package, or of none at all, and ends in zero.
-        let manager = NonNull::new(unsafe { ffi::ASensorManager_getInstanceForPackage(c"io.github.yoro".as_ptr()) })?;
+        let manager =
+            NonNull::new(unsafe { ffi::ASensorManager_getInstanceForPackage(c"io.github.yoro".as_ptr()) })?;
         // SAFETY: manager and looper are live; events are announced by the looper's return value, without callback.
         let queue = unsafe {
             ffi::ASensorManager_createEventQueue(
@@ -64,7 +65,9 @@ impl Sensors {
             if name.is_null() { "unnamed".into() } else { CStr::from_ptr(name).to_string_lossy() }
         };
         if status < 0 {
-            log::warn!("the sensor {name} cannot be started (status {status}): close other applications that use it");
+            log::warn!(
+                "the sensor {name} cannot be started (status {status}): close other applications that use it"
+            );
             return false;
         }
         log::info!("sensor: {name}, type {kind}, every {:.1} ms", period as f32 * 1e-3);

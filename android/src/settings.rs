@@ -108,7 +108,11 @@ mod tests {
         std::fs::write(&file, "method = \"mono\"\nipd = 0.05\nseed = 7\nscene = \"talk\"\n").unwrap();
         let sources = Sources {
             file: Some(file),
-            extras: pairs(&[("ipd", "0.06"), ("yoro.scene", "stage"), ("android.intent.extra.REFERRER", "x")]),
+            extras: pairs(&[
+                ("ipd", "0.06"),
+                ("yoro.scene", "stage"),
+                ("android.intent.extra.REFERRER", "x"),
+            ]),
             properties: pairs(&[("ipd", "0.065"), ("hud", "false")]),
             saved: pairs(&[("ipd", "0.055")]),
         };
@@ -135,7 +139,11 @@ mod tests {
         let expected = ["colour", "method", "ipd", "speed", "hud"];
         assert_eq!(mistakes.len(), expected.len(), "{mistakes:#?}");
         for key in expected {
-            assert_eq!(mistakes.iter().filter(|m| m.contains(&format!("\"{key}\""))).count(), 1, "{mistakes:#?}");
+            assert_eq!(
+                mistakes.iter().filter(|m| m.contains(&format!("\"{key}\""))).count(),
+                1,
+                "{mistakes:#?}"
+            );
         }
         assert!(mistakes.iter().all(|m| !m.contains('\n')), "{mistakes:#?}");
     }

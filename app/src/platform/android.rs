@@ -1,6 +1,7 @@
 //! OpenGL ES on the window of an Android activity.
 
-use std::ffi::c_void;
+use std::ffi::{CStr, c_void};
+use std::ptr;
 use std::rc::Rc;
 
 use glow::HasContext as _;
@@ -64,7 +65,8 @@ impl Window {
         let unavailable = |what: &str| WindowError::Unavailable(what.into());
         let failed = |what: &'static str| move |e| WindowError::Unavailable(format!("{what} failed ({e})"));
         // SAFETY: the default display needs no native handle.
-        let display = unsafe { egl.get_display(egl::DEFAULT_DISPLAY) }.ok_or_else(|| unavailable("no EGL display"))?;
+        let display =
+            unsafe { egl.get_display(egl::DEFAULT_DISPLAY) }.ok_or_else(|| unavailable("no EGL display"))?;
         egl.initialize(display).map_err(failed("eglInitialize"))?;
         egl.bind_api(egl::OPENGL_ES_API).map_err(failed("eglBindAPI"))?;
         let config = choose(&egl, display, OPENGL_ES3_BIT)
@@ -98,16 +100,18 @@ impl Window {
     /// # Errors
     /// [`GlError::Unsupported`] when it is older than OpenGL ES 3.0.
     pub fn gl(&self) -> Result<Rc<Context>, GlError> {
-        Context::new(self.functions())
+        let load = |name: &CStr| name.to_str().map_or(ptr::null(), |name| self.entry_point(name));
+        // SAFETY: the entry points are those of the context, which is current.
+        unsafe { Context::with_loader(self.functions(), load) }
     }
 
     fn functions(&self) -> glow::Context {
         // SAFETY: the context is current, and entry points live as long as the library itself.
-        unsafe {
-            glow::Context::from_loader_function(|name| {
-                self.egl.get_proc_address(name).map_or(std::ptr::null(), |p| p as *const c_void)
-            })
-        }
+        unsafe { glow::Context::from_loader_function(|name| self.entry_point(name)) }
+    }
+
+    fn entry_point(&self, name: &str) -> *const c_void {
+        self.egl.get_proc_address(name).map_or(ptr::null(), |p| p as *const c_void)
     }
 
     /// Draws on a window from now on. Its colours are stored as they are written: what is drawn is
@@ -229,7 +233,10 @@ fn choose(egl: &Egl, display: egl::Display, renderable: egl::Int) -> Option<egl:
         [egl::RED_SIZE, egl::GREEN_SIZE, egl::BLUE_SIZE].into_iter().all(|c| bits(**config, c) == 8)
     };
     let spare = |config: &&egl::Config| {
-        [egl::DEPTH_SIZE, egl::STENCIL_SIZE, egl::SAMPLES].into_iter().map(|a| bits(**config, a)).sum::<egl::Int>()
+        [egl::DEPTH_SIZE, egl::STENCIL_SIZE, egl::SAMPLES]
+            .into_iter()
+            .map(|a| bits(**config, a))
+            .sum::<egl::Int>()
     };
     configs.iter().filter(exact).min_by_key(spare).copied()
 }
