@@ -18,6 +18,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Bench(Box<cli::bench::BenchArgs>),
     Run(cli::run::RunArgs),
     Render(cli::render::RenderArgs),
     Synthesize(cli::synthesize::SynthesizeArgs),
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         .init();
     cli::catch_interrupt();
     let result = match &arguments.command {
+        Command::Bench(args) => cli::bench::run(args),
         Command::Run(args) => cli::run::run(args),
         Command::Render(args) => cli::render::run(args),
         Command::Synthesize(args) => cli::synthesize::run(args),

@@ -2,12 +2,11 @@
 
 use std::fmt;
 
-use clap::ValueEnum as _;
-
+use crate::inpaint::PatcherKind;
 use crate::stereo::{Method, StereoOptions};
 use crate::synthesis::Pipeline;
 
-/// What is measured against what: a stereo method, for synthesis with its pipeline.
+/// What is measured against what: a stereo method, for synthesis with its pipeline; or a patcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contender {
     /// A method without synthesis pipelines.
@@ -18,6 +17,8 @@ pub enum Contender {
     PaperNearest,
     /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as its text says.
     PaperStrict,
+    /// A patcher on the reprojected image that all patchers get.
+    Patcher(PatcherKind),
 }
 
 impl Contender {
@@ -28,31 +29,35 @@ impl Contender {
 
     /// Every contender, in the order of tables.
     pub fn all() -> Vec<Contender> {
-        let methods = Method::value_variants().iter().filter(|m| **m != Method::Yoro);
-        let yoro = Pipeline::ALL.map(Contender::Yoro);
-        methods
-            .map(|m| Contender::Method(*m))
-            .chain(yoro)
-            .chain([Contender::PaperNearest, Contender::PaperStrict])
-            .collect()
-    }
-
-    /// The methods with their pipelines: all but the variants of one pipeline.
-    pub fn methods() -> Vec<Contender> {
         let variants = [Contender::PaperNearest, Contender::PaperStrict];
-        Contender::all().into_iter().filter(|c| !variants.contains(c)).collect()
+        Contender::methods().into_iter().chain(variants).chain(Contender::patchers()).collect()
     }
 
-    /// Its name in files and on the command line, which stays: `conventional`, `mono`, `yoro-gather`,
-    /// `yoro-paper-nearest`.
+    /// The stereo methods, synthesis with each of its pipelines.
+    pub fn methods() -> Vec<Contender> {
+        let others = Method::ALL.into_iter().filter(|method| *method != Method::Yoro);
+        others.map(Contender::Method).chain(Contender::pipelines()).collect()
+    }
+
+    /// Synthesis with each of its pipelines.
+    pub fn pipelines() -> Vec<Contender> {
+        Pipeline::ALL.map(Contender::Yoro).to_vec()
+    }
+
+    /// The patchers.
+    pub fn patchers() -> Vec<Contender> {
+        PatcherKind::ALL.map(Contender::Patcher).to_vec()
+    }
+
+    /// Its name in files and on the command line, which stays: `conventional`, `yoro-gather`,
+    /// `yoro-paper-nearest`, `patcher-telea`.
     pub fn name(self) -> String {
         match self {
-            Contender::Method(method) => {
-                method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
-            }
+            Contender::Method(method) => method.name().into(),
             Contender::Yoro(pipeline) => format!("yoro-{}", pipeline.name()),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
+            Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
         }
     }
 
@@ -61,34 +66,21 @@ impl Contender {
         Contender::all().into_iter().find(|contender| contender.name() == name)
     }
 
-    /// The method that renders it.
-    pub fn method(self) -> Method {
-        match self {
-            Contender::Method(method) => method,
-            _ => Method::Yoro,
-        }
-    }
-
-    /// The pipeline that synthesizes, if one does.
-    pub fn pipeline(self) -> Option<Pipeline> {
-        match self {
-            Contender::Method(_) => None,
-            Contender::Yoro(pipeline) => Some(pipeline),
-            Contender::PaperNearest | Contender::PaperStrict => Some(Pipeline::Paper),
-        }
-    }
-
-    /// Its options: the pipeline's own defaults, without the switch to two renders of near frames, so that what
-    /// is measured is what the name says.
-    pub fn options(self) -> StereoOptions {
-        let mut options = StereoOptions::of_pipeline(self.pipeline().unwrap_or_default());
+    /// The stereo method and its options: the pipeline's own defaults, without the switch to two renders of near
+    /// frames, so that what is measured is what the name says. `None` for a patcher.
+    pub fn method(self) -> Option<(Method, StereoOptions)> {
+        let (method, pipeline) = match self {
+            Contender::Method(method) => (method, Pipeline::default()),
+            Contender::Yoro(pipeline) => (Method::Yoro, pipeline),
+            Contender::PaperNearest | Contender::PaperStrict => (Method::Yoro, Pipeline::Paper),
+            Contender::Patcher(_) => return None,
+        };
+        let mut options = StereoOptions::of_pipeline(pipeline);
         options.policy = None;
-        match self {
-            Contender::PaperNearest => options.synthesis.paper.linear_interpolation = false,
-            Contender::PaperStrict => options.synthesis.paper.strict = true,
-            _ => {}
-        }
-        options
+        let paper = &mut options.synthesis.paper;
+        paper.linear_interpolation &= self != Contender::PaperNearest;
+        paper.strict |= self == Contender::PaperStrict;
+        Some((method, options))
     }
 }
 
@@ -109,10 +101,20 @@ mod tests {
             assert_eq!(Contender::find(&contender.name()), Some(contender));
         }
         for name in
-            ["conventional", "mono", "yoro-gather", "yoro-rowgroup", "yoro-paper", "yoro-paper-strict"]
+            ["conventional", "mono", "yoro-gather", "yoro-paper", "yoro-paper-strict", "patcher-telea"]
         {
             assert!(Contender::find(name).is_some(), "{name}");
         }
         assert_eq!(Contender::find("yoro"), None);
+    }
+
+    #[test]
+    fn variants_differ_in_their_options_only() {
+        let options = |contender: Contender| contender.method().unwrap().1;
+        let paper = options(Contender::Yoro(Pipeline::Paper));
+        assert!(paper.synthesis.paper.linear_interpolation && paper.policy.is_none());
+        assert!(!options(Contender::PaperNearest).synthesis.paper.linear_interpolation);
+        assert!(options(Contender::PaperStrict).synthesis.paper.strict);
+        assert_eq!(Contender::Patcher(PatcherKind::Telea).method(), None);
     }
 }

@@ -20,6 +20,7 @@
 //! holes where there are none. [`metric`] has the names and units.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -46,11 +47,12 @@ pub mod metric {
     /// GPU time of all passes of a frame by timer queries, in ms; only where they can be trusted. One value per
     /// round, at the setting's first frame.
     pub const GPU_MS: &str = "gpu_ms";
-    /// Largest resident memory of the process while the contender alone rendered, in MiB; one value.
-    pub const PEAK_MEMORY_MIB: &str = "peak_memory_mib";
-    /// Memory that came with the contender: resident memory after its first frame less that before it was made,
-    /// in MiB; one value.
+    /// What the contender adds to the resident memory of the process: the peak while it is made and renders its
+    /// first frame, less what there was before, in MiB; one value. Textures are part of it on a CPU rasterizer only.
     pub const OWN_MEMORY_MIB: &str = "own_memory_mib";
+    /// Peak memory of a process with the scene and this contender alone: resident memory with the scene and
+    /// without any contender, plus the contender's own, in MiB; one value.
+    pub const PEAK_MEMORY_MIB: &str = "peak_memory_mib";
 
     /// PSNR of red, green and blue in dB; null for identical images.
     pub const PSNR: &str = "psnr";
@@ -98,8 +100,15 @@ pub mod metric {
     /// The same everywhere else.
     pub const CHANGE_REST: &str = "change_rest";
 
-    /// Time of a patcher alone in ms, on the clock that its kind has (GPU passes or CPU).
+    /// The flicker metrics: all pixels, holes, edges, the rest.
+    pub const FLICKERS: [&str; 4] = [FLICKER, FLICKER_HOLES, FLICKER_EDGES, FLICKER_REST];
+    /// Their counterparts of the ground truth, measured for `conventional`.
+    pub const CHANGES: [&str; 4] = [CHANGE, CHANGE_HOLES, CHANGE_EDGES, CHANGE_REST];
+
+    /// Time of a patcher alone in ms, by the wall clock, on an image that lies where the patcher works.
     pub const PATCH_MS: &str = "patch_ms";
+    /// Upload and readback around that, in ms; 0 for patchers on the CPU.
+    pub const PATCH_TRANSFER_MS: &str = "patch_transfer_ms";
 }
 
 /// What clock the times of passes are taken with.
@@ -144,6 +153,15 @@ pub struct Setting {
     /// pixels).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<f64>,
+}
+
+/// `ipd, atrium, 65`.
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {}", self.suite, self.scene)?;
+        self.label.iter().try_for_each(|label| write!(f, ", {label}"))?;
+        self.point.iter().try_for_each(|point| write!(f, ", {point}"))
+    }
 }
 
 /// What there is to know of a setting's scene.
@@ -369,6 +387,12 @@ impl Results {
     pub fn rounds(&self, setting: &Setting) -> u32 {
         let ends = self.records.iter().filter(|r| matches!(r, Record::Round(end) if end.setting == *setting));
         ends.count() as u32
+    }
+
+    /// Whether a setting was left out, as one that the machine cannot carry: nobody was measured, and the file
+    /// says why.
+    pub fn is_left_out(&self, setting: &Setting) -> bool {
+        self.rounds(setting) > 0 && !self.measurements().any(|m| m.setting == *setting)
     }
 }
 

@@ -174,7 +174,7 @@ fn group_options(args: &DatasetArgs) -> GroupOptions {
 }
 
 /// Reads a camera path in the format of `camera.json`.
-fn camera_path(file: &Path) -> anyhow::Result<Vec<Viewpoint>> {
+pub(super) fn camera_path(file: &Path) -> anyhow::Result<Vec<Viewpoint>> {
     let viewpoints: Vec<Viewpoint> = serde_json::from_slice(&files::read(file)?).with_context(|| {
         format!("{} is not a camera path: give a JSON array of {{position, target}}", file.display())
     })?;

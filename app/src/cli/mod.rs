@@ -1,5 +1,6 @@
 //! The subcommands of the program `yoro`, one file each.
 
+pub mod bench;
 pub mod compare;
 pub mod dataset;
 pub mod info;
@@ -139,7 +140,7 @@ fn stop_if_interrupted() -> anyhow::Result<()> {
 
 /// A progress bar on stderr; hidden when that is not a terminal.
 fn progress_bar(steps: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {wide_msg}");
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {wide_msg}");
     let bar = ProgressBar::new(steps).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
