@@ -22,7 +22,7 @@ use crate::settings::{self, Sources};
 /// Without a word from the choreographer for so long, a frame is drawn all the same.
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Time between attempts to get a lost context or a refused window again.
-const RETRY: Duration = Duration::from_secs(1);
+const RETRY: Duration = Duration::from_millis(250);
 /// What is assumed of a display that does not say its rate, in Hz.
 const USUAL_HZ: f32 = 60.0;
 /// A frame that is begun at one refresh is seen at the second one after it.
@@ -125,11 +125,13 @@ impl Activity {
         }
     }
 
+    fn is_ready(&self) -> bool {
+        self.viewer.as_ref().is_some_and(Viewer::is_attached)
+    }
+
     fn is_drawing(&self) -> bool {
-        self.is_resumed
-            && self.failure.is_none()
-            && self.window.as_ref().is_some_and(Window::is_attached)
-            && self.viewer.as_ref().is_some_and(Viewer::is_attached)
+        let has_window = self.window.as_ref().is_some_and(Window::is_attached);
+        self.is_resumed && has_window && self.is_ready() && self.failure.is_none()
     }
 
     /// Sleeps until there is something to do, and lets Android's events in.
@@ -282,10 +284,7 @@ impl Activity {
         let defaults = Settings::default();
         loop {
             let error = match Viewer::new(possible.clone(), screen, &self.folders) {
-                Ok(viewer) => {
-                    log::info!("settings: {possible}");
-                    return Some(viewer);
-                }
+                Ok(viewer) => return Some(viewer),
                 Err(error) => error,
             };
             let (setting, default) = match error {
@@ -376,6 +375,10 @@ impl Activity {
         if std::mem::take(&mut self.has_input) {
             let dpi = self.display.map_or(0.0, |display| display.dpi[0]);
             self.input.collect(&self.app, dpi, &mut self.events);
+        }
+        // A window may have had no size when it came.
+        if self.window.as_ref().is_some_and(Window::is_attached) && !self.is_ready() && self.failure.is_none() {
+            self.attach_viewer();
         }
         if !self.is_drawing() {
             self.events.clear();

@@ -88,7 +88,6 @@ fn ask(java: &Java, thermal: &mut Thermal) -> Report {
         thermal_status: thermal.status(),
         thermal_headroom: thermal.headroom(),
     };
-    let refresh_hz =
-        java.display().map(|display| display.refresh_hz).filter(|hz| (10.0..1000.0).contains(hz));
+    let refresh_hz = java.display().map(|display| display.refresh_hz).filter(|hz| *hz > 0.0);
     Report { state, refresh_hz }
 }

@@ -42,7 +42,7 @@ pub struct BatteryIntent {
 pub struct Display {
     /// Physical pixels per inch along both axes of the picture.
     pub dpi: [f32; 2],
-    /// Refreshes per second.
+    /// Refreshes per second; 0 where the answer makes no sense.
     pub refresh_hz: f32,
     /// `Surface.ROTATION_*`: how often the picture is turned by 90 degrees.
     pub rotation: i32,
@@ -117,7 +117,8 @@ impl Java {
                 .l()?;
             let x = env.get_field(&metrics, jni_str!("xdpi"), jni_sig!("F"))?.f()?;
             let y = env.get_field(&metrics, jni_str!("ydpi"), jni_sig!("F"))?.f()?;
-            Ok(Display { dpi: [x, y], refresh_hz, rotation })
+            let plausible = (10.0..1000.0).contains(&refresh_hz);
+            Ok(Display { dpi: [x, y], refresh_hz: if plausible { refresh_hz } else { 0.0 }, rotation })
         })
     }
 
