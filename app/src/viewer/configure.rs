@@ -156,7 +156,7 @@ mod tests {
     fn wait(viewer: &mut Viewer) {
         while viewer.loader.is_some() {
             std::thread::sleep(std::time::Duration::from_millis(5));
-            viewer.poll_scene().unwrap();
+            viewer.poll_scene();
         }
         assert_eq!(viewer.scene_state(), SceneState::Ready);
     }

@@ -10,6 +10,9 @@ use crate::scene::{self, Scene, builtin};
 /// Endings of scene files.
 const EXTENSIONS: [&str; 3] = ["obj", "gltf", "glb"];
 
+/// Stack of the loading thread in bytes: that of a main thread, on which scenes are loaded elsewhere.
+const STACK: usize = 8 << 20;
+
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneSource {
@@ -101,7 +104,8 @@ impl Loader {
         let source = source.clone();
         // Nobody listens any more if the viewer is gone.
         let work = move || drop(sender.send(source.load()));
-        if let Err(error) = thread::Builder::new().name("yoro scene".into()).spawn(work) {
+        let thread = thread::Builder::new().name("yoro scene".into()).stack_size(STACK);
+        if let Err(error) = thread.spawn(work) {
             log::error!("no thread for loading: {error}");
         }
         Loader { result }
