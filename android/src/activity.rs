@@ -457,7 +457,6 @@ impl Activity {
 
     /// The system properties have changed while the application runs.
     fn reconfigure(&mut self) {
-        let Some(viewer) = &mut self.viewer else { return };
         // What the user did by hand before does not hold against what is said now.
         self.sources.saved.clear();
         let (settings, mistakes) = self.sources.resolve();
@@ -465,9 +464,15 @@ impl Activity {
         if settings == self.settings {
             return;
         }
+        if (&settings.scene, settings.seed) != (&self.settings.scene, self.settings.seed) {
+            self.summarize();
+        }
+        let Some(viewer) = &mut self.viewer else { return };
         match viewer.configure(settings.clone(), &self.folders) {
             Ok(()) => {
                 log::info!("settings: {settings}");
+                // Another scene begins another session.
+                self.is_summarized = false;
                 self.settings = settings;
             }
             Err(error) => log::warn!("{error}; the settings stay as they were"),
