@@ -28,8 +28,8 @@ pub enum SceneSource {
 }
 
 impl SceneSource {
-    /// Finds a scene: a built-in one by its name, or a file by its path or by its name (with or without ending)
-    /// in one of the folders or in a folder of one of those.
+    /// Finds a scene: a built-in one by its name, or a file by its path, by its name (with or without ending) in one
+    /// of the folders or in a folder of one of those, or by the name of the folder that it is in.
     ///
     /// # Errors
     /// [`ViewerError::NoScene`], which lists what there is.
@@ -46,7 +46,8 @@ impl SceneSource {
                 || path.file_stem().is_some_and(|n| n == name)
                 || path.ends_with(name)
         };
-        if let Some(path) = files.iter().find(fits) {
+        let is_in = |path: &&PathBuf| path.parent().and_then(Path::file_name).is_some_and(|n| n == name);
+        if let Some(path) = files.iter().find(fits).or_else(|| files.iter().find(is_in)) {
             return Ok(SceneSource::File(path.clone()));
         }
         let builtins = builtin::BUILTINS.iter().map(|b| b.name.to_owned());
@@ -136,7 +137,7 @@ mod tests {
         std::fs::write(folder.path().join("notes.txt"), "").unwrap();
         let folders = [folder.path().to_owned(), folder.path().join("missing")];
         assert_eq!(list_scenes(&folders), [room.clone()]);
-        for name in ["room", "room.obj", "rooms/room.obj", room.to_str().unwrap()] {
+        for name in ["room", "room.obj", "rooms", "rooms/room.obj", room.to_str().unwrap()] {
             let source = SceneSource::find(name, 1, &folders).unwrap();
             assert_eq!((&source, source.name().as_str()), (&SceneSource::File(room.clone()), "room"));
         }

@@ -14,6 +14,7 @@
 //! `detach`, drop) need the context to be current there. Times are nanoseconds of a monotonic clock.
 
 mod adaptive;
+mod configure;
 mod head;
 mod hud;
 mod lens;
@@ -218,12 +219,7 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::Params`] and [`ViewerError::NoScene`]: mistakes in the settings.
     pub fn new(settings: Settings, screen: Screen, folders: &[PathBuf]) -> Result<Viewer, ViewerError> {
-        let in_folder =
-            folders.iter().map(|folder| folder.join(&settings.viewer)).find(|path| path.is_file());
-        let params = match in_folder {
-            Some(path) => ViewerParams::load(&path)?,
-            None => ViewerParams::find(&settings.viewer)?,
-        };
+        let params = ViewerParams::find_in(&settings.viewer, folders)?;
         let source = SceneSource::find(&settings.scene, settings.seed, folders)?;
         let optics = Optics::new(&params, screen.metres());
         log::info!("settings: {settings}");
@@ -272,16 +268,7 @@ impl Viewer {
     pub fn attach(&mut self, gl: Rc<Context>) -> Result<(), ViewerError> {
         let profiling = if self.settings.profiling { Profiling::Queries } else { Profiling::Off };
         gl.set_profiling(profiling);
-        let pipeline = self.settings.pipeline;
-        self.pipeline = pipeline;
-        if pipeline != Pipeline::Gather && !gl.capabilities().compute {
-            log::warn!(
-                "{} has no compute shaders (OpenGL ES 3.1), which the pipeline {} needs: gather is used instead",
-                gl.capabilities().renderer,
-                pipeline.name()
-            );
-            self.pipeline = Pipeline::Gather;
-        }
+        self.choose_pipeline(&gl);
         self.graphics = Some(Graphics {
             frame: StereoFrame::new(&gl, self.eye_size())?,
             lens: LensPass::new(&gl, &self.optics, self.settings.chromatic)?,
