@@ -27,7 +27,8 @@ fn a_page_that_a_browser_shows() {
     let at = dir.path();
     write(at, "run.jsonl", &format!("{HEADER}\n{ROUND}\n"));
     for (name, shift) in [("dominant", 9), ("truth", 0), ("yoro-gather", 1)] {
-        let eye = RgbImage::from_fn(64, 48, |x, y| Rgb([((x + shift) * 4) as u8, (y * 5) as u8, (x * y) as u8]));
+        let eye =
+            RgbImage::from_fn(64, 48, |x, y| Rgb([((x + shift) * 4) as u8, (y * 5) as u8, (x * y) as u8]));
         picture::save_color(&at.join(format!("run.pictures/scenes/talk/{name}.png")), &eye).unwrap();
     }
     let stdout = succeed(at, "report run.jsonl --out out --figures out/figures").stdout;

@@ -63,7 +63,8 @@ impl OsmesaContext {
             let mut pixels = vec![0u8; SIZE * SIZE * 4].into_boxed_slice();
             let size = SIZE as c_int;
             let current = make_current(context, pixels.as_mut_ptr().cast(), glow::UNSIGNED_BYTE, size, size);
-            let this = OsmesaContext { context, destroy, get_proc_address, _pixels: pixels, _library: library };
+            let this =
+                OsmesaContext { context, destroy, get_proc_address, _pixels: pixels, _library: library };
             if current == 0 {
                 return Err("its context cannot be made current".into());
             }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::bench::{Results, Setting, metric};
 use crate::bench::record::{Header, SceneFacts};
+use crate::bench::{Results, Setting, metric};
 use crate::metrics::stats::{Summary, percentile};
 
 /// One suite as measured under one set of conditions.
@@ -215,7 +215,8 @@ fn same_conditions(a: &Header, b: &Header) -> bool {
     let (m, n) = (&a.machine, &b.machine);
     a.parameters == b.parameters
         && a.quick == b.quick
-        && (&m.cpu, m.cores, &m.gl_renderer, &m.gl_version) == (&n.cpu, n.cores, &n.gl_renderer, &n.gl_version)
+        && (&m.cpu, m.cores, &m.gl_renderer, &m.gl_version)
+            == (&n.cpu, n.cores, &n.gl_renderer, &n.gl_version)
 }
 
 /// The suites of all files, in the order of the files. A suite measured under several conditions is there several
