@@ -161,7 +161,7 @@ impl GroupRenderer {
         renderer.render(&mut self.targets, scene, view, Selection::All)?;
         let mut color = self.targets.color_target();
         if scene.has_transparent() {
-            let depth = render::DepthImage { texture: self.targets.depth(), origin: [0, 0] };
+            let depth = render::DepthImage::whole(self.targets.depth());
             renderer.draw_transparent(&Destination::whole(color), depth, scene, view)?;
         }
         if let Some(fxaa) = &self.fxaa {

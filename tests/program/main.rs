@@ -13,3 +13,4 @@ mod report;
 mod run;
 mod scenes;
 mod synthesize;
+mod view;

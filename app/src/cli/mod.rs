@@ -11,6 +11,7 @@ pub mod run;
 pub mod scenes;
 pub mod stage;
 pub mod synthesize;
+pub mod view;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -35,6 +35,9 @@ pub struct RunArgs {
     /// Timed rounds; in each, every method renders one frame at each viewpoint
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]
     rounds: u32,
+    /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
+    #[arg(long = "method", value_enum, value_delimiter = ',', default_values_t = [Method::Yoro], value_name = "METHODS")]
+    methods: Vec<Method>,
     /// Pipelines to compare
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = Pipeline::ALL)]
     pipelines: Vec<Pipeline>,
@@ -75,6 +78,9 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     files::create_folder(&args.out)?;
     let headless = args.gl.open()?;
     let gl = headless.gl();
+    for method in &args.methods {
+        method.supported(gl.capabilities())?;
+    }
     // Per scene: preparing, a warm-up, the timed rounds, the passes.
     let steps = names.len() as u64 * (3 + u64::from(args.viewpoints) * u64::from(args.rounds));
     let bar = progress_bar(steps);
@@ -117,11 +123,22 @@ fn measure_scene(
     let mut stage = Stage::new(gl, scene, &settings)?;
     let options = |pipeline| args.stereo.options_of(pipeline);
     let truth_options = options(Pipeline::default());
-    let conventional = Entrant::new(gl, Method::Conventional, &settings, &truth_options)?;
-    let mut entrants = vec![Measured::new("conventional", conventional)];
-    for &pipeline in &args.pipelines {
-        let entrant = Entrant::new(gl, Method::Yoro, &settings, &options(pipeline))?;
-        entrants.push(Measured::new(pipeline.name(), entrant));
+    let entrant = |name: &'static str, method, options: &_| -> anyhow::Result<Measured> {
+        Ok(Measured::new(name, Entrant::new(gl, method, &settings, options)?))
+    };
+    let mut entrants = vec![entrant(Method::Conventional.name(), Method::Conventional, &truth_options)?];
+    for (i, &method) in args.methods.iter().enumerate() {
+        match method {
+            _ if args.methods[..i].contains(&method) => {}
+            // Always there, as the reference.
+            Method::Conventional => {}
+            Method::Yoro => {
+                for &pipeline in &args.pipelines {
+                    entrants.push(entrant(pipeline.name(), Method::Yoro, &options(pipeline))?);
+                }
+            }
+            _ => entrants.push(entrant(method.name(), method, &truth_options)?),
+        }
     }
     let mut frame = StereoFrame::new(gl, args.eyes.size)?;
     bar.inc(1);

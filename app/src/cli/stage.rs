@@ -104,6 +104,9 @@ pub struct StereoArgs {
     /// Never switch to two real renders, however near everything is
     #[arg(long)]
     no_switch: bool,
+    /// hybrid: the far field starts where the eyes' disparity is this many pixels
+    #[arg(long, value_parser = parse_positive, default_value_t = StereoOptions::default().split_disparity, value_name = "PIXELS", allow_negative_numbers = true)]
+    split_disparity: f32,
 }
 
 impl StereoArgs {
@@ -120,6 +123,7 @@ impl StereoArgs {
         options.anti_aliasing = self.anti_aliasing.unwrap_or(options.anti_aliasing);
         options.near_field = self.near_field;
         options.policy = (!self.no_switch).then(NearFieldPolicy::default);
+        options.split_disparity = self.split_disparity;
         options
     }
 }

@@ -198,6 +198,12 @@ impl Context {
         self.profiler.borrow_mut().take(&self.raw)
     }
 
+    /// Ends a frame for those who time every frame without waiting ([`Profiling::Queries`]): adds the pass times of
+    /// one frame, some frames ago, to `times`, and returns the number of frames added, 1 or 0.
+    pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> u32 {
+        self.profiler.borrow_mut().end_frame(&self.raw, times)
+    }
+
     /// Blocks until the GPU has done everything.
     pub fn finish(&self) {
         // SAFETY: no arguments.

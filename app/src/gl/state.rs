@@ -114,6 +114,21 @@ impl Context {
         }
     }
 
+    /// Fills a rectangle of the bound framebuffer's colour attachments; `origin` is its lower left corner in pixels.
+    pub fn fill(&self, origin: [u32; 2], size: [u32; 2], color: [f32; 4]) {
+        let gl = self.raw();
+        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
+        // SAFETY: state calls with valid enums; sizes are not negative.
+        unsafe {
+            gl.color_mask(true, true, true, true);
+            gl.enable(glow::SCISSOR_TEST);
+            gl.scissor(x, y, w, h);
+            gl.clear_color(color[0], color[1], color[2], color[3]);
+            gl.clear(glow::COLOR_BUFFER_BIT);
+            gl.disable(glow::SCISSOR_TEST);
+        }
+    }
+
     /// Binds a framebuffer of whatever origin (`None`: the window's) and sets the viewport, in pixels from its
     /// lower left corner.
     pub fn bind_framebuffer(&self, framebuffer: Option<glow::Framebuffer>, origin: [u32; 2], size: [u32; 2]) {
