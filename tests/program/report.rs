@@ -44,6 +44,26 @@ fn a_page_that_a_browser_shows() {
 }
 
 #[test]
+fn what_bench_measured_is_reported() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    succeed(at, "bench bandwidth --quick --scene prototype --size 64x64 --frames 2 --out b.jsonl");
+    succeed(at, "report b.jsonl");
+    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
+    for needed in ["rgb-depth-packed", "mono-rgb", "*-38.7 %*", "BD-rate"] {
+        assert!(results.contains(needed), "{needed}: {results}");
+    }
+    // Four quantizers: each is finer and costs more than the next.
+    let rates: Vec<f64> = results
+        .lines()
+        .filter_map(|line| line.strip_prefix("| prototype | "))
+        .filter_map(|line| line.split(" | ").nth(1)?.parse().ok())
+        .take(4)
+        .collect();
+    assert!(rates.len() == 4 && rates.is_sorted_by(|a, b| a > b), "{rates:?}: {results}");
+}
+
+#[test]
 fn files_that_are_no_results() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();

@@ -344,7 +344,11 @@ impl Range {
             Scale::Logarithmic => {
                 let (low, high) = (low / 1.2, high * 1.2);
                 let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
-                let steps: &[f64] = if high / low > 1e3 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+                let steps: &[f64] = match high / low {
+                    0.0..=12.0 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
+                    0.0..=1e3 => &[1.0, 2.0, 5.0],
+                    _ => &[1.0],
+                };
                 let ticks = powers.flat_map(|p| steps.iter().map(move |s| s * 10f64.powi(p)));
                 let ticks = ticks.filter(|t| (low..=high).contains(t)).collect();
                 Range { scale: axis.scale, low, high, ticks }
@@ -373,13 +377,13 @@ fn tick_step(range: f64) -> f64 {
 
 /// As short as it can be told apart from its neighbours.
 fn tick_label(value: f64, ticks: &[f64], scale: Scale) -> String {
-    let step = match (scale, ticks) {
-        (Scale::Linear, [a, b, ..]) => b - a,
-        _ => value,
+    let decimals = |step: f64| (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+    let label = match (scale, ticks) {
+        (Scale::Linear, [a, b, ..]) => return format!("{:.1$}", value + 0.0, decimals(b - a)),
+        // Two digits are enough: 1.5, 20, 0.3.
+        _ => format!("{value:.0$}", decimals(value) + 1),
     };
-    let decimals = (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize;
-    let label = format!("{value:.decimals$}");
-    if label.trim_start_matches(['-', '0', '.']).is_empty() { "0".into() } else { label }
+    if label.contains('.') { label.trim_end_matches('0').trim_end_matches('.').to_owned() } else { label }
 }
 
 fn draw_grid(
@@ -553,6 +557,8 @@ mod tests {
         let labels: Vec<String> =
             range.ticks.iter().map(|t| tick_label(*t, &range.ticks, range.scale)).collect();
         assert_eq!(labels, ["1", "10", "100", "1000", "10000"]);
+        let label = |value: f64| tick_label(value, &[], Scale::Logarithmic);
+        assert_eq!([1.5, 0.3, 20.0, 3e-2].map(label), ["1.5", "0.3", "20", "0.03"]);
     }
 
     #[test]
