@@ -89,9 +89,10 @@ fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
         }
         for row in 0..4 {
             if row != column {
-                let factor = m[row][column] / m[column][column];
-                for k in column..5 {
-                    m[row][k] -= factor * m[column][k];
+                let pivot = m[column];
+                let factor = m[row][column] / pivot[column];
+                for (entry, above) in m[row].iter_mut().zip(pivot) {
+                    *entry -= factor * above;
                 }
             }
         }

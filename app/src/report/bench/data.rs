@@ -28,12 +28,15 @@ pub struct SettingData {
     pub unsupported: Vec<(String, String)>,
 }
 
+/// By metric: a number for each frame.
+type Values = BTreeMap<String, Vec<Option<f64>>>;
+
 /// All rounds of a contender in a setting.
 pub struct Measured {
     /// Its name.
     pub name: String,
     /// Number of the round and values by metric.
-    rounds: Vec<(u32, BTreeMap<String, Vec<Option<f64>>>)>,
+    rounds: Vec<(u32, Values)>,
 }
 
 /// Median and quartiles.

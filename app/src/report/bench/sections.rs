@@ -53,10 +53,11 @@ const CONVENTIONAL: &str = "conventional";
 const MONO: &str = "mono";
 const PAPERS: &str = "the paper's ";
 
+type MakeSection = fn(&Suite) -> Section;
+
 /// Suites by name in the paper's order, with what makes their sections. One suite can have several: the paper
 /// looks at frame time, quality and overhead of the same eight scenes in three places.
-#[allow(clippy::type_complexity)]
-const ORDER: [(&str, fn(&Suite) -> Section); 13] = [
+const ORDER: [(&str, MakeSection); 13] = [
     ("scenes", frame_time),
     ("complexity", complexity),
     ("scenes", quality),
