@@ -30,5 +30,7 @@ void main() {
     int row = p.y - row_offset;
     bool seen = shows(ivec2(nearest, row), depth);
     bool filtered = seen && shows(ivec2(next, row), depth);
+    // The sky needs no looking up.
+    seen = seen || depth == far_depth;
     out_disocclusion = vec4(seen ? 0.0 : 1.0, filtered ? 1.0 : 0.0, 0.0, 1.0);
 }

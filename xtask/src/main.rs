@@ -11,6 +11,8 @@ use std::process::ExitCode;
 use anyhow::bail;
 use clap::{Parser, Subcommand};
 
+use cargo::{Equipment, Equipped};
+
 /// Set up, run and test yoro
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", arg_required_else_help = true)]
@@ -81,13 +83,13 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             cargo::run(&["run", "--release", "--package", "yoro", "--", "run"], &arguments)?;
         }
         Task::Test { filters, bless } => {
-            let libraries = setup::ensure()?;
-            cargo::test(&filters, bless, &libraries)?;
+            let equipment = equip(&filters)?;
+            cargo::test(&filters, bless, &equipment)?;
         }
         Task::Apk { release, yes } => {
             android::apk(android::Options { release, yes })?;
         }
-        Task::Doctor => return Ok(android::doctor()),
+        Task::Doctor => return android::doctor(),
         Task::CheckApk { file } => {
             let report = android::check::check(&file)?;
             print!("{report}");
@@ -96,6 +98,17 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Lint => lint()?,
     }
     Ok(true)
+}
+
+/// Installs and builds what the tests need that have one of the filters in their names.
+fn equip(filters: &[String]) -> anyhow::Result<Equipment> {
+    let osmesa = setup::ensure()?.osmesa;
+    let apk = if cargo::wants_apk(filters) { android::for_tests()? } else { Equipped::NotWanted };
+    // A few chosen tests are not worth the wait for an installation.
+    let all = filters.is_empty();
+    let absent = if all { Equipped::Missing } else { Equipped::NotWanted };
+    let browser = setup::browser(all).map_or(absent, Equipped::At);
+    Ok(Equipment { osmesa, apk, browser })
 }
 
 fn lint() -> anyhow::Result<()> {

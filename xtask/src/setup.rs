@@ -85,6 +85,18 @@ pub fn ensure() -> anyhow::Result<Libraries> {
     }
 }
 
+/// The browser that the tests of report pages use; on demand it is installed where apt has one.
+pub fn browser(install: bool) -> Option<PathBuf> {
+    let find = || ["chromium", "chromium-browser", "google-chrome"].into_iter().find_map(apt::find_program);
+    find().or_else(|| {
+        apt::find_program("apt-get").filter(|_| install)?;
+        if let Err(error) = apt::install(&[&["chromium"]]) {
+            eprintln!("warning: {error:#}");
+        }
+        find()
+    })
+}
+
 /// What is left is an error unless it is optional.
 fn conclude(missing: &[&Need], remedy: &str) -> anyhow::Result<Libraries> {
     let required: Vec<&str> =

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -55,8 +56,10 @@ pub enum Panel {
 /// How values become positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
+    /// Equal steps are equally far apart.
     #[default]
     Linear,
+    /// Equal factors are equally far apart.
     Logarithmic,
 }
 
@@ -216,7 +219,8 @@ fn rgb(color: u32) -> RGBColor {
 fn text(size: i32, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
     // The backend divides by 1.24.
     let style: TextStyle = ("sans-serif", f64::from(size) * 1.24).into_text_style(&(0, 0));
-    style.color(&rgb(palette::TEXT.0)).pos(Pos::new(horizontal, vertical))
+    let color = rgb(palette::TEXT.0).to_backend_color();
+    TextStyle { color, ..style }.pos(Pos::new(horizontal, vertical))
 }
 
 fn text_width(text: &str) -> i32 {
@@ -491,9 +495,11 @@ mod tests {
             assert!(svg.contains(needed), "{needed}: {svg}");
         }
         assert!(!svg.contains("NaN") && svg.trim_end().ends_with("</svg>"));
-        // The line through (1, 20) and (2, 40): y halves its distance to the axis.
-        let points = svg.lines().find(|l| l.contains("#3D3F44") && l.contains("polyline") && l.contains(&format!(",{} ", MARGIN + LINE + LINE / 2)));
-        assert!(points.is_some(), "the highest point touches the top of the frame: {svg}");
+        // 40 ms is the top of the frame, 20 ms half-way down.
+        let line = |dash: &str| svg.lines().find(|l| l.starts_with("<polyline") && l.contains("#3D3F44") && l.contains(dash));
+        let top = MARGIN + LINE + LINE / 2;
+        let (start, end) = (format!(",{} ", top + CURVES_HEIGHT / 2), format!(",{top} "));
+        assert!(line(&start).is_some_and(|l| l.contains(&end)), "{svg}");
     }
 
     #[test]

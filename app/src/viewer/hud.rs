@@ -164,6 +164,8 @@ pub(super) struct Hud {
     /// What the texture shows.
     text: String,
     progress: Option<f32>,
+    /// Rows in use, from the top.
+    used: usize,
 }
 
 impl Hud {
@@ -176,6 +178,7 @@ impl Hud {
             rows: Vec::with_capacity(SIZE[0] * SIZE[1]),
             text: String::with_capacity(256),
             progress: Some(f32::NAN),
+            used: SIZE[1],
         })
     }
 
@@ -187,6 +190,10 @@ impl Hud {
         self.text.clear();
         self.text.push_str(content.text);
         self.progress = content.progress;
+        self.used = match content.progress {
+            Some(_) => SIZE[1],
+            None => 2 * MARGIN + content.text.lines().count().min(LINES) * FONT[1],
+        };
         self.panel.draw(content);
         self.panel.flip_into(&mut self.rows);
         self.texture.upload(&self.rows);
@@ -198,13 +205,14 @@ impl Hud {
         self.gl.pass("hud", || {
             self.gl.set_raster_state(&state);
             for eye in Eye::BOTH {
-                let (origin, size) = place(pair, eye, in_the_middle);
+                let (origin, size) = place(pair, eye, self.used, in_the_middle);
                 self.gl.bind_framebuffer(Some(frame.eye(eye).raw()), origin, size);
                 let rectangle = [origin[0], origin[1], size[0], size[1]].map(|n| n as f32);
                 self.program
                     .bind()
                     .texture("panel", 0, self.texture.raw())
-                    .set("rectangle", Vec4::from(rectangle));
+                    .set("rectangle", Vec4::from(rectangle))
+                    .set("used", self.used as f32 / SIZE[1] as f32);
                 self.gl.draw_screen();
             }
             self.gl.set_raster_state(&RasterState::SCREEN);
@@ -212,10 +220,10 @@ impl Hud {
     }
 }
 
-/// Origin and size of the panel in pixels of an eye's image.
-fn place(pair: &EyePair, eye: Eye, in_the_middle: bool) -> ([u32; 2], [u32; 2]) {
+/// Origin and size, in pixels of an eye's image, of the `used` upper rows of the panel.
+fn place(pair: &EyePair, eye: Eye, used: usize, in_the_middle: bool) -> ([u32; 2], [u32; 2]) {
     let frustum = &pair.frusta[eye.index()];
-    let height = WIDTH * SIZE[1] as f32 / SIZE[0] as f32;
+    let height = WIDTH * used as f32 / SIZE[0] as f32;
     let x = -eye.side() * pair.ipd() / 2.0 / DISTANCE - WIDTH / 2.0;
     let below = if in_the_middle { 0.0 } else { -BELOW };
     let y = below.max(frustum.bottom + height) - height / 2.0;
@@ -268,7 +276,7 @@ mod tests {
     fn the_panel_hangs_at_its_distance() {
         let frustum = Frustum::from_angles(0.7, 0.7, 0.7, 0.7);
         let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.06, DepthRange::PAPER, [1000; 2], Eye::Right);
-        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, false));
+        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, SIZE[1], false));
         assert_eq!(left.1, right.1);
         let disparity = left.0[0] as f32 - right.0[0] as f32;
         assert!((disparity - 0.06 / DISTANCE * pair.focal_length_pixels()).abs() <= 1.0);

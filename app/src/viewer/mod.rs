@@ -629,7 +629,8 @@ impl Viewer {
         self.loader = None;
         let shown = result.and_then(|scene| self.show(&gl, scene).map_err(|error| error.to_string()));
         if let Err(reason) = shown {
-            log::error!("{reason}");
+            // Whether that is the end is for the platform to say.
+            log::info!("no scene: {reason}");
             self.failure = Some(reason);
         }
     }

@@ -9,10 +9,11 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
-use super::keystore::Keystore;
+use super::keystore::{self, Keystore};
 use super::stand_in::StandIn;
 use super::toolchain::{self, Rust, Surroundings, Toolchain};
 use super::{PAGE, check, target_folder};
+use crate::cargo::Equipped;
 
 const CARGO_APK: &str = "0.10.0";
 /// `apk_name` of android/Cargo.toml.
@@ -66,7 +67,9 @@ pub fn apk(options: Options) -> anyhow::Result<PathBuf> {
                 .env("ANDROID_HOME", &stand_in.sdk)
                 .env("ANDROID_NDK_ROOT", &stand_in.ndk)
                 .env("RUSTC_BOOTSTRAP", "1")
-                .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort");
+                .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
+                // Without backtraces: there are no symbols to show.
+                .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", "");
             Rust::with_source(&surroundings)
         }
     };
@@ -95,6 +98,20 @@ pub fn apk(options: Options) -> anyhow::Result<PathBuf> {
     Ok(apk)
 }
 
+/// The release APK for the tests. What it needs is installed without asking, as for all tests.
+///
+/// # Errors
+/// When it cannot be built although everything is there.
+pub fn for_tests() -> anyhow::Result<Equipped> {
+    let surroundings = Surroundings::here();
+    let (toolchain, _) = Toolchain::choose(&surroundings);
+    if let Err(error) = toolchain::ensure(&toolchain, &surroundings, true) {
+        eprintln!("warning: the APK cannot be built here, so that its tests are left out: {error:#}");
+        return Ok(Equipped::Missing);
+    }
+    Ok(Equipped::At(apk(Options { release: true, yes: true })?))
+}
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -102,9 +119,7 @@ fn root() -> PathBuf {
 /// cargo-apk of the one version that this works with, in the project's own folder.
 fn cargo_apk(folder: &Path) -> anyhow::Result<PathBuf> {
     let program = folder.join("bin/cargo-apk");
-    let version = Command::new(&program).args(["apk", "version"]).output();
-    let wanted = format!("cargo-apk {CARGO_APK}");
-    if version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == wanted) {
+    if is_cargo_apk(&program) {
         return Ok(program);
     }
     // It only starts other programs: optimising it would take longer than it saves.
@@ -121,6 +136,26 @@ fn cargo_apk(folder: &Path) -> anyhow::Result<PathBuf> {
         bail!("cargo-apk {CARGO_APK} cannot be installed: see above");
     }
     Ok(program)
+}
+
+fn is_cargo_apk(program: &Path) -> bool {
+    let version = Command::new(program).args(["apk", "version"]).output();
+    let wanted = format!("cargo-apk {CARGO_APK}");
+    version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == wanted)
+}
+
+/// What the building brings along by itself, for people: cargo-apk and the key.
+///
+/// # Errors
+/// When the target folder is not known.
+pub fn extras() -> anyhow::Result<[(&'static str, String); 2]> {
+    let program = target_folder()?.join("tools/bin/cargo-apk");
+    let tool = if is_cargo_apk(&program) {
+        program.display().to_string()
+    } else {
+        format!("version {CARGO_APK} will be installed: {}", program.display())
+    };
+    Ok([("cargo-apk", tool), ("release key", keystore::describe())])
 }
 
 /// What is asked of the linker with any NDK: pages of 16 KiB, and no name that a public library does not have.

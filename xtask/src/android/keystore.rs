@@ -9,6 +9,14 @@ use anyhow::{Context as _, bail};
 /// The variable that names the release's keystore; with `_PASSWORD` at its end, the password's.
 const RELEASE: &str = "CARGO_APK_RELEASE_KEYSTORE";
 
+/// Which key a release would be signed with, for people.
+pub fn describe() -> String {
+    match env::var_os(RELEASE) {
+        Some(path) => format!("{} ({RELEASE})", PathBuf::from(path).display()),
+        None => format!("this machine's debug key: {RELEASE} is not set"),
+    }
+}
+
 /// A keystore with one key, and its password.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Keystore {
@@ -27,22 +35,24 @@ impl Keystore {
     /// # Errors
     /// When the environment is incomplete or names no file, or keytool fails.
     pub fn choose(release: bool) -> anyhow::Result<Self> {
-        let password = format!("{RELEASE}_PASSWORD");
-        match (env::var_os(RELEASE), env::var(&password)) {
-            (Some(path), Ok(password)) if release => Self::given(path.into(), password),
-            (Some(_), Err(_)) if release => {
-                bail!("{RELEASE} is set, but not {password}: set both or neither")
-            }
-            _ => Self::debug(),
+        if !release {
+            return Self::debug();
         }
+        let password = env::var(format!("{RELEASE}_PASSWORD")).ok();
+        Self::given(env::var_os(RELEASE).map(PathBuf::from), password)?.map_or_else(Self::debug, Ok)
     }
 
-    fn given(path: PathBuf, password: String) -> anyhow::Result<Self> {
+    /// The keystore of the environment, if it names one.
+    fn given(path: Option<PathBuf>, password: Option<String>) -> anyhow::Result<Option<Self>> {
+        let Some(path) = path else { return Ok(None) };
+        let Some(password) = password else {
+            bail!("{RELEASE} is set, but not {RELEASE}_PASSWORD: set both or neither");
+        };
         // cargo-apk and apksigner run in other folders.
         let path = path
             .canonicalize()
             .with_context(|| format!("{}, which {RELEASE} names, cannot be opened", path.display()))?;
-        Ok(Self { path, password, debug: false })
+        Ok(Some(Self { path, password, debug: false }))
     }
 
     /// The key that all of Android's tools share, so that an application built by any of them updates the others'.
@@ -76,5 +86,26 @@ impl Keystore {
             bail!("keytool cannot make a debug key: {}", String::from_utf8_lossy(&output.stdout).trim());
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_release_key_is_complete_or_absent() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("my.keystore");
+        std::fs::write(&file, "").unwrap();
+        let given = |path: Option<&PathBuf>, password: Option<&str>| {
+            Keystore::given(path.cloned(), password.map(str::to_owned)).map_err(|error| error.to_string())
+        };
+        assert_eq!(given(None, None), Ok(None));
+        let keystore = given(Some(&file), Some("secret")).unwrap().unwrap();
+        assert!(keystore.path.is_absolute() && keystore.password == "secret" && !keystore.debug);
+        assert!(given(Some(&file), None).unwrap_err().contains("_PASSWORD"));
+        let absent = folder.path().join("absent.keystore");
+        assert!(given(Some(&absent), Some("secret")).unwrap_err().contains("absent.keystore"));
     }
 }

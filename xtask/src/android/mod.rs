@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 
-pub use build::{Options, apk};
+pub use build::{Options, apk, for_tests};
 pub use toolchain::doctor;
 
 /// The oldest Android that the application runs on (Android 10), as in android/Cargo.toml.

@@ -294,12 +294,15 @@ fn missing(toolchain: &Toolchain, surroundings: &Surroundings) -> Vec<Need> {
 }
 
 /// Says which way `cargo xtask apk` would go, and what it lacks. True when nothing is missing.
-pub fn doctor() -> bool {
+///
+/// # Errors
+/// When the target folder is not known.
+pub fn doctor() -> anyhow::Result<bool> {
     let surroundings = Surroundings::here();
     let (toolchain, against) = Toolchain::choose(&surroundings);
     println!("cargo xtask apk uses {toolchain}");
     if !against.is_empty() {
-        println!("  not {}, because {}", GOOGLE, against.join("; "));
+        println!("  not Google's SDK and NDK, because {}", against.join("; "));
     }
     println!();
     let needs = toolchain.needs(&surroundings);
@@ -308,6 +311,9 @@ pub fn doctor() -> bool {
             Ok(path) => println!("  ok       {:14}{path}", need.what),
             Err(problem) => println!("  MISSING  {:14}{problem}: {}", need.what, need.remedy),
         }
+    }
+    for (what, state) in super::build::extras()? {
+        println!("  ok       {what:14}{state}");
     }
     println!();
     let complete = needs.iter().all(|need| need.found.is_ok());
@@ -319,10 +325,8 @@ pub fn doctor() -> bool {
             "cargo xtask apk asks before it installs what is missing (--yes: without asking)".to_owned()
         }
     );
-    complete
+    Ok(complete)
 }
-
-const GOOGLE: &str = "Google's SDK and NDK with rustup's targets";
 
 #[cfg(test)]
 mod tests {
