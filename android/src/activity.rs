@@ -478,11 +478,19 @@ impl Activity {
             self.summarize();
         }
         let Some(viewer) = &mut self.viewer else { return };
-        match viewer.configure(settings.clone(), &self.folders) {
+        // What was not to be found at the start is not looked for again with every change.
+        let mut possible = settings.clone();
+        if settings.scene == self.settings.scene {
+            possible.scene.clone_from(&viewer.settings().scene);
+        }
+        if settings.viewer == self.settings.viewer {
+            possible.viewer.clone_from(&viewer.settings().viewer);
+        }
+        // Another scene begins another session.
+        self.is_summarized = false;
+        match viewer.configure(possible, &self.folders) {
             Ok(()) => {
-                log::info!("settings: {settings}");
-                // Another scene begins another session.
-                self.is_summarized = false;
+                log::info!("settings: {}", viewer.settings());
                 self.settings = settings;
             }
             Err(error) => log::warn!("{error}; the settings stay as they were"),
