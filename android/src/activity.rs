@@ -459,17 +459,13 @@ impl Activity {
         if let Some(errors) = self.gl.as_ref().and_then(|gl| gl.take_errors()) {
             log::warn!("GL errors in the last second: {errors}");
         }
-        let properties = settings::properties(property);
-        if properties != self.sources.properties {
-            self.sources.properties = properties;
+        if self.sources.set_properties(settings::properties(property)) {
             self.reconfigure();
         }
     }
 
     /// The system properties have changed while the application runs.
     fn reconfigure(&mut self) {
-        // What the user did by hand before does not hold against what is said now.
-        self.sources.saved.clear();
         let settings = self.resolve();
         if settings == self.settings {
             return;
