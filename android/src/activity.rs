@@ -172,6 +172,11 @@ impl Activity {
             MainEvent::WindowResized { .. }
             | MainEvent::ContentRectChanged { .. }
             | MainEvent::ConfigChanged { .. } => self.is_display_stale = true,
+            MainEvent::RedrawNeeded { .. } => {
+                if let Some(failure) = self.failure.clone() {
+                    self.fail(failure);
+                }
+            }
             MainEvent::GainedFocus => self.java.hide_system_bars(),
             MainEvent::Resume { loader, .. } => {
                 if self.viewer.is_none()
