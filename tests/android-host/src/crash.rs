@@ -8,8 +8,9 @@ use crate::host::{fatal, host};
 /// How far up the stack callers are looked for, bytes.
 const STACK: usize = 64 * 1024;
 
-/// Catches the signals of crashes from now on.
+/// Catches the signals of crashes, and the host's own panics, from now on.
 pub fn install() {
+    std::panic::set_hook(Box::new(|panic| fatal(format!("the host itself panicked: {panic}"))));
     for signal in [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGFPE, libc::SIGABRT] {
         // SAFETY: the structure is plain data for which zero is valid; the handler has the type that SA_SIGINFO asks for.
         unsafe {

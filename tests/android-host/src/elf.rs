@@ -287,8 +287,8 @@ fn check_segments(file: &[u8], segments: &[Segment]) -> Result<()> {
         ensure!(segment.kind != PT_GNU_STACK || segment.flags & EXECUTE == 0, "it asks for an executable stack");
         if segment.kind == PT_GNU_RELRO {
             ensure!(
-                segment.address % PAGE == 0 && (segment.address + segment.memory_size) % PAGE == 0,
-                "its RELRO part does not begin and end at a 16 KiB boundary"
+                segment.address.checked_add(segment.memory_size).is_some_and(|end| end % PAGE == 0),
+                "its RELRO part does not end at a 16 KiB boundary: what follows would become read-only, too"
             );
         }
     }
@@ -530,7 +530,7 @@ fn protect(image: &Image, base: usize) -> Result<()> {
         protect_range(base, first, last, protection)?;
     }
     if let Some(relro) = &image.relro {
-        protect_range(base, relro.address, relro.address + relro.memory_size, libc::PROT_READ)?;
+        protect_range(base, relro.address & !(PAGE - 1), relro.address + relro.memory_size, libc::PROT_READ)?;
     }
     Ok(())
 }

@@ -2,12 +2,16 @@
 //! happens there in every run.
 
 use std::sync::{Condvar, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
 
 use image::RgbaImage;
 
 use crate::android::looper;
 use crate::fd::EventFd;
 use crate::host::host;
+
+/// How long a frame waits at the open gate, real time.
+const OPEN_FRAME: Duration = Duration::from_millis(3);
 
 /// State of the gate.
 pub struct Frames {
@@ -50,7 +54,17 @@ impl Frames {
         let mut state = self.state();
         state.waiting = true;
         self.notify();
-        while !state.open && state.granted == 0 {
+        let arrived = Instant::now();
+        while state.granted == 0 {
+            if state.open {
+                // The callback that opened the gate may end any moment; only if it does not, it waits for this thread.
+                let left = OPEN_FRAME.saturating_sub(arrived.elapsed());
+                if left.is_zero() {
+                    break;
+                }
+                state = self.changed.wait_timeout(state, left).unwrap_or_else(|poisoned| poisoned.into_inner()).0;
+                continue;
+            }
             if std::mem::take(&mut state.capture) {
                 state.captured = Some(read());
                 self.notify();

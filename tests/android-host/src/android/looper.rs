@@ -191,7 +191,7 @@ thread_local! {
 /// The calling thread's looper.
 pub fn current() -> Option<&'static ALooper> {
     // SAFETY: a thread's own reference keeps its looper alive for as long as the thread runs.
-    CURRENT.with_borrow(|own| own.as_ref().map(|own| unsafe { &*own.0 }))
+    CURRENT.try_with(|own| own.borrow().as_ref().map(|own| unsafe { &*own.0 })).ok().flatten()
 }
 
 /// The calling thread's looper, made if there is none.

@@ -31,6 +31,16 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
         "loadClass" | "forName" => Value::object(Object::class_of(&text(0)?.replace('.', "/"))),
         "getName" if receiver.class == "java/lang/Class" => Value::object(Object::string(&class.replace('/', "."))),
         "toString" => Value::object(Object::string(receiver.text().unwrap_or(class))),
+        // Their objects are asked nothing: the application hands them back.
+        "getApplication" | "getApplicationContext" => Value::object(Object::new("android/app/Application", Data::None)),
+        "getAssets" => Value::object(Object::new("android/content/res/AssetManager", Data::None)),
+        "getClassLoader" | "getContextClassLoader" => Value::object(Object::new("java/lang/ClassLoader", Data::None)),
+        "getWindow" => Value::object(Object::new("android/view/Window", Data::None)),
+        "getDecorView" => Value::object(Object::new("android/view/View", Data::None)),
+        "getWindowManager" => Value::object(Object::new("android/view/WindowManager", Data::None)),
+        "getDefaultDisplay" | "getDisplay" => Value::object(Object::new("android/view/Display", Data::None)),
+        "getResources" => Value::object(Object::new("android/content/res/Resources", Data::None)),
+        "getDisplayMetrics" => Value::object(Object::new("android/util/DisplayMetrics", Data::None)),
         "getPackageName" => Value::object(Object::string("org.yoro.simulated")),
         "currentThread" => Value::object(Object::new("java/lang/Thread", Data::None)),
         "setContextClassLoader" | "setName" | "setSystemUiVisibility" | "setDecorFitsSystemWindows" | "setAttributes" | "addFlags"

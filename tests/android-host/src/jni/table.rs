@@ -2,14 +2,14 @@
 
 #![allow(non_snake_case)]
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::ffi::{CString, c_char, c_void};
 use std::sync::{Arc, Mutex, OnceLock};
 
 use super::objects::Kind;
 use super::{Argument, Data, Member, Object, Value, answers};
-use crate::bionic::text;
+use crate::bionic::{text, thread_name};
 use crate::host::{fatal, host, lock};
 use crate::thunk;
 
@@ -72,8 +72,20 @@ static ENVIRONMENT: OnceLock<Box<usize>> = OnceLock::new();
 static MACHINE: OnceLock<Box<usize>> = OnceLock::new();
 
 thread_local! {
-    /// Local references by frame, when the thread is attached.
-    static FRAMES: RefCell<Option<Vec<Vec<usize>>>> = const { RefCell::new(None) };
+    /// Local references by frame, when the thread is attached. It has no destructor: the application's own thread-local
+    /// values go later than the host's and may still call JNI.
+    static FRAMES: Cell<Option<&'static RefCell<Vec<Vec<usize>>>>> = const { Cell::new(None) };
+}
+
+/// The local references of the calling thread.
+fn frames() -> &'static RefCell<Vec<Vec<usize>>> {
+    FRAMES.get().unwrap_or_else(|| fatal(format!("JNI was called on the thread {}, which is not attached", thread_name())))
+}
+
+fn attach() {
+    if FRAMES.get().is_none() {
+        FRAMES.set(Some(Box::leak(Box::new(RefCell::new(vec![Vec::new()])))));
+    }
 }
 
 /// Buffers of `GetStringUTFChars` and `GetStringChars` by address.
@@ -83,7 +95,7 @@ type Handle = usize;
 
 /// Attaches the main thread, as the system does before it creates an activity.
 pub fn attach_main_thread() {
-    FRAMES.with_borrow_mut(|frames| *frames = Some(vec![Vec::new()]));
+    attach();
 }
 
 /// A global reference to a new activity.
@@ -126,22 +138,22 @@ pub fn virtual_machine() -> *const c_void {
 }
 
 unsafe extern "C" fn GetEnv(_machine: *const c_void, out: *mut *const c_void, _version: i32) -> i32 {
-    let attached = FRAMES.with_borrow(Option::is_some);
+    let attached = FRAMES.get().is_some();
     // SAFETY: the caller gives room for one pointer.
     unsafe { out.write(if attached { environment() } else { std::ptr::null() }) };
     if attached { OK } else { DETACHED }
 }
 
 unsafe extern "C" fn AttachCurrentThread(_machine: *const c_void, out: *mut *const c_void, _arguments: *const c_void) -> i32 {
-    FRAMES.with_borrow_mut(|frames| _ = frames.get_or_insert_with(|| vec![Vec::new()]));
+    attach();
     // SAFETY: the caller gives room for one pointer.
     unsafe { out.write(environment()) };
     OK
 }
 
 extern "C" fn DetachCurrentThread(_machine: *const c_void) -> i32 {
-    let Some(frames) = FRAMES.with_borrow_mut(Option::take) else { return -1 };
-    for handle in frames.into_iter().flatten() {
+    let Some(frames) = FRAMES.take() else { return -1 };
+    for handle in frames.take().into_iter().flatten() {
         host().jni.remove(handle, Kind::Local);
     }
     OK
@@ -150,10 +162,9 @@ extern "C" fn DetachCurrentThread(_machine: *const c_void) -> i32 {
 fn local(object: Option<Arc<Object>>) -> Handle {
     let Some(object) = object else { return 0 };
     let handle = host().jni.add(object, Kind::Local);
-    FRAMES.with_borrow_mut(|frames| match frames.as_mut().and_then(|frames| frames.last_mut()) {
-        Some(frame) => frame.push(handle),
-        None => fatal("JNI was called on a thread that is not attached"),
-    });
+    if let Some(frame) = frames().borrow_mut().last_mut() {
+        frame.push(handle);
+    }
     handle
 }
 
@@ -244,19 +255,19 @@ unsafe extern "C" fn FatalError(_env: Env, message: *const c_char) -> ! {
 }
 
 extern "C" fn PushLocalFrame(_env: Env, _capacity: i32) -> i32 {
-    FRAMES.with_borrow_mut(|frames| match frames {
-        Some(frames) => frames.push(Vec::new()),
-        None => fatal("JNI PushLocalFrame on a thread that is not attached"),
-    });
+    frames().borrow_mut().push(Vec::new());
     OK
 }
 
 extern "C" fn PopLocalFrame(_env: Env, result: Handle) -> Handle {
     let kept = host().jni.get(result);
-    let frame = FRAMES.with_borrow_mut(|frames| match frames {
-        Some(frames) if frames.len() > 1 => frames.pop().unwrap_or_default(),
-        _ => fatal("JNI PopLocalFrame without PushLocalFrame"),
-    });
+    let frame = {
+        let mut frames = frames().borrow_mut();
+        if frames.len() < 2 {
+            fatal("JNI PopLocalFrame without PushLocalFrame");
+        }
+        frames.pop().unwrap_or_default()
+    };
     for handle in frame {
         host().jni.remove(handle, Kind::Local);
     }
@@ -291,11 +302,9 @@ extern "C" fn DeleteLocalRef(_env: Env, handle: Handle) {
     if handle == 0 {
         return;
     }
-    FRAMES.with_borrow_mut(|frames| {
-        for frame in frames.iter_mut().flatten() {
-            frame.retain(|known| *known != handle);
-        }
-    });
+    for frame in frames().borrow_mut().iter_mut() {
+        frame.retain(|known| *known != handle);
+    }
     host().jni.remove(handle, Kind::Local);
 }
 
