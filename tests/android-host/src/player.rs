@@ -274,7 +274,7 @@ impl Player {
 
     fn input_queue(&mut self) {
         self.expect("input-queue", self.stage.created && self.queue.is_none());
-        let queue = AInputQueue::leaked();
+        let queue = AInputQueue::fresh();
         self.queue = Some(queue);
         self.callback("onInputQueueCreated", |activity| {
             if let Some(function) = activity.callbacks.onInputQueueCreated {
@@ -407,7 +407,7 @@ impl Player {
             if self.host.log.contains(from, text) {
                 return;
             }
-            from = self.host.log.len().saturating_sub(1);
+            from = self.host.log.total();
             self.frames(1);
         }
         if !self.host.log.contains(from, text) {

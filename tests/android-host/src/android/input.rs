@@ -4,7 +4,7 @@
 
 use std::collections::VecDeque;
 use std::ffi::{c_int, c_void};
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::android::looper::{ALooper, Callback};
@@ -74,9 +74,14 @@ struct QueueState {
 }
 
 impl AInputQueue {
-    /// An empty one, which lives as long as the process: the application may hold it a little longer than it should.
-    pub fn leaked() -> &'static Self {
-        Box::leak(Box::new(Self { event: EventFd::new(), state: Mutex::default() }))
+    /// The process's one, emptied: activities come one after the other, and an application may hold the pointer a little
+    /// longer than it should.
+    pub fn fresh() -> &'static Self {
+        static QUEUE: OnceLock<AInputQueue> = OnceLock::new();
+        let queue = QUEUE.get_or_init(|| Self { event: EventFd::new(), state: Mutex::default() });
+        lock(&queue.state).events.clear();
+        queue.event.clear();
+        queue
     }
 
     /// Sends an event.

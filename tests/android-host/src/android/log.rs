@@ -1,6 +1,6 @@
 //! liblog: what the application logs goes into the summary, and to standard error when asked for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::ffi::{c_char, c_int};
 use std::sync::Mutex;
 
@@ -26,8 +26,12 @@ pub struct Collected {
     pub lines: Vec<LogLine>,
     /// Lines by tag.
     pub counts: BTreeMap<String, u64>,
-    recent: Vec<String>,
+    recent: VecDeque<String>,
+    total: usize,
 }
+
+/// Lines kept for the summary, and for those who wait for one: an application that fails in a loop logs millions.
+const KEPT: usize = 5000;
 
 impl Log {
     /// An empty log.
@@ -45,8 +49,12 @@ impl Log {
         }
         let mut state = lock(&self.state);
         *state.counts.entry(if matches!(priority, 'E' | 'F') { format!("{} {priority}", line.tag) } else { line.tag.clone() }).or_default() += 1;
-        state.recent.push(format!("{}/{}: {}", line.priority, line.tag, line.text));
-        if line.tag == TAG || matches!(priority, 'E' | 'F') {
+        state.recent.push_back(format!("{}/{}: {}", line.priority, line.tag, line.text));
+        state.total += 1;
+        if state.recent.len() > KEPT {
+            state.recent.pop_front();
+        }
+        if (line.tag == TAG || matches!(priority, 'E' | 'F')) && state.lines.len() < KEPT {
             state.lines.push(line);
         }
     }
@@ -57,13 +65,15 @@ impl Log {
     }
 
     /// How many lines there are, of any tag.
-    pub fn len(&self) -> usize {
-        lock(&self.state).recent.len()
+    pub fn total(&self) -> usize {
+        lock(&self.state).total
     }
 
     /// Whether a line from number `from` on contains the text.
     pub fn contains(&self, from: usize, text: &str) -> bool {
-        lock(&self.state).recent.iter().skip(from).any(|line| line.contains(text))
+        let state = lock(&self.state);
+        let first = state.total - state.recent.len();
+        state.recent.iter().skip(from.saturating_sub(first)).any(|line| line.contains(text))
     }
 
     /// Called before `abort`.
@@ -75,7 +85,7 @@ impl Log {
     pub fn abort_message(&self) -> String {
         let message = lock(&self.abort_message).clone();
         let state = lock(&self.state);
-        let last = &state.recent[state.recent.len().saturating_sub(5)..];
+        let last: Vec<_> = state.recent.iter().skip(state.recent.len().saturating_sub(5)).map(String::as_str).collect();
         if message.is_empty() { format!("; last log lines: {}", last.join(" | ")) } else { format!(": {message}") }
     }
 }
