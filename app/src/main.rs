@@ -18,11 +18,15 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Bench(Box<cli::bench::BenchArgs>),
     Run(cli::run::RunArgs),
     Render(cli::render::RenderArgs),
     Synthesize(cli::synthesize::SynthesizeArgs),
+    Report(cli::report::ReportArgs),
     Compare(cli::compare::CompareArgs),
+    Dataset(cli::dataset::DatasetArgs),
     Scenes(cli::scenes::ScenesArgs),
+    View(cli::view::ViewArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -39,11 +43,15 @@ fn main() -> ExitCode {
         .init();
     cli::catch_interrupt();
     let result = match &arguments.command {
+        Command::Bench(args) => cli::bench::run(args),
         Command::Run(args) => cli::run::run(args),
         Command::Render(args) => cli::render::run(args),
         Command::Synthesize(args) => cli::synthesize::run(args),
+        Command::Report(args) => cli::report::run(args),
         Command::Compare(args) => cli::compare::run(args),
+        Command::Dataset(args) => cli::dataset::run(args),
         Command::Scenes(args) => cli::scenes::run(args),
+        Command::View(args) => cli::view::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {

@@ -329,6 +329,15 @@ where
     Ok(files::write(path, &bytes)?)
 }
 
+/// RGBA as GL reads it back, rows from the bottom, as an image; alpha is dropped.
+pub fn rgb_image(rgba: &[u8], size: [u32; 2]) -> RgbImage {
+    let row = size[0] as usize * 4;
+    RgbImage::from_fn(size[0], size[1], |x, y| {
+        let i = (size[1] - 1 - y) as usize * row + x as usize * 4;
+        Rgb([rgba[i], rgba[i + 1], rgba[i + 2]])
+    })
+}
+
 /// Left and right eye beside each other, left eye left: for parallel viewing.
 pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureError> {
     check_sizes(left, right)?;

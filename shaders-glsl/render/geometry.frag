@@ -3,6 +3,10 @@
 #include "include/normal.glsl"
 
 uniform float material_id;
+#ifdef SEAM_DISCARD
+uniform float seam;  // first column of the right eye
+flat in int v_view;
+#endif
 
 layout(location = 0) out vec4 out_albedo;    // square root of linear albedo, roughness
 layout(location = 1) out vec4 out_normal;    // octahedral normal, reflectance
@@ -10,6 +14,11 @@ layout(location = 2) out vec4 out_emissive;  // square root of a quarter of line
 
 void main() {
     vec4 color = material_diffuse();
+#ifdef SEAM_DISCARD
+    if ((gl_FragCoord.x < seam) != (v_view == 0)) {
+        discard;
+    }
+#endif
 #ifdef CUTOUT
     if (cut_out(color.a)) {
         discard;

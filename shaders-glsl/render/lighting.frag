@@ -1,19 +1,27 @@
 // G-buffer, ambient occlusion and lights to scene-referred colour; the sky where there is nothing.
 #include "include/view.glsl"
+#include "include/g_buffer.glsl"
+#include "include/role.glsl"
 #include "include/normal.glsl"
 #include "include/shade.glsl"
 #include "include/hdr.glsl"
 #include "include/occlusion.glsl"
 
-uniform sampler2D depth_map;
-uniform sampler2D albedo_map;
-uniform sampler2D normal_map;
-uniform sampler2D emissive_map;
+uniform G_SAMPLER albedo_map;
+uniform G_SAMPLER normal_map;
+uniform G_SAMPLER emissive_map;
 #ifdef SSAO
 uniform sampler2D occlusion_map;
 #endif
 #ifdef STYLE_ANIME
 uniform int line_width;  // pixels
+#endif
+#ifdef NEAR_FIELD
+uniform sampler2D far_field;
+uniform ivec2 far_field_crop;
+#endif
+#ifdef REPROJECTED
+uniform sampler2D dominant_color;
 #endif
 
 layout(location = 0) out vec4 out_color;
@@ -47,16 +55,16 @@ float occlusion(ivec2 p, float z) {
 // surfaces the nearer one carries the line: it must stay with the outline that it draws when the pixels move to
 // the other eye.
 float ink(ivec2 p, float depth, float id) {
-    ivec2 last = textureSize(depth_map, 0) - 1;
+    ivec2 last = g_size() - 1;
     float c = inverse_distance.x + inverse_distance.y * depth;
     float line = 0.0;
     for (int i = 0; i < 2; ++i) {
         ivec2 step = i == 0 ? ivec2(line_width, 0) : ivec2(0, line_width);
         ivec2 q0 = max(p - step, ivec2(0)), q1 = min(p + step, last);
-        float d0 = texelFetch(depth_map, q0, 0).x, d1 = texelFetch(depth_map, q1, 0).x;
+        float d0 = G_TEXEL(depth_map, q0).x, d1 = G_TEXEL(depth_map, q1).x;
         float bend = inverse_distance.y * (2.0 * depth - d0 - d1) / c;
         line = max(line, smoothstep(0.03, 0.06, bend));
-        float i0 = texelFetch(emissive_map, q0, 0).a, i1 = texelFetch(emissive_map, q1, 0).a;
+        float i0 = G_TEXEL(emissive_map, q0).a, i1 = G_TEXEL(emissive_map, q1).a;
         // Of two neighbours in one distance, the line is drawn on one side only.
         line = max(line, i0 != id && abs(d0 - depth) * abs(inverse_distance.y) < 0.05 * c ? 0.8 : 0.0);
     }
@@ -64,16 +72,11 @@ float ink(ivec2 p, float depth, float id) {
 }
 #endif
 
-void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy);
-    float depth = texelFetch(depth_map, p, 0).x;
+vec3 lit(ivec2 p, float depth, vec3 ray) {
     float z = axis_distance(depth);
-    vec3 ray = view_ray(gl_FragCoord.xy / vec2(textureSize(depth_map, 0)));
-    vec3 position = ray * z;
-
-    vec4 albedo = texelFetch(albedo_map, p, 0);
-    vec4 normal = texelFetch(normal_map, p, 0);
-    vec4 emissive = texelFetch(emissive_map, p, 0);
+    vec4 albedo = G_TEXEL(albedo_map, p);
+    vec4 normal = G_TEXEL(normal_map, p);
+    vec4 emissive = G_TEXEL(emissive_map, p);
     Surface s;
     s.albedo = albedo.rgb * albedo.rgb;
     s.roughness = albedo.a;
@@ -85,17 +88,48 @@ void main() {
 #else
     float ao = 1.0;
 #endif
-    vec3 color = shade(s, position, ao);
+    vec3 color = shade(s, ray * z, ao);
 #ifdef STYLE_ANIME
     color = mix(color, 0.04 * s.albedo, ink(p, depth, emissive.a));
 #endif
-    color = aerial(color, z);
+    return aerial(color, z);
+}
 
-    vec3 direction = normalize(ray);
-    vec3 background = sky(direction);
+vec3 background(vec3 direction) {
+    vec3 color = sky(direction);
 #ifdef SUN
     float disc = dot(direction, sun_direction);
-    background += sun_color * (smoothstep(0.9996, 0.9998, disc) * 2.0 + 0.08 * exp2(60.0 * (disc - 1.0)));
+    color += sun_color * (smoothstep(0.9996, 0.9998, disc) * 2.0 + 0.08 * exp2(60.0 * (disc - 1.0)));
 #endif
-    out_color = vec4(hdr_encode(depth == far_depth ? background : color), 1.0);
+    return color;
+}
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    float depth = G_TEXEL(depth_map, p).x;
+    vec3 ray = view_ray(gl_FragCoord.xy / vec2(g_size()));
+    vec3 color = vec3(0.0);
+    // Loops, because CPU rasterizers run both sides of an `if` but leave a loop that no pixel needs.
+    for (int drawn = is_lit(p, depth) ? 1 : 0; drawn > 0; --drawn) {
+        color = hdr_encode(lit(p, depth, ray));
+    }
+#ifdef NEAR_FIELD
+    if (depth == far_depth) {
+        color = texelFetch(far_field, p + far_field_crop, 0).rgb;
+    }
+#else
+    for (int empty = depth == far_depth ? 1 : 0; empty > 0; --empty) {
+        color = hdr_encode(background(normalize(ray)));
+    }
+#endif
+#ifdef REPROJECTED
+    vec2 reprojected = texelFetch(disocclusion, p, 0).xy;
+    if (depth != far_depth && reprojected.x < 0.5) {
+        float x = dominant_column(p.x, depth);
+        x = reprojected.y > 0.5 ? x : float(nearest_column(x));
+        vec2 q = vec2(x, float(p.y - row_offset)) + 0.5;
+        color = textureLod(dominant_color, q / vec2(textureSize(dominant_color, 0)), 0.0).rgb;
+    }
+#endif
+    out_color = vec4(color, 1.0);
 }

@@ -11,12 +11,11 @@ float slope(float before, float center, float after) {
     return abs(a) < abs(b) ? a : b;
 }
 
-void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy);
-    ivec2 last = textureSize(occlusion_map, 0) - 1;
-    vec4 center = texelFetch(occlusion_map, p, 0);
-    float code = unpack_code(center);
 #define CODE(x, y) unpack_code(texelFetch(occlusion_map, clamp(p + ivec2(x, y), ivec2(0), last), 0))
+
+float blur(ivec2 p, vec4 center) {
+    ivec2 last = textureSize(occlusion_map, 0) - 1;
+    float code = unpack_code(center);
     vec2 gradient = vec2(slope(CODE(-1, 0), code, CODE(1, 0)), slope(CODE(0, -1), code, CODE(0, 1)));
     vec2 sum = vec2(center.x, 1.0) * 0.01;
     for (int y = -2; y < 2; ++y) {
@@ -26,5 +25,15 @@ void main() {
             sum += weight * vec2(texel.x, 1.0);
         }
     }
-    out_occlusion = vec4(sum.x / sum.y, center.yz, 1.0);
+    return sum.x / sum.y;
+}
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec4 center = texelFetch(occlusion_map, p, 0);
+    out_occlusion = center;
+    // A loop, because CPU rasterizers run both sides of an `if` but leave a loop that no pixel needs.
+    for (int computed = center.w > 0.0 ? 1 : 0; computed > 0; --computed) {
+        out_occlusion.x = blur(p, center);
+    }
 }

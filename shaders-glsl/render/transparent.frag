@@ -1,9 +1,9 @@
 // Transparent surfaces over a finished, display-referred image.
 #include "include/material.glsl"
 #include "include/view.glsl"
+#include "include/g_buffer.glsl"
 #include "include/shade.glsl"
 
-uniform sampler2D depth_map;   // window depth of what is there already
 uniform ivec2 depth_offset;    // from a pixel of the target to its pixel in the depth map
 uniform float nearer;          // +1: smaller depth is nearer, -1: larger
 uniform float exposure;
@@ -11,7 +11,7 @@ uniform float exposure;
 layout(location = 0) out vec4 out_color;
 
 void main() {
-    float there = texelFetch(depth_map, ivec2(gl_FragCoord.xy) + depth_offset, 0).x;
+    float there = G_TEXEL(depth_map, ivec2(gl_FragCoord.xy) + depth_offset).x;
     if ((gl_FragCoord.z - there) * nearer >= 0.0) {
         discard;
     }

@@ -11,7 +11,7 @@ use crate::files;
 use crate::metrics::{Comparison, PartQuality, Psnr, Quality, error_map, holes_of_mask};
 use crate::picture;
 
-/// Compare two images, or two folders of images, by PSNR and SSIM
+/// Compare two images, or two folders of images, by PSNR, SSIM and FLIP
 #[derive(clap::Args, Clone, Debug)]
 pub struct CompareArgs {
     /// The image to judge, or a folder of them
@@ -37,6 +37,7 @@ const SETTINGS: Settings = Settings {
     psnr: "dB, data range 255; null where both images are identical; rgb: the error over all three channels",
     ssim_gaussian: "gaussian window 11x11, sigma 1.5, population covariance (Wang et al. 2004), mean without a border of 5 pixels; rgb: mean of three channels",
     ssim_uniform: "uniform window 7x7, sample covariance (scikit-image's default), mean without a border of 3 pixels; rgb: mean of three channels",
+    flip: "LDR-FLIP (Andersson et al. 2020) at 67.02 pixels per degree, mean over the image, 0 (equal) to 1",
     luma: "ITU-R BT.601, not rounded",
     mean: "mean over the pairs; identical pairs are left out of the mean PSNR",
 };
@@ -46,6 +47,7 @@ struct Settings {
     psnr: &'static str,
     ssim_gaussian: &'static str,
     ssim_uniform: &'static str,
+    flip: &'static str,
     luma: &'static str,
     mean: &'static str,
 }
@@ -79,6 +81,8 @@ pub struct Mean {
     pub rgb: Quality,
     /// Of luma.
     pub luma: Quality,
+    /// LDR-FLIP.
+    pub flip: f64,
     /// Pairs without any difference: in the mean SSIM, not in the mean PSNR.
     pub identical_pairs: usize,
 }
@@ -122,6 +126,7 @@ pub fn compare(args: &CompareArgs) -> anyhow::Result<CompareReport> {
     let mean = Mean {
         rgb: mean_of(|comparison| &comparison.rgb)?,
         luma: mean_of(|comparison| &comparison.luma)?,
+        flip: pairs.iter().map(|pair| pair.comparison.flip).sum::<f64>() / pairs.len() as f64,
         identical_pairs: pairs.iter().filter(|pair| pair.comparison.identical).count(),
     };
     Ok(CompareReport { settings: &SETTINGS, pairs, mean, unmatched })
@@ -181,21 +186,21 @@ fn table(report: &CompareReport) -> String {
     let mean_name = format!("mean of {}", report.pairs.len());
     let width = names.iter().chain([&mean_name]).map(|name| name.chars().count()).max().unwrap_or(0);
     let mut out = format!(
-        "{:width$}   PSNR, dB        SSIM gaussian 11x11   SSIM uniform 7x7\n{:width$}   RGB    luma     RGB      luma         RGB\n",
+        "{:width$}   PSNR, dB        SSIM gaussian 11x11   SSIM uniform 7x7   FLIP\n{:width$}   RGB    luma     RGB      luma         RGB\n",
         "", ""
     );
-    let mut row = |name: &str, rgb: &Quality, luma: &Quality| {
+    let mut row = |name: &str, rgb: &Quality, luma: &Quality, flip: f64| {
         let _ = writeln!(
             out,
-            "{name:width$}   {:<6} {:<8} {:<8.5} {:<12.5} {:.5}",
+            "{name:width$}   {:<6} {:<8} {:<8.5} {:<12.5} {:<18.5} {flip:.5}",
             rgb.psnr, luma.psnr, rgb.ssim_gaussian, luma.ssim_gaussian, rgb.ssim_uniform
         );
     };
     for (name, pair) in names.iter().zip(&report.pairs) {
-        row(name, &pair.comparison.rgb, &pair.comparison.luma);
+        row(name, &pair.comparison.rgb, &pair.comparison.luma, pair.comparison.flip);
     }
     if report.pairs.len() > 1 {
-        row(&mean_name, &report.mean.rgb, &report.mean.luma);
+        row(&mean_name, &report.mean.rgb, &report.mean.luma, report.mean.flip);
     }
     for (what, part) in [
         ("in holes", (|c| c.holes) as fn(&Comparison) -> Option<PartQuality>),

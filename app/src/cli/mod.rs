@@ -1,13 +1,17 @@
 //! The subcommands of the program `yoro`, one file each.
 
+pub mod bench;
 pub mod compare;
+pub mod dataset;
 pub mod info;
 pub mod machine;
 pub mod render;
+pub mod report;
 pub mod run;
 pub mod scenes;
 pub mod stage;
 pub mod synthesize;
+pub mod view;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -137,7 +141,7 @@ fn stop_if_interrupted() -> anyhow::Result<()> {
 
 /// A progress bar on stderr; hidden when that is not a terminal.
 fn progress_bar(steps: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {wide_msg}");
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {wide_msg}");
     let bar = ProgressBar::new(steps).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar.enable_steady_tick(Duration::from_millis(200));
     bar

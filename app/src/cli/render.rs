@@ -143,6 +143,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     let measured = args.measure || args.outputs.iter().any(|o| o.needs_truth());
     let mut truth =
         measured.then(|| stereo::create(gl, Method::Conventional, &settings, &options)).transpose()?;
+    method.prepare(&mut renderer, &scene)?;
     let mut frame = StereoFrame::new(gl, args.eyes.size)?;
     let mut reports = Vec::new();
     let bar = progress_bar(heads.len() as u64);

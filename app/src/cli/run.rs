@@ -1,24 +1,24 @@
 //! `yoro run`: the main job on the built-in scenes, with pictures, figures and a report page.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
-use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use image::RgbImage;
 use indicatif::ProgressBar;
 
+use crate::bench::Entrant;
 use crate::cli::stage::{self, EyeArgs, Stage, StereoArgs};
 use crate::cli::{GlArgs, machine, progress_bar, stop_if_interrupted};
 use crate::eyes::{Eye, EyePair};
 use crate::files;
-use crate::gl::{Context, Profiling};
+use crate::gl::Context;
 use crate::metrics::stats::{Summary, median};
 use crate::picture;
 use crate::render::RenderSettings;
 use crate::report::{Cost, MethodCost, Parameter, PassTime, RunReport, SceneReport, Viewpoint};
 use crate::scene::builtin::{self, BUILTINS};
-use crate::stereo::{self, Method, StereoFrame, StereoMethod};
+use crate::stereo::{Method, StereoFrame};
 use crate::synthesis::Pipeline;
 
 /// Pictures of the report and of the output folder come from this many viewpoints of each scene.
@@ -35,6 +35,9 @@ pub struct RunArgs {
     /// Timed rounds; in each, every method renders one frame at each viewpoint
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]
     rounds: u32,
+    /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
+    #[arg(long = "method", value_enum, value_delimiter = ',', default_values_t = [Method::Yoro], value_name = "METHODS")]
+    methods: Vec<Method>,
     /// Pipelines to compare
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = Pipeline::ALL)]
     pipelines: Vec<Pipeline>,
@@ -56,9 +59,9 @@ pub struct RunArgs {
 }
 
 /// A method under measurement.
-struct Entrant {
+struct Measured {
     name: &'static str,
-    method: Box<dyn StereoMethod>,
+    entrant: Entrant,
     milliseconds: Vec<f64>,
     /// Samples of each pass, in the order of the first frame.
     passes: Vec<(&'static str, Vec<f64>)>,
@@ -71,14 +74,13 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
         given => given.to_vec(),
     };
-    // Minutes of work do not end at a name or a folder that could have been told at once.
-    let known = |name: &str| BUILTINS.iter().any(|b| b.name == name) || Path::new(name).exists();
-    for name in names.iter().filter(|name| !known(name)) {
-        stage::load_scene(name, args.seed, None)?;
-    }
+    stage::check_scenes(&names, args.seed)?;
     files::create_folder(&args.out)?;
     let headless = args.gl.open()?;
     let gl = headless.gl();
+    for method in &args.methods {
+        method.supported(gl.capabilities())?;
+    }
     // Per scene: preparing, a warm-up, the timed rounds, the passes.
     let steps = names.len() as u64 * (3 + u64::from(args.viewpoints) * u64::from(args.rounds));
     let bar = progress_bar(steps);
@@ -116,16 +118,27 @@ fn measure_scene(
     stop_if_interrupted()?;
     let settings = RenderSettings::default();
     let scene = stage::load_scene(name, args.seed, None)?;
-    let keys: Vec<usize> = spread(scene.viewpoints.len(), args.viewpoints as usize);
+    let keys: Vec<usize> = stage::spread(scene.viewpoints.len(), args.viewpoints as usize);
     let pairs: Vec<EyePair> = keys.iter().map(|&k| args.eyes.pair(scene.viewpoints[k].pose())).collect();
     let mut stage = Stage::new(gl, scene, &settings)?;
     let options = |pipeline| args.stereo.options_of(pipeline);
     let truth_options = options(Pipeline::default());
-    let conventional = stereo::create(gl, Method::Conventional, &settings, &truth_options)?;
-    let mut entrants = vec![Entrant::new("conventional", conventional)];
-    for &pipeline in &args.pipelines {
-        let method = stereo::create(gl, Method::Yoro, &settings, &options(pipeline))?;
-        entrants.push(Entrant::new(pipeline.name(), method));
+    let entrant = |name: &'static str, method, options: &_| -> anyhow::Result<Measured> {
+        Ok(Measured::new(name, Entrant::new(gl, method, &settings, options)?))
+    };
+    let mut entrants = vec![entrant(Method::Conventional.name(), Method::Conventional, &truth_options)?];
+    for (i, &method) in args.methods.iter().enumerate() {
+        match method {
+            _ if args.methods[..i].contains(&method) => {}
+            // Always there, as the reference.
+            Method::Conventional => {}
+            Method::Yoro => {
+                for &pipeline in &args.pipelines {
+                    entrants.push(entrant(pipeline.name(), Method::Yoro, &options(pipeline))?);
+                }
+            }
+            _ => entrants.push(entrant(method.name(), method, &truth_options)?),
+        }
     }
     let mut frame = StereoFrame::new(gl, args.eyes.size)?;
     bar.inc(1);
@@ -133,8 +146,7 @@ fn measure_scene(
     bar.set_message(format!("{name}: warming up"));
     for entrant in &mut entrants {
         stop_if_interrupted()?;
-        entrant.method.render(&mut stage.renderer, &stage.scene, &pairs[0], &mut frame)?;
-        gl.finish();
+        entrant.entrant.render(&mut stage, &pairs[0], &mut frame)?;
     }
     bar.inc(1);
 
@@ -148,10 +160,8 @@ fn measure_scene(
                 // Every method comes first, second, ... equally often.
                 let turn = (e + i + round as usize) % entrants.len();
                 let entrant = &mut entrants[turn];
-                let start = Instant::now();
-                entrant.method.render(&mut stage.renderer, &stage.scene, pair, &mut frame)?;
-                gl.finish();
-                entrant.milliseconds.push(start.elapsed().as_secs_f64() * 1e3);
+                let time = entrant.entrant.render(&mut stage, pair, &mut frame)?;
+                entrant.milliseconds.push(time.wall.as_secs_f64() * 1e3);
                 if round == 0 {
                     images.push((entrant.name.into(), Eye::BOTH.map(|eye| stage::eye_image(&frame, eye))));
                 }
@@ -172,15 +182,13 @@ fn measure_scene(
     for _ in 0..args.rounds {
         for entrant in &mut entrants {
             stop_if_interrupted()?;
-            gl.set_profiling(Profiling::Auto);
-            entrant.method.render(&mut stage.renderer, &stage.scene, &pairs[0], &mut frame)?;
-            entrant.add_passes(gl);
-            gl.set_profiling(Profiling::Off);
+            let times = entrant.entrant.pass_times(&mut stage, &pairs[0], &mut frame)?;
+            entrant.add_passes(times);
         }
     }
     bar.inc(1);
 
-    let mut costs = entrants.into_iter().map(Entrant::cost).collect::<anyhow::Result<Vec<_>>>()?.into_iter();
+    let mut costs = entrants.into_iter().map(Measured::cost).collect::<anyhow::Result<Vec<_>>>()?.into_iter();
     let conventional = costs.next().context("there is always the conventional method")?.cost;
     Ok(SceneReport {
         name: stage.scene.name.clone(),
@@ -192,22 +200,14 @@ fn measure_scene(
     })
 }
 
-impl Entrant {
-    fn new(name: &'static str, method: Box<dyn StereoMethod>) -> Entrant {
-        Entrant { name, method, milliseconds: Vec::new(), passes: Vec::new() }
+impl Measured {
+    fn new(name: &'static str, entrant: Entrant) -> Measured {
+        Measured { name, entrant, milliseconds: Vec::new(), passes: Vec::new() }
     }
 
-    /// Adds the pass times of one frame; a pass that runs more than once in a frame counts as one.
-    fn add_passes(&mut self, gl: &Context) {
-        let mut frame: Vec<(&'static str, Duration)> = Vec::new();
-        for pass in gl.take_pass_times() {
-            match frame.iter_mut().find(|(name, _)| *name == pass.name) {
-                Some((_, time)) => *time += pass.time,
-                None => frame.push((pass.name, pass.time)),
-            }
-        }
-        for (name, time) in frame {
-            let milliseconds = time.as_secs_f64() * 1e3;
+    /// Adds the pass times of one frame.
+    fn add_passes(&mut self, times: Vec<(&'static str, f64)>) {
+        for (name, milliseconds) in times {
             match self.passes.iter_mut().find(|(n, _)| *n == name) {
                 Some((_, samples)) => samples.push(milliseconds),
                 None => self.passes.push((name, vec![milliseconds])),
@@ -231,7 +231,7 @@ fn measure_viewpoint(
     name: String,
     args: &RunArgs,
     mut images: Vec<(String, [RgbImage; 2])>,
-    entrants: &[Entrant],
+    entrants: &[Measured],
 ) -> anyhow::Result<Viewpoint> {
     let other = args.eyes.dominant.other();
     let position = |name: &str| entrants.iter().position(|e| e.name == name);
@@ -245,12 +245,6 @@ fn measure_viewpoint(
     let synthesized =
         images.map(|(name, [left, right])| (name, if other == Eye::Left { left } else { right })).collect();
     Ok(Viewpoint::measure(name, args.eyes.dominant, dominant, truth, synthesized)?)
-}
-
-/// `wanted` of `count` indices, evenly spread from the first.
-fn spread(count: usize, wanted: usize) -> Vec<usize> {
-    let wanted = wanted.min(count);
-    (0..wanted).map(|i| i * count / wanted).collect()
 }
 
 fn write_pictures(args: &RunArgs, report: &RunReport) -> anyhow::Result<()> {

@@ -104,6 +104,9 @@ pub struct StereoArgs {
     /// Never switch to two real renders, however near everything is
     #[arg(long)]
     no_switch: bool,
+    /// hybrid: the far field starts where the eyes' disparity is this many pixels
+    #[arg(long, value_parser = parse_positive, default_value_t = StereoOptions::default().split_disparity, value_name = "PIXELS", allow_negative_numbers = true)]
+    split_disparity: f32,
 }
 
 impl StereoArgs {
@@ -120,6 +123,7 @@ impl StereoArgs {
         options.anti_aliasing = self.anti_aliasing.unwrap_or(options.anti_aliasing);
         options.near_field = self.near_field;
         options.policy = (!self.no_switch).then(NearFieldPolicy::default);
+        options.split_disparity = self.split_disparity;
         options
     }
 }
@@ -154,6 +158,18 @@ pub fn load_scene(name: &str, seed: u64, style: Option<ShadingStyle>) -> anyhow:
     Ok(scene)
 }
 
+/// Refuses the first name that is neither a built-in scene nor a file: minutes of work should not end at one.
+pub fn check_scenes(names: &[String], seed: u64) -> anyhow::Result<()> {
+    let known = |name: &str| builtin::BUILTINS.iter().any(|b| b.name == name) || Path::new(name).exists();
+    names.iter().filter(|name| !known(name)).try_for_each(|name| load_scene(name, seed, None).map(drop))
+}
+
+/// `wanted` of `count` indices, evenly spread from the first.
+pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
+    let wanted = wanted.min(count);
+    (0..wanted).map(|i| i * count / wanted).collect()
+}
+
 /// One eye of a finished frame as an image.
 pub fn eye_image(frame: &StereoFrame, eye: Eye) -> RgbImage {
     let target = frame.eye(eye);
@@ -180,7 +196,8 @@ pub fn parse_point(text: &str) -> Result<Vec3, String> {
     }
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+/// Parses `WxH`, or one number for both, in pixels.
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let number = |t: &str| t.parse::<u32>().ok().filter(|n| (16..=4096).contains(n));
     let (w, h) = text.split_once('x').unwrap_or((text, text));
     number(w)
@@ -189,7 +206,8 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
         .ok_or_else(|| "give pixels from 16 to 4096, such as 1024x1024".into())
 }
 
-fn parse_eye(text: &str) -> Result<Eye, String> {
+/// Parses `left` or `right`.
+pub fn parse_eye(text: &str) -> Result<Eye, String> {
     Eye::BOTH.into_iter().find(|eye| eye.name() == text).ok_or_else(|| "give left or right".into())
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
-use image::{GrayImage, Luma, Rgb, RgbImage};
+use image::{GrayImage, Luma};
 
 use crate::cli::{
     GlArgs, SynthesisArgs, parse_fov, parse_ipd, parse_positive, progress_bar, stop_if_interrupted,
@@ -12,6 +12,8 @@ use crate::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
 use crate::files;
 use crate::picture::{self, DepthImage, DepthSamples};
 use crate::synthesis::{Offline, SourceMapEntry, SynthesizedImage};
+
+pub(super) use crate::picture::rgb_image;
 
 /// What the values of a depth image mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -245,15 +247,6 @@ fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::R
         }
     }
     Ok(written)
-}
-
-/// GL's RGBA rows from the bottom as an image.
-pub(super) fn rgb_image(rgba: &[u8], size: [u32; 2]) -> RgbImage {
-    let row = size[0] as usize * 4;
-    RgbImage::from_fn(size[0], size[1], |x, y| {
-        let i = (size[1] - 1 - y) as usize * row + x as usize * 4;
-        Rgb([rgba[i], rgba[i + 1], rgba[i + 2]])
-    })
 }
 
 /// The source map, rows from the top.

@@ -37,8 +37,10 @@ pub struct Capabilities {
     pub max_anisotropy: f32,
     /// Timer queries that can be trusted: present, and not a CPU rasterizer.
     pub timer_queries: bool,
-    /// GL_OVR_multiview2.
+    /// GL_OVR_multiview2 and its entry point ([`super::Context::with_loader`]).
     pub multiview: bool,
+    /// gl_ClipDistance: GL_EXT_clip_cull_distance on ES, core on the desktop.
+    pub clip_distances: bool,
     /// Largest texture edge in pixels.
     pub max_texture_size: u32,
     /// Bytes of shared memory of a compute workgroup.
@@ -48,7 +50,7 @@ pub struct Capabilities {
 }
 
 impl Capabilities {
-    pub(super) fn query(gl: &glow::Context) -> Result<Capabilities, GlError> {
+    pub(super) fn query(gl: &glow::Context, multiview_loaded: bool) -> Result<Capabilities, GlError> {
         // SAFETY: the context is current; every enum is valid where it is asked.
         unsafe {
             let version_string = gl.get_parameter_string(glow::VERSION);
@@ -88,7 +90,8 @@ impl Capabilities {
                     1.0
                 },
                 timer_queries: !software && (api == GlApi::Desktop || has("GL_EXT_disjoint_timer_query")),
-                multiview: has("GL_OVR_multiview2"),
+                multiview: multiview_loaded && has("GL_OVR_multiview2"),
+                clip_distances: api == GlApi::Desktop || has("GL_EXT_clip_cull_distance"),
                 max_texture_size: limit(glow::MAX_TEXTURE_SIZE),
                 max_compute_shared_memory: if compute {
                     limit(glow::MAX_COMPUTE_SHARED_MEMORY_SIZE)
@@ -114,6 +117,7 @@ impl Capabilities {
         feature(self.float_render_targets, "float targets");
         feature(self.timer_queries, "timer queries");
         feature(self.multiview, "multiview");
+        feature(self.clip_distances, "clip distances");
         feature(self.max_anisotropy > 1.0, "anisotropic filtering");
         format!("{}, {} ({})", self.renderer, self.version_string, features.join(", "))
     }

@@ -34,6 +34,8 @@ pub struct RenderTarget {
     depth: Option<Texture>,
     formats: Vec<(Format, Filter)>,
     depth_format: Option<(Format, Filter)>,
+    /// Two layers, drawn to at once.
+    multiview: bool,
     size: [u32; 2],
 }
 
@@ -49,7 +51,21 @@ impl RenderTarget {
         formats: &[(Format, Filter)],
         depth_format: Option<Format>,
     ) -> Result<RenderTarget, GlError> {
-        RenderTarget::with_depth(gl, size, formats, depth_format.map(|format| (format, Filter::Nearest)))
+        RenderTarget::build(gl, size, formats, depth_format.map(|format| (format, Filter::Nearest)), false)
+    }
+
+    /// As [`RenderTarget::new`], of array textures with a layer for each eye, to be drawn to by programs with two
+    /// views. Only drawing, clearing and sampling work on it, no reading back.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`]; [`GlError::Unsupported`] without GL_OVR_multiview2.
+    pub fn multiview(
+        gl: &Rc<Context>,
+        size: [u32; 2],
+        formats: &[(Format, Filter)],
+        depth_format: Option<Format>,
+    ) -> Result<RenderTarget, GlError> {
+        RenderTarget::build(gl, size, formats, depth_format.map(|format| (format, Filter::Nearest)), true)
     }
 
     /// A target of depth alone, to be sampled with comparison.
@@ -57,15 +73,19 @@ impl RenderTarget {
     /// # Errors
     /// As [`RenderTarget::new`].
     pub fn shadow_map(gl: &Rc<Context>, size: [u32; 2], format: Format) -> Result<RenderTarget, GlError> {
-        RenderTarget::with_depth(gl, size, &[], Some((format, Filter::Compare)))
+        RenderTarget::build(gl, size, &[], Some((format, Filter::Compare)), false)
     }
 
-    fn with_depth(
+    fn build(
         gl: &Rc<Context>,
         size: [u32; 2],
         formats: &[(Format, Filter)],
         depth_format: Option<(Format, Filter)>,
+        multiview: bool,
     ) -> Result<RenderTarget, GlError> {
+        if multiview && gl.framebuffer_texture_multiview.is_none() {
+            return Err(GlError::Unsupported("this GL context has no GL_OVR_multiview2".into()));
+        }
         let framebuffer = || -> Result<_, GlError> {
             // SAFETY: plain creation.
             let raw = unsafe { gl.raw().create_framebuffer() }
@@ -83,6 +103,7 @@ impl RenderTarget {
             depth: None,
             formats: formats.to_vec(),
             depth_format,
+            multiview,
             size: [0, 0],
         };
         target.resize(size)?;
@@ -100,13 +121,12 @@ impl RenderTarget {
         self.color.clear();
         self.depth = None;
         self.size = [0, 0];
-        for &(format, filter) in &self.formats {
-            self.color.push(Texture::new(&self.gl, size, format, filter)?);
-        }
-        self.depth = self
-            .depth_format
-            .map(|(format, filter)| Texture::new(&self.gl, size, format, filter))
-            .transpose()?;
+        let texture = |(format, filter)| match self.multiview {
+            true => Texture::array(&self.gl, size, 2, format, filter),
+            false => Texture::new(&self.gl, size, format, filter),
+        };
+        self.color = self.formats.iter().copied().map(texture).collect::<Result<_, _>>()?;
+        self.depth = self.depth_format.map(texture).transpose()?;
         if let Some(color_only) = self.raw_color_only {
             self.attach(color_only, false);
         }
@@ -131,26 +151,27 @@ impl RenderTarget {
             let mut buffers = [glow::NONE; 8];
             for (i, texture) in self.color.iter().enumerate() {
                 buffers[i] = glow::COLOR_ATTACHMENT0 + i as u32;
-                gl.framebuffer_texture_2d(
-                    glow::FRAMEBUFFER,
-                    buffers[i],
-                    glow::TEXTURE_2D,
-                    Some(texture.raw()),
-                    0,
-                );
+                self.attach_texture(buffers[i], texture);
             }
             if let Some(depth) = self.depth.as_ref().filter(|_| with_depth) {
-                let raw = Some(depth.raw());
-                gl.framebuffer_texture_2d(
-                    glow::FRAMEBUFFER,
-                    glow::DEPTH_ATTACHMENT,
-                    glow::TEXTURE_2D,
-                    raw,
-                    0,
-                );
+                self.attach_texture(glow::DEPTH_ATTACHMENT, depth);
             }
             gl.draw_buffers(if self.color.is_empty() { &buffers[..1] } else { &buffers[..self.color.len()] });
             gl.check_framebuffer_status(glow::FRAMEBUFFER)
+        }
+    }
+
+    fn attach_texture(&self, attachment: u32, texture: &Texture) {
+        let raw = texture.raw();
+        // SAFETY: a live texture of the kind that the call takes, and a bound framebuffer.
+        unsafe {
+            match self.gl.framebuffer_texture_multiview.filter(|_| self.multiview) {
+                Some(attach) => attach(glow::FRAMEBUFFER, attachment, raw.0.get(), 0, 0, 2),
+                None => {
+                    let (target, gl) = (glow::FRAMEBUFFER, self.gl.raw());
+                    gl.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, Some(raw), 0);
+                }
+            }
         }
     }
 

@@ -72,6 +72,13 @@ impl Mesh {
         unsafe { self.gl.raw().bind_vertex_array(Some(self.array)) }
     }
 
+    /// Draws all indices as one triangle strip. The mesh must be bound.
+    pub fn draw_strip(&self) {
+        let gl = self.gl.raw();
+        // SAFETY: the whole index buffer, whose values the caller of `new` answers for.
+        unsafe { gl.draw_elements(glow::TRIANGLE_STRIP, self.index_count as i32, glow::UNSIGNED_INT, 0) }
+    }
+
     /// Draws a range of indices as triangles, `instances` times. The mesh must be bound.
     pub fn draw(&self, range: Range<usize>, instances: usize) {
         debug_assert!(range.end <= self.index_count);

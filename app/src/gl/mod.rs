@@ -13,6 +13,7 @@ mod texture;
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
+use std::ffi::{CStr, c_void};
 use std::rc::Rc;
 
 use glow::HasContext;
@@ -67,9 +68,13 @@ pub enum GlError {
     },
 }
 
+/// glFramebufferTextureMultiviewOVR: target, attachment, texture, level, first view, number of views.
+type FramebufferTextureMultiview = unsafe extern "system" fn(u32, u32, u32, i32, i32, i32);
+
 /// A GL context with what is known of it. Shared by everything that lives in it.
 pub struct Context {
     raw: glow::Context,
+    framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
     capabilities: Capabilities,
     profiler: RefCell<profiler::Profiler>,
     objects: Cell<usize>,
@@ -85,7 +90,34 @@ impl Context {
     /// [`GlError::Unsupported`] when the context is older than OpenGL ES 3.0, or desktop GL that does not
     /// compile GLSL ES 3.10.
     pub fn new(raw: glow::Context) -> Result<Rc<Context>, GlError> {
-        let capabilities = Capabilities::query(&raw)?;
+        Context::with_multiview(raw, None)
+    }
+
+    /// As [`Context::new`], with what glow has no wrapper for: multiview. `load` gives entry points by name, null
+    /// for those that do not exist.
+    ///
+    /// # Errors
+    /// As [`Context::new`].
+    ///
+    /// # Safety
+    /// The pointers that `load` gives are the context's entry points of these names.
+    pub unsafe fn with_loader(
+        raw: glow::Context,
+        load: impl FnOnce(&CStr) -> *const c_void,
+    ) -> Result<Rc<Context>, GlError> {
+        let pointer = load(c"glFramebufferTextureMultiviewOVR");
+        // SAFETY: null is `None`; otherwise the caller promises an entry point, which has this signature by
+        // GL_OVR_multiview.
+        let multiview =
+            unsafe { std::mem::transmute::<*const c_void, Option<FramebufferTextureMultiview>>(pointer) };
+        Context::with_multiview(raw, multiview)
+    }
+
+    fn with_multiview(
+        raw: glow::Context,
+        framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
+    ) -> Result<Rc<Context>, GlError> {
+        let capabilities = Capabilities::query(&raw, framebuffer_texture_multiview.is_some())?;
         // SAFETY: the context is current; plain state calls with valid enums.
         let empty_vertex_array = unsafe {
             raw.disable(glow::DITHER);
@@ -102,6 +134,7 @@ impl Context {
         let shader_files = RefCell::default();
         Ok(Rc::new(Context {
             raw,
+            framebuffer_texture_multiview,
             capabilities,
             profiler,
             objects: Cell::new(0),
@@ -163,6 +196,12 @@ impl Context {
     /// The pass times since the last call, in the order in which they ran. Waits for the GPU.
     pub fn take_pass_times(&self) -> Vec<PassTime> {
         self.profiler.borrow_mut().take(&self.raw)
+    }
+
+    /// Ends a frame for those who time every frame without waiting ([`Profiling::Queries`]): adds the pass times of
+    /// one frame, some frames ago, to `times`, and returns the number of frames added, 1 or 0.
+    pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> u32 {
+        self.profiler.borrow_mut().end_frame(&self.raw, times)
     }
 
     /// Blocks until the GPU has done everything.

@@ -1,16 +1,24 @@
 //! Time per pass.
 
+use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use glow::HasContext;
 
-use super::Capabilities;
+use super::{Capabilities, GlApi};
+
+/// EXT_disjoint_timer_query: whether the clock was disturbed since the last question.
+const GPU_DISJOINT: u32 = 0x8FBB;
+/// Results are asked for this many frames late, when they are there without waiting.
+const FRAMES_LATE: usize = 4;
 
 /// How passes are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profiling {
     /// Not at all.
     Off,
+    /// Timer queries where they can be trusted, else nothing. Never waits: for programs that show frames.
+    Queries,
     /// Timer queries where they can be trusted, else [`Profiling::Finish`].
     Auto,
     /// glFinish before and after each pass, and a CPU clock. The only right way on a CPU rasterizer, whose
@@ -36,9 +44,14 @@ enum Record {
 pub(super) struct Profiler {
     mode: Profiling,
     queries: bool,
+    api: GlApi,
     depth: usize,
     started: Option<Instant>,
     records: Vec<(&'static str, Record)>,
+    /// Records of frames whose results are not read yet, oldest first.
+    frames: VecDeque<Vec<(&'static str, Record)>>,
+    /// Frames among those whose results are worthless, since the clock was disturbed.
+    disturbed: usize,
     pool: Vec<glow::Query>,
 }
 
@@ -47,9 +60,12 @@ impl Profiler {
         Profiler {
             mode: Profiling::Off,
             queries: capabilities.timer_queries,
+            api: capabilities.api,
             depth: 0,
             started: None,
             records: Vec::with_capacity(64),
+            frames: VecDeque::with_capacity(FRAMES_LATE + 4),
+            disturbed: 0,
             pool: Vec::new(),
         }
     }
@@ -59,14 +75,22 @@ impl Profiler {
         self.take(gl);
     }
 
+    fn is_on(&self) -> bool {
+        match self.mode {
+            Profiling::Off => false,
+            Profiling::Queries => self.queries,
+            Profiling::Auto | Profiling::Finish => true,
+        }
+    }
+
     pub(super) fn begin(&mut self, gl: &glow::Context, name: &'static str) {
         self.depth += 1;
-        if self.mode == Profiling::Off || self.depth > 1 {
+        if !self.is_on() || self.depth > 1 {
             return;
         }
         // SAFETY: one query at a time is active, since inner passes return above.
         unsafe {
-            if self.queries && self.mode == Profiling::Auto {
+            if self.queries && self.mode != Profiling::Finish {
                 let query = self.pool.pop().map_or_else(|| gl.create_query(), Ok);
                 if let Ok(query) = query {
                     gl.begin_query(glow::TIME_ELAPSED, query);
@@ -82,7 +106,7 @@ impl Profiler {
 
     pub(super) fn end(&mut self, gl: &glow::Context) {
         self.depth -= 1;
-        if self.mode == Profiling::Off || self.depth > 0 {
+        if !self.is_on() || self.depth > 0 {
             return;
         }
         // SAFETY: ends the query that `begin` started.
@@ -106,18 +130,104 @@ impl Profiler {
 
     pub(super) fn take(&mut self, gl: &glow::Context) -> Vec<PassTime> {
         let mut times = Vec::with_capacity(self.records.len());
-        for (name, record) in self.records.drain(..) {
-            let time = match record {
-                Record::Clock(time) => time,
-                Record::Query(query) => {
-                    // SAFETY: the query has ended; reading its result waits for it.
-                    let nanoseconds = unsafe { gl.get_query_parameter_u64(query, glow::QUERY_RESULT) };
-                    self.pool.push(query);
-                    Duration::from_nanos(nanoseconds)
-                }
-            };
-            times.push(PassTime { name, time });
+        while let Some(mut frame) = self.frames.pop_front() {
+            read(gl, &mut frame, &mut self.pool, &mut times);
         }
+        read(gl, &mut self.records, &mut self.pool, &mut times);
         times
+    }
+
+    pub(super) fn end_frame(&mut self, gl: &glow::Context, times: &mut Vec<PassTime>) -> u32 {
+        if self.records.is_empty() {
+            return 0;
+        }
+        let ready = |frame: &Vec<(&'static str, Record)>| match frame.last() {
+            // SAFETY: the query has ended; queries of one kind finish in order.
+            Some((_, Record::Query(query))) => unsafe {
+                gl.get_query_parameter_u32(*query, glow::QUERY_RESULT_AVAILABLE) != 0
+            },
+            _ => true,
+        };
+        let (before, mut count) = (times.len(), 0);
+        let mut spare = Vec::new();
+        if self.frames.len() >= FRAMES_LATE && self.frames.front().is_some_and(ready) {
+            spare = self.frames.pop_front().unwrap_or_default();
+            read(gl, &mut spare, &mut self.pool, times);
+            count = 1;
+        }
+        // SAFETY: the extension that gives ES its timer queries has this state.
+        if self.queries && self.api == GlApi::Es && unsafe { gl.get_parameter_i32(GPU_DISJOINT) } != 0 {
+            self.disturbed = self.frames.len() + count as usize + 1;
+        }
+        if count > 0 && self.disturbed > 0 {
+            self.disturbed -= 1;
+            times.truncate(before);
+            count = 0;
+        }
+        self.frames.push_back(std::mem::replace(&mut self.records, spare));
+        count
+    }
+}
+
+/// Reads results, waiting for those that are not there yet, and takes back their queries.
+fn read(
+    gl: &glow::Context,
+    records: &mut Vec<(&'static str, Record)>,
+    pool: &mut Vec<glow::Query>,
+    times: &mut Vec<PassTime>,
+) {
+    for (name, record) in records.drain(..) {
+        let time = match record {
+            Record::Clock(time) => time,
+            Record::Query(query) => {
+                // SAFETY: the query has ended; reading its result waits for it.
+                let nanoseconds = unsafe { gl.get_query_parameter_u64(query, glow::QUERY_RESULT) };
+                pool.push(query);
+                Duration::from_nanos(nanoseconds)
+            }
+        };
+        times.push(PassTime { name, time });
+    }
+}
+
+#[cfg(all(test, feature = "desktop"))]
+mod tests {
+    use super::*;
+    use crate::platform::{Backend, Headless};
+
+    /// llvmpipe has timer queries; that their times mean nothing does not matter here.
+    #[test]
+    fn query_results_come_some_frames_late() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let mut profiler = Profiler::new(&Capabilities { timer_queries: true, ..gl.capabilities().clone() });
+        profiler.set(gl.raw(), Profiling::Queries);
+        let mut times = Vec::new();
+        for frame in 0..10 {
+            for name in ["first", "second"] {
+                profiler.begin(gl.raw(), name);
+                profiler.end(gl.raw());
+            }
+            gl.finish();
+            let read = profiler.end_frame(gl.raw(), &mut times);
+            assert_eq!(read, (frame >= FRAMES_LATE) as u32, "frame {frame}");
+        }
+        let names: Vec<_> = times.iter().map(|t| t.name).collect();
+        assert_eq!(names, ["first", "second"].repeat(10 - FRAMES_LATE));
+        assert_eq!(profiler.take(gl.raw()).len(), 2 * FRAMES_LATE);
+        profiler.delete(gl.raw());
+        assert_eq!(gl.take_errors(), None);
+    }
+
+    #[test]
+    fn without_queries_nothing_is_timed_and_nothing_waits() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let mut profiler = Profiler::new(&Capabilities { timer_queries: false, ..gl.capabilities().clone() });
+        profiler.set(gl.raw(), Profiling::Queries);
+        let mut times = Vec::new();
+        profiler.begin(gl.raw(), "pass");
+        profiler.end(gl.raw());
+        assert_eq!((profiler.end_frame(gl.raw(), &mut times), times.len()), (0, 0));
     }
 }

@@ -9,7 +9,7 @@ use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
 use glow::HasContext;
 use include_dir::{Dir, include_dir};
 
-use super::{Context, GlApi, GlError};
+use super::{Context, GlApi, GlError, Texture};
 
 static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/../shaders-glsl");
 
@@ -61,8 +61,11 @@ struct Assembled {
     files: Vec<String>,
 }
 
-/// Puts `#version`, the defines and the precision statements first, then the file with its `#include`s
-/// resolved (each file once), with `#line` so that the driver's messages can be traced.
+/// What GLSL wants before every declaration.
+const EXTENSIONS: &str = "include/extensions.glsl";
+
+/// Puts `#version`, the defines, the extensions and the precision statements first, then the file with its
+/// `#include`s resolved (each file once), with `#line` so that the driver's messages can be traced.
 fn assemble(gl: &Context, path: &str, defines: &[(&str, String)]) -> Result<Assembled, GlError> {
     let version = match gl.capabilities().api {
         GlApi::Es if !gl.capabilities().compute => "300 es",
@@ -72,9 +75,10 @@ fn assemble(gl: &Context, path: &str, defines: &[(&str, String)]) -> Result<Asse
     for (name, value) in defines {
         let _ = writeln!(out.text, "#define {name} {value}");
     }
-    out.text.push_str(
-        "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp usampler2D;\nprecision highp sampler2DShadow;\n",
-    );
+    include(EXTENSIONS, &mut out)?;
+    for kind in ["float", "int", "sampler2D", "usampler2D", "sampler2DShadow", "sampler2DArray"] {
+        let _ = writeln!(out.text, "precision highp {kind};");
+    }
     include(path, &mut out)?;
     Ok(out)
 }
@@ -216,7 +220,13 @@ impl Program {
 
     /// Points a sampler at a texture unit and binds a texture there.
     pub fn texture(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
-        super::texture::bind_texture(&self.gl, unit, texture);
+        super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D, texture);
+        self.set(name, unit as i32)
+    }
+
+    /// As [`Program::texture`], for a texture of this library: a 2-D one or an array.
+    pub fn texture_of(&self, name: &str, unit: u32, texture: &Texture) -> &Program {
+        texture.bind(unit);
         self.set(name, unit as i32)
     }
 }
@@ -259,8 +269,10 @@ uniform!(Vec2, |gl, l, v| gl.uniform_2_f32(Some(l), v.x, v.y));
 uniform!(Vec3, |gl, l, v| gl.uniform_3_f32(Some(l), v.x, v.y, v.z));
 uniform!(Vec4, |gl, l, v| gl.uniform_4_f32(Some(l), v.x, v.y, v.z, v.w));
 uniform!(Mat4, |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, v.as_ref()));
+uniform!(&[IVec2], |gl, l, v| gl.uniform_2_i32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[Vec3], |gl, l, v| gl.uniform_3_f32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[Vec4], |gl, l, v| gl.uniform_4_f32_slice(Some(l), bytemuck::cast_slice(v)));
+uniform!(&[Mat4], |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, bytemuck::cast_slice(v)));
 uniform!(&[f32], |gl, l, v| gl.uniform_1_f32_slice(Some(l), v));
 
 #[cfg(test)]

@@ -75,6 +75,27 @@ impl Context {
         }
     }
 
+    /// Maps the depth of the clip volume, -1 to 1, to another part of the depth buffer's 0 to 1 than all of it.
+    /// Whoever narrows it sets it back.
+    pub fn set_depth_window(&self, [low, high]: [f32; 2]) {
+        // SAFETY: GL clamps the values.
+        unsafe { self.raw().depth_range_f32(low, high) }
+    }
+
+    /// Whether gl_ClipDistance[0] clips. Whoever turns it on turns it off again: programs that do not write it
+    /// are undefined with it.
+    pub fn set_clip_distance(&self, on: bool) {
+        debug_assert!(self.capabilities().clip_distances);
+        // SAFETY: a valid enum where the capability says so.
+        unsafe {
+            if on {
+                self.raw().enable(glow::CLIP_DISTANCE0);
+            } else {
+                self.raw().disable(glow::CLIP_DISTANCE0);
+            }
+        }
+    }
+
     /// Clears the bound framebuffer: all colour attachments to zero and, if given, depth to a value.
     pub fn clear(&self, depth: Option<f32>) {
         let gl = self.raw();
@@ -90,6 +111,21 @@ impl Context {
             gl.color_mask(true, true, true, true);
             gl.clear_color(0.0, 0.0, 0.0, 0.0);
             gl.clear(mask);
+        }
+    }
+
+    /// Fills a rectangle of the bound framebuffer's colour attachments; `origin` is its lower left corner in pixels.
+    pub fn fill(&self, origin: [u32; 2], size: [u32; 2], color: [f32; 4]) {
+        let gl = self.raw();
+        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
+        // SAFETY: state calls with valid enums; sizes are not negative.
+        unsafe {
+            gl.color_mask(true, true, true, true);
+            gl.enable(glow::SCISSOR_TEST);
+            gl.scissor(x, y, w, h);
+            gl.clear_color(color[0], color[1], color[2], color[3]);
+            gl.clear(glow::COLOR_BUFFER_BIT);
+            gl.disable(glow::SCISSOR_TEST);
         }
     }
 

@@ -1,4 +1,4 @@
-//! 2-D textures with immutable storage.
+//! 2-D textures and arrays of them with immutable storage.
 
 use std::rc::Rc;
 
@@ -15,6 +15,8 @@ pub enum Format {
     Srgb8Alpha8,
     /// 8-bit single channel.
     R8,
+    /// 8-bit, two channels.
+    Rg8,
     /// 10-bit RGB, 2-bit alpha.
     Rgb10A2,
     /// Half float RGBA.
@@ -46,6 +48,7 @@ impl Format {
             Format::Rgba8 => (glow::RGBA8, glow::RGBA, glow::UNSIGNED_BYTE),
             Format::Srgb8Alpha8 => (glow::SRGB8_ALPHA8, glow::RGBA, glow::UNSIGNED_BYTE),
             Format::R8 => (glow::R8, glow::RED, glow::UNSIGNED_BYTE),
+            Format::Rg8 => (glow::RG8, glow::RG, glow::UNSIGNED_BYTE),
             Format::Rgb10A2 => (glow::RGB10_A2, glow::RGBA, glow::UNSIGNED_INT_2_10_10_10_REV),
             Format::Rgba16F => (glow::RGBA16F, glow::RGBA, glow::HALF_FLOAT),
             Format::R11G11B10F => (glow::R11F_G11F_B10F, glow::RGB, glow::UNSIGNED_INT_10F_11F_11F_REV),
@@ -81,10 +84,12 @@ pub enum Filter {
     Compare,
 }
 
-/// A 2-D texture.
+/// A 2-D texture, or an array of them.
 pub struct Texture {
     gl: Rc<Context>,
     raw: glow::Texture,
+    /// TEXTURE_2D or TEXTURE_2D_ARRAY.
+    target: u32,
     size: [u32; 2],
     format: Format,
 }
@@ -95,6 +100,30 @@ impl Texture {
     /// # Errors
     /// [`GlError::TooLarge`] beyond the driver's limit, [`GlError::Object`] when it has no memory.
     pub fn new(gl: &Rc<Context>, size: [u32; 2], format: Format, filter: Filter) -> Result<Texture, GlError> {
+        Texture::with_layers(gl, size, None, format, filter)
+    }
+
+    /// Allocates an array of `layers` textures, to be rendered to and sampled.
+    ///
+    /// # Errors
+    /// As [`Texture::new`].
+    pub fn array(
+        gl: &Rc<Context>,
+        size: [u32; 2],
+        layers: u32,
+        format: Format,
+        filter: Filter,
+    ) -> Result<Texture, GlError> {
+        Texture::with_layers(gl, size, Some(layers), format, filter)
+    }
+
+    fn with_layers(
+        gl: &Rc<Context>,
+        size: [u32; 2],
+        layers: Option<u32>,
+        format: Format,
+        filter: Filter,
+    ) -> Result<Texture, GlError> {
         let limit = gl.capabilities().max_texture_size;
         let [width, height] = size.map(|n| n.max(1));
         if width > limit || height > limit {
@@ -108,43 +137,42 @@ impl Texture {
             Filter::Material => (glow::LINEAR_MIPMAP_LINEAR, glow::LINEAR, glow::REPEAT),
             Filter::MaterialNearest => (glow::LINEAR_MIPMAP_LINEAR, glow::NEAREST, glow::REPEAT),
         };
+        let target = if layers.is_some() { glow::TEXTURE_2D_ARRAY } else { glow::TEXTURE_2D };
         let raw_gl = gl.raw();
         // SAFETY: sizes are inside the limit, enums fit each other, the texture is new.
         let raw = unsafe {
             let raw = raw_gl
                 .create_texture()
                 .map_err(|reason| GlError::Object { what: "a texture".into(), reason })?;
-            raw_gl.bind_texture(glow::TEXTURE_2D, Some(raw));
-            raw_gl.tex_storage_2d(
-                glow::TEXTURE_2D,
-                levels as i32,
-                format.gl().0,
-                width as i32,
-                height as i32,
-            );
+            raw_gl.bind_texture(target, Some(raw));
+            let (levels, internal, w, h) = (levels as i32, format.gl().0, width as i32, height as i32);
+            match layers {
+                Some(layers) => raw_gl.tex_storage_3d(target, levels, internal, w, h, layers as i32),
+                None => raw_gl.tex_storage_2d(target, levels, internal, w, h),
+            }
             for (name, value) in [
                 (glow::TEXTURE_MIN_FILTER, min),
                 (glow::TEXTURE_MAG_FILTER, mag),
                 (glow::TEXTURE_WRAP_S, wrap),
                 (glow::TEXTURE_WRAP_T, wrap),
             ] {
-                raw_gl.tex_parameter_i32(glow::TEXTURE_2D, name, value as i32);
+                raw_gl.tex_parameter_i32(target, name, value as i32);
             }
             if filter == Filter::Compare {
                 let mode = glow::COMPARE_REF_TO_TEXTURE as i32;
-                raw_gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_COMPARE_MODE, mode);
-                raw_gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_COMPARE_FUNC, glow::LEQUAL as i32);
+                raw_gl.tex_parameter_i32(target, glow::TEXTURE_COMPARE_MODE, mode);
+                raw_gl.tex_parameter_i32(target, glow::TEXTURE_COMPARE_FUNC, glow::LEQUAL as i32);
             }
             // On a CPU rasterizer eight taps more than double the time of a textured g-buffer.
             let wanted = if gl.capabilities().software { 2.0 } else { 8.0 };
             let anisotropy = gl.capabilities().max_anisotropy.min(wanted);
             if mipmapped && anisotropy > 1.0 {
-                raw_gl.tex_parameter_f32(glow::TEXTURE_2D, glow::TEXTURE_MAX_ANISOTROPY_EXT, anisotropy);
+                raw_gl.tex_parameter_f32(target, glow::TEXTURE_MAX_ANISOTROPY_EXT, anisotropy);
             }
             raw
         };
         gl.count(1);
-        let texture = Texture { gl: gl.clone(), raw, size: [width, height], format };
+        let texture = Texture { gl: gl.clone(), raw, target, size: [width, height], format };
         // SAFETY: no arguments.
         if unsafe { raw_gl.get_error() } == glow::OUT_OF_MEMORY {
             let reason = "out of memory; choose a smaller size".into();
@@ -181,7 +209,7 @@ impl Texture {
     pub fn byte_len(&self) -> usize {
         let texel = match self.format {
             Format::R8 => 1,
-            Format::Depth16 => 2,
+            Format::Rg8 | Format::Depth16 => 2,
             Format::Rgba8 | Format::Srgb8Alpha8 | Format::Rgb10A2 | Format::R11G11B10F | Format::Rg16F => 4,
             Format::R32F | Format::R32Ui | Format::Depth24 | Format::Depth32F => 4,
             Format::Rgba16F | Format::Rg32F => 8,
@@ -207,16 +235,16 @@ impl Texture {
 
     /// Makes the texture available on a texture unit.
     pub fn bind(&self, unit: u32) {
-        bind_texture(&self.gl, unit, self.raw);
+        bind_texture(&self.gl, unit, self.target, self.raw);
     }
 }
 
-/// Binds any texture, own or foreign, to a unit.
-pub(crate) fn bind_texture(gl: &Context, unit: u32, texture: glow::Texture) {
-    // SAFETY: a live 2-D texture name.
+/// Binds any texture, own or foreign, to a unit. `target` is that of the texture.
+pub(crate) fn bind_texture(gl: &Context, unit: u32, target: u32, texture: glow::Texture) {
+    // SAFETY: a live texture name of this target.
     unsafe {
         gl.raw().active_texture(glow::TEXTURE0 + unit);
-        gl.raw().bind_texture(glow::TEXTURE_2D, Some(texture));
+        gl.raw().bind_texture(target, Some(texture));
     }
 }
 

@@ -1,16 +1,21 @@
 //! How alike two images are, and statistics of samples.
 //!
 //! All figures are computed in f64 on display-referred 8-bit values, data range 255. PSNR and SSIM agree with
-//! scikit-image's `peak_signal_noise_ratio` and `structural_similarity`.
+//! scikit-image's `peak_signal_noise_ratio` and `structural_similarity`, FLIP with its authors' program.
 
 mod error_map;
+mod flicker;
+mod flip;
 mod psnr;
 mod ssim;
 pub mod stats;
 
 pub use error_map::{error_color, error_map};
+pub use flicker::{Flicker, FlickerMeter};
+pub use flip::{FLIP_PIXELS_PER_DEGREE, flip, flip_map};
 pub use psnr::{Psnr, psnr, psnr_where};
 pub use ssim::{SsimWindow, dissimilarity_map, ssim, ssim_where};
+use ssim::{mean_inside, ssim_map};
 
 use image::{GrayImage, RgbImage};
 use serde::{Deserialize, Serialize};
@@ -111,6 +116,8 @@ pub struct PartQuality {
     pub psnr: Option<Psnr>,
     /// Mean of the gaussian SSIM map (RGB) over these pixels, without the border; `None` without any.
     pub ssim_gaussian: Option<f64>,
+    /// Mean of the FLIP map over these pixels; `None` without any.
+    pub flip: Option<f64>,
 }
 
 /// Everything that `yoro compare` says of a pair.
@@ -122,6 +129,8 @@ pub struct Comparison {
     pub rgb: Quality,
     /// Of luma.
     pub luma: Quality,
+    /// LDR-FLIP, mean over the image, from 0 (equal) to 1; see [`flip_map`].
+    pub flip: f64,
     /// In the disoccluded pixels, when a mask was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub holes: Option<PartQuality>,
@@ -133,19 +142,39 @@ pub struct Comparison {
 impl Comparison {
     /// Measures `a` against `b`. `holes`: row by row from the top, true where a pixel was disoccluded.
     pub fn of(a: &RgbImage, b: &RgbImage, holes: Option<&[bool]>) -> Result<Comparison, MetricsError> {
-        let rgb = Quality::of(a, b, Channels::Rgb)?;
-        let luma = Quality::of(a, b, Channels::Luma)?;
+        let window = SsimWindow::Gaussian11;
+        let structure = ssim_map(a, b, window, Channels::Rgb)?;
+        let appearance = flip_map(a, b, FLIP_PIXELS_PER_DEGREE)?;
+        let mean_where = |selected: &dyn Fn(usize) -> bool| {
+            let chosen: Vec<f64> =
+                (0..appearance.len()).filter(|i| selected(*i)).map(|i| f64::from(appearance[i])).collect();
+            (!chosen.is_empty()).then(|| chosen.iter().sum::<f64>() / chosen.len() as f64)
+        };
         let part = |wanted: bool| -> Result<Option<PartQuality>, MetricsError> {
             let Some(holes) = holes else { return Ok(None) };
+            check_mask(a, holes)?;
             let selected: Vec<bool> = holes.iter().map(|hole| *hole == wanted).collect();
             let count = selected.iter().filter(|selected| **selected).count();
             Ok(Some(PartQuality {
                 share: count as f64 / selected.len() as f64,
                 psnr: psnr_where(a, b, &selected)?,
-                ssim_gaussian: ssim_where(a, b, SsimWindow::Gaussian11, &selected)?,
+                ssim_gaussian: mean_inside(&structure, a, window, |at| selected[at]),
+                flip: mean_where(&|at| selected[at]),
             }))
         };
-        Ok(Comparison { identical: a == b, rgb, luma, holes: part(true)?, elsewhere: part(false)? })
+        let ssim_gaussian = mean_inside(&structure, a, window, |_| true);
+        Ok(Comparison {
+            identical: a == b,
+            rgb: Quality {
+                psnr: psnr(a, b, Channels::Rgb)?,
+                ssim_gaussian: ssim_gaussian.expect("an image as large as the window has a middle"),
+                ssim_uniform: ssim(a, b, SsimWindow::Uniform7, Channels::Rgb)?,
+            },
+            luma: Quality::of(a, b, Channels::Luma)?,
+            flip: mean_where(&|_| true).expect("an image has pixels"),
+            holes: part(true)?,
+            elsewhere: part(false)?,
+        })
     }
 }
 
@@ -188,7 +217,7 @@ pub(crate) mod tests {
     }
 
     /// Two images whose upper third is equal.
-    fn pair(width: u32, height: u32) -> (RgbImage, RgbImage) {
+    pub(crate) fn pair(width: u32, height: u32) -> (RgbImage, RgbImage) {
         let (a, mut b) = (image(width, height, 1), image(width, height, 2));
         for y in 0..height / 3 {
             for x in 0..width {

@@ -63,7 +63,8 @@ pub fn dissimilarity_map(a: &RgbImage, b: &RgbImage) -> Result<Vec<f64>, Metrics
     Ok(map)
 }
 
-fn mean_inside(
+/// Mean of an SSIM map over the pixels for which `take` says so, without the border; `None` without any.
+pub(super) fn mean_inside(
     map: &[f64],
     image: &RgbImage,
     window: SsimWindow,
@@ -82,7 +83,7 @@ fn mean_inside(
 }
 
 /// SSIM at each pixel, mean over the channels.
-fn ssim_map(
+pub(super) fn ssim_map(
     a: &RgbImage,
     b: &RgbImage,
     window: SsimWindow,

@@ -1,6 +1,6 @@
 //! OpenGL ES without a window: EGL on the surfaceless platform, on a device, or with a pbuffer.
 
-use std::ffi::{c_int, c_uint, c_void};
+use std::ffi::{CStr, c_int, c_uint, c_void};
 
 use khronos_egl as egl;
 
@@ -97,6 +97,14 @@ impl EglContext {
             })
         };
         Ok((this, gl))
+    }
+}
+
+impl EglContext {
+    /// A GL function by name, or null.
+    pub(super) fn entry_point(&self, name: &CStr) -> *const c_void {
+        let function = name.to_str().ok().and_then(|name| self.egl.get_proc_address(name));
+        function.map_or(std::ptr::null(), |f| f as *const c_void)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Desktop OpenGL on the CPU by libOSMesa, loaded at run time.
 
-use std::ffi::{CString, c_char, c_int, c_uchar, c_uint, c_void};
+use std::ffi::{CStr, CString, c_char, c_int, c_uchar, c_uint, c_void};
 
 const LIBRARIES: [&str; 3] = ["libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"];
 
@@ -21,6 +21,7 @@ type DestroyContext = unsafe extern "C" fn(*mut c_void);
 pub(super) struct OsmesaContext {
     context: *mut c_void,
     destroy: DestroyContext,
+    get_proc_address: GetProcAddress,
     /// OSMesa's window; everything is rendered into framebuffers of our own.
     _pixels: Box<[u8]>,
     _library: libloading::Library,
@@ -62,7 +63,8 @@ impl OsmesaContext {
             let mut pixels = vec![0u8; SIZE * SIZE * 4].into_boxed_slice();
             let size = SIZE as c_int;
             let current = make_current(context, pixels.as_mut_ptr().cast(), glow::UNSIGNED_BYTE, size, size);
-            let this = OsmesaContext { context, destroy, _pixels: pixels, _library: library };
+            let this =
+                OsmesaContext { context, destroy, get_proc_address, _pixels: pixels, _library: library };
             if current == 0 {
                 return Err("its context cannot be made current".into());
             }
@@ -71,6 +73,14 @@ impl OsmesaContext {
             });
             Ok((this, gl))
         }
+    }
+}
+
+impl OsmesaContext {
+    /// A GL function by name, or null.
+    pub(super) fn entry_point(&self, name: &CStr) -> *const c_void {
+        // SAFETY: the library is still loaded; the name ends with a zero.
+        unsafe { (self.get_proc_address)(name.as_ptr()) }
     }
 }
 

@@ -197,16 +197,25 @@ impl Culler {
 
     /// The index ranges of the clusters that may be seen, adjacent ones merged.
     pub fn visible<'a>(&'a self, clusters: &'a [Cluster]) -> impl Iterator<Item = Range<usize>> + 'a {
-        let mut seen = clusters.iter().filter(|c| self.sees(&c.bounds)).peekable();
-        std::iter::from_fn(move || {
-            let first = seen.next()?;
-            let mut end = first.end;
-            while let Some(next) = seen.next_if(|c| c.start == end) {
-                end = next.end;
-            }
-            Some(first.start as usize..end as usize)
-        })
+        visible(std::slice::from_ref(self), clusters)
     }
+}
+
+/// The index ranges of the clusters that any of the cullers lets through, adjacent ones merged.
+pub fn visible<'a>(
+    cullers: &'a [Culler],
+    clusters: &'a [Cluster],
+) -> impl Iterator<Item = Range<usize>> + 'a {
+    let sees = |c: &&Cluster| cullers.iter().any(|culler| culler.sees(&c.bounds));
+    let mut seen = clusters.iter().filter(sees).peekable();
+    std::iter::from_fn(move || {
+        let first = seen.next()?;
+        let mut end = first.end;
+        while let Some(next) = seen.next_if(|c| c.start == end) {
+            end = next.end;
+        }
+        Some(first.start as usize..end as usize)
+    })
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use super::geometry::style_defines;
+use super::role::{Role, RoleKind};
 use super::scene::GpuScene;
 use super::shadow::ShadowMap;
 use super::uniforms::{Lights, set_view};
@@ -40,7 +41,7 @@ pub fn shading_defines(
 }
 
 impl LightingPass {
-    /// Compiles the variant for the scene's style and light.
+    /// Compiles the variant for the scene's style and light, and views of a role.
     ///
     /// # Errors
     /// As [`Program::new`].
@@ -48,13 +49,15 @@ impl LightingPass {
         gl: &Rc<Context>,
         scene: &GpuScene,
         settings: &RenderSettings,
+        role: RoleKind,
     ) -> Result<LightingPass, GlError> {
-        let defines = shading_defines(gl, scene, settings);
+        let mut defines = shading_defines(gl, scene, settings);
+        defines.extend(role.define());
         let program = Program::new(gl, ShaderSource::Screen("render/lighting.frag"), &defines)?;
         Ok(LightingPass { gl: gl.clone(), program })
     }
 
-    /// Lights a g-buffer into `target`.
+    /// Lights a g-buffer into `target`, as the role says.
     #[allow(clippy::too_many_arguments, reason = "a pass names what it reads")]
     pub fn run(
         &self,
@@ -65,16 +68,17 @@ impl LightingPass {
         scene: &GpuScene,
         view: &View,
         lights: &Lights,
+        role: Role,
     ) {
         self.gl.pass("lighting", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             target.bind();
             let program = self.program.bind();
             program
-                .texture("depth_map", 0, g_buffer.depth().raw())
-                .texture("albedo_map", 1, g_buffer.color(0).raw())
-                .texture("normal_map", 2, g_buffer.color(1).raw())
-                .texture("emissive_map", 3, g_buffer.color(2).raw())
+                .texture_of("depth_map", 0, g_buffer.depth())
+                .texture_of("albedo_map", 1, g_buffer.color(0))
+                .texture_of("normal_map", 2, g_buffer.color(1))
+                .texture_of("emissive_map", 3, g_buffer.color(2))
                 .set("line_width", (view.size[1] as f32 / 900.0).round().max(1.0) as i32);
             if let Some(occlusion) = occlusion {
                 program.texture("occlusion_map", 4, occlusion.raw());
@@ -84,6 +88,7 @@ impl LightingPass {
             }
             set_view(program, view);
             lights.set(program, &scene.sky);
+            role.set(program, view);
             self.gl.draw_screen();
         });
     }

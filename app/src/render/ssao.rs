@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use glam::{Vec3, Vec4};
 
+use super::role::{Role, RoleKind};
 use super::uniforms::set_view;
 use crate::eyes::View;
 use crate::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
@@ -64,13 +65,14 @@ pub struct SsaoPass {
 }
 
 impl SsaoPass {
-    /// Occlusion by what is within `radius` metres, at 1 / `scale` of the resolution (1 or 2).
+    /// Occlusion by what is within `radius` metres, at 1 / `scale` of the resolution (1 or 2), in views of a role.
     ///
     /// # Errors
     /// As [`Program::new`].
-    pub fn new(gl: &Rc<Context>, radius: f32, scale: u32) -> Result<SsaoPass, GlError> {
+    pub fn new(gl: &Rc<Context>, radius: f32, scale: u32, role: RoleKind) -> Result<SsaoPass, GlError> {
         let defines =
             [("SAMPLES", SAMPLES.to_string()), ("STRENGTH", "3.2".to_owned()), ("SCALE", scale.to_string())];
+        let defines: Vec<_> = defines.into_iter().chain(role.define()).collect();
         let point = |i: usize| {
             let r = (i as f32 + 0.5) / SAMPLES as f32;
             let (sin, cos) = (r * TURNS * TAU).sin_cos();
@@ -89,8 +91,8 @@ impl SsaoPass {
         })
     }
 
-    /// Computes the occlusion of a g-buffer.
-    pub fn run(&self, targets: &SsaoTargets, g_buffer: &RenderTarget, view: &View) {
+    /// Computes the occlusion of the pixels that the role lights; the others' is undefined.
+    pub fn run(&self, targets: &SsaoTargets, g_buffer: &RenderTarget, view: &View, role: Role) {
         self.gl.pass("ssao", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             let height = view.size[1] as f32;
@@ -98,11 +100,12 @@ impl SsaoPass {
             targets.raw.bind();
             self.sample
                 .bind()
-                .texture("depth_map", 0, g_buffer.depth().raw())
-                .texture("normal_map", 1, g_buffer.color(1).raw())
+                .texture_of("depth_map", 0, g_buffer.depth())
+                .texture_of("normal_map", 1, g_buffer.color(1))
                 .set("kernel", &self.kernel[..])
                 .set("radius", Vec3::new(self.radius, pixels_at_1_m, 0.12 * height));
             set_view(&self.sample, view);
+            role.set(&self.sample, view);
             self.gl.draw_screen();
             targets.blurred.bind();
             self.blur.bind().texture("occlusion_map", 0, targets.raw.color(0).raw());

@@ -202,7 +202,7 @@ fn every_variant_compiles_and_draws() {
         let mut stage = Stage::new(gl, scene, &settings());
         let view = view(DepthConvention::Standard);
         stage.render(&view, Selection::All);
-        let depth = DepthImage { texture: stage.targets.depth(), origin: [0, 0] };
+        let depth = DepthImage::whole(stage.targets.depth());
         let to = Destination::whole(stage.targets.color_target());
         stage.renderer.draw_transparent(&to, depth, &stage.scene, &view).unwrap();
         assert_eq!(gl.take_errors(), None, "{style:?}");
@@ -275,7 +275,7 @@ fn targets_follow_the_size_and_nothing_leaks() {
         assert_eq!(picture.len(), 301 * 97 * 4);
         assert_eq!(stage.targets.size(), large.size);
         assert_eq!(stage.render(&small, Selection::All), first, "a repeated frame is identical");
-        fxaa.run(stage.targets.color(), [0, 0], &Destination::whole(&stage.targets.hdr));
+        fxaa.run(stage.targets.color(), [0, 0], &Destination::whole(&stage.targets.light.hdr));
     }
     assert_eq!(gl.object_count(), objects);
     assert_eq!(gl.take_errors(), None);
@@ -318,7 +318,7 @@ fn transparent_surfaces_are_hidden_by_nearer_ones_only() {
         let mut stage = Stage::new(gl, scene, &settings());
         let view = view(convention);
         let before = stage.render(&view, Selection::All);
-        let depth = DepthImage { texture: stage.targets.depth(), origin: [0, 0] };
+        let depth = DepthImage::whole(stage.targets.depth());
         let to = Destination::whole(stage.targets.color_target());
         stage.renderer.draw_transparent(&to, depth, &stage.scene, &view).unwrap();
         let after = stage.targets.color_target().read_rgba8(0, [0, 0], SIZE);

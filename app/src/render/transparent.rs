@@ -6,6 +6,7 @@ use glam::IVec2;
 
 use super::cluster::Culler;
 use super::lighting::shading_defines;
+use super::role::RoleKind;
 use super::scene::{FREE_UNIT, Features, GpuScene};
 use super::shadow::ShadowMap;
 use super::uniforms::{Lights, eye_to_clip, set_view};
@@ -19,10 +20,14 @@ use crate::gl::{Blend, Context, DepthTest, GlError, Program, RasterState, Shader
 /// synthesized one alike; blends into display-referred colour.
 pub struct TransparentPass {
     gl: Rc<Context>,
-    programs: [Option<Program>; Features::COMBINATIONS],
+    /// For depth in textures, and for depth in layers of array textures, once that is asked for.
+    programs: [Programs; 2],
     /// (distance, batch, cluster) of the blended clusters; allocated once.
     order: Vec<(f32, u32, u32)>,
 }
+
+/// By [`Features::index`]; those that the scene uses.
+type Programs = [Option<Program>; Features::COMBINATIONS];
 
 /// Window depth of an image.
 #[derive(Clone, Copy)]
@@ -31,6 +36,38 @@ pub struct DepthImage<'a> {
     pub texture: &'a Texture,
     /// Pixel of the texture that belongs to the lower left pixel of the destination.
     pub origin: [u32; 2],
+    /// The layer, if the texture is an array.
+    pub layer: Option<u32>,
+}
+
+impl<'a> DepthImage<'a> {
+    /// A texture that has the image's size.
+    pub fn whole(texture: &'a Texture) -> DepthImage<'a> {
+        DepthImage { texture, origin: [0, 0], layer: None }
+    }
+}
+
+/// What the scene's blended materials need.
+fn compile(
+    gl: &Rc<Context>,
+    scene: &GpuScene,
+    settings: &RenderSettings,
+    layered: bool,
+) -> Result<Programs, GlError> {
+    let mut programs = [const { None }; Features::COMBINATIONS];
+    for batch in scene.batches.iter().filter(|b| scene.materials[b.material].blended) {
+        let features = scene.materials[batch.material].features;
+        let slot: &mut Option<Program> = &mut programs[features.index()];
+        if slot.is_none() {
+            let mut defines = features.defines();
+            defines.extend(shading_defines(gl, scene, settings));
+            defines.extend(layered.then(|| RoleKind::Layer.define()).flatten());
+            let source =
+                ShaderSource::Raster { vertex: "render/geometry.vert", fragment: "render/transparent.frag" };
+            *slot = Some(Program::new(gl, source, &defines)?);
+        }
+    }
+    Ok(programs)
 }
 
 impl TransparentPass {
@@ -43,23 +80,21 @@ impl TransparentPass {
         scene: &GpuScene,
         settings: &RenderSettings,
     ) -> Result<TransparentPass, GlError> {
-        let mut programs = [const { None }; Features::COMBINATIONS];
-        let mut count = 0;
-        for batch in scene.batches.iter().filter(|b| scene.materials[b.material].blended) {
-            count += batch.clusters.len();
-            let features = scene.materials[batch.material].features;
-            let slot: &mut Option<Program> = &mut programs[features.index()];
-            if slot.is_none() {
-                let mut defines = features.defines();
-                defines.extend(shading_defines(gl, scene, settings));
-                let source = ShaderSource::Raster {
-                    vertex: "render/geometry.vert",
-                    fragment: "render/transparent.frag",
-                };
-                *slot = Some(Program::new(gl, source, &defines)?);
-            }
-        }
+        let blended = scene.batches.iter().filter(|b| scene.materials[b.material].blended);
+        let count = blended.map(|batch| batch.clusters.len()).sum();
+        let programs = [compile(gl, scene, settings, false)?, [const { None }; Features::COMBINATIONS]];
         Ok(TransparentPass { gl: gl.clone(), programs, order: Vec::with_capacity(count) })
+    }
+
+    /// Compiles the variants that read depth from layers; nothing is done when they are there.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    pub fn prepare_layered(&mut self, scene: &GpuScene, settings: &RenderSettings) -> Result<(), GlError> {
+        if scene.has_transparent() && self.programs[1].iter().all(Option::is_none) {
+            self.programs[1] = compile(&self.gl, scene, settings, true)?;
+        }
+        Ok(())
     }
 
     /// Draws into `to` what `culler` lets through and nothing in `depth` hides.
@@ -104,7 +139,8 @@ impl TransparentPass {
             let mut current = u32::MAX;
             for &(_, batch, cluster) in &self.order {
                 let material = &scene.materials[scene.batches[batch as usize].material];
-                let Some(program) = &self.programs[material.features.index()] else { continue };
+                let programs = &self.programs[usize::from(depth.layer.is_some())];
+                let Some(program) = &programs[material.features.index()] else { continue };
                 if batch != current {
                     current = batch;
                     self.gl.set_raster_state(&RasterState {
@@ -119,7 +155,8 @@ impl TransparentPass {
                         .set("exposure", exposure)
                         .set("depth_offset", offset)
                         .set("nearer", nearer)
-                        .texture("depth_map", FREE_UNIT, depth.texture.raw());
+                        .set("view_layer", depth.layer.unwrap_or(0) as i32)
+                        .texture_of("depth_map", FREE_UNIT, depth.texture);
                     if let Some(shadow) = shadow {
                         shadow.set(program, FREE_UNIT + 1, eye);
                     }

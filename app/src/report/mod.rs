@@ -1,16 +1,22 @@
-//! What `yoro run` found, as a self-contained page, as JSON, as a Markdown table and as a table for the terminal.
+//! What `yoro run` and `yoro bench` found, as self-contained pages, as JSON, as Markdown tables and as a table for
+//! the terminal. This file has the report of `run`; [`bench`] has that of `bench`.
 //!
 //! Every figure stands beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost
 //! beside two full renders. The paper's figures are marked as the paper's.
 
+pub mod bd_rate;
+pub mod bench;
+pub mod grid;
 mod page;
+mod palette;
 pub mod paper;
+pub mod plot;
 mod table;
 
 use std::path::{Path, PathBuf};
 
 use image::RgbImage;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::eyes::Eye;
 use crate::files::{self, FileError};
@@ -36,6 +42,26 @@ pub enum ReportError {
     /// The template and the data do not fit.
     #[error("cannot fill in the report's template: {0}")]
     Template(#[from] minijinja::Error),
+    /// A figure could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] plot::PlotError),
+    /// A file of results has nothing to report.
+    #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A picture that a run saved cannot be used.
+    #[error(transparent)]
+    PictureFile(#[from] crate::picture::PictureError),
+    /// The pictures of a setting do not go together.
+    #[error("the pictures in {} do not go together ({source}): measure again, or remove the folder", path.display())]
+    Sizes {
+        /// The folder.
+        path: PathBuf,
+        /// What is wrong.
+        source: MetricsError,
+    },
     /// The figures cannot be written as JSON.
     #[error("cannot write the report as JSON: {0}")]
     Json(#[from] serde_json::Error),
@@ -57,7 +83,7 @@ pub struct RunReport {
 }
 
 /// Where and how a run took place.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Model name of the processor.
     pub cpu: String,
@@ -78,7 +104,7 @@ pub struct Machine {
 }
 
 /// One setting of the run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// Its name, with the unit.
     pub name: String,

@@ -1,6 +1,6 @@
 //! Scenes to files that other programs read: OBJ, MTL and PNG, and beside them what those cannot say.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -91,9 +91,18 @@ fn notes(material: &Material) -> MaterialNotes {
 fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[String]) -> io::Result<()> {
     let model = &scene.model;
     writeln!(out, "# {name}: {} triangles; metres, Y up\nmtllib {name}.mtl", model.triangle_count())?;
-    for v in &model.vertices {
-        let (p, t, n) = (v.position, v.uv, v.normal);
-        writeln!(out, "v {} {} {}\nvt {} {}\nvn {} {} {}", p.x, p.y, p.z, t.x, t.y, n.x, n.y, n.z)?;
+    // Positions, texture coordinates and normals are indexed apart in OBJ: most vertices share two of them.
+    let positions = Distinct::of(model.vertices.iter().map(|v| v.position.to_array()));
+    let uvs = Distinct::of(model.vertices.iter().map(|v| v.uv.to_array()));
+    let normals = Distinct::of(model.vertices.iter().map(|v| v.normal.to_array()));
+    for [x, y, z] in &positions.values {
+        writeln!(out, "v {x} {y} {z}")?;
+    }
+    for [u, v] in &uvs.values {
+        writeln!(out, "vt {u} {v}")?;
+    }
+    for [x, y, z] in &normals.values {
+        writeln!(out, "vn {x} {y} {z}")?;
     }
     for part in &model.parts {
         let group: String = part
@@ -103,11 +112,34 @@ fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[Strin
             .collect();
         writeln!(out, "g {group}\nusemtl {}", materials[part.material])?;
         for t in model.indices[part.indices.clone()].chunks_exact(3) {
-            let [a, b, c] = [t[0], t[1], t[2]].map(|i| i as u64 + 1);
-            writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?;
+            write!(out, "f")?;
+            for i in t.iter().map(|i| *i as usize) {
+                write!(out, " {}/{}/{}", positions.number[i], uvs.number[i], normals.number[i])?;
+            }
+            writeln!(out)?;
         }
     }
     Ok(())
+}
+
+/// The distinct ones of the vertices' values, compared bit by bit, and each vertex's number among them from 1.
+struct Distinct<const N: usize> {
+    values: Vec<[f32; N]>,
+    number: Vec<usize>,
+}
+
+impl<const N: usize> Distinct<N> {
+    fn of(all: impl Iterator<Item = [f32; N]>) -> Distinct<N> {
+        let mut values = Vec::new();
+        let mut numbers = HashMap::new();
+        let number = all.map(|value| {
+            *numbers.entry(value.map(f32::to_bits)).or_insert_with(|| {
+                values.push(value);
+                values.len()
+            })
+        });
+        Distinct { number: number.collect(), values }
+    }
 }
 
 fn write_material(out: &mut impl Write, m: &Material, name: &str, textures: &[String]) -> io::Result<()> {

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::{AntiAliasing, Finish, StereoError, StereoFrame, StereoMethod, StereoOptions};
 use crate::eyes::{DepthConvention, Eye, EyePair};
-use crate::gl::{Context, Destination, GlError};
+use crate::gl::{Context, GlError};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
 
 /// Two full renders.
@@ -40,13 +40,8 @@ impl Conventional {
     ) -> Result<(), StereoError> {
         let view = pair.view(eye);
         renderer.render(&mut self.targets, scene, &view, Selection::All)?;
-        let color = self.targets.color_target();
-        if scene.has_transparent() {
-            let depth = DepthImage { texture: self.targets.depth(), origin: [0, 0] };
-            renderer.draw_transparent(&Destination::whole(color), depth, scene, &view)?;
-        }
-        self.finish.run(color, [0, 0], frame.eye(eye));
-        Ok(())
+        let (color, depth) = (self.targets.color_target(), DepthImage::whole(self.targets.depth()));
+        Ok(self.finish.eye(renderer, scene, &view, color, depth, frame.eye(eye))?)
     }
 
     /// The targets that hold the eye that was rendered last.

@@ -1,19 +1,27 @@
 //! How a frame gets its two eyes, one file a method.
 
 mod conventional;
+mod hybrid;
 mod mono;
 mod near_field;
+mod shading_reprojection;
+mod single_pass;
+#[cfg(all(test, feature = "desktop"))]
+mod tests;
 mod yoro;
 
 use std::rc::Rc;
 
-use crate::eyes::{Eye, EyePair, EyesError, GuardBand};
-use crate::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
-use crate::render::{Fxaa, GpuScene, RenderSettings, Renderer};
+use crate::eyes::{Eye, EyePair, EyesError, GuardBand, View};
+use crate::gl::{Capabilities, Context, Destination, Filter, Format, GlError, RenderTarget};
+use crate::render::{DepthImage, Fxaa, GpuScene, RenderSettings, Renderer};
 use crate::synthesis::{NearFieldPolicy, Pipeline, SynthesisOptions};
 
 pub use conventional::Conventional;
+pub use hybrid::Hybrid;
 pub use mono::Mono;
+pub use shading_reprojection::ShadingReprojection;
+pub use single_pass::SinglePass;
 pub use yoro::Yoro;
 
 /// Why a stereo frame could not be rendered.
@@ -32,12 +40,60 @@ pub enum StereoError {
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "desktop", derive(clap::ValueEnum))]
 pub enum Method {
-    /// Both eyes rendered: the ground truth.
+    /// Both eyes rendered, one after the other: the ground truth.
     Conventional,
+    /// Both eyes in one set of draw calls, by instancing.
+    Instanced,
+    /// Both eyes in one set of draw calls, by GL_OVR_multiview2.
+    Multiview,
+    /// The far field rendered once for both eyes, the near field for each (Fink et al. 2019).
+    Hybrid,
+    /// The dominant eye's shading reprojected to the other eye's geometry; only disocclusions are shaded.
+    ShadingReprojection,
     /// The dominant eye's image shown to both: the lower bound.
     Mono,
     /// The dominant eye rendered, the other synthesized.
     Yoro,
+}
+
+impl Method {
+    /// All methods: those that render both eyes first.
+    pub const ALL: [Method; 7] = [
+        Method::Conventional,
+        Method::Instanced,
+        Method::Multiview,
+        Method::Hybrid,
+        Method::ShadingReprojection,
+        Method::Mono,
+        Method::Yoro,
+    ];
+
+    /// The name on the command line and in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Conventional => "conventional",
+            Method::Instanced => "instanced",
+            Method::Multiview => "multiview",
+            Method::Hybrid => "hybrid",
+            Method::ShadingReprojection => "shading-reprojection",
+            Method::Mono => "mono",
+            Method::Yoro => "yoro",
+        }
+    }
+
+    /// Whether a driver can run the method; what a pipeline of [`Method::Yoro`] needs is its own to say.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] with what is missing and the remedy.
+    pub fn supported(self, capabilities: &Capabilities) -> Result<(), GlError> {
+        if self == Method::Multiview && !capabilities.multiview {
+            return Err(GlError::Unsupported(format!(
+                "{} ({}) has no GL_OVR_multiview2; use --method instanced, or a driver that has it, such as Mesa 25",
+                capabilities.renderer, capabilities.version_string
+            )));
+        }
+        Ok(())
+    }
 }
 
 /// When anti-aliasing runs.
@@ -68,6 +124,9 @@ pub struct StereoOptions {
     pub near_field: Option<f32>,
     /// Render both eyes of frames that are mostly too near; `None` never does.
     pub policy: Option<NearFieldPolicy>,
+    /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
+    /// `f_px * IPD / split_disparity` metres.
+    pub split_disparity: f32,
 }
 
 impl Default for StereoOptions {
@@ -78,6 +137,7 @@ impl Default for StereoOptions {
             anti_aliasing: AntiAliasing::default(),
             near_field: None,
             policy: Some(NearFieldPolicy::default()),
+            split_disparity: 1.0,
         }
     }
 }
@@ -128,6 +188,15 @@ impl StereoFrame {
 
 /// A method with its own programs and targets.
 pub trait StereoMethod {
+    /// Compiles what the method needs for the materials of a scene, so that its first frame of that scene does not
+    /// have to.
+    ///
+    /// # Errors
+    /// [`StereoError`] when GL refuses.
+    fn prepare(&self, _renderer: &mut Renderer, _scene: &GpuScene) -> Result<(), StereoError> {
+        Ok(())
+    }
+
     /// Renders both eyes of a frame. `frame` is resized to the pair's size.
     ///
     /// # Errors
@@ -141,7 +210,7 @@ pub trait StereoMethod {
     ) -> Result<(), StereoError>;
 }
 
-/// Makes a method; everything is compiled here.
+/// Makes a method; all that does not depend on the scene is compiled here ([`StereoMethod::prepare`] does the rest).
 ///
 /// # Errors
 /// [`GlError`] when the driver cannot run it.
@@ -151,14 +220,20 @@ pub fn create(
     settings: &RenderSettings,
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
+    method.supported(gl.capabilities())?;
     Ok(match method {
         Method::Conventional => Box::new(Conventional::new(gl, settings, options)?),
+        Method::Instanced => Box::new(SinglePass::instanced(gl, settings, options)?),
+        Method::Multiview => Box::new(SinglePass::multiview(gl, settings, options)?),
+        Method::Hybrid => Box::new(Hybrid::new(gl, settings, options)?),
+        Method::ShadingReprojection => Box::new(ShadingReprojection::new(gl, settings, options)?),
         Method::Mono => Box::new(Mono::new(gl, settings, options)?),
         Method::Yoro => Box::new(Yoro::new(gl, settings, options)?),
     })
 }
 
-/// The last step of an eye: anti-aliasing, or a plain copy, of a part of an image into the frame.
+/// The last steps of an eye: transparent objects, then anti-aliasing or a plain copy of a part of an image into the
+/// frame.
 struct Finish {
     gl: Rc<Context>,
     fxaa: Option<Fxaa>,
@@ -167,6 +242,23 @@ struct Finish {
 impl Finish {
     fn new(gl: &Rc<Context>, anti_alias: bool) -> Result<Finish, GlError> {
         Ok(Finish { gl: gl.clone(), fxaa: anti_alias.then(|| Fxaa::new(gl)).transpose()? })
+    }
+
+    /// Draws the transparent part of the scene over a rendered eye and fills `to` from it.
+    fn eye(
+        &self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        view: &View,
+        color: &RenderTarget,
+        depth: DepthImage,
+        to: &RenderTarget,
+    ) -> Result<(), GlError> {
+        if scene.has_transparent() {
+            renderer.draw_transparent(&Destination::whole(color), depth, scene, view)?;
+        }
+        self.run(color, [0, 0], to);
+        Ok(())
     }
 
     /// Fills `to` from the part of `from` whose lower left corner is `crop`.

@@ -164,9 +164,8 @@ impl StereoMethod for Yoro {
             for (image, depth, view) in
                 [(dominant, dominant_depth, &views.source), (other, other.depth(), &views.target)]
             {
-                let depth = DepthImage { texture: depth, origin: [0, 0] };
                 // Depth is read in the shader, so only the colour of the layer may be attached.
-                renderer.draw_transparent(&image.color_only(), depth, scene, view)?;
+                renderer.draw_transparent(&image.color_only(), DepthImage::whole(depth), scene, view)?;
             }
         }
         self.after.run(dominant, views.dominant_crop, frame.eye(pair.dominant));

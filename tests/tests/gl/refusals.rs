@@ -25,9 +25,13 @@ fn canted_eyes_are_rendered_but_not_synthesized() {
         let mut method = stereo::create(gl, method, &settings, &options).unwrap();
         method.render(&mut renderer, &scene, &pair, &mut frame)
     };
-    render(Method::Conventional).unwrap();
-    let refusal = render(Method::Yoro).unwrap_err().to_string();
-    assert!(refusal.starts_with("the eyes are canted by 10.00 degrees"), "{refusal}");
-    assert!(refusal.contains("render both eyes"), "{refusal}");
+    for method in [Method::Conventional, Method::Instanced, Method::Mono] {
+        render(method).unwrap();
+    }
+    for method in [Method::Yoro, Method::Hybrid, Method::ShadingReprojection] {
+        let refusal = render(method).unwrap_err().to_string();
+        assert!(refusal.starts_with("the eyes are canted by 10.00 degrees"), "{refusal}");
+        assert!(refusal.contains("render both eyes"), "{refusal}");
+    }
     assert_eq!(gl.take_errors(), None);
 }

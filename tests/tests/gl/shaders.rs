@@ -39,15 +39,28 @@ fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Compiles what a scene needs by every method that the driver has.
+fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> anyhow::Result<()> {
+    let mut renderer = Renderer::new(gl, settings, scene)?;
+    for method in Method::ALL {
+        match method.supported(gl.capabilities()) {
+            Ok(()) => stereo::create(gl, method, settings, &StereoOptions::default())?
+                .prepare(&mut renderer, scene)?,
+            Err(reason) => eprintln!("SKIPPED: {} is not compiled here: {reason}", method.name()),
+        }
+    }
+    Ok(())
+}
+
 /// Compiles what a scene needs under all settings that change a shader.
 fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Result<()> {
     let scene = GpuScene::upload(gl, scene)?;
     let settings = RenderSettings { shadow_map_size: 64, ..RenderSettings::default() };
-    Renderer::new(gl, &settings, &scene)?;
+    methods(gl, &settings, &scene)?;
     if all_settings {
-        Renderer::new(gl, &RenderSettings { shadow_map_size: 0, ..settings.clone() }, &scene)?;
-        Renderer::new(gl, &RenderSettings { ssao: false, bloom: false, ..settings.clone() }, &scene)?;
-        Renderer::new(gl, &RenderSettings { ssao_half_size: true, ..settings }, &scene)?;
+        methods(gl, &RenderSettings { shadow_map_size: 0, ..settings.clone() }, &scene)?;
+        methods(gl, &RenderSettings { ssao: false, bloom: false, ..settings.clone() }, &scene)?;
+        methods(gl, &RenderSettings { ssao_half_size: true, ..settings }, &scene)?;
     }
     Ok(())
 }
@@ -65,11 +78,20 @@ fn rendering(gl: &Rc<Context>) -> anyhow::Result<()> {
     Ok(())
 }
 
+fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
+    for defines in [vec![], vec![("CHROMATIC", String::new())]] {
+        let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
+        Program::new(gl, source, &defines)?;
+    }
+    Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
+    Ok(())
+}
+
 fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
     let settings = RenderSettings::default();
     for anti_aliasing in [AntiAliasing::After, AntiAliasing::Before, AntiAliasing::Off] {
         let options = StereoOptions { anti_aliasing, near_field: Some(1.0), ..StereoOptions::default() };
-        for method in [Method::Conventional, Method::Mono, Method::Yoro] {
+        for method in Method::ALL.into_iter().filter(|m| m.supported(gl.capabilities()).is_ok()) {
             stereo::create(gl, method, &settings, &options)?;
         }
     }
@@ -82,6 +104,7 @@ fn every_file_in_every_variant() {
         synthesis(gl)?;
         rendering(gl)?;
         stereo(gl)?;
+        viewer(gl)?;
         // Only the renderer's unit tests read depth back.
         Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?;
         let used: BTreeSet<String> = gl.used_shader_files().into_iter().collect();

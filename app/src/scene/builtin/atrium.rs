@@ -98,7 +98,7 @@ pub fn build(seed: u64) -> Scene {
 
 /// Down the court past the vases, through an arch beside a curtain, and along the aisle.
 fn walk() -> Vec<Viewpoint> {
-    let steps = [
+    super::viewpoints(&[
         ([0.4, 1.66, 13.2], [-0.3, 2.8, 0.0]),
         ([0.9, 1.66, 11.2], [-0.5, 2.6, -2.0]),
         ([1.7, 1.66, 9.3], [0.2, 2.2, -4.0]),
@@ -113,8 +113,7 @@ fn walk() -> Vec<Viewpoint> {
         ([5.3, 1.66, -7.4], [1.6, 2.0, -13.5]),
         ([4.2, 1.66, -8.7], [-0.8, 2.3, -14.0]),
         ([2.9, 1.66, -9.7], [-2.6, 2.6, -14.5]),
-    ];
-    steps.map(|(position, target)| Viewpoint { position: position.into(), target: target.into() }).to_vec()
+    ])
 }
 
 fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {

@@ -99,7 +99,7 @@ pub fn build(seed: u64) -> Scene {
 
 /// Along the battens behind the chairs, around the table's end below the screen, and back past the blinds.
 fn walk() -> Vec<Viewpoint> {
-    let steps = [
+    super::viewpoints(&[
         ([4.7, 1.62, 1.5], [-1.5, 1.05, -0.6]),
         ([4.4, 1.62, 2.35], [-1.6, 1.0, -0.7]),
         ([3.2, 1.6, 2.6], [-2.2, 1.0, -0.8]),
@@ -113,8 +113,7 @@ fn walk() -> Vec<Viewpoint> {
         ([-4.65, 1.5, -1.0], [0.6, 0.8, 0.4]),
         ([-3.9, 1.55, -2.0], [1.2, 0.85, 0.7]),
         ([-2.7, 1.6, -2.5], [2.2, 0.9, 0.6]),
-    ];
-    steps.map(|(position, target)| Viewpoint { position: position.into(), target: target.into() }).to_vec()
+    ])
 }
 
 fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {

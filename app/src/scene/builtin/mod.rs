@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Scene, ShadingStyle};
+use super::{Scene, ShadingStyle, Viewpoint};
 
 mod atrium;
 pub mod build;
@@ -134,6 +134,15 @@ fn names() -> String {
 pub fn build(name: &str, seed: u64) -> Result<Scene, UnknownScene> {
     let builtin = BUILTINS.iter().find(|b| b.name == name);
     builtin.map(|b| (b.build)(seed)).ok_or_else(|| UnknownScene { name: name.into() })
+}
+
+/// A camera path from positions and targets in metres.
+fn viewpoints(steps: &[([f32; 3], [f32; 3])]) -> Vec<Viewpoint> {
+    let viewpoint = |&(position, target): &([f32; 3], [f32; 3])| Viewpoint {
+        position: position.into(),
+        target: target.into(),
+    };
+    steps.iter().map(viewpoint).collect()
 }
 
 #[cfg(test)]

@@ -91,7 +91,7 @@ pub fn build(seed: u64) -> Scene {
 
 /// From the middle of the street to the pavement, past the noodle bar and along the railing.
 fn walk() -> Vec<Viewpoint> {
-    let steps = [
+    super::viewpoints(&[
         ([-0.6, 1.65, 9.0], [1.5, 3.8, -12.0]),
         ([0.6, 1.65, 7.0], [3.2, 3.4, -12.0]),
         ([2.0, 1.65, 5.1], [4.8, 2.8, -11.0]),
@@ -105,8 +105,7 @@ fn walk() -> Vec<Viewpoint> {
         ([5.95, 1.75, -10.9], [2.6, 3.2, -25.0]),
         ([5.9, 1.78, -13.0], [1.0, 4.2, -29.0]),
         ([5.9, 1.78, -15.0], [-0.8, 5.4, -33.0]),
-    ];
-    steps.map(|(position, target)| Viewpoint { position: position.into(), target: target.into() }).to_vec()
+    ])
 }
 
 fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {

@@ -92,7 +92,7 @@ pub fn build(seed: u64) -> Scene {
 
 /// Up the street, between the tables of the terrace, and on along its railing.
 fn walk() -> Vec<Viewpoint> {
-    let steps = [
+    super::viewpoints(&[
         ([-1.2, 1.62, 6.5], [1.8, 1.9, -10.0]),
         ([0.2, 1.62, 4.2], [4.4, 1.8, -8.0]),
         ([2.0, 1.64, 2.2], [6.2, 1.6, -6.0]),
@@ -107,8 +107,7 @@ fn walk() -> Vec<Viewpoint> {
         ([5.8, 1.72, -15.4], [2.2, 2.0, -28.0]),
         ([4.6, 1.72, -17.6], [-0.5, 2.4, -36.0]),
         ([2.6, 1.64, -19.4], [-1.5, 3.0, -45.0]),
-    ];
-    steps.map(|(position, target)| Viewpoint { position: position.into(), target: target.into() }).to_vec()
+    ])
 }
 
 fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {

@@ -1,0 +1,49 @@
+//! yoro on Android: the library that `NativeActivity` loads.
+//!
+//! The application itself is [`yoro::viewer`]; here is what a phone adds to it: a window, the activity's life,
+//! sensors, touch, settings from outside, the state of battery and heat. On other systems only the parts without
+//! Android are built, and those for their tests.
+
+#[cfg(any(target_os = "android", test))]
+mod press;
+#[cfg(any(target_os = "android", test))]
+mod settings;
+
+#[cfg(target_os = "android")]
+mod activity;
+#[cfg(target_os = "android")]
+mod device;
+#[cfg(target_os = "android")]
+mod dynamic;
+#[cfg(target_os = "android")]
+mod input;
+#[cfg(target_os = "android")]
+mod java;
+#[cfg(target_os = "android")]
+mod pulse;
+#[cfg(target_os = "android")]
+mod sensors;
+#[cfg(target_os = "android")]
+mod thermal;
+
+/// Where the application begins; returning ends the activity. It may run more than once in one process, also while
+/// an earlier run is about to return.
+#[cfg(target_os = "android")]
+#[unsafe(no_mangle)]
+fn android_main(app: android_activity::AndroidApp) {
+    // Scripts read these lines: nothing but the message may stand after the tag. In a second run the first logger
+    // stays.
+    android_logger::init_once(
+        android_logger::Config::default()
+            .with_max_level(log::LevelFilter::Info)
+            .with_tag(yoro::telemetry::LOG_TAG)
+            .format(|writer, record| write!(writer, "{}", record.args())),
+    );
+    // A panic never unwinds into Android's code: the build aborts, after this.
+    std::panic::set_hook(Box::new(|panic| {
+        log::error!("yoro has a bug and ends: {panic}\n{}", std::backtrace::Backtrace::force_capture());
+    }));
+    log::info!("yoro {} starts", env!("CARGO_PKG_VERSION"));
+    activity::run(&app);
+    log::info!("yoro ends");
+}

@@ -1,0 +1,70 @@
+//! What the operating system says of this process.
+
+use std::fs;
+use std::time::Duration;
+
+use rustix::time::{ClockId, clock_gettime};
+
+/// CPU time that all threads of the process have used so far.
+pub fn cpu_time() -> Duration {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+/// Resident memory in MiB now; `None` where `/proc` has no such figure.
+pub fn resident_mib() -> Option<f64> {
+    status_mib("VmRSS:")
+}
+
+/// Largest resident memory in MiB since the start or the last [`forget_peak`].
+pub fn peak_mib() -> Option<f64> {
+    status_mib("VmHWM:")
+}
+
+/// Makes the present memory the peak. Returns whether the system allowed it.
+pub fn forget_peak() -> bool {
+    // Documented in proc(5), since Linux 4.0.
+    fs::write("/proc/self/clear_refs", "5").is_ok()
+}
+
+/// Memory of the system in MiB that can be had without swapping.
+pub fn available_mib() -> Option<f64> {
+    kilobytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
+}
+
+fn status_mib(key: &str) -> Option<f64> {
+    kilobytes(&fs::read_to_string("/proc/self/status").ok()?, key)
+}
+
+/// The figure in kB behind a key, in MiB.
+fn kilobytes(text: &str, key: &str) -> Option<f64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(key))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok()? / 1024.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_proc() {
+        let text = "Name:\tyoro\nVmHWM:\t  204800 kB\nVmRSS:\t    1024 kB\n";
+        assert_eq!(kilobytes(text, "VmHWM:"), Some(200.0));
+        assert_eq!(kilobytes(text, "VmSwap:"), None);
+        assert_eq!(kilobytes("VmRSS: many", "VmRSS:"), None);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn work_takes_cpu_time_and_memory() {
+        let before = cpu_time();
+        let numbers: Vec<u64> = (0..4_000_000).collect();
+        let resident = resident_mib().unwrap();
+        assert!(resident > 30.0 && peak_mib().unwrap() >= 30.0, "{resident} MiB");
+        let start = std::time::Instant::now();
+        while start.elapsed() < Duration::from_millis(20) {}
+        assert!(cpu_time() > before);
+        assert!(available_mib().unwrap() > 1.0);
+        drop(numbers);
+    }
+}

@@ -1,0 +1,622 @@
+//! Measures jobs, round by round.
+
+use std::rc::Rc;
+use std::time::Duration;
+
+use anyhow::{Context as _, bail, ensure};
+use image::RgbImage;
+use indicatif::ProgressBar;
+
+use super::entrant::{Entrant, FrameTime};
+use super::holes::HoleFinder;
+use super::record::{RoundEnd, SceneFacts, Unsupported};
+use super::scenes::Object;
+use super::suite::{Choices, Job, Measure, Source, Suite};
+use super::{Contender, Measurement, Record, Results, Setting, Writer, bandwidth, metric, process};
+use crate::cli::interrupted;
+use crate::cli::stage::{self, Stage};
+use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
+use crate::eyes::{EyePair, Pose};
+use crate::gl::Context;
+use crate::inpaint::{self, Patcher, PatcherOptions};
+use crate::metrics::{Comparison, Flicker, FlickerMeter, PartQuality};
+use crate::picture;
+use crate::render::RenderSettings;
+use crate::report::bench::picture_folder;
+use crate::scene::builtin::BUILTINS;
+use crate::scene::{CameraPath, Scene, ShadingStyle, Viewpoint};
+use crate::stereo::StereoFrame;
+use crate::synthesis::ImBufferSize;
+
+/// Distance in metres between the frames of the suite `flicker`: walking pace, 30 frames a second.
+const STEP: f32 = 0.045;
+
+/// Bytes that a triangle needs while its scene is made and uploaded, roughly: for the bound on memory.
+const BYTES_PER_TRIANGLE: f64 = 150.0;
+
+/// What a scene may cost before it is left out.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// Memory in MiB that the scene may need.
+    pub memory_mib: f64,
+    /// Time that a frame of the conventional method may take.
+    pub frame: Duration,
+}
+
+/// Measures jobs and appends the results to a file.
+pub struct Runner<'a> {
+    /// The GL context.
+    pub gl: &'a Rc<Context>,
+    /// What the command line says about all suites.
+    pub choices: &'a Choices,
+    /// The object of the suites that need one.
+    pub object: &'a Object,
+    /// Another camera path than that of the scenes.
+    pub path: Option<&'a [Viewpoint]>,
+    /// When to leave a scene out.
+    pub bounds: Bounds,
+    /// Model of the neural patcher.
+    pub patchers: PatcherOptions,
+    /// Where results go.
+    pub writer: Writer,
+    /// What the file held before.
+    pub before: Results,
+    /// Shows how far it is.
+    pub bar: ProgressBar,
+    stage: Option<(StageKey, Stage)>,
+}
+
+/// What a stage was made of: settings that share it do not make it again.
+#[derive(Clone, Debug, PartialEq)]
+struct StageKey {
+    source: Source,
+    style: Option<ShadingStyle>,
+    render: RenderSettings,
+}
+
+/// Everyone who renders frames of a setting, and what became of the others.
+struct Field {
+    entrants: Vec<(Contender, Entrant)>,
+    frame: StereoFrame,
+    /// What is written with the first round: facts, who is missing, memory.
+    first: Vec<Record>,
+    memory: Vec<Measurement>,
+}
+
+/// A round that Ctrl-C ended.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted")]
+pub struct Interrupted;
+
+fn stop_if_interrupted() -> Result<(), Interrupted> {
+    if interrupted() { Err(Interrupted) } else { Ok(()) }
+}
+
+impl<'a> Runner<'a> {
+    /// Ready to measure.
+    #[expect(clippy::too_many_arguments, reason = "each is another thing that the command line knows")]
+    pub fn new(
+        gl: &'a Rc<Context>,
+        choices: &'a Choices,
+        object: &'a Object,
+        path: Option<&'a [Viewpoint]>,
+        bounds: Bounds,
+        patchers: PatcherOptions,
+        (writer, before): (Writer, Results),
+        bar: ProgressBar,
+    ) -> Runner<'a> {
+        Runner { gl, choices, object, path, bounds, patchers, writer, before, bar, stage: None }
+    }
+
+    /// Measures what is missing of a job.
+    ///
+    /// # Errors
+    /// [`Interrupted`] after Ctrl-C, and one sentence for whatever a user can help; finished rounds are in the
+    /// file then.
+    pub fn run(&mut self, job: &Job) -> anyhow::Result<()> {
+        let done = self.before.rounds(&job.setting);
+        if done >= job.rounds || self.before.is_left_out(&job.setting) {
+            self.bar.inc(job.steps());
+            return Ok(());
+        }
+        self.bar.set_message(format!("{}: {}", job.setting, "preparing"));
+        stop_if_interrupted()?;
+        if let Some(reason) = self.too_large(job) {
+            return self.leave_out(job, reason);
+        }
+        let mut stage = self.take_stage(job)?;
+        let measured = match job.measure {
+            Measure::Frames { .. } => self.frames(job, &mut stage, done),
+            Measure::Flicker => self.flicker(job, &mut stage),
+            Measure::Patchers => self.patchers(job, &mut stage, done),
+            Measure::Bandwidth => self.bandwidth(job, &mut stage),
+        };
+        self.stage = Some((StageKey::of(job), stage));
+        measured
+    }
+
+    fn too_large(&self, job: &Job) -> Option<String> {
+        let Source::Swarm { copies, .. } = job.source else { return None };
+        let needed = self.object.swarm_triangles(copies) as f64 * BYTES_PER_TRIANGLE / f64::from(1 << 20);
+        let bound = self.bounds.memory_mib;
+        (needed > bound)
+            .then(|| format!("the scene needs about {needed:.0} MiB and --max-memory-mib allows {bound:.0}"))
+    }
+
+    /// Writes for everyone that the setting was left out, and why.
+    fn leave_out(&mut self, job: &Job, reason: String) -> anyhow::Result<()> {
+        log::warn!("{} is left out: {reason}", job.setting);
+        let records = job.contenders.iter().map(|contender| unsupported(job, *contender, reason.clone()));
+        self.writer.append(records.collect(), RoundEnd { setting: job.setting.clone(), round: 0 })?;
+        self.bar.inc(job.steps());
+        Ok(())
+    }
+
+    /// The stage of the job before if it fits, or a new one.
+    fn take_stage(&mut self, job: &Job) -> anyhow::Result<Stage> {
+        let key = StageKey::of(job);
+        match self.stage.take() {
+            Some((present, stage)) if present == key => Ok(stage),
+            // The old one goes first: two large scenes at once are one too many.
+            old => {
+                drop(old);
+                Stage::new(self.gl, self.scene(job)?, &job.render)
+            }
+        }
+    }
+
+    fn scene(&self, job: &Job) -> anyhow::Result<Scene> {
+        let mut scene = match &job.source {
+            Source::Named(name) => {
+                let mut scene = stage::load_scene(name, self.choices.seed, None)?;
+                if let Some(path) = self.path {
+                    scene.viewpoints = path.to_vec();
+                }
+                scene
+            }
+            Source::Swarm { copies, places } => self.object.swarm(*copies, *places),
+            Source::Object(distance) => self.object.at_distance(*distance),
+        };
+        scene.style = job.style.unwrap_or(scene.style);
+        Ok(scene)
+    }
+
+    fn frames(&mut self, job: &Job, stage: &mut Stage, done: u32) -> anyhow::Result<()> {
+        let Measure::Frames { cost, quality } = job.measure else { return Ok(()) };
+        let views = Views::spread(job, stage)?;
+        let mut field = self.field(job, stage, &views, cost)?;
+        if cost && self.is_too_slow(job, stage, &views, &mut field)? {
+            return Ok(());
+        }
+        for round in done..job.rounds {
+            self.bar.set_message(format!("{}: round {} of {}", job.setting, round + 1, job.rounds));
+            let mut measurements = field.measurements(job, round);
+            let keep = quality && round == 0;
+            let images =
+                self.render_round(stage, &views, &mut field, round, cost.then_some(&mut measurements), keep)?;
+            if keep {
+                self.compare(job, stage, &views, &field, &images, &mut measurements)?;
+                for ((contender, _), images) in field.entrants.iter().zip(&images) {
+                    self.save_picture(job, *contender, &images[0])?;
+                }
+            }
+            if cost {
+                self.time_passes(stage, &views, &mut field, &mut measurements)?;
+            }
+            let mut records = Vec::new();
+            if round == 0 {
+                records.append(&mut field.first);
+                for (measurement, memory) in measurements.iter_mut().zip(&field.memory) {
+                    measurement.values.extend(memory.values.clone());
+                }
+            }
+            self.finish_round(job, round, records, measurements)?;
+        }
+        Ok(())
+    }
+
+    /// Every contender at every view, the order rotated so that each comes first, second, ... equally often.
+    /// Returns the other eye's images, by contender and view, if they are to be kept.
+    fn render_round(
+        &self,
+        stage: &mut Stage,
+        views: &Views,
+        field: &mut Field,
+        round: u32,
+        mut times: Option<&mut Vec<Measurement>>,
+        keep: bool,
+    ) -> anyhow::Result<Vec<Vec<RgbImage>>> {
+        let count = field.entrants.len();
+        let mut images = vec![Vec::new(); count];
+        for (i, pair) in views.pairs.iter().enumerate() {
+            for turn in 0..count {
+                stop_if_interrupted()?;
+                let at = (turn + i + round as usize) % count;
+                let time = field.entrants[at].1.render(stage, pair, &mut field.frame)?;
+                if let Some(measurements) = &mut times {
+                    measurements[at].push(metric::FRAME_MS, milliseconds(time.wall));
+                    measurements[at].push(metric::CPU_MS, milliseconds(time.cpu));
+                }
+                if keep {
+                    images[at].push(stage::eye_image(&field.frame, pair.dominant.other()));
+                }
+                self.bar.inc(1);
+            }
+        }
+        Ok(images)
+    }
+
+    /// Holds the images against those of the conventional method, which comes first.
+    fn compare(
+        &self,
+        job: &Job,
+        stage: &mut Stage,
+        views: &Views,
+        field: &Field,
+        images: &[Vec<RgbImage>],
+        measurements: &mut [Measurement],
+    ) -> anyhow::Result<()> {
+        let mut finder = HoleFinder::new(self.gl, &job.render)?;
+        for (i, pair) in views.pairs.iter().enumerate() {
+            let holes = finder.find(stage, pair)?;
+            for at in 1..field.entrants.len() {
+                stop_if_interrupted()?;
+                let comparison = Comparison::of(&images[at][i], &images[0][i], Some(&holes))?;
+                measurements[at].push_comparison(&comparison);
+            }
+        }
+        Ok(())
+    }
+
+    /// Saves the other eye as a contender shows it in the first view, for the report, in the suites that are about
+    /// pictures.
+    fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
+        if ![Suite::Scenes, Suite::Patchers].iter().any(|suite| suite.name() == job.setting.suite) {
+            return Ok(());
+        }
+        let name = match contender {
+            Contender::CONVENTIONAL => "truth".to_owned(),
+            Contender::MONO => "dominant".to_owned(),
+            other => other.name(),
+        };
+        let folder = picture_folder(&self.before.path, &job.setting);
+        Ok(picture::save_color(&folder.join(format!("{name}.png")), image)?)
+    }
+
+    fn time_passes(
+        &self,
+        stage: &mut Stage,
+        views: &Views,
+        field: &mut Field,
+        measurements: &mut [Measurement],
+    ) -> anyhow::Result<()> {
+        for ((_, entrant), measurement) in field.entrants.iter_mut().zip(measurements) {
+            stop_if_interrupted()?;
+            let passes = entrant.pass_times(stage, &views.pairs[0], &mut field.frame)?;
+            if self.gl.capabilities().timer_queries {
+                measurement.push(metric::GPU_MS, passes.iter().map(|(_, ms)| ms).sum());
+            }
+            for (name, ms) in passes {
+                measurement.push(format!("{}{name}", metric::PASS_MS), ms);
+            }
+        }
+        Ok(())
+    }
+
+    fn flicker(&mut self, job: &Job, stage: &mut Stage) -> anyhow::Result<()> {
+        let views = Views::along_path(job, stage)?;
+        let mut field = self.field(job, stage, &views, false)?;
+        let mut finder = HoleFinder::new(self.gl, &job.render)?;
+        let mut measurements = field.measurements(job, 0);
+        let mut last: Option<(Vec<RgbImage>, Vec<bool>)> = None;
+        self.bar.set_message(job.setting.to_string());
+        for pair in &views.pairs {
+            let holes = finder.find(stage, pair)?;
+            let mut images = Vec::new();
+            for (_, entrant) in &mut field.entrants {
+                stop_if_interrupted()?;
+                entrant.render(stage, pair, &mut field.frame)?;
+                images.push(stage::eye_image(&field.frame, pair.dominant.other()));
+                self.bar.inc(1);
+            }
+            if let Some((before, holes_before)) = &last {
+                let meter = FlickerMeter::new([&before[0], &images[0]], [holes_before, &holes])?;
+                measurements[0].push_flicker(&metric::CHANGES, &meter.change());
+                for at in 1..images.len() {
+                    let flicker = meter.flicker([&before[at], &images[at]])?;
+                    measurements[at].push_flicker(&metric::FLICKERS, &flicker);
+                }
+            }
+            last = Some((images, holes));
+        }
+        self.finish_round(job, 0, field.first, measurements)
+    }
+
+    fn bandwidth(&mut self, job: &Job, stage: &mut Stage) -> anyhow::Result<()> {
+        let views = Views::along_path(job, stage)?;
+        self.bar.set_message(job.setting.to_string());
+        let bar = &self.bar;
+        let mut step = || -> anyhow::Result<()> {
+            bar.inc(1);
+            Ok(stop_if_interrupted()?)
+        };
+        let streams =
+            bandwidth::run(self.gl, stage, &job.render, &views.pairs, &job.bandwidth, &mut step)?;
+        let mut facts = views.facts(job, stage);
+        // Each value is that of a whole sequence at one quantizer.
+        facts.frames = job.bandwidth.quantizers.iter().map(|quantizer| format!("QP {quantizer}")).collect();
+        let measurement = |(stream, values): (&str, bandwidth::Values)| Measurement {
+            setting: job.setting.clone(),
+            contender: stream.to_owned(),
+            round: 0,
+            values,
+        };
+        let measurements = streams.into_iter().map(measurement).collect();
+        self.finish_round(job, 0, vec![Record::Scene(facts)], measurements)
+    }
+
+    fn patchers(&mut self, job: &Job, stage: &mut Stage, done: u32) -> anyhow::Result<()> {
+        let views = Views::spread(job, stage)?;
+        let mut first = vec![Record::Scene(views.facts(job, stage))];
+        let mut patchers: Vec<(Contender, Box<dyn Patcher>)> = Vec::new();
+        for &contender in &job.contenders {
+            let Contender::Patcher(kind) = contender else { continue };
+            match inpaint::create(self.gl, kind, &self.patchers) {
+                Ok(patcher) => patchers.push((contender, patcher)),
+                Err(error) => first.push(left_out(job, contender, &error)),
+            }
+        }
+        let mut renderer = GroupRenderer::new(self.gl, &job.render, &GroupOptions::default())?;
+        let mut groups: Vec<ImageGroup> = Vec::new();
+        for pair in &views.pairs {
+            stop_if_interrupted()?;
+            groups.push(renderer.render(&mut stage.renderer, &stage.scene, pair)?);
+        }
+        for round in done..job.rounds {
+            self.bar.set_message(format!("{}: round {} of {}", job.setting, round + 1, job.rounds));
+            let mut measurements: Vec<Measurement> =
+                patchers.iter().map(|(c, _)| Measurement::new(&job.setting, *c, round)).collect();
+            let mut mono = Measurement::new(&job.setting, Contender::MONO, round);
+            for (i, group) in groups.iter().enumerate() {
+                let holes: Vec<bool> = group.reprojected.mask().iter().map(|m| *m == inpaint::HOLE).collect();
+                for turn in 0..patchers.len() {
+                    stop_if_interrupted()?;
+                    let at = (turn + i + round as usize) % patchers.len();
+                    let patched = patchers[at].1.patch(&group.reprojected)?;
+                    measurements[at].push(metric::PATCH_MS, milliseconds(patched.time.patching));
+                    measurements[at].push(metric::PATCH_TRANSFER_MS, milliseconds(patched.time.transfer));
+                    if round == 0 {
+                        let comparison = Comparison::of(&patched.image, &group.truth, Some(&holes))?;
+                        measurements[at].push_comparison(&comparison);
+                        if i == 0 {
+                            self.save_picture(job, patchers[at].0, &patched.image)?;
+                        }
+                    }
+                    self.bar.inc(1);
+                }
+                if round == 0 {
+                    let [x, y] = group.views.dominant_crop;
+                    let [width, height] = group.pair.size;
+                    let eye = image::imageops::crop_imm(&group.color, x, 0, width, height).to_image();
+                    ensure!(
+                        y == 0 && eye.dimensions() == group.truth.dimensions(),
+                        "the eyes differ in height"
+                    );
+                    mono.push_comparison(&Comparison::of(&eye, &group.truth, Some(&holes))?);
+                    if i == 0 {
+                        self.save_picture(job, Contender::MONO, &eye)?;
+                        self.save_picture(job, Contender::CONVENTIONAL, &group.truth)?;
+                    }
+                }
+            }
+            if round == 0 {
+                measurements.insert(0, mono);
+            }
+            self.finish_round(job, round, std::mem::take(&mut first), measurements)?;
+        }
+        Ok(())
+    }
+
+    /// Makes every contender and lets it render a first frame, which warms it up and tells what memory it takes.
+    fn field(&self, job: &Job, stage: &mut Stage, views: &Views, cost: bool) -> anyhow::Result<Field> {
+        let mut field = Field {
+            entrants: Vec::new(),
+            frame: StereoFrame::new(self.gl, job.eyes.size)?,
+            first: vec![Record::Scene(views.facts(job, stage))],
+            memory: Vec::new(),
+        };
+        let base = process::resident_mib();
+        for &contender in &job.contenders {
+            let Some((method, mut options)) = contender.method() else { continue };
+            stop_if_interrupted()?;
+            if job.imbuffer > 1 {
+                options.synthesis.paper.imbuffer = ImBufferSize::Divisor(job.imbuffer);
+            }
+            let before = if process::forget_peak() { process::resident_mib() } else { None };
+            let ready = Entrant::new(self.gl, method, &job.render, &options).map_err(anyhow::Error::from);
+            let ready = ready.and_then(|mut entrant| {
+                if cost {
+                    entrant.render(stage, &views.pairs[0], &mut field.frame)?;
+                }
+                Ok(entrant)
+            });
+            self.bar.inc(1);
+            match ready {
+                Ok(entrant) => {
+                    let mut memory = Measurement::new(&job.setting, contender, 0);
+                    if let (true, Some(base), Some(before), Some(peak)) =
+                        (cost, base, before, process::peak_mib())
+                    {
+                        memory.push(metric::OWN_MEMORY_MIB, peak - before);
+                        memory.push(metric::PEAK_MEMORY_MIB, base + peak - before);
+                    }
+                    field.memory.push(memory);
+                    field.entrants.push((contender, entrant));
+                }
+                // Without the ground truth there is nothing to hold the others against.
+                Err(error) if contender == Contender::CONVENTIONAL => return Err(error),
+                Err(error) => {
+                    field.first.push(left_out(job, contender, &error));
+                    self.bar.inc(u64::from(job.rounds) * job.frames as u64);
+                }
+            }
+        }
+        Ok(field)
+    }
+
+    /// Leaves the setting out when one conventional frame takes longer than the bound.
+    fn is_too_slow(
+        &mut self,
+        job: &Job,
+        stage: &mut Stage,
+        views: &Views,
+        field: &mut Field,
+    ) -> anyhow::Result<bool> {
+        if !matches!(job.source, Source::Swarm { .. }) {
+            return Ok(false);
+        }
+        let (_, conventional) = field.entrants.first_mut().context("the conventional method comes first")?;
+        let FrameTime { wall, .. } = conventional.render(stage, &views.pairs[0], &mut field.frame)?;
+        if wall <= self.bounds.frame {
+            return Ok(false);
+        }
+        let (takes, allowed) = (milliseconds(wall), milliseconds(self.bounds.frame));
+        self.leave_out(
+            job,
+            format!("a conventional frame takes {takes:.0} ms and --max-frame-ms allows {allowed:.0}"),
+        )?;
+        Ok(true)
+    }
+
+    /// Writes a round: what comes with the first, and all measurements that hold something.
+    fn finish_round(
+        &mut self,
+        job: &Job,
+        round: u32,
+        mut records: Vec<Record>,
+        measurements: Vec<Measurement>,
+    ) -> anyhow::Result<()> {
+        let filled = measurements.into_iter().filter(|measurement| !measurement.values.is_empty());
+        records.extend(filled.map(Record::Measurement));
+        self.writer.append(records, RoundEnd { setting: job.setting.clone(), round })?;
+        Ok(())
+    }
+}
+
+impl StageKey {
+    fn of(job: &Job) -> StageKey {
+        StageKey { source: job.source.clone(), style: job.style, render: job.render.clone() }
+    }
+}
+
+impl Field {
+    fn measurements(&self, job: &Job, round: u32) -> Vec<Measurement> {
+        self.entrants.iter().map(|(contender, _)| Measurement::new(&job.setting, *contender, round)).collect()
+    }
+}
+
+/// The frames of a setting.
+struct Views {
+    names: Vec<String>,
+    pairs: Vec<EyePair>,
+}
+
+impl Views {
+    /// Viewpoints of the scene, evenly spread from the first.
+    fn spread(job: &Job, stage: &Stage) -> anyhow::Result<Views> {
+        let viewpoints = &stage.scene.viewpoints;
+        let keys = stage::spread(viewpoints.len(), job.frames);
+        Views::new(job, keys.into_iter().map(|k| (format!("viewpoint {k}"), viewpoints[k].pose())).collect())
+    }
+
+    /// Frames at walking pace from the middle of the camera path on.
+    fn along_path(job: &Job, stage: &Stage) -> anyhow::Result<Views> {
+        let path = CameraPath::new(&stage.scene.viewpoints);
+        if path.keys().len() < 2 {
+            bail!(
+                "{} has no camera path: write two or more viewpoints into {}.camera.json beside the model, or give --path FILE",
+                stage.scene.name,
+                stage.scene.name
+            );
+        }
+        let length: f32 = path.poses(500).windows(2).map(|w| w[0].position.distance(w[1].position)).sum();
+        // A path that only turns is gone through in twenty seconds.
+        let step = if length > STEP { STEP / length } else { 1.0 / 600.0 };
+        let pose = |i: usize| (format!("frame {i}"), path.pose(0.5 + i as f32 * step));
+        Views::new(job, (0..job.frames).map(pose).collect())
+    }
+
+    fn new(job: &Job, heads: Vec<(String, Pose)>) -> anyhow::Result<Views> {
+        ensure!(!heads.is_empty(), "{} has no viewpoint: give it one or more", job.setting.scene);
+        let (names, poses): (Vec<_>, Vec<_>) = heads.into_iter().unzip();
+        Ok(Views { names, pairs: poses.into_iter().map(|pose| job.eyes.pair(pose)).collect() })
+    }
+
+    fn facts(&self, job: &Job, stage: &Stage) -> SceneFacts {
+        let scene = &stage.scene;
+        let builtin = BUILTINS.iter().find(|b| matches!(&job.source, Source::Named(name) if name == b.name));
+        SceneFacts {
+            setting: job.setting.clone(),
+            stands_for: builtin.map_or("", |b| b.stands_for).to_owned(),
+            style: scene.style,
+            triangles: scene.triangle_count() as u64,
+            lights: scene.lights.len().min(job.render.point_lights) as u64,
+            frames: self.names.clone(),
+        }
+    }
+}
+
+impl Measurement {
+    fn new(setting: &Setting, contender: Contender, round: u32) -> Measurement {
+        Measurement {
+            setting: setting.clone(),
+            contender: contender.name(),
+            round,
+            values: Default::default(),
+        }
+    }
+
+    fn push_comparison(&mut self, comparison: &Comparison) {
+        let Comparison { rgb, luma, .. } = comparison;
+        self.push(metric::PSNR, rgb.psnr.0);
+        self.push(metric::PSNR_LUMA, luma.psnr.0);
+        self.push(metric::SSIM, rgb.ssim_gaussian);
+        self.push(metric::SSIM_LUMA, luma.ssim_gaussian);
+        self.push(metric::SSIM_UNIFORM, rgb.ssim_uniform);
+        self.push(metric::FLIP, comparison.flip);
+        if let Some(holes) = &comparison.holes {
+            self.push(metric::HOLE_SHARE, holes.share);
+            self.push_part([metric::HOLE_PSNR, metric::HOLE_SSIM, metric::HOLE_FLIP], holes);
+        }
+        if let Some(visible) = &comparison.elsewhere {
+            self.push_part([metric::VISIBLE_PSNR, metric::VISIBLE_SSIM, metric::VISIBLE_FLIP], visible);
+        }
+    }
+
+    fn push_part(&mut self, [psnr, ssim, flip]: [&str; 3], part: &PartQuality) {
+        self.push(psnr, part.psnr.map_or(f64::NAN, |psnr| psnr.0));
+        self.push(ssim, part.ssim_gaussian.unwrap_or(f64::NAN));
+        self.push(flip, part.flip.unwrap_or(f64::NAN));
+    }
+
+    fn push_flicker(&mut self, names: &[&str; 4], flicker: &Flicker) {
+        let values = [Some(flicker.all), flicker.holes, flicker.edges, flicker.rest];
+        for (name, value) in names.iter().zip(values) {
+            self.push(*name, value.unwrap_or(f64::NAN));
+        }
+    }
+}
+
+fn unsupported(job: &Job, contender: Contender, reason: String) -> Record {
+    Record::Unsupported(Unsupported { setting: job.setting.clone(), contender: contender.name(), reason })
+}
+
+/// For a contender that could not be made.
+fn left_out(job: &Job, contender: Contender, error: &impl std::fmt::Display) -> Record {
+    log::info!("{}: {contender} is left out: {error}", job.setting);
+    unsupported(job, contender, error.to_string())
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}

@@ -1,0 +1,210 @@
+//! `yoro bench`: the experiments of the paper.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{bail, ensure};
+
+use crate::bench::record::{Header, PassClock, VERSION};
+use crate::bench::{
+    self, Bounds, Choices, Contender, Interrupted, Job, Object, Runner, Suite, Writer, process,
+};
+use crate::cli::dataset::camera_path;
+use crate::cli::stage::{self, EyeArgs};
+use crate::cli::{GlArgs, machine, parse_fov, parse_ipd, progress_bar};
+use crate::eyes::{DepthRange, Eye};
+use crate::gl::Context;
+use crate::inpaint::PatcherOptions;
+use crate::scene::builtin;
+
+/// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
+#[derive(clap::Args, Clone, Debug)]
+pub struct BenchArgs {
+    /// Which experiments
+    #[arg(value_enum, required = true, value_name = "SUITE")]
+    suites: Vec<Suite>,
+    /// The short form: smaller images, fewer scenes, points, viewpoints and rounds
+    #[arg(long)]
+    quick: bool,
+    /// Timed rounds; in each, every contender renders every frame once [default: 5; quick: 2]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    rounds: Option<u32>,
+    /// Viewpoints of each scene, spread over its camera path [default: 3; quick: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    viewpoints: Option<u32>,
+    /// bandwidth: frames of the sequence that is coded [default: 30; quick: 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    frames: Option<u32>,
+    /// Size of each eye's image in pixels [default: 1024x1024; quick: 512x512]
+    #[arg(long, value_name = "WxH", value_parser = stage::parse_size)]
+    size: Option<[u32; 2]>,
+    /// Instead of the suite's scenes: a built-in one, or an OBJ, glTF or GLB file; more than once for several
+    #[arg(long = "scene", value_name = "NAME|FILE")]
+    scenes: Vec<String>,
+    /// Another camera path than the scenes' own: a JSON array of {position, target}
+    #[arg(long, value_name = "FILE")]
+    path: Option<PathBuf>,
+    /// Only this contender, such as yoro-gather; more than once for several. The baselines, conventional for cost
+    /// and mono for quality, are always measured
+    #[arg(long = "contender", value_name = "NAME", value_parser = parse_contender)]
+    contenders: Vec<Contender>,
+    /// File of results. One that an interrupted run has left is continued
+    /// [default: out/bench-SUITES.jsonl]
+    #[arg(long, value_name = "FILE.jsonl")]
+    out: Option<PathBuf>,
+    /// Distance between the eyes in metres
+    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd, allow_negative_numbers = true)]
+    ipd: f32,
+    /// Vertical field of view in degrees
+    #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
+    fov_y: f32,
+    /// The eye that is rendered
+    #[arg(long, value_parser = stage::parse_eye, default_value = "right")]
+    dominant: Eye,
+    /// Seed of the built-in scenes
+    #[arg(long, default_value_t = builtin::DEFAULT_SEED)]
+    seed: u64,
+    /// distance, complexity: the object, an OBJ, glTF or GLB file such as the Stanford bunny, instead of the
+    /// built-in hare
+    #[arg(long, value_name = "FILE")]
+    object: Option<PathBuf>,
+    /// complexity: triangles of the largest scene [default: 13104000, the paper's; quick: 1500000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=200_000_000))]
+    max_triangles: Option<u64>,
+    /// complexity: leave out scenes that need more memory [default: half of what is available]
+    #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(1..))]
+    max_memory_mib: Option<u64>,
+    /// complexity: leave out scenes of which a conventional frame takes longer
+    #[arg(long, default_value_t = 10_000, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..))]
+    max_frame_ms: u64,
+    /// patchers: another ONNX file than the built-in model of the neural one
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
+    #[command(flatten)]
+    gl: GlArgs,
+}
+
+/// Measures, appends to the file of results, and prints a short table.
+pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
+    let choices = args.choices();
+    stage::check_scenes(&choices.scenes, choices.seed)?;
+    let path = args.path.as_deref().map(camera_path).transpose()?;
+    let object = match &args.object {
+        Some(file) => Object::load(file)?,
+        None => Object::hare(),
+    };
+    let jobs = jobs(args, &choices, &object)?;
+    let headless = args.gl.open()?;
+    let gl = headless.gl();
+    let out = args.out.clone().unwrap_or_else(|| args.default_out());
+    let (writer, before) = Writer::open(&out, &header(args, &choices, gl))?;
+    let finished = jobs.iter().filter(|job| before.rounds(&job.setting) >= job.rounds).count();
+    if finished > 0 {
+        log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
+    }
+    let bar = progress_bar(jobs.iter().map(Job::steps).sum());
+    let bounds = Bounds {
+        memory_mib: args.max_memory_mib.map_or_else(
+            || process::available_mib().map_or(f64::INFINITY, |available| 0.5 * available),
+            |mib| mib as f64,
+        ),
+        frame: Duration::from_millis(args.max_frame_ms),
+    };
+    let patchers = PatcherOptions { model: args.model.clone() };
+    let file = (writer, before);
+    let mut runner = Runner::new(gl, &choices, &object, path.as_deref(), bounds, patchers, file, bar.clone());
+    for job in &jobs {
+        if let Err(error) = runner.run(job) {
+            bar.finish_and_clear();
+            if error.is::<Interrupted>() {
+                bail!(
+                    "interrupted: the finished rounds are in {}; the same command with --out {} goes on",
+                    out.display(),
+                    out.display()
+                );
+            }
+            return Err(error.context(format!("cannot measure {}", job.setting)));
+        }
+    }
+    bar.finish_and_clear();
+    print!("{}", bench::text(&bench::Results::read(&out)?));
+    println!("results: {}", out.display());
+    Ok(())
+}
+
+impl BenchArgs {
+    fn choices(&self) -> Choices {
+        let of = |full, quick| if self.quick { quick } else { full };
+        let eyes = EyeArgs {
+            size: self.size.unwrap_or(if self.quick { [512; 2] } else { [1024; 2] }),
+            fov_y: self.fov_y,
+            ipd: self.ipd,
+            dominant: self.dominant,
+            near: DepthRange::PAPER.near,
+            far: DepthRange::PAPER.far,
+            reversed_z: false,
+            half_angles_degrees: None,
+        };
+        Choices {
+            quick: self.quick,
+            eyes,
+            rounds: self.rounds.unwrap_or(of(5, 2)),
+            viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,
+            sequence: self.frames.unwrap_or(of(30, 8)) as usize,
+            scenes: self.scenes.clone(),
+            contenders: self.contenders.clone(),
+            seed: self.seed,
+            object: self.object.clone(),
+            max_triangles: self.max_triangles.map_or(of(13_104_000, 1_500_000) as usize, |n| n as usize),
+        }
+    }
+
+    fn suite_names(&self) -> Vec<String> {
+        self.suites.iter().map(|suite| suite.name().to_owned()).collect()
+    }
+
+    fn default_out(&self) -> PathBuf {
+        let quick = if self.quick { "-quick" } else { "" };
+        Path::new("out").join(format!("bench-{}{quick}.jsonl", self.suite_names().join("-")))
+    }
+}
+
+/// The settings of all suites; each is measured once.
+fn jobs(args: &BenchArgs, choices: &Choices, object: &Object) -> anyhow::Result<Vec<Job>> {
+    let mut jobs: Vec<Job> = Vec::new();
+    for suite in &args.suites {
+        for job in choices.jobs(*suite, object)? {
+            let twin = jobs.iter().find(|other| other.setting == job.setting);
+            ensure!(
+                twin.is_none(),
+                "{} would be measured twice: give each suite once, and scenes of different names",
+                job.setting
+            );
+            jobs.push(job);
+        }
+    }
+    Ok(jobs)
+}
+
+fn header(args: &BenchArgs, choices: &Choices, gl: &Context) -> Header {
+    let mut parameters = choices.parameters();
+    let mut file = |name: &str, path: &Option<PathBuf>| {
+        let value = path.as_ref().map_or_else(|| "none".to_owned(), |path| path.display().to_string());
+        parameters.push(crate::report::Parameter { name: name.into(), value });
+    };
+    file("camera path", &args.path);
+    file("model", &args.model);
+    Header {
+        yoro_bench: VERSION,
+        suites: args.suite_names(),
+        quick: args.quick,
+        machine: machine::describe(gl.capabilities()),
+        pass_clock: if gl.capabilities().timer_queries { PassClock::TimerQueries } else { PassClock::Finish },
+        parameters,
+    }
+}
+
+fn parse_contender(text: &str) -> Result<Contender, String> {
+    let names = || Contender::all().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    Contender::find(text).ok_or_else(|| format!("there is none of this name; choose of {}", names()))
+}

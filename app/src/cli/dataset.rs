@@ -1,0 +1,383 @@
+//! `yoro dataset`: image groups for training and measuring.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use anyhow::{Context as _, bail, ensure};
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::cli::stage::{self, EyeArgs, Stage};
+use crate::cli::{GlArgs, SynthesisArgs, interrupted, progress_bar};
+use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
+use crate::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
+use crate::files;
+use crate::gl::Context;
+use crate::inpaint::{self, Patcher, PatcherKind, PatcherOptions};
+use crate::picture;
+use crate::render::RenderSettings;
+use crate::scene::builtin::{self, BUILTINS};
+use crate::scene::{CameraPath, Scene, ShadingStyle, Viewpoint};
+
+/// The pictures of a group; each has a folder of this name.
+const PICTURES: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
+/// Folder of the groups' JSON files, which are written last: a group that has one is finished.
+const GROUPS: &str = "group";
+/// What a scene's groups were made with.
+const SETTINGS: &str = "dataset.json";
+
+/// Write image groups of scenes: both eyes, depth, the reprojected eye, its holes, and the patched eye
+#[derive(clap::Args, Clone, Debug)]
+pub struct DatasetArgs {
+    /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
+    scenes: Vec<String>,
+    /// Groups of each scene, at even pace along its camera path
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=1_000_000), value_name = "N")]
+    groups: u32,
+    /// Another camera path than the scene's own: a JSON array of {position, target}
+    #[arg(long, value_name = "FILE")]
+    path: Option<PathBuf>,
+    /// Folder for the groups; one folder for each scene is made in it. Finished groups in it are kept
+    #[arg(long, default_value = "dataset", value_name = "FOLDER")]
+    out: PathBuf,
+    /// Fill the holes of patched/ by this patcher instead of the pipeline's own fill
+    #[arg(long, value_enum, value_name = "KIND")]
+    patcher: Option<PatcherKind>,
+    /// neural: another ONNX file than the built-in model
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
+    /// Smooth the edges of both rendered images (FXAA) before reprojection, as in the paper
+    #[arg(long)]
+    anti_aliasing: bool,
+    /// Another shading style than the scene's own
+    #[arg(long, value_enum)]
+    style: Option<ShadingStyle>,
+    /// Seed of the built-in scenes
+    #[arg(long, default_value_t = builtin::DEFAULT_SEED)]
+    seed: u64,
+    #[command(flatten)]
+    eyes: EyeArgs,
+    #[command(flatten)]
+    synthesis: SynthesisArgs,
+    #[command(flatten)]
+    gl: GlArgs,
+}
+
+/// Everything that decides what the groups of a scene are: the content of `dataset.json`.
+#[derive(Serialize)]
+struct Settings<'a> {
+    scene: &'a str,
+    seed: u64,
+    style: Option<ShadingStyle>,
+    groups: u32,
+    path: Option<&'a [Viewpoint]>,
+    size: [u32; 2],
+    fov_y_degrees: f32,
+    ipd_metres: f32,
+    dominant: Eye,
+    near: f32,
+    /// Null for infinity.
+    far: f32,
+    depth: DepthConvention,
+    patcher: Option<PatcherKind>,
+    model: Option<&'a Path>,
+    #[serde(flatten)]
+    options: GroupOptions,
+}
+
+/// The content of a group's JSON file.
+#[derive(Serialize)]
+struct Group<'a> {
+    scene: &'a str,
+    index: u32,
+    /// Place on the camera path, 0 to 1.
+    at: f32,
+    head: Pose,
+    eyes: BTreeMap<&'static str, Camera>,
+    dominant: Eye,
+    ipd_metres: f32,
+    fov_y_degrees: f32,
+    size: [u32; 2],
+    depth: Depth,
+    /// Share of the reprojected image.
+    holes: f64,
+    /// By kind, relative to the scene's folder.
+    pictures: BTreeMap<&'static str, String>,
+    /// The command that makes the other eye from `rgb` and `depth`, in the scene's folder.
+    synthesize: String,
+}
+
+#[derive(Serialize)]
+struct Camera {
+    pose: Pose,
+    frustum: Frustum,
+}
+
+#[derive(Serialize)]
+struct Depth {
+    near_metres: f32,
+    /// Null for infinity.
+    far_metres: f32,
+    encoding: &'static str,
+    bits: u8,
+    /// `x_other = x + offset + scale * value`, value from 0 to 1.
+    law: DisparityLaw,
+}
+
+/// Makes the groups that are not there yet.
+pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
+    args.eyes.check()?;
+    ensure!(
+        args.eyes.half_angles_degrees.is_none(),
+        "--half-angles-degrees cannot be used here: `yoro synthesize` reads the groups and takes symmetric frusta; leave it out"
+    );
+    let path = args.path.as_deref().map(camera_path).transpose()?;
+    let names: Vec<String> = match args.scenes.as_slice() {
+        [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
+        given => given.to_vec(),
+    };
+    // Hours of work do not end at a name or a folder that could have been told at once.
+    let mut jobs: Vec<Job> = Vec::new();
+    for name in &names {
+        let job = Job::new(args, name, path.as_deref())?;
+        if let Some(other) = jobs.iter().find(|other| other.folder == job.folder) {
+            bail!("{} and {name} would both go to {}: give one at a time", other.name, job.folder.display());
+        }
+        jobs.push(job);
+    }
+    let total = names.len() as u64 * u64::from(args.groups);
+    let missing: u64 = jobs.iter().map(|job| job.missing.len() as u64).sum();
+    let bar = progress_bar(total);
+    bar.set_position(total - missing);
+    if missing > 0 {
+        let headless = args.gl.open()?;
+        let gl = headless.gl();
+        let options = PatcherOptions { model: args.model.clone() };
+        let mut patcher = args.patcher.map(|kind| inpaint::create(gl, kind, &options)).transpose()?;
+        for job in &jobs {
+            job.run(args, gl, path.as_deref(), &mut patcher, &bar)?;
+        }
+    }
+    bar.finish_and_clear();
+    println!("{total} groups in {} ({missing} new)", args.out.display());
+    Ok(())
+}
+
+fn group_options(args: &DatasetArgs) -> GroupOptions {
+    GroupOptions {
+        synthesis: args.synthesis.options(),
+        guard_band: GuardBand::None,
+        anti_aliasing: args.anti_aliasing,
+    }
+}
+
+/// Reads a camera path in the format of `camera.json`.
+pub(super) fn camera_path(file: &Path) -> anyhow::Result<Vec<Viewpoint>> {
+    let viewpoints: Vec<Viewpoint> = serde_json::from_slice(&files::read(file)?).with_context(|| {
+        format!("{} is not a camera path: give a JSON array of {{position, target}}", file.display())
+    })?;
+    ensure!(!viewpoints.is_empty(), "{} has no viewpoint: give one or more", file.display());
+    for (i, v) in viewpoints.iter().enumerate() {
+        ensure!(
+            v.position.distance(v.target).is_normal(),
+            "{}: viewpoint {} looks at the place where it is: give it another target",
+            file.display(),
+            i + 1
+        );
+    }
+    Ok(viewpoints)
+}
+
+/// The groups of one scene.
+struct Job<'a> {
+    name: &'a str,
+    folder: PathBuf,
+    settings: serde_json::Value,
+    missing: Vec<u32>,
+}
+
+impl<'a> Job<'a> {
+    fn new(args: &DatasetArgs, name: &'a str, path: Option<&[Viewpoint]>) -> anyhow::Result<Job<'a>> {
+        let is_file = !BUILTINS.iter().any(|b| b.name == name);
+        if is_file && !Path::new(name).exists() {
+            stage::load_scene(name, args.seed, None)?;
+        }
+        let stem = Path::new(name).file_stem().unwrap_or_default();
+        let folder = args.out.join(if is_file { stem } else { name.as_ref() });
+        let settings = serde_json::to_value(Settings {
+            scene: name,
+            seed: args.seed,
+            style: args.style,
+            groups: args.groups,
+            path,
+            size: args.eyes.size,
+            fov_y_degrees: args.eyes.fov_y.to_degrees(),
+            ipd_metres: args.eyes.ipd,
+            dominant: args.eyes.dominant,
+            near: args.eyes.near,
+            far: args.eyes.far,
+            depth: args.eyes.pair(Pose::IDENTITY).depth.convention,
+            patcher: args.patcher,
+            model: args.model.as_deref(),
+            options: group_options(args),
+        })?;
+        check_settings(&folder, &settings)?;
+        let missing = (0..args.groups).filter(|&index| !is_finished(&folder, index)).collect();
+        Ok(Job { name, folder, settings, missing })
+    }
+
+    fn run(
+        &self,
+        args: &DatasetArgs,
+        gl: &Rc<Context>,
+        path: Option<&[Viewpoint]>,
+        patcher: &mut Option<Box<dyn Patcher>>,
+        bar: &ProgressBar,
+    ) -> anyhow::Result<()> {
+        if self.missing.is_empty() {
+            return Ok(());
+        }
+        bar.set_message(format!("{}: preparing", self.name));
+        stop(args)?;
+        files::write(&self.folder.join(SETTINGS), format!("{:#}\n", self.settings).as_bytes())?;
+        let settings = RenderSettings::default();
+        let scene: Scene = stage::load_scene(self.name, args.seed, args.style)?;
+        let path = CameraPath::new(path.unwrap_or(&scene.viewpoints));
+        let Stage { scene, mut renderer } = Stage::new(gl, scene, &settings)?;
+        let mut groups = GroupRenderer::new(gl, &settings, &group_options(args))?;
+        bar.set_message(self.name.to_owned());
+        for &index in &self.missing {
+            stop(args)?;
+            let at = index as f32 / (args.groups.max(2) - 1) as f32;
+            let head = path.pose(at);
+            let group = groups.render(&mut renderer, &scene, &args.eyes.pair(head))?;
+            let patched = match patcher {
+                Some(patcher) => patcher.patch(&group.reprojected)?.image,
+                None => group.synthesized.clone(),
+            };
+            self.save(args, index, at, head, &group, &patched)?;
+            bar.inc(1);
+        }
+        Ok(())
+    }
+
+    fn save(
+        &self,
+        args: &DatasetArgs,
+        index: u32,
+        at: f32,
+        head: Pose,
+        group: &ImageGroup,
+        patched: &image::RgbImage,
+    ) -> anyhow::Result<()> {
+        PICTURES.par_iter().try_for_each(|&kind| {
+            let file = self.folder.join(picture_name(kind, index));
+            match kind {
+                "rgb" => picture::save_color(&file, &group.color),
+                "depth" => picture::save_depth(&file, &group.depth),
+                "truth" => picture::save_color(&file, &group.truth),
+                "reprojected" => picture::save_color(&file, group.reprojected.color()),
+                "reprojected-depth" => picture::save_depth(&file, &group.reprojected_depth()),
+                "mask" => picture::save_gray(&file, group.reprojected.mask()),
+                _ => picture::save_color(&file, patched),
+            }
+        })?;
+        let (pair, depth) = (&group.pair, group.pair.depth);
+        let camera = |eye: Eye| Camera { pose: pair.poses[eye.index()], frustum: pair.frusta[eye.index()] };
+        let record = Group {
+            scene: self.name,
+            index,
+            at,
+            head,
+            eyes: Eye::BOTH.into_iter().map(|eye| (eye.name(), camera(eye))).collect(),
+            dominant: pair.dominant,
+            ipd_metres: args.eyes.ipd,
+            fov_y_degrees: args.eyes.fov_y.to_degrees(),
+            size: pair.size,
+            depth: Depth {
+                near_metres: depth.near,
+                far_metres: depth.far,
+                encoding: encoding(depth.convention),
+                bits: 16,
+                law: group.views.warp.law,
+            },
+            holes: group.reprojected.hole_share(),
+            pictures: PICTURES.into_iter().map(|kind| (kind, picture_name(kind, index))).collect(),
+            synthesize: synthesize_command(args, index),
+        };
+        let json = serde_json::to_string_pretty(&record)?;
+        Ok(files::write(&self.folder.join(group_name(index)), format!("{json}\n").as_bytes())?)
+    }
+}
+
+fn stop(args: &DatasetArgs) -> anyhow::Result<()> {
+    ensure!(
+        !interrupted(),
+        "interrupted: the groups in {} are complete; the same command makes the rest",
+        args.out.display()
+    );
+    Ok(())
+}
+
+fn picture_name(kind: &str, index: u32) -> String {
+    format!("{kind}/{index:06}.png")
+}
+
+fn group_name(index: u32) -> String {
+    format!("{GROUPS}/{index:06}.json")
+}
+
+/// The name that `yoro synthesize` has for a depth convention.
+fn encoding(convention: DepthConvention) -> &'static str {
+    match convention {
+        DepthConvention::Standard => "standard-z",
+        DepthConvention::Reversed => "reversed-z",
+    }
+}
+
+fn synthesize_command(args: &DatasetArgs, index: u32) -> String {
+    let eyes = &args.eyes;
+    format!(
+        "yoro synthesize --color {} --depth {} --depth-encoding {} --near {} --far {} --fov-y-degrees {} --ipd {} --dominant {} --out {}",
+        picture_name("rgb", index),
+        picture_name("depth", index),
+        encoding(eyes.pair(Pose::IDENTITY).depth.convention),
+        eyes.near,
+        eyes.far,
+        eyes.fov_y.to_degrees(),
+        eyes.ipd,
+        eyes.dominant.name(),
+        picture_name("synthesized", index),
+    )
+}
+
+/// A group is finished when its JSON file, which is written last, and all pictures are there.
+fn is_finished(folder: &Path, index: u32) -> bool {
+    folder.join(group_name(index)).is_file()
+        && PICTURES.iter().all(|kind| folder.join(picture_name(kind, index)).is_file())
+}
+
+/// Refuses to mix groups of different settings in one folder.
+fn check_settings(folder: &Path, settings: &serde_json::Value) -> anyhow::Result<()> {
+    let file = folder.join(SETTINGS);
+    if !file.exists() {
+        return Ok(());
+    }
+    let old: serde_json::Value = serde_json::from_slice(&files::read(&file)?).with_context(|| {
+        format!("{} is damaged: remove the folder, or choose another with --out", file.display())
+    })?;
+    let different = |key: &&String| old.get(key) != settings.get(key);
+    if let Some(key) = settings.as_object().and_then(|object| object.keys().find(different)) {
+        let value =
+            |settings: &serde_json::Value| settings.get(key).unwrap_or(&serde_json::Value::Null).to_string();
+        bail!(
+            "{} holds groups of other settings ({key} {} instead of {}): give the same ones, or choose another folder with --out",
+            folder.display(),
+            value(&old),
+            value(settings)
+        );
+    }
+    Ok(())
+}

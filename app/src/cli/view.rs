@@ -1,0 +1,140 @@
+//! `yoro view`: what a phone in a Cardboard-compatible viewer shows.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::bail;
+use glam::{EulerRot, Quat};
+
+use crate::cli::synthesize::rgb_image;
+use crate::cli::{GlArgs, progress_bar, stop_if_interrupted};
+use crate::files;
+use crate::gl::{Destination, Filter, Format, RenderTarget};
+use crate::picture::{self, PictureError};
+use crate::viewer::{FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings, Viewer};
+
+/// The refresh rate of the imagined display.
+const REFRESH_HZ: f32 = 60.0;
+/// Frames after the scene is there: the first decides whether the second one is synthesized.
+const FRAMES: u32 = 2;
+
+/// Draw what a phone in a Cardboard-compatible viewer shows: both eyes behind lenses
+#[derive(clap::Args, Clone, Debug)]
+pub struct ViewArgs {
+    /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file [default: prototype]
+    scene: Option<String>,
+    /// Where to write the picture
+    #[arg(long, value_name = "FILE")]
+    png: PathBuf,
+    /// The viewer: v1, v2, the URI of its QR code, or a parameter file [default: v2]
+    #[arg(long, value_name = "VIEWER")]
+    viewer: Option<String>,
+    /// The stereo method [default: yoro]
+    #[arg(long)]
+    method: Option<String>,
+    /// The screen's size in pixels
+    #[arg(long, default_value = "2340x1080", value_parser = parse_screen, value_name = "WxH")]
+    screen: [u32; 2],
+    /// The screen's pixels per inch
+    #[arg(long, default_value_t = 420.0, value_parser = super::parse_positive)]
+    dpi: f32,
+    /// The head's turn to the left in degrees
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
+    yaw_degrees: f32,
+    /// The head's turn upwards in degrees
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
+    pitch_degrees: f32,
+    /// The head's tilt to the left in degrees
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
+    roll_degrees: f32,
+    /// Turn to the left, in degrees, between rendering and showing: what timewarp makes up for
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
+    late_yaw_degrees: f32,
+    /// Leave out the HUD
+    #[arg(long)]
+    no_hud: bool,
+    /// Draw what is in view while the scene is being loaded
+    #[arg(long)]
+    loading: bool,
+    /// Settings of the viewer in a TOML file
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// One setting of the viewer; as often as needed
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
+    #[command(flatten)]
+    gl: GlArgs,
+}
+
+impl ViewArgs {
+    fn resolve(&self) -> anyhow::Result<Settings> {
+        let named = [("scene", &self.scene), ("viewer", &self.viewer), ("method", &self.method)];
+        let named = named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
+        let hud = self.no_hud.then(|| "hud=false".to_owned());
+        let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
+        Ok(Settings::resolve(self.settings.as_deref(), overrides)?)
+    }
+
+    fn head(&self) -> HeldHead {
+        let [yaw, pitch, roll] =
+            [self.yaw_degrees, self.pitch_degrees, self.roll_degrees].map(f32::to_radians);
+        let rendered = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
+        let late = Quat::from_rotation_y(self.late_yaw_degrees.to_radians());
+        HeldHead { rendered, displayed: late * rendered }
+    }
+}
+
+/// Draws and writes the picture.
+pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
+    if !files::has_extension(&args.png, &["png"]) {
+        return Err(PictureError::Extension { path: args.png.clone(), allowed: ".png" }.into());
+    }
+    let screen = Screen { size: args.screen, dpi: [args.dpi; 2], rotation: Rotation::LandscapeLeft };
+    let mut viewer = Viewer::new(args.resolve()?, screen, &[])?;
+    viewer.hold_head(Some(args.head()));
+    let headless = args.gl.open()?;
+    let gl = headless.gl();
+    viewer.attach(gl.clone())?;
+    let window = RenderTarget::new(gl, args.screen, &[(Format::Rgba8, Filter::Nearest)], None)?;
+    let to = Destination::whole(&window);
+    let period_ns = (1e9 / REFRESH_HZ) as i64;
+    let mut now_ns = 0;
+    let mut frame = |viewer: &mut Viewer| {
+        now_ns += period_ns;
+        let timing = FrameTiming { now_ns, expected_display_ns: now_ns + period_ns, refresh_hz: REFRESH_HZ };
+        viewer.frame(&to, &timing)
+    };
+    if args.loading {
+        frame(&mut viewer)?;
+    } else {
+        let bar = progress_bar(FRAMES as u64);
+        while viewer.scene_state() != SceneState::Ready {
+            stop_if_interrupted()?;
+            viewer.poll_scene();
+            if viewer.scene_state() == SceneState::Failed {
+                bail!(viewer.failure().unwrap_or_default().to_owned());
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        for _ in 0..FRAMES {
+            stop_if_interrupted()?;
+            frame(&mut viewer)?;
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+    }
+    if let Some(errors) = gl.take_errors() {
+        bail!("the GL driver reports {errors}: please report this as a bug");
+    }
+    let pixels = window.read_rgba8(0, [0, 0], args.screen);
+    picture::save_color(&args.png, &rgb_image(&pixels, args.screen))?;
+    println!("{}", args.png.display());
+    Ok(())
+}
+
+fn parse_screen(text: &str) -> Result<[u32; 2], String> {
+    let number = |t: &str| t.parse::<u32>().ok().filter(|n| (64..=8192).contains(n));
+    text.split_once('x')
+        .and_then(|(w, h)| Some([number(w)?, number(h)?]))
+        .ok_or_else(|| "give pixels from 64 to 8192, such as 2340x1080".into())
+}

@@ -1,0 +1,285 @@
+//! A small panel of text that hangs before the eyes, turning with the head.
+
+use std::fmt::Write;
+use std::rc::Rc;
+
+use embedded_graphics::mono_font::MonoTextStyle;
+use embedded_graphics::mono_font::ascii::FONT_10X20;
+use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::prelude::*;
+use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
+use embedded_graphics::text::{Baseline, Text};
+use glam::Vec4;
+
+use crate::eyes::{Eye, EyePair};
+use crate::gl::{Blend, Context, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture};
+use crate::stereo::StereoFrame;
+use crate::telemetry::Line;
+
+/// Characters of a line; longer ones are cut.
+pub(super) const COLUMNS: usize = 34;
+const LINES: usize = 4;
+const FONT: [usize; 2] = [10, 20];
+const MARGIN: usize = 8;
+const BAR_HEIGHT: usize = 12;
+const SIZE: [usize; 2] = [COLUMNS * FONT[0] + 2 * MARGIN, LINES * FONT[1] + 3 * MARGIN + BAR_HEIGHT];
+/// Part of the progress bar that moves to and fro.
+const BLOCK: f32 = 0.25;
+
+/// Where the panel hangs: metres ahead, and tangents of its width and of its centre below the horizon.
+const DISTANCE: f32 = 1.5;
+const WIDTH: f32 = 0.42;
+const BELOW: f32 = 0.40;
+
+/// What the panel says, and how far the loading of a scene has come round.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Content<'a> {
+    /// At most four lines.
+    pub text: &'a str,
+    /// Place of the moving part of a progress bar, 0 to 1; the work's end is not known.
+    pub progress: Option<f32>,
+}
+
+/// What the last line of the HUD is about.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Happening<'a> {
+    /// The scene of this name is being loaded.
+    Loading(&'a str),
+    /// The user has done something.
+    Message(&'a str),
+    Nothing,
+}
+
+/// Writes rate, frame time and temperature as far as they are known, the method, and what happens.
+pub(super) fn write_status(
+    text: &mut String,
+    frames: Option<&Line>,
+    celsius: Option<f32>,
+    method: &str,
+    pipeline: Option<&str>,
+    happening: Happening,
+) {
+    text.clear();
+    let mut write = || -> std::fmt::Result {
+        if let Some(Line { fps: Some(fps), frame_ms: Some(ms), refresh_hz, .. }) = frames {
+            write!(text, "{fps:.0}")?;
+            if let Some(hz) = refresh_hz {
+                write!(text, "/{hz:.0}")?;
+            }
+            write!(text, " FPS {ms:.1} ms")?;
+            if let Some(celsius) = celsius {
+                write!(text, " {celsius:.0} C")?;
+            }
+            text.push('\n');
+        }
+        writeln!(text, "{method} {}", pipeline.unwrap_or_default())?;
+        match happening {
+            Happening::Loading(scene) => write!(text, "loading {scene}"),
+            Happening::Message(message) => write!(text, "{message}"),
+            Happening::Nothing => Ok(()),
+        }
+    };
+    write().expect("a string takes everything");
+}
+
+/// Writes a sentence in lines of the panel's width, words kept whole.
+pub(super) fn write_sentence(text: &mut String, sentence: &str) {
+    text.clear();
+    let mut column = 0;
+    for word in sentence.split_whitespace() {
+        let length = word.chars().count();
+        if column == 0 {
+            column = length;
+        } else if column + 1 + length > COLUMNS {
+            text.push('\n');
+            column = length;
+        } else {
+            text.push(' ');
+            column += 1 + length;
+        }
+        text.push_str(word);
+    }
+}
+
+/// The panel's pixels, rows from the top, 0 or 255.
+struct Panel(Vec<u8>);
+
+impl OriginDimensions for Panel {
+    fn size(&self) -> Size {
+        Size::new(SIZE[0] as u32, SIZE[1] as u32)
+    }
+}
+
+impl DrawTarget for Panel {
+    type Color = BinaryColor;
+    type Error = std::convert::Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
+        &mut self,
+        pixels: I,
+    ) -> Result<(), Self::Error> {
+        for Pixel(Point { x, y }, color) in pixels {
+            if (0..SIZE[0] as i32).contains(&x) && (0..SIZE[1] as i32).contains(&y) {
+                self.0[y as usize * SIZE[0] + x as usize] = if color.is_on() { 255 } else { 0 };
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Panel {
+    fn draw(&mut self, content: Content) {
+        self.0.fill(0);
+        let style = MonoTextStyle::new(&FONT_10X20, BinaryColor::On);
+        for (i, line) in content.text.lines().take(LINES).enumerate() {
+            let end = line.char_indices().nth(COLUMNS).map_or(line.len(), |(at, _)| at);
+            let at = Point::new(MARGIN as i32, (MARGIN + i * FONT[1]) as i32);
+            let Ok(_) = Text::with_baseline(&line[..end], at, style, Baseline::Top).draw(self);
+        }
+        let Some(progress) = content.progress else { return };
+        let (x, y) = (MARGIN as i32, (2 * MARGIN + LINES * FONT[1]) as i32);
+        let width = (SIZE[0] - 2 * MARGIN) as u32;
+        let frame = Rectangle::new(Point::new(x, y), Size::new(width, BAR_HEIGHT as u32));
+        let Ok(()) = frame.into_styled(PrimitiveStyle::with_stroke(BinaryColor::On, 1)).draw(self);
+        let block = (width as f32 * BLOCK) as u32;
+        let left = x + (progress.clamp(0.0, 1.0) * (width - block) as f32) as i32;
+        let block = Rectangle::new(Point::new(left, y), Size::new(block, BAR_HEIGHT as u32));
+        let Ok(()) = block.into_styled(PrimitiveStyle::with_fill(BinaryColor::On)).draw(self);
+    }
+
+    /// Rows from the bottom, as GL takes them.
+    fn flip_into(&self, rows: &mut Vec<u8>) {
+        rows.clear();
+        self.0.chunks_exact(SIZE[0]).rev().for_each(|row| rows.extend_from_slice(row));
+    }
+}
+
+/// The panel on the GPU.
+pub(super) struct Hud {
+    gl: Rc<Context>,
+    program: Program,
+    texture: Texture,
+    panel: Panel,
+    rows: Vec<u8>,
+    /// What the texture shows.
+    text: String,
+    progress: Option<f32>,
+    /// Rows in use, from the top.
+    used: usize,
+}
+
+impl Hud {
+    pub fn new(gl: &Rc<Context>) -> Result<Hud, GlError> {
+        Ok(Hud {
+            gl: gl.clone(),
+            program: Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?,
+            texture: Texture::new(gl, SIZE.map(|n| n as u32), Format::R8, Filter::Linear)?,
+            panel: Panel(vec![0; SIZE[0] * SIZE[1]]),
+            rows: Vec::with_capacity(SIZE[0] * SIZE[1]),
+            text: String::with_capacity(256),
+            progress: Some(f32::NAN),
+            used: SIZE[1],
+        })
+    }
+
+    /// Changes what the panel says; nothing happens if it says that already.
+    pub fn set(&mut self, content: Content) {
+        if self.text == content.text && self.progress == content.progress {
+            return;
+        }
+        self.text.clear();
+        self.text.push_str(content.text);
+        self.progress = content.progress;
+        self.used = match content.progress {
+            Some(_) => SIZE[1],
+            None => 2 * MARGIN + content.text.lines().count().min(LINES) * FONT[1],
+        };
+        self.panel.draw(content);
+        self.panel.flip_into(&mut self.rows);
+        self.texture.upload(&self.rows);
+    }
+
+    /// Draws the panel into both eyes, below the horizon or in the middle.
+    pub fn draw(&self, pair: &EyePair, frame: &StereoFrame, in_the_middle: bool) {
+        let state = RasterState { blend: Blend::Over, ..RasterState::SCREEN };
+        self.gl.pass("hud", || {
+            self.gl.set_raster_state(&state);
+            for eye in Eye::BOTH {
+                let (origin, size) = place(pair, eye, self.used, in_the_middle);
+                self.gl.bind_framebuffer(Some(frame.eye(eye).raw()), origin, size);
+                let rectangle = [origin[0], origin[1], size[0], size[1]].map(|n| n as f32);
+                self.program
+                    .bind()
+                    .texture("panel", 0, self.texture.raw())
+                    .set("rectangle", Vec4::from(rectangle))
+                    .set("used", self.used as f32 / SIZE[1] as f32);
+                self.gl.draw_screen();
+            }
+            self.gl.set_raster_state(&RasterState::SCREEN);
+        });
+    }
+}
+
+/// Origin and size, in pixels of an eye's image, of the `used` upper rows of the panel.
+fn place(pair: &EyePair, eye: Eye, used: usize, in_the_middle: bool) -> ([u32; 2], [u32; 2]) {
+    let frustum = &pair.frusta[eye.index()];
+    let height = WIDTH * used as f32 / SIZE[0] as f32;
+    let x = -eye.side() * pair.ipd() / 2.0 / DISTANCE - WIDTH / 2.0;
+    let below = if in_the_middle { 0.0 } else { -BELOW };
+    let y = below.max(frustum.bottom + height) - height / 2.0;
+    let per_tangent = [pair.size[0] as f32 / frustum.width(), pair.size[1] as f32 / frustum.height()];
+    let corner = [(x - frustum.left) * per_tangent[0], (y - frustum.bottom) * per_tangent[1]];
+    let size = [WIDTH * per_tangent[0], height * per_tangent[1]];
+    (corner.map(|n| n.round().max(0.0) as u32), size.map(|n| n.round().max(1.0) as u32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eyes::{DepthRange, Frustum, Pose};
+
+    #[test]
+    fn text_and_bar_are_drawn_where_they_should() {
+        let mut panel = Panel(vec![0; SIZE[0] * SIZE[1]]);
+        let lit = |panel: &Panel, rows: std::ops::Range<usize>| {
+            panel.0[rows.start * SIZE[0]..rows.end * SIZE[0]].iter().filter(|&&p| p == 255).count()
+        };
+        panel.draw(Content { text: "60 FPS\nyoro", progress: None });
+        assert!(lit(&panel, 8..28) > 100 && lit(&panel, 28..48) > 50);
+        assert_eq!(lit(&panel, 48..SIZE[1]), 0);
+        panel.draw(Content { text: "", progress: Some(0.5) });
+        assert_eq!(lit(&panel, 0..96), 0);
+        // The moving part is a quarter of the bar.
+        let bar = lit(&panel, 96..SIZE[1]);
+        assert!(bar > 340 * BAR_HEIGHT / 4 && bar < 340 * BAR_HEIGHT / 2, "{bar}");
+        panel.draw(Content { text: &"x".repeat(200), progress: Some(1.0) });
+        assert_eq!(panel.0[100 * SIZE[0] + SIZE[0] - MARGIN - 4], 255);
+        let mut rows = Vec::new();
+        panel.flip_into(&mut rows);
+        assert_eq!(rows[..SIZE[0]], panel.0[(SIZE[1] - 1) * SIZE[0]..]);
+    }
+
+    #[test]
+    fn what_the_lines_say() {
+        let mut text = String::new();
+        write_status(&mut text, None, Some(31.0), "yoro", Some("gather"), Happening::Loading("street"));
+        assert_eq!(text, "yoro gather\nloading street");
+        let line =
+            Line { fps: Some(59.94), refresh_hz: Some(60.0), frame_ms: Some(16.68), ..Line::default() };
+        write_status(&mut text, Some(&line), Some(31.2), "mono", None, Happening::Nothing);
+        assert_eq!(text, "60/60 FPS 16.7 ms 31 C\nmono \n");
+        write_sentence(&mut text, "there is no file room.obj: give the path of an .obj, .gltf or .glb file");
+        assert_eq!(text, "there is no file room.obj: give\nthe path of an .obj, .gltf or .glb\nfile");
+    }
+
+    #[test]
+    fn the_panel_hangs_at_its_distance() {
+        let frustum = Frustum::from_angles(0.7, 0.7, 0.7, 0.7);
+        let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.06, DepthRange::PAPER, [1000; 2], Eye::Right);
+        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, SIZE[1], false));
+        assert_eq!(left.1, right.1);
+        let disparity = left.0[0] as f32 - right.0[0] as f32;
+        assert!((disparity - 0.06 / DISTANCE * pair.focal_length_pixels()).abs() <= 1.0);
+        assert!(left.0[1] + left.1[1] < 500, "below the horizon");
+    }
+}

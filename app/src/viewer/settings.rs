@@ -1,0 +1,612 @@
+//! Settings of the viewer: defaults < file < overrides.
+
+use std::fmt::{self, Display};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use toml::{Table, Value};
+
+use crate::eyes::{Eye, GuardBand, MAX_IPD};
+use crate::render::{MAX_POINT_LIGHTS, RenderSettings};
+use crate::scene::builtin;
+use crate::stereo::{AntiAliasing, Method, StereoOptions};
+use crate::synthesis::{ImBufferSize, NearFieldPolicy, PaperOptions, Pipeline};
+
+/// Largest settings file in bytes.
+const MAX_FILE: u64 = 1 << 20;
+
+/// Why settings cannot be used: one sentence with the key and the remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum SettingsError {
+    /// The file cannot be read.
+    #[error("the settings file {path} cannot be read ({source}): check its path and permissions")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// The file is not TOML.
+    #[error("the settings file {path} is not TOML ({what}): write lines such as scene = \"prototype\"")]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// The parser's words.
+        what: String,
+    },
+    /// A key that does not exist.
+    #[error("{origin}: there is no setting \"{key}\"; choose one of {}", KEYS.join(", "))]
+    UnknownKey {
+        /// The file, or the override.
+        origin: String,
+        /// The key.
+        key: String,
+    },
+    /// A value that does not fit its key.
+    #[error("{origin}: the setting \"{key}\" cannot be {value}: {remedy}")]
+    Value {
+        /// The file, or the override.
+        origin: String,
+        /// The key.
+        key: String,
+        /// The value given.
+        value: String,
+        /// What is possible.
+        remedy: String,
+    },
+    /// An override that is not `key=value`.
+    #[error("\"{0}\" is no setting: write key=value, such as method=yoro")]
+    NoPair(String),
+}
+
+/// On what the eyes are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DisplayKind {
+    /// The best that there is: a Cardboard-compatible viewer, until headsets are supported.
+    #[default]
+    Auto,
+    /// A phone in a Cardboard-compatible viewer.
+    Cardboard,
+}
+
+/// Ambient occlusion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ssao {
+    /// None.
+    Off,
+    /// At half the resolution.
+    Half,
+    /// At full resolution.
+    Full,
+}
+
+/// All settings of the viewer. As TOML, and as `key=value`, keys are written with hyphens.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+pub struct Settings {
+    /// A built-in scene, or an OBJ, glTF or GLB file, by its path or by its name in one of the platform's
+    /// scene folders.
+    pub scene: String,
+    /// Seed of a built-in scene.
+    pub seed: u64,
+    /// Which of the scene's viewpoints the viewer stands at, from 0; beyond the last it starts over.
+    pub viewpoint: usize,
+    /// The stereo method to start with.
+    pub method: Method,
+    /// The methods that a tap goes through.
+    pub methods: Vec<Method>,
+    /// Synthesis pipeline.
+    pub pipeline: Pipeline,
+    /// ImBuffer of the paper's pipeline: a divisor (`2`) or a size (`512x512`).
+    #[serde(with = "imbuffer")]
+    pub imbuffer: ImBufferSize,
+    /// Paper's pipeline: interpolate between ImBuffer entries.
+    pub linear_interpolation: bool,
+    /// Paper's pipeline: rows of the patcher's kernel, 1 to 15.
+    pub kernel_height: u32,
+    /// Paper's pipeline: whole columns and one depth sample per ImBuffer pixel, as the text says.
+    pub strict: bool,
+    /// How much wider the dominant eye is rendered: `none`, `40px`, or metres; by default as the pipeline needs.
+    #[serde(with = "guard_band", skip_serializing_if = "Option::is_none")]
+    pub guard_band: Option<GuardBand>,
+    /// When anti-aliasing runs; by default as the pipeline needs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub anti_aliasing: Option<AntiAliasing>,
+    /// Render objects nearer than this (metres) for both eyes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub near_field: Option<f32>,
+    /// Switch to two real renders while most of the view is too near.
+    pub switch: bool,
+    /// The viewer: `v1`, `v2`, the URI of its QR code, or the path of a parameter file.
+    pub viewer: String,
+    /// The eye that is rendered.
+    pub dominant: Eye,
+    /// Distance between the eyes in metres; by default that of the viewer's lenses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ipd: Option<f32>,
+    /// Rendered pixels per screen pixel at the lens's centre, per axis, 0.25 to 2; the upper limit when
+    /// `adaptive` is on.
+    pub render_scale: f32,
+    /// Adapt render scale and ImBuffer to the display's rate and the device's temperature.
+    pub adaptive: bool,
+    /// Turn the finished image to the newest head pose.
+    pub timewarp: bool,
+    /// Correct the lenses' chromatic aberration.
+    pub chromatic: bool,
+    /// Show the HUD.
+    pub hud: bool,
+    /// Edge of the sun's shadow map in texels, 0 for no shadows.
+    pub shadow_map: u32,
+    /// Ambient occlusion.
+    pub ssao: Ssao,
+    /// Glow around what is brighter than white.
+    pub bloom: bool,
+    /// Point lights that light a view, at most 24.
+    pub point_lights: usize,
+    /// Length of the session in seconds, after which its summary is logged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration: Option<f32>,
+    /// End the program after `duration`.
+    pub auto_exit: bool,
+    /// On what the eyes are shown.
+    pub display: DisplayKind,
+    /// Measure the GPU time of each stage, where the driver has timer queries.
+    pub profiling: bool,
+}
+
+/// The keys of [`Settings`], in order.
+pub const KEYS: &[&str] = &[
+    "scene",
+    "seed",
+    "viewpoint",
+    "method",
+    "methods",
+    "pipeline",
+    "imbuffer",
+    "linear-interpolation",
+    "kernel-height",
+    "strict",
+    "guard-band",
+    "anti-aliasing",
+    "near-field",
+    "switch",
+    "viewer",
+    "dominant",
+    "ipd",
+    "render-scale",
+    "adaptive",
+    "timewarp",
+    "chromatic",
+    "hud",
+    "shadow-map",
+    "ssao",
+    "bloom",
+    "point-lights",
+    "duration",
+    "auto-exit",
+    "display",
+    "profiling",
+];
+
+/// Keys that may be left to the program: the value `auto` takes them back.
+const OPTIONAL: &[&str] = &["guard-band", "anti-aliasing", "near-field", "ipd", "duration"];
+
+impl Default for Settings {
+    fn default() -> Settings {
+        let paper = PaperOptions::default();
+        Settings {
+            scene: "prototype".into(),
+            seed: builtin::DEFAULT_SEED,
+            viewpoint: 0,
+            method: Method::Yoro,
+            methods: vec![Method::Yoro, Method::Conventional, Method::Mono],
+            pipeline: Pipeline::default(),
+            imbuffer: paper.imbuffer,
+            linear_interpolation: paper.linear_interpolation,
+            kernel_height: paper.kernel_height,
+            strict: paper.strict,
+            guard_band: None,
+            anti_aliasing: None,
+            near_field: None,
+            switch: true,
+            viewer: "v2".into(),
+            dominant: Eye::Right,
+            ipd: None,
+            render_scale: 1.0,
+            adaptive: false,
+            timewarp: true,
+            chromatic: false,
+            hud: true,
+            // Phones: half of what the desktop program takes by default.
+            shadow_map: 2048,
+            ssao: Ssao::Half,
+            bloom: true,
+            point_lights: MAX_POINT_LIGHTS / 2,
+            duration: None,
+            auto_exit: false,
+            display: DisplayKind::Auto,
+            profiling: true,
+        }
+    }
+}
+
+impl Settings {
+    /// The defaults, changed by a TOML file if there is one, then by `key=value` texts in order. An empty value
+    /// changes nothing: that is what a system property that was taken back reads as.
+    ///
+    /// # Errors
+    /// [`SettingsError`].
+    pub fn resolve<S: AsRef<str>>(
+        file: Option<&Path>,
+        overrides: impl IntoIterator<Item = S>,
+    ) -> Result<Settings, SettingsError> {
+        let mut settings = Settings::default();
+        if let Some(path) = file {
+            settings.apply_file(path)?;
+        }
+        for pair in overrides {
+            settings.apply(pair.as_ref())?;
+        }
+        Ok(settings)
+    }
+
+    /// Changes the settings by a TOML file.
+    ///
+    /// # Errors
+    /// [`SettingsError`]; the settings stay as they were.
+    pub fn apply_file(&mut self, path: &Path) -> Result<(), SettingsError> {
+        let mut changed = self.clone();
+        match changed.apply_file_leniently(path).into_iter().next() {
+            Some(error) => Err(error),
+            None => {
+                *self = changed;
+                Ok(())
+            }
+        }
+    }
+
+    /// Changes the settings by what is right in a TOML file, and says what is wrong: for programs that nobody can
+    /// start again at once.
+    pub fn apply_file_leniently(&mut self, path: &Path) -> Vec<SettingsError> {
+        let mut text = String::new();
+        let read = std::fs::File::open(path).and_then(|file| file.take(MAX_FILE).read_to_string(&mut text));
+        if let Err(source) = read {
+            return vec![SettingsError::Read { path: path.into(), source }];
+        }
+        let table: Table = match text.parse() {
+            Ok(table) => table,
+            Err(error) => {
+                let what = toml::de::Error::message(&error).trim().replace('\n', " ");
+                return vec![SettingsError::Syntax { path: path.into(), what }];
+            }
+        };
+        let origin = path.display().to_string();
+        table.into_iter().filter_map(|(key, value)| self.set(&origin, &key, &[value]).err()).collect()
+    }
+
+    /// Changes one setting by a text `key=value`. Lists are written as in TOML or separated by commas; `auto`
+    /// takes back a setting that has no fixed default.
+    ///
+    /// # Errors
+    /// [`SettingsError`]; the settings stay as they were.
+    pub fn apply(&mut self, pair: &str) -> Result<(), SettingsError> {
+        let (key, text) = pair.split_once('=').ok_or_else(|| SettingsError::NoPair(pair.into()))?;
+        let (key, text) = (key.trim(), text.trim());
+        if text.is_empty() {
+            return if KEYS.contains(&key) { Ok(()) } else { Err(unknown(pair, key)) };
+        }
+        // What a text means is the key's matter: try the kinds of TOML first, then plain words.
+        let typed = format!("x = {text}").parse::<Table>().ok().and_then(|mut table| table.remove("x"));
+        let words = || text.split(',').map(|word| Value::from(word.trim())).collect::<Vec<_>>();
+        let candidates: Vec<Value> =
+            typed.into_iter().chain([Value::from(text), Value::Array(words())]).collect();
+        self.set(pair, key, &candidates)
+    }
+
+    /// Sets one key to the first of the candidates that fits.
+    fn set(&mut self, origin: &str, key: &str, candidates: &[Value]) -> Result<(), SettingsError> {
+        if !KEYS.contains(&key) {
+            return Err(unknown(origin, key));
+        }
+        let fault = |value: &Value, remedy: String| SettingsError::Value {
+            origin: origin.into(),
+            key: key.into(),
+            value: value.to_string(),
+            remedy,
+        };
+        let table = Table::try_from(&*self).map_err(|e| fault(&candidates[0], e.to_string()))?;
+        let mut first_error = None;
+        for value in candidates {
+            let mut table = table.clone();
+            if OPTIONAL.contains(&key) && value.as_str() == Some("auto") {
+                table.remove(key);
+            } else {
+                table.insert(key.into(), value.clone());
+            }
+            match table.try_into::<Settings>() {
+                Ok(settings) => {
+                    settings.check(key).map_err(|remedy| fault(value, remedy.into()))?;
+                    *self = settings;
+                    return Ok(());
+                }
+                Err(error) => {
+                    let reason = error.message().trim().replace('\n', " ");
+                    // Of a plain word, the complaint about words is the one that helps.
+                    if first_error.is_none() || value.is_str() {
+                        first_error = Some(fault(value, reason));
+                    }
+                }
+            }
+        }
+        Err(first_error.unwrap_or_else(|| unknown(origin, key)))
+    }
+
+    /// Checks the range of one setting; the error is the remedy.
+    fn check(&self, key: &str) -> Result<(), &'static str> {
+        let ensure = |fine: bool, remedy| if fine { Ok(()) } else { Err(remedy) };
+        match key {
+            "scene" => ensure(!self.scene.trim().is_empty(), "name a built-in scene or a file"),
+            "methods" => ensure(!self.methods.is_empty(), "name at least one method"),
+            "imbuffer" => ensure(
+                match self.imbuffer {
+                    ImBufferSize::Divisor(n) => (1..=64).contains(&n),
+                    ImBufferSize::Fixed(size) => size.iter().all(|n| (1..=8192).contains(n)),
+                },
+                "give a divisor from 1 to 64, or a size such as 512x512",
+            ),
+            "kernel-height" => ensure((1..=15).contains(&self.kernel_height), "give 1 to 15 rows"),
+            "guard-band" => ensure(
+                match self.guard_band {
+                    Some(GuardBand::Pixels(n)) => n <= 1024,
+                    Some(GuardBand::Distance(z)) => (0.05..=1000.0).contains(&z),
+                    _ => true,
+                },
+                "give none, pixels such as 40px, or metres such as 1.0",
+            ),
+            "near-field" => ensure(
+                self.near_field.is_none_or(|z| z > 0.0 && z.is_finite()),
+                "give metres above 0, or auto",
+            ),
+            "ipd" => ensure(
+                self.ipd.is_none_or(|ipd| (0.0..=MAX_IPD).contains(&ipd)),
+                "give metres from 0 to 0.08, such as 0.063, or auto for that of the lenses",
+            ),
+            "render-scale" => {
+                ensure((0.25..=2.0).contains(&self.render_scale), "give a factor from 0.25 to 2")
+            }
+            "shadow-map" => ensure(self.shadow_map <= 8192, "give texels from 0 to 8192"),
+            "point-lights" => ensure(self.point_lights <= MAX_POINT_LIGHTS, "give a number from 0 to 24"),
+            "duration" => ensure(
+                self.duration.is_none_or(|s| s > 0.0 && s.is_finite()),
+                "give seconds above 0, or auto",
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    /// What the stereo methods take.
+    pub fn stereo_options(&self) -> StereoOptions {
+        let mut options = StereoOptions::of_pipeline(self.pipeline);
+        options.synthesis.paper = PaperOptions {
+            imbuffer: self.imbuffer,
+            linear_interpolation: self.linear_interpolation,
+            kernel_height: self.kernel_height,
+            strict: self.strict,
+        };
+        options.guard_band = self.guard_band.unwrap_or(options.guard_band);
+        options.anti_aliasing = self.anti_aliasing.unwrap_or(options.anti_aliasing);
+        options.near_field = self.near_field;
+        options.policy = self.switch.then(NearFieldPolicy::default);
+        options
+    }
+
+    /// What the renderer takes.
+    pub fn render_settings(&self) -> RenderSettings {
+        RenderSettings {
+            shadow_map_size: self.shadow_map,
+            ssao: self.ssao != Ssao::Off,
+            ssao_half_size: self.ssao == Ssao::Half,
+            bloom: self.bloom,
+            point_lights: self.point_lights,
+            ..RenderSettings::default()
+        }
+    }
+}
+
+/// One line: `key=value` for each setting.
+impl Display for Settings {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let table = Table::try_from(self).map_err(|_| fmt::Error)?;
+        for (i, key) in KEYS.iter().enumerate() {
+            let space = if i == 0 { "" } else { " " };
+            match table.get(*key) {
+                // As they were given, not as doubles.
+                Some(Value::Float(number)) => write!(f, "{space}{key}={}", *number as f32)?,
+                Some(value) => write!(f, "{space}{key}={value}")?,
+                None => write!(f, "{space}{key}=auto")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+fn unknown(origin: &str, key: &str) -> SettingsError {
+    SettingsError::UnknownKey { origin: origin.into(), key: key.into() }
+}
+
+/// A value that may be written as a number or as a word.
+fn text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    match Value::deserialize(deserializer)? {
+        Value::String(text) => Ok(text),
+        Value::Integer(n) => Ok(n.to_string()),
+        Value::Float(n) => Ok(n.to_string()),
+        other => Err(D::Error::custom(format!("{} is no such value", other.type_str()))),
+    }
+}
+
+mod imbuffer {
+    use super::*;
+
+    pub fn serialize<S: Serializer>(size: &ImBufferSize, serializer: S) -> Result<S::Ok, S::Error> {
+        match size {
+            ImBufferSize::Divisor(n) => serializer.serialize_u32(*n),
+            ImBufferSize::Fixed([w, h]) => serializer.serialize_str(&format!("{w}x{h}")),
+        }
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ImBufferSize, D::Error> {
+        let text = text(deserializer)?;
+        let size = match text.split_once('x') {
+            Some((w, h)) => w.parse().ok().zip(h.parse().ok()).map(|(w, h)| ImBufferSize::Fixed([w, h])),
+            None => text.parse().ok().map(ImBufferSize::Divisor),
+        };
+        size.ok_or_else(|| D::Error::custom("give a divisor such as 2, or a size such as 512x512"))
+    }
+}
+
+mod guard_band {
+    use super::*;
+
+    pub fn serialize<S: Serializer>(band: &Option<GuardBand>, serializer: S) -> Result<S::Ok, S::Error> {
+        match band {
+            None => serializer.serialize_none(),
+            Some(GuardBand::None) => serializer.serialize_str("none"),
+            Some(GuardBand::Pixels(n)) => serializer.serialize_str(&format!("{n}px")),
+            Some(GuardBand::Distance(z)) => serializer.serialize_f32(*z),
+        }
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<GuardBand>, D::Error> {
+        let text = text(deserializer)?;
+        let band = match (text.as_str(), text.strip_suffix("px")) {
+            ("none", _) => Some(GuardBand::None),
+            (_, Some(pixels)) => pixels.parse().ok().map(GuardBand::Pixels),
+            (metres, None) => metres.parse().ok().map(GuardBand::Distance),
+        };
+        band.map(Some)
+            .ok_or_else(|| D::Error::custom("give none, pixels such as 40px, or metres such as 1.0"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(pairs: &[&str]) -> Result<Settings, SettingsError> {
+        Settings::resolve(None, pairs)
+    }
+
+    #[track_caller]
+    fn refused(pair: &str, naming: &[&str]) {
+        let message = with(&[pair]).unwrap_err().to_string();
+        assert!(!message.contains('\n'), "{message}");
+        for name in naming {
+            assert!(message.contains(name), "{name} is not in: {message}");
+        }
+    }
+
+    #[test]
+    fn the_list_of_keys_is_complete() {
+        let full = with(&["guard-band=40px", "anti-aliasing=off", "near-field=1", "ipd=0.06", "duration=10"]);
+        let table = Table::try_from(full.unwrap()).unwrap();
+        let mut keys: Vec<_> = table.keys().map(String::as_str).collect();
+        let mut listed = KEYS.to_vec();
+        keys.sort_unstable();
+        listed.sort_unstable();
+        assert_eq!(keys, listed);
+    }
+
+    #[test]
+    fn every_kind_of_override() {
+        let settings = with(&[
+            "scene=/sdcard/a room.obj",
+            "method=conventional",
+            "methods=mono,yoro",
+            "pipeline=paper",
+            "imbuffer=256x128",
+            "guard-band=none",
+            "dominant=left",
+            "ipd=0.06",
+            "adaptive=true",
+            "seed=7",
+            "ssao=off",
+            "duration=30",
+            "viewer=https://g.co/cardboard",
+            "hud=",
+        ])
+        .unwrap();
+        assert_eq!(settings.scene, "/sdcard/a room.obj");
+        assert_eq!(settings.methods, [Method::Mono, Method::Yoro]);
+        assert_eq!(settings.imbuffer, ImBufferSize::Fixed([256, 128]));
+        assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(0.06)));
+        assert_eq!((settings.dominant, settings.duration), (Eye::Left, Some(30.0)));
+        assert!(settings.adaptive && settings.hud && !settings.render_settings().ssao);
+        assert_eq!(settings.stereo_options().synthesis.pipeline, Pipeline::Paper);
+        let again = with(&["ipd=0.06", "ipd=auto", "imbuffer=4", "methods=mono", "guard-band=0.5"]).unwrap();
+        assert_eq!((again.ipd, again.imbuffer), (None, ImBufferSize::Divisor(4)));
+        assert_eq!(again.guard_band, Some(GuardBand::Distance(0.5)));
+        assert_eq!(again.methods, [Method::Mono]);
+    }
+
+    #[test]
+    fn mistakes_name_key_and_remedy() {
+        refused("speed=3", &["\"speed\"", "render-scale"]);
+        refused("speed=", &["\"speed\""]);
+        refused("method", &["method", "key=value"]);
+        refused("method=fast", &["\"method\"", "fast", "conventional"]);
+        refused("ipd=0.2", &["\"ipd\"", "0.08"]);
+        refused("ipd=wide", &["\"ipd\"", "wide"]);
+        refused("imbuffer=0", &["\"imbuffer\"", "64"]);
+        refused("imbuffer=a", &["\"imbuffer\"", "512x512"]);
+        refused("guard-band=far", &["\"guard-band\"", "40px"]);
+        refused("adaptive=yes", &["\"adaptive\"", "yes"]);
+        refused("render-scale=9", &["0.25"]);
+        refused("kernel-height=40", &["15"]);
+        refused("seed=-1", &["\"seed\""]);
+        refused("methods=yoro,fast", &["\"methods\"", "fast"]);
+        refused("display=openxr", &["\"display\"", "cardboard"]);
+    }
+
+    #[test]
+    fn a_file_comes_before_overrides() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("yoro.toml");
+        std::fs::write(&path, "method = \"mono\"\nipd = 0.06\nmethods = [\"mono\"]\nguard-band = 2\n")
+            .unwrap();
+        let settings = Settings::resolve(Some(&path), ["method=conventional"]).unwrap();
+        assert_eq!((settings.method, settings.ipd), (Method::Conventional, Some(0.06)));
+        assert_eq!(settings.guard_band, Some(GuardBand::Distance(2.0)));
+        for (text, naming) in [
+            ("speed = 3\n", "\"speed\""),
+            ("ipd = \"wide\"\n", "\"ipd\""),
+            ("ipd = = 3\n", "not TOML"),
+            ("[method]\nx = 1\n", "\"method\""),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let message = Settings::resolve(Some(&path), [""; 0]).unwrap_err().to_string();
+            assert!(message.contains(naming) && message.contains("yoro.toml"), "{message}");
+            assert!(!message.contains('\n'), "{message}");
+        }
+        let missing = folder.path().join("none.toml");
+        assert!(Settings::resolve(Some(&missing), [""; 0]).unwrap_err().to_string().contains("none.toml"));
+    }
+
+    #[test]
+    fn what_is_printed_is_read_again() {
+        let settings = with(&["ipd=0.061", "methods=mono,yoro", "imbuffer=512x512", "scene=a b"]).unwrap();
+        let text = toml::to_string(&settings).unwrap();
+        assert_eq!(toml::from_str::<Settings>(&text).unwrap(), settings);
+        assert!(settings.to_string().contains("ipd=0.061") && settings.to_string().contains("duration=auto"));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn any_text_is_taken_or_refused(key in 0usize..30, value in ".{0,12}") {
+            let _ = with(&[&format!("{}={value}", KEYS[key])]);
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! The viewer on a real GL context.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use glam::{Quat, Vec2, Vec3};
+
+use super::*;
+use crate::gl::{Filter, Format, RenderTarget};
+use crate::platform::{Backend, Headless};
+
+const WINDOW: [u32; 2] = [320, 180];
+const PERIOD_NS: i64 = 16_666_667;
+
+fn screen() -> Screen {
+    // 110 x 62 mm.
+    Screen { size: WINDOW, dpi: [74.0; 2], rotation: Rotation::LandscapeLeft }
+}
+
+fn optics() -> Optics {
+    Optics::new(&ViewerParams::v1(), screen().metres())
+}
+
+fn window(gl: &Rc<Context>) -> RenderTarget {
+    RenderTarget::new(gl, WINDOW, &[(Format::Rgba8, Filter::Nearest)], None).unwrap()
+}
+
+/// A pixel of the window by metres from its lower left corner.
+fn pixel(window: &RenderTarget, metres: Vec2) -> [u8; 4] {
+    let size = screen().metres();
+    let at = [0, 1].map(|i| (metres[i] / size[i] * WINDOW[i] as f32) as u32);
+    window.read_rgba8(0, at, [1, 1]).try_into().unwrap()
+}
+
+/// A frame of two images, each of one colour with a white column in the middle (tangent 0).
+fn marked_frame(gl: &Rc<Context>, optics: &Optics) -> StereoFrame {
+    let size = [256, 256];
+    let frame = StereoFrame::new(gl, size).unwrap();
+    for (eye, color) in Eye::BOTH.into_iter().zip([[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]) {
+        let frustum = optics.frustum(eye);
+        let middle = (-frustum.left / frustum.width() * size[0] as f32) as u32;
+        frame.eye(eye).bind();
+        gl.fill([0, 0], size, color);
+        gl.fill([middle - 4, 0], [8, size[1]], [1.0; 4]);
+    }
+    frame
+}
+
+#[test]
+fn each_eye_sees_its_own_image_around_its_lens() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let (gl, optics) = (headless.gl(), optics());
+    let (frame, window) = (marked_frame(gl, &optics), window(gl));
+    for chromatic in [false, true] {
+        let lens = LensPass::new(gl, &optics, chromatic).unwrap();
+        lens.run(&frame, Quat::IDENTITY, &Destination::whole(&window));
+        for (eye, color) in Eye::BOTH.into_iter().zip([[255, 0, 0, 255], [0, 0, 255, 255]]) {
+            let center = optics.lens_center(eye);
+            assert_eq!(pixel(&window, center), [255; 4], "straight ahead is at the lens's centre");
+            for side in [-0.010, 0.010] {
+                assert_eq!(pixel(&window, center + Vec2::new(side, 0.0)), color);
+            }
+        }
+        let [line, ..] = pixel(&window, Vec2::new(screen().metres()[0] / 2.0, 0.001));
+        assert_eq!(line, 89, "the alignment line");
+        assert_eq!(pixel(&window, Vec2::new(0.0005, 0.0005)), [0, 0, 0, 255], "no lens shows the corner");
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn straight_lines_bow_towards_the_lens() {
+    // The lens magnifies the border more than the middle (pincushion), so that the screen shows a barrel: a
+    // vertical line beside the centre is nearer to the centre at its ends.
+    let mesh = optics().mesh(Eye::Left);
+    let center = optics().lens_center(Eye::Left).x / screen().metres()[0] * 2.0 - 1.0;
+    let distance = |row: usize| (mesh[row * MESH_RESOLUTION].position.x - center).abs();
+    assert!(distance(0) < distance(20) && distance(39) < distance(20));
+}
+
+/// Columns of the left half's white mark, at the height of the lens.
+fn mark(window: &RenderTarget, optics: &Optics) -> f32 {
+    let row = (optics.lens_center(Eye::Left).y / screen().metres()[1] * WINDOW[1] as f32) as u32;
+    let pixels = window.read_rgba8(0, [0, row], [WINDOW[0] / 2 - 4, 1]);
+    let white: Vec<usize> =
+        (0..pixels.len() / 4).filter(|&x| pixels[x * 4..x * 4 + 3].iter().all(|&c| c > 200)).collect();
+    white.iter().sum::<usize>() as f32 / white.len() as f32
+}
+
+#[test]
+fn timewarp_turns_the_image_against_the_head() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let (gl, optics) = (headless.gl(), optics());
+    let (frame, window) = (marked_frame(gl, &optics), window(gl));
+    let lens = LensPass::new(gl, &optics, false).unwrap();
+    let at = |turn| {
+        lens.run(&frame, turn, &Destination::whole(&window));
+        mark(&window, &optics)
+    };
+    let still = at(Quat::IDENTITY);
+    // What is straight ahead is 10 degrees to the right once the head has turned 10 degrees to the left.
+    let angle = 10f32.to_radians();
+    let turned = at(Quat::from_rotation_y(angle));
+    let metres = Distortion::new(&[0.441, 0.156]).undistort(angle.tan()) * 0.042;
+    let expected = metres / screen().metres()[0] * WINDOW[0] as f32;
+    assert!((turned - still - expected).abs() < 1.0, "{still} -> {turned}, expected {expected}");
+    assert!(at(Quat::from_rotation_y(-angle)) < still);
+}
+
+fn settings(pairs: &[&str]) -> Settings {
+    let cheap =
+        ["scene=prototype", "viewer=v1", "shadow-map=0", "ssao=off", "bloom=false", "render-scale=0.5"];
+    Settings::resolve(None, cheap.iter().chain(pairs)).unwrap()
+}
+
+/// A display and a clock for a viewer.
+struct Run {
+    viewer: Viewer,
+    window: RenderTarget,
+    now_ns: i64,
+}
+
+impl Run {
+    fn new(gl: &Rc<Context>, pairs: &[&str]) -> Run {
+        let mut viewer = Viewer::new(settings(pairs), screen(), &[]).unwrap();
+        viewer.attach(gl.clone()).unwrap();
+        Run { viewer, window: window(gl), now_ns: 0 }
+    }
+
+    fn frame(&mut self) -> FrameReport {
+        self.now_ns += PERIOD_NS;
+        let timing = FrameTiming {
+            now_ns: self.now_ns,
+            expected_display_ns: self.now_ns + PERIOD_NS,
+            refresh_hz: 60.0,
+        };
+        self.viewer.frame(&Destination::whole(&self.window), &timing).unwrap()
+    }
+
+    fn load(&mut self) {
+        while self.viewer.scene_state() == SceneState::Loading {
+            self.viewer.poll_scene();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn image(&self) -> Vec<u8> {
+        self.window.read_rgba8(0, [0, 0], WINDOW)
+    }
+}
+
+#[test]
+fn from_loading_to_the_end_of_a_session() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let mut run = Run::new(gl, &["duration=0.5", "auto-exit=true", "adaptive=true"]);
+    assert_eq!(run.frame().scene, SceneState::Loading);
+    let loading = run.image();
+    assert!(loading.chunks_exact(4).any(|p| p[0] > 200), "the progress bar");
+    run.load();
+    let (mut over, mut lines) = (0, Vec::new());
+    for i in 0..64 {
+        let report = run.frame();
+        assert_eq!((report.scene, report.late_refreshes), (SceneState::Ready, 0));
+        over += report.session_over as u32;
+        assert_eq!(report.exit, over > 0);
+        if report.telemetry_due {
+            let device = DeviceState { battery_celsius: Some(31.0), ..DeviceState::default() };
+            lines.push((i, run.viewer.telemetry(run.now_ns, &device)));
+        }
+    }
+    assert_eq!(over, 1);
+    assert_ne!(run.image(), loading);
+    let [(_, line)] = lines.as_slice() else { panic!("{lines:?}") };
+    let read: Line = line.to_string().parse().unwrap();
+    assert_eq!(read.to_string(), line.to_string());
+    assert_eq!((line.method.as_str(), line.pipeline.as_deref()), ("yoro", Some("gather")));
+    assert_eq!((line.scene.as_str(), line.stale, line.current_ma), ("prototype", Some(0), None));
+    assert!((line.fps.unwrap() - 60.0).abs() < 0.1, "{line}");
+    let summary = run.viewer.summary(run.now_ns).to_string();
+    assert!(summary.contains("frames=60,FPS=60.0"), "{summary}");
+
+    // The context is lost and comes back; the scene is loaded again.
+    let before = run.image();
+    run.viewer.detach();
+    assert!(matches!(
+        run.viewer.render(&FrameTiming { now_ns: 0, expected_display_ns: 0, refresh_hz: 0.0 }),
+        Err(ViewerError::NoContext)
+    ));
+    run.viewer.attach(gl.clone()).unwrap();
+    run.load();
+    run.viewer.event(Event::ToggleHud).unwrap();
+    run.frame();
+    let differing = run.image().iter().zip(&before).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    assert!(differing > 0 && differing < before.len() / 8, "only the HUD is gone: {differing}");
+    drop(run);
+    assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
+}
+
+#[test]
+fn events_change_what_is_seen() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let mut run = Run::new(gl, &["hud=false", "methods=yoro,conventional,mono", "ipd=0.063"]);
+    run.load();
+    run.frame();
+    let yoro = run.image();
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Conventional));
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Mono));
+    let objects = gl.object_count();
+    for _ in 0..3 {
+        run.viewer.event(Event::Tap).unwrap();
+        run.frame();
+    }
+    assert_eq!(run.viewer.method(), Method::Mono);
+    assert_eq!(gl.object_count(), objects, "switching leaves nothing behind");
+    run.viewer.event(Event::Tap).unwrap();
+    let Action::Ipd(ipd) = run.viewer.event(Event::IpdUp).unwrap() else { panic!() };
+    assert!((ipd - 0.064).abs() < 1e-6);
+    for _ in 0..100 {
+        run.viewer.event(Event::IpdUp).unwrap();
+    }
+    assert_eq!(run.viewer.ipd(), MAX_IPD);
+    run.frame();
+    assert_ne!(run.image(), yoro);
+    assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Recenter);
+    assert_eq!(run.viewer.event(Event::ToggleHud).unwrap(), Action::Hud(true));
+    assert!(matches!(run.viewer.event(Event::NextViewpoint).unwrap(), Action::Viewpoint(1)));
+    let rotated = Screen { size: [200, 100], rotation: Rotation::LandscapeRight, ..screen() };
+    run.viewer.resize(rotated).unwrap();
+    run.frame();
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn sensors_turn_the_picture() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let mut run = Run::new(headless.gl(), &["hud=false"]);
+    run.load();
+    run.frame();
+    let ahead = run.image();
+    run.viewer.sensor(Sample::Accelerometer(Vec3::new(9.81, 0.0, 0.0)), 1);
+    run.frame();
+    assert_eq!(run.image(), ahead, "upright is straight ahead");
+    for i in 1..=50 {
+        run.viewer.sensor(Sample::Gyroscope(Vec3::X), i * 10_000_000);
+    }
+    run.viewer.pause();
+    run.viewer.resume();
+    run.now_ns = 500_000_000;
+    run.frame();
+    let turned = run.image();
+    assert_ne!(turned, ahead);
+    let angle = run.viewer.tracker().head_from_world(0.0).inverse().to_scaled_axis().y;
+    run.viewer.hold_head(Some(HeldHead {
+        rendered: Quat::from_rotation_y(angle),
+        displayed: Quat::from_rotation_y(angle),
+    }));
+    run.frame();
+    let differing = run.image().iter().zip(&turned).filter(|(a, b)| a.abs_diff(**b) > 3).count();
+    assert!(differing < turned.len() / 100, "the picture is that of the head's angle: {differing}");
+}
+
+#[test]
+fn a_scene_that_cannot_be_loaded_is_said_in_view() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("room.obj"), "f 1 2 3\n").unwrap();
+    let folders: [PathBuf; 1] = [folder.path().into()];
+    let mut viewer = Viewer::new(settings(&["scene=room"]), screen(), &folders).unwrap();
+    viewer.attach(headless.gl().clone()).unwrap();
+    let mut run = Run { viewer, window: window(headless.gl()), now_ns: 0 };
+    run.load();
+    assert_eq!(run.frame().scene, SceneState::Failed);
+    assert!(run.viewer.failure().unwrap().contains("room.obj"));
+    assert!(run.image().chunks_exact(4).any(|p| p[0] > 200), "the reason is in view");
+    let mistake = Viewer::new(settings(&["scene=palace"]), screen(), &folders).err().unwrap().to_string();
+    assert!(mistake.contains("palace") && mistake.contains("room.obj"), "{mistake}");
+}

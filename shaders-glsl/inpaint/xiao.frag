@@ -1,0 +1,51 @@
+#version 310 es
+// One pass of the background filter of Xiao et al. 2022: of the valid pixels in a window of 29x29 around a hole's pixel,
+// those in the farther half of the window's range of inverse depth are averaged, with weights that fall with the
+// distance. Pixels without any are left to the next pass, which takes this one's for valid, with the disparity averaged
+// alike.
+
+#include "inpaint/holes.glsl"
+
+layout(location = 1) out vec4 disparity;
+
+const int RADIUS = 14;
+
+void main() {
+    ivec2 pixel = here();
+    color = color_at(pixel.x, pixel.y);
+    disparity = vec4(disparity_at(pixel.x, pixel.y));
+    // Rare work stands in a loop with a dynamic count; see include/fill.glsl.
+    bool hole = color.a < 0.5;
+    ivec2 low = max(pixel - RADIUS, ivec2(0));
+    ivec2 high = min(pixel + RADIUS, size - 1);
+    float nearest = -1e9;
+    float farthest = 1e9;
+    for (int y = hole ? low.y : high.y + 1; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) {
+            if (!is_hole(x, y)) {
+                float d = disparity_at(x, y);
+                nearest = max(nearest, d);
+                farthest = min(farthest, d);
+            }
+        }
+    }
+    float limit = 0.5 * (nearest + farthest);
+    vec4 sum = vec4(0.0);
+    float weights = 0.0;
+    for (int y = hole ? low.y : high.y + 1; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) {
+            float d = disparity_at(x, y);
+            if (!is_hole(x, y) && d <= limit) {
+                vec2 away = vec2(x, y) - vec2(pixel);
+                float weight = exp(-0.01 * dot(away, away));
+                sum += weight * vec4(color_at(x, y).rgb, d);
+                weights += weight;
+            }
+        }
+    }
+    if (weights > 0.0) {
+        sum /= weights;
+        color = vec4(sum.rgb, 1.0);
+        disparity = vec4(sum.a);
+    }
+}

@@ -1,0 +1,39 @@
+// The eye's image through the lens: looked up by direction, so that it can be turned (timewarp), dark towards the
+// lens's border and beyond the image's.
+
+uniform sampler2D image;  // display-referred sRGB, as the screen takes it
+uniform vec4 frustum;     // left, bottom, width, height of the image in tangents
+uniform float vignette;   // width of the dark border, as a part of the image
+
+in vec2 lens_uv;
+in vec3 green_direction;
+#ifdef CHROMATIC
+in vec3 red_direction;
+in vec3 blue_direction;
+#endif
+
+layout(location = 0) out vec4 out_color;
+
+vec2 image_uv(vec3 direction) {
+    return (direction.xy / max(-direction.z, 1e-3) - frustum.xy) / frustum.zw;
+}
+
+// 1 inside, 0 from the border on.
+float inside(vec2 uv, float border) {
+    vec2 edge = smoothstep(0.0, border, uv) * smoothstep(0.0, border, 1.0 - uv);
+    return edge.x * edge.y;
+}
+
+void main() {
+    vec2 green_uv = image_uv(green_direction);
+#ifdef CHROMATIC
+    vec3 color = vec3(
+        texture(image, image_uv(red_direction)).r,
+        texture(image, green_uv).g,
+        texture(image, image_uv(blue_direction)).b);
+#else
+    vec3 color = texture(image, green_uv).rgb;
+#endif
+    // A turned image may end before the lens does.
+    out_color = vec4(color * min(inside(lens_uv, vignette), inside(green_uv, vignette)), 1.0);
+}

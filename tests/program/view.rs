@@ -1,0 +1,108 @@
+//! `yoro view`: the picture behind the lenses.
+
+use std::path::Path;
+
+use image::RgbImage;
+use yoro::picture;
+
+use crate::program::{Run, finish, run, succeed, yoro};
+
+/// A screen of 110 x 62 mm with few pixels, and cheap rendering.
+const SMALL: &str =
+    "--screen 384x216 --dpi 88 --viewer v1 --set shadow-map=0 --set ssao=off --set bloom=false";
+
+fn view(folder: &Path, line: &str) -> RgbImage {
+    let run = succeed(folder, &format!("view --png view.png {SMALL} {line}"));
+    assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("view.png\n", ""));
+    picture::load_color(&folder.join("view.png")).unwrap()
+}
+
+/// Mean difference of two pictures in a square around the left lens's centre, in grey levels.
+fn difference(a: &RgbImage, b: &RgbImage) -> f64 {
+    let (x, y) = ((0.025 / 0.110 * 384.0) as u32, 216 - (0.032 / 0.062 * 216.0) as u32);
+    let mut sum = 0;
+    for (dx, dy) in (0..60).flat_map(|dx| (0..60).map(move |dy| (dx, dy))) {
+        let (a, b) = (a.get_pixel(x - 30 + dx, y - 30 + dy), b.get_pixel(x - 30 + dx, y - 30 + dy));
+        sum += (0..3).map(|c| a[c].abs_diff(b[c]) as u32).sum::<u32>();
+    }
+    sum as f64 / (60.0 * 60.0 * 3.0)
+}
+
+#[test]
+fn both_eyes_behind_their_lenses() {
+    let dir = tempfile::tempdir().unwrap();
+    let image = view(dir.path(), "prototype --no-hud");
+    assert_eq!(image.dimensions(), (384, 216));
+    for (x, y) in [(0, 0), (383, 0), (0, 215), (383, 215)] {
+        assert_eq!(image.get_pixel(x, y).0, [0; 3], "no lens shows the corner");
+    }
+    for y in [0, 100, 215] {
+        assert_eq!(image.get_pixel(192, y).0, [89; 3], "the alignment line");
+    }
+    let with_hud = view(dir.path(), "prototype");
+    assert!(with_hud != image);
+    // The left eye is the synthesized one.
+    let real = view(dir.path(), "prototype --no-hud --method conventional");
+    let mono = view(dir.path(), "prototype --no-hud --method mono");
+    let (synthesized, same) = (difference(&image, &real), difference(&mono, &real));
+    assert!(synthesized < 0.25 * same, "{synthesized} synthesized, {same} without stereo");
+}
+
+#[test]
+fn timewarp_makes_up_for_a_late_turn() {
+    let dir = tempfile::tempdir().unwrap();
+    let turned = view(dir.path(), "--no-hud --yaw-degrees 4");
+    let late = view(dir.path(), "--no-hud --late-yaw-degrees 4");
+    let never = view(dir.path(), "--no-hud --late-yaw-degrees 4 --set timewarp=false");
+    let (with, without) = (difference(&turned, &late), difference(&turned, &never));
+    assert!(with < 0.5 * without, "{with} with timewarp, {without} without");
+}
+
+/// `yoro view` on a driver that offers nothing newer than this.
+fn on_es(version: &str, folder: &Path, line: &str) -> Run {
+    finish(
+        yoro(format!("view --gl egl --png es.png {SMALL} --no-hud {line}").split_whitespace())
+            .env("MESA_GLES_VERSION_OVERRIDE", version)
+            .current_dir(folder),
+    )
+}
+
+#[test]
+fn opengl_es_3_0_shows_the_same_by_gather() {
+    let dir = tempfile::tempdir().unwrap();
+    let es = on_es("3.0", dir.path(), "--set pipeline=rowgroup");
+    assert_eq!(es.code, Some(0), "{}", es.stderr);
+    let warnings: Vec<_> = es.stderr.lines().collect();
+    assert!(
+        matches!(warnings.as_slice(), [line] if line.contains("rowgroup") && line.contains("gather")),
+        "{warnings:?}"
+    );
+    let image = picture::load_color(&dir.path().join("es.png")).unwrap();
+    let expected = view(dir.path(), "--gl egl --no-hud");
+    assert!(difference(&image, &expected) < 0.5);
+}
+
+#[test]
+fn what_is_older_than_es_3_0_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    on_es("2.0", dir.path(), "").refuses(&["OpenGL ES 3"]);
+}
+
+#[test]
+fn mistakes() {
+    let dir = tempfile::tempdir().unwrap();
+    for (line, naming) in [
+        ("view palace --png a.png", ["palace", "prototype"]),
+        ("view --png a.png --viewer nothing.params", ["nothing.params", "v2"]),
+        ("view --png a.png --set speed=1", ["speed", "render-scale"]),
+        ("view --png a.png --set method=fast", ["fast", "conventional"]),
+        ("view --png a.png --settings no.toml", ["no.toml", "path"]),
+        ("view --png a.png --screen 3x3", ["--screen", "2340x1080"]),
+        ("view --png a.bmp.txt --set shadow-map=0", ["a.bmp.txt", "png"]),
+    ] {
+        run(dir.path(), line).refuses(&naming);
+    }
+    std::fs::write(dir.path().join("broken.obj"), "f 1 2 3\n").unwrap();
+    run(dir.path(), "view broken.obj --png a.png").refuses(&["broken.obj"]);
+    assert!(!dir.path().join("a.png").exists());
+}

@@ -1,0 +1,234 @@
+//! The laws of the stereo methods.
+
+use std::rc::Rc;
+
+use anyhow::ensure;
+use glam::Quat;
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum};
+use yoro::gl::Context;
+use yoro::render::{GpuScene, RenderSettings, Renderer};
+use yoro::scene::{Scene, ShadingStyle, builtin};
+use yoro::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
+use yoro_tests::{on_every_backend, scene};
+
+const SIZE: [u32; 2] = [128, 96];
+const IPD: f32 = 0.063;
+
+struct Stage {
+    gl: Rc<Context>,
+    settings: RenderSettings,
+    scene: GpuScene,
+    renderer: Renderer,
+    frame: StereoFrame,
+}
+
+type Eyes = [Vec<u8>; 2];
+
+impl Stage {
+    fn new(gl: &Rc<Context>, scene: Scene) -> anyhow::Result<Stage> {
+        let settings = RenderSettings { shadow_map_size: 512, ..RenderSettings::default() };
+        let scene = GpuScene::upload(gl, scene)?;
+        let renderer = Renderer::new(gl, &settings, &scene)?;
+        Ok(Stage { gl: gl.clone(), settings, scene, renderer, frame: StereoFrame::new(gl, SIZE)? })
+    }
+
+    fn render(&mut self, method: Method, options: &StereoOptions, pair: &EyePair) -> anyhow::Result<Eyes> {
+        let mut method = stereo::create(&self.gl, method, &self.settings, options)?;
+        method.prepare(&mut self.renderer, &self.scene)?;
+        method.render(&mut self.renderer, &self.scene, pair, &mut self.frame)?;
+        Ok(Eye::BOTH.map(|eye| self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size)))
+    }
+
+    fn pair(&self, dominant: Eye, convention: DepthConvention) -> EyePair {
+        let depth = DepthRange { near: 0.1, far: 300.0, convention };
+        let frustum = Frustum::symmetric(1.1, SIZE[0] as f32 / SIZE[1] as f32);
+        EyePair::parallel(self.scene.viewpoints[0].pose(), frustum, IPD, depth, SIZE, dominant)
+    }
+}
+
+/// Parallel and canted eyes, symmetric and asymmetric frusta, both conventions and dominant eyes.
+fn pairs(stage: &Stage) -> Vec<(&'static str, EyePair)> {
+    let plain = stage.pair(Eye::Right, DepthConvention::Standard);
+    let mut infinite = stage.pair(Eye::Left, DepthConvention::Reversed);
+    infinite.depth.far = f32::INFINITY;
+    let mut asymmetric = infinite;
+    asymmetric.frusta[0] = Frustum::from_angles(0.8, 0.6, 0.55, 0.6);
+    asymmetric.frusta[1] = Frustum::from_angles(0.6, 0.8, 0.55, 0.6);
+    let mut canted = plain;
+    for (eye, side) in canted.poses.iter_mut().zip([1.0, -1.0]) {
+        eye.orientation *= Quat::from_rotation_y(side * 0.09);
+    }
+    let odd = EyePair { size: [75, 51], ..plain };
+    vec![
+        ("plain", plain),
+        ("infinite", infinite),
+        ("asymmetric", asymmetric),
+        ("canted", canted),
+        ("odd", odd),
+    ]
+}
+
+/// Every material, glass among them; and a room.
+fn scenes() -> Vec<Scene> {
+    let mut small = scene::every_material(ShadingStyle::Realistic);
+    scene::keep_plain_and_full(&mut small);
+    vec![small, builtin::build("prototype", builtin::DEFAULT_SEED).unwrap()]
+}
+
+fn differences<'a>(a: &'a [u8], b: &'a [u8]) -> impl Iterator<Item = u8> + 'a {
+    assert_eq!(a.len(), b.len());
+    let difference = |(a, b): (&[u8], &[u8])| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+    a.chunks(4).zip(b.chunks(4)).map(difference)
+}
+
+/// Share of the pixels that differ by at most `tolerance`.
+fn within(tolerance: u8, a: &[u8], b: &[u8]) -> f64 {
+    let within = differences(a, b).filter(|d| *d <= tolerance).count();
+    within as f64 / (a.len() / 4) as f64
+}
+
+fn mean_difference(a: &[u8], b: &[u8]) -> f64 {
+    differences(a, b).map(f64::from).sum::<f64>() / (a.len() / 4) as f64
+}
+
+#[test]
+fn single_pass_stereo_equals_two_renders() {
+    on_every_backend(|gl| {
+        // Anti-aliasing makes several pixels of one whose edge is rounded otherwise.
+        let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
+        for scene in scenes() {
+            let mut stage = Stage::new(gl, scene)?;
+            for (name, pair) in pairs(&stage) {
+                let expected = stage.render(Method::Conventional, &options, &pair)?;
+                for method in [Method::Instanced, Method::Multiview] {
+                    if let Err(reason) = method.supported(gl.capabilities()) {
+                        eprintln!("SKIPPED: {} is not tested here: {reason}", method.name());
+                        continue;
+                    }
+                    let both = stage.render(method, &options, &pair)?;
+                    for eye in Eye::BOTH {
+                        let share = within(1, &both[eye.index()], &expected[eye.index()]);
+                        let (scene, method) = (&stage.scene.name, method.name());
+                        ensure!(share >= 0.999, "{scene}, {method}, {name}, {eye:?}: {share} equal");
+                    }
+                }
+            }
+        }
+        Ok(())
+    })
+    .unwrap();
+}
+
+#[test]
+fn what_a_driver_lacks_is_one_sentence() {
+    on_every_backend(|gl| {
+        for method in Method::ALL {
+            let made = stereo::create(gl, method, &RenderSettings::default(), &StereoOptions::default());
+            match method.supported(gl.capabilities()) {
+                Ok(()) => drop(made?),
+                Err(reason) => {
+                    let sentence = reason.to_string();
+                    ensure!(method == Method::Multiview, "{sentence}");
+                    ensure!(
+                        sentence.contains("GL_OVR_multiview2") && sentence.contains("--method"),
+                        "{sentence}"
+                    );
+                    ensure!(made.err().is_some_and(|e| e.to_string() == sentence));
+                }
+            }
+        }
+        Ok(())
+    })
+    .unwrap();
+}
+
+#[test]
+fn hybrid_is_conventional_where_everything_is_near() {
+    on_every_backend(|gl| {
+        // The split lies beyond the far plane; or beyond all that there is.
+        let mut stage = Stage::new(gl, scenes().swap_remove(0))?;
+        for (threshold, pair) in [
+            (1e-3, stage.pair(Eye::Left, DepthConvention::Standard)),
+            (0.05, stage.pair(Eye::Right, DepthConvention::Reversed)),
+        ] {
+            let options = StereoOptions { split_disparity: threshold, ..StereoOptions::default() };
+            let expected = stage.render(Method::Conventional, &options, &pair)?;
+            ensure!(stage.render(Method::Hybrid, &options, &pair)? == expected, "threshold {threshold}");
+        }
+        Ok(())
+    })
+    .unwrap();
+}
+
+#[test]
+fn the_far_field_of_hybrid_is_the_same_for_both_eyes() {
+    on_every_backend(|gl| {
+        let mut opaque = scenes().swap_remove(0);
+        opaque.model.parts.retain(|part| part.material < 32);
+        let mut stage = Stage::new(gl, opaque)?;
+        for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+            let pair = stage.pair(Eye::Left, convention);
+            let options = StereoOptions { split_disparity: 1e6, ..StereoOptions::default() };
+            let [left, right] = stage.render(Method::Hybrid, &options, &pair)?;
+            ensure!(left == right, "{convention:?}: everything is far");
+            let expected = stage.render(Method::Mono, &options, &pair)?;
+            ensure!(within(8, &left, &expected[0]) > 0.5, "and seen from between the eyes");
+            ensure!(left != expected[0], "not from one of them");
+        }
+        Ok(())
+    })
+    .unwrap();
+}
+
+#[test]
+fn hybrid_is_near_conventional_with_the_split_in_the_midst() {
+    on_every_backend(|gl| {
+        for scene in scenes() {
+            let mut stage = Stage::new(gl, scene)?;
+            for (name, pair) in pairs(&stage).into_iter().filter(|(name, _)| *name != "canted") {
+                // Squares and floor of the small scene lie on both sides of 3 metres, the room on both of 7.
+                let split = if is_small(&stage.scene) { 3.0 } else { 7.0 };
+                let threshold = pair.focal_length_pixels() * IPD / split;
+                let options = StereoOptions { split_disparity: threshold, ..StereoOptions::default() };
+                let expected = stage.render(Method::Conventional, &options, &pair)?;
+                let mono = stage.render(Method::Mono, &options, &pair)?;
+                let both = stage.render(Method::Hybrid, &options, &pair)?;
+                let second = pair.dominant.other().index();
+                let (ours, doing_nothing) = (
+                    mean_difference(&both[second], &expected[second]),
+                    mean_difference(&mono[second], &expected[second]),
+                );
+                let label = format!("{}, {name}: {ours} against {doing_nothing}", stage.scene.name);
+                eprintln!("{label}"); ensure!(ours < 0.7 * doing_nothing, "{label}");
+                ensure!(both != expected, "{label}: nothing was far");
+            }
+        }
+        Ok(())
+    })
+    .unwrap();
+}
+
+#[test]
+fn reprojected_shading_is_near_that_of_two_renders() {
+    on_every_backend(|gl| {
+        let options = StereoOptions::default();
+        for scene in scenes() {
+            let mut stage = Stage::new(gl, scene)?;
+            for (name, pair) in pairs(&stage).into_iter().filter(|(name, _)| *name != "canted") {
+                let expected = stage.render(Method::Conventional, &options, &pair)?;
+                let mono = stage.render(Method::Mono, &options, &pair)?;
+                let both = stage.render(Method::ShadingReprojection, &options, &pair)?;
+                let (dominant, second) = (pair.dominant.index(), pair.dominant.other().index());
+                ensure!(both[dominant] == expected[dominant], "{name}: the dominant eye is rendered");
+                let (ours, doing_nothing) = (
+                    mean_difference(&both[second], &expected[second]),
+                    mean_difference(&mono[second], &expected[second]),
+                );
+                let label = format!("{}, {name}: {ours} against {doing_nothing}", stage.scene.name);
+                eprintln!("{label}"); ensure!(ours < 0.4 * doing_nothing, "{label}");
+            }
+        }
+        Ok(())
+    })
+    .unwrap();
+}
