@@ -6,6 +6,7 @@
 
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int, c_long, c_uint, c_void};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use crate::exports::{self, Export, System, exports};
@@ -25,7 +26,7 @@ const SAME_C: &str = "\
     pthread_getspecific pthread_join pthread_key_create pthread_key_delete pthread_kill pthread_mutex_destroy pthread_mutex_init \
     pthread_mutex_lock pthread_mutex_trylock pthread_mutex_unlock pthread_mutexattr_destroy pthread_mutexattr_init \
     pthread_mutexattr_settype pthread_once pthread_rwlock_destroy pthread_rwlock_rdlock pthread_rwlock_unlock pthread_rwlock_wrlock \
-    pthread_self pthread_setname_np pthread_setspecific pwrite pwrite64 pwritev pwritev64 read readdir readlink readv realloc \
+    pthread_self pthread_setspecific pwrite pwrite64 pwritev pwritev64 read readdir readlink readv realloc \
     realpath recv recvfrom rename renameat rewinddir rmdir sched_getaffinity sched_setaffinity sched_yield send sendfile sendto \
     setenv setpriority getpriority setsockopt shutdown socket socketpair splice stat statvfs statx strchr strcmp strlen strncmp strnlen \
     strtol strtoul strtoull symlink uname unlink unlinkat unsetenv utimensat write writev";
@@ -44,6 +45,7 @@ pub fn exports() -> Vec<Export> {
         System::C, 1: [
             __errno, __system_property_find, __system_property_get, __system_property_read_callback, _exit, abort, android_set_abort_message,
             clock_gettime, clock_nanosleep, exit, gettimeofday, nanosleep, open, open64, openat, opendir, pthread_cond_timedwait,
+            pthread_setname_np,
             strerror_r, syscall, sysconf, time, usleep,
         ];
         System::Dl, 1: [dl_iterate_phdr, dladdr, dlclose, dlerror, dlopen, dlsym];
@@ -120,6 +122,18 @@ pub fn thread_name() -> String {
     unsafe { libc::pthread_getname_np(libc::pthread_self(), name.as_mut_ptr(), name.len()) };
     // SAFETY: terminated by the call, or still zero.
     unsafe { text(name.as_ptr()) }
+}
+
+/// The thread of `android_main` is known by the name that android-activity gives it. Threads that it starts inherit the
+/// name, so later it would be too late to ask.
+unsafe extern "C" fn pthread_setname_np(thread: libc::pthread_t, name: *const c_char) -> c_int {
+    // SAFETY: a terminated name by contract; the rest takes nothing.
+    unsafe {
+        if libc::pthread_equal(thread, libc::pthread_self()) != 0 && text(name) == "android_main" {
+            host().main_thread.store(libc::gettid(), Ordering::Release);
+        }
+        libc::pthread_setname_np(thread, name)
+    }
 }
 
 /// A C string as text; null is empty.

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::os::fd::{AsRawFd, OwnedFd};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock};
 use std::time::{Duration, Instant};
 
@@ -59,6 +59,8 @@ pub struct Host {
     pub library: OnceLock<Library>,
     /// Whether the application asked for its end by `ANativeActivity_finish`.
     pub finish_asked: AtomicBool,
+    /// Kernel's number of the thread that runs `android_main`; 0 before the first.
+    pub main_thread: AtomicI32,
     ndk_objects: Mutex<BTreeMap<&'static str, i64>>,
     violations: Mutex<Vec<String>>,
     report: Mutex<Report>,
@@ -136,6 +138,7 @@ impl Host {
             directories: Directories::new(&device.files)?,
             library: OnceLock::new(),
             finish_asked: AtomicBool::new(false),
+            main_thread: AtomicI32::new(0),
             ndk_objects: Mutex::new(BTreeMap::new()),
             violations: Mutex::new(Vec::new()),
             report: Mutex::new(report),

@@ -40,7 +40,8 @@ pub struct Player {
     queue: Option<&'static AInputQueue>,
     stage: Stage,
     saved: Vec<u8>,
-    captures: usize,
+    /// Number of the first log line that no step has waited for.
+    log_read: usize,
 }
 
 /// An activity as the library sees it. It stays after its end: the library's threads may still look at it.
@@ -65,7 +66,7 @@ impl Player {
             queue: None,
             stage: Stage::default(),
             saved: Vec::new(),
-            captures: 0,
+            log_read: 0,
         }
     }
 
@@ -246,7 +247,7 @@ impl Player {
         }
         self.event("onDestroy", |callbacks| callbacks.onDestroy);
         self.host.frames.set_open(true);
-        self.wait("the end of android_main", |_| !thread_exists("android_main"));
+        self.wait("the end of android_main", |host| !std::path::Path::new(&format!("/proc/self/task/{}", host.main_thread.load(Ordering::Acquire))).exists());
         self.host.frames.set_open(false);
         if let Some(activity) = self.activity.take() {
             jni::release_activity(activity.native.clazz);
@@ -402,17 +403,14 @@ impl Player {
     }
 
     fn wait_log(&mut self, text: &str, frames: u64) {
-        let mut from = 0;
-        for _ in 0..frames {
-            if self.host.log.contains(from, text) {
+        for _ in 0..=frames {
+            if let Some(line) = self.host.log.find(self.log_read, text) {
+                self.log_read = line + 1;
                 return;
             }
-            from = self.host.log.total();
             self.frames(1);
         }
-        if !self.host.log.contains(from, text) {
-            fatal(format!("no log line contains \"{text}\" after {frames} frames"));
-        }
+        fatal(format!("no log line contains \"{text}\" after {frames} frames"));
     }
 
     fn send(&mut self, event: AInputEvent) {
@@ -456,7 +454,6 @@ impl Player {
     fn capture(&mut self, name: PathBuf) {
         self.expect("capture", self.renders());
         self.wait_for_gate();
-        self.captures += 1;
         self.host.frames.request_capture();
         let picture = std::cell::RefCell::new(None);
         self.wait("the picture of a frame", |host| {
@@ -503,12 +500,4 @@ impl Player {
 
 fn nanoseconds(seconds: f64) -> u64 {
     (seconds.max(0.0) * 1e9).round() as u64
-}
-
-fn thread_exists(name: &str) -> bool {
-    std::fs::read_dir("/proc/self/task")
-        .into_iter()
-        .flatten()
-        .flatten()
-        .any(|task| std::fs::read_to_string(task.path().join("comm")).is_ok_and(|comm| comm.trim() == name))
 }

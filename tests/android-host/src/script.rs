@@ -113,9 +113,10 @@ impl Default for Device {
         Self {
             width: 320,
             height: 180,
-            density: 320,
-            xdpi: 320.0,
-            ydpi: 320.0,
+            // A phone's screen, 110 mm wide, with few pixels.
+            density: 160,
+            xdpi: 74.0,
+            ydpi: 74.0,
             refresh_hz: 60.0,
             sdk: 34,
             gles: GlesVersion::Es32,
@@ -276,7 +277,7 @@ pub enum Step {
     Frames(u64),
     /// Frames are shown for that long (virtual seconds).
     Seconds(f64),
-    /// Frames are shown until a log line contains the text.
+    /// Frames are shown until a log line contains the text, one after the line that such a step waited for before.
     WaitLog {
         /// What the line contains.
         text: String,

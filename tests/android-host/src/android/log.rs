@@ -64,16 +64,12 @@ impl Log {
         lock(&self.state).clone()
     }
 
-    /// How many lines there are, of any tag.
-    pub fn total(&self) -> usize {
-        lock(&self.state).total
-    }
-
-    /// Whether a line from number `from` on contains the text.
-    pub fn contains(&self, from: usize, text: &str) -> bool {
+    /// The number of the first line from number `from` on that contains the text, of any tag.
+    pub fn find(&self, from: usize, text: &str) -> Option<usize> {
         let state = lock(&self.state);
         let first = state.total - state.recent.len();
-        state.recent.iter().skip(from.saturating_sub(first)).any(|line| line.contains(text))
+        let skipped = from.saturating_sub(first);
+        state.recent.iter().skip(skipped).position(|line| line.contains(text)).map(|index| first + skipped + index)
     }
 
     /// Called before `abort`.

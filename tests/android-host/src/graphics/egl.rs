@@ -482,7 +482,6 @@ unsafe extern "C" fn eglSwapBuffers(display: Handle, surface: Handle) -> Boolean
                 context.lost = true;
             }
             if context.lost {
-                graphics.group_gone(context.group);
                 return fail(CONTEXT_LOST);
             }
         }
