@@ -78,6 +78,9 @@ impl Player {
     }
 
     fn step(&mut self, step: &Step) {
+        if self.host.log.is_verbose() {
+            self.host.say(&format!("{:9.3} step: {step:?}", self.host.clock.seconds()));
+        }
         match step {
             Step::Launch => self.play(&[Step::Create, Step::Start, Step::Resume, Step::InputQueue, Step::Window, Step::Focus]),
             Step::Quit => self.quit(),

@@ -39,6 +39,11 @@ impl Log {
         Self { verbose, state: Mutex::default(), abort_message: Mutex::default() }
     }
 
+    /// Whether everything is shown.
+    pub fn is_verbose(&self) -> bool {
+        self.verbose
+    }
+
     fn add(&self, priority: c_int, tag: String, text: String) {
         let host = host();
         let priority = *b"??VDIWEFS".get(priority as usize).unwrap_or(&b'?') as char;
