@@ -39,8 +39,9 @@ impl Wait<'_> {
     /// Lets the instant come if it is the next that anybody waits for, the script lets time pass, and no thread of the
     /// process has anything to do. To be called again and again, with a short sleep in between.
     pub fn try_advance(&self) {
-        let is_next = lock(&self.clock.waiting).values().all(|other| *other >= self.instant);
-        if is_next && host().frames.time_may_pass() && nobody_runs() {
+        let is_next = || lock(&self.clock.waiting).values().all(|other| *other >= self.instant);
+        // Asked again at the end: a thread that ran at first may have begun to wait for something earlier.
+        if is_next() && host().frames.time_may_pass() && nobody_runs() && is_next() {
             self.clock.advance_to(self.instant);
         }
     }
