@@ -21,8 +21,10 @@ impl Apk {
     /// # Errors
     /// The file cannot be read, is no APK, or does not hold exactly one library for the ABI.
     pub fn read(path: &Path, abi: &str) -> Result<Self> {
-        let file = File::open(path).with_context(|| format!("cannot open {}: build it by `cargo xtask apk`", path.display()))?;
-        Self::read_from(file, abi).with_context(|| format!("{} is not an APK that the host can run", path.display()))
+        let file = File::open(path)
+            .with_context(|| format!("cannot open {}: build it by `cargo xtask apk`", path.display()))?;
+        Self::read_from(file, abi)
+            .with_context(|| format!("{} is not an APK that the host can run", path.display()))
     }
 
     fn read_from(file: impl Read + Seek, abi: &str) -> Result<Self> {
@@ -48,7 +50,10 @@ impl Apk {
             bail!("it has no AndroidManifest.xml");
         }
         if libraries.len() > 1 {
-            bail!("{folder} holds several libraries, and the host loads one: {}", libraries.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", "));
+            bail!(
+                "{folder} holds several libraries, and the host loads one: {}",
+                libraries.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
+            );
         }
         let library = libraries.pop().with_context(|| format!("it has no library in {folder}"))?;
         Ok(Self { library, assets })
@@ -72,7 +77,12 @@ mod tests {
 
     #[test]
     fn the_library_of_the_abi_and_the_assets_are_taken() {
-        let files = [("AndroidManifest.xml", "m"), ("lib/x86_64/liba.so", "x"), ("lib/arm64-v8a/liba.so", "a"), ("assets/d/e.txt", "e")];
+        let files = [
+            ("AndroidManifest.xml", "m"),
+            ("lib/x86_64/liba.so", "x"),
+            ("lib/arm64-v8a/liba.so", "a"),
+            ("assets/d/e.txt", "e"),
+        ];
         let apk = Apk::read_from(archive(&files), "x86_64").unwrap();
         assert_eq!(apk.library, ("lib/x86_64/liba.so".into(), b"x".to_vec()));
         assert_eq!(apk.assets, [("d/e.txt".to_owned(), b"e".to_vec())].into());
@@ -80,10 +90,16 @@ mod tests {
 
     #[test]
     fn what_is_no_apk_is_refused() {
-        let refused = |files: &[(&str, &str)]| Apk::read_from(archive(files), "x86_64").err().unwrap().to_string();
+        let refused =
+            |files: &[(&str, &str)]| Apk::read_from(archive(files), "x86_64").err().unwrap().to_string();
         assert!(refused(&[("lib/x86_64/liba.so", "x")]).contains("AndroidManifest"));
-        assert!(refused(&[("AndroidManifest.xml", "m"), ("lib/arm64-v8a/liba.so", "x")]).contains("lib/x86_64/"));
-        assert!(refused(&[("AndroidManifest.xml", "m"), ("lib/x86_64/a.so", "x"), ("lib/x86_64/b.so", "x")]).contains("several"));
+        assert!(
+            refused(&[("AndroidManifest.xml", "m"), ("lib/arm64-v8a/liba.so", "x")]).contains("lib/x86_64/")
+        );
+        assert!(
+            refused(&[("AndroidManifest.xml", "m"), ("lib/x86_64/a.so", "x"), ("lib/x86_64/b.so", "x")])
+                .contains("several")
+        );
         assert!(Apk::read_from(Cursor::new(vec![0; 100]), "x86_64").is_err());
     }
 }

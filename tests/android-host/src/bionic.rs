@@ -92,7 +92,9 @@ extern "C" fn sysconf(name: c_int) -> c_long {
         97 => libc::_SC_NPROCESSORS_ONLN,
         98 => libc::_SC_PHYS_PAGES,
         99 => libc::_SC_AVPHYS_PAGES,
-        other => fatal(format!("the application called sysconf({other}), which the host does not know: add it to the host")),
+        other => fatal(format!(
+            "the application called sysconf({other}), which the host does not know: add it to the host"
+        )),
     };
     // SAFETY: takes a number.
     unsafe { libc::sysconf(name) }
@@ -154,7 +156,14 @@ pub unsafe fn text(string: *const c_char) -> String {
 fn is_closed(path: *const c_char) -> bool {
     // SAFETY: open and its kin take a terminated path.
     let path = unsafe { text(path) };
-    ["/sys/class/power_supply", "/sys/class/thermal", "/sys/class/kgsl", "/sys/devices/system/cpu/cpu0/cpufreq"].iter().any(|closed| path.starts_with(closed))
+    [
+        "/sys/class/power_supply",
+        "/sys/class/thermal",
+        "/sys/class/kgsl",
+        "/sys/devices/system/cpu/cpu0/cpufreq",
+    ]
+    .iter()
+    .any(|closed| path.starts_with(closed))
 }
 
 /// The variadic `mode` arrives in the register of a third argument on both architectures.
@@ -203,7 +212,10 @@ fn timespec(nanoseconds: u64) -> libc::timespec {
 /// The virtual time of a clock; none for those that measure CPU time, which are the machine's.
 fn virtual_time(clock: c_int) -> Option<u64> {
     match clock {
-        libc::CLOCK_MONOTONIC | libc::CLOCK_BOOTTIME | libc::CLOCK_MONOTONIC_RAW | libc::CLOCK_MONOTONIC_COARSE => Some(host().clock.now()),
+        libc::CLOCK_MONOTONIC
+        | libc::CLOCK_BOOTTIME
+        | libc::CLOCK_MONOTONIC_RAW
+        | libc::CLOCK_MONOTONIC_COARSE => Some(host().clock.now()),
         libc::CLOCK_REALTIME | libc::CLOCK_REALTIME_COARSE => Some(host().clock.realtime()),
         _ => None,
     }
@@ -224,7 +236,12 @@ unsafe extern "C" fn clock_gettime(clock: c_int, time: *mut libc::timespec) -> c
 unsafe extern "C" fn gettimeofday(time: *mut libc::timeval, _zone: *mut c_void) -> c_int {
     let now = host().clock.realtime();
     // SAFETY: the caller gives room for one timeval.
-    unsafe { time.write(libc::timeval { tv_sec: (now / 1_000_000_000) as _, tv_usec: (now % 1_000_000_000 / 1000) as _ }) };
+    unsafe {
+        time.write(libc::timeval {
+            tv_sec: (now / 1_000_000_000) as _,
+            tv_usec: (now % 1_000_000_000 / 1000) as _,
+        })
+    };
     0
 }
 
@@ -259,12 +276,17 @@ extern "C" fn usleep(microseconds: c_uint) -> c_int {
     0
 }
 
-unsafe extern "C" fn clock_nanosleep(clock: c_int, flags: c_int, time: *const libc::timespec, _rest: *mut libc::timespec) -> c_int {
+unsafe extern "C" fn clock_nanosleep(
+    clock: c_int,
+    flags: c_int,
+    time: *const libc::timespec,
+    _rest: *mut libc::timespec,
+) -> c_int {
     // SAFETY: the caller gives a timespec.
     let time = nanoseconds(unsafe { &*time });
     sleep_until(match (flags & libc::TIMER_ABSTIME != 0, clock) {
         (false, _) => host().clock.now() + time,
-        (true, libc::CLOCK_REALTIME) => host().clock.from_realtime(time),
+        (true, libc::CLOCK_REALTIME) => host().clock.monotonic_of(time),
         (true, _) => time,
     });
     0
@@ -295,12 +317,20 @@ fn real_deadline(clock: c_int, slice: Duration) -> libc::timespec {
 }
 
 /// Deadlines are of CLOCK_REALTIME, unless the condition variable says otherwise, which cannot be asked.
-unsafe extern "C" fn pthread_cond_timedwait(condition: *mut libc::pthread_cond_t, mutex: *mut libc::pthread_mutex_t, deadline: *const libc::timespec) -> c_int {
+unsafe extern "C" fn pthread_cond_timedwait(
+    condition: *mut libc::pthread_cond_t,
+    mutex: *mut libc::pthread_mutex_t,
+    deadline: *const libc::timespec,
+) -> c_int {
     // SAFETY: the caller gives a timespec.
     let deadline = nanoseconds(unsafe { &*deadline });
     // Instants of the two clocks are decades apart.
     let monotonic = deadline < host().clock.realtime() / 2;
-    let (clock, virtual_deadline) = if monotonic { (libc::CLOCK_MONOTONIC, deadline) } else { (libc::CLOCK_REALTIME, host().clock.from_realtime(deadline)) };
+    let (clock, virtual_deadline) = if monotonic {
+        (libc::CLOCK_MONOTONIC, deadline)
+    } else {
+        (libc::CLOCK_REALTIME, host().clock.monotonic_of(deadline))
+    };
     timed_wait(virtual_deadline, |slice| {
         let until = real_deadline(clock, slice);
         // SAFETY: the caller's condition variable and locked mutex.
@@ -311,7 +341,15 @@ unsafe extern "C" fn pthread_cond_timedwait(condition: *mut libc::pthread_cond_t
 }
 
 /// The system call of std's mutexes, condition variables and parked threads gives deadlines on the virtual clock.
-unsafe extern "C" fn syscall(number: c_long, a: usize, b: usize, c: usize, d: usize, e: usize, f: usize) -> c_long {
+unsafe extern "C" fn syscall(
+    number: c_long,
+    a: usize,
+    b: usize,
+    c: usize,
+    d: usize,
+    e: usize,
+    f: usize,
+) -> c_long {
     const WAIT: usize = 0;
     const WAIT_BITSET: usize = 9;
     const REALTIME: usize = 256;
@@ -320,7 +358,7 @@ unsafe extern "C" fn syscall(number: c_long, a: usize, b: usize, c: usize, d: us
         let time = nanoseconds(unsafe { &*(d as *const libc::timespec) });
         let deadline = match (b & 127, b & REALTIME != 0) {
             (WAIT, _) => host().clock.now().saturating_add(time),
-            (_, true) => host().clock.from_realtime(time),
+            (_, true) => host().clock.monotonic_of(time),
             (_, false) => time,
         };
         let wait_bits = if b & 127 == WAIT { u32::MAX as usize } else { f };
@@ -328,7 +366,8 @@ unsafe extern "C" fn syscall(number: c_long, a: usize, b: usize, c: usize, d: us
         let result = timed_wait(deadline, |slice| {
             let until = real_deadline(libc::CLOCK_MONOTONIC, slice);
             // SAFETY: the caller's futex; the deadline lives during the call.
-            let result = unsafe { libc::syscall(number, a, WAIT_BITSET | private, c, &raw const until, 0, wait_bits) };
+            let result =
+                unsafe { libc::syscall(number, a, WAIT_BITSET | private, c, &raw const until, 0, wait_bits) };
             // SAFETY: this thread's errno.
             let timed_out = result < 0 && unsafe { *libc::__errno_location() } == libc::ETIMEDOUT;
             (!timed_out).then_some(result)
@@ -378,9 +417,14 @@ unsafe extern "C" fn __system_property_find(name: *const c_char) -> *const c_cha
     CString::new(name).map_or(std::ptr::null(), |name| name.into_raw())
 }
 
-type ReadProperty = extern "C" fn(cookie: *mut c_void, name: *const c_char, value: *const c_char, serial: u32);
+type ReadProperty =
+    extern "C" fn(cookie: *mut c_void, name: *const c_char, value: *const c_char, serial: u32);
 
-unsafe extern "C" fn __system_property_read_callback(info: *const c_char, callback: ReadProperty, cookie: *mut c_void) {
+unsafe extern "C" fn __system_property_read_callback(
+    info: *const c_char,
+    callback: ReadProperty,
+    cookie: *mut c_void,
+) {
     // SAFETY: `info` came from `__system_property_find`.
     let value = CString::new(property(&unsafe { text(info) })).unwrap_or_default();
     callback(cookie, info, value.as_ptr(), 0);
@@ -427,7 +471,9 @@ unsafe extern "C" fn dlsym(handle: *mut c_void, name: *const c_char) -> *mut c_v
         SELF => host.library.get().and_then(|library| library.symbol(&name)),
         index @ 1..=8 => exports::find(System::ALL[index - 1], &name, host.device.sdk),
         // RTLD_DEFAULT of 64-bit Android: what the library needs, here all of it.
-        0 => [System::C, System::M, System::Dl, System::Log, System::Android, System::Egl].into_iter().find_map(|library| exports::find(library, &name, host.device.sdk)),
+        0 => [System::C, System::M, System::Dl, System::Log, System::Android, System::Egl]
+            .into_iter()
+            .find_map(|library| exports::find(library, &name, host.device.sdk)),
         _ => None,
     };
     found.map_or_else(
@@ -440,7 +486,9 @@ unsafe extern "C" fn dlsym(handle: *mut c_void, name: *const c_char) -> *mut c_v
 }
 
 extern "C" fn dlerror() -> *const c_char {
-    ERROR.with_borrow_mut(|error| if std::mem::take(&mut error.0) { error.1.as_ptr() } else { std::ptr::null() })
+    ERROR.with_borrow_mut(
+        |error| if std::mem::take(&mut error.0) { error.1.as_ptr() } else { std::ptr::null() },
+    )
 }
 
 unsafe extern "C" fn dladdr(address: *const c_void, info: *mut libc::Dl_info) -> c_int {

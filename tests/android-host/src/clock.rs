@@ -89,7 +89,7 @@ impl Clock {
     }
 
     /// A CLOCK_REALTIME instant as one of CLOCK_MONOTONIC.
-    pub fn from_realtime(&self, instant: u64) -> u64 {
+    pub fn monotonic_of(&self, instant: u64) -> u64 {
         instant.saturating_sub(self.realtime_offset)
     }
 
@@ -135,6 +135,6 @@ mod tests {
         clock.advance_to(first);
         clock.advance_to(first - 5);
         assert_eq!(clock.now(), first);
-        assert_eq!(clock.from_realtime(clock.realtime()), first);
+        assert_eq!(clock.monotonic_of(clock.realtime()), first);
     }
 }

@@ -40,7 +40,10 @@ extern "C" fn crashed(signal: c_int, information: *mut libc::siginfo_t, context:
     fatal(format!(
         "{name} at address {address:#x} in thread {}, {}; the stack has the library's addresses {}",
         thread_name(),
-        in_library(counter).map_or_else(|| format!("outside of the library (pc {counter:#x})"), |offset| format!("at {offset} of the library")),
+        in_library(counter).map_or_else(
+            || format!("outside of the library (pc {counter:#x})"),
+            |offset| format!("at {offset} of the library")
+        ),
         callers.join(" ")
     ))
 }
@@ -69,7 +72,8 @@ fn words(start: usize) -> Vec<usize> {
     let local = libc::iovec { iov_base: words.as_mut_ptr().cast(), iov_len: STACK };
     let remote = libc::iovec { iov_base: start as *mut c_void, iov_len: STACK };
     // SAFETY: reads this process's own memory into a live vector; what is not mapped is left out.
-    let read = unsafe { libc::process_vm_readv(libc::getpid(), &raw const local, 1, &raw const remote, 1, 0) };
+    let read =
+        unsafe { libc::process_vm_readv(libc::getpid(), &raw const local, 1, &raw const remote, 1, 0) };
     words.truncate(usize::try_from(read).unwrap_or(0) / 8);
     words
 }

@@ -79,7 +79,11 @@ struct Segment {
 impl Segment {
     /// The pages it touches.
     fn pages(&self) -> Result<(u64, u64)> {
-        let end = self.address.checked_add(self.memory_size).and_then(|end| end.checked_next_multiple_of(PAGE)).context("a segment wraps around")?;
+        let end = self
+            .address
+            .checked_add(self.memory_size)
+            .and_then(|end| end.checked_next_multiple_of(PAGE))
+            .context("a segment wraps around")?;
         Ok((self.address & !(PAGE - 1), end))
     }
 }
@@ -106,7 +110,8 @@ struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
     fn slice(&self, at: u64, length: u64) -> Result<&'a [u8]> {
-        let range = usize::try_from(at)?..usize::try_from(at.checked_add(length).context("an offset wraps around")?)?;
+        let range =
+            usize::try_from(at)?..usize::try_from(at.checked_add(length).context("an offset wraps around")?)?;
         self.0.get(range).with_context(|| format!("the file ends before offset {at:#x}"))
     }
 
@@ -184,14 +189,22 @@ impl<'a> Image<'a> {
     fn offset(&self, address: u64) -> Result<u64> {
         self.segments
             .iter()
-            .find(|segment| segment.kind == PT_LOAD && address >= segment.address && address - segment.address < segment.file_size)
+            .find(|segment| {
+                segment.kind == PT_LOAD
+                    && address >= segment.address
+                    && address - segment.address < segment.file_size
+            })
             .map(|segment| address - segment.address + segment.offset)
             .with_context(|| format!("address {address:#x} lies in no segment"))
     }
 
     fn read_dynamic(&mut self) -> Result<()> {
         let bytes = Bytes(self.file);
-        let dynamic = *self.segments.iter().find(|segment| segment.kind == PT_DYNAMIC).context("it has no dynamic section")?;
+        let dynamic = *self
+            .segments
+            .iter()
+            .find(|segment| segment.kind == PT_DYNAMIC)
+            .context("it has no dynamic section")?;
         let mut needed = Vec::new();
         let mut tags = BTreeMap::new();
         for at in (dynamic.offset..).step_by(16) {
@@ -250,7 +263,10 @@ impl<'a> Image<'a> {
         }
         for (table, size) in [(DT_RELR, DT_RELRSZ), (DT_ANDROID_RELR, DT_ANDROID_RELRSZ)] {
             if let Some(table) = tag(table) {
-                let packed = bytes.slice(self.offset(table)?, tag(size).context("a relative relocation table has no size")?)?;
+                let packed = bytes.slice(
+                    self.offset(table)?,
+                    tag(size).context("a relative relocation table has no size")?,
+                )?;
                 for at in unpack_relative(packed)? {
                     let addend = bytes.u64(self.offset(at)?)? as i64;
                     self.relocations.push(Relocation { at, kind: machine::RELATIVE, symbol: 0, addend });
@@ -273,18 +289,36 @@ fn check_segments(file: &[u8], segments: &[Segment]) -> Result<()> {
             "LOAD segment {index} is aligned to {:#x}: devices with 16 KiB pages cannot load it",
             load.align
         );
-        ensure!(load.address % PAGE == load.offset % PAGE, "LOAD segment {index} cannot be mapped: its address and its offset differ within a page");
-        ensure!(load.flags & (WRITE | EXECUTE) != WRITE | EXECUTE, "LOAD segment {index} is writable and executable");
-        ensure!(load.file_size <= load.memory_size, "LOAD segment {index} is larger in the file than in memory");
-        ensure!(load.offset.checked_add(load.file_size).is_some_and(|end| end <= file.len() as u64), "the file ends within LOAD segment {index}");
+        ensure!(
+            load.address % PAGE == load.offset % PAGE,
+            "LOAD segment {index} cannot be mapped: its address and its offset differ within a page"
+        );
+        ensure!(
+            load.flags & (WRITE | EXECUTE) != WRITE | EXECUTE,
+            "LOAD segment {index} is writable and executable"
+        );
+        ensure!(
+            load.file_size <= load.memory_size,
+            "LOAD segment {index} is larger in the file than in memory"
+        );
+        ensure!(
+            load.offset.checked_add(load.file_size).is_some_and(|end| end <= file.len() as u64),
+            "the file ends within LOAD segment {index}"
+        );
         let (first, last) = load.pages()?;
         ensure!(first >= end, "LOAD segment {index} shares a page with the one before it");
         ensure!(last < 1 << 32, "LOAD segment {index} is unreasonably large");
         end = last;
     }
     for segment in segments {
-        ensure!(segment.kind != PT_TLS, "it has ELF thread-local storage: Android before API level 29 cannot load it, and the host has none");
-        ensure!(segment.kind != PT_GNU_STACK || segment.flags & EXECUTE == 0, "it asks for an executable stack");
+        ensure!(
+            segment.kind != PT_TLS,
+            "it has ELF thread-local storage: Android before API level 29 cannot load it, and the host has none"
+        );
+        ensure!(
+            segment.kind != PT_GNU_STACK || segment.flags & EXECUTE == 0,
+            "it asks for an executable stack"
+        );
         if segment.kind == PT_GNU_RELRO {
             ensure!(
                 segment.address.checked_add(segment.memory_size).is_some_and(|end| end % PAGE == 0),
@@ -324,7 +358,9 @@ fn unpack_relative(packed: &[u8]) -> Result<Vec<u64>> {
             addresses.push(word);
             next = word.wrapping_add(8);
         } else {
-            addresses.extend((0..63).filter(|bit| word >> (bit + 1) & 1 == 1).map(|bit| next.wrapping_add(bit * 8)));
+            addresses.extend(
+                (0..63).filter(|bit| word >> (bit + 1) & 1 == 1).map(|bit| next.wrapping_add(bit * 8)),
+            );
             next = next.wrapping_add(63 * 8);
         }
     }
@@ -337,7 +373,8 @@ fn unpack_relocations(packed: &[u8]) -> Result<Vec<Relocation>> {
     const BY_OFFSET_DELTA: i64 = 2;
     const BY_ADDEND: i64 = 4;
     const HAS_ADDEND: i64 = 8;
-    let mut rest = packed.strip_prefix(b"APS2").context("its packed relocations are not of the known format")?.iter();
+    let mut rest =
+        packed.strip_prefix(b"APS2").context("its packed relocations are not of the known format")?.iter();
     let mut number = || -> Result<i64> {
         let (mut value, mut shift) = (0_i64, 0);
         loop {
@@ -370,7 +407,12 @@ fn unpack_relocations(packed: &[u8]) -> Result<Vec<Relocation>> {
             if flags & HAS_ADDEND != 0 && flags & BY_ADDEND == 0 {
                 addend = addend.wrapping_add(number()?);
             }
-            relocations.push(Relocation { at: at as u64, kind: info as u32, symbol: (info >> 32) as u32, addend });
+            relocations.push(Relocation {
+                at: at as u64,
+                kind: info as u32,
+                symbol: (info >> 32) as u32,
+                addend,
+            });
         }
     }
     Ok(relocations)
@@ -408,12 +450,20 @@ impl Library {
         let image = Image::parse(file).with_context(|| format!("{name} cannot be loaded"))?;
         let mut needed = Vec::new();
         for library in &image.needed {
-            needed.push(System::named(library).with_context(|| format!("{name} needs {library}, which is no public library known to the host"))?);
+            needed.push(System::named(library).with_context(|| {
+                format!("{name} needs {library}, which is no public library known to the host")
+            })?);
         }
         let base = map(&image)?;
-        let (values, trapped) = bind(&image, base, &needed, find).with_context(|| format!("{name} cannot be linked"))?;
+        let (values, trapped) =
+            bind(&image, base, &needed, find).with_context(|| format!("{name} cannot be linked"))?;
         for relocation in &image.relocations {
-            let symbol = || values.get(relocation.symbol as usize).copied().context("a relocation names a symbol that is not there");
+            let symbol = || {
+                values
+                    .get(relocation.symbol as usize)
+                    .copied()
+                    .context("a relocation names a symbol that is not there")
+            };
             let value = match relocation.kind {
                 machine::RELATIVE => base as u64,
                 machine::ABSOLUTE | machine::GLOB_DAT | machine::JUMP_SLOT => symbol()? as u64,
@@ -421,19 +471,35 @@ impl Library {
             };
             ensure!(
                 image.segments.iter().any(|segment| {
-                    segment.kind == PT_LOAD && segment.flags & WRITE != 0 && relocation.at >= segment.address && relocation.at + 8 <= segment.address + segment.memory_size
+                    segment.kind == PT_LOAD
+                        && segment.flags & WRITE != 0
+                        && relocation.at >= segment.address
+                        && relocation.at + 8 <= segment.address + segment.memory_size
                 }),
                 "{name} has a relocation outside of its writable segments"
             );
             // SAFETY: the address was checked to lie in a segment that `map` made writable.
-            unsafe { ((base as u64 + relocation.at) as *mut u64).write_unaligned(value.wrapping_add_signed(relocation.addend)) };
+            unsafe {
+                ((base as u64 + relocation.at) as *mut u64)
+                    .write_unaligned(value.wrapping_add_signed(relocation.addend))
+            };
         }
         let mut library = Self {
             path: CString::new(format!("/data/app/base.apk!/{name}"))?,
             base,
-            span: image.segments.iter().filter(|segment| segment.kind == PT_LOAD).map(|segment| segment.pages().map_or(0, |pages| pages.1)).max().unwrap_or(0) as usize,
+            span: image
+                .segments
+                .iter()
+                .filter(|segment| segment.kind == PT_LOAD)
+                .map(|segment| segment.pages().map_or(0, |pages| pages.1))
+                .max()
+                .unwrap_or(0) as usize,
             header: image.header.clone(),
-            symbols: image.symbols.iter().filter_map(|symbol| Some((symbol.name.clone(), base + symbol.defined? as usize))).collect(),
+            symbols: image
+                .symbols
+                .iter()
+                .filter_map(|symbol| Some((symbol.name.clone(), base + symbol.defined? as usize)))
+                .collect(),
             code: Vec::new(),
             init: image.init.map(|init| base + init as usize).into_iter().collect(),
         };
@@ -448,15 +514,28 @@ impl Library {
             .segments
             .iter()
             .filter(|segment| segment.kind == PT_LOAD && segment.flags & EXECUTE != 0)
-            .map(|segment| (base + segment.address as usize, base + (segment.address + segment.memory_size) as usize))
+            .map(|segment| {
+                (base + segment.address as usize, base + (segment.address + segment.memory_size) as usize)
+            })
             .collect();
         let facts = LibraryFacts {
             name: name.to_owned(),
             size: file.len() as u64,
             needed: image.needed.clone(),
-            symbols: image.symbols.iter().filter(|symbol| symbol.defined.is_none() && !symbol.name.is_empty()).count() - trapped.len(),
+            symbols: image
+                .symbols
+                .iter()
+                .filter(|symbol| symbol.defined.is_none() && !symbol.name.is_empty())
+                .count()
+                - trapped.len(),
             relocations: image.relocations.len(),
-            alignment: image.segments.iter().filter(|segment| segment.kind == PT_LOAD).map(|segment| segment.align).min().unwrap_or(0),
+            alignment: image
+                .segments
+                .iter()
+                .filter(|segment| segment.kind == PT_LOAD)
+                .map(|segment| segment.align)
+                .min()
+                .unwrap_or(0),
         };
         Ok(Loaded { library, facts, trapped })
     }
@@ -468,7 +547,8 @@ impl Library {
     pub unsafe fn initialize(&self) {
         for function in &self.init {
             // SAFETY: DT_INIT and DT_INIT_ARRAY hold functions of this type; the caller vouches for the moment.
-            let function: extern "C" fn(i32, *const *const u8, *const *const u8) = unsafe { std::mem::transmute(*function) };
+            let function: extern "C" fn(i32, *const *const u8, *const *const u8) =
+                unsafe { std::mem::transmute(*function) };
             function(0, std::ptr::null(), std::ptr::null());
         }
     }
@@ -501,9 +581,23 @@ impl Library {
 
 /// Maps the segments as a kernel with 16 KiB pages would, writable for the moment.
 fn map(image: &Image) -> Result<usize> {
-    let span = image.segments.iter().filter(|segment| segment.kind == PT_LOAD).map(|segment| segment.pages().map(|pages| pages.1)).try_fold(0, |end, pages| pages.map(|pages| end.max(pages)))?;
+    let span = image
+        .segments
+        .iter()
+        .filter(|segment| segment.kind == PT_LOAD)
+        .map(|segment| segment.pages().map(|pages| pages.1))
+        .try_fold(0, |end, pages| pages.map(|pages| end.max(pages)))?;
     // SAFETY: a new anonymous mapping at an address of the kernel's choice.
-    let memory = unsafe { libc::mmap(std::ptr::null_mut(), (span + PAGE) as usize, libc::PROT_NONE, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS, -1, 0) };
+    let memory = unsafe {
+        libc::mmap(
+            std::ptr::null_mut(),
+            (span + PAGE) as usize,
+            libc::PROT_NONE,
+            libc::MAP_PRIVATE | libc::MAP_ANONYMOUS,
+            -1,
+            0,
+        )
+    };
     ensure!(memory != libc::MAP_FAILED, "no memory for the library: {}", std::io::Error::last_os_error());
     let base = (memory as usize).next_multiple_of(PAGE as usize);
     for segment in image.segments.iter().filter(|segment| segment.kind == PT_LOAD) {
@@ -513,7 +607,9 @@ fn map(image: &Image) -> Result<usize> {
         let source = &image.file[start as usize..(segment.offset + segment.file_size) as usize];
         // SAFETY: the pages were just made writable and hold at least the segment; what the file has before the segment
         // on its first page is mapped along, as a kernel does.
-        unsafe { std::ptr::copy_nonoverlapping(source.as_ptr(), (base as u64 + first) as *mut u8, source.len()) };
+        unsafe {
+            std::ptr::copy_nonoverlapping(source.as_ptr(), (base as u64 + first) as *mut u8, source.len())
+        };
     }
     Ok(base)
 }
@@ -537,13 +633,20 @@ fn protect(image: &Image, base: usize) -> Result<()> {
 
 fn protect_range(base: usize, first: u64, last: u64, protection: i32) -> Result<()> {
     // SAFETY: the range lies in the mapping made by `map`, which nothing else uses yet.
-    let result = unsafe { libc::mprotect((base as u64 + first) as *mut libc::c_void, (last - first) as usize, protection) };
+    let result = unsafe {
+        libc::mprotect((base as u64 + first) as *mut libc::c_void, (last - first) as usize, protection)
+    };
     ensure!(result == 0, "memory protection cannot be set: {}", std::io::Error::last_os_error());
     Ok(())
 }
 
 /// The value of every symbol, and the names of those that got a trap.
-fn bind(image: &Image, base: usize, needed: &[System], find: impl Fn(System, &str) -> Option<usize>) -> Result<(Vec<usize>, Vec<String>)> {
+fn bind(
+    image: &Image,
+    base: usize,
+    needed: &[System],
+    find: impl Fn(System, &str) -> Option<usize>,
+) -> Result<(Vec<usize>, Vec<String>)> {
     let mut values = vec![0; image.symbols.len()];
     let mut missing = Vec::new();
     for (index, symbol) in image.symbols.iter().enumerate().skip(1) {
@@ -551,7 +654,10 @@ fn bind(image: &Image, base: usize, needed: &[System], find: impl Fn(System, &st
             values[index] = base + address as usize;
         } else if let Some(address) = needed.iter().find_map(|library| find(*library, &symbol.name)) {
             values[index] = address;
-        } else if let Some(library) = System::ALL.into_iter().find(|library| !needed.contains(library) && find(*library, &symbol.name).is_some()) {
+        } else if let Some(library) = System::ALL
+            .into_iter()
+            .find(|library| !needed.contains(library) && find(*library, &symbol.name).is_some())
+        {
             bail!("{} comes from {}, which the library does not name as needed", symbol.name, library.name());
         } else if !symbol.weak {
             missing.push(index);
@@ -614,9 +720,14 @@ mod tests {
         assert!(elf(|file| file.truncate(80)).contains("ends before"));
         assert!(elf(|file| file[0] = 0).contains("ELF"));
         assert!(elf(|file| file[18] = 3).contains("another machine"));
-        assert!(elf(|file| file[64 + 48..64 + 56].copy_from_slice(&0x1000_u64.to_le_bytes())).contains("16 KiB"));
+        assert!(
+            elf(|file| file[64 + 48..64 + 56].copy_from_slice(&0x1000_u64.to_le_bytes())).contains("16 KiB")
+        );
         assert!(elf(|file| file[68] = 7).contains("writable and executable"));
         assert!(elf(|file| file[120..124].copy_from_slice(&PT_TLS.to_le_bytes())).contains("thread-local"));
-        assert!(elf(|file| file[64 + 32..64 + 40].copy_from_slice(&u64::MAX.to_le_bytes())).contains("larger in the file"));
+        assert!(
+            elf(|file| file[64 + 32..64 + 40].copy_from_slice(&u64::MAX.to_le_bytes()))
+                .contains("larger in the file")
+        );
     }
 }

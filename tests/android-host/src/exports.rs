@@ -26,7 +26,8 @@ pub enum System {
 
 impl System {
     /// All of them.
-    pub const ALL: [Self; 8] = [Self::C, Self::M, Self::Dl, Self::Log, Self::Android, Self::Egl, Self::GlesV2, Self::GlesV3];
+    pub const ALL: [Self; 8] =
+        [Self::C, Self::M, Self::Dl, Self::Log, Self::Android, Self::Egl, Self::GlesV2, Self::GlesV3];
 
     /// File name, as in DT_NEEDED and `dlopen`.
     pub fn name(self) -> &'static str {

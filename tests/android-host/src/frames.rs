@@ -62,7 +62,8 @@ impl Frames {
                 if left.is_zero() {
                     break;
                 }
-                state = self.changed.wait_timeout(state, left).unwrap_or_else(|poisoned| poisoned.into_inner()).0;
+                state =
+                    self.changed.wait_timeout(state, left).unwrap_or_else(|poisoned| poisoned.into_inner()).0;
                 continue;
             }
             if std::mem::take(&mut state.capture) {

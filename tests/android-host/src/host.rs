@@ -119,7 +119,12 @@ impl Host {
     ///
     /// # Errors
     /// EGL or the folders cannot be set up.
-    pub fn install(script: &Script, assets: Assets, verbose: bool, report: Report) -> anyhow::Result<&'static Self> {
+    pub fn install(
+        script: &Script,
+        assets: Assets,
+        verbose: bool,
+        report: Report,
+    ) -> anyhow::Result<&'static Self> {
         let device = script.device.clone();
         let host = Self {
             battery: Mutex::new(device.battery.clone()),
@@ -276,10 +281,15 @@ impl Host {
             }
         }
         let context = lock(&self.context).clone();
-        let summary = self.summary(failure.map(|failure| if context.is_empty() { failure } else { format!("{failure} ({context})") }));
+        let summary = self.summary(
+            failure
+                .map(|failure| if context.is_empty() { failure } else { format!("{failure} ({context})") }),
+        );
         self.directories.remove();
         let path = self.report().out.join("summary.json");
-        let written = serde_json::to_vec_pretty(&summary).map_err(std::io::Error::other).and_then(|json| std::fs::write(&path, json));
+        let written = serde_json::to_vec_pretty(&summary)
+            .map_err(std::io::Error::other)
+            .and_then(|json| std::fs::write(&path, json));
         let mut code = i32::from(!summary.is_clean());
         let mut text = summary.to_string();
         if let Err(error) = written {
@@ -322,7 +332,8 @@ fn watch() {
     loop {
         std::thread::sleep(Duration::from_millis(200));
         let host = host();
-        let late = lock(&host.watch.doing).as_ref().filter(|(_, since)| since.elapsed() > host.patience()).cloned();
+        let late =
+            lock(&host.watch.doing).as_ref().filter(|(_, since)| since.elapsed() > host.patience()).cloned();
         if let Some((what, since)) = late {
             fatal(format!("{what} takes longer than {:.0} s; {}", since.elapsed().as_secs_f64(), threads()));
         }
@@ -335,9 +346,13 @@ fn threads() -> String {
     for task in std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
         let read = |file| std::fs::read_to_string(task.path().join(file)).unwrap_or_default();
         let state = read("stat").rsplit(") ").next().and_then(|rest| rest.chars().next()).unwrap_or('?');
-        *states.entry(format!("{} ({state}, {})", read("comm").trim(), read("wchan").trim())).or_default() += 1;
+        *states.entry(format!("{} ({state}, {})", read("comm").trim(), read("wchan").trim())).or_default() +=
+            1;
     }
-    let list: Vec<_> = states.into_iter().map(|(name, count)| if count > 1 { format!("{count}x {name}") } else { name }).collect();
+    let list: Vec<_> = states
+        .into_iter()
+        .map(|(name, count)| if count > 1 { format!("{count}x {name}") } else { name })
+        .collect();
     format!("threads: {}", list.join(", "))
 }
 
@@ -353,4 +368,3 @@ fn resident_kib() -> u64 {
         .and_then(|rest| rest.trim().trim_end_matches(" kB").parse().ok())
         .unwrap_or(0)
 }
-

@@ -73,7 +73,9 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
     crash::install();
     // SAFETY: the library can reach everything it needs through the host from now on.
     unsafe { library.initialize() };
-    let create = library.symbol("ANativeActivity_onCreate").with_context(|| format!("{name} does not export ANativeActivity_onCreate"))?;
+    let create = library
+        .symbol("ANativeActivity_onCreate")
+        .with_context(|| format!("{name} does not export ANativeActivity_onCreate"))?;
     // SAFETY: a symbol of this name has this type by the NDK's contract.
     let create: OnCreate = unsafe { std::mem::transmute(create) };
     let mut player = Player::new(create, out.to_owned());

@@ -24,7 +24,9 @@ struct Arguments {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let result = Script::read(&arguments.script).and_then(|script| yoro_android_host::run(&arguments.apk, &script, &arguments.out, arguments.verbose));
+    let result = Script::read(&arguments.script).and_then(|script| {
+        yoro_android_host::run(&arguments.apk, &script, &arguments.out, arguments.verbose)
+    });
     match result {
         Ok(never) => match never {},
         Err(error) => {

@@ -82,7 +82,14 @@ impl Player {
             self.host.say(&format!("{:9.3} step: {step:?}", self.host.clock.seconds()));
         }
         match step {
-            Step::Launch => self.play(&[Step::Create, Step::Start, Step::Resume, Step::InputQueue, Step::Window, Step::Focus]),
+            Step::Launch => self.play(&[
+                Step::Create,
+                Step::Start,
+                Step::Resume,
+                Step::InputQueue,
+                Step::Window,
+                Step::Focus,
+            ]),
             Step::Quit => self.quit(),
             Step::Create => self.create(),
             Step::Start => {
@@ -121,7 +128,9 @@ impl Player {
             Step::Unfocus => self.focus(false),
             Step::SaveState => self.save_state(),
             Step::LowMemory => self.event("onLowMemory", |callbacks| callbacks.onLowMemory),
-            Step::ConfigurationChanged => self.event("onConfigurationChanged", |callbacks| callbacks.onConfigurationChanged),
+            Step::ConfigurationChanged => {
+                self.event("onConfigurationChanged", |callbacks| callbacks.onConfigurationChanged)
+            }
             Step::Frames(count) => self.frames(*count),
             Step::Seconds(seconds) => self.seconds(*seconds),
             Step::WaitLog { text, frames } => self.wait_log(text, *frames),
@@ -132,7 +141,9 @@ impl Player {
                     }
                     self.host.frames.grant(1);
                     let shown = self.host.frames.shown();
-                    self.wait("a frame, or the application's wish to finish", |host| host.frames.shown() > shown || host.finish_asked.load(Ordering::Acquire));
+                    self.wait("a frame, or the application's wish to finish", |host| {
+                        host.frames.shown() > shown || host.finish_asked.load(Ordering::Acquire)
+                    });
                 }
                 if !self.finish_asked() {
                     fatal(format!("the application has not asked for its end within {frames} frames"));
@@ -169,7 +180,10 @@ impl Player {
 
     fn expect(&self, step: &str, possible: bool) {
         if !possible {
-            fatal(format!("the script asks for {step} at a stage where Android never does: {:?}", self.stage));
+            fatal(format!(
+                "the script asks for {step} at a stage where Android never does: {:?}",
+                self.stage
+            ));
         }
     }
 
@@ -186,7 +200,9 @@ impl Player {
     /// Calls back with the gate open, for the application may answer from its frame loop.
     fn callback<T>(&mut self, what: &str, call: impl FnOnce(&mut Activity) -> T) -> T {
         let host = self.host;
-        let Some(activity) = self.activity.as_deref_mut() else { fatal(format!("the script asks for {what} without an activity")) };
+        let Some(activity) = self.activity.as_deref_mut() else {
+            fatal(format!("the script asks for {what} without an activity"))
+        };
         host.frames.set_open(true);
         let result = host.callback(what, || call(activity));
         host.frames.set_open(false);
@@ -194,7 +210,11 @@ impl Player {
         result
     }
 
-    fn event(&mut self, what: &str, get: impl Fn(&Callbacks) -> Option<unsafe extern "C" fn(*mut ANativeActivity)>) {
+    fn event(
+        &mut self,
+        what: &str,
+        get: impl Fn(&Callbacks) -> Option<unsafe extern "C" fn(*mut ANativeActivity)>,
+    ) {
         self.callback(what, |activity| {
             if let Some(function) = get(&activity.callbacks) {
                 // SAFETY: the application's callback, with its own activity, on the main thread.
@@ -203,7 +223,14 @@ impl Player {
         });
     }
 
-    fn window_event(&mut self, what: &str, get: impl Fn(&Callbacks) -> Option<unsafe extern "C" fn(*mut ANativeActivity, *const crate::android::window::Window)>) {
+    fn window_event(
+        &mut self,
+        what: &str,
+        get: impl Fn(
+            &Callbacks,
+        )
+            -> Option<unsafe extern "C" fn(*mut ANativeActivity, *const crate::android::window::Window)>,
+    ) {
         let window = &raw const self.host.window;
         self.callback(what, |activity| {
             if let Some(function) = get(&activity.callbacks) {
@@ -236,7 +263,8 @@ impl Player {
         self.activity = Some(activity);
         let (create, saved) = (self.create, std::mem::take(&mut self.saved));
         self.callback("ANativeActivity_onCreate", |activity| {
-            let state: *const c_void = if saved.is_empty() { std::ptr::null() } else { saved.as_ptr().cast() };
+            let state: *const c_void =
+                if saved.is_empty() { std::ptr::null() } else { saved.as_ptr().cast() };
             // SAFETY: the application's entry point, with a complete activity, on the main thread.
             unsafe { create(&raw mut activity.native, state, saved.len()) };
         });
@@ -250,7 +278,7 @@ impl Player {
         }
         self.event("onDestroy", |callbacks| callbacks.onDestroy);
         self.host.frames.set_open(true);
-        self.wait("the end of android_main", |host| !std::path::Path::new(&format!("/proc/self/task/{}", host.main_thread.load(Ordering::Acquire))).exists());
+        self.wait("the end of android_main", |host| !main_runs(host));
         self.host.frames.set_open(false);
         if let Some(activity) = self.activity.take() {
             jni::release_activity(activity.native.clazz);
@@ -289,14 +317,17 @@ impl Player {
     }
 
     fn input_queue_lost(&mut self) {
-        let Some(queue) = self.queue.take() else { fatal("the script asks for input-queue-lost without a queue") };
+        let Some(queue) = self.queue.take() else {
+            fatal("the script asks for input-queue-lost without a queue")
+        };
         self.callback("onInputQueueDestroyed", |activity| {
             if let Some(function) = activity.callbacks.onInputQueueDestroyed {
                 // SAFETY: the application's callback, with its own activity and its queue, on the main thread.
                 unsafe { function(&raw mut activity.native, queue) };
             }
         });
-        if queue.is_attached() {
+        // After its own end android_main cannot take the queue off its looper, and android-activity does not.
+        if queue.is_attached() && main_runs(self.host) {
             self.host.violation("the input queue is still attached after onInputQueueDestroyed");
         }
     }
@@ -484,9 +515,11 @@ impl Player {
             let count = generator.random_range(1..=events.max(1));
             let mut played = Vec::new();
             for _ in 0..count {
-                let step = random::step(&mut generator, self.stage, self.host.device.width, self.host.device.height);
+                let step =
+                    random::step(&mut generator, self.stage, self.host.device.width, self.host.device.height);
                 played.push(format!("{step:?}"));
-                self.host.set_context(format!("random sequence {sequence} of seed {seed}: {}", played.join(", ")));
+                self.host
+                    .set_context(format!("random sequence {sequence} of seed {seed}: {}", played.join(", ")));
                 self.step(&step);
                 if self.finish_asked() {
                     self.quit();
@@ -503,4 +536,9 @@ impl Player {
 
 fn nanoseconds(seconds: f64) -> u64 {
     (seconds.max(0.0) * 1e9).round() as u64
+}
+
+/// Whether the thread of `android_main` exists.
+fn main_runs(host: &Host) -> bool {
+    std::path::Path::new(&format!("/proc/self/task/{}", host.main_thread.load(Ordering::Acquire))).exists()
 }

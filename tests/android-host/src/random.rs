@@ -40,17 +40,38 @@ pub fn step(generator: &mut impl Rng, stage: Stage, width: i32, height: i32) -> 
         5..=8 => Step::Tap { x: generator.random_range(0.0..1.0), y: generator.random_range(0.0..1.0) },
         9 => Step::LongPress { x: 0.5, y: 0.5, seconds: 0.6 },
         10..=12 => {
-            let keys = [Key::VolumeUp, Key::VolumeDown, Key::Headset, Key::DpadCenter, Key::Enter, Key::Menu, Key::ButtonA];
+            let keys = [
+                Key::VolumeUp,
+                Key::VolumeDown,
+                Key::Headset,
+                Key::DpadCenter,
+                Key::Enter,
+                Key::Menu,
+                Key::ButtonA,
+            ];
             Step::Key(keys[generator.random_range(0..keys.len())])
         }
         13 | 14 => {
             let divisor = generator.random_range(1..=2);
-            let (width, height) = if generator.random_range(0..4) == 0 { (height, width) } else { (width, height) };
+            let (width, height) =
+                if generator.random_range(0..4) == 0 { (height, width) } else { (width, height) };
             Step::Resize { width: (width / divisor).max(1), height: (height / divisor).max(1) }
         }
-        15 => Step::Head { yaw: generator.random_range(-90.0..90.0), pitch: generator.random_range(-45.0..45.0), roll: 0.0, seconds: 0.05 },
-        16 => Step::Battery(Battery { level: generator.random_range(0..=100), plugged: generator.random_range(0..=2), ..Battery::default() }),
-        17 => Step::Thermal(Thermal { status: generator.random_range(0..=6), headroom: generator.random_range(0.0..1.5) }),
+        15 => Step::Head {
+            yaw: generator.random_range(-90.0..90.0),
+            pitch: generator.random_range(-45.0..45.0),
+            roll: 0.0,
+            seconds: 0.05,
+        },
+        16 => Step::Battery(Battery {
+            level: generator.random_range(0..=100),
+            plugged: generator.random_range(0..=2),
+            ..Battery::default()
+        }),
+        17 => Step::Thermal(Thermal {
+            status: generator.random_range(0..=6),
+            headroom: generator.random_range(0.0..1.5),
+        }),
         18 => Step::LowMemory,
         19 => Step::ConfigurationChanged,
         20 => Step::WindowLost,
@@ -68,7 +89,12 @@ pub fn back_to_running(stage: Stage) -> Vec<Step> {
         return vec![Step::Launch];
     }
     let mut steps = Vec::new();
-    for (there, step) in [(stage.started, Step::Start), (stage.resumed, Step::Resume), (stage.window, Step::Window), (stage.focus, Step::Focus)] {
+    for (there, step) in [
+        (stage.started, Step::Start),
+        (stage.resumed, Step::Resume),
+        (stage.window, Step::Window),
+        (stage.focus, Step::Focus),
+    ] {
         if !there {
             steps.push(step);
         }

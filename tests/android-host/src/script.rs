@@ -58,7 +58,11 @@ impl Script {
         let script: Self = toml::from_str(text)?;
         let device = &script.device;
         if !(1..=8192).contains(&device.width) || !(1..=8192).contains(&device.height) {
-            bail!("device.width and device.height must lie between 1 and 8192, not {}x{}", device.width, device.height);
+            bail!(
+                "device.width and device.height must lie between 1 and 8192, not {}x{}",
+                device.width,
+                device.height
+            );
         }
         if !(device.refresh_hz >= 1.0 && device.refresh_hz <= 1000.0) {
             bail!("device.refresh_hz must lie between 1 and 1000, not {}", device.refresh_hz);
@@ -120,7 +124,11 @@ impl Default for Device {
             refresh_hz: 60.0,
             sdk: 34,
             gles: GlesVersion::Es32,
-            sensors: vec![SensorKind::GyroscopeUncalibrated, SensorKind::Gyroscope, SensorKind::Accelerometer],
+            sensors: vec![
+                SensorKind::GyroscopeUncalibrated,
+                SensorKind::Gyroscope,
+                SensorKind::Accelerometer,
+            ],
             gyroscope_bias: [0.0; 3],
             battery: Some(Battery::default()),
             thermal: Thermal::default(),

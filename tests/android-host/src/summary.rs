@@ -188,15 +188,34 @@ impl fmt::Display for Summary {
                 library.needed.join(" ")
             )?;
         }
-        writeln!(f, "  frames    {} in {:.2} virtual seconds ({:.1} s here)", self.frames, self.seconds, self.real_seconds)?;
-        writeln!(f, "  GL        {} on {}, {} contexts, {} errors", self.gl.version, self.gl.renderer, self.gl.contexts, self.gl.error_count)?;
+        writeln!(
+            f,
+            "  frames    {} in {:.2} virtual seconds ({:.1} s here)",
+            self.frames, self.seconds, self.real_seconds
+        )?;
+        writeln!(
+            f,
+            "  GL        {} on {}, {} contexts, {} errors",
+            self.gl.version, self.gl.renderer, self.gl.contexts, self.gl.error_count
+        )?;
         for error in &self.gl.errors {
             writeln!(f, "            {error}")?;
         }
-        writeln!(f, "  input     {} sent, {} finished, {} handled", self.input.sent, self.input.finished, self.input.handled)?;
+        writeln!(
+            f,
+            "  input     {} sent, {} finished, {} handled",
+            self.input.sent, self.input.finished, self.input.handled
+        )?;
         writeln!(f, "  callbacks longest {:.1} ms here", self.longest_callback_ms)?;
         for mark in &self.marks {
-            writeln!(f, "  at {:<6} frame {}: {}, {} MiB", mark.name, mark.frames, mark.objects(), mark.resident_kib / 1024)?;
+            writeln!(
+                f,
+                "  at {:<6} frame {}: {}, {} MiB",
+                mark.name,
+                mark.frames,
+                mark.objects(),
+                mark.resident_kib / 1024
+            )?;
         }
         for path in &self.captures {
             writeln!(f, "  picture   {}", path.display())?;

@@ -25,7 +25,16 @@ pub fn traps(names: &[String]) -> Result<Vec<usize>> {
     all.extend_from_slice(names);
     let length = names.len() * SIZE;
     // SAFETY: a new anonymous mapping at an address of the kernel's choice.
-    let memory = unsafe { libc::mmap(std::ptr::null_mut(), length, libc::PROT_READ | libc::PROT_WRITE, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS, -1, 0) };
+    let memory = unsafe {
+        libc::mmap(
+            std::ptr::null_mut(),
+            length,
+            libc::PROT_READ | libc::PROT_WRITE,
+            libc::MAP_PRIVATE | libc::MAP_ANONYMOUS,
+            -1,
+            0,
+        )
+    };
     ensure!(memory != libc::MAP_FAILED, "no memory for traps: {}", std::io::Error::last_os_error());
     let mut code = Vec::with_capacity(length);
     for index in first..first + names.len() {

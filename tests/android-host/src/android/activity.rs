@@ -89,7 +89,10 @@ impl Directories {
     /// # Errors
     /// They cannot be written.
     pub fn new(files: &BTreeMap<String, String>) -> Result<Self> {
-        let root = tempfile::Builder::new().prefix("yoro-android-host-").tempdir().context("no temporary folder for the application's files")?;
+        let root = tempfile::Builder::new()
+            .prefix("yoro-android-host-")
+            .tempdir()
+            .context("no temporary folder for the application's files")?;
         let folder = |name: &str| -> Result<CString> {
             let path = root.path().join(name);
             std::fs::create_dir_all(&path).with_context(|| format!("cannot make {}", path.display()))?;
@@ -98,7 +101,9 @@ impl Directories {
         let (internal, external) = (folder("internal")?, folder("external")?);
         for (path, text) in files {
             let path = root.path().join("external").join(path);
-            std::fs::create_dir_all(path.parent().unwrap_or(Path::new("/"))).and_then(|()| std::fs::write(&path, text)).with_context(|| format!("cannot write {}", path.display()))?;
+            std::fs::create_dir_all(path.parent().unwrap_or(Path::new("/")))
+                .and_then(|()| std::fs::write(&path, text))
+                .with_context(|| format!("cannot write {}", path.display()))?;
         }
         Ok(Self { internal, external, root })
     }

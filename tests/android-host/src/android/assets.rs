@@ -44,7 +44,11 @@ extern "C" fn AAssetManager_fromJava(_env: *const c_void, object: *const c_void)
     if object.is_null() { std::ptr::null() } else { &raw const host().assets }
 }
 
-unsafe extern "C" fn AAssetManager_open(_manager: *const Assets, name: *const c_char, _mode: c_int) -> *mut AAsset {
+unsafe extern "C" fn AAssetManager_open(
+    _manager: *const Assets,
+    name: *const c_char,
+    _mode: c_int,
+) -> *mut AAsset {
     let host = host();
     // SAFETY: a terminated name by contract.
     let Some(bytes) = host.assets.0.get(&unsafe { text(name) }) else { return std::ptr::null_mut() };

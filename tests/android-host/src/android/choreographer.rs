@@ -96,32 +96,62 @@ extern "C" fn AChoreographer_getInstance() -> *const ALooper {
     }
 }
 
-extern "C" fn AChoreographer_postFrameCallback(choreographer: *mut ALooper, callback: FrameCallback, data: *mut c_void) {
+extern "C" fn AChoreographer_postFrameCallback(
+    choreographer: *mut ALooper,
+    callback: FrameCallback,
+    data: *mut c_void,
+) {
     post(choreographer, Kind::Frame(callback), data, 0);
 }
 
-extern "C" fn AChoreographer_postFrameCallback64(choreographer: *mut ALooper, callback: FrameCallback, data: *mut c_void) {
+extern "C" fn AChoreographer_postFrameCallback64(
+    choreographer: *mut ALooper,
+    callback: FrameCallback,
+    data: *mut c_void,
+) {
     post(choreographer, Kind::Frame(callback), data, 0);
 }
 
-extern "C" fn AChoreographer_postFrameCallbackDelayed(choreographer: *mut ALooper, callback: FrameCallback, data: *mut c_void, delay: c_long) {
+extern "C" fn AChoreographer_postFrameCallbackDelayed(
+    choreographer: *mut ALooper,
+    callback: FrameCallback,
+    data: *mut c_void,
+    delay: c_long,
+) {
     post(choreographer, Kind::Frame(callback), data, delay.max(0) as u64);
 }
 
-extern "C" fn AChoreographer_postFrameCallbackDelayed64(choreographer: *mut ALooper, callback: FrameCallback, data: *mut c_void, delay: u32) {
+extern "C" fn AChoreographer_postFrameCallbackDelayed64(
+    choreographer: *mut ALooper,
+    callback: FrameCallback,
+    data: *mut c_void,
+    delay: u32,
+) {
     post(choreographer, Kind::Frame(callback), data, u64::from(delay));
 }
 
-extern "C" fn AChoreographer_postVsyncCallback(choreographer: *mut ALooper, callback: VsyncCallback, data: *mut c_void) {
+extern "C" fn AChoreographer_postVsyncCallback(
+    choreographer: *mut ALooper,
+    callback: VsyncCallback,
+    data: *mut c_void,
+) {
     post(choreographer, Kind::Vsync(callback), data, 0);
 }
 
 /// Called once: the display of this device never changes its rate.
-extern "C" fn AChoreographer_registerRefreshRateCallback(choreographer: *mut ALooper, callback: RefreshRateCallback, data: *mut c_void) {
+extern "C" fn AChoreographer_registerRefreshRateCallback(
+    choreographer: *mut ALooper,
+    callback: RefreshRateCallback,
+    data: *mut c_void,
+) {
     post(choreographer, Kind::RefreshRate(callback), data, 0);
 }
 
-extern "C" fn AChoreographer_unregisterRefreshRateCallback(choreographer: *mut ALooper, callback: RefreshRateCallback, data: *mut c_void) {
+extern "C" fn AChoreographer_unregisterRefreshRateCallback(
+    choreographer: *mut ALooper,
+    callback: RefreshRateCallback,
+    data: *mut c_void,
+) {
     // SAFETY: as in `post`.
     lock(&unsafe { &*choreographer }.choreographer).retain(|pending| !matches!(pending.callback, Kind::RefreshRate(function) if std::ptr::fn_addr_eq(function, callback) && pending.data == data));
 }
@@ -138,15 +168,23 @@ extern "C" fn AChoreographerFrameCallbackData_getPreferredFrameTimelineIndex(_da
     0
 }
 
-extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineVsyncId(data: &FrameData, _index: usize) -> i64 {
+extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineVsyncId(
+    data: &FrameData,
+    _index: usize,
+) -> i64 {
     (data.time / data.period) as i64
 }
 
-extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineExpectedPresentationTimeNanos(data: &FrameData, _index: usize) -> i64 {
+extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineExpectedPresentationTimeNanos(
+    data: &FrameData,
+    _index: usize,
+) -> i64 {
     (data.time + 2 * data.period) as i64
 }
 
-extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineDeadlineNanos(data: &FrameData, _index: usize) -> i64 {
+extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineDeadlineNanos(
+    data: &FrameData,
+    _index: usize,
+) -> i64 {
     (data.time + data.period) as i64
 }
-

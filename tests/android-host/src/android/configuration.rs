@@ -48,7 +48,13 @@ extern "C" fn AConfiguration_fromAssetManager(configuration: &mut AConfiguration
     let host = host();
     let (width, height) = host.window.size();
     let dp = |pixels: i32| pixels * 160 / host.device.density.max(1);
-    *configuration = AConfiguration { density: host.device.density, width_dp: dp(width), height_dp: dp(height), sdk: host.device.sdk, landscape: width >= height };
+    *configuration = AConfiguration {
+        density: host.device.density,
+        width_dp: dp(width),
+        height_dp: dp(height),
+        sdk: host.device.sdk,
+        landscape: width >= height,
+    };
 }
 
 extern "C" fn AConfiguration_copy(to: &mut AConfiguration, from: &AConfiguration) {

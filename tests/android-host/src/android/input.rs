@@ -4,8 +4,8 @@
 
 use std::collections::VecDeque;
 use std::ffi::{c_int, c_void};
-use std::sync::{Mutex, OnceLock};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 use crate::android::looper::{ALooper, Callback};
 use crate::exports::{Export, System, exports};
@@ -117,7 +117,13 @@ pub fn exports() -> Vec<Export> {
     ]
 }
 
-extern "C" fn AInputQueue_attachLooper(queue: &AInputQueue, looper: &'static ALooper, ident: c_int, callback: Option<Callback>, data: *mut c_void) {
+extern "C" fn AInputQueue_attachLooper(
+    queue: &AInputQueue,
+    looper: &'static ALooper,
+    ident: c_int,
+    callback: Option<Callback>,
+    data: *mut c_void,
+) {
     lock(&queue.state).looper = Some(looper);
     looper.add(queue.event.raw(), ident, 1, callback, data);
 }

@@ -48,12 +48,20 @@ impl Log {
         let host = host();
         let priority = *b"??VDIWEFS".get(priority as usize).unwrap_or(&b'?') as char;
         let line = LogLine { seconds: host.clock.seconds(), frame: host.frames.shown(), priority, tag, text };
-        let shown = format!("{:9.3} {}/{} ({}): {}", line.seconds, line.priority, line.tag, thread_name(), line.text);
+        let shown =
+            format!("{:9.3} {}/{} ({}): {}", line.seconds, line.priority, line.tag, thread_name(), line.text);
         if self.verbose {
             host.say(&shown);
         }
         let mut state = lock(&self.state);
-        *state.counts.entry(if matches!(priority, 'E' | 'F') { format!("{} {priority}", line.tag) } else { line.tag.clone() }).or_default() += 1;
+        *state
+            .counts
+            .entry(if matches!(priority, 'E' | 'F') {
+                format!("{} {priority}", line.tag)
+            } else {
+                line.tag.clone()
+            })
+            .or_default() += 1;
         state.recent.push_back(format!("{}/{}: {}", line.priority, line.tag, line.text));
         state.total += 1;
         if state.recent.len() > KEPT {
@@ -74,7 +82,12 @@ impl Log {
         let state = lock(&self.state);
         let first = state.total - state.recent.len();
         let skipped = from.saturating_sub(first);
-        state.recent.iter().skip(skipped).position(|line| line.contains(text)).map(|index| first + skipped + index)
+        state
+            .recent
+            .iter()
+            .skip(skipped)
+            .position(|line| line.contains(text))
+            .map(|index| first + skipped + index)
     }
 
     /// Called before `abort`.
@@ -86,8 +99,13 @@ impl Log {
     pub fn abort_message(&self) -> String {
         let message = lock(&self.abort_message).clone();
         let state = lock(&self.state);
-        let last: Vec<_> = state.recent.iter().skip(state.recent.len().saturating_sub(5)).map(String::as_str).collect();
-        if message.is_empty() { format!("; last log lines: {}", last.join(" | ")) } else { format!(": {message}") }
+        let last: Vec<_> =
+            state.recent.iter().skip(state.recent.len().saturating_sub(5)).map(String::as_str).collect();
+        if message.is_empty() {
+            format!("; last log lines: {}", last.join(" | "))
+        } else {
+            format!(": {message}")
+        }
     }
 }
 
@@ -99,20 +117,33 @@ pub fn exports() -> Vec<Export> {
     ]
 }
 
-unsafe extern "C" fn __android_log_write(priority: c_int, tag: *const c_char, message: *const c_char) -> c_int {
+unsafe extern "C" fn __android_log_write(
+    priority: c_int,
+    tag: *const c_char,
+    message: *const c_char,
+) -> c_int {
     // SAFETY: terminated strings by contract.
     let (tag, message) = unsafe { (text(tag), text(message)) };
     host().log.add(priority, tag, message.trim_end_matches('\n').to_owned());
     1
 }
 
-unsafe extern "C" fn __android_log_buf_write(_buffer: c_int, priority: c_int, tag: *const c_char, message: *const c_char) -> c_int {
+unsafe extern "C" fn __android_log_buf_write(
+    _buffer: c_int,
+    priority: c_int,
+    tag: *const c_char,
+    message: *const c_char,
+) -> c_int {
     // SAFETY: same contract as the caller's.
     unsafe { __android_log_write(priority, tag, message) }
 }
 
 /// The format's arguments cannot be read here: the condition and the format are shown as they are.
-unsafe extern "C" fn __android_log_assert(condition: *const c_char, tag: *const c_char, format: *const c_char) -> ! {
+unsafe extern "C" fn __android_log_assert(
+    condition: *const c_char,
+    tag: *const c_char,
+    format: *const c_char,
+) -> ! {
     // SAFETY: null or terminated strings by contract.
     let (condition, tag, format) = unsafe { (text(condition), text(tag), text(format)) };
     fatal(format!("the application called __android_log_assert({condition:?}, {tag:?}, {format:?})"))

@@ -5,8 +5,8 @@
 
 use std::cell::RefCell;
 use std::ffi::{c_int, c_void};
-use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, Ordering};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::android::choreographer::{self, Pending};
@@ -22,7 +22,8 @@ const POLL_CALLBACK: c_int = -2;
 const POLL_TIMEOUT: c_int = -3;
 const POLL_ERROR: c_int = -4;
 /// `ALOOPER_EVENT_INPUT`, `_OUTPUT`, `_ERROR`, `_HANGUP` and poll's words for them.
-const EVENTS: [(c_int, i16); 4] = [(1, libc::POLLIN), (2, libc::POLLOUT), (4, libc::POLLERR), (8, libc::POLLHUP)];
+const EVENTS: [(c_int, i16); 4] =
+    [(1, libc::POLLIN), (2, libc::POLLOUT), (4, libc::POLLERR), (8, libc::POLLHUP)];
 /// Real milliseconds between two looks at the virtual clock.
 const SLICE: c_int = 1;
 
@@ -50,13 +51,18 @@ pub fn settle() {
     let patience = Instant::now() + Duration::from_millis(50);
     let busy = || {
         // SAFETY: a looper leaves the list before it goes, and the list is locked meanwhile.
-        lock(&LOOPERS).iter().filter(|looper| Some(**looper) != own).map(|looper| unsafe { &*(*looper as *const ALooper) }).any(|looper| {
-            let busy = looper.settled.load(Ordering::Acquire) < now && looper.next_event().is_some_and(|next| next <= now);
-            if busy {
-                looper.wake.signal();
-            }
-            busy
-        })
+        lock(&LOOPERS)
+            .iter()
+            .filter(|looper| Some(**looper) != own)
+            .map(|looper| unsafe { &*(*looper as *const ALooper) })
+            .any(|looper| {
+                let busy = looper.settled.load(Ordering::Acquire) < now
+                    && looper.next_event().is_some_and(|next| next <= now);
+                if busy {
+                    looper.wake.signal();
+                }
+                busy
+            })
     };
     while busy() && Instant::now() < patience {
         std::thread::sleep(Duration::from_micros(200));
@@ -99,7 +105,8 @@ impl ALooper {
 
     /// When the next sample or refresh is due on this looper.
     fn next_event(&self) -> Option<u64> {
-        let samples = lock(&self.entries).iter().filter_map(|entry| host().sensors.next_event(entry.fd)).min();
+        let samples =
+            lock(&self.entries).iter().filter_map(|entry| host().sensors.next_event(entry.fd)).min();
         samples.into_iter().chain(choreographer::next(self)).min()
     }
 
@@ -110,7 +117,10 @@ impl ALooper {
             .iter()
             .map(|entry| libc::pollfd {
                 fd: entry.fd,
-                events: EVENTS.iter().filter(|(event, _)| entry.events & event != 0).fold(0, |bits, (_, bit)| bits | bit),
+                events: EVENTS
+                    .iter()
+                    .filter(|(event, _)| entry.events & event != 0)
+                    .fold(0, |bits, (_, bit)| bits | bit),
                 revents: 0,
             })
             .collect();
@@ -128,7 +138,14 @@ impl ALooper {
             .into_iter()
             .zip(&fds)
             .filter(|(_, fd)| fd.revents != 0)
-            .map(|(entry, fd)| Ready { fd: entry.fd, events: EVENTS.iter().filter(|(_, bit)| fd.revents & bit != 0).fold(0, |bits, (event, _)| bits | event), entry })
+            .map(|(entry, fd)| Ready {
+                fd: entry.fd,
+                events: EVENTS
+                    .iter()
+                    .filter(|(_, bit)| fd.revents & bit != 0)
+                    .fold(0, |bits, (event, _)| bits | event),
+                entry,
+            })
             .collect())
     }
 
@@ -169,7 +186,13 @@ impl ALooper {
     /// Adds or replaces a descriptor.
     pub fn add(&self, fd: c_int, ident: c_int, events: c_int, callback: Option<Callback>, data: *mut c_void) {
         self.remove(fd);
-        lock(&self.entries).push(Entry { fd, ident: if callback.is_some() { POLL_CALLBACK } else { ident }, events, callback, data });
+        lock(&self.entries).push(Entry {
+            fd,
+            ident: if callback.is_some() { POLL_CALLBACK } else { ident },
+            events,
+            callback,
+            data,
+        });
         self.wake.signal();
     }
 }
@@ -235,7 +258,14 @@ unsafe extern "C" fn ALooper_release(looper: *const ALooper) {
     }
 }
 
-unsafe extern "C" fn ALooper_addFd(looper: *const ALooper, fd: c_int, ident: c_int, events: c_int, callback: Option<Callback>, data: *mut c_void) -> c_int {
+unsafe extern "C" fn ALooper_addFd(
+    looper: *const ALooper,
+    fd: c_int,
+    ident: c_int,
+    events: c_int,
+    callback: Option<Callback>,
+    data: *mut c_void,
+) -> c_int {
     if callback.is_none() && ident < 0 {
         host().violation("ALooper_addFd without a callback and with a negative identifier");
         return -1;
@@ -257,10 +287,16 @@ unsafe extern "C" fn ALooper_wake(looper: *const ALooper) {
     looper.wake.signal();
 }
 
-unsafe extern "C" fn ALooper_pollOnce(timeout: c_int, out_fd: *mut c_int, out_events: *mut c_int, out_data: *mut *mut c_void) -> c_int {
+unsafe extern "C" fn ALooper_pollOnce(
+    timeout: c_int,
+    out_fd: *mut c_int,
+    out_events: *mut c_int,
+    out_data: *mut *mut c_void,
+) -> c_int {
     let Some(looper) = current() else { fatal("the application polled a looper on a thread that has none") };
     let host = host();
-    let deadline = u64::try_from(timeout).ok().map(|milliseconds| host.clock.now() + milliseconds * 1_000_000);
+    let deadline =
+        u64::try_from(timeout).ok().map(|milliseconds| host.clock.now() + milliseconds * 1_000_000);
     loop {
         let now = host.clock.now();
         host.sensors.fill(now);
@@ -307,7 +343,14 @@ impl ALooper {
     fn poll_only(&self, milliseconds: c_int) -> bool {
         let mut fds: Vec<_> = lock(&self.entries)
             .iter()
-            .map(|entry| libc::pollfd { fd: entry.fd, events: EVENTS.iter().filter(|(event, _)| entry.events & event != 0).fold(0, |bits, (_, bit)| bits | bit), revents: 0 })
+            .map(|entry| libc::pollfd {
+                fd: entry.fd,
+                events: EVENTS
+                    .iter()
+                    .filter(|(event, _)| entry.events & event != 0)
+                    .fold(0, |bits, (_, bit)| bits | bit),
+                revents: 0,
+            })
             .collect();
         fds.push(libc::pollfd { fd: self.wake.raw(), events: libc::POLLIN, revents: 0 });
         // SAFETY: the pointer and the length are of one live vector.
@@ -316,7 +359,12 @@ impl ALooper {
 }
 
 /// Gone from newer Androids, and android-activity does not use it: as `pollOnce` until something has an identifier.
-unsafe extern "C" fn ALooper_pollAll(timeout: c_int, out_fd: *mut c_int, out_events: *mut c_int, out_data: *mut *mut c_void) -> c_int {
+unsafe extern "C" fn ALooper_pollAll(
+    timeout: c_int,
+    out_fd: *mut c_int,
+    out_events: *mut c_int,
+    out_data: *mut *mut c_void,
+) -> c_int {
     loop {
         // SAFETY: same contract as the caller's.
         let result = unsafe { ALooper_pollOnce(timeout, out_fd, out_events, out_data) };

@@ -120,9 +120,13 @@ impl Sensors {
             .iter()
             .map(|kind| {
                 let (name, string_type) = match kind {
-                    SensorKind::Accelerometer => (c"Simulated accelerometer", c"android.sensor.accelerometer"),
+                    SensorKind::Accelerometer => {
+                        (c"Simulated accelerometer", c"android.sensor.accelerometer")
+                    }
                     SensorKind::Gyroscope => (c"Simulated gyroscope", c"android.sensor.gyroscope"),
-                    SensorKind::GyroscopeUncalibrated => (c"Simulated gyroscope, uncalibrated", c"android.sensor.gyroscope_uncalibrated"),
+                    SensorKind::GyroscopeUncalibrated => {
+                        (c"Simulated gyroscope, uncalibrated", c"android.sensor.gyroscope_uncalibrated")
+                    }
                 };
                 &*Box::leak(Box::new(ASensor { kind: *kind, name, string_type }))
             })
@@ -186,7 +190,8 @@ impl Sensors {
             for sensor in &self.list {
                 if let Some(schedule) = state.enabled.get_mut(&sensor.type_number()) {
                     // After a long sleep only what the FIFO would hold.
-                    let backlog = (now.saturating_sub(schedule.next) / schedule.period).saturating_sub(FIFO as u64);
+                    let backlog =
+                        (now.saturating_sub(schedule.next) / schedule.period).saturating_sub(FIFO as u64);
                     schedule.next += backlog * schedule.period;
                     while schedule.next <= now {
                         new.push(self.sample(sensor, schedule.next, schedule.period));
@@ -235,7 +240,10 @@ extern "C" fn ASensorManager_getInstanceForPackage(_package: *const c_char) -> *
     &raw const host().sensors
 }
 
-unsafe extern "C" fn ASensorManager_getSensorList(_manager: *const c_void, list: *mut *const &'static ASensor) -> c_int {
+unsafe extern "C" fn ASensorManager_getSensorList(
+    _manager: *const c_void,
+    list: *mut *const &'static ASensor,
+) -> c_int {
     let sensors = &host().sensors.list;
     if !list.is_null() {
         // SAFETY: not null, so the caller gives room for one pointer; the list lives as long as the process.
@@ -245,11 +253,23 @@ unsafe extern "C" fn ASensorManager_getSensorList(_manager: *const c_void, list:
 }
 
 extern "C" fn ASensorManager_getDefaultSensor(_manager: *const c_void, kind: c_int) -> *const ASensor {
-    host().sensors.list.iter().find(|sensor| sensor.type_number() == kind).map_or(std::ptr::null(), |sensor| std::ptr::from_ref(*sensor))
+    host()
+        .sensors
+        .list
+        .iter()
+        .find(|sensor| sensor.type_number() == kind)
+        .map_or(std::ptr::null(), |sensor| std::ptr::from_ref(*sensor))
 }
 
-unsafe extern "C" fn ASensorManager_createEventQueue(_manager: *const c_void, looper: *const ALooper, ident: c_int, callback: Option<Callback>, data: *mut c_void) -> *const ASensorEventQueue {
-    let queue = Box::leak(Box::new(ASensorEventQueue { looper, event: EventFd::new(), state: Mutex::default() }));
+unsafe extern "C" fn ASensorManager_createEventQueue(
+    _manager: *const c_void,
+    looper: *const ALooper,
+    ident: c_int,
+    callback: Option<Callback>,
+    data: *mut c_void,
+) -> *const ASensorEventQueue {
+    let queue =
+        Box::leak(Box::new(ASensorEventQueue { looper, event: EventFd::new(), state: Mutex::default() }));
     // SAFETY: a live looper by contract.
     unsafe { &*looper }.add(queue.event.raw(), ident, 1, callback, data);
     let host = host();
@@ -258,7 +278,10 @@ unsafe extern "C" fn ASensorManager_createEventQueue(_manager: *const c_void, lo
     queue
 }
 
-unsafe extern "C" fn ASensorManager_destroyEventQueue(_manager: *const c_void, queue: *mut ASensorEventQueue) -> c_int {
+unsafe extern "C" fn ASensorManager_destroyEventQueue(
+    _manager: *const c_void,
+    queue: *mut ASensorEventQueue,
+) -> c_int {
     let host = host();
     let mut queues = lock(&host.sensors.queues);
     let before = queues.len();
@@ -279,7 +302,10 @@ impl ASensorEventQueue {
     fn enable(&self, sensor: &ASensor, period: Option<u64>) {
         let now = host().clock.now();
         let mut state = lock(&self.state);
-        let schedule = state.enabled.entry(sensor.type_number()).or_insert(Schedule { period: DEFAULT_PERIOD, next: now + DEFAULT_PERIOD });
+        let schedule = state
+            .enabled
+            .entry(sensor.type_number())
+            .or_insert(Schedule { period: DEFAULT_PERIOD, next: now + DEFAULT_PERIOD });
         if let Some(period) = period {
             let period = period.max(MIN_PERIOD);
             *schedule = Schedule { period, next: now + period };
@@ -292,12 +318,21 @@ extern "C" fn ASensorEventQueue_enableSensor(queue: &ASensorEventQueue, sensor: 
     0
 }
 
-extern "C" fn ASensorEventQueue_registerSensor(queue: &ASensorEventQueue, sensor: &ASensor, period_us: i32, _latency_us: i64) -> c_int {
+extern "C" fn ASensorEventQueue_registerSensor(
+    queue: &ASensorEventQueue,
+    sensor: &ASensor,
+    period_us: i32,
+    _latency_us: i64,
+) -> c_int {
     queue.enable(sensor, Some(period_us.max(0) as u64 * 1000));
     0
 }
 
-extern "C" fn ASensorEventQueue_setEventRate(queue: &ASensorEventQueue, sensor: &ASensor, period_us: i32) -> c_int {
+extern "C" fn ASensorEventQueue_setEventRate(
+    queue: &ASensorEventQueue,
+    sensor: &ASensor,
+    period_us: i32,
+) -> c_int {
     if !lock(&queue.state).enabled.contains_key(&sensor.type_number()) {
         return -libc::EINVAL;
     }
@@ -316,7 +351,11 @@ extern "C" fn ASensorEventQueue_hasEvents(queue: &ASensorEventQueue) -> c_int {
     c_int::from(!lock(&queue.state).pending.is_empty())
 }
 
-unsafe extern "C" fn ASensorEventQueue_getEvents(queue: &ASensorEventQueue, events: *mut ASensorEvent, count: usize) -> isize {
+unsafe extern "C" fn ASensorEventQueue_getEvents(
+    queue: &ASensorEventQueue,
+    events: *mut ASensorEvent,
+    count: usize,
+) -> isize {
     let host = host();
     host.sensors.fill(host.clock.now());
     let mut state = lock(&queue.state);

@@ -72,12 +72,20 @@ pub fn headroom() -> f32 {
     lock(&host().thermal).headroom
 }
 
-extern "C" fn AThermal_registerThermalStatusListener(_manager: *mut c_void, callback: StatusCallback, data: *mut c_void) -> c_int {
+extern "C" fn AThermal_registerThermalStatusListener(
+    _manager: *mut c_void,
+    callback: StatusCallback,
+    data: *mut c_void,
+) -> c_int {
     lock(&host().thermal_listeners.0).push((callback, data as usize));
     0
 }
 
-extern "C" fn AThermal_unregisterThermalStatusListener(_manager: *mut c_void, callback: StatusCallback, data: *mut c_void) -> c_int {
+extern "C" fn AThermal_unregisterThermalStatusListener(
+    _manager: *mut c_void,
+    callback: StatusCallback,
+    data: *mut c_void,
+) -> c_int {
     let mut listeners = lock(&host().thermal_listeners.0);
     let before = listeners.len();
     listeners.retain(|(known, with)| !(std::ptr::fn_addr_eq(*known, callback) && *with == data as usize));
@@ -88,7 +96,12 @@ extern "C" fn APerformanceHint_getManager() -> *mut c_void {
     std::ptr::dangling_mut()
 }
 
-extern "C" fn APerformanceHint_createSession(_manager: *mut c_void, threads: *const i32, count: usize, target: i64) -> *mut c_void {
+extern "C" fn APerformanceHint_createSession(
+    _manager: *mut c_void,
+    threads: *const i32,
+    count: usize,
+    target: i64,
+) -> *mut c_void {
     if threads.is_null() || count == 0 || target <= 0 {
         return std::ptr::null_mut();
     }

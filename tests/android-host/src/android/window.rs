@@ -118,7 +118,9 @@ extern "C" fn ANativeWindow_getFormat(window: &Window) -> i32 {
 extern "C" fn ANativeWindow_setBuffersGeometry(window: &Window, width: i32, height: i32, format: i32) -> i32 {
     known(window);
     if (width, height) != (0, 0) && (width, height) != window.size() {
-        host().violation(format!("ANativeWindow_setBuffersGeometry({width}, {height}): the host does not simulate scaled buffers"));
+        host().violation(format!(
+            "ANativeWindow_setBuffersGeometry({width}, {height}): the host does not simulate scaled buffers"
+        ));
     }
     if format != 0 {
         window.format.store(format, Ordering::Relaxed);
@@ -142,7 +144,12 @@ extern "C" fn ANativeWindow_setFrameRate(window: &Window, _rate: f32, _compatibi
     0
 }
 
-extern "C" fn ANativeWindow_setFrameRateWithChangeStrategy(window: &Window, _rate: f32, _compatibility: i8, _strategy: i8) -> c_int {
+extern "C" fn ANativeWindow_setFrameRateWithChangeStrategy(
+    window: &Window,
+    _rate: f32,
+    _compatibility: i8,
+    _strategy: i8,
+) -> c_int {
     known(window);
     0
 }

@@ -220,7 +220,11 @@ extern "C" fn eglGetDisplay(_native: *mut c_void) -> Handle {
     unsafe { (real().eglGetPlatformDisplay)(PLATFORM_SURFACELESS, std::ptr::null_mut(), std::ptr::null()) }
 }
 
-extern "C" fn eglGetPlatformDisplay(_platform: u32, native: *mut c_void, _attributes: *const isize) -> Handle {
+extern "C" fn eglGetPlatformDisplay(
+    _platform: u32,
+    native: *mut c_void,
+    _attributes: *const isize,
+) -> Handle {
     eglGetDisplay(native)
 }
 
@@ -248,7 +252,13 @@ unsafe extern "C" fn eglTerminate(display: Handle) -> Boolean {
     unsafe { (real().eglTerminate)(display) }
 }
 
-unsafe extern "C" fn eglChooseConfig(display: Handle, attributes: *const i32, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean {
+unsafe extern "C" fn eglChooseConfig(
+    display: Handle,
+    attributes: *const i32,
+    configs: *mut Handle,
+    size: i32,
+    count: *mut i32,
+) -> Boolean {
     ERROR.set(SUCCESS);
     // SAFETY: same contract as the caller's.
     let mut wanted = unsafe { pairs(attributes) };
@@ -268,7 +278,12 @@ unsafe extern "C" fn eglChooseConfig(display: Handle, attributes: *const i32, co
     unsafe { (real().eglChooseConfig)(display, wanted.as_ptr(), configs, size, count) }
 }
 
-unsafe extern "C" fn eglGetConfigAttrib(display: Handle, config: Handle, attribute: i32, value: *mut i32) -> Boolean {
+unsafe extern "C" fn eglGetConfigAttrib(
+    display: Handle,
+    config: Handle,
+    attribute: i32,
+    value: *mut i32,
+) -> Boolean {
     ERROR.set(SUCCESS);
     // SAFETY: same contract as the caller's.
     let result = unsafe { (real().eglGetConfigAttrib)(display, config, attribute, value) };
@@ -290,7 +305,12 @@ unsafe extern "C" fn eglGetConfigAttrib(display: Handle, config: Handle, attribu
     result
 }
 
-unsafe extern "C" fn eglCreateContext(display: Handle, config: Handle, share: Handle, attributes: *const i32) -> Handle {
+unsafe extern "C" fn eglCreateContext(
+    display: Handle,
+    config: Handle,
+    share: Handle,
+    attributes: *const i32,
+) -> Handle {
     ERROR.set(SUCCESS);
     let graphics = &host().graphics;
     // SAFETY: same contract as the caller's.
@@ -303,7 +323,10 @@ unsafe extern "C" fn eglCreateContext(display: Handle, config: Handle, share: Ha
     let context = unsafe { (real().eglCreateContext)(display, config, share, attributes) };
     if context != 0 {
         let mut contexts = lock(&graphics.contexts);
-        let group = contexts.get(&share).map_or_else(|| graphics.last_handle.fetch_add(1, Ordering::Relaxed) as usize + 1, |context| context.group);
+        let group = contexts.get(&share).map_or_else(
+            || graphics.last_handle.fetch_add(1, Ordering::Relaxed) as usize + 1,
+            |context| context.group,
+        );
         contexts.insert(context, ContextState { group, lost: false, seen: false });
     }
     context
@@ -340,7 +363,11 @@ fn add_surface(surface: Surface) -> Handle {
     handle
 }
 
-unsafe extern "C" fn eglCreatePbufferSurface(display: Handle, config: Handle, attributes: *const i32) -> Handle {
+unsafe extern "C" fn eglCreatePbufferSurface(
+    display: Handle,
+    config: Handle,
+    attributes: *const i32,
+) -> Handle {
     ERROR.set(SUCCESS);
     // SAFETY: same contract as the caller's.
     let wanted = unsafe { pairs(attributes) };
@@ -351,7 +378,12 @@ unsafe extern "C" fn eglCreatePbufferSurface(display: Handle, config: Handle, at
     add_surface(Surface { pbuffer, is_window: false, size, config, colorspace })
 }
 
-unsafe extern "C" fn eglCreateWindowSurface(display: Handle, config: Handle, window: *const Window, attributes: *const i32) -> Handle {
+unsafe extern "C" fn eglCreateWindowSurface(
+    display: Handle,
+    config: Handle,
+    window: *const Window,
+    attributes: *const i32,
+) -> Handle {
     ERROR.set(SUCCESS);
     let host = host();
     if !is_window(window.cast()) || !host.window.is_alive() {
@@ -365,14 +397,25 @@ unsafe extern "C" fn eglCreateWindowSurface(display: Handle, config: Handle, win
     // SAFETY: same contract as the caller's.
     let colorspace = value(&unsafe { pairs(attributes) }, GL_COLORSPACE);
     let size = host.window.size();
-    let handle = add_surface(Surface { pbuffer: new_pbuffer(display, config, size, colorspace), is_window: true, size, config, colorspace });
+    let handle = add_surface(Surface {
+        pbuffer: new_pbuffer(display, config, size, colorspace),
+        is_window: true,
+        size,
+        config,
+        colorspace,
+    });
     if handle != 0 {
         host.window.reference(1);
     }
     handle
 }
 
-unsafe extern "C" fn eglCreatePlatformWindowSurface(display: Handle, config: Handle, window: *const Window, attributes: *const isize) -> Handle {
+unsafe extern "C" fn eglCreatePlatformWindowSurface(
+    display: Handle,
+    config: Handle,
+    window: *const Window,
+    attributes: *const isize,
+) -> Handle {
     let mut narrow = Vec::new();
     let mut next = attributes;
     // SAFETY: null, or attributes that end in EGL_NONE, by contract.
@@ -405,7 +448,13 @@ unsafe extern "C" fn eglDestroySurface(display: Handle, surface: Handle) -> Bool
 unsafe extern "C" fn eglMakeCurrent(display: Handle, draw: Handle, read: Handle, context: Handle) -> Boolean {
     ERROR.set(SUCCESS);
     let graphics = &host().graphics;
-    let pbuffer = |handle: Handle| if handle == 0 { Some(0) } else { lock(&graphics.surfaces).get(&handle).map(|surface| surface.pbuffer) };
+    let pbuffer = |handle: Handle| {
+        if handle == 0 {
+            Some(0)
+        } else {
+            lock(&graphics.surfaces).get(&handle).map(|surface| surface.pbuffer)
+        }
+    };
     let (Some(draw_buffer), Some(read_buffer)) = (pbuffer(draw), pbuffer(read)) else {
         host().violation("eglMakeCurrent with a surface that does not exist");
         return fail(BAD_SURFACE);
@@ -417,7 +466,9 @@ unsafe extern "C" fn eglMakeCurrent(display: Handle, draw: Handle, read: Handle,
     let result = unsafe { (real().eglMakeCurrent)(display, draw_buffer, read_buffer, context) };
     if result == TRUE {
         CURRENT.set(Current { display, draw, read, context });
-        let first = lock(&graphics.contexts).get_mut(&context).is_some_and(|context| !std::mem::replace(&mut context.seen, true));
+        let first = lock(&graphics.contexts)
+            .get_mut(&context)
+            .is_some_and(|context| !std::mem::replace(&mut context.seen, true));
         if first {
             gl::watch_context();
         }
@@ -444,16 +495,30 @@ extern "C" fn eglGetCurrentSurface(which: i32) -> Handle {
     if which == DRAW { CURRENT.get().draw } else { CURRENT.get().read }
 }
 
-unsafe extern "C" fn eglQuerySurface(display: Handle, surface: Handle, attribute: i32, value: *mut i32) -> Boolean {
+unsafe extern "C" fn eglQuerySurface(
+    display: Handle,
+    surface: Handle,
+    attribute: i32,
+    value: *mut i32,
+) -> Boolean {
     ERROR.set(SUCCESS);
-    let Some(pbuffer) = lock(&host().graphics.surfaces).get(&surface).map(|surface| surface.pbuffer) else { return fail(BAD_SURFACE) };
+    let Some(pbuffer) = lock(&host().graphics.surfaces).get(&surface).map(|surface| surface.pbuffer) else {
+        return fail(BAD_SURFACE);
+    };
     // SAFETY: same contract as the caller's, with the surface's real handle.
     unsafe { (real().eglQuerySurface)(display, pbuffer, attribute, value) }
 }
 
-unsafe extern "C" fn eglSurfaceAttrib(display: Handle, surface: Handle, attribute: i32, value: i32) -> Boolean {
+unsafe extern "C" fn eglSurfaceAttrib(
+    display: Handle,
+    surface: Handle,
+    attribute: i32,
+    value: i32,
+) -> Boolean {
     ERROR.set(SUCCESS);
-    let Some(pbuffer) = lock(&host().graphics.surfaces).get(&surface).map(|surface| surface.pbuffer) else { return fail(BAD_ATTRIBUTE) };
+    let Some(pbuffer) = lock(&host().graphics.surfaces).get(&surface).map(|surface| surface.pbuffer) else {
+        return fail(BAD_ATTRIBUTE);
+    };
     // SAFETY: same contract as the caller's, with the surface's real handle.
     unsafe { (real().eglSurfaceAttrib)(display, pbuffer, attribute, value) }
 }
@@ -463,7 +528,10 @@ unsafe extern "C" fn eglSwapBuffers(display: Handle, surface: Handle) -> Boolean
     let host = host();
     let graphics = &host.graphics;
     let current = CURRENT.get();
-    let Some((pbuffer, is_window, size)) = lock(&graphics.surfaces).get(&surface).map(|surface| (surface.pbuffer, surface.is_window, surface.size)) else {
+    let Some((pbuffer, is_window, size)) = lock(&graphics.surfaces)
+        .get(&surface)
+        .map(|surface| (surface.pbuffer, surface.is_window, surface.size))
+    else {
         host.violation("eglSwapBuffers of a surface that does not exist");
         return fail(BAD_SURFACE);
     };
@@ -512,7 +580,11 @@ fn resize(display: Handle, handle: Handle, current: Current) {
     }
     let old = std::mem::replace(&mut surface.pbuffer, pbuffer);
     surface.size = size;
-    let read = if current.read == handle { Some(pbuffer) } else { surfaces.get(&current.read).map(|surface| surface.pbuffer) };
+    let read = if current.read == handle {
+        Some(pbuffer)
+    } else {
+        surfaces.get(&current.read).map(|surface| surface.pbuffer)
+    };
     // SAFETY: live surfaces and the context that is current on this thread; the old pbuffer is destroyed once.
     unsafe {
         (real().eglMakeCurrent)(display, pbuffer, read.unwrap_or(pbuffer), current.context);

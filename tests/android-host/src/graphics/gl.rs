@@ -76,7 +76,15 @@ mesa! {
     read_pixels as c"glReadPixels"(x: i32, y: i32, width: i32, height: i32, format: u32, kind: u32, out: *mut c_void);
 }
 
-type DebugCallback = extern "C" fn(source: u32, kind: u32, id: u32, severity: u32, length: i32, message: *const c_char, data: *const c_void);
+type DebugCallback = extern "C" fn(
+    source: u32,
+    kind: u32,
+    id: u32,
+    severity: u32,
+    length: i32,
+    message: *const c_char,
+    data: *const c_void,
+);
 
 /// The application's own callback and its data, by share group.
 static APPLICATION_CALLBACK: Mutex<Option<(usize, DebugCallback, usize)>> = Mutex::new(None);
@@ -86,7 +94,15 @@ thread_local! {
     static DESCRIBED: Cell<bool> = const { Cell::new(false) };
 }
 
-extern "C" fn debug_message(source: u32, kind: u32, id: u32, severity: u32, length: i32, message: *const c_char, _data: *const c_void) {
+extern "C" fn debug_message(
+    source: u32,
+    kind: u32,
+    id: u32,
+    severity: u32,
+    length: i32,
+    message: *const c_char,
+    _data: *const c_void,
+) {
     if kind == DEBUG_TYPE_ERROR {
         DESCRIBED.set(true);
         // SAFETY: KHR_debug's messages are terminated.
@@ -135,8 +151,10 @@ fn integer(name: u32) -> i32 {
 /// # Errors
 /// The driver refuses.
 pub fn read_default_framebuffer(width: i32, height: i32) -> Result<RgbaImage, String> {
-    let store = [PACK_ALIGNMENT, PACK_ROW_LENGTH, PACK_SKIP_ROWS, PACK_SKIP_PIXELS].map(|name| (name, integer(name)));
-    let (framebuffer, buffer) = (integer(READ_FRAMEBUFFER_BINDING) as u32, integer(PIXEL_PACK_BUFFER_BINDING) as u32);
+    let store =
+        [PACK_ALIGNMENT, PACK_ROW_LENGTH, PACK_SKIP_ROWS, PACK_SKIP_PIXELS].map(|name| (name, integer(name)));
+    let (framebuffer, buffer) =
+        (integer(READ_FRAMEBUFFER_BINDING) as u32, integer(PIXEL_PACK_BUFFER_BINDING) as u32);
     let mut pixels = vec![0_u8; width as usize * height as usize * 4];
     // SAFETY: a context is current; with alignment 1 and no row length the picture fills the buffer exactly.
     let error = unsafe {
@@ -157,7 +175,8 @@ pub fn read_default_framebuffer(width: i32, height: i32) -> Result<RgbaImage, St
     if error != 0 {
         return Err(format!("glReadPixels of the window gives {error:#x}"));
     }
-    let image = RgbaImage::from_raw(width as u32, height as u32, pixels).ok_or("the window's picture has another size")?;
+    let image = RgbaImage::from_raw(width as u32, height as u32, pixels)
+        .ok_or("the window's picture has another size")?;
     Ok(image::imageops::flip_vertical(&image))
 }
 
@@ -316,10 +335,32 @@ pub fn function(name: &str) -> Option<usize> {
         return None;
     }
     let ours = ours![
-        glGenBuffers, glDeleteBuffers, glGenFramebuffers, glDeleteFramebuffers, glGenProgramPipelines, glDeleteProgramPipelines,
-        glGenQueries, glDeleteQueries, glGenQueriesEXT, glDeleteQueriesEXT, glGenRenderbuffers, glDeleteRenderbuffers, glGenSamplers,
-        glDeleteSamplers, glGenTextures, glDeleteTextures, glGenTransformFeedbacks, glDeleteTransformFeedbacks, glGenVertexArrays,
-        glDeleteVertexArrays, glCreateShader, glDeleteShader, glCreateProgram, glDeleteProgram, glFenceSync, glDeleteSync,
+        glGenBuffers,
+        glDeleteBuffers,
+        glGenFramebuffers,
+        glDeleteFramebuffers,
+        glGenProgramPipelines,
+        glDeleteProgramPipelines,
+        glGenQueries,
+        glDeleteQueries,
+        glGenQueriesEXT,
+        glDeleteQueriesEXT,
+        glGenRenderbuffers,
+        glDeleteRenderbuffers,
+        glGenSamplers,
+        glDeleteSamplers,
+        glGenTextures,
+        glDeleteTextures,
+        glGenTransformFeedbacks,
+        glDeleteTransformFeedbacks,
+        glGenVertexArrays,
+        glDeleteVertexArrays,
+        glCreateShader,
+        glDeleteShader,
+        glCreateProgram,
+        glDeleteProgram,
+        glFenceSync,
+        glDeleteSync,
         glDebugMessageCallback,
     ];
     let symbol = CString::new(name).ok()?;

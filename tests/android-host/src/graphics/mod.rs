@@ -108,7 +108,10 @@ impl Graphics {
     }
 
     fn object_deleted(&self, group: usize, kind: &'static str, name: usize) {
-        let known = lock(&self.objects).get_mut(&group).and_then(|kinds| kinds.get_mut(kind)).is_some_and(|names| names.remove(&name));
+        let known = lock(&self.objects)
+            .get_mut(&group)
+            .and_then(|kinds| kinds.get_mut(kind))
+            .is_some_and(|names| names.remove(&name));
         if !known {
             host().violation(format!("a GL {kind} was deleted that does not exist in this context"));
         }

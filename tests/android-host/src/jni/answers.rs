@@ -29,12 +29,18 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
     Some(match member.name.as_str() {
         "<init>" => Value::Void,
         "loadClass" | "forName" => Value::object(Object::class_of(&text(0)?.replace('.', "/"))),
-        "getName" if receiver.class == "java/lang/Class" => Value::object(Object::string(&class.replace('/', "."))),
+        "getName" if receiver.class == "java/lang/Class" => {
+            Value::object(Object::string(&class.replace('/', ".")))
+        }
         "toString" => Value::object(Object::string(receiver.text().unwrap_or(class))),
         // Their objects are asked nothing: the application hands them back.
-        "getApplication" | "getApplicationContext" => Value::object(Object::new("android/app/Application", Data::None)),
+        "getApplication" | "getApplicationContext" => {
+            Value::object(Object::new("android/app/Application", Data::None))
+        }
         "getAssets" => Value::object(Object::new("android/content/res/AssetManager", Data::None)),
-        "getClassLoader" | "getContextClassLoader" => Value::object(Object::new("java/lang/ClassLoader", Data::None)),
+        "getClassLoader" | "getContextClassLoader" => {
+            Value::object(Object::new("java/lang/ClassLoader", Data::None))
+        }
         "getWindow" => Value::object(Object::new("android/view/Window", Data::None)),
         "getDecorView" => Value::object(Object::new("android/view/View", Data::None)),
         "getWindowManager" => Value::object(Object::new("android/view/WindowManager", Data::None)),
@@ -43,8 +49,19 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
         "getDisplayMetrics" => Value::object(Object::new("android/util/DisplayMetrics", Data::None)),
         "getPackageName" => Value::object(Object::string("org.yoro.simulated")),
         "currentThread" => Value::object(Object::new("java/lang/Thread", Data::None)),
-        "setContextClassLoader" | "setName" | "setSystemUiVisibility" | "setDecorFitsSystemWindows" | "setAttributes" | "addFlags"
-        | "clearFlags" | "setFlags" | "hide" | "show" | "setSystemBarsBehavior" | "setRequestedOrientation" | "setSustainedPerformanceMode"
+        "setContextClassLoader"
+        | "setName"
+        | "setSystemUiVisibility"
+        | "setDecorFitsSystemWindows"
+        | "setAttributes"
+        | "addFlags"
+        | "clearFlags"
+        | "setFlags"
+        | "hide"
+        | "show"
+        | "setSystemBarsBehavior"
+        | "setRequestedOrientation"
+        | "setSustainedPerformanceMode"
             if member.signature.ends_with(")V") =>
         {
             Value::Void
@@ -52,22 +69,35 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
 
         "getSystemService" => system_service(&text(0)?),
         "registerReceiver" => Value::Object(battery_intent(host)),
-        "getIntProperty" if class == "android/os/BatteryManager" => Value::Int(battery_property(host, int(0))),
-        "getLongProperty" if class == "android/os/BatteryManager" => Value::Long(battery_long_property(host, int(0))),
-        "isCharging" if class == "android/os/BatteryManager" => {
-            Value::Boolean(lock(&host.battery).as_ref().is_some_and(|battery| matches!(battery.status, 2 | 5)))
+        "getIntProperty" if class == "android/os/BatteryManager" => {
+            Value::Int(battery_property(host, int(0)))
         }
+        "getLongProperty" if class == "android/os/BatteryManager" => {
+            Value::Long(battery_long_property(host, int(0)))
+        }
+        "isCharging" if class == "android/os/BatteryManager" => Value::Boolean(
+            lock(&host.battery).as_ref().is_some_and(|battery| matches!(battery.status, 2 | 5)),
+        ),
         "getCurrentThermalStatus" => Value::Int(lock(&host.thermal).status),
         "getThermalHeadroom" => Value::Float(thermal::headroom()),
         "isPowerSaveMode" => Value::Boolean(false),
 
         "getIntent" => {
-            let extras = host.device.extras.iter().map(|(key, value)| (key.clone(), Value::object(Object::string(value)))).collect();
+            let extras = host
+                .device
+                .extras
+                .iter()
+                .map(|(key, value)| (key.clone(), Value::object(Object::string(value))))
+                .collect();
             Value::object(Object::new("android/content/Intent", Data::Extras(extras)))
         }
-        "getAction" if class == "android/content/Intent" => Value::object(Object::string("android.intent.action.MAIN")),
+        "getAction" if class == "android/content/Intent" => {
+            Value::object(Object::string("android.intent.action.MAIN"))
+        }
         "getExtras" => match &receiver.data {
-            Data::Extras(extras) if !extras.is_empty() => Value::object(Object::new("android/os/Bundle", Data::Extras(extras.clone()))),
+            Data::Extras(extras) if !extras.is_empty() => {
+                Value::object(Object::new("android/os/Bundle", Data::Extras(extras.clone())))
+            }
             _ => Value::Object(None),
         },
         "keySet" => match &receiver.data {
@@ -75,7 +105,9 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
             _ => return None,
         },
         "iterator" => match &receiver.data {
-            Data::Array(items) => Value::object(Object::new("java/util/Iterator", Data::Array(lock(items).clone().into()))),
+            Data::Array(items) => {
+                Value::object(Object::new("java/util/Iterator", Data::Array(lock(items).clone().into())))
+            }
             _ => return None,
         },
         "hasNext" => match &receiver.data {
@@ -87,24 +119,30 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
             _ => return None,
         },
         "hasExtra" | "containsKey" => Value::Boolean(extra(receiver, &text(0)?).is_some()),
-        "getIntExtra" | "getInt" | "getLongExtra" | "getLong" | "getFloatExtra" | "getFloat" | "getBooleanExtra" | "getBoolean"
-        | "getDoubleExtra" | "getDouble"
+        "getIntExtra" | "getInt" | "getLongExtra" | "getLong" | "getFloatExtra" | "getFloat"
+        | "getBooleanExtra" | "getBoolean" | "getDoubleExtra" | "getDouble"
             if matches!(receiver.data, Data::Extras(_)) =>
         {
             let default = arguments.get(1).cloned().unwrap_or(Value::Int(0));
             match extra(receiver, &text(0)?) {
-                Some(value) if std::mem::discriminant(value) == std::mem::discriminant(&default) => value.clone(),
+                Some(value) if std::mem::discriminant(value) == std::mem::discriminant(&default) => {
+                    value.clone()
+                }
                 _ => default,
             }
         }
-        "getStringExtra" | "getString" | "get" if matches!(receiver.data, Data::Extras(_)) => match extra(receiver, &text(0)?) {
-            Some(value @ Value::Object(_)) => value.clone(),
-            _ => Value::Object(None),
-        },
+        "getStringExtra" | "getString" | "get" if matches!(receiver.data, Data::Extras(_)) => {
+            match extra(receiver, &text(0)?) {
+                Some(value @ Value::Object(_)) => value.clone(),
+                _ => Value::Object(None),
+            }
+        }
 
         "getExternalFilesDir" | "getExternalCacheDir" => file(host.directories.external().to_str().ok()?),
         "getFilesDir" | "getCacheDir" => file(host.directories.internal().to_str().ok()?),
-        "getAbsolutePath" | "getPath" | "getCanonicalPath" if class == "java/io/File" => Value::object(Object::string(receiver.text()?)),
+        "getAbsolutePath" | "getPath" | "getCanonicalPath" if class == "java/io/File" => {
+            Value::object(Object::string(receiver.text()?))
+        }
 
         "getRefreshRate" => Value::Float(host.device.refresh_hz as f32),
         "getRotation" => Value::Int(1),
@@ -131,12 +169,16 @@ pub fn field(member: &Member) -> Option<Value> {
         ("android/util/DisplayMetrics", "heightPixels") => Value::Int(height),
         ("android/os/Build$VERSION", "SDK_INT") => Value::Int(host.device.sdk),
         ("android/os/Build$VERSION", "RELEASE") => Value::object(Object::string("simulated")),
-        ("android/os/Build", "MODEL" | "DEVICE" | "PRODUCT" | "MANUFACTURER" | "BRAND" | "HARDWARE") => Value::object(Object::string("Simulated Android host")),
+        ("android/os/Build", "MODEL" | "DEVICE" | "PRODUCT" | "MANUFACTURER" | "BRAND" | "HARDWARE") => {
+            Value::object(Object::string("Simulated Android host"))
+        }
         ("android/content/Context", "BATTERY_SERVICE") => Value::object(Object::string("batterymanager")),
         ("android/content/Context", "POWER_SERVICE") => Value::object(Object::string("power")),
         ("android/content/Context", "WINDOW_SERVICE") => Value::object(Object::string("window")),
         ("android/content/Context", "DISPLAY_SERVICE") => Value::object(Object::string("display")),
-        ("android/content/Intent", "ACTION_BATTERY_CHANGED") => Value::object(Object::string("android.intent.action.BATTERY_CHANGED")),
+        ("android/content/Intent", "ACTION_BATTERY_CHANGED") => {
+            Value::object(Object::string("android.intent.action.BATTERY_CHANGED"))
+        }
         ("android/view/WindowInsets$Type", _) => Value::Int(0),
         _ => return None,
     })
@@ -187,7 +229,10 @@ fn battery_intent(host: &Host) -> Option<Arc<Object>> {
     ]
     .map(|(key, value)| (key.to_owned(), Value::Int(value)))
     .into_iter()
-    .chain([("present".to_owned(), Value::Boolean(true)), ("technology".to_owned(), Value::object(Object::string("simulated")))])
+    .chain([
+        ("present".to_owned(), Value::Boolean(true)),
+        ("technology".to_owned(), Value::object(Object::string("simulated"))),
+    ])
     .collect();
     Some(Object::new("android/content/Intent", Data::Extras(extras)))
 }

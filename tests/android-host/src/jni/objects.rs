@@ -137,7 +137,9 @@ impl Jni {
     }
 
     pub(super) fn note_invented(&self, member: &Member) {
-        *lock(&self.invented).entry(format!("{}.{}{}", member.class, member.name, member.signature)).or_default() += 1;
+        *lock(&self.invented)
+            .entry(format!("{}.{}{}", member.class, member.name, member.signature))
+            .or_default() += 1;
     }
 
     pub(super) fn add(&self, object: Arc<Object>, kind: Kind) -> usize {
@@ -155,7 +157,10 @@ impl Jni {
         }
         match lock(&self.references).live.remove(&handle) {
             Some(reference) if reference.kind == kind => {}
-            Some(reference) => fatal(format!("JNI: a {:?} reference to a {} was deleted as a {kind:?} one", reference.kind, reference.object.class)),
+            Some(reference) => fatal(format!(
+                "JNI: a {:?} reference to a {} was deleted as a {kind:?} one",
+                reference.kind, reference.object.class
+            )),
             None => fatal(format!("JNI: a {kind:?} reference was deleted that does not exist any more")),
         }
     }

@@ -15,52 +15,242 @@ use crate::thunk;
 
 /// Functions of JNI in the order of their table.
 const SLOTS: [&str; 236] = [
-    "reserved0", "reserved1", "reserved2", "reserved3", "GetVersion", "DefineClass", "FindClass", "FromReflectedMethod",
-    "FromReflectedField", "ToReflectedMethod", "GetSuperclass", "IsAssignableFrom", "ToReflectedField", "Throw", "ThrowNew",
-    "ExceptionOccurred", "ExceptionDescribe", "ExceptionClear", "FatalError", "PushLocalFrame", "PopLocalFrame",
-    "NewGlobalRef", "DeleteGlobalRef", "DeleteLocalRef", "IsSameObject", "NewLocalRef", "EnsureLocalCapacity", "AllocObject",
-    "NewObject", "NewObjectV", "NewObjectA", "GetObjectClass", "IsInstanceOf", "GetMethodID", "CallObjectMethod",
-    "CallObjectMethodV", "CallObjectMethodA", "CallBooleanMethod", "CallBooleanMethodV", "CallBooleanMethodA",
-    "CallByteMethod", "CallByteMethodV", "CallByteMethodA", "CallCharMethod", "CallCharMethodV", "CallCharMethodA",
-    "CallShortMethod", "CallShortMethodV", "CallShortMethodA", "CallIntMethod", "CallIntMethodV", "CallIntMethodA",
-    "CallLongMethod", "CallLongMethodV", "CallLongMethodA", "CallFloatMethod", "CallFloatMethodV", "CallFloatMethodA",
-    "CallDoubleMethod", "CallDoubleMethodV", "CallDoubleMethodA", "CallVoidMethod", "CallVoidMethodV", "CallVoidMethodA",
-    "CallNonvirtualObjectMethod", "CallNonvirtualObjectMethodV", "CallNonvirtualObjectMethodA", "CallNonvirtualBooleanMethod",
-    "CallNonvirtualBooleanMethodV", "CallNonvirtualBooleanMethodA", "CallNonvirtualByteMethod", "CallNonvirtualByteMethodV",
-    "CallNonvirtualByteMethodA", "CallNonvirtualCharMethod", "CallNonvirtualCharMethodV", "CallNonvirtualCharMethodA",
-    "CallNonvirtualShortMethod", "CallNonvirtualShortMethodV", "CallNonvirtualShortMethodA", "CallNonvirtualIntMethod",
-    "CallNonvirtualIntMethodV", "CallNonvirtualIntMethodA", "CallNonvirtualLongMethod", "CallNonvirtualLongMethodV",
-    "CallNonvirtualLongMethodA", "CallNonvirtualFloatMethod", "CallNonvirtualFloatMethodV", "CallNonvirtualFloatMethodA",
-    "CallNonvirtualDoubleMethod", "CallNonvirtualDoubleMethodV", "CallNonvirtualDoubleMethodA", "CallNonvirtualVoidMethod",
-    "CallNonvirtualVoidMethodV", "CallNonvirtualVoidMethodA", "GetFieldID", "GetObjectField", "GetBooleanField",
-    "GetByteField", "GetCharField", "GetShortField", "GetIntField", "GetLongField", "GetFloatField", "GetDoubleField",
-    "SetObjectField", "SetBooleanField", "SetByteField", "SetCharField", "SetShortField", "SetIntField", "SetLongField",
-    "SetFloatField", "SetDoubleField", "GetStaticMethodID", "CallStaticObjectMethod", "CallStaticObjectMethodV",
-    "CallStaticObjectMethodA", "CallStaticBooleanMethod", "CallStaticBooleanMethodV", "CallStaticBooleanMethodA",
-    "CallStaticByteMethod", "CallStaticByteMethodV", "CallStaticByteMethodA", "CallStaticCharMethod", "CallStaticCharMethodV",
-    "CallStaticCharMethodA", "CallStaticShortMethod", "CallStaticShortMethodV", "CallStaticShortMethodA",
-    "CallStaticIntMethod", "CallStaticIntMethodV", "CallStaticIntMethodA", "CallStaticLongMethod", "CallStaticLongMethodV",
-    "CallStaticLongMethodA", "CallStaticFloatMethod", "CallStaticFloatMethodV", "CallStaticFloatMethodA",
-    "CallStaticDoubleMethod", "CallStaticDoubleMethodV", "CallStaticDoubleMethodA", "CallStaticVoidMethod",
-    "CallStaticVoidMethodV", "CallStaticVoidMethodA", "GetStaticFieldID", "GetStaticObjectField", "GetStaticBooleanField",
-    "GetStaticByteField", "GetStaticCharField", "GetStaticShortField", "GetStaticIntField", "GetStaticLongField",
-    "GetStaticFloatField", "GetStaticDoubleField", "SetStaticObjectField", "SetStaticBooleanField", "SetStaticByteField",
-    "SetStaticCharField", "SetStaticShortField", "SetStaticIntField", "SetStaticLongField", "SetStaticFloatField",
-    "SetStaticDoubleField", "NewString", "GetStringLength", "GetStringChars", "ReleaseStringChars", "NewStringUTF",
-    "GetStringUTFLength", "GetStringUTFChars", "ReleaseStringUTFChars", "GetArrayLength", "NewObjectArray",
-    "GetObjectArrayElement", "SetObjectArrayElement", "NewBooleanArray", "NewByteArray", "NewCharArray", "NewShortArray",
-    "NewIntArray", "NewLongArray", "NewFloatArray", "NewDoubleArray", "GetBooleanArrayElements", "GetByteArrayElements",
-    "GetCharArrayElements", "GetShortArrayElements", "GetIntArrayElements", "GetLongArrayElements", "GetFloatArrayElements",
-    "GetDoubleArrayElements", "ReleaseBooleanArrayElements", "ReleaseByteArrayElements", "ReleaseCharArrayElements",
-    "ReleaseShortArrayElements", "ReleaseIntArrayElements", "ReleaseLongArrayElements", "ReleaseFloatArrayElements",
-    "ReleaseDoubleArrayElements", "GetBooleanArrayRegion", "GetByteArrayRegion", "GetCharArrayRegion", "GetShortArrayRegion",
-    "GetIntArrayRegion", "GetLongArrayRegion", "GetFloatArrayRegion", "GetDoubleArrayRegion", "SetBooleanArrayRegion",
-    "SetByteArrayRegion", "SetCharArrayRegion", "SetShortArrayRegion", "SetIntArrayRegion", "SetLongArrayRegion",
-    "SetFloatArrayRegion", "SetDoubleArrayRegion", "RegisterNatives", "UnregisterNatives", "MonitorEnter", "MonitorExit",
-    "GetJavaVM", "GetStringRegion", "GetStringUTFRegion", "GetPrimitiveArrayCritical", "ReleasePrimitiveArrayCritical",
-    "GetStringCritical", "ReleaseStringCritical", "NewWeakGlobalRef", "DeleteWeakGlobalRef", "ExceptionCheck",
-    "NewDirectByteBuffer", "GetDirectBufferAddress", "GetDirectBufferCapacity", "GetObjectRefType", "GetModule",
-    "IsVirtualThread", "GetStringUTFLengthAsLong",
+    "reserved0",
+    "reserved1",
+    "reserved2",
+    "reserved3",
+    "GetVersion",
+    "DefineClass",
+    "FindClass",
+    "FromReflectedMethod",
+    "FromReflectedField",
+    "ToReflectedMethod",
+    "GetSuperclass",
+    "IsAssignableFrom",
+    "ToReflectedField",
+    "Throw",
+    "ThrowNew",
+    "ExceptionOccurred",
+    "ExceptionDescribe",
+    "ExceptionClear",
+    "FatalError",
+    "PushLocalFrame",
+    "PopLocalFrame",
+    "NewGlobalRef",
+    "DeleteGlobalRef",
+    "DeleteLocalRef",
+    "IsSameObject",
+    "NewLocalRef",
+    "EnsureLocalCapacity",
+    "AllocObject",
+    "NewObject",
+    "NewObjectV",
+    "NewObjectA",
+    "GetObjectClass",
+    "IsInstanceOf",
+    "GetMethodID",
+    "CallObjectMethod",
+    "CallObjectMethodV",
+    "CallObjectMethodA",
+    "CallBooleanMethod",
+    "CallBooleanMethodV",
+    "CallBooleanMethodA",
+    "CallByteMethod",
+    "CallByteMethodV",
+    "CallByteMethodA",
+    "CallCharMethod",
+    "CallCharMethodV",
+    "CallCharMethodA",
+    "CallShortMethod",
+    "CallShortMethodV",
+    "CallShortMethodA",
+    "CallIntMethod",
+    "CallIntMethodV",
+    "CallIntMethodA",
+    "CallLongMethod",
+    "CallLongMethodV",
+    "CallLongMethodA",
+    "CallFloatMethod",
+    "CallFloatMethodV",
+    "CallFloatMethodA",
+    "CallDoubleMethod",
+    "CallDoubleMethodV",
+    "CallDoubleMethodA",
+    "CallVoidMethod",
+    "CallVoidMethodV",
+    "CallVoidMethodA",
+    "CallNonvirtualObjectMethod",
+    "CallNonvirtualObjectMethodV",
+    "CallNonvirtualObjectMethodA",
+    "CallNonvirtualBooleanMethod",
+    "CallNonvirtualBooleanMethodV",
+    "CallNonvirtualBooleanMethodA",
+    "CallNonvirtualByteMethod",
+    "CallNonvirtualByteMethodV",
+    "CallNonvirtualByteMethodA",
+    "CallNonvirtualCharMethod",
+    "CallNonvirtualCharMethodV",
+    "CallNonvirtualCharMethodA",
+    "CallNonvirtualShortMethod",
+    "CallNonvirtualShortMethodV",
+    "CallNonvirtualShortMethodA",
+    "CallNonvirtualIntMethod",
+    "CallNonvirtualIntMethodV",
+    "CallNonvirtualIntMethodA",
+    "CallNonvirtualLongMethod",
+    "CallNonvirtualLongMethodV",
+    "CallNonvirtualLongMethodA",
+    "CallNonvirtualFloatMethod",
+    "CallNonvirtualFloatMethodV",
+    "CallNonvirtualFloatMethodA",
+    "CallNonvirtualDoubleMethod",
+    "CallNonvirtualDoubleMethodV",
+    "CallNonvirtualDoubleMethodA",
+    "CallNonvirtualVoidMethod",
+    "CallNonvirtualVoidMethodV",
+    "CallNonvirtualVoidMethodA",
+    "GetFieldID",
+    "GetObjectField",
+    "GetBooleanField",
+    "GetByteField",
+    "GetCharField",
+    "GetShortField",
+    "GetIntField",
+    "GetLongField",
+    "GetFloatField",
+    "GetDoubleField",
+    "SetObjectField",
+    "SetBooleanField",
+    "SetByteField",
+    "SetCharField",
+    "SetShortField",
+    "SetIntField",
+    "SetLongField",
+    "SetFloatField",
+    "SetDoubleField",
+    "GetStaticMethodID",
+    "CallStaticObjectMethod",
+    "CallStaticObjectMethodV",
+    "CallStaticObjectMethodA",
+    "CallStaticBooleanMethod",
+    "CallStaticBooleanMethodV",
+    "CallStaticBooleanMethodA",
+    "CallStaticByteMethod",
+    "CallStaticByteMethodV",
+    "CallStaticByteMethodA",
+    "CallStaticCharMethod",
+    "CallStaticCharMethodV",
+    "CallStaticCharMethodA",
+    "CallStaticShortMethod",
+    "CallStaticShortMethodV",
+    "CallStaticShortMethodA",
+    "CallStaticIntMethod",
+    "CallStaticIntMethodV",
+    "CallStaticIntMethodA",
+    "CallStaticLongMethod",
+    "CallStaticLongMethodV",
+    "CallStaticLongMethodA",
+    "CallStaticFloatMethod",
+    "CallStaticFloatMethodV",
+    "CallStaticFloatMethodA",
+    "CallStaticDoubleMethod",
+    "CallStaticDoubleMethodV",
+    "CallStaticDoubleMethodA",
+    "CallStaticVoidMethod",
+    "CallStaticVoidMethodV",
+    "CallStaticVoidMethodA",
+    "GetStaticFieldID",
+    "GetStaticObjectField",
+    "GetStaticBooleanField",
+    "GetStaticByteField",
+    "GetStaticCharField",
+    "GetStaticShortField",
+    "GetStaticIntField",
+    "GetStaticLongField",
+    "GetStaticFloatField",
+    "GetStaticDoubleField",
+    "SetStaticObjectField",
+    "SetStaticBooleanField",
+    "SetStaticByteField",
+    "SetStaticCharField",
+    "SetStaticShortField",
+    "SetStaticIntField",
+    "SetStaticLongField",
+    "SetStaticFloatField",
+    "SetStaticDoubleField",
+    "NewString",
+    "GetStringLength",
+    "GetStringChars",
+    "ReleaseStringChars",
+    "NewStringUTF",
+    "GetStringUTFLength",
+    "GetStringUTFChars",
+    "ReleaseStringUTFChars",
+    "GetArrayLength",
+    "NewObjectArray",
+    "GetObjectArrayElement",
+    "SetObjectArrayElement",
+    "NewBooleanArray",
+    "NewByteArray",
+    "NewCharArray",
+    "NewShortArray",
+    "NewIntArray",
+    "NewLongArray",
+    "NewFloatArray",
+    "NewDoubleArray",
+    "GetBooleanArrayElements",
+    "GetByteArrayElements",
+    "GetCharArrayElements",
+    "GetShortArrayElements",
+    "GetIntArrayElements",
+    "GetLongArrayElements",
+    "GetFloatArrayElements",
+    "GetDoubleArrayElements",
+    "ReleaseBooleanArrayElements",
+    "ReleaseByteArrayElements",
+    "ReleaseCharArrayElements",
+    "ReleaseShortArrayElements",
+    "ReleaseIntArrayElements",
+    "ReleaseLongArrayElements",
+    "ReleaseFloatArrayElements",
+    "ReleaseDoubleArrayElements",
+    "GetBooleanArrayRegion",
+    "GetByteArrayRegion",
+    "GetCharArrayRegion",
+    "GetShortArrayRegion",
+    "GetIntArrayRegion",
+    "GetLongArrayRegion",
+    "GetFloatArrayRegion",
+    "GetDoubleArrayRegion",
+    "SetBooleanArrayRegion",
+    "SetByteArrayRegion",
+    "SetCharArrayRegion",
+    "SetShortArrayRegion",
+    "SetIntArrayRegion",
+    "SetLongArrayRegion",
+    "SetFloatArrayRegion",
+    "SetDoubleArrayRegion",
+    "RegisterNatives",
+    "UnregisterNatives",
+    "MonitorEnter",
+    "MonitorExit",
+    "GetJavaVM",
+    "GetStringRegion",
+    "GetStringUTFRegion",
+    "GetPrimitiveArrayCritical",
+    "ReleasePrimitiveArrayCritical",
+    "GetStringCritical",
+    "ReleaseStringCritical",
+    "NewWeakGlobalRef",
+    "DeleteWeakGlobalRef",
+    "ExceptionCheck",
+    "NewDirectByteBuffer",
+    "GetDirectBufferAddress",
+    "GetDirectBufferCapacity",
+    "GetObjectRefType",
+    "GetModule",
+    "IsVirtualThread",
+    "GetStringUTFLengthAsLong",
 ];
 
 const OK: i32 = 0;
@@ -79,7 +269,9 @@ thread_local! {
 
 /// The local references of the calling thread.
 fn frames() -> &'static RefCell<Vec<Vec<usize>>> {
-    FRAMES.get().unwrap_or_else(|| fatal(format!("JNI was called on the thread {}, which is not attached", thread_name())))
+    FRAMES.get().unwrap_or_else(|| {
+        fatal(format!("JNI was called on the thread {}, which is not attached", thread_name()))
+    })
 }
 
 fn attach() {
@@ -114,7 +306,10 @@ pub fn environment() -> *const c_void {
         let names: Vec<_> = SLOTS.iter().map(|name| format!("the JNI function {name}")).collect();
         let mut table = thunk::traps(&names).unwrap_or_else(|error| fatal(format!("JNI: {error:#}")));
         for (name, address) in functions() {
-            let slot = SLOTS.iter().position(|slot| *slot == name).unwrap_or_else(|| fatal(format!("JNI has no function {name}")));
+            let slot = SLOTS
+                .iter()
+                .position(|slot| *slot == name)
+                .unwrap_or_else(|| fatal(format!("JNI has no function {name}")));
             table[slot] = address;
         }
         Box::new(table.leak().as_ptr() as usize)
@@ -125,8 +320,10 @@ pub fn environment() -> *const c_void {
 /// `JavaVM*`.
 pub fn virtual_machine() -> *const c_void {
     let pointer = MACHINE.get_or_init(|| {
-        let names: Vec<_> =
-            ["reserved0", "reserved1", "reserved2", "DestroyJavaVM", "", "", "", ""].iter().map(|name| format!("the JNI function {name}")).collect();
+        let names: Vec<_> = ["reserved0", "reserved1", "reserved2", "DestroyJavaVM", "", "", "", ""]
+            .iter()
+            .map(|name| format!("the JNI function {name}"))
+            .collect();
         let mut table = thunk::traps(&names).unwrap_or_else(|error| fatal(format!("JNI: {error:#}")));
         table[4] = AttachCurrentThread as *const () as usize;
         table[5] = DetachCurrentThread as *const () as usize;
@@ -144,7 +341,11 @@ unsafe extern "C" fn GetEnv(_machine: *const c_void, out: *mut *const c_void, _v
     if attached { OK } else { DETACHED }
 }
 
-unsafe extern "C" fn AttachCurrentThread(_machine: *const c_void, out: *mut *const c_void, _arguments: *const c_void) -> i32 {
+unsafe extern "C" fn AttachCurrentThread(
+    _machine: *const c_void,
+    out: *mut *const c_void,
+    _arguments: *const c_void,
+) -> i32 {
     attach();
     // SAFETY: the caller gives room for one pointer.
     unsafe { out.write(environment()) };
@@ -180,14 +381,61 @@ fn functions() -> Vec<(&'static str, usize)> {
         ($($function:ident),* $(,)?) => { vec![$((stringify!($function), $function as *const () as usize)),*] };
     }
     let mut all = list![
-        GetVersion, FindClass, GetSuperclass, IsAssignableFrom, ExceptionOccurred, ExceptionDescribe, ExceptionClear, FatalError, PushLocalFrame,
-        PopLocalFrame, NewGlobalRef, DeleteGlobalRef, DeleteLocalRef, IsSameObject, NewLocalRef, EnsureLocalCapacity, NewObjectA,
-        GetObjectClass, IsInstanceOf, GetMethodID, GetStaticMethodID, GetFieldID, GetStaticFieldID, CallObjectMethodA,
-        CallBooleanMethodA, CallIntMethodA, CallLongMethodA, CallFloatMethodA, CallDoubleMethodA, CallVoidMethodA, GetObjectField,
-        GetBooleanField, GetIntField, GetLongField, GetFloatField, GetDoubleField, NewString, GetStringLength, GetStringChars,
-        ReleaseStringChars, GetStringRegion, NewStringUTF, GetStringUTFLength, GetStringUTFChars, ReleaseStringUTFChars,
-        GetStringUTFRegion, GetArrayLength, GetObjectArrayElement, MonitorEnter, MonitorExit, GetJavaVM, NewWeakGlobalRef,
-        DeleteWeakGlobalRef, ExceptionCheck, GetObjectRefType,
+        GetVersion,
+        FindClass,
+        GetSuperclass,
+        IsAssignableFrom,
+        ExceptionOccurred,
+        ExceptionDescribe,
+        ExceptionClear,
+        FatalError,
+        PushLocalFrame,
+        PopLocalFrame,
+        NewGlobalRef,
+        DeleteGlobalRef,
+        DeleteLocalRef,
+        IsSameObject,
+        NewLocalRef,
+        EnsureLocalCapacity,
+        NewObjectA,
+        GetObjectClass,
+        IsInstanceOf,
+        GetMethodID,
+        GetStaticMethodID,
+        GetFieldID,
+        GetStaticFieldID,
+        CallObjectMethodA,
+        CallBooleanMethodA,
+        CallIntMethodA,
+        CallLongMethodA,
+        CallFloatMethodA,
+        CallDoubleMethodA,
+        CallVoidMethodA,
+        GetObjectField,
+        GetBooleanField,
+        GetIntField,
+        GetLongField,
+        GetFloatField,
+        GetDoubleField,
+        NewString,
+        GetStringLength,
+        GetStringChars,
+        ReleaseStringChars,
+        GetStringRegion,
+        NewStringUTF,
+        GetStringUTFLength,
+        GetStringUTFChars,
+        ReleaseStringUTFChars,
+        GetStringUTFRegion,
+        GetArrayLength,
+        GetObjectArrayElement,
+        MonitorEnter,
+        MonitorExit,
+        GetJavaVM,
+        NewWeakGlobalRef,
+        DeleteWeakGlobalRef,
+        ExceptionCheck,
+        GetObjectRefType,
     ];
     // A static call has a class in the place of the object; otherwise they are alike.
     all.extend([
@@ -310,7 +558,10 @@ extern "C" fn DeleteLocalRef(_env: Env, handle: Handle) {
 
 extern "C" fn IsSameObject(_env: Env, one: Handle, other: Handle) -> u8 {
     u8::from(match (host().jni.get(one), host().jni.get(other)) {
-        (Some(one), Some(other)) => Arc::ptr_eq(&one, &other) || matches!((&one.data, &other.data), (Data::Class(one), Data::Class(other)) if one == other),
+        (Some(one), Some(other)) => {
+            Arc::ptr_eq(&one, &other)
+                || matches!((&one.data, &other.data), (Data::Class(one), Data::Class(other)) if one == other)
+        }
         (None, None) => true,
         _ => false,
     })
@@ -329,7 +580,12 @@ extern "C" fn GetObjectClass(_env: Env, handle: Handle) -> Handle {
     local(Some(Object::class_of(&get(handle, "GetObjectClass").class)))
 }
 
-unsafe extern "C" fn GetMethodID(_env: Env, class: Handle, name: *const c_char, signature: *const c_char) -> *const Member {
+unsafe extern "C" fn GetMethodID(
+    _env: Env,
+    class: Handle,
+    name: *const c_char,
+    signature: *const c_char,
+) -> *const Member {
     let class = match &get(class, "GetMethodID").data {
         Data::Class(name) => name.clone(),
         _ => fatal("JNI: GetMethodID of something that is no class"),
@@ -339,17 +595,32 @@ unsafe extern "C" fn GetMethodID(_env: Env, class: Handle, name: *const c_char, 
     host().jni.member(Member { class, name, signature })
 }
 
-unsafe extern "C" fn GetStaticMethodID(env: Env, class: Handle, name: *const c_char, signature: *const c_char) -> *const Member {
+unsafe extern "C" fn GetStaticMethodID(
+    env: Env,
+    class: Handle,
+    name: *const c_char,
+    signature: *const c_char,
+) -> *const Member {
     // SAFETY: same contract as the caller's.
     unsafe { GetMethodID(env, class, name, signature) }
 }
 
-unsafe extern "C" fn GetFieldID(env: Env, class: Handle, name: *const c_char, signature: *const c_char) -> *const Member {
+unsafe extern "C" fn GetFieldID(
+    env: Env,
+    class: Handle,
+    name: *const c_char,
+    signature: *const c_char,
+) -> *const Member {
     // SAFETY: same contract as the caller's.
     unsafe { GetMethodID(env, class, name, signature) }
 }
 
-unsafe extern "C" fn GetStaticFieldID(env: Env, class: Handle, name: *const c_char, signature: *const c_char) -> *const Member {
+unsafe extern "C" fn GetStaticFieldID(
+    env: Env,
+    class: Handle,
+    name: *const c_char,
+    signature: *const c_char,
+) -> *const Member {
     // SAFETY: same contract as the caller's.
     unsafe { GetMethodID(env, class, name, signature) }
 }
@@ -437,10 +708,19 @@ fn checked(value: Value, member: &Member) -> Value {
         Value::Double(_) => promised == 'D',
         Value::Object(_) => matches!(promised, 'L' | '['),
     };
-    if fits { value } else { fatal(format!("the host answers {}.{}{} by {value:?}", member.class, member.name, member.signature)) }
+    if fits {
+        value
+    } else {
+        fatal(format!("the host answers {}.{}{} by {value:?}", member.class, member.name, member.signature))
+    }
 }
 
-unsafe extern "C" fn NewObjectA(_env: Env, class: Handle, method: *const Member, _values: *const u64) -> Handle {
+unsafe extern "C" fn NewObjectA(
+    _env: Env,
+    class: Handle,
+    method: *const Member,
+    _values: *const u64,
+) -> Handle {
     // SAFETY: members are never freed.
     let method = unsafe { &*method };
     match &get(class, "NewObject").data {
@@ -567,14 +847,18 @@ extern "C" fn ReleaseStringChars(_env: Env, _handle: Handle, characters: usize) 
 
 unsafe extern "C" fn GetStringRegion(_env: Env, handle: Handle, start: i32, length: i32, out: *mut u16) {
     let characters = utf16(handle);
-    let Some(region) = characters.get(start as usize..(start + length) as usize) else { fatal("JNI: GetStringRegion beyond the string") };
+    let Some(region) = characters.get(start as usize..(start + length) as usize) else {
+        fatal("JNI: GetStringRegion beyond the string")
+    };
     // SAFETY: the caller gives room for `length` characters.
     unsafe { std::ptr::copy_nonoverlapping(region.as_ptr(), out, region.len()) };
 }
 
 unsafe extern "C" fn GetStringUTFRegion(_env: Env, handle: Handle, start: i32, length: i32, out: *mut u8) {
     let characters = utf16(handle);
-    let Some(region) = characters.get(start as usize..(start + length) as usize) else { fatal("JNI: GetStringUTFRegion beyond the string") };
+    let Some(region) = characters.get(start as usize..(start + length) as usize) else {
+        fatal("JNI: GetStringUTFRegion beyond the string")
+    };
     let region = String::from_utf16_lossy(region);
     // SAFETY: the caller gives room for the region in UTF-8 and a NUL.
     unsafe {

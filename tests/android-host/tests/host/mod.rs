@@ -19,7 +19,8 @@ pub struct Run {
 
 /// A `[device]` with settings as system properties, and more of its keys.
 pub fn device(settings: &[(&str, &str)], keys: &str) -> String {
-    let properties: String = settings.iter().map(|(key, value)| format!("\"debug.yoro.{key}\" = \"{value}\"\n")).collect();
+    let properties: String =
+        settings.iter().map(|(key, value)| format!("\"debug.yoro.{key}\" = \"{value}\"\n")).collect();
     format!("[device]\n{keys}\n[device.properties]\n{properties}")
 }
 
@@ -36,7 +37,8 @@ pub fn script(name: &str) -> String {
 pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
     let Some(apk) = std::env::var_os(APK) else {
         // Not eprintln!, which the test harness keeps to itself.
-        let line = format!("LEFT OUT: {name}: there is no APK ({APK} is not set); `cargo xtask test` builds one\n");
+        let line =
+            format!("LEFT OUT: {name}: there is no APK ({APK} is not set); `cargo xtask test` builds one\n");
         _ = std::io::stderr().write_all(line.as_bytes());
         return None;
     };
@@ -47,9 +49,16 @@ pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
     std::fs::create_dir_all(&folder).unwrap();
     let script = folder.join("script.toml");
     std::fs::write(&script, format!("name = \"{name}\"\nsteps = [{steps}]\n{device}")).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_yoro-android-host")).arg(&apk).arg(&script).arg("--out").arg(&folder).output().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_yoro-android-host"))
+        .arg(&apk)
+        .arg(&script)
+        .arg("--out")
+        .arg(&folder)
+        .output()
+        .unwrap();
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
-    let summary = std::fs::read(folder.join("summary.json")).unwrap_or_else(|error| panic!("{name}: no summary ({error}): {text}"));
+    let summary = std::fs::read(folder.join("summary.json"))
+        .unwrap_or_else(|error| panic!("{name}: no summary ({error}): {text}"));
     Some(Run { summary: serde_json::from_slice(&summary).unwrap(), folder })
 }
 
