@@ -82,7 +82,8 @@ fn mirrored(image: &Reprojected) -> Reprojected {
 #[test]
 fn shaders_agree_with_their_references() {
     with_gl(|gl| {
-        let references: [(PatcherKind, fn(&Field) -> Field); 4] = [
+        type Reference = fn(&Field) -> Field;
+        let references: [(PatcherKind, Reference); 4] = [
             (PatcherKind::Paper, Field::paper),
             (PatcherKind::Gather, Field::gather),
             (PatcherKind::Median, Field::median),
