@@ -75,6 +75,8 @@ struct Activity {
     retry: Option<Instant>,
     last_frame: Instant,
     last_error: String,
+    /// What was wrong with the settings when they were last read.
+    mistakes: Vec<String>,
 }
 
 impl Activity {
@@ -122,6 +124,7 @@ impl Activity {
             retry: None,
             last_frame: Instant::now(),
             last_error: String::new(),
+            mistakes: Vec::new(),
         }
     }
 
@@ -169,6 +172,11 @@ impl Activity {
             MainEvent::WindowResized { .. }
             | MainEvent::ContentRectChanged { .. }
             | MainEvent::ConfigChanged { .. } => self.is_display_stale = true,
+            MainEvent::RedrawNeeded { .. } => {
+                if let Some(failure) = self.failure.clone() {
+                    self.fail(failure);
+                }
+            }
             MainEvent::GainedFocus => self.java.hide_system_bars(),
             MainEvent::Resume { loader, .. } => {
                 if self.viewer.is_none()
@@ -276,8 +284,7 @@ impl Activity {
 
     /// A viewer with the settings from outside; mistakes in them are told, and the defaults take their place.
     fn make_viewer(&mut self, screen: Screen) -> Option<Viewer> {
-        let (settings, mistakes) = self.sources.resolve();
-        mistakes.iter().for_each(|mistake| log::warn!("{mistake}"));
+        let settings = self.resolve();
         self.log_scenes();
         self.settings = settings.clone();
         let mut possible = settings;
@@ -302,6 +309,14 @@ impl Activity {
             log::warn!("{error}; {default} is taken");
             setting.clone_from(default);
         }
+    }
+
+    /// The settings from outside; each mistake is told once.
+    fn resolve(&mut self) -> Settings {
+        let (settings, mistakes) = self.sources.resolve();
+        mistakes.iter().filter(|m| !self.mistakes.contains(m)).for_each(|mistake| log::warn!("{mistake}"));
+        self.mistakes = mistakes;
+        settings
     }
 
     fn log_scenes(&self) {
@@ -377,15 +392,16 @@ impl Activity {
             self.input.collect(&self.app, dpi, &mut self.events);
         }
         // A window may have had no size when it came.
-        if self.window.as_ref().is_some_and(Window::is_attached) && !self.is_ready() && self.failure.is_none() {
+        if self.window.as_ref().is_some_and(Window::is_attached) && !self.is_ready() && self.failure.is_none()
+        {
             self.attach_viewer();
         }
+        let refresh = self.pulse.and_then(Pulse::take_refresh);
         if !self.is_drawing() {
             self.events.clear();
             return;
         }
         self.events.extend(self.input.held(now_ns()));
-        let refresh = self.pulse.and_then(Pulse::take_refresh);
         let is_paced = self.pulse.is_some_and(Pulse::has_refreshes);
         if refresh.is_none() && is_paced && self.last_frame.elapsed() < PATIENCE {
             return;
@@ -448,19 +464,14 @@ impl Activity {
         if let Some(errors) = self.gl.as_ref().and_then(|gl| gl.take_errors()) {
             log::warn!("GL errors in the last second: {errors}");
         }
-        let properties = settings::properties(property);
-        if properties != self.sources.properties {
-            self.sources.properties = properties;
+        if self.sources.set_properties(settings::properties(property)) {
             self.reconfigure();
         }
     }
 
     /// The system properties have changed while the application runs.
     fn reconfigure(&mut self) {
-        // What the user did by hand before does not hold against what is said now.
-        self.sources.saved.clear();
-        let (settings, mistakes) = self.sources.resolve();
-        mistakes.iter().for_each(|mistake| log::warn!("{mistake}"));
+        let settings = self.resolve();
         if settings == self.settings {
             return;
         }
@@ -468,11 +479,19 @@ impl Activity {
             self.summarize();
         }
         let Some(viewer) = &mut self.viewer else { return };
-        match viewer.configure(settings.clone(), &self.folders) {
+        // What was not to be found at the start is not looked for again with every change.
+        let mut possible = settings.clone();
+        if settings.scene == self.settings.scene {
+            possible.scene.clone_from(&viewer.settings().scene);
+        }
+        if settings.viewer == self.settings.viewer {
+            possible.viewer.clone_from(&viewer.settings().viewer);
+        }
+        // Another scene begins another session.
+        self.is_summarized = false;
+        match viewer.configure(possible, &self.folders) {
             Ok(()) => {
-                log::info!("settings: {settings}");
-                // Another scene begins another session.
-                self.is_summarized = false;
+                log::info!("settings: {}", viewer.settings());
                 self.settings = settings;
             }
             Err(error) => log::warn!("{error}; the settings stay as they were"),

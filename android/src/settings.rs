@@ -29,6 +29,17 @@ pub struct Sources {
 }
 
 impl Sources {
+    /// Takes over what the system properties are now. What the user had changed by hand does not hold against a
+    /// property that has another value since. True if anything differs.
+    pub fn set_properties(&mut self, properties: Vec<Pair>) -> bool {
+        if properties == self.properties {
+            return false;
+        }
+        self.saved.retain(|(key, _)| value(&self.properties, key) == value(&properties, key));
+        self.properties = properties;
+        true
+    }
+
     /// The settings, and one sentence for each mistake; a setting with a mistake stays what it was before.
     pub fn resolve(&self) -> (Settings, Vec<String>) {
         let mut settings = Settings::default();
@@ -53,6 +64,11 @@ impl Sources {
         }
         (settings, mistakes)
     }
+}
+
+/// The value of a key, the last one if there are several.
+fn value<'a>(pairs: &'a [Pair], key: &str) -> Option<&'a str> {
+    pairs.iter().rev().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
 }
 
 /// The setting that an extra means; none for extras that are not for us.
@@ -172,6 +188,20 @@ mod tests {
         ]);
         let found = properties(|name| set.get(name).map(|value| (*value).to_owned()));
         assert_eq!(found, pairs(&[("method", "mono"), ("guard-band", "40px")]));
+    }
+
+    #[test]
+    fn a_new_property_is_stronger_than_what_was_done_by_hand() {
+        let mut sources = Sources {
+            properties: pairs(&[("hud", "false")]),
+            saved: pairs(&[("method", "mono"), ("ipd", "0.05")]),
+            ..Sources::default()
+        };
+        assert!(!sources.set_properties(pairs(&[("hud", "false")])));
+        assert!(sources.set_properties(pairs(&[("method", "conventional")])));
+        let (settings, mistakes) = sources.resolve();
+        assert_eq!((settings.method, settings.ipd, settings.hud), (Method::Conventional, Some(0.05), true));
+        assert!(mistakes.is_empty(), "{mistakes:?}");
     }
 
     #[test]

@@ -10,6 +10,8 @@ use crate::dynamic::Library;
 
 /// Headroom is a forecast that changes slowly, and Android answers NaN to those who ask often.
 const HEADROOM_PERIOD: Duration = Duration::from_secs(10);
+/// After such an answer it may be asked again this much later.
+const HEADROOM_RETRY: Duration = Duration::from_secs(2);
 /// How far ahead the headroom is forecast, in seconds.
 const FORECAST_SECONDS: c_int = 10;
 /// No skin is colder or warmer, in degrees Celsius: beyond it is another unit, or a broken sensor.
@@ -60,7 +62,9 @@ impl Thermal {
         let service = self.service.as_ref()?;
         let ask = service.headroom?;
         match self.headroom {
-            Some((then, value)) if then.elapsed() < HEADROOM_PERIOD => value,
+            Some((then, value)) if then.elapsed() < value.map_or(HEADROOM_RETRY, |_| HEADROOM_PERIOD) => {
+                value
+            }
             _ => {
                 // SAFETY: the manager is live.
                 let value = unsafe { ask(service.manager.as_ptr(), FORECAST_SECONDS) };

@@ -34,7 +34,9 @@ impl Browser {
     /// the test is then to end.
     pub fn start() -> Option<Browser> {
         let Some(program) = find() else {
-            eprintln!("SKIPPED: no Chromium here, so that no page was opened; install it, or set YORO_TEST_CHROMIUM");
+            eprintln!(
+                "SKIPPED: no Chromium here, so that no page was opened; install it, or set YORO_TEST_CHROMIUM"
+            );
             return None;
         };
         let profile = tempfile::tempdir().unwrap();
@@ -42,7 +44,13 @@ impl Browser {
         let mut child = Command::new("sh")
             .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 1>&2"])
             .arg(program)
-            .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--remote-debugging-pipe"])
+            .args([
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--no-first-run",
+                "--remote-debugging-pipe",
+            ])
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -193,7 +201,9 @@ fn find() -> Option<PathBuf> {
         return Some(program.into());
     }
     let folders: Vec<PathBuf> = env::split_paths(&env::var_os("PATH")?).collect();
-    PROGRAMS.iter().find_map(|name| folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file()))
+    PROGRAMS
+        .iter()
+        .find_map(|name| folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file()))
 }
 
 /// What every page of ours must do in a browser: no script error, nothing from elsewhere, all pictures and figures

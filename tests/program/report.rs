@@ -27,7 +27,8 @@ fn a_page_that_a_browser_shows() {
     let at = dir.path();
     write(at, "run.jsonl", &format!("{HEADER}\n{ROUND}\n"));
     for (name, shift) in [("dominant", 9), ("truth", 0), ("yoro-gather", 1)] {
-        let eye = RgbImage::from_fn(64, 48, |x, y| Rgb([((x + shift) * 4) as u8, (y * 5) as u8, (x * y) as u8]));
+        let eye =
+            RgbImage::from_fn(64, 48, |x, y| Rgb([((x + shift) * 4) as u8, (y * 5) as u8, (x * y) as u8]));
         picture::save_color(&at.join(format!("run.pictures/scenes/talk/{name}.png")), &eye).unwrap();
     }
     let stdout = succeed(at, "report run.jsonl --out out --figures out/figures").stdout;
@@ -40,6 +41,26 @@ fn a_page_that_a_browser_shows() {
     if let Some(mut browser) = Browser::start() {
         check_page(&mut browser, &at.join("out/report.html"));
     }
+}
+
+#[test]
+fn what_bench_measured_is_reported() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    succeed(at, "bench bandwidth --quick --scene prototype --size 64x64 --frames 2 --out b.jsonl");
+    succeed(at, "report b.jsonl");
+    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
+    for needed in ["rgb-depth-packed", "mono-rgb", "*-38.7 %*", "BD-rate"] {
+        assert!(results.contains(needed), "{needed}: {results}");
+    }
+    // Four quantizers: each is finer and costs more than the next.
+    let rates: Vec<f64> = results
+        .lines()
+        .filter_map(|line| line.strip_prefix("| prototype | "))
+        .filter_map(|line| line.split(" | ").nth(1)?.parse().ok())
+        .take(4)
+        .collect();
+    assert!(rates.len() == 4 && rates.is_sorted_by(|a, b| a > b), "{rates:?}: {results}");
 }
 
 #[test]

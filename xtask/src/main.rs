@@ -5,6 +5,7 @@ mod apt;
 mod cargo;
 mod setup;
 
+use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -89,15 +90,24 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Apk { release, yes } => {
             android::apk(android::Options { release, yes })?;
         }
-        Task::Doctor => return android::doctor(),
+        Task::Doctor => {
+            let (text, complete) = android::doctor()?;
+            show(&text);
+            return Ok(complete);
+        }
         Task::CheckApk { file } => {
             let report = android::check::check(&file)?;
-            print!("{report}");
+            show(&report.to_string());
             return Ok(report.passed());
         }
         Task::Lint => lint()?,
     }
     Ok(true)
+}
+
+/// Prints; a reader such as `head` may have gone before the end.
+fn show(text: &str) {
+    let _ = io::stdout().write_all(text.as_bytes());
 }
 
 /// Installs and builds what the tests need that have one of the filters in their names.

@@ -23,7 +23,8 @@ use image::{GrayImage, Luma, Rgb, RgbImage};
 use openh264::OpenH264API;
 use openh264::decoder::Decoder;
 use openh264::encoder::{
-    BitRate, Complexity, Encoder, EncoderConfig, FrameRate, IntraFramePeriod, QpRange, RateControlMode, VuiConfig,
+    BitRate, Complexity, Encoder, EncoderConfig, FrameRate, IntraFramePeriod, QpRange, RateControlMode,
+    VuiConfig,
 };
 use openh264::formats::{YUVSlices, YUVSource};
 
@@ -31,7 +32,7 @@ use crate::cli::stage::Stage;
 use crate::dataset::{GroupOptions, GroupRenderer};
 use crate::eyes::{DepthConvention, EyePair, SynthesisViews};
 use crate::gl::Context;
-use crate::metrics::{Channels, SsimWindow, psnr, ssim};
+use crate::metrics::{Channels, MetricsError, SsimWindow, psnr, ssim};
 use crate::picture::{self, DepthImage};
 use crate::render::RenderSettings;
 use crate::stereo::StereoOptions;
@@ -54,10 +55,15 @@ pub mod metric {
     pub const KBIT_S: &str = "kbit_s";
     /// Of it depth, where depth is a stream of its own.
     pub const KBIT_S_DEPTH: &str = "kbit_s_depth";
-    /// PSNR (RGB) of the dominant eye after decoding, in dB.
+    /// PSNR (RGB) of the dominant eye after decoding, in dB. Where colours are saturated and details fine, 4:2:0
+    /// bounds it, whatever the quantizer.
     pub const PSNR_DOMINANT: &str = "psnr_dominant";
     /// PSNR (RGB) of the other eye after decoding and, where that is so, synthesis, in dB.
     pub const PSNR_OTHER: &str = "psnr_other";
+    /// PSNR of luma of the dominant eye, in dB: video coding's usual measure.
+    pub const PSNR_LUMA_DOMINANT: &str = "psnr_luma_dominant";
+    /// PSNR of luma of the other eye, in dB.
+    pub const PSNR_LUMA_OTHER: &str = "psnr_luma_other";
     /// SSIM (gaussian, RGB) of the dominant eye, over every [`super::SSIM_EVERY`]th frame.
     pub const SSIM_DOMINANT: &str = "ssim_dominant";
     /// SSIM (gaussian, RGB) of the other eye, likewise.
@@ -80,12 +86,10 @@ pub struct BandwidthOptions {
 
 impl Default for BandwidthOptions {
     fn default() -> BandwidthOptions {
-        BandwidthOptions { quantizers: vec![20, 26, 32, 38, 44], depth_offset: DEPTH_OFFSET }
+        // Depth as fine as colour, as it is where both are one picture.
+        BandwidthOptions { quantizers: vec![20, 26, 32, 38, 44], depth_offset: 0 }
     }
 }
-
-/// Chosen on the built-in scenes: a finer or coarser depth costs more bits at the same quality of both eyes.
-const DEPTH_OFFSET: i8 = 0;
 
 /// Values by metric, as in a [measurement](super::Measurement).
 pub type Values = BTreeMap<String, Vec<Option<f64>>>;
@@ -136,12 +140,12 @@ enum Layout {
 /// A rendered sequence, as it goes into the coder.
 struct Sequence {
     frames: Vec<Frame>,
-    views: SynthesisViews,
     /// Nearness (0 far plane, 1 near plane) that the smallest and the largest depth sample stand for.
     range: [f32; 2],
 }
 
 struct Frame {
+    views: SynthesisViews,
     /// The dominant eye with its guard band.
     color: RgbImage,
     depth: GrayImage,
@@ -163,28 +167,26 @@ impl Sequence {
             guard_band: defaults.guard_band,
             anti_aliasing: true,
         };
-        let first = pairs.first().context("a sequence needs at least one frame")?;
-        let views = first.synthesis(options.guard_band)?;
         let mut renderer = GroupRenderer::new(gl, settings, &options)?;
         let mut rendered = Vec::new();
         for pair in pairs {
             let group = renderer.render(&mut stage.renderer, &stage.scene, pair)?;
-            let same = (group.views.warp, group.views.dominant_crop) == (views.warp, views.dominant_crop);
-            ensure!(same, "the eyes of a sequence must keep their frusta and distance");
+            let views = group.views;
             let dominant = crop(&group.color, views.dominant_crop, pair.size);
             let nearness = nearness(&group.depth, views.warp.convention);
-            rendered.push((group.color, nearness, [dominant, group.truth]));
+            rendered.push((views, group.color, nearness, [dominant, group.truth]));
             step()?;
         }
-        let all = rendered.iter().flat_map(|(_, nearness, _)| nearness.iter().copied());
+        let all = rendered.iter().flat_map(|(_, _, nearness, _)| nearness.iter().copied());
         let range = all.fold([f32::INFINITY, f32::NEG_INFINITY], |[l, h], n| [l.min(n), h.max(n)]);
-        let frame = |(color, nearness, eyes): (RgbImage, DepthImage, [RgbImage; 2])| {
-            let depth = GrayImage::from_fn(nearness.width(), nearness.height(), |x, y| {
-                Luma([quantize(nearness.get_pixel(x, y).0[0], range)])
-            });
-            Frame { color, depth, eyes }
-        };
-        Ok(Sequence { frames: rendered.into_iter().map(frame).collect(), views, range })
+        let frame =
+            |(views, color, nearness, eyes): (SynthesisViews, RgbImage, DepthImage, [RgbImage; 2])| {
+                let depth = GrayImage::from_fn(nearness.width(), nearness.height(), |x, y| {
+                    Luma([quantize(nearness.get_pixel(x, y).0[0], range)])
+                });
+                Frame { views, color, depth, eyes }
+            };
+        Ok(Sequence { frames: rendered.into_iter().map(frame).collect(), range })
     }
 
     /// Codes and decodes all frames and measures both eyes of each stream that comes of it.
@@ -204,9 +206,10 @@ impl Sequence {
             Layout::TwoStreams => &[RGB_DEPTH, MONO_RGB],
             Layout::Packed => &[RGB_DEPTH_PACKED],
         };
-        let mut tallies: Vec<(&'static str, Tally)> = names.iter().map(|name| (*name, Tally::default())).collect();
-        let [width, height] = self.views.target.size;
+        let mut tallies: Vec<(&'static str, Tally)> =
+            names.iter().map(|name| (*name, Tally::default())).collect();
         for (i, frame) in self.frames.iter().enumerate() {
+            let ([width, height], crop_origin) = (frame.views.target.size, frame.views.dominant_crop);
             let color_size = frame.color.dimensions();
             let mut eyes = Vec::new();
             match layout {
@@ -219,8 +222,8 @@ impl Sequence {
                 Layout::TwoStreams => {
                     let color = main.code(&Planes::of_rgb(&frame.color))?.rgb(color_size);
                     let depth = second.code(&Planes::of_gray(&frame.depth))?.gray(color_size);
-                    let synthesized = self.synthesize(&color, &depth, receiver)?;
-                    let dominant = crop(&color, self.views.dominant_crop, [width, height]);
+                    let synthesized = self.synthesize(&frame.views, &color, &depth, receiver)?;
+                    let dominant = crop(&color, crop_origin, [width, height]);
                     eyes.push([dominant.clone(), synthesized]);
                     eyes.push([dominant.clone(), dominant]);
                 }
@@ -228,8 +231,8 @@ impl Sequence {
                     let planes = Planes::of_rgb(&frame.color).beside(&Planes::of_gray(&frame.depth));
                     let [color, depth] = main.code(&planes)?.halves();
                     let (color, depth) = (color.rgb(color_size), depth.gray(color_size));
-                    let synthesized = self.synthesize(&color, &depth, receiver)?;
-                    eyes.push([crop(&color, self.views.dominant_crop, [width, height]), synthesized]);
+                    let synthesized = self.synthesize(&frame.views, &color, &depth, receiver)?;
+                    eyes.push([crop(&color, crop_origin, [width, height]), synthesized]);
                 }
             }
             for ((_, tally), eyes) in tallies.iter_mut().zip(&eyes) {
@@ -250,6 +253,7 @@ impl Sequence {
     /// What the receiver makes of a decoded picture: the other eye.
     fn synthesize(
         &self,
+        views: &SynthesisViews,
         color: &RgbImage,
         depth: &GrayImage,
         receiver: &mut Offline,
@@ -263,14 +267,14 @@ impl Sequence {
                 let Rgb([r, g, b]) = *color.get_pixel(x, y);
                 rgba.extend([r, g, b, 255]);
                 let nearness = dequantize(depth.get_pixel(x, y).0[0], self.range);
-                values.push(match self.views.warp.convention {
+                values.push(match views.warp.convention {
                     DepthConvention::Standard => 1.0 - nearness,
                     DepthConvention::Reversed => nearness,
                 });
             }
         }
-        let result = receiver.run(&rgba, &values, &self.views.warp)?;
-        Ok(picture::rgb_image(&result.rgba, self.views.target.size))
+        let result = receiver.run(&rgba, &values, &views.warp)?;
+        Ok(picture::rgb_image(&result.rgba, views.target.size))
     }
 }
 
@@ -308,15 +312,24 @@ struct Tally {
     frames: usize,
     /// Dominant and other eye, one value for each frame that is not identical to its reference.
     psnr: [Vec<f64>; 2],
+    psnr_luma: [Vec<f64>; 2],
     ssim: [Vec<f64>; 2],
 }
 
 impl Tally {
-    fn measure(&mut self, index: usize, eyes: &[RgbImage; 2], references: &[RgbImage; 2]) -> anyhow::Result<()> {
+    fn measure(
+        &mut self,
+        index: usize,
+        eyes: &[RgbImage; 2],
+        references: &[RgbImage; 2],
+    ) -> anyhow::Result<()> {
         self.frames += 1;
         for (eye, (image, reference)) in eyes.iter().zip(references).enumerate() {
-            let value = psnr(image, reference, Channels::Rgb)?.0;
-            self.psnr[eye].extend(value.is_finite().then_some(value));
+            let finite = |channels| {
+                Ok::<_, MetricsError>(Some(psnr(image, reference, channels)?.0).filter(|v| v.is_finite()))
+            };
+            self.psnr[eye].extend(finite(Channels::Rgb)?);
+            self.psnr_luma[eye].extend(finite(Channels::Luma)?);
             if index.is_multiple_of(SSIM_EVERY) {
                 self.ssim[eye].push(ssim(image, reference, SsimWindow::Gaussian11, Channels::Rgb)?);
             }
@@ -329,9 +342,11 @@ impl Tally {
             (!samples.is_empty()).then(|| samples.iter().sum::<f64>() / samples.len() as f64)
         };
         let kbit_s = |bytes: usize| {
-            Some(bytes as f64 * 8e-3 * f64::from(FRAME_RATE) / self.frames as f64).filter(|rate| rate.is_finite())
+            Some(bytes as f64 * 8e-3 * f64::from(FRAME_RATE) / self.frames as f64)
+                .filter(|rate| rate.is_finite())
         };
-        let mut push = |name: &str, value: Option<f64>| values.entry(name.to_owned()).or_default().push(value);
+        let mut push =
+            |name: &str, value: Option<f64>| values.entry(name.to_owned()).or_default().push(value);
         push(metric::QP, Some(f64::from(quantizer)));
         push(metric::KBIT_S, kbit_s(self.bytes));
         if let Some(bytes) = self.depth_bytes {
@@ -339,6 +354,8 @@ impl Tally {
         }
         push(metric::PSNR_DOMINANT, mean(&self.psnr[0]));
         push(metric::PSNR_OTHER, mean(&self.psnr[1]));
+        push(metric::PSNR_LUMA_DOMINANT, mean(&self.psnr_luma[0]));
+        push(metric::PSNR_LUMA_OTHER, mean(&self.psnr_luma[1]));
         push(metric::SSIM_DOMINANT, mean(&self.ssim[0]));
         push(metric::SSIM_OTHER, mean(&self.ssim[1]));
     }
@@ -382,7 +399,8 @@ impl Coder {
         let [w, h] = picture.size;
         let planes = (&picture.planes[0][..], &picture.planes[1][..], &picture.planes[2][..]);
         let slices = YUVSlices::new(planes, (w, h), (w, w / 2, w / 2));
-        let bits = self.encoder.encode(&slices).with_context(|| format!("H.264 cannot code {w}x{h} pixels"))?;
+        let bits =
+            self.encoder.encode(&slices).with_context(|| format!("H.264 cannot code {w}x{h} pixels"))?;
         let bytes = bits.to_vec();
         self.bytes += bytes.len();
         let decoded = self.decoder.decode(&bytes).context("H.264 cannot be decoded again")?;
@@ -422,7 +440,8 @@ impl Planes {
         let byte = |value: f32| value.round().clamp(0.0, 255.0) as u8;
         let luma = |[r, g, b]: [f32; 3]| 0.299 * r + 0.587 * g + 0.114 * b;
         let [w, h] = size;
-        let mut planes = [Vec::with_capacity(w * h), Vec::with_capacity(w * h / 4), Vec::with_capacity(w * h / 4)];
+        let mut planes =
+            [Vec::with_capacity(w * h), Vec::with_capacity(w * h / 4), Vec::with_capacity(w * h / 4)];
         for y in 0..h {
             planes[0].extend((0..w).map(|x| byte(luma(at(x, y)))));
         }
@@ -492,7 +511,9 @@ impl Planes {
 
     /// Luma alone, likewise.
     fn gray(&self, (width, height): (u32, u32)) -> GrayImage {
-        GrayImage::from_fn(width, height, |x, y| Luma([self.planes[0][y as usize * self.size[0] + x as usize]]))
+        GrayImage::from_fn(width, height, |x, y| {
+            Luma([self.planes[0][y as usize * self.size[0] + x as usize]])
+        })
     }
 }
 
@@ -537,9 +558,34 @@ mod tests {
     }
 
     #[test]
+    fn every_plane_is_as_good_as_its_quantizer() {
+        let frame = |t: u32| {
+            RgbImage::from_fn(64, 48, |x, y| {
+                let (u, v) = (f64::from(x + t) / 9.0, f64::from(y) / 7.0);
+                Rgb([u.sin(), v.cos(), (u + v).sin()].map(|wave| (128.0 + 100.0 * wave) as u8))
+            })
+        };
+        let mut coder = Coder::new(20).unwrap();
+        for t in 0..4 {
+            let planes = Planes::of_rgb(&frame(t));
+            let decoded = coder.code(&planes).unwrap();
+            for (plane, (a, b)) in decoded.planes.iter().zip(&planes.planes).enumerate() {
+                let error: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum();
+                let psnr = 10.0 * (255.0f64.powi(2) * a.len() as f64 / error).log10();
+                // A step of the quantizer is 6.5: 43 dB where errors are spread evenly over it.
+                assert!(psnr > 40.0, "frame {t}, plane {plane}: {psnr:.1} dB");
+            }
+        }
+    }
+
+    #[test]
     fn a_finer_quantizer_costs_more_and_shows_more_and_repeats_itself() {
         let frames: Vec<RgbImage> = (0..3)
-            .map(|t| RgbImage::from_fn(64, 48, |x, y| Rgb([(x * 3 + t) as u8, (y * 5) as u8, ((x * y + t) % 256) as u8])))
+            .map(|t| {
+                RgbImage::from_fn(64, 48, |x, y| {
+                    Rgb([(x * 3 + t) as u8, (y * 5) as u8, ((x * y + t) % 256) as u8])
+                })
+            })
             .collect();
         let run = |quantizer: u8| {
             let mut coder = Coder::new(quantizer).unwrap();

@@ -340,8 +340,7 @@ impl<'a> Runner<'a> {
             bar.inc(1);
             Ok(stop_if_interrupted()?)
         };
-        let streams =
-            bandwidth::run(self.gl, stage, &job.render, &views.pairs, &job.bandwidth, &mut step)?;
+        let streams = bandwidth::run(self.gl, stage, &job.render, &views.pairs, &job.bandwidth, &mut step)?;
         let mut facts = views.facts(job, stage);
         // Each value is that of a whole sequence at one quantizer.
         facts.frames = job.bandwidth.quantizers.iter().map(|quantizer| format!("QP {quantizer}")).collect();

@@ -211,7 +211,7 @@ impl Drop for Window {
 }
 
 /// A configuration of exactly 8 bits per channel: EGL lists those with more bits first, which cost more bandwidth
-/// and show no more of an 8-bit picture.
+/// and show no more of an 8-bit picture. Without alpha, if there is one: nothing shines through the window.
 fn choose(egl: &Egl, display: egl::Display, renderable: egl::Int) -> Option<egl::Config> {
     let attributes = [
         egl::SURFACE_TYPE,
@@ -233,7 +233,7 @@ fn choose(egl: &Egl, display: egl::Display, renderable: egl::Int) -> Option<egl:
         [egl::RED_SIZE, egl::GREEN_SIZE, egl::BLUE_SIZE].into_iter().all(|c| bits(**config, c) == 8)
     };
     let spare = |config: &&egl::Config| {
-        [egl::DEPTH_SIZE, egl::STENCIL_SIZE, egl::SAMPLES]
+        [egl::ALPHA_SIZE, egl::DEPTH_SIZE, egl::STENCIL_SIZE, egl::SAMPLES]
             .into_iter()
             .map(|a| bits(**config, a))
             .sum::<egl::Int>()

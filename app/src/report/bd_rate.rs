@@ -25,7 +25,11 @@ pub fn bd_rate(anchor: &[(f64, f64)], test: &[(f64, f64)]) -> Option<BdRate> {
         return None;
     }
     let mean = (b.integral(low, high) - a.integral(low, high)) / (high - low);
-    Some(BdRate { share: 10f64.powf(mean) - 1.0, quality: [low, high], overlap: (high - low) / (a.high - a.low) })
+    Some(BdRate {
+        share: 10f64.powf(mean) - 1.0,
+        quality: [low, high],
+        overlap: (high - low) / (a.high - a.low),
+    })
 }
 
 /// Logarithm of the rate as a cubic of the quality.
@@ -85,9 +89,10 @@ fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
         }
         for row in 0..4 {
             if row != column {
-                let factor = m[row][column] / m[column][column];
-                for k in column..5 {
-                    m[row][k] -= factor * m[column][k];
+                let pivot = m[column];
+                let factor = m[row][column] / pivot[column];
+                for (entry, above) in m[row].iter_mut().zip(pivot) {
+                    *entry -= factor * above;
                 }
             }
         }
@@ -99,9 +104,9 @@ fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
 pub fn line_through(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let n = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
-    let (xx, xy) = points.iter().fold((0.0, 0.0), |(xx, xy), p| {
-        (xx + (p.0 - x) * (p.0 - x), xy + (p.0 - x) * (p.1 - y))
-    });
+    let (xx, xy) = points
+        .iter()
+        .fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - x) * (p.0 - x), xy + (p.0 - x) * (p.1 - y)));
     (xx > 0.0).then(|| (y - xy / xx * x, xy / xx))
 }
 
@@ -118,8 +123,10 @@ mod tests {
         let result = bd_rate(&anchor, &test).unwrap();
         assert!((result.share - 0.3139737405491).abs() < 1e-9, "{result:?}");
         assert_eq!(result.quality, [31.42, 40.28]);
-        let anchor = [(9487.76, 40.037), (4593.60, 38.615), (2486.44, 36.845), (1358.24, 34.851), (700.1, 32.5)];
-        let test = [(9787.80, 40.121), (4469.00, 38.651), (2451.52, 36.970), (1356.24, 34.987), (650.4, 32.3)];
+        let anchor =
+            [(9487.76, 40.037), (4593.60, 38.615), (2486.44, 36.845), (1358.24, 34.851), (700.1, 32.5)];
+        let test =
+            [(9787.80, 40.121), (4469.00, 38.651), (2451.52, 36.970), (1356.24, 34.987), (650.4, 32.3)];
         let result = bd_rate(&anchor, &test).unwrap();
         assert!((result.share + 0.0375163067734).abs() < 1e-9, "least squares of five points: {result:?}");
     }

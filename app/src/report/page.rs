@@ -9,7 +9,8 @@ use serde::Serialize;
 
 use super::plot::{Axis, DotRow, Figure, Mark, Panel};
 use super::{
-    PassTime, QUALITY_METHOD, ReportError, Row, RunReport, SceneReport, Viewpoint, palette, paper, short_count,
+    PassTime, QUALITY_METHOD, ReportError, Row, RunReport, SceneReport, Viewpoint, palette, paper,
+    short_count,
 };
 use crate::metrics::Quality;
 use crate::picture::encode_jpeg;

@@ -283,49 +283,50 @@ pub fn ensure(toolchain: &Toolchain, surroundings: &Surroundings, yes: bool) -> 
     }
     let sentences: Vec<String> =
         still.iter().map(|need| format!("{} is missing ({})", need.what, need.remedy)).collect();
-    bail!(
-        "{}; or set ANDROID_HOME and ANDROID_NDK_ROOT to Google's SDK and NDK and add rustup's android targets",
-        sentences.join(", ")
-    )
+    let other = match toolchain {
+        Toolchain::Google { .. } => "",
+        Toolchain::StandIn => {
+            "; or set ANDROID_HOME and ANDROID_NDK_ROOT to Google's SDK and NDK and add rustup's android targets"
+        }
+    };
+    bail!("{}{other}", sentences.join(", "))
 }
 
 fn missing(toolchain: &Toolchain, surroundings: &Surroundings) -> Vec<Need> {
     toolchain.needs(surroundings).into_iter().filter(|need| need.found.is_err()).collect()
 }
 
-/// Says which way `cargo xtask apk` would go, and what it lacks. True when nothing is missing.
+/// Which way `cargo xtask apk` would go, and what it lacks, as a text; and whether nothing is missing.
 ///
 /// # Errors
 /// When the target folder is not known.
-pub fn doctor() -> anyhow::Result<bool> {
+pub fn doctor() -> anyhow::Result<(String, bool)> {
     let surroundings = Surroundings::here();
     let (toolchain, against) = Toolchain::choose(&surroundings);
-    println!("cargo xtask apk uses {toolchain}");
+    let mut lines = vec![format!("cargo xtask apk uses {toolchain}")];
     if !against.is_empty() {
-        println!("  not Google's SDK and NDK, because {}", against.join("; "));
+        lines.push(format!("  not Google's SDK and NDK, because {}", against.join("; ")));
     }
-    println!();
+    lines.push(String::new());
     let needs = toolchain.needs(&surroundings);
     for need in &needs {
-        match &need.found {
-            Ok(path) => println!("  ok       {:14}{path}", need.what),
-            Err(problem) => println!("  MISSING  {:14}{problem}: {}", need.what, need.remedy),
-        }
+        lines.push(match &need.found {
+            Ok(path) => format!("  ok       {:14}{path}", need.what),
+            Err(problem) => format!("  MISSING  {:14}{problem}: {}", need.what, need.remedy),
+        });
     }
     for (what, state) in super::build::extras()? {
-        println!("  ok       {what:14}{state}");
+        lines.push(format!("  ok       {what:14}{state}"));
     }
-    println!();
     let complete = needs.iter().all(|need| need.found.is_ok());
-    println!(
-        "{}",
-        if complete {
-            format!("everything is there: cargo xtask apk --release (Android {MIN_API} and later)")
-        } else {
-            "cargo xtask apk asks before it installs what is missing (--yes: without asking)".to_owned()
-        }
-    );
-    Ok(complete)
+    lines.push(if complete {
+        format!(
+            "\neverything is there: cargo xtask apk --release (Android of API level {MIN_API} and later)\n"
+        )
+    } else {
+        "\ncargo xtask apk asks before it installs what is missing (--yes: without asking)\n".to_owned()
+    });
+    Ok((lines.join("\n"), complete))
 }
 
 #[cfg(test)]

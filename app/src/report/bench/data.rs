@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::bench::{Results, Setting, metric};
 use crate::bench::record::{Header, SceneFacts};
+use crate::bench::{Results, Setting, metric};
 use crate::metrics::stats::{Summary, percentile};
 
 /// One suite as measured under one set of conditions.
@@ -28,12 +28,15 @@ pub struct SettingData {
     pub unsupported: Vec<(String, String)>,
 }
 
+/// By metric: a number for each frame.
+type Values = BTreeMap<String, Vec<Option<f64>>>;
+
 /// All rounds of a contender in a setting.
 pub struct Measured {
     /// Its name.
     pub name: String,
     /// Number of the round and values by metric.
-    rounds: Vec<(u32, BTreeMap<String, Vec<Option<f64>>>)>,
+    rounds: Vec<(u32, Values)>,
 }
 
 /// Median and quartiles.
@@ -215,7 +218,8 @@ fn same_conditions(a: &Header, b: &Header) -> bool {
     let (m, n) = (&a.machine, &b.machine);
     a.parameters == b.parameters
         && a.quick == b.quick
-        && (&m.cpu, m.cores, &m.gl_renderer, &m.gl_version) == (&n.cpu, n.cores, &n.gl_renderer, &n.gl_version)
+        && (&m.cpu, m.cores, &m.gl_renderer, &m.gl_version)
+            == (&n.cpu, n.cores, &n.gl_renderer, &n.gl_version)
 }
 
 /// The suites of all files, in the order of the files. A suite measured under several conditions is there several

@@ -208,7 +208,8 @@ impl BenchReport {
 fn link_from(folder: &Path, target: &Path) -> String {
     let normal = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let (folder, target) = (normal(folder), normal(target));
-    let (from, to): (Vec<Component>, Vec<Component>) = (folder.components().collect(), target.components().collect());
+    let (from, to): (Vec<Component>, Vec<Component>) =
+        (folder.components().collect(), target.components().collect());
     let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
     let up = from[common..].iter().map(|_| "..".to_owned());
     let down = to[common..].iter().map(|part| part.as_os_str().to_string_lossy().into_owned());

@@ -2,7 +2,7 @@
 
 use super::data::{Measured, SettingData, Suite, geometric_mean, mean};
 use crate::bench::{bandwidth, metric};
-use crate::report::bd_rate::{BdRate, bd_rate, line_through};
+use crate::report::bd_rate::{bd_rate, line_through};
 use crate::report::grid::{Cell, Table};
 use crate::report::paper;
 use crate::report::plot::{Axis, DotRow, Figure, Mark, Panel, Series};
@@ -53,10 +53,11 @@ const CONVENTIONAL: &str = "conventional";
 const MONO: &str = "mono";
 const PAPERS: &str = "the paper's ";
 
+type MakeSection = fn(&Suite) -> Section;
+
 /// Suites by name in the paper's order, with what makes their sections. One suite can have several: the paper
 /// looks at frame time, quality and overhead of the same eight scenes in three places.
-#[allow(clippy::type_complexity)]
-const ORDER: [(&str, fn(&Suite) -> Section); 13] = [
+const ORDER: [(&str, MakeSection); 13] = [
     ("scenes", frame_time),
     ("complexity", complexity),
     ("scenes", quality),
@@ -207,8 +208,17 @@ fn push_refusals(table: &mut Table, suite: &Suite) {
 /// Frame times of each contender in each setting, in full.
 fn time_details(suite: &Suite, title: &str, ratio: impl Fn(&SettingData, &str) -> Option<f64>) -> Table {
     let columns = [
-        "<scene", "<method", "frames", "median, ms", "quartiles, ms", "std, ms", "p95, ms", "p99, ms", "ratio",
-        "quartiles of the ratio", "the paper's ratio",
+        "<scene",
+        "<method",
+        "frames",
+        "median, ms",
+        "quartiles, ms",
+        "std, ms",
+        "p95, ms",
+        "p99, ms",
+        "ratio",
+        "quartiles of the ratio",
+        "the paper's ratio",
     ];
     let mut table = Table::new(title, &columns);
     for setting in &suite.settings {
@@ -229,18 +239,24 @@ fn time_details(suite: &Suite, title: &str, ratio: impl Fn(&SettingData, &str) -
                 Cell::plain(milliseconds(times.p99)),
                 cell(&measured.name, cost.map(|c| format!("{:.3}", c.median))),
                 Cell::plain(
-                    cost.map(|c| format!("{:.3} – {:.3}", c.quartiles[0], c.quartiles[1])).unwrap_or_default(),
+                    cost.map(|c| format!("{:.3} – {:.3}", c.quartiles[0], c.quartiles[1]))
+                        .unwrap_or_default(),
                 ),
                 Cell::paper(fixed(ratio(setting, &measured.name), 3)),
             ];
-            if first { table.push_first(cells) } else { table.push(cells) }
+            if first {
+                table.push_first(cells)
+            } else {
+                table.push(cells)
+            }
             first = false;
         }
     }
     push_refusals(&mut table, suite);
-    table.note = "Ratio: frame time over that of conventional rendering, frame by frame within each interleaved \
+    table.note =
+        "Ratio: frame time over that of conventional rendering, frame by frame within each interleaved \
                   round; its median and quartiles."
-        .into();
+            .into();
     table
 }
 
@@ -316,7 +332,8 @@ fn frame_time(suite: &Suite) -> Section {
             Some(format!("{median:.2}"))
         },
         |name| {
-            let costs = suite.settings.iter().filter_map(|setting| Some(setting.cost(name)?.median)).collect();
+            let costs =
+                suite.settings.iter().filter_map(|setting| Some(setting.cost(name)?.median)).collect();
             fixed(geometric_mean(costs), 2)
         },
         (
@@ -384,11 +401,22 @@ fn complexity(suite: &Suite) -> Section {
     series.retain(|series| series.method != CONVENTIONAL);
     let y = Axis::new("frame time / conventional").baseline(1.0);
     let curves = Panel::Curves { x: x(), y, series };
-    section.figure("ratio", "Frame time over two full renders", "The line is conventional rendering.", curves);
+    section.figure(
+        "ratio",
+        "Frame time over two full renders",
+        "The line is conventional rendering.",
+        curves,
+    );
 
     let columns = [
-        "<method", "ms per million triangles", "ms without triangles", "slope / conventional",
-        "mean ratio of times", "the paper's slope", "the paper's slope / conventional", "the paper's mean ratio",
+        "<method",
+        "ms per million triangles",
+        "ms without triangles",
+        "slope / conventional",
+        "mean ratio of times",
+        "the paper's slope",
+        "the paper's slope / conventional",
+        "the paper's mean ratio",
     ];
     let mut table = Table::new("Slope and ratio", &columns);
     let base = line_through(&times(CONVENTIONAL)).map(|(_, slope)| slope);
@@ -396,7 +424,8 @@ fn complexity(suite: &Suite) -> Section {
     for name in &contenders {
         let fit = line_through(&times(name));
         let system = paper::COMPLEXITY.systems.iter().find(|(method, _)| method == name);
-        let paper_slope = system.and_then(|(_, points)| line_through(&papers(points))).map(|(_, slope)| slope);
+        let paper_slope =
+            system.and_then(|(_, points)| line_through(&papers(points))).map(|(_, slope)| slope);
         let share = |slope: Option<f64>, base: Option<f64>| fixed(slope.zip(base).map(|(s, b)| s / b), 3);
         let slope = fit.map(|(_, slope)| slope);
         let paper_ratio = system.and_then(|(_, points)| {
@@ -414,9 +443,10 @@ fn complexity(suite: &Suite) -> Section {
         ]);
     }
     push_refusals(&mut table, suite);
-    table.note = "The paper's slopes by least squares from its nine points. Its “51.40 %” leaves out the smallest \
+    table.note =
+        "The paper's slopes by least squares from its nine points. Its “51.40 %” leaves out the smallest \
                   scene; the ratio here is the mean over all nine."
-        .into();
+            .into();
     section.table(table);
     section.table(sweep_table(suite, "Median frame time, ms", metric::FRAME_MS, "triangles", |point| {
         short_count(point as u64)
@@ -546,8 +576,11 @@ fn parts_table(suite: &Suite, contenders: &[&str]) -> Table {
         ("elsewhere: FLIP", metric::VISIBLE_FLIP, 4),
     ];
     let mut table = means_table(suite, "Holes and the rest, means over the scenes", contenders, &columns);
-    let shares: Vec<f64> =
-        suite.contenders().iter().flat_map(|name| suite.values(name, |m| m.mean(metric::HOLE_SHARE))).collect();
+    let shares: Vec<f64> = suite
+        .contenders()
+        .iter()
+        .flat_map(|name| suite.values(name, |m| m.mean(metric::HOLE_SHARE)))
+        .collect();
     if let Some(share) = mean(shares) {
         table.note = format!(
             "Holes: what the dominant eye's own image does not show, {:.2} % of the pixels. FLIP: less is better.",
@@ -584,8 +617,12 @@ fn flicker(suite: &Suite) -> Section {
         ("at edges", metric::FLICKER_EDGES, 3),
         ("elsewhere", metric::FLICKER_REST, 3),
     ];
-    let mut table =
-        means_table(suite, "Flicker, of 255, means over the scenes", &suite.measured(metric::FLICKER), &columns);
+    let mut table = means_table(
+        suite,
+        "Flicker, of 255, means over the scenes",
+        &suite.measured(metric::FLICKER),
+        &columns,
+    );
     let changes = [metric::CHANGE, metric::CHANGE_HOLES, metric::CHANGE_EDGES, metric::CHANGE_REST];
     let changes = changes.map(|name| mean(suite.values(CONVENTIONAL, |measured| measured.mean(name))));
     if changes.iter().any(Option::is_some) {
@@ -667,7 +704,11 @@ fn metric_table(suite: &Suite, title: &str, contenders: &[&str]) -> Table {
                 let scale = if *metric_name == metric::HOLE_SHARE { 100.0 } else { 1.0 };
                 cells.push(cell(name, fixed(of.mean(metric_name).map(|value| value * scale), *decimals)));
             }
-            if first { table.push_first(cells) } else { table.push(cells) }
+            if first {
+                table.push_first(cells)
+            } else {
+                table.push(cells)
+            }
             first = false;
         }
     }
@@ -745,7 +786,9 @@ fn pass_table(suite: &Suite) -> Table {
     let contenders: Vec<&str> = suite
         .contenders()
         .into_iter()
-        .filter(|name| passes.iter().any(|pass| !suite.values(name, |m| m.median(&pass_metric(pass))).is_empty()))
+        .filter(|name| {
+            passes.iter().any(|pass| !suite.values(name, |m| m.median(&pass_metric(pass))).is_empty())
+        })
         .collect();
     columns.extend(contenders.iter().map(|name| name.to_string()));
     let mut table = Table::new("Time of each pass, means over the scenes of the medians", &columns);
@@ -797,7 +840,8 @@ fn few_lights(suite: &Suite) -> Section {
             value: conventional_fps / fps,
         });
         let ours = others.iter().rev().filter_map(|name| {
-            let costs = suite.settings.iter().filter_map(|setting| Some(setting.cost(name)?.median)).collect();
+            let costs =
+                suite.settings.iter().filter_map(|setting| Some(setting.cost(name)?.median)).collect();
             let value = geometric_mean(costs)?;
             Some(Mark { method: (*name).into(), papers: false, label: (*name).into(), value })
         });
@@ -811,7 +855,8 @@ fn few_lights(suite: &Suite) -> Section {
         &contenders,
         |setting, name| fixed(setting.cost(name).map(|cost| cost.median), 2),
         |name| {
-            let costs = suite.settings.iter().filter_map(|setting| Some(setting.cost(name)?.median)).collect();
+            let costs =
+                suite.settings.iter().filter_map(|setting| Some(setting.cost(name)?.median)).collect();
             fixed(geometric_mean(costs), 2)
         },
         (
@@ -819,7 +864,9 @@ fn few_lights(suite: &Suite) -> Section {
             |_| None,
             Some(
                 paper::FEW_LIGHTS
-                    .map(|(method, fps, _)| format!("{} {:.2}", paper::system(method), conventional_fps / fps))
+                    .map(|(method, fps, _)| {
+                        format!("{} {:.2}", paper::system(method), conventional_fps / fps)
+                    })
                     .join(", "),
             ),
         ),
@@ -1004,8 +1051,16 @@ fn patchers(suite: &Suite) -> Section {
     section.figure("ms", "Time", "Of the patcher alone. Less is better.", panel);
 
     let columns = [
-        "<patcher", "PSNR, dB", "SSIM", "FLIP", "holes: PSNR, dB", "holes: SSIM", "time, ms", "the paper's PSNR",
-        "the paper's SSIM", "the paper's time, ms",
+        "<patcher",
+        "PSNR, dB",
+        "SSIM",
+        "FLIP",
+        "holes: PSNR, dB",
+        "holes: SSIM",
+        "time, ms",
+        "the paper's PSNR",
+        "the paper's SSIM",
+        "the paper's time, ms",
     ];
     let mut table = Table::new("Means over the scenes", &columns);
     for name in &contenders {
@@ -1084,6 +1139,9 @@ fn time_sweep(section: &mut Section, suite: &Suite, x: Axis, label: impl Fn(f64)
     section.table(sweep_table(suite, "Median frame time, ms", metric::FRAME_MS, &quantity, label));
 }
 
+/// The share of the anchor's qualities that a curve must reach to be compared.
+const LEAST_OVERLAP: f64 = 0.1;
+
 /// Rate and both eyes' mean quality of a stream, by quantizer.
 fn rate_points(setting: &SettingData, stream: &str, metrics: [&str; 2]) -> Vec<(f64, f64)> {
     let Some(measured) = setting.find(stream) else { return Vec::new() };
@@ -1106,18 +1164,19 @@ fn bandwidth_section(suite: &Suite) -> Section {
          quality of both eyes after decoding is measured here, and rates are compared at equal quality.",
     );
     let streams = suite.measured(KBIT_S);
-    let both_psnr = [PSNR_DOMINANT, PSNR_OTHER];
+    let both_luma = [PSNR_LUMA_DOMINANT, PSNR_LUMA_OTHER];
+    let both_rgb = [PSNR_DOMINANT, PSNR_OTHER];
     let both_ssim = [SSIM_DOMINANT, SSIM_OTHER];
     for setting in &suite.settings {
         let series = streams.iter().rev().map(|name| Series {
             method: (*name).into(),
             papers: false,
             label: (*name).into(),
-            points: rate_points(setting, name, both_psnr),
+            points: rate_points(setting, name, both_luma),
         });
         let panel = Panel::Curves {
             x: Axis::new("bit rate, kbit/s").logarithmic(),
-            y: Axis::new("PSNR of both eyes, dB"),
+            y: Axis::new("luma PSNR of both eyes, dB"),
             series: series.collect(),
         };
         let scene = setting.label();
@@ -1127,37 +1186,41 @@ fn bandwidth_section(suite: &Suite) -> Section {
     section.table(rate_table(suite));
 
     let columns = [
-        "<scene", "<stream", "by PSNR of both eyes", "over dB", "by SSIM of both eyes", "over SSIM",
-        "best PSNR of the other eye, dB",
+        "<scene",
+        "<stream",
+        "by luma PSNR",
+        "over dB",
+        "by RGB PSNR",
+        "over dB",
+        "by SSIM",
+        "over",
+        "best luma PSNR of the other eye, dB",
     ];
     let mut equal = Table::new("Bit rate at equal quality against stereo RGB (BD-rate)", &columns);
     for setting in &suite.settings {
         for (i, name) in streams.iter().filter(|name| **name != STEREO_RGB).enumerate() {
+            // Over a sliver of common quality the fitted curves say nothing.
             let compare = |metrics: [&str; 2]| {
-                bd_rate(&rate_points(setting, STEREO_RGB, metrics), &rate_points(setting, name, metrics))
+                let (anchor, tested) =
+                    (rate_points(setting, STEREO_RGB, metrics), rate_points(setting, name, metrics));
+                bd_rate(&anchor, &tested).filter(|bd| bd.overlap >= LEAST_OVERLAP)
             };
-            let (psnr, ssim) = (compare(both_psnr), compare(both_ssim));
-            let best = rate_points(setting, name, [PSNR_OTHER; 2]).into_iter().map(|p| p.1).reduce(f64::max);
-            let share = |bd: Option<BdRate>| {
-                bd.map_or_else(|| "no quality in common".to_owned(), |bd| percent(bd.share))
-            };
-            let over = |bd: Option<BdRate>, decimals: usize| {
-                bd.map(|bd| format!("{:.2$} – {:.2$}", bd.quality[0], bd.quality[1], decimals))
-            };
-            let cells = vec![
-                Cell::plain(setting.label()),
-                Cell::plain(*name),
-                Cell::ours(Some(share(psnr))),
-                Cell::plain(over(psnr, 1).unwrap_or_default()),
-                Cell::ours(Some(share(ssim))),
-                Cell::plain(over(ssim, 3).unwrap_or_default()),
-                Cell::ours(fixed(best, 2)),
-            ];
+            let mut cells = vec![Cell::plain(setting.label()), Cell::plain(*name)];
+            for (metrics, decimals) in [(both_luma, 1), (both_rgb, 1), (both_ssim, 3)] {
+                let bd = compare(metrics);
+                let share = bd.map_or_else(|| "no quality in common".to_owned(), |bd| percent(bd.share));
+                cells.push(Cell::ours(Some(share)));
+                let over = bd.map(|bd| format!("{:.2$} – {:.2$}", bd.quality[0], bd.quality[1], decimals));
+                cells.push(Cell::plain(over.unwrap_or_default()));
+            }
+            let best = rate_points(setting, name, [PSNR_LUMA_OTHER; 2]).into_iter().map(|p| p.1);
+            cells.push(Cell::ours(fixed(best.reduce(f64::max), 2)));
             if i == 0 { equal.push_first(cells) } else { equal.push(cells) }
         }
     }
-    equal.note = "Bjøntegaard's mean difference; negative: fewer bits than stereo RGB for the same quality. A curve \
-                  counts only over the qualities that both reach: what synthesis cannot show, no bit rate buys."
+    equal.note = "Bjøntegaard's mean difference by the mean quality of both eyes; negative: fewer bits than stereo RGB for \
+                  the same quality. A curve counts only over the qualities that both reach: what synthesis cannot \
+                  show, no bit rate buys."
         .into();
     section.table(equal);
     section
@@ -1167,9 +1230,17 @@ fn bandwidth_section(suite: &Suite) -> Section {
 fn rate_table(suite: &Suite) -> Table {
     use bandwidth::{RGB_DEPTH, STEREO_RGB, metric::*};
     let columns = [
-        "<scene", "QP", "stereo RGB, kbit/s", "RGB + depth, kbit/s", "of it depth", "difference",
-        "stereo RGB: both eyes, dB", "RGB + depth: both eyes, dB", "the paper's stereo RGB",
-        "the paper's RGB + depth", "the paper's difference",
+        "<scene",
+        "QP",
+        "stereo RGB, kbit/s",
+        "RGB + depth, kbit/s",
+        "of it depth",
+        "difference",
+        "stereo RGB: luma PSNR, dB",
+        "RGB + depth: luma PSNR, dB",
+        "the paper's stereo RGB",
+        "the paper's RGB + depth",
+        "the paper's difference",
     ];
     let mut table = Table::new("Bit rate at one quantizer", &columns);
     let mut differences = Vec::new();
@@ -1179,7 +1250,7 @@ fn rate_table(suite: &Suite) -> Table {
         for (i, quantizer) in stereo.by_frame(QP).iter().enumerate() {
             let value = |measured: &Measured, name: &str| measured.by_frame(name).get(i).copied().flatten();
             let both = |measured: &Measured| {
-                Some((value(measured, PSNR_DOMINANT)? + value(measured, PSNR_OTHER)?) / 2.0)
+                Some((value(measured, PSNR_LUMA_DOMINANT)? + value(measured, PSNR_LUMA_OTHER)?) / 2.0)
             };
             let rates = (value(stereo, KBIT_S), value(depth, KBIT_S));
             let difference = rates.0.zip(rates.1).map(|(stereo, depth)| depth / stereo - 1.0);

@@ -64,8 +64,9 @@ impl Archive {
         self.entries.iter().any(|(name, entry)| name.starts_with("lib/") && !entry.stored)
     }
 
-    /// Adds rows for the architectures and for the alignment of what Android maps out of the file.
-    pub fn check(&self, report: &mut Report) {
+    /// Adds rows for the architectures and for the alignment of what Android maps out of the file: libraries too,
+    /// unless they are unpacked at installation.
+    pub fn check(&self, unpacked: bool, report: &mut Report) {
         let wanted: Vec<&str> = ARCHITECTURES.iter().map(|architecture| architecture.abi).collect();
         let mut found: Vec<&str> = self.libraries.keys().filter_map(|name| name.split('/').nth(1)).collect();
         found.dedup();
@@ -75,13 +76,13 @@ impl Archive {
         let wrong: Vec<&str> = stored
             .iter()
             .filter(|(name, entry)| {
-                let library = name.starts_with("lib/");
-                !entry.offset.is_multiple_of(if library { PAGE } else { 4 })
+                let mapped_library = !unpacked && name.starts_with("lib/");
+                !entry.offset.is_multiple_of(if mapped_library { PAGE } else { 4 })
             })
             .map(|(name, _)| name.as_str())
             .collect();
         let problem = if !wrong.is_empty() {
-            Some(format!("{} must lie at a multiple of 4 bytes, libraries of 16 KiB", some(&wrong)))
+            Some(format!("{} must lie at a multiple of 4 bytes, mapped libraries of 16 KiB", some(&wrong)))
         } else {
             let compressed = self.entries.get(RESOURCES).is_some_and(|entry| !entry.stored);
             compressed.then(|| format!("{RESOURCES} is compressed: Android 11 and later refuse it"))
@@ -115,7 +116,7 @@ pub mod tests {
 
     fn problems(bytes: &[u8]) -> Vec<String> {
         let mut report = Report::default();
-        Archive::read(bytes).unwrap().check(&mut report);
+        Archive::read(bytes).unwrap().check(false, &mut report);
         report.problems().into_iter().map(str::to_owned).collect()
     }
 
@@ -130,6 +131,17 @@ pub mod tests {
         let none: [&str; 0] = [];
         assert_eq!(problems(&archive(&LIBRARIES, CompressionMethod::Stored, 16384)), none);
         assert_eq!(problems(&archive(&LIBRARIES, CompressionMethod::Stored, 4096)), ["alignment"]);
+    }
+
+    #[test]
+    fn libraries_that_are_unpacked_lie_on_words() {
+        let passes = |alignment| {
+            let mut report = Report::default();
+            let bytes = archive(&LIBRARIES, CompressionMethod::Stored, alignment);
+            Archive::read(&bytes).unwrap().check(true, &mut report);
+            report.passed()
+        };
+        assert!(passes(4));
     }
 
     #[test]

@@ -111,6 +111,11 @@ impl Manifest {
         self.one("application").is("android:debuggable") == Some(true)
     }
 
+    /// Libraries are unpacked at installation, not mapped out of the APK.
+    pub fn unpacks_libraries(&self) -> bool {
+        self.one("application").is("android:extractNativeLibs") != Some(false)
+    }
+
     /// Adds a row for everything that matters.
     pub fn check(&self, archive: &Archive, report: &mut Report) {
         let manifest = self.one("manifest");
@@ -135,8 +140,7 @@ impl Manifest {
         let problem = (!archive.has(&self.icon)).then(|| "no such file".to_owned());
         report.row("icon", self.icon.as_str(), problem);
         report.equal("label", application.text("android:label"), "yoro");
-        // Compressed libraries cannot be mapped out of the APK.
-        let extracted = application.is("android:extractNativeLibs") != Some(false);
+        let extracted = self.unpacks_libraries();
         let problem = (!extracted && archive.compresses_libraries())
             .then(|| "compressed libraries must be unpacked (extract_native_libs)".to_owned());
         report.row("libraries", if extracted { "unpacked at installation" } else { "in the APK" }, problem);

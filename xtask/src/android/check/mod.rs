@@ -102,7 +102,7 @@ pub fn check(path: &Path) -> anyhow::Result<Report> {
     report.row("size", format!("{:.2} MB", size as f64 / 1e6), too_large);
     manifest.check(&archive, &mut report);
     signature::check(path, &mut report)?;
-    archive.check(&mut report);
+    archive.check(manifest.unpacks_libraries(), &mut report);
     let public = Public::of(Surroundings::here().ndk());
     for (name, content) in archive.libraries() {
         library::check(name, content, &public, &mut report)?;
