@@ -1,66 +1,49 @@
 //! yoro on Android: the library that `NativeActivity` loads.
-#![cfg(target_os = "android")]
+//!
+//! The application itself is [`yoro::viewer`]; here is what a phone adds to it: a window, the activity's life,
+//! sensors, touch, settings from outside, the state of battery and heat. On other systems only the parts without
+//! Android are built, and those for their tests.
 
-mod surface;
+#[cfg(any(target_os = "android", test))]
+mod press;
+#[cfg(any(target_os = "android", test))]
+mod settings;
 
-use std::time::Duration;
+#[cfg(target_os = "android")]
+mod activity;
+#[cfg(target_os = "android")]
+mod device;
+#[cfg(target_os = "android")]
+mod dynamic;
+#[cfg(target_os = "android")]
+mod input;
+#[cfg(target_os = "android")]
+mod java;
+#[cfg(target_os = "android")]
+mod pulse;
+#[cfg(target_os = "android")]
+mod sensors;
+#[cfg(target_os = "android")]
+mod thermal;
 
-use android_activity::{AndroidApp, MainEvent, PollEvent};
-use log::{LevelFilter, error, info};
-
-use surface::{Display, Surface};
-
-/// Where Android's activity begins; returning ends it. It may run more than once in one process.
+/// Where the application begins; returning ends the activity. It may run more than once in one process, also while
+/// an earlier run is about to return.
+#[cfg(target_os = "android")]
 #[unsafe(no_mangle)]
-fn android_main(app: AndroidApp) {
-    // The second time in one process the first logger stays.
+fn android_main(app: android_activity::AndroidApp) {
+    // Scripts read these lines: nothing but the message may stand after the tag. In a second run the first logger
+    // stays.
     android_logger::init_once(
-        android_logger::Config::default().with_max_level(LevelFilter::Info).with_tag("YORO"),
+        android_logger::Config::default()
+            .with_max_level(log::LevelFilter::Info)
+            .with_tag(yoro::telemetry::LOG_TAG)
+            .format(|writer, record| write!(writer, "{}", record.args())),
     );
-    info!("yoro {} starts", env!("CARGO_PKG_VERSION"));
-    match Display::open() {
-        Ok(display) => run(&app, &display),
-        Err(error) => error!("{error}"),
-    }
-    info!("yoro ends");
-}
-
-fn run(app: &AndroidApp, display: &Display) {
-    let mut surface: Option<Surface<'_>> = None;
-    let mut resumed = false;
-    let mut destroyed = false;
-    let mut frames = 0u64;
-    while !destroyed {
-        let drawing = resumed && surface.is_some();
-        let timeout = if drawing { Duration::ZERO } else { Duration::from_millis(250) };
-        app.poll_events(Some(timeout), |event| {
-            let PollEvent::Main(event) = event else { return };
-            info!("event {event:?}");
-            match event {
-                MainEvent::InitWindow { .. } => {
-                    surface = app.native_window().and_then(|window| match display.surface(window) {
-                        Ok(surface) => Some(surface),
-                        Err(error) => {
-                            error!("{error}");
-                            None
-                        }
-                    });
-                }
-                MainEvent::TerminateWindow { .. } => surface = None,
-                MainEvent::Resume { .. } => resumed = true,
-                MainEvent::Pause => resumed = false,
-                MainEvent::Destroy => destroyed = true,
-                _ => {}
-            }
-        });
-        if let Some(surface) = surface.as_ref().filter(|_| resumed) {
-            if let Err(error) = surface.clear([0.08, 0.13, 0.24, 1.0]) {
-                error!("{error}");
-            }
-            frames += 1;
-            if frames == 1 {
-                info!("first frame");
-            }
-        }
-    }
+    // A panic never unwinds into Android's code: the build aborts, after this.
+    std::panic::set_hook(Box::new(|panic| {
+        log::error!("yoro has a bug and ends: {panic}\n{}", std::backtrace::Backtrace::force_capture());
+    }));
+    log::info!("yoro {} starts", env!("CARGO_PKG_VERSION"));
+    activity::run(&app);
+    log::info!("yoro ends");
 }

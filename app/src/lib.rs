@@ -20,7 +20,7 @@ pub mod inpaint;
 pub mod metrics;
 #[cfg(feature = "desktop")]
 pub mod picture;
-#[cfg(feature = "desktop")]
+#[cfg(any(feature = "desktop", target_os = "android"))]
 pub mod platform;
 pub mod render;
 #[cfg(feature = "desktop")]

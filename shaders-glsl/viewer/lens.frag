@@ -34,5 +34,6 @@ void main() {
 #else
     vec3 color = texture(image, green_uv).rgb;
 #endif
-    out_color = vec4(color * inside(lens_uv, vignette) * inside(green_uv, 0.2 * vignette), 1.0);
+    // A turned image may end before the lens does.
+    out_color = vec4(color * min(inside(lens_uv, vignette), inside(green_uv, vignette)), 1.0);
 }

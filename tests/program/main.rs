@@ -1,5 +1,6 @@
 //! The program `yoro` from end to end.
 
+mod browser;
 mod program;
 
 mod compare;
@@ -8,6 +9,7 @@ mod memory;
 mod mistakes;
 mod pair;
 mod render;
+mod report;
 mod run;
 mod scenes;
 mod synthesize;

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use crate::browser::{Browser, check_page};
 use crate::program::succeed;
 
 #[test]
@@ -17,5 +18,8 @@ fn a_report_of_every_method() {
     assert!(page.contains("data:image/"), "no pictures in the page");
     for outside in ["src=\"http", "href=\"http://", "url(http", "<link", "src=\"/", "@import"] {
         assert!(!page.contains(outside), "the page needs {outside}");
+    }
+    if let Some(mut browser) = Browser::start() {
+        check_page(&mut browser, &dir.path().join("out/report.html"));
     }
 }

@@ -2,13 +2,11 @@
 
 use std::env;
 use std::io::{BufRead as _, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
-
-use crate::setup::Libraries;
 
 /// The cargo that runs this program, in the workspace's root.
 fn cargo() -> Command {
@@ -77,11 +75,59 @@ impl Summary {
     }
 }
 
+/// The tests of the APK; they ask for YORO_TEST_APK.
+const APK_TESTS: [&str; 5] = ["test", "--package", "yoro-android-host", "--test", "*"];
+
+/// A test of the APK has one of the filters in its name. Without filters all of them are wanted.
+pub fn wants_apk(filters: &[String]) -> bool {
+    if filters.is_empty() {
+        return true;
+    }
+    let list = cargo().args(APK_TESTS).args(["--quiet", "--", "--list"]).args(filters).output();
+    // What does not compile is told when the tests are to be run.
+    list.is_ok_and(|output| {
+        String::from_utf8_lossy(&output.stdout).lines().any(|line| line.ends_with(": test"))
+    })
+}
+
+/// What some tests need, and others can do without.
+#[derive(Clone, Debug, Default)]
+pub struct Equipment {
+    /// Mesa's rasterizer without a window system.
+    pub osmesa: bool,
+    /// The Android application.
+    pub apk: Equipped,
+    /// A browser for report pages.
+    pub browser: Equipped,
+}
+
+/// Is a file for tests here?
+#[derive(Clone, Debug, Default)]
+pub enum Equipped {
+    /// No test that runs asks for it.
+    #[default]
+    NotWanted,
+    /// It cannot be had on this machine: its tests are left out.
+    Missing,
+    /// Here.
+    At(PathBuf),
+}
+
+impl Equipped {
+    /// Tells the tests: by `YORO_TEST_name` where it is, or by `YORO_TEST_WITHOUT_name` that they are left out.
+    fn tell(&self, name: &str, command: &mut Command) {
+        match self {
+            Self::At(path) => command.env(format!("YORO_TEST_{name}"), path),
+            Self::Missing | Self::NotWanted => command.env(format!("YORO_TEST_WITHOUT_{name}"), "1"),
+        };
+    }
+}
+
 /// Runs all tests of the workspace, or those whose names contain one of the filters, and sums up.
 ///
 /// # Errors
 /// When a test fails or does not compile.
-pub fn test(filters: &[String], bless: bool, libraries: &Libraries) -> anyhow::Result<()> {
+pub fn test(filters: &[String], bless: bool, equipment: &Equipment) -> anyhow::Result<()> {
     let start = Instant::now();
     let mut arguments = vec!["test", "--workspace", "--no-fail-fast", "--"];
     arguments.extend(filters.iter().map(String::as_str));
@@ -95,9 +141,11 @@ pub fn test(filters: &[String], bless: bool, libraries: &Libraries) -> anyhow::R
     if bless {
         command.env("YORO_BLESS", "1");
     }
-    if !libraries.osmesa {
+    if !equipment.osmesa {
         command.env("YORO_TEST_WITHOUT_OSMESA", "1");
     }
+    equipment.apk.tell("APK", &mut command);
+    equipment.browser.tell("CHROMIUM", &mut command);
     let mut child = command.spawn().context("cargo cannot be started")?;
     let mut summary = Summary::default();
     if let Some(stdout) = child.stdout.take() {
@@ -110,8 +158,13 @@ pub fn test(filters: &[String], bless: bool, libraries: &Libraries) -> anyhow::R
     let status = child.wait().context("cargo is gone")?;
     let Summary { passed, failed, ignored, failures } = summary;
     println!("{passed} passed, {failed} failed, {ignored} ignored in {:.0} s", start.elapsed().as_secs_f64());
-    if !libraries.osmesa {
-        println!("OSMesa is not here: what needs it was left out");
+    let absent = [
+        ("OSMesa is not here", !equipment.osmesa),
+        ("The APK cannot be built here (cargo xtask doctor)", matches!(equipment.apk, Equipped::Missing)),
+        ("Chromium is not here", matches!(equipment.browser, Equipped::Missing)),
+    ];
+    for (what, _) in absent.iter().filter(|(_, missing)| *missing) {
+        println!("{what}: what needs it was left out");
     }
     if bless {
         println!("golden images renewed: look at `git diff --stat tests/golden` and at the pictures");

@@ -1,12 +1,18 @@
-//! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`.
+//! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`.
 
+mod android;
+mod apt;
 mod cargo;
 mod setup;
 
+use std::io::{self, Write as _};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::bail;
 use clap::{Parser, Subcommand};
+
+use cargo::{Equipment, Equipped};
 
 /// Set up, run and test yoro
 #[derive(Parser)]
@@ -34,13 +40,30 @@ enum Task {
         #[arg(long)]
         bless: bool,
     },
+    /// Build, sign and check the Android application
+    Apk {
+        /// Small and fast, instead of debuggable
+        #[arg(long)]
+        release: bool,
+        /// Install missing packages (apt) without asking
+        #[arg(long)]
+        yes: bool,
+    },
+    /// What the Android application would be built with, what is missing, and how to get it
+    Doctor,
+    /// Look whether an APK is as Android wants it
+    CheckApk {
+        /// The APK
+        file: PathBuf,
+    },
     /// Formatting, clippy, documentation, and the library without the desktop program
     Lint,
 }
 
 fn main() -> ExitCode {
     match perform(Arguments::parse().task) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::from(2)
@@ -48,24 +71,54 @@ fn main() -> ExitCode {
     }
 }
 
-fn perform(task: Task) -> anyhow::Result<()> {
+/// False when what was looked at is not as it should be.
+fn perform(task: Task) -> anyhow::Result<bool> {
     match task {
         Task::Setup => {
             if setup::ensure()?.complete() {
                 println!("everything is there");
             }
-            Ok(())
         }
         Task::Run { arguments } => {
             setup::ensure()?;
-            cargo::run(&["run", "--release", "--package", "yoro", "--", "run"], &arguments)
+            cargo::run(&["run", "--release", "--package", "yoro", "--", "run"], &arguments)?;
         }
         Task::Test { filters, bless } => {
-            let libraries = setup::ensure()?;
-            cargo::test(&filters, bless, &libraries)
+            let equipment = equip(&filters)?;
+            cargo::test(&filters, bless, &equipment)?;
         }
-        Task::Lint => lint(),
+        Task::Apk { release, yes } => {
+            android::apk(android::Options { release, yes })?;
+        }
+        Task::Doctor => {
+            let (text, complete) = android::doctor()?;
+            show(&text);
+            return Ok(complete);
+        }
+        Task::CheckApk { file } => {
+            let report = android::check::check(&file)?;
+            show(&report.to_string());
+            return Ok(report.passed());
+        }
+        Task::Lint => lint()?,
     }
+    Ok(true)
+}
+
+/// Prints; a reader such as `head` may have gone before the end.
+fn show(text: &str) {
+    let _ = io::stdout().write_all(text.as_bytes());
+}
+
+/// Installs and builds what the tests need that have one of the filters in their names.
+fn equip(filters: &[String]) -> anyhow::Result<Equipment> {
+    let osmesa = setup::ensure()?.osmesa;
+    let apk = if cargo::wants_apk(filters) { android::for_tests()? } else { Equipped::NotWanted };
+    // A few chosen tests are not worth the wait for an installation.
+    let all = filters.is_empty();
+    let absent = if all { Equipped::Missing } else { Equipped::NotWanted };
+    let browser = setup::browser(all).map_or(absent, Equipped::At);
+    Ok(Equipment { osmesa, apk, browser })
 }
 
 fn lint() -> anyhow::Result<()> {

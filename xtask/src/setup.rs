@@ -6,7 +6,9 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
+
+use crate::apt;
 
 /// Something that the system must have, and who brings it.
 struct Need {
@@ -67,11 +69,12 @@ pub fn ensure() -> anyhow::Result<Libraries> {
     }
     let names: Vec<&str> = missing.iter().map(|need| need.what).collect();
     eprintln!("missing: {}", names.join(", "));
-    if find_program("apt-get").is_none() {
+    if apt::find_program("apt-get").is_none() {
         let release = fs::read_to_string("/etc/os-release").unwrap_or_default();
         return conclude(&missing, &format!("install it with {}", advice(&release)));
     }
-    let installed = install(&missing);
+    let groups: Vec<&[&str]> = missing.iter().map(|need| need.apt).collect();
+    let installed = apt::install(&groups);
     let still_missing = self::missing(&library_folders());
     match installed {
         Ok(()) => conclude(
@@ -80,6 +83,18 @@ pub fn ensure() -> anyhow::Result<Libraries> {
         ),
         Err(error) => conclude(&still_missing, &format!("{error:#}")),
     }
+}
+
+/// The browser that the tests of report pages use; on demand it is installed where apt has one.
+pub fn browser(install: bool) -> Option<PathBuf> {
+    let find = || ["chromium", "chromium-browser", "google-chrome"].into_iter().find_map(apt::find_program);
+    find().or_else(|| {
+        apt::find_program("apt-get").filter(|_| install)?;
+        if let Err(error) = apt::install(&[&["chromium"]]) {
+            eprintln!("warning: {error:#}");
+        }
+        find()
+    })
 }
 
 /// What is left is an error unless it is optional.
@@ -130,57 +145,6 @@ fn exists(folders: &[PathBuf], name: &str) -> bool {
         }),
         None => folder.join(name).exists(),
     })
-}
-
-fn find_program(name: &str) -> Option<PathBuf> {
-    let path = env::var_os("PATH")?;
-    env::split_paths(&path).map(|folder| folder.join(name)).find(|program| program.is_file())
-}
-
-fn is_root() -> bool {
-    let id = Command::new("id").arg("-u").output();
-    id.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == "0")
-}
-
-/// `apt-get update`, then an installation for each thing by itself, so that what is there is installed even
-/// when a package does not exist in this distribution.
-fn install(missing: &[&Need]) -> anyhow::Result<()> {
-    let packages: Vec<&str> = missing.iter().flat_map(|need| need.apt).copied().collect();
-    let by_hand = format!("apt-get install {}", packages.join(" "));
-    let sudo = match (is_root(), find_program("sudo")) {
-        (true, _) => false,
-        (false, Some(_)) => true,
-        (false, None) => bail!("not root and no sudo here: have root run `{by_hand}`"),
-    };
-    if let Err(error) = apt_get(sudo, &["update"]) {
-        // Old lists are often good enough, and a third party's broken source is no reason to stop.
-        eprintln!("warning: {error:#}");
-    }
-    let mut failures = Vec::new();
-    for need in missing {
-        let mut arguments = vec!["install", "--yes", "--no-install-recommends"];
-        arguments.extend(need.apt);
-        failures.extend(apt_get(sudo, &arguments).err());
-    }
-    match failures.pop() {
-        Some(error) => Err(error.context(format!("try `{by_hand}` by hand"))),
-        None => Ok(()),
-    }
-}
-
-fn apt_get(sudo: bool, arguments: &[&str]) -> anyhow::Result<()> {
-    // sudo drops the environment; `env` sets it on the other side.
-    let words: &[&str] = if sudo { &["sudo", "env"] } else { &["env"] };
-    let mut command = Command::new(words[0]);
-    command.args(&words[1..]).args(["DEBIAN_FRONTEND=noninteractive", "apt-get", "--quiet"]).args(arguments);
-    eprintln!("$ {}apt-get {}", if sudo { "sudo " } else { "" }, arguments.join(" "));
-    // What the caller prints stays clean.
-    let status = command.stdin(Stdio::null()).stdout(std::io::stderr()).status();
-    let status = status.with_context(|| format!("{} cannot be started", words[0]))?;
-    if !status.success() {
-        bail!("apt-get {} failed", arguments.join(" "));
-    }
-    Ok(())
 }
 
 /// How everything is installed on a distribution without apt, by its os-release file.

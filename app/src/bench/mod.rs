@@ -5,6 +5,7 @@
 //! is over. Quality is always held against the same eye really rendered, with "the same image to both eyes"
 //! ([`Contender::MONO`]) beside it; cost against two full renders ([`Contender::CONVENTIONAL`]).
 
+pub mod bandwidth;
 mod contender;
 mod entrant;
 mod holes;

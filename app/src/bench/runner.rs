@@ -11,8 +11,8 @@ use super::entrant::{Entrant, FrameTime};
 use super::holes::HoleFinder;
 use super::record::{RoundEnd, SceneFacts, Unsupported};
 use super::scenes::Object;
-use super::suite::{Choices, Job, Measure, Source};
-use super::{Contender, Measurement, Record, Results, Setting, Writer, metric, process};
+use super::suite::{Choices, Job, Measure, Source, Suite};
+use super::{Contender, Measurement, Record, Results, Setting, Writer, bandwidth, metric, process};
 use crate::cli::interrupted;
 use crate::cli::stage::{self, Stage};
 use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
@@ -20,7 +20,9 @@ use crate::eyes::{EyePair, Pose};
 use crate::gl::Context;
 use crate::inpaint::{self, Patcher, PatcherOptions};
 use crate::metrics::{Comparison, Flicker, FlickerMeter, PartQuality};
+use crate::picture;
 use crate::render::RenderSettings;
+use crate::report::bench::picture_folder;
 use crate::scene::builtin::BUILTINS;
 use crate::scene::{CameraPath, Scene, ShadingStyle, Viewpoint};
 use crate::stereo::StereoFrame;
@@ -127,6 +129,7 @@ impl<'a> Runner<'a> {
             Measure::Frames { .. } => self.frames(job, &mut stage, done),
             Measure::Flicker => self.flicker(job, &mut stage),
             Measure::Patchers => self.patchers(job, &mut stage, done),
+            Measure::Bandwidth => self.bandwidth(job, &mut stage),
         };
         self.stage = Some((StageKey::of(job), stage));
         measured
@@ -193,6 +196,9 @@ impl<'a> Runner<'a> {
                 self.render_round(stage, &views, &mut field, round, cost.then_some(&mut measurements), keep)?;
             if keep {
                 self.compare(job, stage, &views, &field, &images, &mut measurements)?;
+                for ((contender, _), images) in field.entrants.iter().zip(&images) {
+                    self.save_picture(job, *contender, &images[0])?;
+                }
             }
             if cost {
                 self.time_passes(stage, &views, &mut field, &mut measurements)?;
@@ -262,6 +268,21 @@ impl<'a> Runner<'a> {
         Ok(())
     }
 
+    /// Saves the other eye as a contender shows it in the first view, for the report, in the suites that are about
+    /// pictures.
+    fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
+        if ![Suite::Scenes, Suite::Patchers].iter().any(|suite| suite.name() == job.setting.suite) {
+            return Ok(());
+        }
+        let name = match contender {
+            Contender::CONVENTIONAL => "truth".to_owned(),
+            Contender::MONO => "dominant".to_owned(),
+            other => other.name(),
+        };
+        let folder = picture_folder(&self.before.path, &job.setting);
+        Ok(picture::save_color(&folder.join(format!("{name}.png")), image)?)
+    }
+
     fn time_passes(
         &self,
         stage: &mut Stage,
@@ -311,6 +332,28 @@ impl<'a> Runner<'a> {
         self.finish_round(job, 0, field.first, measurements)
     }
 
+    fn bandwidth(&mut self, job: &Job, stage: &mut Stage) -> anyhow::Result<()> {
+        let views = Views::along_path(job, stage)?;
+        self.bar.set_message(job.setting.to_string());
+        let bar = &self.bar;
+        let mut step = || -> anyhow::Result<()> {
+            bar.inc(1);
+            Ok(stop_if_interrupted()?)
+        };
+        let streams = bandwidth::run(self.gl, stage, &job.render, &views.pairs, &job.bandwidth, &mut step)?;
+        let mut facts = views.facts(job, stage);
+        // Each value is that of a whole sequence at one quantizer.
+        facts.frames = job.bandwidth.quantizers.iter().map(|quantizer| format!("QP {quantizer}")).collect();
+        let measurement = |(stream, values): (&str, bandwidth::Values)| Measurement {
+            setting: job.setting.clone(),
+            contender: stream.to_owned(),
+            round: 0,
+            values,
+        };
+        let measurements = streams.into_iter().map(measurement).collect();
+        self.finish_round(job, 0, vec![Record::Scene(facts)], measurements)
+    }
+
     fn patchers(&mut self, job: &Job, stage: &mut Stage, done: u32) -> anyhow::Result<()> {
         let views = Views::spread(job, stage)?;
         let mut first = vec![Record::Scene(views.facts(job, stage))];
@@ -344,6 +387,9 @@ impl<'a> Runner<'a> {
                     if round == 0 {
                         let comparison = Comparison::of(&patched.image, &group.truth, Some(&holes))?;
                         measurements[at].push_comparison(&comparison);
+                        if i == 0 {
+                            self.save_picture(job, patchers[at].0, &patched.image)?;
+                        }
                     }
                     self.bar.inc(1);
                 }
@@ -356,6 +402,10 @@ impl<'a> Runner<'a> {
                         "the eyes differ in height"
                     );
                     mono.push_comparison(&Comparison::of(&eye, &group.truth, Some(&holes))?);
+                    if i == 0 {
+                        self.save_picture(job, Contender::MONO, &eye)?;
+                        self.save_picture(job, Contender::CONVENTIONAL, &group.truth)?;
+                    }
                 }
             }
             if round == 0 {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::ensure;
 
+use super::bandwidth::{self, BandwidthOptions};
 use super::scenes::Object;
 use super::{Contender, Setting};
 use crate::cli::stage::EyeArgs;
@@ -35,13 +36,15 @@ pub enum Suite {
     Resolution,
     /// Flicker of the synthesized eye from frame to frame along a camera path
     Flicker,
+    /// Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path
+    Bandwidth,
     /// All of them, one after the other
     All,
 }
 
 impl Suite {
     /// All suites, in the order of the paper.
-    pub const ALL: [Suite; 10] = [
+    pub const ALL: [Suite; 11] = [
         Suite::Scenes,
         Suite::Complexity,
         Suite::Styles,
@@ -52,6 +55,7 @@ impl Suite {
         Suite::Lights,
         Suite::Resolution,
         Suite::Flicker,
+        Suite::Bandwidth,
     ];
 
     /// Its name on the command line and in files.
@@ -67,6 +71,7 @@ impl Suite {
             Suite::Lights => "lights",
             Suite::Resolution => "resolution",
             Suite::Flicker => "flicker",
+            Suite::Bandwidth => "bandwidth",
             Suite::All => "all",
         }
     }
@@ -86,6 +91,8 @@ pub enum Measure {
     Flicker,
     /// Patchers on reprojected images.
     Patchers,
+    /// Coded sequences along a piece of the camera path.
+    Bandwidth,
 }
 
 /// Where a scene comes from.
@@ -119,6 +126,8 @@ pub struct Job {
     pub eyes: EyeArgs,
     /// Divisor of the ImBuffer's resolution.
     pub imbuffer: u32,
+    /// Quantizers of coded sequences.
+    pub bandwidth: BandwidthOptions,
     /// What is taken.
     pub measure: Measure,
     /// Who takes part; the conventional method first where frames are measured.
@@ -132,6 +141,9 @@ pub struct Job {
 impl Job {
     /// Steps of progress: each contender's frames in each round, and getting ready.
     pub fn steps(&self) -> u64 {
+        if self.measure == Measure::Bandwidth {
+            return bandwidth::steps(self.frames, &self.bandwidth);
+        }
         (u64::from(self.rounds) * self.frames as u64 + 1) * self.contenders.len() as u64
     }
 }
@@ -147,6 +159,8 @@ pub struct Choices {
     pub rounds: u32,
     /// Viewpoints per scene.
     pub viewpoints: usize,
+    /// Frames of the sequences of `bandwidth`.
+    pub sequence: usize,
     /// Scenes instead of the suites' own.
     pub scenes: Vec<String>,
     /// Contenders instead of the suites' own.
@@ -255,6 +269,16 @@ impl Choices {
             Suite::Flicker => job(Measure::Flicker, synthesis()).over(self.varied(), [()], |job, ()| {
                 job.frames = FLICKER_FRAMES[usize::from(self.quick)];
             })?,
+            Suite::Bandwidth => {
+                job(Measure::Bandwidth, Vec::new()).over(self.scenes(&every), [()], |job, ()| {
+                    // Streams take part, not methods.
+                    job.contenders.clear();
+                    job.frames = self.sequence;
+                    if self.quick {
+                        job.bandwidth.quantizers = vec![22, 28, 34, 40];
+                    }
+                })?
+            }
             Suite::All => {
                 let each = Suite::ALL.map(|suite| self.jobs(suite, object));
                 each.into_iter().collect::<anyhow::Result<Vec<_>>>()?.concat()
@@ -291,6 +315,7 @@ impl Choices {
             ("dominant eye", eyes.dominant.name().into()),
             ("rounds", self.rounds.to_string()),
             ("viewpoints per scene", self.viewpoints.to_string()),
+            ("frames of coded sequences", self.sequence.to_string()),
             ("seed", self.seed.to_string()),
             ("scenes", list(self.scenes.clone())),
             ("contenders", list(self.contenders.iter().map(|c| c.name()).collect())),
@@ -353,6 +378,7 @@ impl Plan<'_> {
                     render: RenderSettings::default(),
                     eyes: choices.eyes.clone(),
                     imbuffer: 1,
+                    bandwidth: BandwidthOptions::default(),
                     measure: self.measure,
                     contenders: contenders.clone(),
                     rounds,

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::{Contender, Measurement, Results, Setting, metric};
+use super::{Contender, Measurement, Results, Setting, bandwidth, metric};
 use crate::metrics::stats::median;
 
 /// A column: heading, metric, decimals, how its values become one.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
 
-const COLUMNS: [Column; 8] = [
+const COLUMNS: [Column; 11] = [
     ("frame ms", metric::FRAME_MS, 1, median),
     ("CPU ms", metric::CPU_MS, 1, median),
     ("GPU ms", metric::GPU_MS, 2, median),
@@ -18,6 +18,9 @@ const COLUMNS: [Column; 8] = [
     ("SSIM", metric::SSIM, 4, mean),
     ("FLIP", metric::FLIP, 4, mean),
     ("flicker", metric::FLICKER, 2, mean),
+    ("kbit/s", bandwidth::metric::KBIT_S, 0, mean),
+    ("dominant", bandwidth::metric::PSNR_DOMINANT, 2, mean),
+    ("other dB", bandwidth::metric::PSNR_OTHER, 2, mean),
 ];
 
 fn mean(values: &[f64]) -> Option<f64> {

@@ -32,6 +32,9 @@ pub struct BenchArgs {
     /// Viewpoints of each scene, spread over its camera path [default: 3; quick: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     viewpoints: Option<u32>,
+    /// bandwidth: frames of the sequence that is coded [default: 30; quick: 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    frames: Option<u32>,
     /// Size of each eye's image in pixels [default: 1024x1024; quick: 512x512]
     #[arg(long, value_name = "WxH", value_parser = stage::parse_size)]
     size: Option<[u32; 2]>,
@@ -147,6 +150,7 @@ impl BenchArgs {
             eyes,
             rounds: self.rounds.unwrap_or(of(5, 2)),
             viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,
+            sequence: self.frames.unwrap_or(of(30, 8)) as usize,
             scenes: self.scenes.clone(),
             contenders: self.contenders.clone(),
             seed: self.seed,

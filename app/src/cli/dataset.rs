@@ -74,7 +74,7 @@ struct Settings<'a> {
     groups: u32,
     path: Option<&'a [Viewpoint]>,
     size: [u32; 2],
-    fov_y_degrees: f32,
+    fov_y_degrees: f64,
     ipd_metres: f32,
     dominant: Eye,
     near: f32,
@@ -98,7 +98,7 @@ struct Group<'a> {
     eyes: BTreeMap<&'static str, Camera>,
     dominant: Eye,
     ipd_metres: f32,
-    fov_y_degrees: f32,
+    fov_y_degrees: f64,
     size: [u32; 2],
     depth: Depth,
     /// Share of the reprojected image.
@@ -213,7 +213,7 @@ impl<'a> Job<'a> {
             groups: args.groups,
             path,
             size: args.eyes.size,
-            fov_y_degrees: args.eyes.fov_y.to_degrees(),
+            fov_y_degrees: fov_y_degrees(args),
             ipd_metres: args.eyes.ipd,
             dominant: args.eyes.dominant,
             near: args.eyes.near,
@@ -294,7 +294,7 @@ impl<'a> Job<'a> {
             eyes: Eye::BOTH.into_iter().map(|eye| (eye.name(), camera(eye))).collect(),
             dominant: pair.dominant,
             ipd_metres: args.eyes.ipd,
-            fov_y_degrees: args.eyes.fov_y.to_degrees(),
+            fov_y_degrees: fov_y_degrees(args),
             size: pair.size,
             depth: Depth {
                 near_metres: depth.near,
@@ -310,6 +310,11 @@ impl<'a> Job<'a> {
         let json = serde_json::to_string_pretty(&record)?;
         Ok(files::write(&self.folder.join(group_name(index)), format!("{json}\n").as_bytes())?)
     }
+}
+
+/// Rounded: 60 degrees in radians are 60.000004 degrees in f32.
+fn fov_y_degrees(args: &DatasetArgs) -> f64 {
+    (f64::from(args.eyes.fov_y).to_degrees() * 1e4).round() / 1e4
 }
 
 fn stop(args: &DatasetArgs) -> anyhow::Result<()> {
@@ -346,7 +351,7 @@ fn synthesize_command(args: &DatasetArgs, index: u32) -> String {
         encoding(eyes.pair(Pose::IDENTITY).depth.convention),
         eyes.near,
         eyes.far,
-        eyes.fov_y.to_degrees(),
+        fov_y_degrees(args),
         eyes.ipd,
         eyes.dominant.name(),
         picture_name("synthesized", index),

@@ -6,6 +6,7 @@ pub mod dataset;
 pub mod info;
 pub mod machine;
 pub mod render;
+pub mod report;
 pub mod run;
 pub mod scenes;
 pub mod stage;

@@ -110,7 +110,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         let bar = progress_bar(FRAMES as u64);
         while viewer.scene_state() != SceneState::Ready {
             stop_if_interrupted()?;
-            viewer.poll_scene()?;
+            viewer.poll_scene();
             if viewer.scene_state() == SceneState::Failed {
                 bail!(viewer.failure().unwrap_or_default().to_owned());
             }

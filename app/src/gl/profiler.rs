@@ -189,3 +189,45 @@ fn read(
         times.push(PassTime { name, time });
     }
 }
+
+#[cfg(all(test, feature = "desktop"))]
+mod tests {
+    use super::*;
+    use crate::platform::{Backend, Headless};
+
+    /// llvmpipe has timer queries; that their times mean nothing does not matter here.
+    #[test]
+    fn query_results_come_some_frames_late() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let mut profiler = Profiler::new(&Capabilities { timer_queries: true, ..gl.capabilities().clone() });
+        profiler.set(gl.raw(), Profiling::Queries);
+        let mut times = Vec::new();
+        for frame in 0..10 {
+            for name in ["first", "second"] {
+                profiler.begin(gl.raw(), name);
+                profiler.end(gl.raw());
+            }
+            gl.finish();
+            let read = profiler.end_frame(gl.raw(), &mut times);
+            assert_eq!(read, (frame >= FRAMES_LATE) as u32, "frame {frame}");
+        }
+        let names: Vec<_> = times.iter().map(|t| t.name).collect();
+        assert_eq!(names, ["first", "second"].repeat(10 - FRAMES_LATE));
+        assert_eq!(profiler.take(gl.raw()).len(), 2 * FRAMES_LATE);
+        profiler.delete(gl.raw());
+        assert_eq!(gl.take_errors(), None);
+    }
+
+    #[test]
+    fn without_queries_nothing_is_timed_and_nothing_waits() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let mut profiler = Profiler::new(&Capabilities { timer_queries: false, ..gl.capabilities().clone() });
+        profiler.set(gl.raw(), Profiling::Queries);
+        let mut times = Vec::new();
+        profiler.begin(gl.raw(), "pass");
+        profiler.end(gl.raw());
+        assert_eq!((profiler.end_frame(gl.raw(), &mut times), times.len()), (0, 0));
+    }
+}

@@ -119,8 +119,7 @@ fn near_holes(image: &Reprojected, reach: usize) -> Vec<bool> {
 }
 
 /// A window of the image around one region.
-struct Window<'a> {
-    image: &'a Reprojected,
+struct Window {
     /// Column and row of its first pixel in the image.
     origin: [i32; 2],
     width: i32,
@@ -169,8 +168,8 @@ pub(super) fn fill(image: &Reprojected, region: &[[u32; 2]], rule: Rule) -> Vec<
     holes.iter().map(|&i| Rgb(window.color[i].map(|c| c as u8))).collect()
 }
 
-impl<'a> Window<'a> {
-    fn around(image: &'a Reprojected, region: &[[u32; 2]]) -> Window<'a> {
+impl Window {
+    fn around(image: &Reprojected, region: &[[u32; 2]]) -> Window {
         let size = image.size().map(|n| n as i32);
         let margin = RADIUS + 2;
         let bounds = |axis: usize| {
@@ -182,7 +181,6 @@ impl<'a> Window<'a> {
         let (width, height) = (x1 - x0, y1 - y0);
         let pixels = || (y0..y1).flat_map(move |y| (x0..x1).map(move |x| (x as u32, y as u32)));
         Window {
-            image,
             origin: [x0, y0],
             width,
             height,

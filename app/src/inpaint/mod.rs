@@ -15,7 +15,11 @@
 
 mod march;
 mod neural;
+#[cfg(test)]
+mod reference;
 mod screen;
+#[cfg(test)]
+mod tests;
 
 use std::path::PathBuf;
 use std::rc::Rc;

@@ -1,10 +1,16 @@
-//! What `yoro run` found, as a self-contained page, as JSON, as a Markdown table and as a table for the terminal.
+//! What `yoro run` and `yoro bench` found, as self-contained pages, as JSON, as Markdown tables and as a table for
+//! the terminal. This file has the report of `run`; [`mod@bench`] has that of `bench`.
 //!
 //! Every figure stands beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost
 //! beside two full renders. The paper's figures are marked as the paper's.
 
+pub mod bd_rate;
+pub mod bench;
+pub mod grid;
 mod page;
+mod palette;
 pub mod paper;
+pub mod plot;
 mod table;
 
 use std::path::{Path, PathBuf};
@@ -36,6 +42,26 @@ pub enum ReportError {
     /// The template and the data do not fit.
     #[error("cannot fill in the report's template: {0}")]
     Template(#[from] minijinja::Error),
+    /// A figure could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] plot::PlotError),
+    /// A file of results has nothing to report.
+    #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A picture that a run saved cannot be used.
+    #[error(transparent)]
+    PictureFile(#[from] crate::picture::PictureError),
+    /// The pictures of a setting do not go together.
+    #[error("the pictures in {} do not go together ({source}): measure again, or remove the folder", path.display())]
+    Sizes {
+        /// The folder.
+        path: PathBuf,
+        /// What is wrong.
+        source: MetricsError,
+    },
     /// The figures cannot be written as JSON.
     #[error("cannot write the report as JSON: {0}")]
     Json(#[from] serde_json::Error),

@@ -1,4 +1,4 @@
-//! The page: what the template `report.html.j2` needs, with pictures embedded.
+//! Pages: what the templates need, with pictures embedded.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -7,16 +7,24 @@ use minijinja::{Environment, UndefinedBehavior, context};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::plot::{Axis, DotRow, Figure, Mark, Panel};
 use super::{
-    PassTime, QUALITY_METHOD, ReportError, Row, RunReport, SceneReport, Viewpoint, paper, short_count,
+    PassTime, QUALITY_METHOD, ReportError, Row, RunReport, SceneReport, Viewpoint, palette, paper,
+    short_count,
 };
 use crate::metrics::Quality;
 use crate::picture::encode_jpeg;
 
-const TEMPLATE: &str = include_str!("report.html.j2");
+/// The templates, by name.
+const TEMPLATES: [(&str, &str); 4] = [
+    ("base.html.j2", include_str!("templates/base.html.j2")),
+    ("parts.html.j2", include_str!("templates/parts.html.j2")),
+    ("run.html.j2", include_str!("templates/run.html.j2")),
+    ("bench.html.j2", include_str!("templates/bench.html.j2")),
+];
 
 /// What all pictures of a page may take, encoded in base64.
-const PICTURE_BUDGET: usize = 14 << 20;
+pub(super) const PICTURE_BUDGET: usize = 14 << 20;
 
 /// Tried in order until the pictures fit: JPEG quality, and how many times photographs are halved.
 const LADDER: [(u8, u32); 7] = [(90, 0), (84, 0), (76, 0), (66, 0), (80, 1), (66, 1), (66, 2)];
@@ -28,26 +36,55 @@ pub(super) fn render(report: &RunReport) -> Result<String, ReportError> {
     render_within(report, PICTURE_BUDGET)
 }
 
-fn render_within(report: &RunReport, budget: usize) -> Result<String, ReportError> {
+/// Fills in the page of this name; what all pages need comes with `page`.
+pub(super) fn fill(name: &str, title: &str, page: minijinja::Value) -> Result<String, ReportError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.set_trim_blocks(true);
     environment.set_lstrip_blocks(true);
-    // The name's ending turns on HTML escaping.
-    environment.add_template("report.html.j2", TEMPLATE)?;
-    let pictures = Pictures::encode(report, budget)?;
+    // The names' ending turns on HTML escaping.
+    for (name, template) in TEMPLATES {
+        environment.add_template(name, template)?;
+    }
+    let hex = |color: u32| format!("#{color:06X}");
+    let colors = palette::colors().into_iter();
+    let colors = colors.map(|(light, dark)| context! { light => hex(light), dark => hex(dark) });
+    let common = context! { title => title, plot_colors => colors.collect::<Vec<_>>() };
+    Ok(environment.get_template(name)?.render(context! { ..page, ..common })?)
+}
+
+/// Figures as the template takes them.
+pub(super) fn figures(figures: &[Figure]) -> Result<Vec<minijinja::Value>, ReportError> {
+    let figure = |figure: &Figure| {
+        Ok(context! {
+            id => &figure.id,
+            title => &figure.title,
+            caption => &figure.caption,
+            svg => inline(&figure.svg()?),
+        })
+    };
+    figures.iter().map(figure).collect()
+}
+
+/// An SVG document as a part of a page: without a size of its own and without the namespace.
+fn inline(svg: &str) -> String {
+    let start = svg.find("viewBox").unwrap_or(0);
+    format!("<svg {}", svg[start..].replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1))
+}
+
+fn render_within(report: &RunReport, budget: usize) -> Result<String, ReportError> {
+    let viewpoints = report.scenes.iter().map(|scene| &scene.viewpoints[..]).collect::<Vec<_>>();
+    let pictures = Pictures::encode(&viewpoints, budget)?;
     let rows = report.rows();
     let means = report.means();
-    Ok(environment.get_template("report.html.j2")?.render(context! {
+    let page = context! {
         report => context! {
-            title => &report.title,
             machine => &report.machine,
             parameters => &report.parameters,
             timing_method => &report.timing_method,
         },
         quality_method => QUALITY_METHOD,
         picture_note => pictures.note,
-        methods => means.iter().map(|mean| &mean.method).collect::<Vec<_>>(),
         rows => rows.iter().map(row_text).collect::<Vec<_>>(),
         means => means
             .iter()
@@ -60,7 +97,7 @@ fn render_within(report: &RunReport, budget: usize) -> Result<String, ReportErro
             })
             .collect::<Vec<_>>(),
         paper_average => paper_text(&paper::AVERAGE),
-        plots => plots(report, &rows),
+        figures => figures(&plots(report))?,
         scenes => report
             .scenes
             .iter()
@@ -73,7 +110,8 @@ fn render_within(report: &RunReport, budget: usize) -> Result<String, ReportErro
                 passes => pass_columns(scene),
             })
             .collect::<Vec<_>>(),
-    })?)
+    };
+    fill("run.html.j2", &report.title, page)
 }
 
 #[derive(Serialize)]
@@ -126,7 +164,7 @@ struct View {
 }
 
 #[derive(Serialize)]
-struct ViewpointPictures {
+pub(super) struct ViewpointPictures {
     name: String,
     dominant_eye: &'static str,
     other_eye: &'static str,
@@ -136,27 +174,29 @@ struct ViewpointPictures {
     views: Vec<View>,
 }
 
-struct Pictures {
-    scenes: Vec<Vec<ViewpointPictures>>,
-    note: String,
+pub(super) struct Pictures {
+    /// For each scene its first viewpoints.
+    pub scenes: Vec<Vec<ViewpointPictures>>,
+    /// How the pictures were encoded.
+    pub note: String,
 }
 
 /// Viewpoints of each scene whose pictures are on the page: more would have to be shrunk to keep it small.
 const PICTURED_VIEWPOINTS: usize = 1;
 
 impl Pictures {
-    fn encode(report: &RunReport, budget: usize) -> Result<Pictures, ReportError> {
+    /// The viewpoints of each scene, within a budget of bytes for all.
+    pub fn encode(scenes: &[&[Viewpoint]], budget: usize) -> Result<Pictures, ReportError> {
         let mut fitting = None;
         for (quality, halvings) in LADDER {
-            let scenes: Vec<Vec<ViewpointPictures>> = report
-                .scenes
+            let encoded: Vec<Vec<ViewpointPictures>> = scenes
                 .iter()
-                .map(|scene| {
-                    let pictured = scene.viewpoints.par_iter().take(PICTURED_VIEWPOINTS);
+                .map(|viewpoints| {
+                    let pictured = viewpoints.par_iter().take(PICTURED_VIEWPOINTS);
                     pictured.map(|v| viewpoint_pictures(v, quality, halvings)).collect()
                 })
                 .collect::<Result<_, image::ImageError>>()?;
-            let bytes: usize = scenes
+            let bytes: usize = encoded
                 .iter()
                 .flatten()
                 .flat_map(|viewpoint| &viewpoint.views)
@@ -170,7 +210,7 @@ impl Pictures {
                 "Pictures on this page are JPEG, quality {quality}{size}; error maps are shrunk to half. All \
                  figures were measured on the images as rendered."
             );
-            fitting = Some(Pictures { scenes, note });
+            fitting = Some(Pictures { scenes: encoded, note });
             if bytes <= budget {
                 break;
             }
@@ -263,81 +303,41 @@ fn pass_columns(scene: &SceneReport) -> Vec<minijinja::Value> {
         .collect()
 }
 
-/// A dot plot with one line for each scene; positions in SVG units.
-#[derive(Serialize)]
-struct Plot {
-    title: &'static str,
-    caption: &'static str,
-    height: u32,
-    ticks: Vec<Tick>,
-    lines: Vec<Line>,
-}
-
-#[derive(Serialize)]
-struct Tick {
-    x: f64,
-    label: String,
-    /// The baseline of the plot.
-    strong: bool,
-}
-
-#[derive(Serialize)]
-struct Line {
-    y: u32,
-    label: String,
-    marks: Vec<Mark>,
-}
-
-#[derive(Serialize)]
-struct Mark {
-    x: f64,
-    /// `same`, `paper`, or `m0`, `m1`, ... for the methods.
-    class: String,
-    title: String,
-}
-
-const LINE_HEIGHT: u32 = 24;
-const PLOT_TOP: u32 = 10;
-const PLOT_LEFT: f64 = 142.0;
-const PLOT_WIDTH: f64 = 264.0;
-/// Characters that fit to the left of a plot.
-const PLOT_LABEL: usize = 17;
-
 /// What a plot shows of a row.
-struct Figure {
+struct Quantity {
+    id: &'static str,
     title: &'static str,
     caption: &'static str,
-    decimals: usize,
     ours: fn(&Row) -> f64,
     baseline: fn(&Row) -> Option<f64>,
     papers: fn(&paper::PaperScene) -> f64,
-    /// Where all rows have the same baseline: a line there, and the axis starts at 0.
+    /// Where all rows have the same baseline.
     line_at: Option<f64>,
 }
 
-const FIGURES: [Figure; 3] = [
-    Figure {
+const QUANTITIES: [Quantity; 3] = [
+    Quantity {
+        id: "ssim",
         title: "SSIM, gaussian 11x11 (more is better)",
-        caption: "Baseline: the same image to both eyes (ring).",
-        decimals: 4,
+        caption: "Baseline: the same image to both eyes (ring). The paper's for its own scene.",
         ours: |row| row.quality.ssim_gaussian,
         baseline: |row| Some(row.same_image.ssim_gaussian),
         papers: |paper| paper.ssim,
         line_at: None,
     },
-    Figure {
+    Quantity {
+        id: "psnr",
         title: "PSNR, dB (more is better)",
-        caption: "Baseline: the same image to both eyes (ring).",
-        decimals: 2,
+        caption: "Baseline: the same image to both eyes (ring). The paper's for its own scene.",
         ours: |row| row.quality.psnr.0,
         baseline: |row| Some(row.same_image.psnr.0),
         papers: |paper| paper.psnr,
         line_at: None,
     },
-    Figure {
+    Quantity {
+        id: "ratio",
         title: "Frame time / two renders (less is better)",
         caption: "Baseline: two full renders = 1. The paper's: frame rates of seven devices.",
-        decimals: 2,
         ours: |row| row.cost_ratio,
         baseline: |_| None,
         papers: paper::PaperScene::frame_time_ratio,
@@ -345,74 +345,39 @@ const FIGURES: [Figure; 3] = [
     },
 ];
 
-fn plots(report: &RunReport, rows: &[Row]) -> Vec<Plot> {
-    FIGURES.iter().map(|figure| plot(report, rows, figure)).collect()
-}
-
-fn plot(report: &RunReport, rows: &[Row], figure: &Figure) -> Plot {
-    let Figure { ours, baseline, papers, line_at, .. } = *figure;
-    let of_row = |row: &Row| [Some(ours(row)), baseline(row), row.paper.as_ref().map(papers)];
-    let values = rows.iter().flat_map(of_row).flatten().filter(|value| value.is_finite());
-    let values = values.chain(line_at).chain(line_at.map(|_| 0.0));
-    let (low, high) =
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-    let (low, high) = if low < high { (low, high) } else { (0.0, 1.0) };
-    let step = tick_step(high - low);
-    let (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
-    // An infinite PSNR sticks to the right edge.
-    let x = |value: f64| {
-        let x = PLOT_LEFT + PLOT_WIDTH * ((value - low) / (high - low)).clamp(0.0, 1.0);
-        (x * 10.0).round() / 10.0
-    };
-    let mark = |class: String, name: &str, value: f64| Mark {
-        x: x(value),
-        class,
-        title: format!("{name}: {value:.0$}", figure.decimals),
-    };
-    let tick_decimals = (-step.log10().floor()).max(0.0) as usize;
-    let ticks = (0..=((high - low) / step).round() as usize).map(|i| {
-        let value = low + i as f64 * step;
-        let strong = line_at.is_some_and(|line| (line - value).abs() < step * 1e-6);
-        Tick { x: x(value), label: format!("{value:.tick_decimals$}"), strong }
-    });
-    let methods = report.means();
-    let lines = report.scenes.iter().enumerate().map(|(index, scene)| {
-        let rows: Vec<Row> = scene.rows();
-        let mut marks = Vec::new();
-        if let Some(row) = rows.first() {
-            let paper = row.paper.as_ref();
-            marks
-                .extend(paper.map(|p| mark("paper".into(), &format!("the paper's ({})", p.name), papers(p))));
-            marks.extend(baseline(row).map(|value| mark("same".into(), "same image to both eyes", value)));
+fn plots(report: &RunReport) -> Vec<Figure> {
+    let figure = |quantity: &Quantity| {
+        let axis = Axis::new(quantity.title);
+        let value = quantity.line_at.map_or(axis.clone(), |line| axis.baseline(line));
+        let rows = report.scenes.iter().map(|scene| dot_row(scene, quantity)).collect();
+        Figure {
+            id: quantity.id.into(),
+            title: quantity.title.into(),
+            caption: quantity.caption.into(),
+            panel: Panel::Dots { value, rows },
         }
-        // Of methods with equal figures the first stays on top.
-        for row in rows.iter().rev() {
-            let method = methods.iter().position(|mean| mean.method == row.method).unwrap_or(0);
-            marks.push(mark(format!("m{}", method % 6), &row.method, ours(row)));
-        }
-        let y = PLOT_TOP + LINE_HEIGHT * index as u32 + LINE_HEIGHT / 2;
-        Line { y, label: shortened(&scene.name, PLOT_LABEL), marks }
-    });
-    Plot {
-        title: figure.title,
-        caption: figure.caption,
-        height: PLOT_TOP + LINE_HEIGHT * report.scenes.len() as u32,
-        ticks: ticks.collect(),
-        lines: lines.collect(),
-    }
+    };
+    QUANTITIES.iter().map(figure).collect()
 }
 
-fn shortened(text: &str, length: usize) -> String {
-    if text.chars().count() <= length {
-        return text.to_string();
+fn dot_row(scene: &SceneReport, quantity: &Quantity) -> DotRow {
+    let mark = |method: &str, papers: bool, label: &str, value: f64| Mark {
+        method: method.into(),
+        papers,
+        label: label.into(),
+        value,
+    };
+    let rows = scene.rows();
+    let mut marks = Vec::new();
+    if let Some(row) = rows.first() {
+        let paper = row.paper.as_ref().map(|paper| (quantity.papers)(paper));
+        marks.extend(paper.map(|value| mark("paper", true, "the paper's", value)));
+        marks.extend((quantity.baseline)(row).map(|value| mark("same image", false, "same image", value)));
     }
-    text.chars().take(length - 1).chain(['…']).collect()
-}
-
-/// 1, 2 or 5 times a power of ten: three to eight steps in `range`.
-fn tick_step(range: f64) -> f64 {
-    let power = 10f64.powf((range / 3.0).log10().floor());
-    [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|step| range / step >= 3.0).unwrap_or(power)
+    // Of methods with equal figures the first stays on top.
+    let ours = rows.iter().rev();
+    marks.extend(ours.map(|row| mark(&row.method, false, &row.method, (quantity.ours)(row))));
+    DotRow { label: scene.name.clone(), marks }
 }
 
 #[cfg(test)]
@@ -474,13 +439,6 @@ mod tests {
         let small = render_within(&report, large.len() / 4).unwrap();
         assert!(large.contains("JPEG, quality 90;"));
         assert!(small.len() < large.len() && !small.contains("quality 90"));
-    }
-
-    #[test]
-    fn ticks_are_round_and_few() {
-        for (range, step) in [(1.0, 0.2), (0.35, 0.1), (20.0, 5.0), (8.0, 2.0), (0.04, 0.01)] {
-            assert!((tick_step(range) - step).abs() < 1e-12, "{range}: {}", tick_step(range));
-        }
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub const GRID: (u32, u32) = (0xDCDCD8, 0x383B40);
 const NEUTRAL: (u32, u32) = (0x777A80, 0x9DA1A8);
 
 /// Methods and patchers by name. Two that do the same thing in different suites look the same.
-const LOOKS: [(&[&str], Look); 15] = [
+const LOOKS: [(&[&str], Look); 16] = [
     (&["conventional", "stereo-rgb"], look(0x3D3F44, 0xD2D2CE, Shape::Square)),
     (&["mono", "same image", "mono-rgb"], Look { hollow: true, ..look(NEUTRAL.0, NEUTRAL.1, Shape::Circle) }),
     (&["instanced"], look(0x9A7400, 0xE0C048, Shape::Up)),
@@ -57,6 +57,7 @@ const LOOKS: [(&[&str], Look); 15] = [
     (&["xiao"], look(0x009E74, 0x35C79C, Shape::Square)),
     (&["telea"], look(0xB3578D, 0xDD92BE, Shape::Down)),
     (&["navier-stokes"], look(0x5A4FD0, 0xA39BF6, Shape::Cross)),
+    (&["neural"], look(0x6E5A4E, 0xC4AFA2, Shape::Cross)),
 ];
 
 const OTHERS: [Look; 4] = [
@@ -68,6 +69,7 @@ const OTHERS: [Look; 4] = [
 
 /// How the method or patcher of this name looks. Names that are not known share a few looks.
 pub fn of(name: &str) -> Look {
+    let name = name.strip_prefix("patcher-").unwrap_or(name);
     let known = LOOKS.iter().find(|(names, _)| names.contains(&name)).map(|(_, look)| *look);
     known.unwrap_or_else(|| {
         let hash = name.bytes().fold(0usize, |hash, byte| hash.wrapping_mul(31).wrapping_add(byte.into()));

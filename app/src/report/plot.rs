@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -55,8 +56,10 @@ pub enum Panel {
 /// How values become positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
+    /// Equal steps are equally far apart.
     #[default]
     Linear,
+    /// Equal factors are equally far apart.
     Logarithmic,
 }
 
@@ -182,11 +185,12 @@ impl Figure {
         root.present()
     }
 
-    /// Every method once, in the order of drawing: ours first, then the paper's.
+    /// Every method once: ours first, then the paper's. What is drawn last, on top, is named first.
     fn legend(&self) -> Vec<(String, bool, String)> {
         let all: Vec<(String, bool, String)> = match &self.panel {
             Panel::Curves { series, .. } => {
-                let drawn = series.iter().filter(|s| s.points.iter().any(|p| p.0.is_finite() && p.1.is_finite()));
+                let drawn =
+                    series.iter().filter(|s| s.points.iter().any(|p| p.0.is_finite() && p.1.is_finite()));
                 drawn.map(|s| (s.method.clone(), s.papers, s.label.clone())).collect()
             }
             Panel::Dots { rows, .. } => {
@@ -195,7 +199,7 @@ impl Figure {
             }
         };
         let mut seen = BTreeSet::new();
-        let mut unique: Vec<_> = all.into_iter().filter(|entry| seen.insert(entry.clone())).collect();
+        let mut unique: Vec<_> = all.into_iter().rev().filter(|entry| seen.insert(entry.clone())).collect();
         unique.sort_by_key(|(_, papers, _)| *papers);
         unique
     }
@@ -216,7 +220,8 @@ fn rgb(color: u32) -> RGBColor {
 fn text(size: i32, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
     // The backend divides by 1.24.
     let style: TextStyle = ("sans-serif", f64::from(size) * 1.24).into_text_style(&(0, 0));
-    style.color(&rgb(palette::TEXT.0)).pos(Pos::new(horizontal, vertical))
+    let color = rgb(palette::TEXT.0).to_backend_color();
+    TextStyle { color, ..style }.pos(Pos::new(horizontal, vertical))
 }
 
 fn text_width(text: &str) -> i32 {
@@ -277,8 +282,18 @@ fn mark(root: &Area, (x, y): (i32, i32), look: &Look, papers: bool) -> DrawingRe
             Shape::Up => &[(0, -12), (12, 9), (-12, 9)],
             Shape::Down => &[(0, 12), (12, -9), (-12, -9)],
             Shape::Cross => &[
-                (-10, -5), (-5, -10), (0, -5), (5, -10), (10, -5), (5, 0), (10, 5), (5, 10), (0, 5), (-5, 10),
-                (-10, 5), (-5, 0),
+                (-10, -5),
+                (-5, -10),
+                (0, -5),
+                (5, -10),
+                (10, -5),
+                (5, 0),
+                (10, 5),
+                (5, 10),
+                (0, 5),
+                (-5, 10),
+                (-10, 5),
+                (-5, 0),
             ],
         };
         corners.iter().map(|(dx, dy)| (x + dx * r / MARK, y + dy * r / MARK)).collect()
@@ -329,7 +344,11 @@ impl Range {
             Scale::Logarithmic => {
                 let (low, high) = (low / 1.2, high * 1.2);
                 let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
-                let steps: &[f64] = if high / low > 1e3 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+                let steps: &[f64] = match high / low {
+                    0.0..=12.0 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
+                    0.0..=1e3 => &[1.0, 2.0, 5.0],
+                    _ => &[1.0],
+                };
                 let ticks = powers.flat_map(|p| steps.iter().map(move |s| s * 10f64.powi(p)));
                 let ticks = ticks.filter(|t| (low..=high).contains(t)).collect();
                 Range { scale: axis.scale, low, high, ticks }
@@ -358,16 +377,22 @@ fn tick_step(range: f64) -> f64 {
 
 /// As short as it can be told apart from its neighbours.
 fn tick_label(value: f64, ticks: &[f64], scale: Scale) -> String {
-    let step = match (scale, ticks) {
-        (Scale::Linear, [a, b, ..]) => b - a,
-        _ => value,
+    let decimals = |step: f64| (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+    let label = match (scale, ticks) {
+        (Scale::Linear, [a, b, ..]) => return format!("{:.1$}", value + 0.0, decimals(b - a)),
+        // Two digits are enough: 1.5, 20, 0.3.
+        _ => format!("{value:.0$}", decimals(value) + 1),
     };
-    let decimals = (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize;
-    let label = format!("{value:.decimals$}");
-    if label.trim_start_matches(['-', '0', '.']).is_empty() { "0".into() } else { label }
+    if label.contains('.') { label.trim_end_matches('0').trim_end_matches('.').to_owned() } else { label }
 }
 
-fn draw_grid(root: &Area, frame: &Frame, x: Option<&Range>, y: Option<&Range>, at: impl Fn(f64, f64) -> (i32, i32)) -> DrawingResult {
+fn draw_grid(
+    root: &Area,
+    frame: &Frame,
+    x: Option<&Range>,
+    y: Option<&Range>,
+    at: impl Fn(f64, f64) -> (i32, i32),
+) -> DrawingResult {
     let grid = rgb(palette::GRID.0).stroke_width(2);
     if let Some(x) = x {
         for tick in &x.ticks {
@@ -393,7 +418,7 @@ fn draw_curves(root: &Area, frame: &Frame, x: &Axis, y: &Axis, series: &[Series]
     let points = || series.iter().flat_map(|s| &s.points).filter(finite);
     let xs = Range::of(x, points().map(|p| p.0), false);
     let ys = Range::of(y, points().map(|p| p.1), true);
-    let pixels = (frame.left..frame.right, frame.top..frame.bottom);
+    let pixels = (frame.left..frame.right, frame.bottom..frame.top);
     let coordinates =
         Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(xs.coordinate(), ys.coordinate(), pixels);
     let area = root.clone().apply_coord_spec(coordinates);
@@ -487,23 +512,37 @@ mod tests {
         ];
         let axes = (Axis::new("triangles, millions"), Axis::new("frame time, ms").from_zero());
         let svg = figure(Panel::Curves { x: axes.0, y: axes.1, series }).svg().unwrap();
-        for needed in ["triangles, millions", "frame time, ms", "conventional", "yoro-paper", "#3D3F44", "#D55E00"] {
+        for needed in
+            ["triangles, millions", "frame time, ms", "conventional", "yoro-paper", "#3D3F44", "#D55E00"]
+        {
             assert!(svg.contains(needed), "{needed}: {svg}");
         }
         assert!(!svg.contains("NaN") && svg.trim_end().ends_with("</svg>"));
-        // The line through (1, 20) and (2, 40): y halves its distance to the axis.
-        let points = svg.lines().find(|l| l.contains("#3D3F44") && l.contains("polyline") && l.contains(&format!(",{} ", MARGIN + LINE + LINE / 2)));
-        assert!(points.is_some(), "the highest point touches the top of the frame: {svg}");
+        // From the middle of the frame, 20 ms, up to its top, 40 ms; the first line is the legend's.
+        let lines = svg.lines().filter(|l| l.starts_with("<polyline") && l.contains("#3D3F44"));
+        let points = lines.last().unwrap().split("points=\"").nth(1).unwrap();
+        let heights: Vec<i32> = points.split(' ').filter_map(|p| p.split(',').nth(1)?.parse().ok()).collect();
+        let top = MARGIN + LINE + LINE / 2;
+        let off = |height: i32, expected: i32| (height - expected).abs();
+        assert!(off(heights[0], top + CURVES_HEIGHT / 2) <= 1 && off(heights[1], top) <= 1, "{heights:?}");
     }
 
     #[test]
     fn dots_sit_on_their_rows() {
-        let mark = |method: &str, value| Mark { method: method.into(), papers: false, label: method.into(), value };
-        let row = |label: &str, value| DotRow { label: label.into(), marks: vec![mark("mono", value), mark("hybrid", f64::INFINITY)] };
-        let panel = Panel::Dots { value: Axis::new("ratio").baseline(1.0), rows: vec![row("a <b>", 0.5), row("c", 0.25)] };
+        let mark =
+            |method: &str, value| Mark { method: method.into(), papers: false, label: method.into(), value };
+        let row = |label: &str, value| DotRow {
+            label: label.into(),
+            marks: vec![mark("mono", value), mark("hybrid", f64::INFINITY)],
+        };
+        let panel = Panel::Dots {
+            value: Axis::new("ratio").baseline(1.0),
+            rows: vec![row("a <b>", 0.5), row("c", 0.25)],
+        };
         let svg = figure(panel).svg().unwrap();
         assert!(svg.contains("a &lt;b&gt;") && !svg.contains("hybrid") && !svg.contains("inf"));
-        let centres: Vec<&str> = svg.lines().filter(|l| l.contains("<circle") && l.contains("#777A80")).collect();
+        let centres: Vec<&str> =
+            svg.lines().filter(|l| l.contains("<circle") && l.contains("#777A80")).collect();
         assert_eq!(centres.len(), 3, "one in the legend, two on rows: {svg}");
     }
 
@@ -515,8 +554,11 @@ mod tests {
         let axis = Axis::new("ms").logarithmic();
         let range = Range::of(&axis, [0.35, 37142.0, -1.0].into_iter(), true);
         assert_eq!(range.ticks, [1.0, 10.0, 100.0, 1e3, 1e4]);
-        let labels: Vec<String> = range.ticks.iter().map(|t| tick_label(*t, &range.ticks, range.scale)).collect();
+        let labels: Vec<String> =
+            range.ticks.iter().map(|t| tick_label(*t, &range.ticks, range.scale)).collect();
         assert_eq!(labels, ["1", "10", "100", "1000", "10000"]);
+        let label = |value: f64| tick_label(value, &[], Scale::Logarithmic);
+        assert_eq!([1.5, 0.3, 20.0, 3e-2].map(label), ["1.5", "0.3", "20", "0.03"]);
     }
 
     #[test]
@@ -526,7 +568,8 @@ mod tests {
         assert!(figure(Panel::Curves { x: axes().0, y: axes().1, series: one }).svg().is_ok());
         let nothing = figure(Panel::Dots { value: Axis::new("x"), rows: Vec::new() });
         assert!(nothing.is_empty() && nothing.svg().is_ok());
-        let many = (0..12).map(|i| curve(&format!("a method with number {i}"), false, &[(0.0, 1.0)])).collect();
+        let many =
+            (0..12).map(|i| curve(&format!("a method with number {i}"), false, &[(0.0, 1.0)])).collect();
         let svg = figure(Panel::Curves { x: axes().0, y: axes().1, series: many }).svg().unwrap();
         for i in 0..12 {
             assert!(svg.contains(&format!("number {i}")));

@@ -1,5 +1,6 @@
 //! A small panel of text that hangs before the eyes, turning with the head.
 
+use std::fmt::Write;
 use std::rc::Rc;
 
 use embedded_graphics::mono_font::MonoTextStyle;
@@ -13,6 +14,7 @@ use glam::Vec4;
 use crate::eyes::{Eye, EyePair};
 use crate::gl::{Blend, Context, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture};
 use crate::stereo::StereoFrame;
+use crate::telemetry::Line;
 
 /// Characters of a line; longer ones are cut.
 pub(super) const COLUMNS: usize = 34;
@@ -36,6 +38,67 @@ pub(super) struct Content<'a> {
     pub text: &'a str,
     /// Place of the moving part of a progress bar, 0 to 1; the work's end is not known.
     pub progress: Option<f32>,
+}
+
+/// What the last line of the HUD is about.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Happening<'a> {
+    /// The scene of this name is being loaded.
+    Loading(&'a str),
+    /// The user has done something.
+    Message(&'a str),
+    Nothing,
+}
+
+/// Writes rate, frame time and temperature as far as they are known, the method, and what happens.
+pub(super) fn write_status(
+    text: &mut String,
+    frames: Option<&Line>,
+    celsius: Option<f32>,
+    method: &str,
+    pipeline: Option<&str>,
+    happening: Happening,
+) {
+    text.clear();
+    let mut write = || -> std::fmt::Result {
+        if let Some(Line { fps: Some(fps), frame_ms: Some(ms), refresh_hz, .. }) = frames {
+            write!(text, "{fps:.0}")?;
+            if let Some(hz) = refresh_hz {
+                write!(text, "/{hz:.0}")?;
+            }
+            write!(text, " FPS {ms:.1} ms")?;
+            if let Some(celsius) = celsius {
+                write!(text, " {celsius:.0} C")?;
+            }
+            text.push('\n');
+        }
+        writeln!(text, "{method} {}", pipeline.unwrap_or_default())?;
+        match happening {
+            Happening::Loading(scene) => write!(text, "loading {scene}"),
+            Happening::Message(message) => write!(text, "{message}"),
+            Happening::Nothing => Ok(()),
+        }
+    };
+    write().expect("a string takes everything");
+}
+
+/// Writes a sentence in lines of the panel's width, words kept whole.
+pub(super) fn write_sentence(text: &mut String, sentence: &str) {
+    text.clear();
+    let mut column = 0;
+    for word in sentence.split_whitespace() {
+        let length = word.chars().count();
+        if column == 0 {
+            column = length;
+        } else if column + 1 + length > COLUMNS {
+            text.push('\n');
+            column = length;
+        } else {
+            text.push(' ');
+            column += 1 + length;
+        }
+        text.push_str(word);
+    }
 }
 
 /// The panel's pixels, rows from the top, 0 or 255.
@@ -101,6 +164,8 @@ pub(super) struct Hud {
     /// What the texture shows.
     text: String,
     progress: Option<f32>,
+    /// Rows in use, from the top.
+    used: usize,
 }
 
 impl Hud {
@@ -113,6 +178,7 @@ impl Hud {
             rows: Vec::with_capacity(SIZE[0] * SIZE[1]),
             text: String::with_capacity(256),
             progress: Some(f32::NAN),
+            used: SIZE[1],
         })
     }
 
@@ -124,6 +190,10 @@ impl Hud {
         self.text.clear();
         self.text.push_str(content.text);
         self.progress = content.progress;
+        self.used = match content.progress {
+            Some(_) => SIZE[1],
+            None => 2 * MARGIN + content.text.lines().count().min(LINES) * FONT[1],
+        };
         self.panel.draw(content);
         self.panel.flip_into(&mut self.rows);
         self.texture.upload(&self.rows);
@@ -135,13 +205,14 @@ impl Hud {
         self.gl.pass("hud", || {
             self.gl.set_raster_state(&state);
             for eye in Eye::BOTH {
-                let (origin, size) = place(pair, eye, in_the_middle);
+                let (origin, size) = place(pair, eye, self.used, in_the_middle);
                 self.gl.bind_framebuffer(Some(frame.eye(eye).raw()), origin, size);
                 let rectangle = [origin[0], origin[1], size[0], size[1]].map(|n| n as f32);
                 self.program
                     .bind()
                     .texture("panel", 0, self.texture.raw())
-                    .set("rectangle", Vec4::from(rectangle));
+                    .set("rectangle", Vec4::from(rectangle))
+                    .set("used", self.used as f32 / SIZE[1] as f32);
                 self.gl.draw_screen();
             }
             self.gl.set_raster_state(&RasterState::SCREEN);
@@ -149,10 +220,10 @@ impl Hud {
     }
 }
 
-/// Origin and size of the panel in pixels of an eye's image.
-fn place(pair: &EyePair, eye: Eye, in_the_middle: bool) -> ([u32; 2], [u32; 2]) {
+/// Origin and size, in pixels of an eye's image, of the `used` upper rows of the panel.
+fn place(pair: &EyePair, eye: Eye, used: usize, in_the_middle: bool) -> ([u32; 2], [u32; 2]) {
     let frustum = &pair.frusta[eye.index()];
-    let height = WIDTH * SIZE[1] as f32 / SIZE[0] as f32;
+    let height = WIDTH * used as f32 / SIZE[0] as f32;
     let x = -eye.side() * pair.ipd() / 2.0 / DISTANCE - WIDTH / 2.0;
     let below = if in_the_middle { 0.0 } else { -BELOW };
     let y = below.max(frustum.bottom + height) - height / 2.0;
@@ -178,19 +249,34 @@ mod tests {
         assert_eq!(lit(&panel, 48..SIZE[1]), 0);
         panel.draw(Content { text: "", progress: Some(0.5) });
         assert_eq!(lit(&panel, 0..96), 0);
+        // The moving part is a quarter of the bar.
         let bar = lit(&panel, 96..SIZE[1]);
+        assert!(bar > 340 * BAR_HEIGHT / 4 && bar < 340 * BAR_HEIGHT / 2, "{bar}");
         panel.draw(Content { text: &"x".repeat(200), progress: Some(1.0) });
-        assert_eq!(lit(&panel, 96..SIZE[1]), bar);
+        assert_eq!(panel.0[100 * SIZE[0] + SIZE[0] - MARGIN - 4], 255);
         let mut rows = Vec::new();
         panel.flip_into(&mut rows);
         assert_eq!(rows[..SIZE[0]], panel.0[(SIZE[1] - 1) * SIZE[0]..]);
     }
 
     #[test]
+    fn what_the_lines_say() {
+        let mut text = String::new();
+        write_status(&mut text, None, Some(31.0), "yoro", Some("gather"), Happening::Loading("street"));
+        assert_eq!(text, "yoro gather\nloading street");
+        let line =
+            Line { fps: Some(59.94), refresh_hz: Some(60.0), frame_ms: Some(16.68), ..Line::default() };
+        write_status(&mut text, Some(&line), Some(31.2), "mono", None, Happening::Nothing);
+        assert_eq!(text, "60/60 FPS 16.7 ms 31 C\nmono \n");
+        write_sentence(&mut text, "there is no file room.obj: give the path of an .obj, .gltf or .glb file");
+        assert_eq!(text, "there is no file room.obj: give\nthe path of an .obj, .gltf or .glb\nfile");
+    }
+
+    #[test]
     fn the_panel_hangs_at_its_distance() {
         let frustum = Frustum::from_angles(0.7, 0.7, 0.7, 0.7);
         let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.06, DepthRange::PAPER, [1000; 2], Eye::Right);
-        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, false));
+        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, SIZE[1], false));
         assert_eq!(left.1, right.1);
         let disparity = left.0[0] as f32 - right.0[0] as f32;
         assert!((disparity - 0.06 / DISTANCE * pair.focal_length_pixels()).abs() <= 1.0);

@@ -10,6 +10,9 @@ use crate::scene::{self, Scene, builtin};
 /// Endings of scene files.
 const EXTENSIONS: [&str; 3] = ["obj", "gltf", "glb"];
 
+/// Stack of the loading thread in bytes: that of a main thread, on which scenes are loaded elsewhere.
+const STACK: usize = 8 << 20;
+
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneSource {
@@ -25,8 +28,8 @@ pub enum SceneSource {
 }
 
 impl SceneSource {
-    /// Finds a scene: a built-in one by its name, or a file by its path or by its name (with or without ending)
-    /// in one of the folders or in a folder of one of those.
+    /// Finds a scene: a built-in one by its name, or a file by its path, by its name (with or without ending) in one
+    /// of the folders or in a folder of one of those, or by the name of the folder that it is in.
     ///
     /// # Errors
     /// [`ViewerError::NoScene`], which lists what there is.
@@ -43,7 +46,8 @@ impl SceneSource {
                 || path.file_stem().is_some_and(|n| n == name)
                 || path.ends_with(name)
         };
-        if let Some(path) = files.iter().find(fits) {
+        let is_in = |path: &&PathBuf| path.parent().and_then(Path::file_name).is_some_and(|n| n == name);
+        if let Some(path) = files.iter().find(fits).or_else(|| files.iter().find(is_in)) {
             return Ok(SceneSource::File(path.clone()));
         }
         let builtins = builtin::BUILTINS.iter().map(|b| b.name.to_owned());
@@ -101,7 +105,8 @@ impl Loader {
         let source = source.clone();
         // Nobody listens any more if the viewer is gone.
         let work = move || drop(sender.send(source.load()));
-        if let Err(error) = thread::Builder::new().name("yoro scene".into()).spawn(work) {
+        let thread = thread::Builder::new().name("yoro scene".into()).stack_size(STACK);
+        if let Err(error) = thread.spawn(work) {
             log::error!("no thread for loading: {error}");
         }
         Loader { result }
@@ -132,7 +137,7 @@ mod tests {
         std::fs::write(folder.path().join("notes.txt"), "").unwrap();
         let folders = [folder.path().to_owned(), folder.path().join("missing")];
         assert_eq!(list_scenes(&folders), [room.clone()]);
-        for name in ["room", "room.obj", "rooms/room.obj", room.to_str().unwrap()] {
+        for name in ["room", "room.obj", "rooms", "rooms/room.obj", room.to_str().unwrap()] {
             let source = SceneSource::find(name, 1, &folders).unwrap();
             assert_eq!((&source, source.name().as_str()), (&SceneSource::File(room.clone()), "room"));
         }

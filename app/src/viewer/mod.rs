@@ -14,6 +14,7 @@
 //! `detach`, drop) need the context to be current there. Times are nanoseconds of a monotonic clock.
 
 mod adaptive;
+mod configure;
 mod head;
 mod hud;
 mod lens;
@@ -24,7 +25,6 @@ mod settings;
 #[cfg(all(test, feature = "desktop"))]
 mod tests;
 
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::rc::Rc;
 
@@ -40,7 +40,7 @@ pub use settings::{DisplayKind, KEYS, Settings, SettingsError, Ssao};
 use crate::eyes::{DepthRange, Eye, EyePair, MAX_IPD, Pose};
 use crate::gl::{Context, Destination, GlError, PassTime, Profiling};
 use crate::render::{GpuScene, Renderer};
-use crate::scene::Viewpoint;
+use crate::scene::{Scene, Viewpoint};
 use crate::stereo::{self, Method, StereoError, StereoFrame, StereoMethod};
 use crate::synthesis::{ImBufferSize, Pipeline};
 use crate::telemetry::{DeviceState, Line, SessionSummary, Telemetry, ViewerState};
@@ -187,7 +187,6 @@ pub struct Viewer {
     optics: Optics,
     ipd: f32,
     method: Method,
-    method_name: String,
     pipeline: Pipeline,
     hud_shown: bool,
     tracker: HeadTracker,
@@ -220,12 +219,7 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::Params`] and [`ViewerError::NoScene`]: mistakes in the settings.
     pub fn new(settings: Settings, screen: Screen, folders: &[PathBuf]) -> Result<Viewer, ViewerError> {
-        let in_folder =
-            folders.iter().map(|folder| folder.join(&settings.viewer)).find(|path| path.is_file());
-        let params = match in_folder {
-            Some(path) => ViewerParams::load(&path)?,
-            None => ViewerParams::find(&settings.viewer)?,
-        };
+        let params = ViewerParams::find_in(&settings.viewer, folders)?;
         let source = SceneSource::find(&settings.scene, settings.seed, folders)?;
         let optics = Optics::new(&params, screen.metres());
         log::info!("settings: {settings}");
@@ -241,7 +235,6 @@ impl Viewer {
             ipd: settings.ipd.unwrap_or(params.inter_lens).min(MAX_IPD),
             params,
             method: settings.method,
-            method_name: method_name(settings.method),
             pipeline: settings.pipeline,
             hud_shown: settings.hud,
             tracker: HeadTracker::new(screen.rotation),
@@ -275,16 +268,7 @@ impl Viewer {
     pub fn attach(&mut self, gl: Rc<Context>) -> Result<(), ViewerError> {
         let profiling = if self.settings.profiling { Profiling::Queries } else { Profiling::Off };
         gl.set_profiling(profiling);
-        let pipeline = self.settings.pipeline;
-        self.pipeline = pipeline;
-        if pipeline != Pipeline::Gather && !gl.capabilities().compute {
-            log::warn!(
-                "{} has no compute shaders (OpenGL ES 3.1), which the pipeline {} needs: gather is used instead",
-                gl.capabilities().renderer,
-                pipeline.name()
-            );
-            self.pipeline = Pipeline::Gather;
-        }
+        self.choose_pipeline(&gl);
         self.graphics = Some(Graphics {
             frame: StereoFrame::new(&gl, self.eye_size())?,
             lens: LensPass::new(&gl, &self.optics, self.settings.chromatic)?,
@@ -335,6 +319,8 @@ impl Viewer {
         self.scene_name = source.name();
         self.source = source;
         self.failure = None;
+        self.ready_ns = None;
+        self.is_over = false;
     }
 
     /// Does what the user wants.
@@ -363,13 +349,13 @@ impl Viewer {
             },
         };
         self.message = match action {
-            Action::Method(method) => method_name(method),
+            Action::Method(method) => method.name().to_owned(),
             Action::Recenter => "recentered".into(),
             Action::Ipd(ipd) => format!("IPD {:.0} mm", ipd * 1e3),
             Action::Viewpoint(n) => format!("viewpoint {n}"),
             Action::Hud(_) | Action::Nothing => String::new(),
         };
-        self.message_until_ns = self.now_ns + MESSAGE_NS;
+        self.message_until_ns = if self.message.is_empty() { 0 } else { self.now_ns + MESSAGE_NS };
         Ok(action)
     }
 
@@ -391,7 +377,7 @@ impl Viewer {
             match self.make_method() {
                 Ok(()) => return Ok(Action::Method(next)),
                 Err(ViewerError::Gl(GlError::Unsupported(reason))) => {
-                    log::warn!("the method {} is left out: {reason}", method_name(next));
+                    log::warn!("the method {} is left out: {reason}", next.name());
                     self.method = before;
                 }
                 Err(error) => {
@@ -406,7 +392,6 @@ impl Viewer {
     /// Compiles the current method, if there is a scene to use it on.
     fn make_method(&mut self) -> Result<(), ViewerError> {
         let (settings, method) = (self.method_settings(), self.method);
-        self.method_name = method_name(method);
         if let Some(graphics) = &mut self.graphics
             && let Some(stage) = &mut graphics.stage
         {
@@ -467,7 +452,7 @@ impl Viewer {
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
         self.now_ns = timing.now_ns;
-        self.poll_scene()?;
+        self.poll_scene();
         let head = self.head(timing).0;
         let pair = self.eyes(head);
         self.write_text();
@@ -552,7 +537,7 @@ impl Viewer {
         self.controller.set_thermal_headroom(device.thermal_headroom);
         self.celsius = device.skin_celsius.or(device.battery_celsius);
         let state = ViewerState {
-            method: self.method_name.clone(),
+            method: self.method.name().to_owned(),
             pipeline: self.uses_synthesis().then(|| self.pipeline.name().to_owned()),
             scene: self.scene_name.clone(),
             render_scale: self.render_scale(),
@@ -615,7 +600,10 @@ impl Viewer {
     /// Size in pixels of each eye's image.
     pub fn eye_size(&self) -> [u32; 2] {
         let full = self.optics.full_size(self.screen.size);
-        full.map(|n| ((n * self.render_scale() / SIZE_STEP).round() * SIZE_STEP).clamp(64.0, 4096.0) as u32)
+        // Methods render a guard band beside the image.
+        let limit = self.graphics.as_ref().map_or(4096, |g| g.gl.capabilities().max_texture_size) / 2;
+        let steps = |pixels: f32| (pixels * self.render_scale() / SIZE_STEP).round().max(4.0) * SIZE_STEP;
+        full.map(|n| (steps(n) as u32).min(limit))
     }
 
     fn render_scale(&self) -> f32 {
@@ -634,48 +622,46 @@ impl Viewer {
     }
 
     /// Uploads the scene if its thread is done; [`Viewer::render`] does so by itself.
-    ///
-    /// # Errors
-    /// [`ViewerError::Gl`].
-    pub fn poll_scene(&mut self) -> Result<(), ViewerError> {
-        let Some(graphics) = &mut self.graphics else { return Ok(()) };
-        let Some(result) = self.loader.as_ref().and_then(Loader::poll) else { return Ok(()) };
+    pub fn poll_scene(&mut self) {
+        let Some(graphics) = &self.graphics else { return };
+        let Some(result) = self.loader.as_ref().and_then(Loader::poll) else { return };
+        let gl = graphics.gl.clone();
         self.loader = None;
-        let scene = match result {
-            Ok(scene) => scene,
-            Err(reason) => {
-                log::error!("{reason}");
-                self.failure = Some(reason);
-                return Ok(());
-            }
-        };
+        let shown = result.and_then(|scene| self.show(&gl, scene).map_err(|error| error.to_string()));
+        if let Err(reason) = shown {
+            // Whether that is the end is for the platform to say.
+            log::info!("no scene: {reason}");
+            self.failure = Some(reason);
+        }
+    }
+
+    /// Brings a scene into view.
+    fn show(&mut self, gl: &Rc<Context>, scene: Scene) -> Result<(), GlError> {
+        let settings = self.method_settings();
+        let (render, options) = (settings.render_settings(), settings.stereo_options());
+        let Some(graphics) = &mut self.graphics else { return Ok(()) };
         // The old scene goes first, or both would need memory.
         graphics.stage = None;
         self.viewpoints = scene.viewpoints.clone();
         self.viewpoint %= self.viewpoints.len().max(1);
-        let settings = Settings { pipeline: self.pipeline, ..self.settings.clone() };
-        let (render, options) = (settings.render_settings(), settings.stereo_options());
-        let scene = GpuScene::upload(&graphics.gl, scene)?;
-        let renderer = Renderer::new(&graphics.gl, &render, &scene)?;
-        let method = match stereo::create(&graphics.gl, self.method, &render, &options) {
+        let scene = GpuScene::upload(gl, scene)?;
+        let renderer = Renderer::new(gl, &render, &scene)?;
+        let method = match stereo::create(gl, self.method, &render, &options) {
             Err(GlError::Unsupported(reason)) if self.method != Method::Yoro => {
-                log::warn!(
-                    "{} is used in place of {}: {reason}",
-                    method_name(Method::Yoro),
-                    method_name(self.method)
-                );
+                log::warn!("{} is used in place of {}: {reason}", Method::Yoro.name(), self.method.name());
                 self.method = Method::Yoro;
-                stereo::create(&graphics.gl, self.method, &render, &options)
+                stereo::create(gl, self.method, &render, &options)
             }
             made => made,
         }?;
         log::info!("{}: {} triangles", scene.name, scene.triangle_count());
         graphics.stage = Some(Stage { scene, renderer, method });
-        // The session is what is seen of the scene.
-        self.telemetry = Telemetry::default();
-        self.controller = Controller::new();
-        self.quality = Quality::FULL;
-        self.ready_ns = Some(self.now_ns);
+        // The session is what is seen of the scene; a lost context does not begin another.
+        if self.ready_ns.is_none() {
+            self.telemetry = Telemetry::default();
+            self.controller = Controller::new();
+            self.ready_ns = Some(self.now_ns);
+        }
         Ok(())
     }
 
@@ -709,58 +695,18 @@ impl Viewer {
 
     /// What the HUD says now.
     fn write_text(&mut self) {
-        let text = &mut self.text;
-        text.clear();
-        // Writing into a string cannot fail.
-        let _ = match &self.failure {
-            Some(failure) => write_wrapped(text, failure),
-            None => write_status(text, self.last_line.as_ref(), self.celsius),
+        let pipeline = self.uses_synthesis().then(|| self.pipeline.name());
+        let event = match &self.loader {
+            Some(_) => hud::Happening::Loading(&self.scene_name),
+            None if self.now_ns < self.message_until_ns => hud::Happening::Message(&self.message),
+            None => hud::Happening::Nothing,
         };
-        if self.failure.is_some() {
-            return;
-        }
-        let _ = if self.method == Method::Yoro {
-            writeln!(text, "{} {}", self.method_name, self.pipeline.name())
-        } else {
-            writeln!(text, "{}", self.method_name)
-        };
-        if self.loader.is_some() {
-            let _ = writeln!(text, "loading {}", self.scene_name);
-        } else if self.now_ns < self.message_until_ns {
-            let _ = writeln!(text, "{}", self.message);
+        match &self.failure {
+            Some(failure) => hud::write_sentence(&mut self.text, failure),
+            None => {
+                let frames = self.last_line.as_ref();
+                hud::write_status(&mut self.text, frames, self.celsius, self.method.name(), pipeline, event);
+            }
         }
     }
-}
-
-/// Rate, frame time and temperature, as far as they are known.
-fn write_status(text: &mut String, line: Option<&Line>, celsius: Option<f32>) -> std::fmt::Result {
-    let Some(Line { fps: Some(fps), frame_ms: Some(ms), refresh_hz, .. }) = line else { return Ok(()) };
-    write!(text, "{fps:.0}")?;
-    if let Some(hz) = refresh_hz {
-        write!(text, "/{hz:.0}")?;
-    }
-    write!(text, " FPS {ms:.1} ms")?;
-    if let Some(celsius) = celsius {
-        write!(text, " {celsius:.0} C")?;
-    }
-    text.push('\n');
-    Ok(())
-}
-
-/// A sentence in lines of the HUD, words kept whole.
-fn write_wrapped(text: &mut String, sentence: &str) -> std::fmt::Result {
-    let mut column = 0;
-    for word in sentence.split_whitespace() {
-        let space = if column == 0 { "" } else { " " };
-        let new_line = column > 0 && column + 1 + word.len() > hud::COLUMNS;
-        let before = if new_line { "\n" } else { space };
-        write!(text, "{before}{word}")?;
-        column = if new_line { word.len() } else { column + space.len() + word.len() };
-    }
-    Ok(())
-}
-
-/// A method's name as it is written in settings and logs.
-fn method_name(method: Method) -> String {
-    toml::Value::try_from(method).ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
 }

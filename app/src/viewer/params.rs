@@ -146,6 +146,17 @@ impl ViewerParams {
         }
     }
 
+    /// As [`ViewerParams::find`], with files looked for in folders first.
+    ///
+    /// # Errors
+    /// [`ParamsError`].
+    pub fn find_in(text: &str, folders: &[PathBuf]) -> Result<ViewerParams, ParamsError> {
+        match folders.iter().map(|folder| folder.join(text)).find(|path| path.is_file()) {
+            Some(path) => ViewerParams::load(&path),
+            None => ViewerParams::find(text),
+        }
+    }
+
     /// Decodes the URI of a viewer's QR code.
     ///
     /// # Errors

@@ -259,20 +259,33 @@ impl Settings {
     /// # Errors
     /// [`SettingsError`]; the settings stay as they were.
     pub fn apply_file(&mut self, path: &Path) -> Result<(), SettingsError> {
-        let mut text = String::new();
-        std::fs::File::open(path)
-            .and_then(|file| file.take(MAX_FILE).read_to_string(&mut text))
-            .map_err(|source| SettingsError::Read { path: path.into(), source })?;
-        let table: Table = text.parse().map_err(|e: toml::de::Error| SettingsError::Syntax {
-            path: path.into(),
-            what: e.message().trim().to_owned(),
-        })?;
         let mut changed = self.clone();
-        for (key, value) in table {
-            changed.set(&path.display().to_string(), &key, &[value])?;
+        match changed.apply_file_leniently(path).into_iter().next() {
+            Some(error) => Err(error),
+            None => {
+                *self = changed;
+                Ok(())
+            }
         }
-        *self = changed;
-        Ok(())
+    }
+
+    /// Changes the settings by what is right in a TOML file, and says what is wrong: for programs that nobody can
+    /// start again at once.
+    pub fn apply_file_leniently(&mut self, path: &Path) -> Vec<SettingsError> {
+        let mut text = String::new();
+        let read = std::fs::File::open(path).and_then(|file| file.take(MAX_FILE).read_to_string(&mut text));
+        if let Err(source) = read {
+            return vec![SettingsError::Read { path: path.into(), source }];
+        }
+        let table: Table = match text.parse() {
+            Ok(table) => table,
+            Err(error) => {
+                let what = toml::de::Error::message(&error).trim().replace('\n', " ");
+                return vec![SettingsError::Syntax { path: path.into(), what }];
+            }
+        };
+        let origin = path.display().to_string();
+        table.into_iter().filter_map(|(key, value)| self.set(&origin, &key, &[value]).err()).collect()
     }
 
     /// Changes one setting by a text `key=value`. Lists are written as in TOML or separated by commas; `auto`

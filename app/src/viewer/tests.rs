@@ -139,7 +139,7 @@ impl Run {
 
     fn load(&mut self) {
         while self.viewer.scene_state() == SceneState::Loading {
-            self.viewer.poll_scene().unwrap();
+            self.viewer.poll_scene();
             std::thread::sleep(Duration::from_millis(2));
         }
     }
@@ -172,7 +172,8 @@ fn from_loading_to_the_end_of_a_session() {
     assert_eq!(over, 1);
     assert_ne!(run.image(), loading);
     let [(_, line)] = lines.as_slice() else { panic!("{lines:?}") };
-    assert_eq!(line.to_string().parse(), Ok(line.clone()));
+    let read: Line = line.to_string().parse().unwrap();
+    assert_eq!(read.to_string(), line.to_string());
     assert_eq!((line.method.as_str(), line.pipeline.as_deref()), ("yoro", Some("gather")));
     assert_eq!((line.scene.as_str(), line.stale, line.current_ma), ("prototype", Some(0), None));
     assert!((line.fps.unwrap() - 60.0).abs() < 0.1, "{line}");

@@ -1,0 +1,87 @@
+//! Touch and keys to the viewer's events.
+
+use android_activity::input::{InputEvent, KeyAction, KeyEvent, Keycode, MotionAction, MotionEvent};
+use android_activity::{AndroidApp, InputStatus};
+use yoro::viewer::Event;
+
+use crate::press::Press;
+
+/// What the user does with screen, buttons and keys.
+#[derive(Default)]
+pub struct Input {
+    touch: Press,
+    trigger: Press,
+}
+
+impl Input {
+    /// Takes what Android has, and appends what it means. What is not ours, such as the back key, stays Android's.
+    pub fn collect(&mut self, app: &AndroidApp, dpi: f32, events: &mut Vec<Event>) {
+        let mut iterator = match app.input_events_iter() {
+            Ok(iterator) => iterator,
+            Err(error) => {
+                log::warn!("touch and keys cannot be read: {error}");
+                return;
+            }
+        };
+        while iterator.next(|event| match event {
+            InputEvent::MotionEvent(motion) => self.motion(motion, dpi, events),
+            InputEvent::KeyEvent(key) => self.key(key, events),
+            _ => InputStatus::Unhandled,
+        }) {}
+    }
+
+    /// Presses that have become long; `now_ns` is of the clock of the events, which is the monotonic one.
+    pub fn held(&mut self, now_ns: i64) -> Option<Event> {
+        self.touch.held(now_ns).or_else(|| self.trigger.held(now_ns))
+    }
+
+    /// Forgets what was begun: the window is gone.
+    pub fn cancel(&mut self) {
+        *self = Input::default();
+    }
+
+    fn motion(&mut self, motion: &MotionEvent, dpi: f32, events: &mut Vec<Event>) -> InputStatus {
+        if !motion.source().is_pointer_class() || motion.pointer_count() == 0 {
+            return InputStatus::Unhandled;
+        }
+        let pointer = motion.pointer_at_index(0);
+        let position = [pointer.x(), pointer.y()];
+        match motion.action() {
+            MotionAction::Down => self.touch.down(motion.event_time(), position),
+            MotionAction::Move => self.touch.moved(position, dpi),
+            MotionAction::Up => events.extend(self.touch.up(motion.event_time())),
+            MotionAction::PointerDown | MotionAction::Cancel => self.touch.cancel(),
+            _ => {}
+        }
+        InputStatus::Handled
+    }
+
+    fn key(&mut self, key: &KeyEvent, events: &mut Vec<Event>) -> InputStatus {
+        let is_down = key.action() == KeyAction::Down;
+        match key.key_code() {
+            Keycode::VolumeUp if is_down => events.push(Event::IpdUp),
+            Keycode::VolumeDown if is_down => events.push(Event::IpdDown),
+            Keycode::VolumeUp | Keycode::VolumeDown => {}
+            // The buttons of headsets, game pads and keyboards.
+            Keycode::Enter
+            | Keycode::Space
+            | Keycode::DpadCenter
+            | Keycode::Headsethook
+            | Keycode::MediaPlayPause
+            | Keycode::ButtonA
+            | Keycode::ButtonL1
+            | Keycode::ButtonR1
+            | Keycode::ButtonL2
+            | Keycode::ButtonR2 => match key.action() {
+                // A key that is held repeats.
+                KeyAction::Down if key.repeat_count() == 0 => self.trigger.down(key.event_time(), [0.0; 2]),
+                KeyAction::Up => events.extend(self.trigger.up(key.event_time())),
+                _ => {}
+            },
+            Keycode::H | Keycode::ButtonX if is_down => events.push(Event::ToggleHud),
+            Keycode::N | Keycode::ButtonY if is_down => events.push(Event::NextViewpoint),
+            _ => return InputStatus::Unhandled,
+        }
+        InputStatus::Handled
+    }
+}

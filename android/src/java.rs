@@ -1,0 +1,291 @@
+//! Everything that only Java can be asked for.
+
+use android_activity::AndroidApp;
+use jni::objects::{JObject, JString};
+use jni::refs::Global;
+use jni::vm::JavaVM;
+use jni::{Env, JValue, jni_sig, jni_str};
+
+/// `BatteryManager.BATTERY_PROPERTY_*`.
+#[derive(Clone, Copy, Debug)]
+#[repr(i32)]
+pub enum BatteryProperty {
+    /// Remaining charge in microampere-hours.
+    ChargeCounter = 1,
+    /// Current, in microamperes by the specification.
+    CurrentNow = 2,
+    /// Level in percent.
+    Capacity = 4,
+    /// `BATTERY_STATUS_*`.
+    Status = 6,
+}
+
+/// What the sticky intent `ACTION_BATTERY_CHANGED` says, as it says it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BatteryIntent {
+    /// Level in units of `scale`.
+    pub level: Option<i32>,
+    /// Level of a full battery.
+    pub scale: Option<i32>,
+    /// Millivolts.
+    pub voltage: Option<i32>,
+    /// Tenths of a degree Celsius.
+    pub temperature: Option<i32>,
+    /// `BATTERY_PLUGGED_*`, 0 on battery.
+    pub plugged: Option<i32>,
+    /// `BATTERY_STATUS_*`.
+    pub status: Option<i32>,
+}
+
+/// The display that the activity is on.
+#[derive(Clone, Copy, Debug)]
+pub struct Display {
+    /// Physical pixels per inch along both axes of the picture.
+    pub dpi: [f32; 2],
+    /// Refreshes per second; 0 where the answer makes no sense.
+    pub refresh_hz: f32,
+    /// `Surface.ROTATION_*`: how often the picture is turned by 90 degrees.
+    pub rotation: i32,
+}
+
+/// The activity as Java sees it. Any thread may ask; a thread stays attached to Java until it ends.
+#[derive(Clone)]
+pub struct Java {
+    vm: JavaVM,
+    app: AndroidApp,
+}
+
+impl Java {
+    /// The activity of an application.
+    pub fn new(app: &AndroidApp) -> Java {
+        // SAFETY: the process has one Java VM, which is there as long as the process is.
+        Java { vm: unsafe { JavaVM::from_raw(app.vm_as_ptr().cast()) }, app: app.clone() }
+    }
+
+    /// Asks the activity; an exception is logged, cleared and means no answer.
+    fn ask<T>(
+        &self,
+        what: &str,
+        question: impl FnOnce(&mut Env, &JObject) -> jni::errors::Result<T>,
+    ) -> Option<T> {
+        let answer = self.vm.attach_current_thread(|env| -> jni::errors::Result<T> {
+            let raw = self.app.activity_as_ptr() as jni::sys::jobject;
+            // SAFETY: a global reference that android-activity owns and keeps as long as `app` lives.
+            let activity = unsafe { env.as_cast_raw::<Global<JObject<'static>>>(&raw)? };
+            question(env, activity.as_ref())
+        });
+        answer.inspect_err(|error| log::debug!("{what}: {error}")).ok()
+    }
+
+    /// The display, if Java says anything of it.
+    pub fn display(&self) -> Option<Display> {
+        self.ask("the display", |env, activity| {
+            let manager = env
+                .call_method(
+                    activity,
+                    jni_str!("getWindowManager"),
+                    jni_sig!("()Landroid/view/WindowManager;"),
+                    &[],
+                )?
+                .l()?;
+            let display = env
+                .call_method(
+                    &manager,
+                    jni_str!("getDefaultDisplay"),
+                    jni_sig!("()Landroid/view/Display;"),
+                    &[],
+                )?
+                .l()?;
+            let refresh_hz =
+                env.call_method(&display, jni_str!("getRefreshRate"), jni_sig!("()F"), &[])?.f()?;
+            let rotation = env.call_method(&display, jni_str!("getRotation"), jni_sig!("()I"), &[])?.i()?;
+            let resources = env
+                .call_method(
+                    activity,
+                    jni_str!("getResources"),
+                    jni_sig!("()Landroid/content/res/Resources;"),
+                    &[],
+                )?
+                .l()?;
+            let metrics = env
+                .call_method(
+                    &resources,
+                    jni_str!("getDisplayMetrics"),
+                    jni_sig!("()Landroid/util/DisplayMetrics;"),
+                    &[],
+                )?
+                .l()?;
+            let x = env.get_field(&metrics, jni_str!("xdpi"), jni_sig!("F"))?.f()?;
+            let y = env.get_field(&metrics, jni_str!("ydpi"), jni_sig!("F"))?.f()?;
+            let plausible = (10.0..1000.0).contains(&refresh_hz);
+            Ok(Display { dpi: [x, y], refresh_hz: if plausible { refresh_hz } else { 0.0 }, rotation })
+        })
+    }
+
+    /// The extras of the intent that started the activity, as texts.
+    pub fn extras(&self) -> Vec<(String, String)> {
+        let extras = self.ask("the intent's extras", |env, activity| {
+            let intent = env
+                .call_method(activity, jni_str!("getIntent"), jni_sig!("()Landroid/content/Intent;"), &[])?
+                .l()?;
+            if intent.is_null() {
+                return Ok(Vec::new());
+            }
+            let bundle = env
+                .call_method(&intent, jni_str!("getExtras"), jni_sig!("()Landroid/os/Bundle;"), &[])?
+                .l()?;
+            if bundle.is_null() {
+                return Ok(Vec::new());
+            }
+            let keys =
+                env.call_method(&bundle, jni_str!("keySet"), jni_sig!("()Ljava/util/Set;"), &[])?.l()?;
+            let iterator =
+                env.call_method(&keys, jni_str!("iterator"), jni_sig!("()Ljava/util/Iterator;"), &[])?.l()?;
+            let mut pairs = Vec::new();
+            while env.call_method(&iterator, jni_str!("hasNext"), jni_sig!("()Z"), &[])?.z()? {
+                let key = env
+                    .call_method(&iterator, jni_str!("next"), jni_sig!("()Ljava/lang/Object;"), &[])?
+                    .l()?;
+                let value = env
+                    .call_method(
+                        &bundle,
+                        jni_str!("get"),
+                        jni_sig!("(Ljava/lang/String;)Ljava/lang/Object;"),
+                        &[JValue::Object(&key)],
+                    )?
+                    .l()?;
+                if !value.is_null() {
+                    pairs.push((text(env, &key)?, text(env, &value)?));
+                }
+            }
+            Ok(pairs)
+        });
+        extras.unwrap_or_default()
+    }
+
+    /// One of the battery's properties; none where the device does not support it, for which Android says
+    /// `Integer.MIN_VALUE`.
+    pub fn battery(&self, property: BatteryProperty) -> Option<i32> {
+        let value = self.ask("the battery manager", |env, activity| {
+            let name = JString::new(env, "batterymanager")?;
+            let manager = env
+                .call_method(
+                    activity,
+                    jni_str!("getSystemService"),
+                    jni_sig!("(Ljava/lang/String;)Ljava/lang/Object;"),
+                    &[JValue::Object(name.as_ref())],
+                )?
+                .l()?;
+            env.call_method(
+                &manager,
+                jni_str!("getIntProperty"),
+                jni_sig!("(I)I"),
+                &[JValue::Int(property as i32)],
+            )?
+            .i()
+        });
+        value.filter(|value| *value != i32::MIN)
+    }
+
+    /// What the system last broadcast of the battery.
+    pub fn battery_intent(&self) -> BatteryIntent {
+        let answer = self.ask("the battery's intent", |env, activity| {
+            let action = JString::new(env, "android.intent.action.BATTERY_CHANGED")?;
+            let filter = env.new_object(
+                jni_str!("android/content/IntentFilter"),
+                jni_sig!("(Ljava/lang/String;)V"),
+                &[JValue::Object(action.as_ref())],
+            )?;
+            // Without a receiver nothing is registered: the call only returns the last broadcast.
+            let intent = env
+                .call_method(
+                    activity,
+                    jni_str!("registerReceiver"),
+                    jni_sig!(
+                        "(Landroid/content/BroadcastReceiver;Landroid/content/IntentFilter;)Landroid/content/Intent;"
+                    ),
+                    &[JValue::Object(&JObject::null()), JValue::Object(&filter)],
+                )?
+                .l()?;
+            if intent.is_null() {
+                return Ok(BatteryIntent::default());
+            }
+            let mut number = |name: &str| -> jni::errors::Result<Option<i32>> {
+                let name = JString::new(env, name)?;
+                let arguments = [JValue::Object(name.as_ref()), JValue::Int(i32::MIN)];
+                let value = env
+                    .call_method(&intent, jni_str!("getIntExtra"), jni_sig!("(Ljava/lang/String;I)I"), &arguments)?
+                    .i()?;
+                Ok(Some(value).filter(|value| *value != i32::MIN))
+            };
+            Ok(BatteryIntent {
+                level: number("level")?,
+                scale: number("scale")?,
+                voltage: number("voltage")?,
+                temperature: number("temperature")?,
+                plugged: number("plugged")?,
+                status: number("status")?,
+            })
+        });
+        answer.unwrap_or_default()
+    }
+
+    /// Hides the system's bars, also after the user has swiped them in. They come back with the focus of other
+    /// windows, so call it whenever the focus is won.
+    pub fn hide_system_bars(&self) {
+        // SYSTEM_UI_FLAG_* LAYOUT_STABLE | LAYOUT_HIDE_NAVIGATION | LAYOUT_FULLSCREEN | HIDE_NAVIGATION | FULLSCREEN |
+        // IMMERSIVE_STICKY: deprecated since API 30, and the one way that works from API 29 on.
+        const FLAGS: i32 = 0x100 | 0x200 | 0x400 | 0x2 | 0x4 | 0x1000;
+        self.on_main_thread("the system's bars", |env, activity| {
+            let window = env
+                .call_method(activity, jni_str!("getWindow"), jni_sig!("()Landroid/view/Window;"), &[])?
+                .l()?;
+            let view = env
+                .call_method(&window, jni_str!("getDecorView"), jni_sig!("()Landroid/view/View;"), &[])?
+                .l()?;
+            env.call_method(
+                &view,
+                jni_str!("setSystemUiVisibility"),
+                jni_sig!("(I)V"),
+                &[JValue::Int(FLAGS)],
+            )?
+            .v()
+        });
+    }
+
+    /// Shows a sentence over whatever is on the screen.
+    pub fn toast(&self, sentence: &str) {
+        const LENGTH_LONG: i32 = 1;
+        let sentence = sentence.to_owned();
+        self.on_main_thread("a toast", move |env, activity| {
+            let text = JString::new(env, &sentence)?;
+            let toast = env
+                .call_static_method(
+                    jni_str!("android/widget/Toast"),
+                    jni_str!("makeText"),
+                    jni_sig!("(Landroid/content/Context;Ljava/lang/CharSequence;I)Landroid/widget/Toast;"),
+                    &[JValue::Object(activity), JValue::Object(text.as_ref()), JValue::Int(LENGTH_LONG)],
+                )?
+                .l()?;
+            env.call_method(&toast, jni_str!("show"), jni_sig!("()V"), &[])?.v()
+        });
+    }
+
+    /// Views belong to the thread that made them.
+    fn on_main_thread(
+        &self,
+        what: &'static str,
+        action: impl FnOnce(&mut Env, &JObject) -> jni::errors::Result<()> + Send + 'static,
+    ) {
+        let java = self.clone();
+        self.app.run_on_java_main_thread(Box::new(move || {
+            java.ask(what, action);
+        }));
+    }
+}
+
+/// `toString()`.
+fn text(env: &mut Env, object: &JObject) -> jni::errors::Result<String> {
+    let string = env.call_method(object, jni_str!("toString"), jni_sig!("()Ljava/lang/String;"), &[])?.l()?;
+    env.cast_local::<JString>(string)?.try_to_string(env)
+}

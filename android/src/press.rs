@@ -1,0 +1,99 @@
+//! Tap or long press: of a finger, or of a viewer's button that touches the screen.
+
+use yoro::viewer::Event;
+
+/// A press that lasts longer is a long one, in nanoseconds.
+const LONG_NS: i64 = 600_000_000;
+/// A finger that moves further than this share of an inch drags, and means nothing here.
+const SLOP_INCHES: f32 = 0.1;
+
+/// A press that has begun.
+#[derive(Clone, Copy, Debug)]
+struct Down {
+    since_ns: i64,
+    position: [f32; 2],
+}
+
+/// Recognises presses. Times are of one clock, in nanoseconds; positions in pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Press {
+    down: Option<Down>,
+}
+
+impl Press {
+    /// The first finger, or a button, goes down.
+    pub fn down(&mut self, now_ns: i64, position: [f32; 2]) {
+        self.down = Some(Down { since_ns: now_ns, position });
+    }
+
+    /// It moves; a drag is no press.
+    pub fn moved(&mut self, position: [f32; 2], dpi: f32) {
+        let slop = SLOP_INCHES * if dpi > 0.0 { dpi } else { 400.0 };
+        let is_drag =
+            |down: &Down| (down.position[0] - position[0]).hypot(down.position[1] - position[1]) > slop;
+        if self.down.as_ref().is_some_and(is_drag) {
+            self.down = None;
+        }
+    }
+
+    /// It goes up.
+    pub fn up(&mut self, now_ns: i64) -> Option<Event> {
+        let down = self.down.take()?;
+        Some(if now_ns - down.since_ns >= LONG_NS { Event::LongPress } else { Event::Tap })
+    }
+
+    /// A second finger, or the system takes the touch away.
+    pub fn cancel(&mut self) {
+        self.down = None;
+    }
+
+    /// A long press counts as soon as it is long, not when it ends.
+    pub fn held(&mut self, now_ns: i64) -> Option<Event> {
+        let is_long = |down: &mut Down| now_ns - down.since_ns >= LONG_NS;
+        self.down.take_if(is_long).map(|_| Event::LongPress)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: i64 = 1_000_000;
+
+    #[test]
+    fn short_is_a_tap() {
+        let mut press = Press::default();
+        press.down(0, [100.0, 100.0]);
+        press.moved([105.0, 103.0], 400.0);
+        assert_eq!(press.held(100 * MS), None);
+        assert_eq!(press.up(150 * MS), Some(Event::Tap));
+        assert_eq!(press.up(160 * MS), None);
+    }
+
+    #[test]
+    fn long_counts_once_and_while_it_lasts() {
+        let mut press = Press::default();
+        press.down(5 * MS, [0.0, 0.0]);
+        assert_eq!(press.held(604 * MS), None);
+        assert_eq!(press.held(606 * MS), Some(Event::LongPress));
+        assert_eq!(press.held(900 * MS), None);
+        assert_eq!(press.up(950 * MS), None);
+        press.down(0, [0.0, 0.0]);
+        assert_eq!(press.up(700 * MS), Some(Event::LongPress));
+    }
+
+    #[test]
+    fn drags_and_second_fingers_are_nothing() {
+        let mut press = Press::default();
+        press.down(0, [100.0, 100.0]);
+        press.moved([141.0, 100.0], 400.0);
+        assert_eq!(press.up(50 * MS), None);
+        press.down(0, [100.0, 100.0]);
+        press.cancel();
+        assert_eq!((press.held(900 * MS), press.up(950 * MS)), (None, None));
+        // A device that does not know its density.
+        press.down(0, [0.0, 0.0]);
+        press.moved([20.0, 0.0], 0.0);
+        assert_eq!(press.up(50 * MS), Some(Event::Tap));
+    }
+}

@@ -1,0 +1,115 @@
+//! Gyroscope and accelerometer.
+
+use std::ffi::{CStr, c_int};
+use std::ptr::{self, NonNull};
+
+use glam::Vec3;
+use ndk_sys as ffi;
+use yoro::viewer::Sample;
+
+const ACCELEROMETER: c_int = 1;
+const GYROSCOPE: c_int = 4;
+const GYROSCOPE_UNCALIBRATED: c_int = 16;
+/// Faster needs a permission from Android 12 on, without which a sensor gives nothing at all.
+const SHORTEST_PERIOD_US: i32 = 5_000;
+/// Any number: it comes back from the looper when there are events.
+const LOOPER_IDENT: c_int = 1;
+/// Events that are taken at once.
+const BATCH: usize = 32;
+
+/// The motion sensors, running until this is dropped. Belongs to the thread that made it.
+pub struct Sensors {
+    manager: NonNull<ffi::ASensorManager>,
+    queue: NonNull<ffi::ASensorEventQueue>,
+    running: Vec<NonNull<ffi::ASensor>>,
+}
+
+impl Sensors {
+    /// Starts what sensors there are, for a thread with a looper; says in the log which.
+    pub fn start(looper: NonNull<ffi::ALooper>) -> Option<Sensors> {
+        // SAFETY: the name is that of our own package, or of none at all, and ends in zero.
+        let manager =
+            NonNull::new(unsafe { ffi::ASensorManager_getInstanceForPackage(c"io.github.yoro".as_ptr()) })?;
+        // SAFETY: manager and looper are live; events are announced by the looper's return value, without callback.
+        let queue = unsafe {
+            ffi::ASensorManager_createEventQueue(
+                manager.as_ptr(),
+                looper.as_ptr(),
+                LOOPER_IDENT,
+                None,
+                ptr::null_mut(),
+            )
+        };
+        let mut sensors = Sensors { manager, queue: NonNull::new(queue)?, running: Vec::new() };
+        if !sensors.enable(GYROSCOPE_UNCALIBRATED) && !sensors.enable(GYROSCOPE) {
+            log::warn!("this device has no gyroscope: the picture does not follow the head");
+        }
+        if !sensors.enable(ACCELEROMETER) {
+            log::warn!("this device has no accelerometer: the horizon may tilt, and the direction drifts");
+        }
+        Some(sensors)
+    }
+
+    fn enable(&mut self, kind: c_int) -> bool {
+        // SAFETY: the manager is live; null when there is no such sensor.
+        let sensor = unsafe { ffi::ASensorManager_getDefaultSensor(self.manager.as_ptr(), kind) };
+        let Some(sensor) = NonNull::new(sensor.cast_mut()) else { return false };
+        // SAFETY: queue and sensor are live.
+        let (period, status) = unsafe {
+            let period = ffi::ASensor_getMinDelay(sensor.as_ptr()).max(SHORTEST_PERIOD_US);
+            (period, ffi::ASensorEventQueue_registerSensor(self.queue.as_ptr(), sensor.as_ptr(), period, 0))
+        };
+        // SAFETY: the sensor is live; its name is a static text, or null.
+        let name = unsafe {
+            let name = ffi::ASensor_getName(sensor.as_ptr());
+            if name.is_null() { "unnamed".into() } else { CStr::from_ptr(name).to_string_lossy() }
+        };
+        if status < 0 {
+            log::warn!(
+                "the sensor {name} cannot be started (status {status}): close other applications that use it"
+            );
+            return false;
+        }
+        log::info!("sensor: {name}, type {kind}, every {:.1} ms", period as f32 * 1e-3);
+        self.running.push(sensor);
+        true
+    }
+
+    /// Hands on the samples that have come, with their times in nanoseconds.
+    pub fn drain(&mut self, mut take: impl FnMut(Sample, i64)) {
+        // SAFETY: all zeros is a valid event.
+        let mut events: [ffi::ASensorEvent; BATCH] = unsafe { std::mem::zeroed() };
+        loop {
+            // SAFETY: the queue is live and the buffer as long as it is said to be.
+            let count =
+                unsafe { ffi::ASensorEventQueue_getEvents(self.queue.as_ptr(), events.as_mut_ptr(), BATCH) };
+            let Ok(count @ 1..) = usize::try_from(count) else { return };
+            for event in events.iter().take(count) {
+                // SAFETY: every sensor's values are floats.
+                let data = unsafe { event.__bindgen_anon_1.__bindgen_anon_1.data };
+                let vector = |at: usize| Vec3::new(data[at], data[at + 1], data[at + 2]);
+                let sample = match event.type_ {
+                    ACCELEROMETER => Sample::Accelerometer(vector(0)),
+                    GYROSCOPE => Sample::Gyroscope(vector(0)),
+                    GYROSCOPE_UNCALIBRATED => {
+                        Sample::GyroscopeUncalibrated { rate: vector(0), bias: vector(3) }
+                    }
+                    _ => continue,
+                };
+                take(sample, event.timestamp);
+            }
+        }
+    }
+}
+
+impl Drop for Sensors {
+    fn drop(&mut self) {
+        // SAFETY: queue and sensors are live, and nothing uses the queue afterwards.
+        unsafe {
+            for sensor in &self.running {
+                ffi::ASensorEventQueue_disableSensor(self.queue.as_ptr(), sensor.as_ptr());
+            }
+            ffi::ASensorManager_destroyEventQueue(self.manager.as_ptr(), self.queue.as_ptr());
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Settings from outside: defaults < file < intent extras < system properties < what the user
+//! had changed when the activity was put away.
+
+use std::path::PathBuf;
+
+use yoro::viewer::{KEYS, Settings};
+
+/// System properties that begin so are settings: `adb shell setprop debug.yoro.method mono`.
+pub const PROPERTY_PREFIX: &str = "debug.yoro.";
+/// Intent extras may begin so; those of the system contain other dots.
+const EXTRA_PREFIX: &str = "yoro.";
+/// The settings file in the application's external folder.
+pub const FILE_NAME: &str = "yoro.toml";
+
+/// A setting as text: key and value.
+pub type Pair = (String, String);
+
+/// Where settings come from, each stronger than the one before.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sources {
+    /// A TOML file, which need not exist.
+    pub file: Option<PathBuf>,
+    /// Extras of the intent that started the activity.
+    pub extras: Vec<Pair>,
+    /// System properties, without their prefix.
+    pub properties: Vec<Pair>,
+    /// What the user had changed when Android put the activity away.
+    pub saved: Vec<Pair>,
+}
+
+impl Sources {
+    /// Takes over what the system properties are now. What the user had changed by hand does not hold against a
+    /// property that has another value since. True if anything differs.
+    pub fn set_properties(&mut self, properties: Vec<Pair>) -> bool {
+        if properties == self.properties {
+            return false;
+        }
+        self.saved.retain(|(key, _)| value(&self.properties, key) == value(&properties, key));
+        self.properties = properties;
+        true
+    }
+
+    /// The settings, and one sentence for each mistake; a setting with a mistake stays what it was before.
+    pub fn resolve(&self) -> (Settings, Vec<String>) {
+        let mut settings = Settings::default();
+        let mut mistakes = Vec::new();
+        if let Some(path) = self.file.as_ref().filter(|path| path.exists()) {
+            mistakes.extend(settings.apply_file_leniently(path).iter().map(ToString::to_string));
+        }
+        let extras = self.extras.iter().filter_map(|(key, value)| Some((extra_key(key)?, value)));
+        let saved = self.saved.iter().map(|(key, value)| (key.as_str(), value));
+        let properties = self.properties.iter().map(|(key, value)| (key.as_str(), value));
+        let layers = [
+            ("the intent's extras", extras.collect::<Vec<_>>()),
+            ("the system properties debug.yoro.*", properties.collect()),
+            ("the saved state", saved.collect()),
+        ];
+        for (origin, pairs) in layers {
+            for (key, value) in pairs {
+                if let Err(error) = settings.apply(&format!("{key}={value}")) {
+                    mistakes.push(format!("in {origin}: {error}"));
+                }
+            }
+        }
+        (settings, mistakes)
+    }
+}
+
+/// The value of a key, the last one if there are several.
+fn value<'a>(pairs: &'a [Pair], key: &str) -> Option<&'a str> {
+    pairs.iter().rev().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
+}
+
+/// The setting that an extra means; none for extras that are not for us.
+fn extra_key(key: &str) -> Option<&str> {
+    match key.strip_prefix(EXTRA_PREFIX) {
+        Some(own) => Some(own),
+        None => (!key.contains('.')).then_some(key),
+    }
+}
+
+/// The system properties' settings by a function that reads one by its full name. Empty means unset: a property
+/// cannot be deleted.
+pub fn properties(read: impl Fn(&str) -> Option<String>) -> Vec<Pair> {
+    let pair = |key: &&str| {
+        let value = read(&format!("{PROPERTY_PREFIX}{key}"))?;
+        let value = value.trim();
+        (!value.is_empty()).then(|| ((*key).to_owned(), value.to_owned()))
+    };
+    KEYS.iter().filter_map(pair).collect()
+}
+
+/// Settings as bytes for Android to keep while the activity is away.
+pub fn save(pairs: &[Pair]) -> Vec<u8> {
+    pairs.iter().map(|(key, value)| format!("{key}={value}\n")).collect::<String>().into_bytes()
+}
+
+/// What [`save`] made; nothing of what another version may have left.
+pub fn restore(bytes: &[u8]) -> Vec<Pair> {
+    let text = String::from_utf8_lossy(bytes);
+    let pair = |line: &str| {
+        let (key, value) = line.split_once('=')?;
+        KEYS.contains(&key).then(|| (key.to_owned(), value.to_owned()))
+    };
+    text.lines().filter_map(pair).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use yoro::stereo::Method;
+
+    use super::*;
+
+    fn pairs(list: &[(&str, &str)]) -> Vec<Pair> {
+        list.iter().map(|(key, value)| ((*key).into(), (*value).into())).collect()
+    }
+
+    #[test]
+    fn the_stronger_source_wins() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(FILE_NAME);
+        std::fs::write(&file, "method = \"mono\"\nipd = 0.05\nseed = 7\nscene = \"talk\"\n").unwrap();
+        let sources = Sources {
+            file: Some(file),
+            extras: pairs(&[
+                ("ipd", "0.06"),
+                ("yoro.scene", "stage"),
+                ("android.intent.extra.REFERRER", "x"),
+            ]),
+            properties: pairs(&[("ipd", "0.065"), ("hud", "false")]),
+            saved: pairs(&[("ipd", "0.055")]),
+        };
+        let (settings, mistakes) = sources.resolve();
+        assert!(mistakes.is_empty(), "{mistakes:?}");
+        assert_eq!((settings.method, settings.ipd, settings.seed), (Method::Mono, Some(0.055), 7));
+        assert_eq!((settings.scene.as_str(), settings.hud), ("stage", false));
+    }
+
+    #[test]
+    fn a_mistake_costs_one_setting_and_one_sentence() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(FILE_NAME);
+        std::fs::write(&file, "seed = 7\nmethod = \"magic\"\ncolour = 1\n").unwrap();
+        let sources = Sources {
+            file: Some(file),
+            extras: pairs(&[("ipd", "2"), ("speed", "1")]),
+            properties: pairs(&[("hud", "perhaps"), ("render-scale", "0.5")]),
+            ..Sources::default()
+        };
+        let (settings, mistakes) = sources.resolve();
+        assert_eq!((settings.seed, settings.render_scale), (7, 0.5));
+        assert_eq!(Settings { seed: 1, render_scale: 1.0, ..settings }, Settings::default());
+        let expected = ["colour", "method", "ipd", "speed", "hud"];
+        assert_eq!(mistakes.len(), expected.len(), "{mistakes:#?}");
+        for key in expected {
+            assert_eq!(
+                mistakes.iter().filter(|m| m.contains(&format!("\"{key}\""))).count(),
+                1,
+                "{mistakes:#?}"
+            );
+        }
+        assert!(mistakes.iter().all(|m| !m.contains('\n')), "{mistakes:#?}");
+    }
+
+    #[test]
+    fn broken_and_missing_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(FILE_NAME);
+        let resolve = || Sources { file: Some(file.clone()), ..Sources::default() }.resolve();
+        assert_eq!(resolve(), (Settings::default(), Vec::new()));
+        std::fs::write(&file, "scene = = 1").unwrap();
+        let (settings, mistakes) = resolve();
+        assert_eq!((settings, mistakes.len()), (Settings::default(), 1));
+        assert!(mistakes[0].contains(FILE_NAME));
+        std::fs::write(&file, b"\xff\xfe").unwrap();
+        assert_eq!(resolve().1.len(), 1);
+    }
+
+    #[test]
+    fn properties_by_their_names() {
+        let set = HashMap::from([
+            ("debug.yoro.method", "mono"),
+            ("debug.yoro.guard-band", " 40px "),
+            ("debug.yoro.scene", ""),
+            ("debug.other.hud", "false"),
+        ]);
+        let found = properties(|name| set.get(name).map(|value| (*value).to_owned()));
+        assert_eq!(found, pairs(&[("method", "mono"), ("guard-band", "40px")]));
+    }
+
+    #[test]
+    fn a_new_property_is_stronger_than_what_was_done_by_hand() {
+        let mut sources = Sources {
+            properties: pairs(&[("hud", "false")]),
+            saved: pairs(&[("method", "mono"), ("ipd", "0.05")]),
+            ..Sources::default()
+        };
+        assert!(!sources.set_properties(pairs(&[("hud", "false")])));
+        assert!(sources.set_properties(pairs(&[("method", "conventional")])));
+        let (settings, mistakes) = sources.resolve();
+        assert_eq!((settings.method, settings.ipd, settings.hud), (Method::Conventional, Some(0.05), true));
+        assert!(mistakes.is_empty(), "{mistakes:?}");
+    }
+
+    #[test]
+    fn saved_settings_come_back() {
+        let saved = pairs(&[("method", "mono"), ("ipd", "0.064")]);
+        assert_eq!(restore(&save(&saved)), saved);
+        assert_eq!(restore(b"method=mono\nold-key=1\n\xff=\n=\nnonsense"), pairs(&[("method", "mono")]));
+        assert_eq!(restore(b""), Vec::new());
+    }
+}

@@ -1,0 +1,179 @@
+//! Tables for the page and as Markdown.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+/// What a cell stands for; decides how it looks on the page.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// A name or a fact.
+    #[default]
+    Plain,
+    /// A figure of ours.
+    Ours,
+    /// What ours is to be held against.
+    Base,
+    /// A figure of the paper's.
+    Paper,
+}
+
+/// A cell.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Cell {
+    /// Empty where there is nothing to say.
+    pub text: String,
+    /// What it stands for.
+    pub kind: Kind,
+    /// Columns that it takes.
+    pub span: usize,
+}
+
+impl Cell {
+    /// A name or a fact.
+    pub fn plain(text: impl Into<String>) -> Cell {
+        Cell { text: text.into(), kind: Kind::Plain, span: 1 }
+    }
+
+    /// A figure of ours; a dash without one.
+    pub fn ours(value: Option<impl Into<String>>) -> Cell {
+        Cell { text: or_dash(value), kind: Kind::Ours, span: 1 }
+    }
+
+    /// A baseline; a dash without one.
+    pub fn base(value: Option<impl Into<String>>) -> Cell {
+        Cell { text: or_dash(value), kind: Kind::Base, span: 1 }
+    }
+
+    /// The paper's; a dash where it says nothing.
+    pub fn paper(value: Option<impl Into<String>>) -> Cell {
+        Cell { text: or_dash(value), kind: Kind::Paper, span: 1 }
+    }
+}
+
+fn or_dash(value: Option<impl Into<String>>) -> String {
+    value.map_or_else(|| "–".to_owned(), Into::into)
+}
+
+/// A column's head.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Column {
+    /// Quantity and unit.
+    pub name: String,
+    /// Text, not numbers.
+    pub left: bool,
+}
+
+/// A row.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Line {
+    /// As many as columns, counting spans.
+    pub cells: Vec<Cell>,
+    /// A line above separates it from other things.
+    pub first: bool,
+}
+
+/// A table.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Table {
+    /// What it shows.
+    pub title: String,
+    /// Heads.
+    pub columns: Vec<Column>,
+    /// From top to bottom.
+    pub lines: Vec<Line>,
+    /// What must be known to read it.
+    pub note: String,
+}
+
+impl Table {
+    /// Without lines. Names of columns that start with `<` are those of text.
+    pub fn new(title: impl Into<String>, columns: &[impl AsRef<str>]) -> Table {
+        let column = |name: &str| match name.strip_prefix('<') {
+            Some(name) => Column { name: name.into(), left: true },
+            None => Column { name: name.into(), left: false },
+        };
+        let columns = columns.iter().map(|name| column(name.as_ref())).collect();
+        Table { title: title.into(), columns, lines: Vec::new(), note: String::new() }
+    }
+
+    /// Appends a row.
+    pub fn push(&mut self, cells: Vec<Cell>) {
+        self.lines.push(Line { cells, first: false });
+    }
+
+    /// Appends a row with a line above.
+    pub fn push_first(&mut self, cells: Vec<Cell>) {
+        self.lines.push(Line { cells, first: true });
+    }
+
+    /// Removes the last column.
+    pub fn drop_last_column(&mut self) {
+        self.columns.pop();
+        for line in &mut self.lines {
+            match line.cells.last_mut() {
+                Some(last) if last.span > 1 => last.span -= 1,
+                _ => drop(line.cells.pop()),
+            }
+        }
+    }
+
+    /// Appends a row that says why it has no figures, after its first cells.
+    pub fn push_reason(&mut self, mut cells: Vec<Cell>, reason: &str) {
+        let span = self.columns.len().saturating_sub(cells.len()).max(1);
+        cells.push(Cell { text: format!("not measured: {reason}"), kind: Kind::Base, span });
+        self.push(cells);
+    }
+
+    /// As Markdown of GitHub's kind.
+    pub fn markdown(&self) -> String {
+        let escape = |text: &str| text.replace('|', "\\|").replace(['\n', '\r'], " ").replace('<', "&lt;");
+        let mut out = format!("**{}**\n\n|", escape(&self.title));
+        for column in &self.columns {
+            let _ = write!(out, " {} |", escape(&column.name));
+        }
+        out.push_str("\n|");
+        for column in &self.columns {
+            out.push_str(if column.left { "---|" } else { "---:|" });
+        }
+        out.push('\n');
+        for line in &self.lines {
+            out.push('|');
+            for cell in &line.cells {
+                let text = match cell.kind {
+                    Kind::Paper if cell.text != "–" => format!("*{}*", escape(&cell.text)),
+                    _ => escape(&cell.text),
+                };
+                let _ = write!(out, " {text} |");
+                out.push_str(&" |".repeat(cell.span.saturating_sub(1)));
+            }
+            out.push('\n');
+        }
+        if !self.note.is_empty() {
+            let _ = writeln!(out, "\n{}", escape(&self.note));
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_markdown_row_has_as_many_cells_as_columns() {
+        let mut table = Table::new("Frame | time", &["<method", "ms", "the paper's"]);
+        table.push(vec![Cell::plain("a|b"), Cell::ours(Some("1.0")), Cell::paper(Some("2"))]);
+        table.push(vec![Cell::plain("c"), Cell::ours(None::<String>), Cell::paper(None::<String>)]);
+        table.push_reason(vec![Cell::plain("multiview")], "no GL_OVR_multiview2");
+        let markdown = table.markdown();
+        let lines: Vec<&str> = markdown.lines().skip(2).collect();
+        for line in &lines {
+            assert_eq!(line.replace("\\|", "").matches('|').count(), 4, "{line}");
+        }
+        assert_eq!(lines[1], "|---|---:|---:|");
+        assert_eq!(lines[2], "| a\\|b | 1.0 | *2* |");
+        assert_eq!(lines[4], "| multiview | not measured: no GL_OVR_multiview2 | |");
+    }
+}

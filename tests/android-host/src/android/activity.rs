@@ -1,0 +1,147 @@
+//! ANativeActivity: its structure, its callbacks and the application's folders.
+
+#![allow(non_snake_case)]
+
+use std::collections::BTreeMap;
+use std::ffi::{CString, c_char, c_int, c_void};
+use std::path::Path;
+use std::sync::atomic::Ordering;
+
+use anyhow::{Context, Result};
+use tempfile::TempDir;
+
+use crate::android::assets::Assets;
+use crate::android::input::AInputQueue;
+use crate::android::window::Window;
+use crate::exports::{Export, System, exports};
+use crate::host::host;
+
+/// `ARect`.
+#[repr(C)]
+#[derive(Debug)]
+pub struct ARect {
+    /// Pixels.
+    pub left: i32,
+    /// Pixels.
+    pub top: i32,
+    /// Pixels.
+    pub right: i32,
+    /// Pixels.
+    pub bottom: i32,
+}
+
+type Event = Option<unsafe extern "C" fn(*mut ANativeActivity)>;
+type WindowEvent = Option<unsafe extern "C" fn(*mut ANativeActivity, *const Window)>;
+type QueueEvent = Option<unsafe extern "C" fn(*mut ANativeActivity, *const AInputQueue)>;
+
+/// `ANativeActivityCallbacks`.
+#[repr(C)]
+#[derive(Default)]
+pub struct Callbacks {
+    pub onStart: Event,
+    pub onResume: Event,
+    pub onSaveInstanceState: Option<unsafe extern "C" fn(*mut ANativeActivity, *mut usize) -> *mut c_void>,
+    pub onPause: Event,
+    pub onStop: Event,
+    pub onDestroy: Event,
+    pub onWindowFocusChanged: Option<unsafe extern "C" fn(*mut ANativeActivity, c_int)>,
+    pub onNativeWindowCreated: WindowEvent,
+    pub onNativeWindowResized: WindowEvent,
+    pub onNativeWindowRedrawNeeded: WindowEvent,
+    pub onNativeWindowDestroyed: WindowEvent,
+    pub onInputQueueCreated: QueueEvent,
+    pub onInputQueueDestroyed: QueueEvent,
+    pub onContentRectChanged: Option<unsafe extern "C" fn(*mut ANativeActivity, *const ARect)>,
+    pub onConfigurationChanged: Event,
+    pub onLowMemory: Event,
+}
+
+/// `ANativeActivity`.
+#[repr(C)]
+#[derive(Debug)]
+pub struct ANativeActivity {
+    pub callbacks: *mut Callbacks,
+    pub vm: *const c_void,
+    pub env: *const c_void,
+    pub clazz: *const c_void,
+    pub internalDataPath: *const c_char,
+    pub externalDataPath: *const c_char,
+    pub sdkVersion: i32,
+    pub instance: *mut c_void,
+    pub assetManager: *const Assets,
+    pub obbPath: *const c_char,
+}
+
+/// `ANativeActivity_onCreate`.
+pub type OnCreate = unsafe extern "C" fn(*mut ANativeActivity, *const c_void, usize);
+
+/// The application's folders, removed at the end.
+pub struct Directories {
+    internal: CString,
+    external: CString,
+    // Only a process that ends by itself removes it; the host ends by `_exit` and removes it by hand.
+    root: TempDir,
+}
+
+impl Directories {
+    /// Folders with the script's files in the external one.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn new(files: &BTreeMap<String, String>) -> Result<Self> {
+        let root = tempfile::Builder::new()
+            .prefix("yoro-android-host-")
+            .tempdir()
+            .context("no temporary folder for the application's files")?;
+        let folder = |name: &str| -> Result<CString> {
+            let path = root.path().join(name);
+            std::fs::create_dir_all(&path).with_context(|| format!("cannot make {}", path.display()))?;
+            Ok(CString::new(path.into_os_string().into_encoded_bytes())?)
+        };
+        let (internal, external) = (folder("internal")?, folder("external")?);
+        for (path, text) in files {
+            let path = root.path().join("external").join(path);
+            std::fs::create_dir_all(path.parent().unwrap_or(Path::new("/")))
+                .and_then(|()| std::fs::write(&path, text))
+                .with_context(|| format!("cannot write {}", path.display()))?;
+        }
+        Ok(Self { internal, external, root })
+    }
+
+    /// `getFilesDir`.
+    pub fn internal(&self) -> &CString {
+        &self.internal
+    }
+
+    /// `getExternalFilesDir(null)`.
+    pub fn external(&self) -> &CString {
+        &self.external
+    }
+
+    /// Removes everything.
+    pub fn remove(&self) {
+        // Nothing depends on it: a folder that stays is in the system's temporary folder.
+        _ = std::fs::remove_dir_all(self.root.path());
+    }
+}
+
+/// What libandroid.so exports of it.
+pub fn exports() -> Vec<Export> {
+    exports![System::Android, 1: [
+        ANativeActivity_finish, ANativeActivity_hideSoftInput, ANativeActivity_setWindowFlags, ANativeActivity_setWindowFormat,
+        ANativeActivity_showSoftInput,
+    ]]
+}
+
+extern "C" fn ANativeActivity_finish(_activity: *mut ANativeActivity) {
+    host().finish_asked.store(true, Ordering::Release);
+    host().frames.event.signal();
+}
+
+extern "C" fn ANativeActivity_setWindowFlags(_activity: *mut ANativeActivity, _add: u32, _remove: u32) {}
+
+extern "C" fn ANativeActivity_setWindowFormat(_activity: *mut ANativeActivity, _format: i32) {}
+
+extern "C" fn ANativeActivity_showSoftInput(_activity: *mut ANativeActivity, _flags: u32) {}
+
+extern "C" fn ANativeActivity_hideSoftInput(_activity: *mut ANativeActivity, _flags: u32) {}

@@ -1,0 +1,274 @@
+//! AInputQueue and the events in it.
+
+#![allow(non_snake_case)]
+
+use std::collections::VecDeque;
+use std::ffi::{c_int, c_void};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, OnceLock};
+
+use crate::android::looper::{ALooper, Callback};
+use crate::exports::{Export, System, exports};
+use crate::fd::EventFd;
+use crate::host::{host, lock};
+
+/// Totals for the summary.
+#[derive(Default)]
+pub struct InputCounts {
+    /// Sent.
+    pub sent: AtomicU64,
+    /// Finished by the application.
+    pub finished: AtomicU64,
+    /// Of these, said to be handled.
+    pub handled: AtomicU64,
+}
+
+/// A touch or a key. `repr(C)` is not needed: the application only hands it back.
+#[derive(Clone, Debug)]
+pub enum AInputEvent {
+    /// Of the touch screen, one finger.
+    Motion {
+        /// `AMOTION_EVENT_ACTION_*`.
+        action: MotionAction,
+        /// Pixels from the left.
+        x: f32,
+        /// Pixels from the top.
+        y: f32,
+        /// Nanoseconds.
+        down: u64,
+        /// Nanoseconds.
+        time: u64,
+    },
+    /// Of a button.
+    Key {
+        /// Whether it goes down.
+        down: bool,
+        /// `AKEYCODE_*`.
+        code: c_int,
+        /// Nanoseconds.
+        down_time: u64,
+        /// Nanoseconds.
+        time: u64,
+    },
+}
+
+/// What a finger does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionAction {
+    /// `AMOTION_EVENT_ACTION_DOWN`.
+    Down = 0,
+    /// `AMOTION_EVENT_ACTION_UP`.
+    Up = 1,
+}
+
+/// A queue that the system hands to the activity.
+pub struct AInputQueue {
+    event: EventFd,
+    state: Mutex<QueueState>,
+}
+
+#[derive(Default)]
+struct QueueState {
+    events: VecDeque<AInputEvent>,
+    looper: Option<&'static ALooper>,
+}
+
+impl AInputQueue {
+    /// The process's one, emptied: activities come one after the other, and an application may hold the pointer a little
+    /// longer than it should.
+    pub fn fresh() -> &'static Self {
+        static QUEUE: OnceLock<AInputQueue> = OnceLock::new();
+        let queue = QUEUE.get_or_init(|| Self { event: EventFd::new(), state: Mutex::default() });
+        lock(&queue.state).events.clear();
+        queue.event.clear();
+        queue
+    }
+
+    /// Sends an event.
+    pub fn push(&self, event: AInputEvent) {
+        host().input.sent.fetch_add(1, Ordering::Relaxed);
+        lock(&self.state).events.push_back(event);
+        self.event.signal();
+    }
+
+    /// Whether the application still listens: it must not when the queue is destroyed.
+    pub fn is_attached(&self) -> bool {
+        lock(&self.state).looper.is_some()
+    }
+}
+
+/// What libandroid.so exports of it.
+pub fn exports() -> Vec<Export> {
+    exports![
+        System::Android, 1: [
+            AInputQueue_attachLooper, AInputQueue_detachLooper, AInputQueue_finishEvent, AInputQueue_getEvent, AInputQueue_hasEvents,
+            AInputQueue_preDispatchEvent, AInputEvent_getDeviceId, AInputEvent_getSource, AInputEvent_getType, AKeyEvent_getAction,
+            AKeyEvent_getDownTime, AKeyEvent_getEventTime, AKeyEvent_getFlags, AKeyEvent_getKeyCode, AKeyEvent_getMetaState,
+            AKeyEvent_getRepeatCount, AKeyEvent_getScanCode, AMotionEvent_getAction, AMotionEvent_getAxisValue, AMotionEvent_getButtonState,
+            AMotionEvent_getDownTime, AMotionEvent_getEdgeFlags, AMotionEvent_getEventTime, AMotionEvent_getFlags,
+            AMotionEvent_getHistorySize, AMotionEvent_getMetaState, AMotionEvent_getOrientation, AMotionEvent_getPointerCount,
+            AMotionEvent_getPointerId, AMotionEvent_getPressure, AMotionEvent_getRawX, AMotionEvent_getRawY, AMotionEvent_getSize,
+            AMotionEvent_getToolMajor, AMotionEvent_getToolMinor, AMotionEvent_getToolType, AMotionEvent_getTouchMajor,
+            AMotionEvent_getTouchMinor, AMotionEvent_getX, AMotionEvent_getXOffset, AMotionEvent_getXPrecision, AMotionEvent_getY,
+            AMotionEvent_getYOffset, AMotionEvent_getYPrecision,
+        ];
+        System::Android, 31: [AInputEvent_release];
+        System::Android, 33: [AMotionEvent_getActionButton, AMotionEvent_getClassification];
+    ]
+}
+
+extern "C" fn AInputQueue_attachLooper(
+    queue: &AInputQueue,
+    looper: &'static ALooper,
+    ident: c_int,
+    callback: Option<Callback>,
+    data: *mut c_void,
+) {
+    lock(&queue.state).looper = Some(looper);
+    looper.add(queue.event.raw(), ident, 1, callback, data);
+}
+
+extern "C" fn AInputQueue_detachLooper(queue: &AInputQueue) {
+    if let Some(looper) = lock(&queue.state).looper.take() {
+        looper.remove(queue.event.raw());
+    }
+}
+
+extern "C" fn AInputQueue_hasEvents(queue: &AInputQueue) -> i32 {
+    i32::from(!lock(&queue.state).events.is_empty())
+}
+
+unsafe extern "C" fn AInputQueue_getEvent(queue: &AInputQueue, out: *mut *mut AInputEvent) -> i32 {
+    let mut state = lock(&queue.state);
+    let Some(event) = state.events.pop_front() else {
+        queue.event.clear();
+        return -libc::EAGAIN;
+    };
+    if state.events.is_empty() {
+        queue.event.clear();
+    }
+    // SAFETY: the caller gives room for one pointer.
+    unsafe { out.write(Box::into_raw(Box::new(event))) };
+    host().count("input events", 1);
+    0
+}
+
+extern "C" fn AInputQueue_preDispatchEvent(_queue: &AInputQueue, _event: &AInputEvent) -> bool {
+    false
+}
+
+unsafe extern "C" fn AInputQueue_finishEvent(_queue: &AInputQueue, event: *mut AInputEvent, handled: c_int) {
+    let host = host();
+    host.input.finished.fetch_add(1, Ordering::Relaxed);
+    host.input.handled.fetch_add(u64::from(handled != 0), Ordering::Relaxed);
+    host.count("input events", -1);
+    // SAFETY: made by getEvent and finished once by contract.
+    drop(unsafe { Box::from_raw(event) });
+}
+
+extern "C" fn AInputEvent_release(_event: &AInputEvent) {
+    host().violation("AInputEvent_release of an event that came from a queue: finish it instead");
+}
+
+/// `AINPUT_EVENT_TYPE_KEY` is 1, `_MOTION` 2.
+extern "C" fn AInputEvent_getType(event: &AInputEvent) -> i32 {
+    match event {
+        AInputEvent::Key { .. } => 1,
+        AInputEvent::Motion { .. } => 2,
+    }
+}
+
+/// `AINPUT_SOURCE_KEYBOARD` and `_TOUCHSCREEN`.
+extern "C" fn AInputEvent_getSource(event: &AInputEvent) -> i32 {
+    match event {
+        AInputEvent::Key { .. } => 0x101,
+        AInputEvent::Motion { .. } => 0x1002,
+    }
+}
+
+extern "C" fn AInputEvent_getDeviceId(_event: &AInputEvent) -> i32 {
+    1
+}
+
+/// Getters of one kind of event; of the other kind they are a violation and give zero.
+macro_rules! getters {
+    ($($name:ident: $pattern:pat => $value:expr, $type:ty;)*) => {
+        $(extern "C" fn $name(event: &AInputEvent) -> $type {
+            #[allow(unreachable_patterns)]
+            match event {
+                $pattern => $value,
+                _ => {
+                    host().violation(concat!(stringify!($name), " of an event of another kind"));
+                    <$type>::default()
+                }
+            }
+        })*
+    };
+}
+
+getters! {
+    AKeyEvent_getAction: AInputEvent::Key { down, .. } => i32::from(!*down), i32;
+    AKeyEvent_getKeyCode: AInputEvent::Key { code, .. } => *code, i32;
+    AKeyEvent_getDownTime: AInputEvent::Key { down_time, .. } => *down_time as i64, i64;
+    AKeyEvent_getEventTime: AInputEvent::Key { time, .. } => *time as i64, i64;
+    AKeyEvent_getFlags: AInputEvent::Key { .. } => 8, i32;
+    AKeyEvent_getMetaState: AInputEvent::Key { .. } => 0, i32;
+    AKeyEvent_getRepeatCount: AInputEvent::Key { .. } => 0, i32;
+    AKeyEvent_getScanCode: AInputEvent::Key { .. } => 0, i32;
+    AMotionEvent_getAction: AInputEvent::Motion { action, .. } => *action as i32, i32;
+    AMotionEvent_getActionButton: AInputEvent::Motion { .. } => 0, i32;
+    AMotionEvent_getButtonState: AInputEvent::Motion { .. } => 0, i32;
+    AMotionEvent_getClassification: AInputEvent::Motion { .. } => 0, i32;
+    AMotionEvent_getDownTime: AInputEvent::Motion { down, .. } => *down as i64, i64;
+    AMotionEvent_getEdgeFlags: AInputEvent::Motion { .. } => 0, i32;
+    AMotionEvent_getEventTime: AInputEvent::Motion { time, .. } => *time as i64, i64;
+    AMotionEvent_getFlags: AInputEvent::Motion { .. } => 0, i32;
+    AMotionEvent_getHistorySize: AInputEvent::Motion { .. } => 0, usize;
+    AMotionEvent_getMetaState: AInputEvent::Motion { .. } => 0, i32;
+    AMotionEvent_getPointerCount: AInputEvent::Motion { .. } => 1, usize;
+    AMotionEvent_getXOffset: AInputEvent::Motion { .. } => 0.0, f32;
+    AMotionEvent_getYOffset: AInputEvent::Motion { .. } => 0.0, f32;
+    AMotionEvent_getXPrecision: AInputEvent::Motion { .. } => 1.0, f32;
+    AMotionEvent_getYPrecision: AInputEvent::Motion { .. } => 1.0, f32;
+}
+
+/// Getters of the one finger; an index beyond it is a violation and gives zero.
+macro_rules! pointer_getters {
+    ($($name:ident: $pattern:pat => $value:expr, $type:ty;)*) => {
+        $(extern "C" fn $name(event: &AInputEvent, index: usize) -> $type {
+            match event {
+                $pattern if index == 0 => $value,
+                _ => {
+                    host().violation(concat!(stringify!($name), " of a pointer that the event does not have"));
+                    <$type>::default()
+                }
+            }
+        })*
+    };
+}
+
+pointer_getters! {
+    AMotionEvent_getPointerId: AInputEvent::Motion { .. } => 0, i32;
+    AMotionEvent_getToolType: AInputEvent::Motion { .. } => 1, i32;
+    AMotionEvent_getX: AInputEvent::Motion { x, .. } => *x, f32;
+    AMotionEvent_getY: AInputEvent::Motion { y, .. } => *y, f32;
+    AMotionEvent_getRawX: AInputEvent::Motion { x, .. } => *x, f32;
+    AMotionEvent_getRawY: AInputEvent::Motion { y, .. } => *y, f32;
+    AMotionEvent_getPressure: AInputEvent::Motion { .. } => 1.0, f32;
+    AMotionEvent_getSize: AInputEvent::Motion { .. } => 0.1, f32;
+    AMotionEvent_getTouchMajor: AInputEvent::Motion { .. } => 10.0, f32;
+    AMotionEvent_getTouchMinor: AInputEvent::Motion { .. } => 10.0, f32;
+    AMotionEvent_getToolMajor: AInputEvent::Motion { .. } => 10.0, f32;
+    AMotionEvent_getToolMinor: AInputEvent::Motion { .. } => 10.0, f32;
+    AMotionEvent_getOrientation: AInputEvent::Motion { .. } => 0.0, f32;
+}
+
+/// `AMOTION_EVENT_AXIS_X` is 0, `_Y` 1, `_PRESSURE` 2; a finger has no others.
+extern "C" fn AMotionEvent_getAxisValue(event: &AInputEvent, axis: i32, index: usize) -> f32 {
+    match axis {
+        0 => AMotionEvent_getX(event, index),
+        1 => AMotionEvent_getY(event, index),
+        2 => AMotionEvent_getPressure(event, index),
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,158 @@
+//! liblog: what the application logs goes into the summary, and to standard error when asked for.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::ffi::{c_char, c_int};
+use std::sync::Mutex;
+
+use crate::bionic::{text, thread_name};
+use crate::exports::{Export, System, exports};
+use crate::host::{fatal, host, lock};
+use crate::summary::LogLine;
+
+/// The application's own tag: the telemetry's.
+pub const TAG: &str = "YORO";
+
+/// Everything logged so far.
+pub struct Log {
+    verbose: bool,
+    state: Mutex<Collected>,
+    abort_message: Mutex<String>,
+}
+
+/// What the summary takes.
+#[derive(Clone, Default)]
+pub struct Collected {
+    /// Lines of [`TAG`] and errors.
+    pub lines: Vec<LogLine>,
+    /// Lines by tag.
+    pub counts: BTreeMap<String, u64>,
+    recent: VecDeque<String>,
+    total: usize,
+}
+
+/// Lines kept for the summary, and for those who wait for one: an application that fails in a loop logs millions.
+const KEPT: usize = 5000;
+
+impl Log {
+    /// An empty log.
+    pub fn new(verbose: bool) -> Self {
+        Self { verbose, state: Mutex::default(), abort_message: Mutex::default() }
+    }
+
+    /// Whether everything is shown.
+    pub fn is_verbose(&self) -> bool {
+        self.verbose
+    }
+
+    fn add(&self, priority: c_int, tag: String, text: String) {
+        let host = host();
+        let priority = *b"??VDIWEFS".get(priority as usize).unwrap_or(&b'?') as char;
+        let line = LogLine { seconds: host.clock.seconds(), frame: host.frames.shown(), priority, tag, text };
+        let shown =
+            format!("{:9.3} {}/{} ({}): {}", line.seconds, line.priority, line.tag, thread_name(), line.text);
+        if self.verbose {
+            host.say(&shown);
+        }
+        let mut state = lock(&self.state);
+        *state
+            .counts
+            .entry(if matches!(priority, 'E' | 'F') {
+                format!("{} {priority}", line.tag)
+            } else {
+                line.tag.clone()
+            })
+            .or_default() += 1;
+        state.recent.push_back(format!("{}/{}: {}", line.priority, line.tag, line.text));
+        state.total += 1;
+        if state.recent.len() > KEPT {
+            state.recent.pop_front();
+        }
+        if (line.tag == TAG || matches!(priority, 'E' | 'F')) && state.lines.len() < KEPT {
+            state.lines.push(line);
+        }
+    }
+
+    /// For the summary.
+    pub fn collected(&self) -> Collected {
+        lock(&self.state).clone()
+    }
+
+    /// The number of the first line from number `from` on that contains the text, of any tag.
+    pub fn find(&self, from: usize, text: &str) -> Option<usize> {
+        let state = lock(&self.state);
+        let first = state.total - state.recent.len();
+        let skipped = from.saturating_sub(first);
+        state
+            .recent
+            .iter()
+            .skip(skipped)
+            .position(|line| line.contains(text))
+            .map(|index| first + skipped + index)
+    }
+
+    /// Called before `abort`.
+    pub fn set_abort_message(&self, message: String) {
+        *lock(&self.abort_message) = message;
+    }
+
+    /// The message, or else the last lines, for a failure's text.
+    pub fn abort_message(&self) -> String {
+        let message = lock(&self.abort_message).clone();
+        let state = lock(&self.state);
+        let last: Vec<_> =
+            state.recent.iter().skip(state.recent.len().saturating_sub(5)).map(String::as_str).collect();
+        if message.is_empty() {
+            format!("; last log lines: {}", last.join(" | "))
+        } else {
+            format!(": {message}")
+        }
+    }
+}
+
+/// What liblog.so exports.
+pub fn exports() -> Vec<Export> {
+    exports![
+        System::Log, 1: [__android_log_assert, __android_log_buf_write, __android_log_write];
+        System::Log, 30: [__android_log_is_loggable, __android_log_get_minimum_priority];
+    ]
+}
+
+unsafe extern "C" fn __android_log_write(
+    priority: c_int,
+    tag: *const c_char,
+    message: *const c_char,
+) -> c_int {
+    // SAFETY: terminated strings by contract.
+    let (tag, message) = unsafe { (text(tag), text(message)) };
+    host().log.add(priority, tag, message.trim_end_matches('\n').to_owned());
+    1
+}
+
+unsafe extern "C" fn __android_log_buf_write(
+    _buffer: c_int,
+    priority: c_int,
+    tag: *const c_char,
+    message: *const c_char,
+) -> c_int {
+    // SAFETY: same contract as the caller's.
+    unsafe { __android_log_write(priority, tag, message) }
+}
+
+/// The format's arguments cannot be read here: the condition and the format are shown as they are.
+unsafe extern "C" fn __android_log_assert(
+    condition: *const c_char,
+    tag: *const c_char,
+    format: *const c_char,
+) -> ! {
+    // SAFETY: null or terminated strings by contract.
+    let (condition, tag, format) = unsafe { (text(condition), text(tag), text(format)) };
+    fatal(format!("the application called __android_log_assert({condition:?}, {tag:?}, {format:?})"))
+}
+
+extern "C" fn __android_log_is_loggable(_priority: c_int, _tag: *const c_char, _default: c_int) -> c_int {
+    1
+}
+
+extern "C" fn __android_log_get_minimum_priority() -> c_int {
+    2
+}

@@ -1,0 +1,454 @@
+//! ASensorManager: a gyroscope and an accelerometer on a head whose motion the script tells. Samples lie on the virtual
+//! clock, at the rate that the application asked for.
+//!
+//! The phone is held in landscape, its left side down (`ROTATION_90`): the device's x axis points up, its y axis to the
+//! head's left, its z axis backwards, to the eyes.
+
+#![allow(non_snake_case)]
+
+use std::collections::{HashMap, VecDeque};
+use std::ffi::{CStr, c_char, c_int, c_void};
+use std::sync::Mutex;
+
+use glam::{EulerRot, Quat, Vec3};
+
+use crate::android::looper::{ALooper, Callback};
+use crate::exports::{Export, System, exports};
+use crate::fd::EventFd;
+use crate::host::{host, lock};
+use crate::script::{Device, SensorKind};
+
+/// m/s².
+const GRAVITY: f32 = 9.81;
+/// What a queue holds before it drops the oldest, as hardware does.
+const FIFO: usize = 4096;
+/// `SENSOR_DELAY_NORMAL`, what a sensor has until a rate is set; nanoseconds.
+const DEFAULT_PERIOD: u64 = 200_000_000;
+/// Fastest rate, nanoseconds.
+const MIN_PERIOD: u64 = 5_000_000;
+
+/// A sensor of the device.
+pub struct ASensor {
+    kind: SensorKind,
+    name: &'static CStr,
+    string_type: &'static CStr,
+}
+
+impl ASensor {
+    fn type_number(&self) -> c_int {
+        match self.kind {
+            SensorKind::Accelerometer => 1,
+            SensorKind::Gyroscope => 4,
+            SensorKind::GyroscopeUncalibrated => 16,
+        }
+    }
+}
+
+/// `ASensorEvent`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ASensorEvent {
+    version: i32,
+    sensor: i32,
+    kind: i32,
+    reserved0: i32,
+    timestamp: i64,
+    data: [f32; 16],
+    flags: u32,
+    reserved1: [i32; 3],
+}
+
+const _: () = assert!(size_of::<ASensorEvent>() == 104);
+
+/// A queue of the application.
+pub struct ASensorEventQueue {
+    looper: *const ALooper,
+    event: EventFd,
+    state: Mutex<QueueState>,
+}
+
+// SAFETY: the looper outlives its queues by contract and is only used through functions that lock.
+unsafe impl Send for ASensorEventQueue {}
+// SAFETY: as above; everything else is locked.
+unsafe impl Sync for ASensorEventQueue {}
+
+#[derive(Default)]
+struct QueueState {
+    enabled: HashMap<c_int, Schedule>,
+    pending: VecDeque<ASensorEvent>,
+}
+
+#[derive(Clone, Copy)]
+struct Schedule {
+    period: u64,
+    next: u64,
+}
+
+/// A turn of the head.
+#[derive(Clone, Copy)]
+struct Motion {
+    from: Quat,
+    to: Quat,
+    start: u64,
+    duration: u64,
+}
+
+impl Motion {
+    /// Head to world.
+    fn orientation(&self, at: u64) -> Quat {
+        if self.duration == 0 {
+            return self.to;
+        }
+        let part = (at.saturating_sub(self.start) as f32 / self.duration as f32).clamp(0.0, 1.0);
+        self.from.slerp(self.to, part * part * (3.0 - 2.0 * part))
+    }
+}
+
+/// The sensors of the device and the head they are on.
+pub struct Sensors {
+    list: Vec<&'static ASensor>,
+    bias: Vec3,
+    motion: Mutex<Motion>,
+    queues: Mutex<Vec<&'static ASensorEventQueue>>,
+}
+
+impl Sensors {
+    /// The sensors that the script gives the device; the head looks straight ahead.
+    pub fn new(device: &Device) -> Self {
+        let list = device
+            .sensors
+            .iter()
+            .map(|kind| {
+                let (name, string_type) = match kind {
+                    SensorKind::Accelerometer => {
+                        (c"Simulated accelerometer", c"android.sensor.accelerometer")
+                    }
+                    SensorKind::Gyroscope => (c"Simulated gyroscope", c"android.sensor.gyroscope"),
+                    SensorKind::GyroscopeUncalibrated => {
+                        (c"Simulated gyroscope, uncalibrated", c"android.sensor.gyroscope_uncalibrated")
+                    }
+                };
+                &*Box::leak(Box::new(ASensor { kind: *kind, name, string_type }))
+            })
+            .collect();
+        let still = Motion { from: Quat::IDENTITY, to: Quat::IDENTITY, start: 0, duration: 0 };
+        Self { list, bias: device.gyroscope_bias.into(), motion: Mutex::new(still), queues: Mutex::default() }
+    }
+
+    /// Turns the head to an orientation (degrees; yaw to the left, then pitch up, then roll to the left) within `duration` nanoseconds
+    /// from `now` on, at first faster and faster, then slower.
+    pub fn turn(&self, yaw: f32, pitch: f32, roll: f32, now: u64, duration: u64) {
+        self.fill(now);
+        let to = Quat::from_euler(EulerRot::YXZ, yaw.to_radians(), pitch.to_radians(), roll.to_radians());
+        let mut motion = lock(&self.motion);
+        *motion = Motion { from: motion.orientation(now), to, start: now, duration };
+    }
+
+    /// Head axes to device axes.
+    fn to_device(vector: Vec3) -> Vec3 {
+        Vec3::new(vector.y, -vector.x, vector.z)
+    }
+
+    fn sample(&self, sensor: &ASensor, at: u64, period: u64) -> ASensorEvent {
+        let motion = *lock(&self.motion);
+        let head = motion.orientation(at);
+        let mut data = [0.0; 16];
+        match sensor.kind {
+            SensorKind::Accelerometer => {
+                let up = Self::to_device(head.inverse() * Vec3::new(0.0, GRAVITY, 0.0));
+                data[..3].copy_from_slice(&up.to_array());
+            }
+            SensorKind::Gyroscope | SensorKind::GyroscopeUncalibrated => {
+                // The mean rate since the last sample, so that integrating the samples gives the orientation.
+                let mut turned = motion.orientation(at - period).inverse() * head;
+                if turned.w < 0.0 {
+                    turned = -turned;
+                }
+                let rate = Self::to_device(turned.to_scaled_axis() / (period as f32 * 1e-9));
+                let calibrated = sensor.kind == SensorKind::Gyroscope;
+                let measured = if calibrated { rate } else { rate + self.bias };
+                data[..3].copy_from_slice(&measured.to_array());
+            }
+        }
+        ASensorEvent {
+            version: size_of::<ASensorEvent>() as i32,
+            sensor: sensor.type_number(),
+            kind: sensor.type_number(),
+            reserved0: 0,
+            timestamp: at as i64,
+            data,
+            flags: 0,
+            reserved1: [0; 3],
+        }
+    }
+
+    /// Puts the samples up to `now` into the queues.
+    pub fn fill(&self, now: u64) {
+        for queue in lock(&self.queues).iter() {
+            let mut state = lock(&queue.state);
+            let mut new = Vec::new();
+            for sensor in &self.list {
+                if let Some(schedule) = state.enabled.get_mut(&sensor.type_number()) {
+                    // After a long sleep only what the FIFO would hold.
+                    let backlog =
+                        (now.saturating_sub(schedule.next) / schedule.period).saturating_sub(FIFO as u64);
+                    schedule.next += backlog * schedule.period;
+                    while schedule.next <= now {
+                        new.push(self.sample(sensor, schedule.next, schedule.period));
+                        schedule.next += schedule.period;
+                    }
+                }
+            }
+            new.sort_by_key(|event| event.timestamp);
+            state.pending.extend(new);
+            let excess = state.pending.len().saturating_sub(FIFO);
+            state.pending.drain(..excess);
+            if !state.pending.is_empty() {
+                queue.event.signal();
+            }
+        }
+    }
+
+    /// When the queue with this descriptor gets its next sample.
+    pub fn next_event(&self, fd: c_int) -> Option<u64> {
+        let queues = lock(&self.queues);
+        let queue = queues.iter().find(|queue| queue.event.raw() == fd)?;
+        lock(&queue.state).enabled.values().map(|schedule| schedule.next).min()
+    }
+}
+
+/// What libandroid.so exports of it.
+pub fn exports() -> Vec<Export> {
+    exports![
+        System::Android, 1: [
+            ASensorEventQueue_disableSensor, ASensorEventQueue_enableSensor, ASensorEventQueue_getEvents, ASensorEventQueue_hasEvents,
+            ASensorEventQueue_registerSensor, ASensorEventQueue_setEventRate, ASensorManager_createEventQueue,
+            ASensorManager_destroyEventQueue, ASensorManager_getDefaultSensor, ASensorManager_getInstance,
+            ASensorManager_getInstanceForPackage, ASensorManager_getSensorList, ASensor_getFifoMaxEventCount,
+            ASensor_getFifoReservedEventCount, ASensor_getMinDelay, ASensor_getName, ASensor_getReportingMode, ASensor_getResolution,
+            ASensor_getStringType, ASensor_getType, ASensor_getVendor, ASensor_isWakeUpSensor,
+        ];
+        System::Android, 29: [ASensor_getHandle];
+    ]
+}
+
+extern "C" fn ASensorManager_getInstance() -> *const Sensors {
+    &raw const host().sensors
+}
+
+extern "C" fn ASensorManager_getInstanceForPackage(_package: *const c_char) -> *const Sensors {
+    &raw const host().sensors
+}
+
+unsafe extern "C" fn ASensorManager_getSensorList(
+    _manager: *const c_void,
+    list: *mut *const &'static ASensor,
+) -> c_int {
+    let sensors = &host().sensors.list;
+    if !list.is_null() {
+        // SAFETY: not null, so the caller gives room for one pointer; the list lives as long as the process.
+        unsafe { list.write(sensors.as_ptr()) };
+    }
+    sensors.len() as c_int
+}
+
+extern "C" fn ASensorManager_getDefaultSensor(_manager: *const c_void, kind: c_int) -> *const ASensor {
+    host()
+        .sensors
+        .list
+        .iter()
+        .find(|sensor| sensor.type_number() == kind)
+        .map_or(std::ptr::null(), |sensor| std::ptr::from_ref(*sensor))
+}
+
+unsafe extern "C" fn ASensorManager_createEventQueue(
+    _manager: *const c_void,
+    looper: *const ALooper,
+    ident: c_int,
+    callback: Option<Callback>,
+    data: *mut c_void,
+) -> *const ASensorEventQueue {
+    let queue =
+        Box::leak(Box::new(ASensorEventQueue { looper, event: EventFd::new(), state: Mutex::default() }));
+    // SAFETY: a live looper by contract.
+    unsafe { &*looper }.add(queue.event.raw(), ident, 1, callback, data);
+    let host = host();
+    lock(&host.sensors.queues).push(queue);
+    host.count("sensor queues", 1);
+    queue
+}
+
+unsafe extern "C" fn ASensorManager_destroyEventQueue(
+    _manager: *const c_void,
+    queue: *mut ASensorEventQueue,
+) -> c_int {
+    let host = host();
+    let mut queues = lock(&host.sensors.queues);
+    let before = queues.len();
+    queues.retain(|known| !std::ptr::eq(*known, queue));
+    if queues.len() == before {
+        host.violation("ASensorManager_destroyEventQueue of a queue that does not exist");
+        return -libc::EINVAL;
+    }
+    host.count("sensor queues", -1);
+    // SAFETY: made by createEventQueue and, being in the list until now, not destroyed before.
+    let queue = unsafe { Box::from_raw(queue) };
+    // SAFETY: the looper outlives its queues by contract.
+    unsafe { &*queue.looper }.remove(queue.event.raw());
+    0
+}
+
+impl ASensorEventQueue {
+    fn enable(&self, sensor: &ASensor, period: Option<u64>) {
+        let now = host().clock.now();
+        let mut state = lock(&self.state);
+        let schedule = state
+            .enabled
+            .entry(sensor.type_number())
+            .or_insert(Schedule { period: DEFAULT_PERIOD, next: now + DEFAULT_PERIOD });
+        if let Some(period) = period {
+            let period = period.max(MIN_PERIOD);
+            *schedule = Schedule { period, next: now + period };
+        }
+    }
+}
+
+extern "C" fn ASensorEventQueue_enableSensor(queue: &ASensorEventQueue, sensor: &ASensor) -> c_int {
+    queue.enable(sensor, None);
+    0
+}
+
+extern "C" fn ASensorEventQueue_registerSensor(
+    queue: &ASensorEventQueue,
+    sensor: &ASensor,
+    period_us: i32,
+    _latency_us: i64,
+) -> c_int {
+    queue.enable(sensor, Some(period_us.max(0) as u64 * 1000));
+    0
+}
+
+extern "C" fn ASensorEventQueue_setEventRate(
+    queue: &ASensorEventQueue,
+    sensor: &ASensor,
+    period_us: i32,
+) -> c_int {
+    if !lock(&queue.state).enabled.contains_key(&sensor.type_number()) {
+        return -libc::EINVAL;
+    }
+    queue.enable(sensor, Some(period_us.max(0) as u64 * 1000));
+    0
+}
+
+extern "C" fn ASensorEventQueue_disableSensor(queue: &ASensorEventQueue, sensor: &ASensor) -> c_int {
+    lock(&queue.state).enabled.remove(&sensor.type_number());
+    0
+}
+
+extern "C" fn ASensorEventQueue_hasEvents(queue: &ASensorEventQueue) -> c_int {
+    let host = host();
+    host.sensors.fill(host.clock.now());
+    c_int::from(!lock(&queue.state).pending.is_empty())
+}
+
+unsafe extern "C" fn ASensorEventQueue_getEvents(
+    queue: &ASensorEventQueue,
+    events: *mut ASensorEvent,
+    count: usize,
+) -> isize {
+    let host = host();
+    host.sensors.fill(host.clock.now());
+    let mut state = lock(&queue.state);
+    let taken = count.min(state.pending.len());
+    for (index, event) in state.pending.drain(..taken).enumerate() {
+        // SAFETY: the caller gives room for `count` events.
+        unsafe { events.add(index).write(event) };
+    }
+    if state.pending.is_empty() {
+        queue.event.clear();
+    }
+    taken as isize
+}
+
+extern "C" fn ASensor_getName(sensor: &ASensor) -> *const c_char {
+    sensor.name.as_ptr()
+}
+
+extern "C" fn ASensor_getVendor(_sensor: &ASensor) -> *const c_char {
+    c"simulated".as_ptr()
+}
+
+extern "C" fn ASensor_getType(sensor: &ASensor) -> c_int {
+    sensor.type_number()
+}
+
+extern "C" fn ASensor_getHandle(sensor: &ASensor) -> c_int {
+    sensor.type_number()
+}
+
+extern "C" fn ASensor_getStringType(sensor: &ASensor) -> *const c_char {
+    sensor.string_type.as_ptr()
+}
+
+extern "C" fn ASensor_getResolution(_sensor: &ASensor) -> f32 {
+    1e-3
+}
+
+extern "C" fn ASensor_getMinDelay(_sensor: &ASensor) -> c_int {
+    (MIN_PERIOD / 1000) as c_int
+}
+
+extern "C" fn ASensor_getFifoMaxEventCount(_sensor: &ASensor) -> c_int {
+    FIFO as c_int
+}
+
+extern "C" fn ASensor_getFifoReservedEventCount(_sensor: &ASensor) -> c_int {
+    0
+}
+
+/// `AREPORTING_MODE_CONTINUOUS`.
+extern "C" fn ASensor_getReportingMode(_sensor: &ASensor) -> c_int {
+    0
+}
+
+extern "C" fn ASensor_isWakeUpSensor(_sensor: &ASensor) -> bool {
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sensors(kinds: Vec<SensorKind>) -> Sensors {
+        Sensors::new(&Device { sensors: kinds, ..Device::default() })
+    }
+
+    #[test]
+    fn axes_are_those_of_a_phone_in_landscape() {
+        let sensors = sensors(vec![SensorKind::Accelerometer, SensorKind::GyroscopeUncalibrated]);
+        let (accelerometer, gyroscope) = (sensors.list[0], sensors.list[1]);
+        assert_eq!(sensors.sample(accelerometer, 1_000_000_000, MIN_PERIOD).data[..3], [GRAVITY, -0.0, 0.0]);
+        // To the left is around the vertical, which is the device's x axis.
+        sensors.turn(90.0, 0.0, 0.0, 1_000_000_000, 1_000_000_000);
+        let rate = sensors.sample(gyroscope, 1_500_000_000, MIN_PERIOD).data;
+        assert!(rate[0] > 2.0 && rate[1].abs() < 1e-3 && rate[2].abs() < 1e-3, "{rate:?}");
+        // Looking up brings gravity's reaction to the front of the head, the device's -z.
+        sensors.turn(0.0, 90.0, 0.0, 3_000_000_000, 0);
+        let up = sensors.sample(accelerometer, 3_000_000_000, MIN_PERIOD).data;
+        assert!((up[2] + GRAVITY).abs() < 1e-3, "{up:?}");
+    }
+
+    #[test]
+    fn rates_integrate_to_the_orientation() {
+        let sensors = sensors(vec![SensorKind::Gyroscope]);
+        sensors.turn(40.0, -20.0, 10.0, 1_000_000_000, 500_000_000);
+        let mut head = Quat::IDENTITY;
+        for step in 1..=120_u64 {
+            let data = sensors.sample(sensors.list[0], 1_000_000_000 + step * MIN_PERIOD, MIN_PERIOD).data;
+            // Device axes back to head axes.
+            let rate = Vec3::new(-data[1], data[0], data[2]);
+            head = (head * Quat::from_scaled_axis(rate * 5e-3)).normalize();
+        }
+        assert!(head.angle_between(lock(&sensors.motion).to) < 1e-3);
+    }
+}

@@ -1,0 +1,105 @@
+//! The APK: libraries and assets come out of the built file itself.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+
+/// What the host takes out of an APK.
+pub struct Apk {
+    /// Path in the APK and bytes of the one library of this ABI.
+    pub library: (String, Vec<u8>),
+    /// Assets by their path below `assets/`.
+    pub assets: BTreeMap<String, Vec<u8>>,
+}
+
+impl Apk {
+    /// Reads the library for `abi` and all assets.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no APK, or does not hold exactly one library for the ABI.
+    pub fn read(path: &Path, abi: &str) -> Result<Self> {
+        let file = File::open(path)
+            .with_context(|| format!("cannot open {}: build it by `cargo xtask apk`", path.display()))?;
+        Self::read_from(file, abi)
+            .with_context(|| format!("{} is not an APK that the host can run", path.display()))
+    }
+
+    fn read_from(file: impl Read + Seek, abi: &str) -> Result<Self> {
+        let mut archive = zip::ZipArchive::new(file)?;
+        let folder = format!("lib/{abi}/");
+        let mut libraries = Vec::new();
+        let mut assets = BTreeMap::new();
+        for index in 0..archive.len() {
+            let mut entry = archive.by_index(index)?;
+            let name = entry.name()?.into_owned();
+            let asset = name.strip_prefix("assets/").map(str::to_owned);
+            if entry.is_dir() || !(name.starts_with(&folder) || asset.is_some()) {
+                continue;
+            }
+            let mut bytes = Vec::new();
+            entry.read_to_end(&mut bytes).with_context(|| format!("{name} is damaged"))?;
+            match asset {
+                Some(asset) => _ = assets.insert(asset, bytes),
+                None => libraries.push((name, bytes)),
+            }
+        }
+        if archive.by_name("AndroidManifest.xml").is_err() {
+            bail!("it has no AndroidManifest.xml");
+        }
+        if libraries.len() > 1 {
+            bail!(
+                "{folder} holds several libraries, and the host loads one: {}",
+                libraries.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
+            );
+        }
+        let library = libraries.pop().with_context(|| format!("it has no library in {folder}"))?;
+        Ok(Self { library, assets })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Write};
+
+    use super::*;
+
+    fn archive(files: &[(&str, &str)]) -> Cursor<Vec<u8>> {
+        let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        for (name, text) in files {
+            writer.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
+            writer.write_all(text.as_bytes()).unwrap();
+        }
+        writer.finish().unwrap()
+    }
+
+    #[test]
+    fn the_library_of_the_abi_and_the_assets_are_taken() {
+        let files = [
+            ("AndroidManifest.xml", "m"),
+            ("lib/x86_64/liba.so", "x"),
+            ("lib/arm64-v8a/liba.so", "a"),
+            ("assets/d/e.txt", "e"),
+        ];
+        let apk = Apk::read_from(archive(&files), "x86_64").unwrap();
+        assert_eq!(apk.library, ("lib/x86_64/liba.so".into(), b"x".to_vec()));
+        assert_eq!(apk.assets, [("d/e.txt".to_owned(), b"e".to_vec())].into());
+    }
+
+    #[test]
+    fn what_is_no_apk_is_refused() {
+        let refused =
+            |files: &[(&str, &str)]| Apk::read_from(archive(files), "x86_64").err().unwrap().to_string();
+        assert!(refused(&[("lib/x86_64/liba.so", "x")]).contains("AndroidManifest"));
+        assert!(
+            refused(&[("AndroidManifest.xml", "m"), ("lib/arm64-v8a/liba.so", "x")]).contains("lib/x86_64/")
+        );
+        assert!(
+            refused(&[("AndroidManifest.xml", "m"), ("lib/x86_64/a.so", "x"), ("lib/x86_64/b.so", "x")])
+                .contains("several")
+        );
+        assert!(Apk::read_from(Cursor::new(vec![0; 100]), "x86_64").is_err());
+    }
+}

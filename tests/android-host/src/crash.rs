@@ -1,0 +1,79 @@
+//! Crashes of the application become failures with an address that can be looked up.
+
+use std::ffi::{c_int, c_void};
+
+use crate::bionic::thread_name;
+use crate::host::{fatal, host};
+
+/// How far up the stack callers are looked for, bytes.
+const STACK: usize = 64 * 1024;
+
+/// Catches the signals of crashes, and the host's own panics, from now on.
+pub fn install() {
+    std::panic::set_hook(Box::new(|panic| fatal(format!("the host itself panicked: {panic}"))));
+    for signal in [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGFPE, libc::SIGABRT] {
+        // SAFETY: the structure is plain data for which zero is valid; the handler has the type that SA_SIGINFO asks for.
+        unsafe {
+            let mut action: libc::sigaction = std::mem::zeroed();
+            action.sa_sigaction = crashed as *const () as usize;
+            action.sa_flags = libc::SA_SIGINFO | libc::SA_RESETHAND | libc::SA_ONSTACK;
+            libc::sigaction(signal, &raw const action, std::ptr::null_mut());
+        }
+    }
+}
+
+/// Not everything here is allowed in a signal handler. The process is lost anyway, and what matters is the address; if
+/// the summary cannot be written any more, the alarm ends the process.
+extern "C" fn crashed(signal: c_int, information: *mut libc::siginfo_t, context: *mut c_void) {
+    // SAFETY: takes a number; the default action of SIGALRM ends the process.
+    unsafe { libc::alarm(10) };
+    // SAFETY: the kernel gives both pointers to a handler installed with SA_SIGINFO.
+    let (address, (counter, stack)) = unsafe { ((*information).si_addr() as usize, registers(context)) };
+    let name = match signal {
+        libc::SIGSEGV => "SIGSEGV",
+        libc::SIGBUS => "SIGBUS",
+        libc::SIGILL => "SIGILL",
+        libc::SIGFPE => "SIGFPE",
+        _ => "SIGABRT",
+    };
+    let callers: Vec<_> = words(stack).into_iter().filter_map(in_library).take(12).collect();
+    fatal(format!(
+        "{name} at address {address:#x} in thread {}, {}; the stack has the library's addresses {}",
+        thread_name(),
+        in_library(counter).map_or_else(
+            || format!("outside of the library (pc {counter:#x})"),
+            |offset| format!("at {offset} of the library")
+        ),
+        callers.join(" ")
+    ))
+}
+
+fn in_library(address: usize) -> Option<String> {
+    let library = host().library.get()?;
+    library.is_code(address).then(|| format!("{:#x}", address - library.base()))
+}
+
+/// Program counter and stack pointer.
+///
+/// # Safety
+/// `context` is the third argument of a signal handler.
+unsafe fn registers(context: *mut c_void) -> (usize, usize) {
+    // SAFETY: the caller's promise.
+    let context = unsafe { &(*context.cast::<libc::ucontext_t>()).uc_mcontext };
+    #[cfg(target_arch = "x86_64")]
+    return (context.gregs[libc::REG_RIP as usize] as usize, context.gregs[libc::REG_RSP as usize] as usize);
+    #[cfg(target_arch = "aarch64")]
+    return (context.pc as usize, context.sp as usize);
+}
+
+/// The stack from `start` on, as far as it can be read.
+fn words(start: usize) -> Vec<usize> {
+    let mut words = vec![0_usize; STACK / 8];
+    let local = libc::iovec { iov_base: words.as_mut_ptr().cast(), iov_len: STACK };
+    let remote = libc::iovec { iov_base: start as *mut c_void, iov_len: STACK };
+    // SAFETY: reads this process's own memory into a live vector; what is not mapped is left out.
+    let read =
+        unsafe { libc::process_vm_readv(libc::getpid(), &raw const local, 1, &raw const remote, 1, 0) };
+    words.truncate(usize::try_from(read).unwrap_or(0) / 8);
+    words
+}

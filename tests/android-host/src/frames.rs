@@ -1,0 +1,135 @@
+//! The gate in `eglSwapBuffers`: the script decides how many frames are shown, so that what happens between two frames
+//! happens there in every run.
+
+use std::sync::{Condvar, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
+use image::RgbaImage;
+
+use crate::android::looper;
+use crate::fd::EventFd;
+use crate::host::host;
+
+/// How long a frame waits at the open gate, real time.
+const OPEN_FRAME: Duration = Duration::from_millis(3);
+
+/// State of the gate.
+pub struct Frames {
+    state: Mutex<State>,
+    changed: Condvar,
+    /// Readable after each change, for the main thread, which waits in its looper.
+    pub event: EventFd,
+}
+
+#[derive(Default)]
+struct State {
+    open: bool,
+    wanted: bool,
+    granted: u64,
+    waiting: bool,
+    shown: u64,
+    /// When the frame before will be on the display.
+    displayed: u64,
+    capture: bool,
+    captured: Option<Result<RgbaImage, String>>,
+}
+
+impl Frames {
+    /// A closed gate.
+    pub fn new() -> Self {
+        Self { state: Mutex::new(State::default()), changed: Condvar::new(), event: EventFd::new() }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    fn notify(&self) {
+        self.changed.notify_all();
+        self.event.signal();
+    }
+
+    /// Called by the thread that swaps: waits until the frame may be shown. `read` gives its picture.
+    pub fn present(&self, mut read: impl FnMut() -> Result<RgbaImage, String>) {
+        let mut state = self.state();
+        state.waiting = true;
+        self.notify();
+        let arrived = Instant::now();
+        while state.granted == 0 {
+            if state.open {
+                // The callback that opened the gate may end any moment; only if it does not, it waits for this thread.
+                let left = OPEN_FRAME.saturating_sub(arrived.elapsed());
+                if left.is_zero() {
+                    break;
+                }
+                state =
+                    self.changed.wait_timeout(state, left).unwrap_or_else(|poisoned| poisoned.into_inner()).0;
+                continue;
+            }
+            if std::mem::take(&mut state.capture) {
+                state.captured = Some(read());
+                self.notify();
+                continue;
+            }
+            state = self.changed.wait(state).unwrap_or_else(|poisoned| poisoned.into_inner());
+        }
+        state.granted = state.granted.saturating_sub(1);
+        state.waiting = false;
+        state.shown += 1;
+        // Double buffering: this frame can be handed over when the one before is on the display.
+        let clock = &host().clock;
+        clock.advance_to(state.displayed);
+        state.displayed = clock.next_refresh(clock.now());
+        drop(state);
+        looper::settle();
+        self.notify();
+    }
+
+    /// Lets time pass until a frame waits at the gate, or no longer.
+    pub fn set_wanted(&self, wanted: bool) {
+        self.state().wanted = wanted;
+    }
+
+    /// Opens the gate, for callbacks that the application answers from its frame loop, or closes it.
+    pub fn set_open(&self, open: bool) {
+        self.state().open = open;
+        self.notify();
+    }
+
+    /// Lets that many more frames pass.
+    pub fn grant(&self, frames: u64) {
+        self.state().granted += frames;
+        self.notify();
+    }
+
+    /// Whether everything granted was used and a frame waits at the gate.
+    pub fn is_waiting(&self) -> bool {
+        let state = self.state();
+        state.waiting && state.granted == 0
+    }
+
+    /// Whether virtual time may pass without a frame: while the script waits for something.
+    pub fn time_may_pass(&self) -> bool {
+        let state = self.state();
+        state.open || state.granted > 0 || state.wanted && !state.waiting
+    }
+
+    /// Frames shown since the start.
+    pub fn shown(&self) -> u64 {
+        self.state().shown
+    }
+
+    /// Asks for the picture of the frame that waits; [`Frames::captured`] has it later.
+    pub fn request_capture(&self) {
+        let mut state = self.state();
+        state.captured = None;
+        state.capture = true;
+        drop(state);
+        self.notify();
+    }
+
+    /// The picture, once it is there.
+    pub fn captured(&self) -> Option<Result<RgbaImage, String>> {
+        self.state().captured.take()
+    }
+}

@@ -1,0 +1,613 @@
+//! EGL. The display is Mesa's surfaceless one, and the surface of a window is a pbuffer of the window's size, replaced
+//! at a swap when the window has another size. Handles of surfaces are the host's own, so that a surface can be
+//! replaced; those of displays, configurations and contexts are Mesa's.
+
+#![allow(non_snake_case)]
+
+use std::cell::Cell;
+use std::ffi::{CStr, c_char, c_void};
+use std::sync::atomic::Ordering;
+
+use anyhow::{Context, Result};
+
+use crate::android::window::{Window, is_window};
+use crate::exports::{Export, System, exports};
+use crate::graphics::gl;
+use crate::host::{host, lock};
+
+type Boolean = u32;
+type Handle = usize;
+
+const TRUE: Boolean = 1;
+const NONE: i32 = 0x3038;
+const SUCCESS: i32 = 0x3000;
+const BAD_ALLOC: i32 = 0x3003;
+const BAD_ATTRIBUTE: i32 = 0x3004;
+const BAD_MATCH: i32 = 0x3009;
+const BAD_NATIVE_WINDOW: i32 = 0x300b;
+const BAD_SURFACE: i32 = 0x300d;
+const CONTEXT_LOST: i32 = 0x300e;
+const ALPHA_SIZE: i32 = 0x3021;
+const NATIVE_VISUAL_ID: i32 = 0x302e;
+const SURFACE_TYPE: i32 = 0x3033;
+const RENDERABLE_TYPE: i32 = 0x3040;
+const HEIGHT: i32 = 0x3056;
+const WIDTH: i32 = 0x3057;
+const DRAW: i32 = 0x3059;
+const GL_COLORSPACE: i32 = 0x309d;
+const CONTEXT_MAJOR: i32 = 0x3098;
+const CONTEXT_MINOR: i32 = 0x30fb;
+const PBUFFER_BIT: i32 = 1;
+const WINDOW_BIT: i32 = 4;
+const ES3_BIT: i32 = 0x40;
+const PLATFORM_SURFACELESS: u32 = 0x31dd;
+/// `EGL_RECORDABLE_ANDROID` and `EGL_FRAMEBUFFER_TARGET_ANDROID`, which only Android's drivers know.
+const ANDROID_ONLY: [i32; 2] = [0x3142, 0x3147];
+
+macro_rules! real {
+    ($($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {
+        /// Mesa's functions.
+        pub struct Real {
+            $($name: unsafe extern "C" fn($($type),*) -> $result,)*
+            _library: libloading::Library,
+        }
+
+        impl Real {
+            /// Opens libEGL.
+            ///
+            /// # Errors
+            /// It is not there, or lacks a function.
+            pub fn load() -> Result<Self> {
+                // SAFETY: libEGL's constructors are harmless.
+                let library = unsafe { libloading::Library::new("libEGL.so.1") }?;
+                Ok(Self {
+                    $($name: {
+                        // SAFETY: the types are those of egl.h.
+                        *unsafe { library.get(concat!(stringify!($name), "\0").as_bytes()) }.context(stringify!($name))?
+                    },)*
+                    _library: library,
+                })
+            }
+        }
+    };
+}
+
+real! {
+    eglBindAPI(api: u32) -> Boolean;
+    eglChooseConfig(display: Handle, attributes: *const i32, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
+    eglCreateContext(display: Handle, config: Handle, share: Handle, attributes: *const i32) -> Handle;
+    eglCreatePbufferSurface(display: Handle, config: Handle, attributes: *const i32) -> Handle;
+    eglDestroyContext(display: Handle, context: Handle) -> Boolean;
+    eglDestroySurface(display: Handle, surface: Handle) -> Boolean;
+    eglGetConfigAttrib(display: Handle, config: Handle, attribute: i32, value: *mut i32) -> Boolean;
+    eglGetConfigs(display: Handle, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
+    eglGetError() -> i32;
+    eglGetPlatformDisplay(platform: u32, native: *mut c_void, attributes: *const isize) -> Handle;
+    eglGetProcAddress(name: *const c_char) -> *const c_void;
+    eglInitialize(display: Handle, major: *mut i32, minor: *mut i32) -> Boolean;
+    eglMakeCurrent(display: Handle, draw: Handle, read: Handle, context: Handle) -> Boolean;
+    eglQueryAPI() -> u32;
+    eglQueryContext(display: Handle, context: Handle, attribute: i32, value: *mut i32) -> Boolean;
+    eglQueryString(display: Handle, name: i32) -> *const c_char;
+    eglQuerySurface(display: Handle, surface: Handle, attribute: i32, value: *mut i32) -> Boolean;
+    eglReleaseThread() -> Boolean;
+    eglSurfaceAttrib(display: Handle, surface: Handle, attribute: i32, value: i32) -> Boolean;
+    eglSwapBuffers(display: Handle, surface: Handle) -> Boolean;
+    eglSwapInterval(display: Handle, interval: i32) -> Boolean;
+    eglTerminate(display: Handle) -> Boolean;
+    eglWaitClient() -> Boolean;
+    eglWaitGL() -> Boolean;
+    eglWaitNative(engine: i32) -> Boolean;
+}
+
+/// A surface of the application.
+pub struct Surface {
+    pbuffer: Handle,
+    /// Whether it stands for the window's.
+    pub is_window: bool,
+    size: (i32, i32),
+    config: Handle,
+    colorspace: Option<i32>,
+}
+
+/// A context of the application.
+pub struct ContextState {
+    /// Contexts that share objects have one group.
+    pub group: usize,
+    lost: bool,
+    seen: bool,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Current {
+    display: Handle,
+    draw: Handle,
+    read: Handle,
+    context: Handle,
+}
+
+thread_local! {
+    static CURRENT: Cell<Current> = const { Cell::new(Current { display: 0, draw: 0, read: 0, context: 0 }) };
+    /// An error of the host's own, which hides Mesa's.
+    static ERROR: Cell<i32> = const { Cell::new(SUCCESS) };
+}
+
+/// The share group of the current context, 0 without one.
+pub fn current_group() -> usize {
+    let context = CURRENT.get().context;
+    lock(&host().graphics.contexts).get(&context).map_or(0, |context| context.group)
+}
+
+fn real() -> &'static Real {
+    &host().graphics.real
+}
+
+fn fail<T: Default>(error: i32) -> T {
+    ERROR.set(error);
+    T::default()
+}
+
+/// Attribute pairs before `EGL_NONE`.
+///
+/// # Safety
+/// Null, or pairs that end in `EGL_NONE`.
+unsafe fn pairs(mut attributes: *const i32) -> Vec<(i32, i32)> {
+    let mut pairs = Vec::new();
+    // SAFETY: the caller's promise.
+    while !attributes.is_null() && unsafe { *attributes } != NONE {
+        // SAFETY: a name is followed by its value.
+        unsafe {
+            pairs.push((*attributes, *attributes.add(1)));
+            attributes = attributes.add(2);
+        }
+    }
+    pairs
+}
+
+fn list(pairs: &[(i32, i32)]) -> Vec<i32> {
+    pairs.iter().flat_map(|(name, value)| [*name, *value]).chain([NONE]).collect()
+}
+
+fn value(pairs: &[(i32, i32)], name: i32) -> Option<i32> {
+    pairs.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+}
+
+/// What libEGL.so exports.
+pub fn exports() -> Vec<Export> {
+    exports![System::Egl, 1: [
+        eglBindAPI, eglChooseConfig, eglCreateContext, eglCreatePbufferSurface, eglCreatePlatformWindowSurface, eglCreateWindowSurface,
+        eglDestroyContext, eglDestroySurface, eglGetConfigAttrib, eglGetConfigs, eglGetCurrentContext, eglGetCurrentDisplay,
+        eglGetCurrentSurface, eglGetDisplay, eglGetError, eglGetPlatformDisplay, eglGetProcAddress, eglInitialize, eglMakeCurrent,
+        eglQueryAPI, eglQueryContext, eglQueryString, eglQuerySurface, eglReleaseThread, eglSurfaceAttrib, eglSwapBuffers,
+        eglSwapInterval, eglTerminate, eglWaitClient, eglWaitGL, eglWaitNative,
+    ]]
+}
+
+/// Functions that are Mesa's alone.
+macro_rules! passed_on {
+    ($($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {
+        $(unsafe extern "C" fn $name($($argument: $type),*) -> $result {
+            ERROR.set(SUCCESS);
+            // SAFETY: same contract as the caller's.
+            unsafe { (real().$name)($($argument),*) }
+        })*
+    };
+}
+
+passed_on! {
+    eglBindAPI(api: u32) -> Boolean;
+    eglGetConfigs(display: Handle, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
+    eglInitialize(display: Handle, major: *mut i32, minor: *mut i32) -> Boolean;
+    eglQueryAPI() -> u32;
+    eglQueryContext(display: Handle, context: Handle, attribute: i32, value: *mut i32) -> Boolean;
+    eglQueryString(display: Handle, name: i32) -> *const c_char;
+    eglSwapInterval(display: Handle, interval: i32) -> Boolean;
+    eglWaitClient() -> Boolean;
+    eglWaitGL() -> Boolean;
+    eglWaitNative(engine: i32) -> Boolean;
+}
+
+extern "C" fn eglGetError() -> i32 {
+    match ERROR.replace(SUCCESS) {
+        // SAFETY: takes nothing.
+        SUCCESS => unsafe { (real().eglGetError)() },
+        error => error,
+    }
+}
+
+extern "C" fn eglGetDisplay(_native: *mut c_void) -> Handle {
+    // SAFETY: the platform takes no native display and no attributes.
+    unsafe { (real().eglGetPlatformDisplay)(PLATFORM_SURFACELESS, std::ptr::null_mut(), std::ptr::null()) }
+}
+
+extern "C" fn eglGetPlatformDisplay(
+    _platform: u32,
+    native: *mut c_void,
+    _attributes: *const isize,
+) -> Handle {
+    eglGetDisplay(native)
+}
+
+unsafe extern "C" fn eglTerminate(display: Handle) -> Boolean {
+    let graphics = &host().graphics;
+    let current = CURRENT.get();
+    lock(&graphics.surfaces).retain(|handle, surface| {
+        let stays = *handle == current.draw || *handle == current.read;
+        if !stays && surface.is_window {
+            host().window.reference(-1);
+        }
+        stays
+    });
+    let mut groups = Vec::new();
+    lock(&graphics.contexts).retain(|handle, context| {
+        groups.push((context.group, *handle == current.context));
+        *handle == current.context
+    });
+    for (group, stays) in groups {
+        if !stays {
+            graphics.group_gone(group);
+        }
+    }
+    // SAFETY: same contract as the caller's.
+    unsafe { (real().eglTerminate)(display) }
+}
+
+unsafe extern "C" fn eglChooseConfig(
+    display: Handle,
+    attributes: *const i32,
+    configs: *mut Handle,
+    size: i32,
+    count: *mut i32,
+) -> Boolean {
+    ERROR.set(SUCCESS);
+    // SAFETY: same contract as the caller's.
+    let mut wanted = unsafe { pairs(attributes) };
+    wanted.retain(|(name, _)| !ANDROID_ONLY.contains(name));
+    for (name, value) in &mut wanted {
+        if *name == SURFACE_TYPE && *value & WINDOW_BIT != 0 {
+            *value = *value & !WINDOW_BIT | PBUFFER_BIT;
+        }
+        if *name == RENDERABLE_TYPE && *value & ES3_BIT != 0 && host().graphics.newest.numbers().0 < 3 {
+            // SAFETY: the caller gives room for one int.
+            unsafe { count.write(0) };
+            return TRUE;
+        }
+    }
+    let wanted = list(&wanted);
+    // SAFETY: the list ends in EGL_NONE; the rest is the caller's.
+    unsafe { (real().eglChooseConfig)(display, wanted.as_ptr(), configs, size, count) }
+}
+
+unsafe extern "C" fn eglGetConfigAttrib(
+    display: Handle,
+    config: Handle,
+    attribute: i32,
+    value: *mut i32,
+) -> Boolean {
+    ERROR.set(SUCCESS);
+    // SAFETY: same contract as the caller's.
+    let result = unsafe { (real().eglGetConfigAttrib)(display, config, attribute, value) };
+    if result == TRUE {
+        // SAFETY: the call has written the value.
+        let value = unsafe { &mut *value };
+        match attribute {
+            SURFACE_TYPE if *value & PBUFFER_BIT != 0 => *value |= WINDOW_BIT,
+            NATIVE_VISUAL_ID => {
+                let mut alpha = 0;
+                // SAFETY: as above, with room of our own.
+                unsafe { (real().eglGetConfigAttrib)(display, config, ALPHA_SIZE, &raw mut alpha) };
+                // WINDOW_FORMAT_RGBA_8888 and _RGBX_8888.
+                *value = if alpha > 0 { 1 } else { 2 };
+            }
+            _ => {}
+        }
+    }
+    result
+}
+
+unsafe extern "C" fn eglCreateContext(
+    display: Handle,
+    config: Handle,
+    share: Handle,
+    attributes: *const i32,
+) -> Handle {
+    ERROR.set(SUCCESS);
+    let graphics = &host().graphics;
+    // SAFETY: same contract as the caller's.
+    let wanted = unsafe { pairs(attributes) };
+    let version = (value(&wanted, CONTEXT_MAJOR).unwrap_or(1), value(&wanted, CONTEXT_MINOR).unwrap_or(0));
+    if version > graphics.newest.numbers() {
+        return fail(BAD_MATCH);
+    }
+    // SAFETY: same contract as the caller's.
+    let context = unsafe { (real().eglCreateContext)(display, config, share, attributes) };
+    if context != 0 {
+        let mut contexts = lock(&graphics.contexts);
+        let group = contexts.get(&share).map_or_else(
+            || graphics.last_handle.fetch_add(1, Ordering::Relaxed) as usize + 1,
+            |context| context.group,
+        );
+        contexts.insert(context, ContextState { group, lost: false, seen: false });
+    }
+    context
+}
+
+unsafe extern "C" fn eglDestroyContext(display: Handle, context: Handle) -> Boolean {
+    ERROR.set(SUCCESS);
+    let graphics = &host().graphics;
+    let removed = lock(&graphics.contexts).remove(&context);
+    if let Some(state) = removed
+        && !lock(&graphics.contexts).values().any(|other| other.group == state.group)
+    {
+        graphics.group_gone(state.group);
+    }
+    // SAFETY: same contract as the caller's.
+    unsafe { (real().eglDestroyContext)(display, context) }
+}
+
+fn new_pbuffer(display: Handle, config: Handle, size: (i32, i32), colorspace: Option<i32>) -> Handle {
+    let mut attributes = vec![(WIDTH, size.0), (HEIGHT, size.1)];
+    attributes.extend(colorspace.map(|value| (GL_COLORSPACE, value)));
+    let attributes = list(&attributes);
+    // SAFETY: the list ends in EGL_NONE.
+    unsafe { (real().eglCreatePbufferSurface)(display, config, attributes.as_ptr()) }
+}
+
+fn add_surface(surface: Surface) -> Handle {
+    if surface.pbuffer == 0 {
+        return 0;
+    }
+    let graphics = &host().graphics;
+    let handle = 0x5000_0000 + 16 * (graphics.last_handle.fetch_add(1, Ordering::Relaxed) as usize + 1);
+    lock(&graphics.surfaces).insert(handle, surface);
+    handle
+}
+
+unsafe extern "C" fn eglCreatePbufferSurface(
+    display: Handle,
+    config: Handle,
+    attributes: *const i32,
+) -> Handle {
+    ERROR.set(SUCCESS);
+    // SAFETY: same contract as the caller's.
+    let wanted = unsafe { pairs(attributes) };
+    let size = (value(&wanted, WIDTH).unwrap_or(0), value(&wanted, HEIGHT).unwrap_or(0));
+    let colorspace = value(&wanted, GL_COLORSPACE);
+    // SAFETY: same contract as the caller's.
+    let pbuffer = unsafe { (real().eglCreatePbufferSurface)(display, config, attributes) };
+    add_surface(Surface { pbuffer, is_window: false, size, config, colorspace })
+}
+
+unsafe extern "C" fn eglCreateWindowSurface(
+    display: Handle,
+    config: Handle,
+    window: *const Window,
+    attributes: *const i32,
+) -> Handle {
+    ERROR.set(SUCCESS);
+    let host = host();
+    if !is_window(window.cast()) || !host.window.is_alive() {
+        host.violation("eglCreateWindowSurface with a window that is not there");
+        return fail(BAD_NATIVE_WINDOW);
+    }
+    if host.graphics.live_window_surfaces() > 0 {
+        host.violation("eglCreateWindowSurface while another surface of the window exists");
+        return fail(BAD_ALLOC);
+    }
+    // SAFETY: same contract as the caller's.
+    let colorspace = value(&unsafe { pairs(attributes) }, GL_COLORSPACE);
+    let size = host.window.size();
+    let handle = add_surface(Surface {
+        pbuffer: new_pbuffer(display, config, size, colorspace),
+        is_window: true,
+        size,
+        config,
+        colorspace,
+    });
+    if handle != 0 {
+        host.window.reference(1);
+    }
+    handle
+}
+
+unsafe extern "C" fn eglCreatePlatformWindowSurface(
+    display: Handle,
+    config: Handle,
+    window: *const Window,
+    attributes: *const isize,
+) -> Handle {
+    let mut narrow = Vec::new();
+    let mut next = attributes;
+    // SAFETY: null, or attributes that end in EGL_NONE, by contract.
+    while !next.is_null() && unsafe { *next } != NONE as isize {
+        // SAFETY: a name is followed by its value.
+        unsafe {
+            narrow.extend([*next as i32, *next.add(1) as i32]);
+            next = next.add(2);
+        }
+    }
+    narrow.push(NONE);
+    // SAFETY: the list ends in EGL_NONE; the rest is the caller's.
+    unsafe { eglCreateWindowSurface(display, config, window, narrow.as_ptr()) }
+}
+
+unsafe extern "C" fn eglDestroySurface(display: Handle, surface: Handle) -> Boolean {
+    ERROR.set(SUCCESS);
+    let host = host();
+    let Some(surface) = lock(&host.graphics.surfaces).remove(&surface) else {
+        host.violation("eglDestroySurface of a surface that does not exist");
+        return fail(BAD_SURFACE);
+    };
+    if surface.is_window {
+        host.window.reference(-1);
+    }
+    // SAFETY: the pbuffer is ours and destroyed once.
+    unsafe { (real().eglDestroySurface)(display, surface.pbuffer) }
+}
+
+unsafe extern "C" fn eglMakeCurrent(display: Handle, draw: Handle, read: Handle, context: Handle) -> Boolean {
+    ERROR.set(SUCCESS);
+    let graphics = &host().graphics;
+    let pbuffer = |handle: Handle| {
+        if handle == 0 {
+            Some(0)
+        } else {
+            lock(&graphics.surfaces).get(&handle).map(|surface| surface.pbuffer)
+        }
+    };
+    let (Some(draw_buffer), Some(read_buffer)) = (pbuffer(draw), pbuffer(read)) else {
+        host().violation("eglMakeCurrent with a surface that does not exist");
+        return fail(BAD_SURFACE);
+    };
+    if lock(&graphics.contexts).get(&context).is_some_and(|context| context.lost) {
+        return fail(CONTEXT_LOST);
+    }
+    // SAFETY: same contract as the caller's, with the surfaces' real handles.
+    let result = unsafe { (real().eglMakeCurrent)(display, draw_buffer, read_buffer, context) };
+    if result == TRUE {
+        CURRENT.set(Current { display, draw, read, context });
+        let first = lock(&graphics.contexts)
+            .get_mut(&context)
+            .is_some_and(|context| !std::mem::replace(&mut context.seen, true));
+        if first {
+            gl::watch_context();
+        }
+    }
+    result
+}
+
+unsafe extern "C" fn eglReleaseThread() -> Boolean {
+    ERROR.set(SUCCESS);
+    CURRENT.set(Current::default());
+    // SAFETY: takes nothing.
+    unsafe { (real().eglReleaseThread)() }
+}
+
+extern "C" fn eglGetCurrentContext() -> Handle {
+    CURRENT.get().context
+}
+
+extern "C" fn eglGetCurrentDisplay() -> Handle {
+    CURRENT.get().display
+}
+
+extern "C" fn eglGetCurrentSurface(which: i32) -> Handle {
+    if which == DRAW { CURRENT.get().draw } else { CURRENT.get().read }
+}
+
+unsafe extern "C" fn eglQuerySurface(
+    display: Handle,
+    surface: Handle,
+    attribute: i32,
+    value: *mut i32,
+) -> Boolean {
+    ERROR.set(SUCCESS);
+    let Some(pbuffer) = lock(&host().graphics.surfaces).get(&surface).map(|surface| surface.pbuffer) else {
+        return fail(BAD_SURFACE);
+    };
+    // SAFETY: same contract as the caller's, with the surface's real handle.
+    unsafe { (real().eglQuerySurface)(display, pbuffer, attribute, value) }
+}
+
+unsafe extern "C" fn eglSurfaceAttrib(
+    display: Handle,
+    surface: Handle,
+    attribute: i32,
+    value: i32,
+) -> Boolean {
+    ERROR.set(SUCCESS);
+    let Some(pbuffer) = lock(&host().graphics.surfaces).get(&surface).map(|surface| surface.pbuffer) else {
+        return fail(BAD_ATTRIBUTE);
+    };
+    // SAFETY: same contract as the caller's, with the surface's real handle.
+    unsafe { (real().eglSurfaceAttrib)(display, pbuffer, attribute, value) }
+}
+
+unsafe extern "C" fn eglSwapBuffers(display: Handle, surface: Handle) -> Boolean {
+    ERROR.set(SUCCESS);
+    let host = host();
+    let graphics = &host.graphics;
+    let current = CURRENT.get();
+    let Some((pbuffer, is_window, size)) = lock(&graphics.surfaces)
+        .get(&surface)
+        .map(|surface| (surface.pbuffer, surface.is_window, surface.size))
+    else {
+        host.violation("eglSwapBuffers of a surface that does not exist");
+        return fail(BAD_SURFACE);
+    };
+    if current.draw != surface {
+        host.violation("eglSwapBuffers of a surface that is not current");
+        return fail(BAD_SURFACE);
+    }
+    if is_window && !host.window.is_alive() {
+        host.violation("eglSwapBuffers after onNativeWindowDestroyed");
+        return fail(BAD_NATIVE_WINDOW);
+    }
+    {
+        let mut contexts = lock(&graphics.contexts);
+        if let Some(context) = contexts.get_mut(&current.context) {
+            if graphics.loss_asked.swap(false, Ordering::AcqRel) {
+                context.lost = true;
+            }
+            if context.lost {
+                return fail(CONTEXT_LOST);
+            }
+        }
+    }
+    gl::check_errors();
+    if is_window {
+        host.frames.present(|| gl::read_default_framebuffer(size.0, size.1));
+        gl::spoil_default_framebuffer();
+    }
+    // SAFETY: the surface is current on this thread.
+    let result = unsafe { (real().eglSwapBuffers)(display, pbuffer) };
+    if is_window && host.window.size() != size {
+        resize(display, surface, current);
+    }
+    result
+}
+
+/// Gives the surface of a window that has another size a new pbuffer, as Android's next buffer has the new size.
+fn resize(display: Handle, handle: Handle, current: Current) {
+    let graphics = &host().graphics;
+    let size = host().window.size();
+    let mut surfaces = lock(&graphics.surfaces);
+    let Some(surface) = surfaces.get_mut(&handle) else { return };
+    let pbuffer = new_pbuffer(display, surface.config, size, surface.colorspace);
+    if pbuffer == 0 {
+        host().violation(format!("the host has no memory for a window of {}x{}", size.0, size.1));
+        return;
+    }
+    let old = std::mem::replace(&mut surface.pbuffer, pbuffer);
+    surface.size = size;
+    let read = if current.read == handle {
+        Some(pbuffer)
+    } else {
+        surfaces.get(&current.read).map(|surface| surface.pbuffer)
+    };
+    // SAFETY: live surfaces and the context that is current on this thread; the old pbuffer is destroyed once.
+    unsafe {
+        (real().eglMakeCurrent)(display, pbuffer, read.unwrap_or(pbuffer), current.context);
+        (real().eglDestroySurface)(display, old);
+    }
+}
+
+unsafe extern "C" fn eglGetProcAddress(name: *const c_char) -> *const c_void {
+    ERROR.set(SUCCESS);
+    // SAFETY: a terminated name by contract.
+    let text = unsafe { CStr::from_ptr(name) }.to_str().unwrap_or("");
+    if text.starts_with("egl") {
+        if let Some(address) = crate::exports::find(System::Egl, text, host().device.sdk) {
+            return address as *const c_void;
+        }
+        // SAFETY: same contract as the caller's.
+        return unsafe { (real().eglGetProcAddress)(name) };
+    }
+    gl::function(text).map_or(std::ptr::null(), |address| address as *const c_void)
+}
+
+/// Mesa's function of this name, null if there is none.
+pub fn real_function(name: &CStr) -> *const c_void {
+    // SAFETY: a terminated name.
+    unsafe { (real().eglGetProcAddress)(name.as_ptr()) }
+}

@@ -1,0 +1,370 @@
+//! The one simulated device of the process. The library calls C functions without a context argument, so there can be
+//! no second one.
+
+use std::collections::BTreeMap;
+use std::os::fd::{AsRawFd, OwnedFd};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, OnceLock};
+use std::time::{Duration, Instant};
+
+use crate::android::activity::Directories;
+use crate::android::assets::Assets;
+use crate::android::input::InputCounts;
+use crate::android::log::Log;
+use crate::android::sensors::Sensors;
+use crate::android::thermal::ThermalListeners;
+use crate::android::window::Window;
+use crate::clock::Clock;
+use crate::elf::Library;
+use crate::frames::Frames;
+use crate::graphics::Graphics;
+use crate::jni::Jni;
+use crate::script::{Battery, Device, Script, Thermal};
+use crate::summary::{InputFacts, LABEL, LibraryFacts, Mark, Summary};
+
+/// Everything that the application can ask.
+pub struct Host {
+    /// As the script describes it at power-on.
+    pub device: Device,
+    /// What steps change.
+    pub battery: Mutex<Option<Battery>>,
+    /// What steps change.
+    pub thermal: Mutex<Thermal>,
+    /// System properties.
+    pub properties: Mutex<BTreeMap<String, String>>,
+    /// Virtual time.
+    pub clock: Clock,
+    /// The gate in `eglSwapBuffers`.
+    pub frames: Frames,
+    /// liblog.
+    pub log: Log,
+    /// AAssetManager.
+    pub assets: Assets,
+    /// AInputQueue.
+    pub input: InputCounts,
+    /// ASensorManager.
+    pub sensors: Sensors,
+    /// AThermal.
+    pub thermal_listeners: ThermalListeners,
+    /// ANativeWindow.
+    pub window: Window,
+    /// EGL and OpenGL ES.
+    pub graphics: Graphics,
+    /// Java.
+    pub jni: Jni,
+    /// The application's folders.
+    pub directories: Directories,
+    /// The loaded library.
+    pub library: OnceLock<Library>,
+    /// Whether the application asked for its end by `ANativeActivity_finish`.
+    pub finish_asked: AtomicBool,
+    /// Kernel's number of the thread that runs `android_main`; 0 before the first.
+    pub main_thread: AtomicI32,
+    ndk_objects: Mutex<BTreeMap<&'static str, i64>>,
+    violations: Mutex<Vec<String>>,
+    report: Mutex<Report>,
+    context: Mutex<String>,
+    watch: Watch,
+}
+
+/// What the summary needs beside the live state.
+pub struct Report {
+    /// The APK.
+    pub apk: PathBuf,
+    /// Of the script.
+    pub script: String,
+    /// Where the summary goes.
+    pub out: PathBuf,
+    /// Facts of the library.
+    pub library: Option<LibraryFacts>,
+    /// Imported, but answered by a trap.
+    pub trapped_symbols: Vec<String>,
+    /// Marks so far.
+    pub marks: Vec<Mark>,
+    /// Pictures so far.
+    pub captures: Vec<PathBuf>,
+    /// The real standard error: the library redirects its own.
+    pub stderr: OwnedFd,
+    /// Start of the run.
+    pub started: Instant,
+}
+
+struct Watch {
+    patience: Duration,
+    doing: Mutex<Option<(String, Instant)>>,
+    longest_callback_us: AtomicU64,
+}
+
+static HOST: OnceLock<Host> = OnceLock::new();
+
+/// The device.
+///
+/// # Panics
+/// Before [`Host::install`].
+pub fn host() -> &'static Host {
+    HOST.get().expect("the host is installed before the library is loaded")
+}
+
+/// The name of this machine's ABI in an APK.
+pub const ABI: &str = if cfg!(target_arch = "aarch64") { "arm64-v8a" } else { "x86_64" };
+
+/// Locks a mutex; a panic elsewhere has already been reported.
+pub fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+impl Host {
+    /// Switches the device on. Once per process.
+    ///
+    /// # Errors
+    /// EGL or the folders cannot be set up.
+    pub fn install(
+        script: &Script,
+        assets: Assets,
+        verbose: bool,
+        report: Report,
+    ) -> anyhow::Result<&'static Self> {
+        let device = script.device.clone();
+        let host = Self {
+            battery: Mutex::new(device.battery.clone()),
+            thermal: Mutex::new(device.thermal.clone()),
+            properties: Mutex::new(device.properties.clone()),
+            clock: Clock::new(device.refresh_hz),
+            frames: Frames::new(),
+            log: Log::new(verbose),
+            assets,
+            input: InputCounts::default(),
+            sensors: Sensors::new(&device),
+            thermal_listeners: ThermalListeners::default(),
+            window: Window::new(device.width, device.height),
+            graphics: Graphics::new(device.gles)?,
+            jni: Jni::new(),
+            directories: Directories::new(&device.files)?,
+            library: OnceLock::new(),
+            finish_asked: AtomicBool::new(false),
+            main_thread: AtomicI32::new(0),
+            ndk_objects: Mutex::new(BTreeMap::new()),
+            violations: Mutex::new(Vec::new()),
+            report: Mutex::new(report),
+            context: Mutex::default(),
+            watch: Watch {
+                patience: Duration::from_secs_f64(script.patience_seconds),
+                doing: Mutex::new(None),
+                longest_callback_us: AtomicU64::new(0),
+            },
+            device,
+        };
+        anyhow::ensure!(HOST.set(host).is_ok(), "a process can play one device only");
+        std::thread::Builder::new().name("host-watch".into()).spawn(watch)?;
+        Ok(Self::get())
+    }
+
+    fn get() -> &'static Self {
+        host()
+    }
+
+    /// One line on the real standard error.
+    pub fn say(&self, text: &str) {
+        say_to(lock(&self.report).stderr.as_raw_fd(), &format!("{text}\n"));
+    }
+
+    /// Notes something that Android forbids or punishes; each text once.
+    pub fn violation(&self, text: impl Into<String>) {
+        let text = text.into();
+        let mut violations = lock(&self.violations);
+        if !violations.contains(&text) {
+            violations.push(text);
+        }
+    }
+
+    /// Counts an NDK object made (+1) or released (-1).
+    pub fn count(&self, kind: &'static str, change: i64) {
+        *lock(&self.ndk_objects).entry(kind).or_default() += change;
+    }
+
+    /// What the script is doing, for a failure's text; empty is nothing special.
+    pub fn set_context(&self, context: String) {
+        *lock(&self.context) = context;
+    }
+
+    /// What goes into the summary.
+    pub fn report(&self) -> MutexGuard<'_, Report> {
+        lock(&self.report)
+    }
+
+    /// How long a step may take.
+    pub fn patience(&self) -> Duration {
+        self.watch.patience
+    }
+
+    /// Runs something that must end within the script's patience, or the run fails with its name.
+    pub fn watched<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
+        *lock(&self.watch.doing) = Some((what.to_owned(), Instant::now()));
+        let result = run();
+        *lock(&self.watch.doing) = None;
+        result
+    }
+
+    /// As [`Host::watched`], for a callback on the activity's main thread.
+    pub fn callback<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
+        let started = Instant::now();
+        let result = self.watched(what, run);
+        self.watch.longest_callback_us.fetch_max(started.elapsed().as_micros() as u64, Ordering::Relaxed);
+        result
+    }
+
+    /// What is in use now.
+    pub fn mark(&self, name: &str) -> Mark {
+        Mark {
+            name: name.to_owned(),
+            frames: self.frames.shown(),
+            seconds: self.clock.seconds(),
+            gl_objects: self.graphics.live_objects(),
+            egl_contexts: self.graphics.live_contexts(),
+            egl_surfaces: self.graphics.live_surfaces(),
+            window_references: self.window.references(),
+            ndk_objects: lock(&self.ndk_objects)
+                .iter()
+                .filter(|(_, count)| **count != 0)
+                .map(|(kind, count)| ((*kind).to_owned(), *count))
+                .collect(),
+            jni_references: self.jni.live_references(),
+            file_descriptors: entries("/proc/self/fd"),
+            threads: entries("/proc/self/task"),
+            resident_kib: resident_kib(),
+        }
+    }
+
+    /// The summary as things stand.
+    pub fn summary(&self, failure: Option<String>) -> Summary {
+        let end = self.mark("end");
+        let log = self.log.collected();
+        let report = self.report();
+        let mut marks = report.marks.clone();
+        marks.push(end);
+        Summary {
+            host: LABEL.to_owned(),
+            script: report.script.clone(),
+            apk: report.apk.clone(),
+            abi: ABI.to_owned(),
+            library: report.library.clone(),
+            failure,
+            frames: self.frames.shown(),
+            seconds: self.clock.seconds(),
+            real_seconds: report.started.elapsed().as_secs_f64(),
+            longest_callback_ms: self.watch.longest_callback_us.load(Ordering::Relaxed) as f64 / 1000.0,
+            gl: self.graphics.facts(),
+            marks,
+            input: InputFacts {
+                sent: self.input.sent.load(Ordering::Relaxed),
+                finished: self.input.finished.load(Ordering::Relaxed),
+                handled: self.input.handled.load(Ordering::Relaxed),
+            },
+            violations: lock(&self.violations).clone(),
+            jni_invented: self.jni.invented(),
+            trapped_symbols: report.trapped_symbols.clone(),
+            captures: report.captures.clone(),
+            log_counts: log.counts,
+            log: log.lines,
+        }
+    }
+
+    /// Writes the summary, prints it and ends the process: threads of the application may still run, so nothing is torn
+    /// down. Exit code 0 for a clean run, 1 otherwise.
+    pub fn finish(&self, failure: Option<String>) -> ! {
+        static FINISHING: AtomicBool = AtomicBool::new(false);
+        if FINISHING.swap(true, Ordering::SeqCst) {
+            // Another thread is writing the summary and ends the process.
+            loop {
+                std::thread::sleep(Duration::from_secs(1));
+            }
+        }
+        let context = lock(&self.context).clone();
+        let summary = self.summary(
+            failure
+                .map(|failure| if context.is_empty() { failure } else { format!("{failure} ({context})") }),
+        );
+        self.directories.remove();
+        let path = self.report().out.join("summary.json");
+        let written = serde_json::to_vec_pretty(&summary)
+            .map_err(std::io::Error::other)
+            .and_then(|json| std::fs::write(&path, json));
+        let mut code = i32::from(!summary.is_clean());
+        let mut text = summary.to_string();
+        if let Err(error) = written {
+            text += &format!("cannot write {}: {error}\n", path.display());
+            code = 1;
+        }
+        say_to(self.report().stderr.as_raw_fd(), &text);
+        // SAFETY: ends the process without running destructors that the application's threads may still need.
+        unsafe { libc::_exit(code) }
+    }
+}
+
+/// Ends the run with a failure: something happened after which nothing can be trusted.
+pub fn fatal(text: impl Into<String>) -> ! {
+    let text = text.into();
+    match HOST.get() {
+        Some(host) => host.finish(Some(text)),
+        None => {
+            say_to(libc::STDERR_FILENO, &format!("{LABEL}: {text}\n"));
+            // SAFETY: ends the process.
+            unsafe { libc::_exit(1) }
+        }
+    }
+}
+
+/// Writes to a file descriptor, as far as that works.
+pub fn say_to(fd: i32, text: &str) {
+    let mut rest = text.as_bytes();
+    while !rest.is_empty() {
+        // SAFETY: the pointer and the length are of one live slice.
+        let written = unsafe { libc::write(fd, rest.as_ptr().cast(), rest.len()) };
+        match usize::try_from(written) {
+            Ok(written) if written > 0 => rest = &rest[written..],
+            _ => return,
+        }
+    }
+}
+
+fn watch() {
+    loop {
+        std::thread::sleep(Duration::from_millis(200));
+        let host = host();
+        let late =
+            lock(&host.watch.doing).as_ref().filter(|(_, since)| since.elapsed() > host.patience()).cloned();
+        if let Some((what, since)) = late {
+            fatal(format!("{what} takes longer than {:.0} s; {}", since.elapsed().as_secs_f64(), threads()));
+        }
+    }
+}
+
+/// What each thread waits in, as the kernel names it: the first clue to a deadlock.
+fn threads() -> String {
+    let mut states: BTreeMap<String, u32> = BTreeMap::new();
+    for task in std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
+        let read = |file| std::fs::read_to_string(task.path().join(file)).unwrap_or_default();
+        let state = read("stat").rsplit(") ").next().and_then(|rest| rest.chars().next()).unwrap_or('?');
+        *states.entry(format!("{} ({state}, {})", read("comm").trim(), read("wchan").trim())).or_default() +=
+            1;
+    }
+    let list: Vec<_> = states
+        .into_iter()
+        .map(|(name, count)| if count > 1 { format!("{count}x {name}") } else { name })
+        .collect();
+    format!("threads: {}", list.join(", "))
+}
+
+fn entries(folder: &str) -> u64 {
+    std::fs::read_dir(folder).map_or(0, |entries| entries.count() as u64)
+}
+
+fn resident_kib() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))
+        .and_then(|rest| rest.trim().trim_end_matches(" kB").parse().ok())
+        .unwrap_or(0)
+}

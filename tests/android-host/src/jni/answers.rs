@@ -1,0 +1,262 @@
+//! What Java methods and fields answer.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::android::thermal;
+use crate::host::{Host, host, lock};
+use crate::jni::{Argument, Data, Member, Object, Value};
+use crate::script::Battery;
+
+/// `Integer.MIN_VALUE` and `Long.MIN_VALUE` are BatteryManager's words for "unsupported".
+const UNSUPPORTED: i32 = i32::MIN;
+
+/// The answer to a call, `None` where nothing is known.
+pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Option<Value> {
+    let host = host();
+    let text = |index: usize| match arguments.get(index) {
+        Some(Value::Object(Some(object))) => object.text().map(str::to_owned),
+        _ => None,
+    };
+    let int = |index: usize| match arguments.get(index) {
+        Some(Value::Int(value)) => *value,
+        _ => 0,
+    };
+    let class = match &receiver.data {
+        Data::Class(name) => name.as_str(),
+        _ => receiver.class.as_str(),
+    };
+    Some(match member.name.as_str() {
+        "<init>" => Value::Void,
+        "loadClass" | "forName" => Value::object(Object::class_of(&text(0)?.replace('.', "/"))),
+        "getName" if receiver.class == "java/lang/Class" => {
+            Value::object(Object::string(&class.replace('/', ".")))
+        }
+        "toString" => Value::object(Object::string(receiver.text().unwrap_or(class))),
+        // Their objects are asked nothing: the application hands them back.
+        "getApplication" | "getApplicationContext" => {
+            Value::object(Object::new("android/app/Application", Data::None))
+        }
+        "getAssets" => Value::object(Object::new("android/content/res/AssetManager", Data::None)),
+        "getClassLoader" | "getContextClassLoader" => {
+            Value::object(Object::new("java/lang/ClassLoader", Data::None))
+        }
+        "getWindow" => Value::object(Object::new("android/view/Window", Data::None)),
+        "getDecorView" => Value::object(Object::new("android/view/View", Data::None)),
+        "getWindowManager" => Value::object(Object::new("android/view/WindowManager", Data::None)),
+        "getDefaultDisplay" | "getDisplay" => Value::object(Object::new("android/view/Display", Data::None)),
+        "getResources" => Value::object(Object::new("android/content/res/Resources", Data::None)),
+        "getDisplayMetrics" => Value::object(Object::new("android/util/DisplayMetrics", Data::None)),
+        "getPackageName" => Value::object(Object::string("org.yoro.simulated")),
+        "currentThread" => Value::object(Object::new("java/lang/Thread", Data::None)),
+        "setContextClassLoader"
+        | "setName"
+        | "setSystemUiVisibility"
+        | "setDecorFitsSystemWindows"
+        | "setAttributes"
+        | "addFlags"
+        | "clearFlags"
+        | "setFlags"
+        | "hide"
+        | "show"
+        | "setSystemBarsBehavior"
+        | "setRequestedOrientation"
+        | "setSustainedPerformanceMode"
+            if member.signature.ends_with(")V") =>
+        {
+            Value::Void
+        }
+
+        "getSystemService" => system_service(&text(0)?),
+        "registerReceiver" => Value::Object(battery_intent(host)),
+        "getIntProperty" if class == "android/os/BatteryManager" => {
+            Value::Int(battery_property(host, int(0)))
+        }
+        "getLongProperty" if class == "android/os/BatteryManager" => {
+            Value::Long(battery_long_property(host, int(0)))
+        }
+        "isCharging" if class == "android/os/BatteryManager" => Value::Boolean(
+            lock(&host.battery).as_ref().is_some_and(|battery| matches!(battery.status, 2 | 5)),
+        ),
+        "getCurrentThermalStatus" => Value::Int(lock(&host.thermal).status),
+        "getThermalHeadroom" => Value::Float(thermal::headroom()),
+        "isPowerSaveMode" => Value::Boolean(false),
+
+        "getIntent" => {
+            let extras = host
+                .device
+                .extras
+                .iter()
+                .map(|(key, value)| (key.clone(), Value::object(Object::string(value))))
+                .collect();
+            Value::object(Object::new("android/content/Intent", Data::Extras(extras)))
+        }
+        "getAction" if class == "android/content/Intent" => {
+            Value::object(Object::string("android.intent.action.MAIN"))
+        }
+        "getExtras" => match &receiver.data {
+            Data::Extras(extras) if !extras.is_empty() => {
+                Value::object(Object::new("android/os/Bundle", Data::Extras(extras.clone())))
+            }
+            _ => Value::Object(None),
+        },
+        "keySet" => match &receiver.data {
+            Data::Extras(extras) => list("java/util/Set", extras.keys()),
+            _ => return None,
+        },
+        "iterator" => match &receiver.data {
+            Data::Array(items) => {
+                Value::object(Object::new("java/util/Iterator", Data::Array(lock(items).clone().into())))
+            }
+            _ => return None,
+        },
+        "hasNext" => match &receiver.data {
+            Data::Array(items) => Value::Boolean(!lock(items).is_empty()),
+            _ => return None,
+        },
+        "next" => match &receiver.data {
+            Data::Array(items) => Value::Object(lock(items).pop().flatten()),
+            _ => return None,
+        },
+        "hasExtra" | "containsKey" => Value::Boolean(extra(receiver, &text(0)?).is_some()),
+        "getIntExtra" | "getInt" | "getLongExtra" | "getLong" | "getFloatExtra" | "getFloat"
+        | "getBooleanExtra" | "getBoolean" | "getDoubleExtra" | "getDouble"
+            if matches!(receiver.data, Data::Extras(_)) =>
+        {
+            let default = arguments.get(1).cloned().unwrap_or(Value::Int(0));
+            match extra(receiver, &text(0)?) {
+                Some(value) if std::mem::discriminant(value) == std::mem::discriminant(&default) => {
+                    value.clone()
+                }
+                _ => default,
+            }
+        }
+        "getStringExtra" | "getString" | "get" if matches!(receiver.data, Data::Extras(_)) => {
+            match extra(receiver, &text(0)?) {
+                Some(value @ Value::Object(_)) => value.clone(),
+                _ => Value::Object(None),
+            }
+        }
+
+        "getExternalFilesDir" | "getExternalCacheDir" => file(host.directories.external().to_str().ok()?),
+        "getFilesDir" | "getCacheDir" => file(host.directories.internal().to_str().ok()?),
+        "getAbsolutePath" | "getPath" | "getCanonicalPath" if class == "java/io/File" => {
+            Value::object(Object::string(receiver.text()?))
+        }
+
+        "getRefreshRate" => Value::Float(host.device.refresh_hz as f32),
+        "getRotation" => Value::Int(1),
+        "getDisplayId" => Value::Int(0),
+        "getWidth" => Value::Int(host.window.size().0),
+        "getHeight" => Value::Int(host.window.size().1),
+        // They fill in a DisplayMetrics, whose fields are answered below.
+        "getMetrics" | "getRealMetrics" => Value::Void,
+        _ => return None,
+    })
+}
+
+/// The value of a field, `None` where nothing is known.
+pub fn field(member: &Member) -> Option<Value> {
+    let host = host();
+    let (width, height) = host.window.size();
+    let density = host.device.density as f32 / 160.0;
+    Some(match (member.class.as_str(), member.name.as_str()) {
+        ("android/util/DisplayMetrics", "xdpi") => Value::Float(host.device.xdpi),
+        ("android/util/DisplayMetrics", "ydpi") => Value::Float(host.device.ydpi),
+        ("android/util/DisplayMetrics", "density" | "scaledDensity") => Value::Float(density),
+        ("android/util/DisplayMetrics", "densityDpi") => Value::Int(host.device.density),
+        ("android/util/DisplayMetrics", "widthPixels") => Value::Int(width),
+        ("android/util/DisplayMetrics", "heightPixels") => Value::Int(height),
+        ("android/os/Build$VERSION", "SDK_INT") => Value::Int(host.device.sdk),
+        ("android/os/Build$VERSION", "RELEASE") => Value::object(Object::string("simulated")),
+        ("android/os/Build", "MODEL" | "DEVICE" | "PRODUCT" | "MANUFACTURER" | "BRAND" | "HARDWARE") => {
+            Value::object(Object::string("Simulated Android host"))
+        }
+        ("android/content/Context", "BATTERY_SERVICE") => Value::object(Object::string("batterymanager")),
+        ("android/content/Context", "POWER_SERVICE") => Value::object(Object::string("power")),
+        ("android/content/Context", "WINDOW_SERVICE") => Value::object(Object::string("window")),
+        ("android/content/Context", "DISPLAY_SERVICE") => Value::object(Object::string("display")),
+        ("android/content/Intent", "ACTION_BATTERY_CHANGED") => {
+            Value::object(Object::string("android.intent.action.BATTERY_CHANGED"))
+        }
+        ("android/view/WindowInsets$Type", _) => Value::Int(0),
+        _ => return None,
+    })
+}
+
+fn file(path: &str) -> Value {
+    Value::object(Object::new("java/io/File", Data::Text(path.to_owned())))
+}
+
+/// A collection of strings, last first, for an iterator takes from the end.
+fn list<'a>(class: &str, items: impl DoubleEndedIterator<Item = &'a String>) -> Value {
+    let items: Vec<_> = items.rev().map(|item| Some(Object::string(item))).collect();
+    Value::object(Object::new(class, Data::Array(items.into())))
+}
+
+fn extra<'a>(object: &'a Object, key: &str) -> Option<&'a Value> {
+    match &object.data {
+        Data::Extras(extras) => extras.get(key),
+        _ => None,
+    }
+}
+
+fn system_service(name: &str) -> Value {
+    let class = match name {
+        "batterymanager" => "android/os/BatteryManager",
+        "power" => "android/os/PowerManager",
+        "window" => "android/view/WindowManager",
+        "display" => "android/hardware/display/DisplayManager",
+        "sensor" => "android/hardware/SensorManager",
+        "vibrator" => "android/os/Vibrator",
+        "activity" => "android/app/ActivityManager",
+        _ => return Value::Object(None),
+    };
+    Value::object(Object::new(class, Data::None))
+}
+
+/// The sticky intent `ACTION_BATTERY_CHANGED`; a device without a battery says so in it.
+fn battery_intent(host: &Host) -> Option<Arc<Object>> {
+    let Battery { level, millivolts, decidegrees, plugged, status, .. } = lock(&host.battery).clone()?;
+    let extras: BTreeMap<String, Value> = [
+        ("level", level),
+        ("scale", 100),
+        ("voltage", millivolts),
+        ("temperature", decidegrees),
+        ("plugged", plugged),
+        ("status", status),
+        ("health", 2),
+    ]
+    .map(|(key, value)| (key.to_owned(), Value::Int(value)))
+    .into_iter()
+    .chain([
+        ("present".to_owned(), Value::Boolean(true)),
+        ("technology".to_owned(), Value::object(Object::string("simulated"))),
+    ])
+    .collect();
+    Some(Object::new("android/content/Intent", Data::Extras(extras)))
+}
+
+fn battery_property(host: &Host, property: i32) -> i32 {
+    let battery = lock(&host.battery);
+    let Some(battery) = battery.as_ref() else { return UNSUPPORTED };
+    match property {
+        1 => battery.charge_counter.unwrap_or(UNSUPPORTED),
+        2 => battery.current_now.unwrap_or(UNSUPPORTED),
+        3 => battery.current_average.unwrap_or(UNSUPPORTED),
+        4 => battery.level,
+        6 => battery.status,
+        _ => UNSUPPORTED,
+    }
+}
+
+fn battery_long_property(host: &Host, property: i32) -> i64 {
+    match property {
+        5 => lock(&host.battery).as_ref().and_then(|battery| battery.energy_counter).unwrap_or(i64::MIN),
+        // BatteryService widens the int, and its MIN_VALUE becomes the long's.
+        other => match battery_property(host, other) {
+            UNSUPPORTED => i64::MIN,
+            value => i64::from(value),
+        },
+    }
+}

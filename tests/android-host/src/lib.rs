@@ -1,0 +1,84 @@
+//! A simulated Android host: runs the libraries of the built APK on Linux, without a device and without Google's tools.
+//!
+//! It takes the library and the assets out of the APK, loads the library by an ELF loader of its own, and answers what
+//! the library imports: bionic, ALooper, ANativeActivity, input, sensors, JNI, and EGL on Mesa. A script
+//! ([`script::Script`]) says what the device is and what happens; the result is a [`summary::Summary`].
+//!
+//! What it shows is that the APK's own code starts, draws what it should, and survives what Android does to it. It says
+//! nothing about speed, power, drivers or manufacturers' peculiarities.
+
+mod android;
+mod apk;
+mod bionic;
+mod clock;
+mod crash;
+mod elf;
+mod exports;
+mod fd;
+mod frames;
+mod graphics;
+mod host;
+mod jni;
+mod player;
+mod random;
+pub mod script;
+pub mod summary;
+mod thunk;
+
+use std::os::fd::AsFd;
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+
+use crate::android::activity::OnCreate;
+use crate::android::assets::Assets;
+use crate::apk::Apk;
+use crate::elf::Library;
+use crate::host::{ABI, Host, Report};
+use crate::player::Player;
+use crate::script::Script;
+
+/// Plays `script` on the APK, writes `summary.json` and pictures into `out`, prints the summary and ends the process:
+/// exit code 0 for a clean run, 1 for one with a failure, a GL error or a violation. Returns only if the run cannot
+/// begin.
+///
+/// # Errors
+/// The APK, the library or the output folder cannot be used, or Mesa is missing.
+pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Result<std::convert::Infallible> {
+    let started = Instant::now();
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
+    let apk = Apk::read(apk_path, ABI)?;
+    let report = Report {
+        apk: apk_path.to_owned(),
+        script: script.name.clone(),
+        out: out.to_owned(),
+        library: None,
+        trapped_symbols: Vec::new(),
+        marks: Vec::new(),
+        captures: Vec::new(),
+        stderr: std::io::stderr().as_fd().try_clone_to_owned()?,
+        started,
+    };
+    let host = Host::install(script, Assets::new(apk.assets), verbose, report)?;
+    let (name, bytes) = apk.library;
+    let sdk = host.device.sdk;
+    let loaded = Library::load(&name, &bytes, |library, symbol| exports::find(library, symbol, sdk))?;
+    {
+        let mut report = host.report();
+        report.library = Some(loaded.facts);
+        report.trapped_symbols = loaded.trapped;
+    }
+    let library = host.library.get_or_init(|| loaded.library);
+    crash::install();
+    // SAFETY: the library can reach everything it needs through the host from now on.
+    unsafe { library.initialize() };
+    let create = library
+        .symbol("ANativeActivity_onCreate")
+        .with_context(|| format!("{name} does not export ANativeActivity_onCreate"))?;
+    // SAFETY: a symbol of this name has this type by the NDK's contract.
+    let create: OnCreate = unsafe { std::mem::transmute(create) };
+    let mut player = Player::new(create, out.to_owned());
+    player.play(&script.steps);
+    host.finish(None)
+}

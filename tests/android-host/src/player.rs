@@ -1,0 +1,544 @@
+//! Plays a script: the part of Android's system that starts activities, and of the user.
+
+use std::ffi::c_void;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::android::activity::{ANativeActivity, ARect, Callbacks, OnCreate};
+use crate::android::input::{AInputEvent, AInputQueue, MotionAction};
+use crate::android::looper::{self, ALooper};
+use crate::host::{Host, fatal, host, lock};
+use crate::jni;
+use crate::random;
+use crate::script::{Battery, Key, Step, Thermal};
+
+/// The stages of an activity that the script has reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stage {
+    /// Between `onCreate` and `onDestroy`.
+    pub created: bool,
+    /// Between `onStart` and `onStop`.
+    pub started: bool,
+    /// Between `onResume` and `onPause`.
+    pub resumed: bool,
+    /// Between `onNativeWindowCreated` and `onNativeWindowDestroyed`.
+    pub window: bool,
+    /// Has the focus.
+    pub focus: bool,
+}
+
+/// The player.
+pub struct Player {
+    host: &'static Host,
+    looper: &'static ALooper,
+    create: OnCreate,
+    out: PathBuf,
+    activity: Option<&'static mut Activity>,
+    queue: Option<&'static AInputQueue>,
+    stage: Stage,
+    saved: Vec<u8>,
+    /// Number of the first log line that no step has waited for.
+    log_read: usize,
+}
+
+/// An activity as the library sees it. It stays after its end: the library's threads may still look at it.
+struct Activity {
+    native: ANativeActivity,
+    callbacks: Callbacks,
+}
+
+/// Finger's time on the screen, nanoseconds.
+const TAP: u64 = 80_000_000;
+
+impl Player {
+    /// On the main thread, whose looper it runs.
+    pub fn new(create: OnCreate, out: PathBuf) -> Self {
+        jni::attach_main_thread();
+        Self {
+            host: host(),
+            looper: looper::prepare(),
+            create,
+            out,
+            activity: None,
+            queue: None,
+            stage: Stage::default(),
+            saved: Vec::new(),
+            log_read: 0,
+        }
+    }
+
+    /// Plays all steps.
+    pub fn play(&mut self, steps: &[Step]) {
+        for step in steps {
+            self.step(step);
+        }
+    }
+
+    fn step(&mut self, step: &Step) {
+        if self.host.log.is_verbose() {
+            self.host.say(&format!("{:9.3} step: {step:?}", self.host.clock.seconds()));
+        }
+        match step {
+            Step::Launch => self.play(&[
+                Step::Create,
+                Step::Start,
+                Step::Resume,
+                Step::InputQueue,
+                Step::Window,
+                Step::Focus,
+            ]),
+            Step::Quit => self.quit(),
+            Step::Create => self.create(),
+            Step::Start => {
+                self.expect("start", self.stage.created && !self.stage.started);
+                self.event("onStart", |callbacks| callbacks.onStart);
+                self.stage.started = true;
+            }
+            Step::Resume => {
+                self.expect("resume", self.stage.started && !self.stage.resumed);
+                self.event("onResume", |callbacks| callbacks.onResume);
+                self.stage.resumed = true;
+            }
+            Step::Pause => {
+                self.expect("pause", self.stage.resumed);
+                self.event("onPause", |callbacks| callbacks.onPause);
+                self.stage.resumed = false;
+            }
+            Step::Stop => {
+                self.expect("stop", self.stage.started && !self.stage.resumed);
+                self.event("onStop", |callbacks| callbacks.onStop);
+                self.stage.started = false;
+            }
+            Step::Destroy => self.destroy(),
+            Step::InputQueue => self.input_queue(),
+            Step::InputQueueLost => self.input_queue_lost(),
+            Step::Window => self.window(),
+            Step::WindowLost => self.window_lost(),
+            Step::Resize { width, height } => {
+                self.host.window.resize(*width, *height);
+                if self.stage.window {
+                    self.window_event("onNativeWindowResized", |callbacks| callbacks.onNativeWindowResized);
+                    self.content_rect();
+                }
+            }
+            Step::Focus => self.focus(true),
+            Step::Unfocus => self.focus(false),
+            Step::SaveState => self.save_state(),
+            Step::LowMemory => self.event("onLowMemory", |callbacks| callbacks.onLowMemory),
+            Step::ConfigurationChanged => {
+                self.event("onConfigurationChanged", |callbacks| callbacks.onConfigurationChanged)
+            }
+            Step::Frames(count) => self.frames(*count),
+            Step::Seconds(seconds) => self.seconds(*seconds),
+            Step::WaitLog { text, frames } => self.wait_log(text, *frames),
+            Step::WaitFinish { frames } => {
+                for _ in 0..*frames {
+                    if self.finish_asked() {
+                        return;
+                    }
+                    self.host.frames.grant(1);
+                    let shown = self.host.frames.shown();
+                    self.wait("a frame, or the application's wish to finish", |host| {
+                        host.frames.shown() > shown || host.finish_asked.load(Ordering::Acquire)
+                    });
+                }
+                if !self.finish_asked() {
+                    fatal(format!("the application has not asked for its end within {frames} frames"));
+                }
+            }
+            Step::Idle(seconds) => self.idle(*seconds),
+            Step::Tap { x, y } => self.touch(*x, *y, TAP),
+            Step::LongPress { x, y, seconds } => self.touch(*x, *y, nanoseconds(*seconds)),
+            Step::Key(key) => self.key(*key),
+            Step::Head { yaw, pitch, roll, seconds } => {
+                self.host.sensors.turn(*yaw, *pitch, *roll, self.host.clock.now(), nanoseconds(*seconds));
+                self.seconds(*seconds);
+            }
+            Step::Battery(battery) => self.battery(Some(battery.clone())),
+            Step::BatteryMissing => self.battery(None),
+            Step::Thermal(thermal) => self.thermal(thermal),
+            Step::Property { name, value } => {
+                lock(&self.host.properties).insert(name.clone(), value.clone());
+            }
+            Step::ContextLoss => self.host.graphics.lose_context(),
+            Step::Capture(name) => self.capture(name.clone()),
+            Step::Mark(name) => {
+                let mark = self.host.mark(name);
+                self.host.report().marks.push(mark);
+            }
+            Step::Repeat { times, steps } => {
+                for _ in 0..*times {
+                    self.play(steps);
+                }
+            }
+            Step::Random { seed, sequences, events } => self.random(*seed, *sequences, *events),
+        }
+    }
+
+    fn expect(&self, step: &str, possible: bool) {
+        if !possible {
+            fatal(format!(
+                "the script asks for {step} at a stage where Android never does: {:?}",
+                self.stage
+            ));
+        }
+    }
+
+    /// Runs the main looper until something is true; `what` is said when that takes too long.
+    fn wait(&self, what: &str, done: impl Fn(&Host) -> bool) {
+        self.host.watched(what, || {
+            while !done(self.host) {
+                self.looper.pump(50, self.host.frames.event.raw());
+                self.host.frames.event.clear();
+            }
+        });
+    }
+
+    /// Calls back with the gate open, for the application may answer from its frame loop.
+    fn callback<T>(&mut self, what: &str, call: impl FnOnce(&mut Activity) -> T) -> T {
+        let host = self.host;
+        let Some(activity) = self.activity.as_deref_mut() else {
+            fatal(format!("the script asks for {what} without an activity"))
+        };
+        host.frames.set_open(true);
+        let result = host.callback(what, || call(activity));
+        host.frames.set_open(false);
+        self.looper.pump(0, -1);
+        result
+    }
+
+    fn event(
+        &mut self,
+        what: &str,
+        get: impl Fn(&Callbacks) -> Option<unsafe extern "C" fn(*mut ANativeActivity)>,
+    ) {
+        self.callback(what, |activity| {
+            if let Some(function) = get(&activity.callbacks) {
+                // SAFETY: the application's callback, with its own activity, on the main thread.
+                unsafe { function(&raw mut activity.native) };
+            }
+        });
+    }
+
+    fn window_event(
+        &mut self,
+        what: &str,
+        get: impl Fn(
+            &Callbacks,
+        )
+            -> Option<unsafe extern "C" fn(*mut ANativeActivity, *const crate::android::window::Window)>,
+    ) {
+        let window = &raw const self.host.window;
+        self.callback(what, |activity| {
+            if let Some(function) = get(&activity.callbacks) {
+                // SAFETY: the application's callback, with its own activity and the window, on the main thread.
+                unsafe { function(&raw mut activity.native, window) };
+            }
+        });
+    }
+
+    fn create(&mut self) {
+        self.expect("create", !self.stage.created);
+        let host = self.host;
+        host.finish_asked.store(false, Ordering::Release);
+        let activity = Box::leak(Box::new(Activity {
+            native: ANativeActivity {
+                callbacks: std::ptr::null_mut(),
+                vm: jni::virtual_machine(),
+                env: jni::environment(),
+                clazz: jni::activity_reference(),
+                internalDataPath: host.directories.internal().as_ptr(),
+                externalDataPath: host.directories.external().as_ptr(),
+                sdkVersion: host.device.sdk,
+                instance: std::ptr::null_mut(),
+                assetManager: &raw const host.assets,
+                obbPath: host.directories.external().as_ptr(),
+            },
+            callbacks: Callbacks::default(),
+        }));
+        activity.native.callbacks = &raw mut activity.callbacks;
+        self.activity = Some(activity);
+        let (create, saved) = (self.create, std::mem::take(&mut self.saved));
+        self.callback("ANativeActivity_onCreate", |activity| {
+            let state: *const c_void =
+                if saved.is_empty() { std::ptr::null() } else { saved.as_ptr().cast() };
+            // SAFETY: the application's entry point, with a complete activity, on the main thread.
+            unsafe { create(&raw mut activity.native, state, saved.len()) };
+        });
+        self.stage.created = true;
+    }
+
+    fn destroy(&mut self) {
+        self.expect("destroy", self.stage.created && !self.stage.started);
+        if self.queue.is_some() {
+            self.input_queue_lost();
+        }
+        self.event("onDestroy", |callbacks| callbacks.onDestroy);
+        self.host.frames.set_open(true);
+        self.wait("the end of android_main", |host| !main_runs(host));
+        self.host.frames.set_open(false);
+        if let Some(activity) = self.activity.take() {
+            jni::release_activity(activity.native.clazz);
+        }
+        self.stage = Stage::default();
+    }
+
+    fn quit(&mut self) {
+        if self.stage.focus {
+            self.focus(false);
+        }
+        if self.stage.resumed {
+            self.step(&Step::Pause);
+        }
+        if self.stage.window {
+            self.window_lost();
+        }
+        if self.stage.started {
+            self.step(&Step::Stop);
+        }
+        if self.stage.created {
+            self.destroy();
+        }
+    }
+
+    fn input_queue(&mut self) {
+        self.expect("input-queue", self.stage.created && self.queue.is_none());
+        let queue = AInputQueue::fresh();
+        self.queue = Some(queue);
+        self.callback("onInputQueueCreated", |activity| {
+            if let Some(function) = activity.callbacks.onInputQueueCreated {
+                // SAFETY: the application's callback, with its own activity and a queue, on the main thread.
+                unsafe { function(&raw mut activity.native, queue) };
+            }
+        });
+    }
+
+    fn input_queue_lost(&mut self) {
+        let Some(queue) = self.queue.take() else {
+            fatal("the script asks for input-queue-lost without a queue")
+        };
+        self.callback("onInputQueueDestroyed", |activity| {
+            if let Some(function) = activity.callbacks.onInputQueueDestroyed {
+                // SAFETY: the application's callback, with its own activity and its queue, on the main thread.
+                unsafe { function(&raw mut activity.native, queue) };
+            }
+        });
+        // After its own end android_main cannot take the queue off its looper, and android-activity does not.
+        if queue.is_attached() && main_runs(self.host) {
+            self.host.violation("the input queue is still attached after onInputQueueDestroyed");
+        }
+    }
+
+    fn window(&mut self) {
+        self.expect("window", self.stage.created && !self.stage.window);
+        self.host.window.set_alive(true);
+        self.stage.window = true;
+        self.window_event("onNativeWindowCreated", |callbacks| callbacks.onNativeWindowCreated);
+        self.content_rect();
+        self.window_event("onNativeWindowRedrawNeeded", |callbacks| callbacks.onNativeWindowRedrawNeeded);
+    }
+
+    fn window_lost(&mut self) {
+        self.expect("window-lost", self.stage.window);
+        self.window_event("onNativeWindowDestroyed", |callbacks| callbacks.onNativeWindowDestroyed);
+        self.host.window.set_alive(false);
+        self.stage.window = false;
+        if self.host.graphics.live_window_surfaces() > 0 {
+            self.host.violation("an EGL surface of the window is alive after onNativeWindowDestroyed");
+        }
+    }
+
+    fn content_rect(&mut self) {
+        let (right, bottom) = self.host.window.size();
+        let rect = ARect { left: 0, top: 0, right, bottom };
+        self.callback("onContentRectChanged", |activity| {
+            if let Some(function) = activity.callbacks.onContentRectChanged {
+                // SAFETY: the application's callback, with its own activity and a live rectangle, on the main thread.
+                unsafe { function(&raw mut activity.native, &raw const rect) };
+            }
+        });
+    }
+
+    fn focus(&mut self, focus: bool) {
+        self.expect("focus", self.stage.created);
+        self.stage.focus = focus;
+        self.callback("onWindowFocusChanged", |activity| {
+            if let Some(function) = activity.callbacks.onWindowFocusChanged {
+                // SAFETY: the application's callback, with its own activity, on the main thread.
+                unsafe { function(&raw mut activity.native, i32::from(focus)) };
+            }
+        });
+    }
+
+    fn save_state(&mut self) {
+        self.expect("save-state", self.stage.created);
+        self.saved = self.callback("onSaveInstanceState", |activity| {
+            let Some(function) = activity.callbacks.onSaveInstanceState else { return Vec::new() };
+            let mut size = 0;
+            // SAFETY: the application's callback, with its own activity and room for the size, on the main thread.
+            let state = unsafe { function(&raw mut activity.native, &raw mut size) };
+            if state.is_null() {
+                return Vec::new();
+            }
+            // SAFETY: the application gives `size` bytes from malloc, which become the system's.
+            unsafe {
+                let bytes = std::slice::from_raw_parts(state.cast::<u8>(), size).to_vec();
+                libc::free(state);
+                bytes
+            }
+        });
+    }
+
+    /// Whether frames can be expected.
+    fn renders(&self) -> bool {
+        self.stage.resumed && self.stage.window
+    }
+
+    fn frames(&mut self, count: u64) {
+        self.expect("frames", self.renders());
+        let start = self.host.frames.shown();
+        self.host.frames.grant(count);
+        for shown in start + 1..=start + count {
+            self.wait(&format!("frame {shown}"), |host| host.frames.shown() >= shown);
+        }
+        self.wait_for_gate();
+    }
+
+    /// Until a frame is drawn that waits to be shown.
+    fn wait_for_gate(&mut self) {
+        self.host.frames.set_wanted(true);
+        self.wait(&format!("frame {}", self.host.frames.shown() + 1), |host| host.frames.is_waiting());
+        self.host.frames.set_wanted(false);
+    }
+
+    fn until(&mut self, instant: u64) {
+        while self.host.clock.now() < instant {
+            self.frames(1);
+        }
+    }
+
+    fn seconds(&mut self, seconds: f64) {
+        self.until(self.host.clock.now() + nanoseconds(seconds));
+    }
+
+    fn idle(&mut self, seconds: f64) {
+        let clock = &self.host.clock;
+        let end = clock.now() + nanoseconds(seconds);
+        self.host.frames.set_open(true);
+        while clock.now() < end {
+            clock.advance_to(clock.next_refresh(clock.now()).min(end));
+            looper::settle();
+            self.looper.pump(0, -1);
+        }
+        self.host.frames.set_open(false);
+    }
+
+    fn wait_log(&mut self, text: &str, frames: u64) {
+        for _ in 0..=frames {
+            if let Some(line) = self.host.log.find(self.log_read, text) {
+                self.log_read = line + 1;
+                return;
+            }
+            self.frames(1);
+        }
+        fatal(format!("no log line contains \"{text}\" after {frames} frames"));
+    }
+
+    fn send(&mut self, event: AInputEvent) {
+        let Some(queue) = self.queue else { fatal("the script sends input without an input queue") };
+        queue.push(event);
+    }
+
+    fn touch(&mut self, x: f32, y: f32, duration: u64) {
+        let (width, height) = self.host.window.size();
+        let (x, y) = (x * width as f32, y * height as f32);
+        let down = self.host.clock.now();
+        self.send(AInputEvent::Motion { action: MotionAction::Down, x, y, down, time: down });
+        self.until(down + duration);
+        self.send(AInputEvent::Motion { action: MotionAction::Up, x, y, down, time: self.host.clock.now() });
+        self.frames(2);
+    }
+
+    fn key(&mut self, key: Key) {
+        let down_time = self.host.clock.now();
+        for down in [true, false] {
+            self.send(AInputEvent::Key { down, code: key.code(), down_time, time: self.host.clock.now() });
+            if !self.finish_asked() {
+                self.frames(1);
+            }
+        }
+    }
+
+    fn finish_asked(&self) -> bool {
+        self.host.finish_asked.load(Ordering::Acquire)
+    }
+
+    fn battery(&mut self, battery: Option<Battery>) {
+        *lock(&self.host.battery) = battery;
+    }
+
+    fn thermal(&mut self, thermal: &Thermal) {
+        *lock(&self.host.thermal) = thermal.clone();
+        self.host.thermal_listeners.tell(thermal.status);
+    }
+
+    fn capture(&mut self, name: PathBuf) {
+        self.expect("capture", self.renders());
+        self.wait_for_gate();
+        self.host.frames.request_capture();
+        let picture = std::cell::RefCell::new(None);
+        self.wait("the picture of a frame", |host| {
+            let mut picture = picture.borrow_mut();
+            if picture.is_none() {
+                *picture = host.frames.captured();
+            }
+            picture.is_some()
+        });
+        let path = self.out.join(name);
+        let saved = match picture.into_inner() {
+            Some(Ok(image)) => image.save(&path).map_err(|error| error.to_string()),
+            Some(Err(error)) => Err(error),
+            None => Err("there is none".into()),
+        };
+        match saved {
+            Ok(()) => self.host.report().captures.push(path),
+            Err(error) => fatal(format!("the picture {} cannot be written: {error}", path.display())),
+        }
+    }
+
+    fn random(&mut self, seed: u64, sequences: u32, events: u32) {
+        let mut generator = Pcg64Mcg::seed_from_u64(seed);
+        for sequence in 0..sequences {
+            let count = generator.random_range(1..=events.max(1));
+            let mut played = Vec::new();
+            for _ in 0..count {
+                let step =
+                    random::step(&mut generator, self.stage, self.host.device.width, self.host.device.height);
+                played.push(format!("{step:?}"));
+                self.host
+                    .set_context(format!("random sequence {sequence} of seed {seed}: {}", played.join(", ")));
+                self.step(&step);
+                if self.finish_asked() {
+                    self.quit();
+                }
+            }
+            for step in random::back_to_running(self.stage) {
+                self.step(&step);
+            }
+            self.frames(1);
+            self.host.set_context(String::new());
+        }
+    }
+}
+
+fn nanoseconds(seconds: f64) -> u64 {
+    (seconds.max(0.0) * 1e9).round() as u64
+}
+
+/// Whether the thread of `android_main` exists.
+fn main_runs(host: &Host) -> bool {
+    std::path::Path::new(&format!("/proc/self/task/{}", host.main_thread.load(Ordering::Acquire))).exists()
+}

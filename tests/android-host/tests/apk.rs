@@ -1,0 +1,340 @@
+//! The built APK's own library in the simulated Android host. `cargo xtask test` builds the APK and names it in
+//! `YORO_TEST_APK`.
+
+mod host;
+
+use glam::{EulerRot, Quat};
+use image::RgbImage;
+use yoro::gl::{Destination, Filter, Format, RenderTarget};
+use yoro::metrics::{Channels, psnr};
+use yoro::platform::{Backend, Headless};
+use yoro::telemetry::Line;
+use yoro::viewer::{FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings, Viewer};
+
+use host::{Run, device, play};
+
+/// What each test's device has in its properties, as the desktop's settings: a scene and a quality that a CPU draws fast.
+const SETTINGS: [(&str, &str); 8] = [
+    ("scene", "prototype"),
+    ("hud", "false"),
+    ("shadow-map", "512"),
+    ("ssao", "off"),
+    ("bloom", "false"),
+    ("point-lights", "0"),
+    ("render-scale", "0.5"),
+    ("anti-aliasing", "off"),
+];
+const SIZE: [u32; 2] = [320, 180];
+const DPI: f32 = 74.0;
+/// The scene is in view.
+const READY: &str = r#"{ wait-log = { text = "triangles", frames = 2000 } }, { frames = 3 }"#;
+
+fn lines(run: &Run) -> Vec<Line> {
+    let lines: Vec<_> = run
+        .summary
+        .log_of("YORO")
+        .filter(|text| text.starts_with("v=1,") && !text.contains("summary="))
+        .collect();
+    lines.iter().map(|line| line.parse().unwrap_or_else(|error| panic!("{line}: {error}"))).collect()
+}
+
+/// What the desktop draws with the same settings; `yaw_degrees` holds the head.
+fn desktop(extra: &[(&str, &str)], yaw_degrees: Option<f32>) -> RgbImage {
+    let pairs = SETTINGS.iter().chain(extra).map(|(key, value)| format!("{key}={value}"));
+    let screen = Screen { size: SIZE, dpi: [DPI; 2], rotation: Rotation::LandscapeLeft };
+    let mut viewer = Viewer::new(Settings::resolve(None, pairs).unwrap(), screen, &[]).unwrap();
+    if let Some(degrees) = yaw_degrees {
+        let head = Quat::from_euler(EulerRot::YXZ, degrees.to_radians(), 0.0, 0.0);
+        viewer.hold_head(Some(HeldHead { rendered: head, displayed: head }));
+    }
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    viewer.attach(gl.clone()).unwrap();
+    let window = RenderTarget::new(gl, SIZE, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
+    while viewer.scene_state() == SceneState::Loading {
+        viewer.poll_scene();
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert_eq!(viewer.scene_state(), SceneState::Ready);
+    for frame in 1..=3 {
+        let now_ns = frame * 16_666_667;
+        let timing = FrameTiming { now_ns, expected_display_ns: now_ns + 33_333_333, refresh_hz: 60.0 };
+        viewer.frame(&Destination::whole(&window), &timing).unwrap();
+    }
+    let pixels = window.read_rgba8(0, [0, 0], SIZE);
+    RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
+        let at = (((SIZE[1] - 1 - y) * SIZE[0] + x) * 4) as usize;
+        image::Rgb([pixels[at], pixels[at + 1], pixels[at + 2]])
+    })
+}
+
+fn decibels(one: &RgbImage, other: &RgbImage) -> f64 {
+    psnr(one, other, Channels::Rgb).unwrap().0
+}
+
+#[test]
+fn boots_to_the_first_frame() {
+    let Some(run) = play(
+        "boot",
+        &device(&SETTINGS, ""),
+        &format!(r#""launch", {{ frames = 2 }}, {READY}, {{ capture = "boot.png" }}, "quit""#),
+    ) else {
+        return;
+    };
+    run.assert_clean();
+    assert!(run.summary.frames >= 5);
+    let picture = run.picture("boot.png");
+    let colours: std::collections::HashSet<_> = picture.pixels().collect();
+    assert!(colours.len() > 100, "the picture has {} colours", colours.len());
+    // A window is magenta again after each swap: what is not drawn shows.
+    assert!(!colours.contains(&image::Rgb([255, 0, 255])), "parts of the window are not drawn");
+    assert_eq!(run.summary.trapped_symbols, Vec::<String>::new());
+}
+
+#[test]
+fn the_picture_is_the_desktop_viewers() {
+    let Some(run) = play(
+        "picture",
+        &device(&SETTINGS, "sensors = []"),
+        &format!(r#""launch", {READY}, {{ capture = "phone.png" }}, "quit""#),
+    ) else {
+        return;
+    };
+    run.assert_clean();
+    let (phone, desktop) = (run.picture("phone.png"), desktop(&[], None));
+    let differing = phone
+        .pixels()
+        .zip(desktop.pixels())
+        .filter(|(one, other)| one.0.iter().zip(other.0).any(|(one, other)| one.abs_diff(other) > 2))
+        .count();
+    let share = differing as f64 / f64::from(SIZE[0] * SIZE[1]);
+    run.keep("desktop.png", &desktop);
+    assert!(
+        share < 0.005,
+        "{:.2} % of the pixels differ from the desktop's: {}",
+        share * 100.0,
+        run.folder()
+    );
+}
+
+#[test]
+fn turning_the_head_turns_the_picture() {
+    let steps = format!(
+        r#""launch", {READY}, {{ head = {{ yaw = 20, seconds = 0.5 }} }}, {{ seconds = 0.5 }}, {{ capture = "left.png" }}, "quit""#
+    );
+    let Some(run) = play("turn", &device(&SETTINGS, ""), &steps) else { return };
+    run.assert_clean();
+    let phone = run.picture("left.png");
+    let at = |degrees| decibels(&phone, &desktop(&[], Some(degrees)));
+    let (exact, less, more, other_way) = (at(20.0), at(18.0), at(22.0), at(-20.0));
+    assert!(
+        exact > less + 2.0 && exact > more + 2.0 && exact > other_way + 5.0,
+        "20 degrees: {exact:.1} dB, 18: {less:.1}, 22: {more:.1}, -20: {other_way:.1}"
+    );
+}
+
+#[test]
+fn recenter_makes_the_direction_straight_ahead() {
+    let steps = format!(
+        r#""launch", {READY}, {{ capture = "before.png" }}, {{ head = {{ yaw = 35, seconds = 0.5 }} }}, {{ long-press = {{}} }}, {{ seconds = 0.3 }}, {{ capture = "after.png" }}, "quit""#
+    );
+    let Some(run) = play("recenter", &device(&SETTINGS, ""), &steps) else { return };
+    run.assert_clean();
+    assert!(run.summary.log_of("YORO").any(|text| text == "recentered"));
+    let before = run.picture("before.png");
+    let same = decibels(&before, &run.picture("after.png"));
+    let turned = decibels(&before, &desktop(&[], Some(35.0)));
+    assert!(
+        same > turned + 5.0,
+        "straight ahead before and after: {same:.1} dB, 35 degrees apart: {turned:.1} dB"
+    );
+}
+
+#[test]
+fn taps_switch_methods_and_keys_the_ipd() {
+    let settings: Vec<_> =
+        SETTINGS.into_iter().chain([("methods", "yoro,conventional,mono"), ("method", "yoro")]).collect();
+    let steps = format!(
+        r#""launch", {READY}, {{ seconds = 1.2 }}, {{ tap = {{}} }}, {{ seconds = 1.2 }}, {{ key = "headset" }}, {{ seconds = 1.2 }}, {{ tap = {{}} }}, {{ seconds = 1.2 }},
+            {{ key = "volume-up" }}, {{ key = "volume-down" }}, {{ property = {{ name = "debug.yoro.method", value = "mono" }} }}, {{ seconds = 2.2 }}, "quit""#
+    );
+    let Some(run) = play("taps", &device(&settings, ""), &steps) else { return };
+    run.assert_clean();
+    let mut methods: Vec<_> = lines(&run).into_iter().map(|line| line.method).collect();
+    methods.dedup();
+    assert_eq!(methods, ["yoro", "conventional", "mono", "yoro", "mono"]);
+    assert_eq!(run.summary.log_of("YORO").filter(|text| text.starts_with("ipd: ")).count(), 2);
+    assert_eq!(run.summary.input.sent, run.summary.input.finished);
+    assert_eq!(run.summary.input.sent, run.summary.input.handled);
+}
+
+#[test]
+fn telemetry_carries_the_batterys_values() {
+    let battery = r#"
+        [device.battery]
+        level = 57
+        millivolts = 3805
+        decidegrees = 298
+        plugged = 2
+        status = 2
+        current_now = 412000
+        charge_counter = 2280000
+        [device.thermal]
+        status = 1
+        headroom = 0.61
+    "#;
+    let steps = format!(r#""launch", {READY}, {{ seconds = 3.5 }}, "quit""#);
+    let Some(run) = play("telemetry", &(device(&SETTINGS, "") + battery), &steps) else { return };
+    run.assert_clean();
+    let lines = lines(&run);
+    assert!((3..=4).contains(&lines.len()), "{} lines in 3.5 seconds", lines.len());
+    let last = lines.last().unwrap();
+    assert_eq!(
+        (last.current_raw, last.voltage_mv, last.level_percent, last.plugged),
+        (Some(412_000), Some(3805), Some(57), Some(2))
+    );
+    assert_eq!((last.charge_uah, last.thermal_status), (Some(2_280_000), Some(1)));
+    assert!((last.battery_celsius.unwrap() - 29.8).abs() < 0.01);
+    assert!((last.thermal_headroom.unwrap() - 0.61).abs() < 0.01);
+    assert_eq!(last.refresh_hz, Some(60.0));
+    // Every frame takes one refresh of the virtual clock.
+    assert!((last.fps.unwrap() - 60.0).abs() < 1.0, "{last}");
+    assert_eq!(last.stale, Some(0), "{last}");
+}
+
+#[test]
+fn without_battery_and_sensors() {
+    let steps = format!(r#""launch", "battery-missing", {READY}, {{ seconds = 2.5 }}, "quit""#);
+    let Some(run) = play("bare", &device(&SETTINGS, "sensors = []\nsdk = 29"), &steps) else { return };
+    run.assert_clean();
+    let lines = lines(&run);
+    let last = lines.last().expect("a telemetry line");
+    assert_eq!(
+        (last.current_raw, last.voltage_mv, last.level_percent, last.charge_uah, last.plugged),
+        (None, None, None, None, None)
+    );
+    // Thermal status came with API level 30, headroom with 31.
+    assert_eq!((last.thermal_status, last.thermal_headroom), (None, None));
+    assert!(run.summary.log_of("YORO").any(|text| text.contains("no gyroscope")));
+}
+
+#[test]
+fn opengl_es_3_0_is_enough() {
+    let settings: Vec<_> = SETTINGS.into_iter().chain([("pipeline", "rowgroup")]).collect();
+    let steps = format!(r#""launch", {READY}, {{ seconds = 1.2 }}, {{ capture = "es30.png" }}, "quit""#);
+    let Some(run) = play("es30", &device(&settings, "gles = \"3.0\"\nsensors = []"), &steps) else { return };
+    run.assert_clean();
+    assert!(run.summary.gl.version.contains("ES 3.0"), "{}", run.summary.gl.version);
+    assert_eq!(lines(&run).last().unwrap().pipeline.as_deref(), Some("gather"));
+    let (phone, desktop) = (run.picture("es30.png"), desktop(&[], None));
+    assert!(decibels(&phone, &desktop) > 30.0, "{:.1} dB", decibels(&phone, &desktop));
+}
+
+#[test]
+fn below_3_0_there_is_one_clear_message() {
+    let Some(run) = play("es20", &device(&SETTINGS, "gles = \"2.0\""), r#""launch", { idle = 2.0 }, "quit""#)
+    else {
+        return;
+    };
+    assert_eq!(run.summary.failure, None);
+    assert_eq!(run.summary.violations, Vec::<String>::new());
+    let errors = run.summary.log.iter().filter(|line| line.priority == 'E' && line.tag == "YORO").count();
+    assert_eq!(errors, 1, "{:#?}", run.summary.log);
+}
+
+#[test]
+fn lifecycle_torture_leaks_nothing() {
+    let Some(run) = play("torture", &device(&SETTINGS, ""), &(host::script("torture.toml"))) else { return };
+    run.assert_clean();
+    let mark = |name: &str| run.summary.mark(name).unwrap();
+    assert_eq!(mark("warm").objects(), mark("pauses").objects());
+    assert_eq!(mark("warm").objects(), mark("windows").objects());
+    for name in ["gone", "gone again"] {
+        let mark = mark(name);
+        assert!(mark.gl_objects.is_empty(), "{}", mark.objects());
+        assert_eq!(
+            (mark.egl_contexts, mark.egl_surfaces, mark.window_references),
+            (0, 0, 0),
+            "{}",
+            mark.objects()
+        );
+    }
+    assert_eq!(mark("gone").objects(), mark("gone again").objects());
+    let grown = mark("pauses").resident_kib.saturating_sub(mark("warm").resident_kib);
+    assert!(grown < 8 * 1024, "100 cycles of pause and resume took {grown} KiB");
+}
+
+#[test]
+fn a_lost_context_is_made_again() {
+    let Some(run) = play("loss", &device(&SETTINGS, "sensors = []"), &host::script("context-loss.toml"))
+    else {
+        return;
+    };
+    assert!(run.summary.is_clean(), "{}", run.summary);
+    assert_eq!(
+        run.summary.log.iter().filter(|line| line.priority == 'E' && line.text.contains("lost")).count(),
+        10
+    );
+    assert_eq!(run.summary.gl.contexts, 11);
+    assert_eq!(run.summary.mark("first").unwrap().gl_objects, run.summary.mark("last").unwrap().gl_objects);
+    assert_eq!(run.picture("before.png"), run.picture("after.png"));
+}
+
+#[test]
+fn a_session_ends_by_itself() {
+    let settings: Vec<_> = SETTINGS.into_iter().chain([("duration", "2"), ("auto-exit", "true")]).collect();
+    let Some(run) =
+        play("session", &device(&settings, ""), r#""launch", { wait-finish = { frames = 3000 } }, "quit""#)
+    else {
+        return;
+    };
+    // What Android calls after the end of android_main, android-activity logs as errors.
+    assert!(run.summary.is_clean(), "{}", run.summary);
+    assert_eq!(run.summary.log_of("YORO").filter(|text| text.starts_with("v=1,summary=1,")).count(), 1);
+}
+
+#[test]
+fn settings_come_from_file_extras_and_properties() {
+    let outside = r#"
+        [device.files]
+        "yoro.toml" = "method = \"mono\"\nipd = 0.05\nseed = 7\n"
+        [device.extras]
+        method = "conventional"
+        ipd = "0.06"
+        [device.properties]
+        "debug.yoro.ipd" = "0.061"
+        "debug.yoro.scene" = "prototype"
+        "debug.yoro.shadow-map" = "512"
+    "#;
+    let Some(run) = play(
+        "settings",
+        &format!("[device]\n{outside}"),
+        &format!(r#""launch", {READY}, {{ seconds = 1.2 }}, "quit""#),
+    ) else {
+        return;
+    };
+    run.assert_clean();
+    let settings = run.summary.log_of("YORO").find(|text| text.starts_with("settings: ")).unwrap();
+    assert!(
+        settings.contains("method=\"conventional\"")
+            && settings.contains("ipd=0.061")
+            && settings.contains("seed=7"),
+        "{settings}"
+    );
+}
+
+#[test]
+fn random_events_are_survived() {
+    let Some(run) = play("random", &device(&SETTINGS, ""), &host::script("random.toml")) else { return };
+    run.assert_clean();
+    assert_eq!(run.summary.input.sent, run.summary.input.finished);
+    let end = run.summary.mark("end").unwrap();
+    assert!(
+        end.gl_objects.is_empty()
+            && end.egl_contexts == 0
+            && end.egl_surfaces == 0
+            && end.window_references == 0,
+        "{}",
+        end.objects()
+    );
+}

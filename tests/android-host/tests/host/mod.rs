@@ -1,0 +1,87 @@
+//! Runs the simulated Android host and reads what it found.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use image::RgbImage;
+use yoro_android_host::summary::Summary;
+
+/// Of `cargo xtask test`.
+const APK: &str = "YORO_TEST_APK";
+
+/// A finished run.
+pub struct Run {
+    /// What the host found.
+    pub summary: Summary,
+    folder: PathBuf,
+}
+
+/// A `[device]` with settings as system properties, and more of its keys.
+pub fn device(settings: &[(&str, &str)], keys: &str) -> String {
+    let properties: String =
+        settings.iter().map(|(key, value)| format!("\"debug.yoro.{key}\" = \"{value}\"\n")).collect();
+    format!("[device]\n{keys}\n[device.properties]\n{properties}")
+}
+
+/// The steps of one of the scripts that come with the host.
+pub fn script(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let script: toml::Table = text.parse().unwrap();
+    let steps = toml::Value::Array(script["steps"].as_array().unwrap().clone()).to_string();
+    steps[1..steps.len() - 1].to_owned()
+}
+
+/// Plays steps on a device; none, with a loud line, where there is no APK.
+pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
+    let Some(apk) = std::env::var_os(APK) else {
+        // Not eprintln!, which the test harness keeps to itself.
+        let line =
+            format!("LEFT OUT: {name}: there is no APK ({APK} is not set); `cargo xtask test` builds one\n");
+        _ = std::io::stderr().write_all(line.as_bytes());
+        return None;
+    };
+    // Cargo runs tests in the package's folder.
+    let apk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(apk);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let script = folder.join("script.toml");
+    std::fs::write(&script, format!("name = \"{name}\"\nsteps = [{steps}]\n{device}")).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_yoro-android-host"))
+        .arg(&apk)
+        .arg(&script)
+        .arg("--out")
+        .arg(&folder)
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    let summary = std::fs::read(folder.join("summary.json"))
+        .unwrap_or_else(|error| panic!("{name}: no summary ({error}): {text}"));
+    Some(Run { summary: serde_json::from_slice(&summary).unwrap(), folder })
+}
+
+impl Run {
+    /// The script was played to its end, and nothing was wrong.
+    pub fn assert_clean(&self) {
+        assert!(self.summary.is_clean(), "{}\n{:#?}", self.summary, self.summary.log);
+        let errors: Vec<_> = self.summary.log.iter().filter(|line| line.priority == 'E').collect();
+        assert!(errors.is_empty(), "{errors:#?}");
+    }
+
+    /// A picture of a `capture` step.
+    pub fn picture(&self, name: &str) -> RgbImage {
+        image::open(self.folder.join(name)).unwrap().into_rgb8()
+    }
+
+    /// Puts another picture beside it, to look at.
+    pub fn keep(&self, name: &str, picture: &RgbImage) {
+        picture.save(self.folder.join(name)).unwrap();
+    }
+
+    /// Where the pictures are.
+    pub fn folder(&self) -> String {
+        self.folder.display().to_string()
+    }
+}

@@ -1,0 +1,251 @@
+//! A real browser under remote control: Chromium's DevTools protocol over a pipe.
+
+use std::env;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+/// Names under which distributions install it.
+const PROGRAMS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+/// An answer that takes longer is none.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A browser with one page.
+pub struct Browser {
+    child: Child,
+    commands: ChildStdin,
+    messages: Receiver<Value>,
+    /// The page, once there is one.
+    session: Option<String>,
+    last_id: u64,
+    loads: usize,
+    /// What scripts threw, and what the page could not load.
+    errors: Vec<String>,
+    _profile: tempfile::TempDir,
+}
+
+impl Browser {
+    /// Starts the browser of `YORO_TEST_CHROMIUM`, or one found in PATH. Without any it says so and returns nothing:
+    /// the test is then to end.
+    pub fn start() -> Option<Browser> {
+        let Some(program) = find() else {
+            eprintln!(
+                "SKIPPED: no Chromium here, so that no page was opened; install it, or set YORO_TEST_CHROMIUM"
+            );
+            return None;
+        };
+        let profile = tempfile::tempdir().unwrap();
+        // Chromium reads commands from descriptor 3 and writes to 4.
+        let mut child = Command::new("sh")
+            .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 1>&2"])
+            .arg(program)
+            .args([
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--no-first-run",
+                "--remote-debugging-pipe",
+            ])
+            .arg(format!("--user-data-dir={}", profile.path().display()))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the browser starts");
+        let commands = child.stdin.take().unwrap();
+        let mut output = BufReader::new(child.stdout.take().unwrap());
+        let (sender, messages) = channel();
+        std::thread::spawn(move || {
+            let mut message = Vec::new();
+            while output.read_until(0, &mut message).is_ok_and(|length| length > 0) {
+                message.pop();
+                let parsed = serde_json::from_slice(&message);
+                message.clear();
+                if parsed.is_ok_and(|message| sender.send(message).is_err()) {
+                    break;
+                }
+            }
+        });
+        let mut browser = Browser {
+            child,
+            commands,
+            messages,
+            session: None,
+            last_id: 0,
+            loads: 0,
+            errors: Vec::new(),
+            _profile: profile,
+        };
+        let target = browser.call("Target.createTarget", json!({ "url": "about:blank" }));
+        let attach = json!({ "targetId": target["targetId"], "flatten": true });
+        let session = browser.call("Target.attachToTarget", attach);
+        browser.session = session["sessionId"].as_str().map(str::to_owned);
+        for domain in ["Page", "Runtime", "Log", "Network"] {
+            browser.call(&format!("{domain}.enable"), json!({}));
+        }
+        Some(browser)
+    }
+
+    /// Calls a method of the protocol and returns its result.
+    #[track_caller]
+    fn call(&mut self, method: &str, parameters: Value) -> Value {
+        self.last_id += 1;
+        let mut message = json!({ "id": self.last_id, "method": method, "params": parameters });
+        if let Some(session) = &self.session {
+            message["sessionId"] = json!(session);
+        }
+        let mut bytes = message.to_string().into_bytes();
+        bytes.push(0);
+        self.commands.write_all(&bytes).expect("the browser listens");
+        loop {
+            let message = self.receive();
+            if message["id"] == json!(self.last_id) {
+                assert!(message.get("error").is_none(), "{method}: {message}");
+                return message["result"].clone();
+            }
+        }
+    }
+
+    /// The next message; keeps what events say about errors and loading.
+    fn receive(&mut self) -> Value {
+        let message = self.messages.recv_timeout(PATIENCE).expect("the browser answers");
+        let parameters = &message["params"];
+        match message["method"].as_str() {
+            Some("Page.loadEventFired") => self.loads += 1,
+            Some("Runtime.exceptionThrown") => self.errors.push(parameters["exceptionDetails"].to_string()),
+            Some("Log.entryAdded") if parameters["entry"]["level"] == "error" => {
+                self.errors.push(parameters["entry"].to_string());
+            }
+            Some("Network.requestWillBeSent") => {
+                let url = parameters["request"]["url"].as_str().unwrap_or_default();
+                let own = ["file://", "data:", "about:"].iter().any(|start| url.starts_with(start));
+                if !own {
+                    self.errors.push(format!("the page asks for {url}"));
+                }
+            }
+            _ => {}
+        }
+        message
+    }
+
+    /// Opens a file and waits until everything on it is loaded.
+    pub fn open(&mut self, page: &Path) {
+        let loads = self.loads;
+        let url = format!("file://{}", page.canonicalize().unwrap().display());
+        self.call("Page.navigate", json!({ "url": url }));
+        while self.loads == loads {
+            self.receive();
+        }
+    }
+
+    /// The value of a JavaScript expression.
+    #[track_caller]
+    pub fn evaluate(&mut self, expression: &str) -> Value {
+        let parameters = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        let result = self.call("Runtime.evaluate", parameters);
+        assert!(result.get("exceptionDetails").is_none(), "{expression}: {result}");
+        result["result"]["value"].clone()
+    }
+
+    /// Clicks with the mouse into the middle of the element that an expression gives.
+    #[track_caller]
+    pub fn click(&mut self, element: &str) {
+        let place = self.evaluate(&format!(
+            "(() => {{ const e = {element}; e.scrollIntoView({{block: 'center'}}); const b = e.getBoundingClientRect(); \
+             return [b.left + b.width / 2, b.top + b.height / 2]; }})()"
+        ));
+        for kind in ["mousePressed", "mouseReleased"] {
+            let event =
+                json!({ "type": kind, "x": place[0], "y": place[1], "button": "left", "clickCount": 1 });
+            self.call("Input.dispatchMouseEvent", event);
+        }
+    }
+
+    /// Presses a key that types a character.
+    pub fn press(&mut self, key: &str) {
+        self.call("Input.dispatchKeyEvent", json!({ "type": "keyDown", "key": key, "text": key }));
+        self.call("Input.dispatchKeyEvent", json!({ "type": "keyUp", "key": key }));
+    }
+
+    /// Gives the page a width in pixels and a colour scheme, `light` or `dark`.
+    pub fn show(&mut self, width: u32, scheme: &str) {
+        let size = json!({ "width": width, "height": 900, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
+        self.call("Emulation.setEmulatedMedia", json!({ "features": features }));
+    }
+
+    /// Fails if a script threw or something could not be loaded.
+    #[track_caller]
+    pub fn expect_no_error(&mut self) {
+        // Events that are on their way come before the answer.
+        self.evaluate("0");
+        assert!(self.errors.is_empty(), "{:#?}", self.errors);
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn find() -> Option<PathBuf> {
+    if let Some(program) = env::var_os("YORO_TEST_CHROMIUM") {
+        return Some(program.into());
+    }
+    let folders: Vec<PathBuf> = env::split_paths(&env::var_os("PATH")?).collect();
+    PROGRAMS
+        .iter()
+        .find_map(|name| folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file()))
+}
+
+/// What every page of ours must do in a browser: no script error, nothing from elsewhere, all pictures and figures
+/// there, the switch between pictures works by mouse and key, and no part is wider than a narrow window.
+pub fn check_page(browser: &mut Browser, page: &Path) {
+    browser.show(1400, "light");
+    browser.open(page);
+    browser.expect_no_error();
+    let broken = "[...document.images].filter(i => !i.complete || i.naturalWidth === 0).length";
+    assert!(browser.evaluate("document.images.length").as_u64().unwrap() > 0, "no picture");
+    assert_eq!(browser.evaluate(broken), 0, "pictures that do not load");
+    let figures = "[...document.querySelectorAll('.plots svg')]";
+    assert!(browser.evaluate(&format!("{figures}.length")).as_u64().unwrap() > 0, "no figure");
+    let flat = format!("{figures}.filter(s => s.getBoundingClientRect().height < 50).length");
+    assert_eq!(browser.evaluate(&flat), 0, "figures without height");
+
+    let shown = "[...document.querySelectorAll('.viewer .stack')].map(s => [...s.children].map(\
+                 i => getComputedStyle(i).visibility === 'visible').map(Number).join(''))[0]";
+    let viewers = browser.evaluate(shown);
+    let first = viewers.as_str().unwrap().to_owned();
+    assert!(first.len() >= 4 && first.starts_with("10") && first.matches('1').count() == 1, "{first}");
+    let caption = "document.querySelector('.viewer .caption').textContent";
+    let before = browser.evaluate(caption);
+    browser.click("document.querySelector('.viewer .views button:nth-child(2)')");
+    let second = browser.evaluate(shown);
+    assert!(second.as_str().unwrap().starts_with("010"), "a click shows the second picture: {second}");
+    assert_ne!(browser.evaluate(caption), before, "and its caption");
+    browser.press("3");
+    assert!(browser.evaluate(shown).as_str().unwrap().starts_with("0010"), "key 3 shows the third picture");
+    browser.press("f");
+    assert_eq!(browser.evaluate(shown), second, "key f goes back");
+    browser.press("s");
+    let partner = "document.querySelector('.viewer .partner')?.naturalWidth ?? 0";
+    assert!(browser.evaluate(partner).as_u64().unwrap() > 0, "key s shows both eyes");
+
+    let colors = "JSON.stringify([getComputedStyle(document.body).backgroundColor, \
+                  getComputedStyle(document.querySelector('.plots svg text')).fill])";
+    let light = browser.evaluate(colors);
+    browser.show(500, "dark");
+    let dark = browser.evaluate(colors);
+    assert_ne!(light, dark, "a dark page has dark colours");
+    let wide = browser.evaluate("document.documentElement.scrollWidth");
+    assert!(wide.as_u64().unwrap() <= 500, "the page is {wide} pixels wide in a window of 500");
+    browser.expect_no_error();
+}

@@ -1,0 +1,184 @@
+//! The archive: which files are in it, and where they lie.
+
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read as _};
+
+use anyhow::Context as _;
+use zip::{CompressionMethod, ZipArchive};
+
+use super::super::{ARCHITECTURES, PAGE};
+use super::{Report, some};
+
+/// Mapped out of the APK.
+const RESOURCES: &str = "resources.arsc";
+
+/// What is in an APK.
+#[derive(Debug, Default)]
+pub struct Archive {
+    entries: BTreeMap<String, Entry>,
+    libraries: BTreeMap<String, Vec<u8>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    /// From the beginning of the file to the content, in bytes.
+    offset: u64,
+    stored: bool,
+}
+
+impl Archive {
+    /// Reads all of it, and so finds damage anywhere.
+    ///
+    /// # Errors
+    /// When it is no zip archive, or damaged.
+    pub fn read(bytes: &[u8]) -> anyhow::Result<Self> {
+        let mut zip = ZipArchive::new(Cursor::new(bytes))?;
+        let mut archive = Self::default();
+        for index in 0..zip.len() {
+            let mut file = zip.by_index(index)?;
+            let name = file.name()?.into_owned();
+            let offset = file.data_start().context("an entry has no content")?;
+            let entry = Entry { offset, stored: file.compression() == CompressionMethod::Stored };
+            let mut content = Vec::new();
+            file.read_to_end(&mut content).with_context(|| format!("{name} in it is damaged"))?;
+            if name.starts_with("lib/") {
+                archive.libraries.insert(name.clone(), content);
+            }
+            archive.entries.insert(name, entry);
+        }
+        Ok(archive)
+    }
+
+    /// A file of this name is in it.
+    pub fn has(&self, name: &str) -> bool {
+        self.entries.contains_key(name)
+    }
+
+    /// The native libraries, by their whole names.
+    pub fn libraries(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        self.libraries.iter().map(|(name, content)| (name.as_str(), content.as_slice()))
+    }
+
+    /// A native library is compressed.
+    pub fn compresses_libraries(&self) -> bool {
+        self.entries.iter().any(|(name, entry)| name.starts_with("lib/") && !entry.stored)
+    }
+
+    /// Adds rows for the architectures and for the alignment of what Android maps out of the file: libraries too,
+    /// unless they are unpacked at installation.
+    pub fn check(&self, unpacked: bool, report: &mut Report) {
+        let wanted: Vec<&str> = ARCHITECTURES.iter().map(|architecture| architecture.abi).collect();
+        let mut found: Vec<&str> = self.libraries.keys().filter_map(|name| name.split('/').nth(1)).collect();
+        found.dedup();
+        report.equal("architectures", &found.join(" "), &wanted.join(" "));
+
+        let stored: Vec<_> = self.entries.iter().filter(|(_, entry)| entry.stored).collect();
+        let wrong: Vec<&str> = stored
+            .iter()
+            .filter(|(name, entry)| {
+                let mapped_library = !unpacked && name.starts_with("lib/");
+                !entry.offset.is_multiple_of(if mapped_library { PAGE } else { 4 })
+            })
+            .map(|(name, _)| name.as_str())
+            .collect();
+        let problem = if !wrong.is_empty() {
+            Some(format!("{} must lie at a multiple of 4 bytes, mapped libraries of 16 KiB", some(&wrong)))
+        } else {
+            let compressed = self.entries.get(RESOURCES).is_some_and(|entry| !entry.stored);
+            compressed.then(|| format!("{RESOURCES} is compressed: Android 11 and later refuse it"))
+        };
+        let (total, count) = (self.entries.len(), stored.len());
+        report.row("alignment", format!("{total} files, {count} of them uncompressed"), problem);
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use std::io::Write as _;
+
+    use zip::ZipWriter;
+    use zip::write::SimpleFileOptions;
+
+    use super::*;
+
+    /// An archive of files with this content; uncompressed ones lie at multiples of `alignment`.
+    pub fn archive(names: &[&str], method: CompressionMethod, alignment: u16) -> Vec<u8> {
+        let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+        let options = SimpleFileOptions::default().compression_method(method).with_alignment(alignment);
+        for name in names {
+            zip.start_file(*name, options).unwrap();
+            zip.write_all(b"something that can be compressed, compressed, compressed").unwrap();
+        }
+        zip.finish().unwrap().into_inner()
+    }
+
+    const LIBRARIES: [&str; 2] = ["lib/arm64-v8a/libyoro.so", "lib/x86_64/libyoro.so"];
+
+    fn problems(bytes: &[u8]) -> Vec<String> {
+        let mut report = Report::default();
+        Archive::read(bytes).unwrap().check(false, &mut report);
+        report.problems().into_iter().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn compressed_libraries_lie_anywhere() {
+        let none: [&str; 0] = [];
+        assert_eq!(problems(&archive(&LIBRARIES, CompressionMethod::Deflated, 1)), none);
+    }
+
+    #[test]
+    fn uncompressed_libraries_lie_on_pages() {
+        let none: [&str; 0] = [];
+        assert_eq!(problems(&archive(&LIBRARIES, CompressionMethod::Stored, 16384)), none);
+        assert_eq!(problems(&archive(&LIBRARIES, CompressionMethod::Stored, 4096)), ["alignment"]);
+    }
+
+    #[test]
+    fn libraries_that_are_unpacked_lie_on_words() {
+        let passes = |alignment| {
+            let mut report = Report::default();
+            let bytes = archive(&LIBRARIES, CompressionMethod::Stored, alignment);
+            Archive::read(&bytes).unwrap().check(true, &mut report);
+            report.passed()
+        };
+        assert!(passes(4));
+    }
+
+    #[test]
+    fn uncompressed_files_lie_on_words() {
+        // Some name length brings the last file's content to an odd place.
+        let odd = (0..4).any(|n| {
+            let long = format!("{}{RESOURCES}", "x".repeat(n));
+            problems(&archive(&[long.as_str()], CompressionMethod::Stored, 1))
+                .contains(&"alignment".to_owned())
+        });
+        assert!(odd);
+    }
+
+    #[test]
+    fn resources_are_not_compressed() {
+        let mut names = LIBRARIES.to_vec();
+        names.push(RESOURCES);
+        assert_eq!(problems(&archive(&names, CompressionMethod::Deflated, 1)), ["alignment"]);
+    }
+
+    #[test]
+    fn both_architectures_are_wanted() {
+        assert_eq!(problems(&archive(&LIBRARIES[..1], CompressionMethod::Deflated, 1)), ["architectures"]);
+        let more = [LIBRARIES[0], "lib/armeabi-v7a/libyoro.so", LIBRARIES[1]];
+        assert_eq!(problems(&archive(&more, CompressionMethod::Deflated, 1)), ["architectures"]);
+    }
+
+    #[test]
+    fn damage_is_found_anywhere() {
+        let bytes = archive(&LIBRARIES, CompressionMethod::Deflated, 1);
+        assert!(Archive::read(&bytes).is_ok());
+        assert!(Archive::read(b"").is_err());
+        assert!(Archive::read(b"no archive at all").is_err());
+        assert!(Archive::read(&bytes[..bytes.len() / 2]).is_err());
+        let mut damaged = bytes;
+        // In the first file's compressed content, behind its header of 30 bytes and its name.
+        damaged[30 + LIBRARIES[0].len() + 10] ^= 0x55;
+        assert!(Archive::read(&damaged).is_err());
+    }
+}

@@ -1,0 +1,81 @@
+//! The signature, as Android verifies it.
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::Context as _;
+
+use super::super::toolchain;
+use super::Report;
+
+/// Adds a row for the signature.
+///
+/// # Errors
+/// When apksigner cannot be started.
+pub fn check(apk: &Path, report: &mut Report) -> anyhow::Result<()> {
+    let output = Command::new(toolchain::build_tool("apksigner")?)
+        // Asked for the oldest Android that knows v2: for later ones apksigner is content with v3 alone.
+        .args(["verify", "--verbose", "--print-certs", "--min-sdk-version", "24"])
+        .arg(apk)
+        .output()
+        .context("apksigner cannot be started")?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    row(output.status.success(), &text, &errors, report);
+    Ok(())
+}
+
+fn row(verified: bool, text: &str, errors: &str, report: &mut Report) {
+    let scheme = |name: &str| {
+        let line = text.lines().find_map(|line| line.strip_prefix(&format!("Verified using {name} scheme")));
+        line.is_some_and(|line| line.trim_end().ends_with("true"))
+    };
+    let schemes: Vec<&str> = ["v2", "v3"].into_iter().filter(|name| scheme(name)).collect();
+    let signer = text.lines().find_map(|line| line.split_once("certificate DN: ")).map(|(_, name)| name);
+    let found = match signer {
+        Some(signer) => format!("{} by {signer}", schemes.join(" and ")),
+        None => "none".to_owned(),
+    };
+    let problem = if !verified {
+        let told = errors.lines().find_map(|line| line.strip_prefix("ERROR: "));
+        Some(told.unwrap_or("apksigner does not verify it").to_owned())
+    } else if schemes.len() < 2 {
+        Some("should be v2 and v3".to_owned())
+    } else {
+        None
+    };
+    report.row("signature", found, problem);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = "Verifies\n\
+        Verified using v1 scheme (JAR signing): false\n\
+        Verified using v2 scheme (APK Signature Scheme v2): true\n\
+        Verified using v3 scheme (APK Signature Scheme v3): true\n\
+        Number of signers: 1\n\
+        Signer #1 certificate DN: CN=Android Debug, O=Android, C=US\n";
+
+    fn report(verified: bool, text: &str, errors: &str) -> Report {
+        let mut report = Report::default();
+        row(verified, text, errors, &mut report);
+        report
+    }
+
+    #[test]
+    fn both_schemes_are_wanted() {
+        let good = report(true, GOOD, "");
+        assert!(good.passed());
+        assert_eq!(good.rows[0].found, "v2 and v3 by CN=Android Debug, O=Android, C=US");
+        assert!(!report(true, &GOOD.replace("v3): true", "v3): false"), "").passed());
+    }
+
+    #[test]
+    fn an_unsigned_file_fails_with_apksigners_words() {
+        let bad = report(false, "", "DOES NOT VERIFY\nERROR: Missing META-INF/MANIFEST.MF\n");
+        assert_eq!(bad.rows[0].problem.as_deref(), Some("Missing META-INF/MANIFEST.MF"));
+        assert_eq!(bad.rows[0].found, "none");
+    }
+}

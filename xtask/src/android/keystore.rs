@@ -1,0 +1,111 @@
+//! The key that an APK is signed with.
+
+use std::env;
+use std::path::PathBuf;
+use std::process::Command;
+
+use anyhow::{Context as _, bail};
+
+/// The variable that names the release's keystore; with `_PASSWORD` at its end, the password's.
+const RELEASE: &str = "CARGO_APK_RELEASE_KEYSTORE";
+
+/// Which key a release would be signed with, for people.
+pub fn describe() -> String {
+    match env::var_os(RELEASE) {
+        Some(path) => format!("{} ({RELEASE})", PathBuf::from(path).display()),
+        None => format!("this machine's debug key: {RELEASE} is not set"),
+    }
+}
+
+/// A keystore with one key, and its password.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Keystore {
+    /// The file.
+    pub path: PathBuf,
+    /// Of the keystore and of the key.
+    pub password: String,
+    /// Made for development: Android accepts it, stores do not.
+    pub debug: bool,
+}
+
+impl Keystore {
+    /// The keystore of the environment for a release that has one there, and otherwise this machine's debug key,
+    /// which is made when there is none yet.
+    ///
+    /// # Errors
+    /// When the environment is incomplete or names no file, or keytool fails.
+    pub fn choose(release: bool) -> anyhow::Result<Self> {
+        if !release {
+            return Self::debug();
+        }
+        let password = env::var(format!("{RELEASE}_PASSWORD")).ok();
+        Self::given(env::var_os(RELEASE).map(PathBuf::from), password)?.map_or_else(Self::debug, Ok)
+    }
+
+    /// The keystore of the environment, if it names one.
+    fn given(path: Option<PathBuf>, password: Option<String>) -> anyhow::Result<Option<Self>> {
+        let Some(path) = path else { return Ok(None) };
+        let Some(password) = password else {
+            bail!("{RELEASE} is set, but not {RELEASE}_PASSWORD: set both or neither");
+        };
+        // cargo-apk and apksigner run in other folders.
+        let path = path
+            .canonicalize()
+            .with_context(|| format!("{}, which {RELEASE} names, cannot be opened", path.display()))?;
+        Ok(Some(Self { path, password, debug: false }))
+    }
+
+    /// The key that all of Android's tools share, so that an application built by any of them updates the others'.
+    fn debug() -> anyhow::Result<Self> {
+        let folder = match env::var_os("ANDROID_USER_HOME") {
+            Some(folder) => PathBuf::from(folder),
+            None => env::home_dir()
+                .context("there is no home folder for the debug key: set HOME")?
+                .join(".android"),
+        };
+        let path = folder.join("debug.keystore");
+        let keystore = Self { path, password: "android".to_owned(), debug: true };
+        if !keystore.path.exists() {
+            std::fs::create_dir_all(&folder)
+                .with_context(|| format!("{} cannot be made", folder.display()))?;
+            keystore.generate()?;
+        }
+        Ok(keystore)
+    }
+
+    fn generate(&self) -> anyhow::Result<()> {
+        eprintln!("making a debug key: {}", self.path.display());
+        let output = Command::new("keytool")
+            .args(["-genkeypair", "-alias", "androiddebugkey", "-keyalg", "RSA", "-keysize", "2048"])
+            .args(["-validity", "10000", "-dname", "CN=Android Debug,O=Android,C=US"])
+            .args(["-storepass", &self.password, "-keypass", &self.password, "-keystore"])
+            .arg(&self.path)
+            .output()
+            .context("keytool cannot be started: install a Java runtime (default-jre-headless)")?;
+        if !output.status.success() {
+            bail!("keytool cannot make a debug key: {}", String::from_utf8_lossy(&output.stdout).trim());
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_release_key_is_complete_or_absent() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("my.keystore");
+        std::fs::write(&file, "").unwrap();
+        let given = |path: Option<&PathBuf>, password: Option<&str>| {
+            Keystore::given(path.cloned(), password.map(str::to_owned)).map_err(|error| error.to_string())
+        };
+        assert_eq!(given(None, None), Ok(None));
+        let keystore = given(Some(&file), Some("secret")).unwrap().unwrap();
+        assert!(keystore.path.is_absolute() && keystore.password == "secret" && !keystore.debug);
+        assert!(given(Some(&file), None).unwrap_err().contains("_PASSWORD"));
+        let absent = folder.path().join("absent.keystore");
+        assert!(given(Some(&absent), Some("secret")).unwrap_err().contains("absent.keystore"));
+    }
+}

@@ -1,0 +1,201 @@
+//! A stand-in for Google's SDK and NDK, made of Debian's clang and Android tools: as much of both as cargo-apk asks for.
+//!
+//! The libraries to link with are empty but for their public names, so that linking fails with any other name: the
+//! device's own libraries take their place when the application starts.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context as _, bail};
+
+use super::symbols::{LISTS, listed};
+use super::{ARCHITECTURES, Architecture, MIN_API};
+use crate::apt::find_program;
+
+const CRTBEGIN: &str = include_str!("../../android/crtbegin_so.c");
+const UNWIND: &str = include_str!("../../android/unwind.c");
+/// Debian's build of Android's framework: it defines what manifests and resources may say.
+pub const FRAMEWORK: &str = "/usr/share/android-framework-res/framework-res.apk";
+
+/// Version 0.0.1 is old enough that cargo-apk leaves out its libgcc for newer NDKs.
+const PROPERTIES: &str = "Pkg.Desc = Android NDK stand-in\nPkg.Revision = 0.0.1\n";
+/// cargo-apk takes an empty line for a broken file: there is no newline at the end.
+const PLATFORMS: &str = "NDK_MIN_PLATFORM_LEVEL := 21\nNDK_MAX_PLATFORM_LEVEL := 36";
+const TARGET_API: u32 = 34;
+
+/// Where the two are.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StandIn {
+    /// For ANDROID_HOME.
+    pub sdk: PathBuf,
+    /// For ANDROID_NDK_ROOT.
+    pub ndk: PathBuf,
+}
+
+impl StandIn {
+    /// Makes both in a folder of their own, unless what is there is made of the same.
+    ///
+    /// # Errors
+    /// When a tool is missing or fails, or the folder cannot be written.
+    pub fn make(folder: &Path) -> anyhow::Result<Self> {
+        let made = Self { sdk: folder.join("sdk"), ndk: folder.join("ndk") };
+        let stamp = folder.join("stamp");
+        let recipe = recipe();
+        if fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
+            return Ok(made);
+        }
+        if folder.exists() {
+            fs::remove_dir_all(folder)
+                .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
+        }
+        made.make_sdk()?;
+        made.make_ndk()?;
+        write(&stamp, &recipe)?;
+        Ok(made)
+    }
+
+    fn make_sdk(&self) -> anyhow::Result<()> {
+        for tool in ["aapt", "zipalign", "apksigner"] {
+            link(&program(tool)?, &self.sdk.join("build-tools/29.0.3").join(tool))?;
+        }
+        link(Path::new(FRAMEWORK), &self.sdk.join(format!("platforms/android-{TARGET_API}/android.jar")))
+    }
+
+    fn make_ndk(&self) -> anyhow::Result<()> {
+        write(&self.ndk.join("source.properties"), PROPERTIES)?;
+        write(&self.ndk.join("build/core/platforms.mk"), PLATFORMS)?;
+        let toolchain = self.ndk.join("toolchains/llvm/prebuilt/linux-x86_64");
+        for tool in ["clang", "clang++", "llvm-ar", "llvm-objcopy", "llvm-readelf"] {
+            link(&program(tool)?, &toolchain.join("bin").join(tool))?;
+        }
+        for architecture in ARCHITECTURES {
+            make_libraries(&toolchain.join("sysroot/usr/lib"), architecture)?;
+        }
+        Ok(())
+    }
+
+    /// What rustc has to be told for Debian's clang to link like the NDK's own.
+    pub fn link_arguments(&self) -> [String; 2] {
+        let sysroot = self.ndk.join("toolchains/llvm/prebuilt/linux-x86_64/sysroot");
+        ["-fuse-ld=lld".to_owned(), format!("--sysroot={}", sysroot.display())]
+    }
+}
+
+/// Everything that the stand-in depends on, as a number; cargo itself does not notice when a stub changes.
+fn recipe() -> String {
+    let mut hasher = DefaultHasher::new();
+    (LISTS, CRTBEGIN, UNWIND, PROPERTIES, PLATFORMS, MIN_API, TARGET_API).hash(&mut hasher);
+    for tool in ["clang", "llvm-ar", "aapt"] {
+        find_program(tool).and_then(|path| path.canonicalize().ok()).hash(&mut hasher);
+    }
+    format!("{:016x}\n", hasher.finish())
+}
+
+fn make_libraries(folder: &Path, architecture: Architecture) -> anyhow::Result<()> {
+    let target = format!("--target={}{MIN_API}", architecture.triple);
+    let common = folder.join(architecture.triple);
+    let level = common.join(MIN_API.to_string());
+    fs::create_dir_all(&level).with_context(|| format!("{} cannot be made", level.display()))?;
+    let source = level.join("source");
+
+    for (library, list) in LISTS {
+        write(&source, &stub(list))?;
+        let soname = format!("-Wl,-soname,{library}.so");
+        clang(&target, &["-fuse-ld=lld", "-nostdlib", "-shared", &soname], "assembler", &source)
+            .arg(level.join(format!("{library}.so")))
+            .finish()?;
+    }
+    let compile = ["-O2", "-fPIC", "-ffreestanding", "-c"];
+    write(&source, CRTBEGIN)?;
+    clang(&target, &compile, "c", &source).arg(level.join("crtbegin_so.o")).finish()?;
+    write(&source, "")?;
+    clang(&target, &compile, "c", &source).arg(level.join("crtend_so.o")).finish()?;
+
+    let unwind = level.join("unwind.o");
+    write(&source, UNWIND)?;
+    clang(&target, &compile, "c", &source).arg(&unwind).finish()?;
+    let mut archive = Command::new("llvm-ar");
+    archive.arg("rcs").arg(common.join("libunwind.a")).arg(&unwind).finish()?;
+    for temporary in [unwind, source] {
+        fs::remove_file(&temporary).with_context(|| format!("{} cannot be removed", temporary.display()))?;
+    }
+    Ok(())
+}
+
+/// The assembly of a library that has the names and nothing behind them.
+fn stub(list: &str) -> String {
+    let mut text = String::new();
+    for symbol in listed(list, MIN_API) {
+        let name = symbol.name;
+        let (section, kind, content) =
+            if symbol.object { (".data", "object", ".quad 0") } else { (".text", "function", "") };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{section}\n.globl {name}\n.type {name}, %{kind}\n{name}: {content}");
+    }
+    text
+}
+
+fn clang(target: &str, options: &[&str], language: &str, source: &Path) -> Command {
+    let mut command = Command::new("clang");
+    command.arg(target).args(options).args(["-x", language]).arg(source).arg("-o");
+    command
+}
+
+trait Finish {
+    fn finish(&mut self) -> anyhow::Result<()>;
+}
+
+impl Finish for Command {
+    fn finish(&mut self) -> anyhow::Result<()> {
+        let program = self.get_program().to_string_lossy().into_owned();
+        let output = self.output().with_context(|| format!("{program} cannot be started"))?;
+        if !output.status.success() {
+            bail!("{self:?} failed: {}", String::from_utf8_lossy(&output.stderr).trim());
+        }
+        Ok(())
+    }
+}
+
+fn program(name: &str) -> anyhow::Result<PathBuf> {
+    find_program(name).with_context(|| format!("{name} is missing: `cargo xtask doctor` says how to get it"))
+}
+
+fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    make_parent(path)?;
+    fs::write(path, text).with_context(|| format!("{} cannot be written", path.display()))
+}
+
+fn link(original: &Path, link: &Path) -> anyhow::Result<()> {
+    make_parent(link)?;
+    symlink(original, link).with_context(|| format!("{} cannot be made", link.display()))
+}
+
+fn make_parent(path: &Path) -> anyhow::Result<()> {
+    let Some(parent) = path.parent() else { return Ok(()) };
+    fs::create_dir_all(parent).with_context(|| format!("{} cannot be made", parent.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stub_has_the_names_of_its_level() {
+        assert_eq!(
+            stub("# A library.\nopen\nenviron:object\n@30\nlater\n"),
+            ".text\n.globl open\n.type open, %function\nopen: \n\
+             .data\n.globl environ\n.type environ, %object\nenviron: .quad 0\n"
+        );
+    }
+
+    #[test]
+    fn cargo_apk_can_read_the_properties() {
+        // It splits each line of the first file at "=" when it looks for the version, and each of the second at " := ".
+        assert!(PROPERTIES.trim_end().lines().all(|line| line.contains(" = ")));
+        assert!(PLATFORMS.split('\n').all(|line| line.contains(" := ")));
+    }
+}
