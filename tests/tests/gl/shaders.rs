@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use glam::Vec3;
 use yoro::gl::{self, Context, Program, ShaderSource};
+use yoro::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro::render::{GpuScene, RenderSettings, Renderer};
 use yoro::scene::{Scene, ShadingStyle};
 use yoro::stereo::{self, AntiAliasing, Method, StereoOptions};
@@ -98,12 +99,21 @@ fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
     Ok(())
 }
 
+fn patchers(gl: &Rc<Context>) -> anyhow::Result<()> {
+    // The others have no shaders.
+    for kind in [PatcherKind::Paper, PatcherKind::Gather, PatcherKind::Median, PatcherKind::Xiao] {
+        inpaint::create(gl, kind, &PatcherOptions::default())?;
+    }
+    Ok(())
+}
+
 #[test]
 fn every_file_in_every_variant() {
     on_every_backend(|gl| {
         synthesis(gl)?;
         rendering(gl)?;
         stereo(gl)?;
+        patchers(gl)?;
         viewer(gl)?;
         // Only the renderer's unit tests read depth back.
         Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?;
