@@ -3,6 +3,7 @@
 mod browser;
 mod program;
 
+mod bench;
 mod compare;
 mod interrupt;
 mod memory;

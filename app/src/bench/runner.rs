@@ -10,7 +10,7 @@ use indicatif::ProgressBar;
 use super::entrant::{Entrant, FrameTime};
 use super::holes::HoleFinder;
 use super::record::{RoundEnd, SceneFacts, Unsupported};
-use super::scenes::Object;
+use super::scenes::LazyObject;
 use super::suite::{Choices, Job, Measure, Source, Suite};
 use super::{Contender, Measurement, Record, Results, Setting, Writer, bandwidth, metric, process};
 use crate::cli::interrupted;
@@ -43,26 +43,28 @@ pub struct Bounds {
     pub frame: Duration,
 }
 
-/// Measures jobs and appends the results to a file.
-pub struct Runner<'a> {
-    /// The GL context.
-    pub gl: &'a Rc<Context>,
+/// What the jobs of a run have in common.
+pub struct Inputs<'a> {
     /// What the command line says about all suites.
     pub choices: &'a Choices,
     /// The object of the suites that need one.
-    pub object: &'a Object,
+    pub object: &'a LazyObject,
     /// Another camera path than that of the scenes.
     pub path: Option<&'a [Viewpoint]>,
     /// When to leave a scene out.
     pub bounds: Bounds,
     /// Model of the neural patcher.
     pub patchers: PatcherOptions,
-    /// Where results go.
-    pub writer: Writer,
+}
+
+/// Measures jobs and appends the results to a file.
+pub struct Runner<'a> {
+    gl: &'a Rc<Context>,
+    inputs: Inputs<'a>,
+    writer: Writer,
     /// What the file held before.
-    pub before: Results,
-    /// Shows how far it is.
-    pub bar: ProgressBar,
+    before: Results,
+    bar: ProgressBar,
     stage: Option<(StageKey, Stage)>,
 }
 
@@ -93,19 +95,14 @@ fn stop_if_interrupted() -> Result<(), Interrupted> {
 }
 
 impl<'a> Runner<'a> {
-    /// Ready to measure.
-    #[expect(clippy::too_many_arguments, reason = "each is another thing that the command line knows")]
+    /// Ready to measure into a file as [`Writer::open`] gives it.
     pub fn new(
         gl: &'a Rc<Context>,
-        choices: &'a Choices,
-        object: &'a Object,
-        path: Option<&'a [Viewpoint]>,
-        bounds: Bounds,
-        patchers: PatcherOptions,
+        inputs: Inputs<'a>,
         (writer, before): (Writer, Results),
         bar: ProgressBar,
     ) -> Runner<'a> {
-        Runner { gl, choices, object, path, bounds, patchers, writer, before, bar, stage: None }
+        Runner { gl, inputs, writer, before, bar, stage: None }
     }
 
     /// Measures what is missing of a job.
@@ -137,8 +134,9 @@ impl<'a> Runner<'a> {
 
     fn too_large(&self, job: &Job) -> Option<String> {
         let Source::Swarm { copies, .. } = job.source else { return None };
-        let needed = self.object.swarm_triangles(copies) as f64 * BYTES_PER_TRIANGLE / f64::from(1 << 20);
-        let bound = self.bounds.memory_mib;
+        let needed =
+            self.inputs.object.swarm_triangles(copies) as f64 * BYTES_PER_TRIANGLE / f64::from(1 << 20);
+        let bound = self.inputs.bounds.memory_mib;
         (needed > bound)
             .then(|| format!("the scene needs about {needed:.0} MiB and --max-memory-mib allows {bound:.0}"))
     }
@@ -168,14 +166,14 @@ impl<'a> Runner<'a> {
     fn scene(&self, job: &Job) -> anyhow::Result<Scene> {
         let mut scene = match &job.source {
             Source::Named(name) => {
-                let mut scene = stage::load_scene(name, self.choices.seed, None)?;
-                if let Some(path) = self.path {
+                let mut scene = stage::load_scene(name, self.inputs.choices.seed, None)?;
+                if let Some(path) = self.inputs.path {
                     scene.viewpoints = path.to_vec();
                 }
                 scene
             }
-            Source::Swarm { copies, places } => self.object.swarm(*copies, *places),
-            Source::Object(distance) => self.object.at_distance(*distance),
+            Source::Swarm { copies, places } => self.inputs.object.swarm(*copies, *places),
+            Source::Object(distance) => self.inputs.object.at_distance(*distance),
         };
         scene.style = job.style.unwrap_or(scene.style);
         Ok(scene)
@@ -360,7 +358,7 @@ impl<'a> Runner<'a> {
         let mut patchers: Vec<(Contender, Box<dyn Patcher>)> = Vec::new();
         for &contender in &job.contenders {
             let Contender::Patcher(kind) = contender else { continue };
-            match inpaint::create(self.gl, kind, &self.patchers) {
+            match inpaint::create(self.gl, kind, &self.inputs.patchers) {
                 Ok(patcher) => patchers.push((contender, patcher)),
                 Err(error) => first.push(left_out(job, contender, &error)),
             }
@@ -370,6 +368,11 @@ impl<'a> Runner<'a> {
         for pair in &views.pairs {
             stop_if_interrupted()?;
             groups.push(renderer.render(&mut stage.renderer, &stage.scene, pair)?);
+        }
+        for (_, patcher) in &mut patchers {
+            stop_if_interrupted()?;
+            // The first call compiles and allocates.
+            patcher.patch(&groups[0].reprojected)?;
         }
         for round in done..job.rounds {
             self.bar.set_message(format!("{}: round {} of {}", job.setting, round + 1, job.rounds));
@@ -476,10 +479,10 @@ impl<'a> Runner<'a> {
         }
         let (_, conventional) = field.entrants.first_mut().context("the conventional method comes first")?;
         let FrameTime { wall, .. } = conventional.render(stage, &views.pairs[0], &mut field.frame)?;
-        if wall <= self.bounds.frame {
+        if wall <= self.inputs.bounds.frame {
             return Ok(false);
         }
-        let (takes, allowed) = (milliseconds(wall), milliseconds(self.bounds.frame));
+        let (takes, allowed) = (milliseconds(wall), milliseconds(self.inputs.bounds.frame));
         self.leave_out(
             job,
             format!("a conventional frame takes {takes:.0} ms and --max-frame-ms allows {allowed:.0}"),

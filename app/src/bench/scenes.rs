@@ -1,5 +1,6 @@
 //! Scenes that suites make for themselves: an object at a distance, and a swarm of them.
 
+use std::cell::LazyCell;
 use std::path::Path;
 
 use glam::{Affine3A, Mat3, Quat, Vec3, vec2, vec3};
@@ -9,6 +10,9 @@ use crate::scene::builtin::paint::{self, hash, unit};
 use crate::scene::builtin::props::textured;
 use crate::scene::builtin::sculpt::Clay;
 use crate::scene::{self, Model, PointLight, Scene, SceneError, ShadingStyle, Sky, Viewpoint};
+
+/// An object that is made when a suite asks for it.
+pub type LazyObject = LazyCell<Object, Box<dyn FnOnce() -> Object>>;
 
 /// Height of the eyes in metres.
 const EYE_HEIGHT: f32 = 1.6;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::ensure;
 
 use super::bandwidth::{self, BandwidthOptions};
-use super::scenes::Object;
+use super::scenes::LazyObject;
 use super::{Contender, Setting};
 use crate::cli::stage::EyeArgs;
 use crate::render::RenderSettings;
@@ -100,14 +100,14 @@ pub enum Measure {
 pub enum Source {
     /// A built-in scene or a file.
     Named(String),
-    /// [`Object::swarm`].
+    /// [`super::Object::swarm`].
     Swarm {
         /// Number of objects.
         copies: usize,
         /// Number of the largest swarm of the suite.
         places: usize,
     },
-    /// [`Object::at_distance`], in metres.
+    /// [`super::Object::at_distance`], in metres.
     Object(f32),
 }
 
@@ -190,7 +190,7 @@ impl Choices {
     ///
     /// # Errors
     /// One sentence when the choices leave nothing to measure.
-    pub fn jobs(&self, suite: Suite, object: &Object) -> anyhow::Result<Vec<Job>> {
+    pub fn jobs(&self, suite: Suite, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
         let time = Measure::Frames { cost: true, quality: false };
         let quality = Measure::Frames { cost: false, quality: true };
         let both = Measure::Frames { cost: true, quality: true };

@@ -7,7 +7,8 @@ use anyhow::{bail, ensure};
 
 use crate::bench::record::{Header, PassClock, VERSION};
 use crate::bench::{
-    self, Bounds, Choices, Contender, Interrupted, Job, Object, Runner, Suite, Writer, process,
+    self, Bounds, Choices, Contender, Inputs, Interrupted, Job, LazyObject, Object, Runner, Suite, Writer,
+    process,
 };
 use crate::cli::dataset::camera_path;
 use crate::cli::stage::{self, EyeArgs};
@@ -89,10 +90,11 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let choices = args.choices();
     stage::check_scenes(&choices.scenes, choices.seed)?;
     let path = args.path.as_deref().map(camera_path).transpose()?;
-    let object = match &args.object {
-        Some(file) => Object::load(file)?,
-        None => Object::hare(),
-    };
+    if path.is_none() {
+        choices.scenes.iter().for_each(|scene| warn_without_camera(Path::new(scene)));
+    }
+    let object = args.object.as_deref().map(Object::load).transpose()?;
+    let object = LazyObject::new(Box::new(|| object.unwrap_or_else(Object::hare)));
     let jobs = jobs(args, &choices, &object)?;
     let headless = args.gl.open()?;
     let gl = headless.gl();
@@ -111,8 +113,8 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
         frame: Duration::from_millis(args.max_frame_ms),
     };
     let patchers = PatcherOptions { model: args.model.clone() };
-    let file = (writer, before);
-    let mut runner = Runner::new(gl, &choices, &object, path.as_deref(), bounds, patchers, file, bar.clone());
+    let inputs = Inputs { choices: &choices, object: &object, path: path.as_deref(), bounds, patchers };
+    let mut runner = Runner::new(gl, inputs, (writer, before), bar.clone());
     for job in &jobs {
         if let Err(error) = runner.run(job) {
             bar.finish_and_clear();
@@ -169,8 +171,21 @@ impl BenchArgs {
     }
 }
 
+/// Tells of an OBJ file whose viewpoints will be made up: figures say little of a walk that nobody chose.
+fn warn_without_camera(scene: &Path) {
+    let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
+    let beside = [format!("{stem}.camera.json"), "camera.json".to_owned()];
+    let is_obj = scene.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
+    if is_obj && !beside.iter().any(|name| scene.with_file_name(name).is_file()) {
+        log::warn!(
+            "{} has no camera.json beside it, so its viewpoints are made up: write one, or give --path FILE",
+            scene.display()
+        );
+    }
+}
+
 /// The settings of all suites; each is measured once.
-fn jobs(args: &BenchArgs, choices: &Choices, object: &Object) -> anyhow::Result<Vec<Job>> {
+fn jobs(args: &BenchArgs, choices: &Choices, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
     let mut jobs: Vec<Job> = Vec::new();
     for suite in &args.suites {
         for job in choices.jobs(*suite, object)? {

@@ -1,0 +1,215 @@
+//! `yoro bench`.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::program::{run, succeed, yoro};
+
+fn records(file: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(file).unwrap_or_default();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn of_kind<'a>(records: &'a [Value], kind: &str) -> Vec<&'a Value> {
+    records.iter().filter(|r| r["record"] == kind).collect()
+}
+
+/// The values of a metric of a contender in its first round.
+fn values(records: &[Value], contender: &str, metric: &str) -> Vec<f64> {
+    let measurements = of_kind(records, "measurement");
+    let found = measurements.iter().find(|m| m["contender"] == contender && m["round"] == 0);
+    let found = found.unwrap_or_else(|| panic!("{contender} was not measured"));
+    let values = found["values"][metric].as_array().unwrap_or_else(|| panic!("{contender}: no {metric}"));
+    values.iter().map(|v| v.as_f64().unwrap_or(f64::INFINITY)).collect()
+}
+
+#[test]
+fn every_method_has_its_row_and_a_cut_run_goes_on() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let line = "bench scenes --scene prototype --size 96x96 --viewpoints 2 --rounds 2 --out run.jsonl";
+    let said = succeed(at, line).stdout;
+    assert!(said.contains("scenes, prototype") && said.contains("results: run.jsonl"), "{said}");
+    let file = at.join("run.jsonl");
+    let whole = records(&file);
+    assert_eq!(whole[0]["record"], "header");
+    for contender in [
+        "conventional",
+        "instanced",
+        "multiview",
+        "hybrid",
+        "shading-reprojection",
+        "mono",
+        "yoro-gather",
+        "yoro-rowgroup",
+        "yoro-paper",
+    ] {
+        // Nobody is missing without a reason.
+        let rows = whole.iter().filter(|r| r["contender"] == contender);
+        let (measured, left_out): (Vec<&Value>, Vec<&Value>) =
+            rows.partition(|r| r["record"] == "measurement");
+        match left_out.as_slice() {
+            [] => {
+                assert_eq!(measured.len(), 2, "{contender}: one measurement a round");
+                assert!(measured.iter().all(|m| m["values"]["frame_ms"].as_array().unwrap().len() == 2));
+                assert!(values(&whole, contender, "cpu_ms").iter().all(|ms| *ms > 0.0), "{contender}");
+            }
+            [one] => assert!(one["reason"].as_str().unwrap().len() > 10 && measured.is_empty(), "{one}"),
+            _ => panic!("{contender} was left out more than once"),
+        }
+    }
+    let mean = |contender: &str, metric: &str| {
+        let values = values(&whole, contender, metric);
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    assert!(mean("yoro-gather", "psnr") > mean("mono", "psnr") + 3.0);
+    assert!(mean("yoro-gather", "flip") < mean("mono", "flip"));
+    assert!(mean("yoro-gather", "visible_psnr") > mean("yoro-gather", "hole_psnr"));
+    assert_eq!(values(&whole, "mono", "hole_share"), values(&whole, "yoro-paper", "hole_share"));
+    assert!((0.0..0.3).contains(&mean("mono", "hole_share")));
+
+    // Power fails in the middle of the second round.
+    let text = fs::read_to_string(&file).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let first_round = 1 + lines.iter().position(|l| l.contains(r#""record":"round""#)).unwrap();
+    let kept = lines[..first_round].join("\n");
+    fs::write(&file, format!("{kept}\n{}\n{}", lines[first_round], &lines[first_round + 1][..40])).unwrap();
+    succeed(at, line);
+    let again = fs::read_to_string(&file).unwrap();
+    assert!(again.starts_with(&kept), "the finished round was touched");
+    assert_eq!(records(&file).len(), whole.len());
+    // Nothing is left to do.
+    assert!(succeed(at, line).stderr.contains("1 of 1 settings are measured already"));
+    assert_eq!(fs::read_to_string(&file).unwrap(), again);
+
+    run(at, &line.replace("96x96", "80x80")).refuses(&["run.jsonl", "96 x 96", "80 x 80", "--out"]);
+    assert_eq!(fs::read_to_string(&file).unwrap(), again);
+}
+
+#[test]
+fn sweeps_have_their_points_and_baselines() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let line = "bench ipd styles flicker imbuffer patchers --quick --scene prototype --size 96x96 --rounds 1 --out all.jsonl \
+                --contender yoro-gather --contender yoro-paper --contender patcher-gather --contender patcher-median";
+    succeed(at, line);
+    let records = records(&at.join("all.jsonl"));
+    let of_suite =
+        |suite: &str| -> Vec<Value> { records.iter().filter(|r| r["suite"] == suite).cloned().collect() };
+    let points = |suite: &str, key: &str| -> Vec<String> {
+        let records = of_suite(suite);
+        of_kind(&records, "scene").iter().map(|r| r[key].to_string().replace(['"', '.'], "")).collect()
+    };
+    assert_eq!(points("ipd", "point"), ["500", "630", "750"]);
+    assert_eq!(points("styles", "label"), ["realistic", "cartoon", "low-poly", "voxel", "anime"]);
+    assert_eq!(points("imbuffer", "point"), ["10", "20", "40", "80", "160"]);
+
+    // Wider eyes are harder for the same image, and nothing is timed where quality alone is asked for.
+    let ipd = of_suite("ipd");
+    let mono: Vec<f64> = of_kind(&ipd, "measurement")
+        .iter()
+        .filter(|m| m["contender"] == "mono")
+        .map(|m| m["values"]["psnr"][0].as_f64().unwrap())
+        .collect();
+    assert!(mono.len() == 3 && mono[0] > mono[2], "{mono:?}");
+    assert!(of_kind(&ipd, "measurement").iter().all(|m| m["values"]["frame_ms"].is_null()));
+
+    let flicker = of_suite("flicker");
+    let change = values(&flicker, "conventional", "change");
+    assert_eq!(change.len(), 3, "four frames have three steps between them");
+    assert!(change.iter().all(|c| *c > 0.0));
+    let [gather, mono] = ["yoro-gather", "mono"].map(|c| values(&flicker, c, "flicker").iter().sum::<f64>());
+    assert!(gather < mono, "{gather} {mono}");
+
+    let patchers = of_suite("patchers");
+    for patcher in ["patcher-gather", "patcher-median"] {
+        assert!(values(&patchers, patcher, "patch_ms")[0] > 0.0);
+        assert!(values(&patchers, patcher, "hole_psnr")[0] > values(&patchers, "mono", "hole_psnr")[0]);
+    }
+    // All patchers get the same image: they differ in holes alone.
+    let [a, b] = ["patcher-gather", "patcher-median"].map(|p| values(&patchers, p, "visible_psnr"));
+    assert_eq!(a, b);
+}
+
+#[test]
+fn scenes_beyond_the_bounds_are_left_out_with_the_reason() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let line = "bench complexity --quick --size 64x64 --rounds 1 --contender mono --max-triangles 400000 --max-memory-mib 25 --out c.jsonl";
+    let said = succeed(at, line).stdout;
+    let records = records(&at.join("c.jsonl"));
+    let mut triangles: Vec<f64> =
+        of_kind(&records, "round").iter().map(|r| r["point"].as_f64().unwrap()).collect();
+    assert_eq!(triangles.len(), 5);
+    triangles.insert(0, 2.0);
+    assert!(
+        triangles.windows(2).all(|w| (w[1] - w[0] - triangles[1] + 2.0).abs() < 1.0),
+        "uneven steps: {triangles:?}"
+    );
+    let left_out = of_kind(&records, "unsupported");
+    assert!(!left_out.is_empty() && !of_kind(&records, "measurement").is_empty(), "{records:?}");
+    assert!(left_out.iter().all(|r| r["reason"].as_str().unwrap().contains("--max-memory-mib")));
+    assert!(said.contains("not measured: "), "{said}");
+}
+
+#[test]
+fn mistakes_get_a_sentence() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    fs::write(at.join("other.jsonl"), "something else\n").unwrap();
+    fs::write(at.join("path.json"), "[{\"position\":[0,1.6,0],\"target\":[0,1.6,-1]}]").unwrap();
+    for (line, naming) in [
+        ("bench", &["<SUITE>"][..]),
+        ("bench speed", &["'speed'", "scenes", "patchers"]),
+        ("bench scenes --contender magic", &["'magic'", "yoro-gather"]),
+        ("bench patchers --contender hybrid", &["contenders", "patchers"]),
+        ("bench scenes scenes", &["measured twice"]),
+        ("bench scenes --scene bistroo", &["\"bistroo\""]),
+        ("bench distance --object nowhere.obj", &["nowhere.obj"]),
+        ("bench scenes --path nowhere.json", &["nowhere.json does not exist"]),
+        ("bench scenes --rounds 0", &["--rounds"]),
+        ("bench scenes --out other.jsonl", &["other.jsonl is no result of yoro bench"]),
+        (
+            "bench flicker --scene prototype --size 64x64 --path path.json --out f.jsonl",
+            &["camera path", "--path"],
+        ),
+    ] {
+        run(at, line).refuses(naming);
+    }
+    assert_eq!(fs::read_to_string(at.join("other.jsonl")).unwrap(), "something else\n");
+    assert!(!at.join("out").exists(), "something was written");
+}
+
+#[test]
+fn ctrl_c_keeps_finished_rounds_and_says_how_to_go_on() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("long.jsonl");
+    let line = "bench lights --scene prototype --size 64x64 --viewpoints 1 --rounds 1000 --contender mono --out long.jsonl";
+    let mut child = yoro(line.split(' '))
+        .current_dir(dir.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    let rounds = || fs::read_to_string(&file).unwrap_or_default().matches(r#""record":"round""#).count();
+    while rounds() < 2 {
+        assert!(start.elapsed() < Duration::from_secs(120), "no rounds");
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended by itself");
+        thread::sleep(Duration::from_millis(20));
+    }
+    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("interrupted") && said.contains("--out long.jsonl"), "{said}");
+    let records = records(&file);
+    assert_eq!(records.last().unwrap()["record"], "round");
+    assert!(of_kind(&records, "round").len() < 1000);
+}
