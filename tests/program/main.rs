@@ -4,6 +4,7 @@ mod browser;
 mod program;
 
 mod compare;
+mod dataset;
 mod interrupt;
 mod memory;
 mod mistakes;

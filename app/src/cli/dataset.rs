@@ -133,6 +133,10 @@ pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
         args.eyes.half_angles_degrees.is_none(),
         "--half-angles-degrees cannot be used here: `yoro synthesize` reads the groups and takes symmetric frusta; leave it out"
     );
+    ensure!(
+        args.model.is_none() || args.patcher == Some(PatcherKind::Neural),
+        "--model goes with --patcher neural only: add that, or leave it out"
+    );
     let path = args.path.as_deref().map(camera_path).transpose()?;
     let names: Vec<String> = match args.scenes.as_slice() {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
