@@ -57,17 +57,16 @@ def rough_fill(color, disparity, hole):
     return color[rows, source], disparity[rows, source]
 
 
-def load(data, scenes):
+def load(folders):
     groups = []
-    for scene in scenes:
-        folder = data / scene
+    for folder in folders:
         for file in sorted((folder / "group").glob("*.json")):
             color, disparity, hole, truth = load_group(folder, int(file.stem))
             to_bytes = lambda a: torch.from_numpy(np.rint(a * 255).astype(np.uint8).copy())
             groups.append((to_bytes(color), torch.from_numpy(disparity.astype(np.float16).copy()),
                            torch.from_numpy(hole.copy()), to_bytes(truth)))
     if not groups:
-        raise SystemExit(f"{data} holds no groups of {', '.join(scenes)}: make them as README.md says")
+        raise SystemExit(f"no groups in {', '.join(map(str, folders))}: make them as README.md says")
     return groups
 
 
@@ -168,7 +167,7 @@ def export(generator, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--data", type=Path, required=True, help="folder written by `yoro dataset`")
+    parser.add_argument("--data", type=Path, nargs="+", required=True, help="folders written by `yoro dataset`")
     parser.add_argument("--hold-out", nargs="*", default=["prototype"], help="scenes that are not trained on, but reported")
     parser.add_argument("--out", type=Path, default=Path("app/models/patcher.onnx"))
     parser.add_argument("--steps", type=int, default=2000)
@@ -181,9 +180,9 @@ def main():
     torch.set_num_threads(args.threads)
     torch.manual_seed(args.seed)
     rng = random.Random(args.seed)
-    scenes = sorted(folder.name for folder in args.data.iterdir() if (folder / "group").is_dir())
-    groups = load(args.data, [scene for scene in scenes if scene not in args.hold_out])
-    held_out = load(args.data, args.hold_out) if args.hold_out else []
+    folders = sorted(scene for data in args.data for scene in data.iterdir() if (scene / "group").is_dir())
+    groups = load([folder for folder in folders if folder.name not in args.hold_out])
+    held_out = load([folder for folder in folders if folder.name in args.hold_out]) if args.hold_out else []
 
     generator, discriminator = Generator(), Discriminator()
     print(f"{len(groups)} groups, {sum(p.numel() for p in generator.parameters())} parameters")

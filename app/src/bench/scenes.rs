@@ -47,14 +47,14 @@ impl Object {
             0.4,
         );
         b.with_material(marble).object("hare");
-        clay.mesh(&mut b, 0.0095, |p, _| vec2(p.x + p.z, p.y) / 0.7);
+        clay.mesh(&mut b, 0.013, |p, _| vec2(p.x + p.z, p.y) / 0.7);
         Object::new("hare".into(), b.finish())
     }
 
     /// An object from a file.
     ///
     /// # Errors
-    /// As [`scene::load`].
+    /// As [`scene::load()`].
     pub fn load(path: &Path) -> Result<Object, SceneError> {
         let scene = scene::load(path)?;
         Ok(Object::new(scene.name, scene.model))

@@ -82,7 +82,7 @@ impl Context {
         unsafe { self.raw().depth_range_f32(low, high) }
     }
 
-    /// Whether gl_ClipDistance[0] clips. Whoever turns it on turns it off again: programs that do not write it
+    /// Whether `gl_ClipDistance[0]` clips. Whoever turns it on turns it off again: programs that do not write it
     /// are undefined with it.
     pub fn set_clip_distance(&self, on: bool) {
         debug_assert!(self.capabilities().clip_distances);

@@ -22,7 +22,7 @@ pub fn flip_map(
     pixels_per_degree: f64,
 ) -> Result<Vec<f32>, MetricsError> {
     check_sizes(test, reference)?;
-    let images = [test, reference].map(|image| Opponent::new(image));
+    let images = [test, reference].map(Opponent::new);
     let [test, reference] = &images;
     let [seen_test, seen_reference] = [test, reference].map(|image| image.as_seen(pixels_per_degree));
     let [features_test, features_reference] =
@@ -56,8 +56,8 @@ const TO_XYZ: [[f32; 3]; 3] = [
 ];
 /// XYZ to linear sRGB, the inverse.
 const FROM_XYZ: [[f32; 3]; 3] = [
-    [3.241_003_2, -1.537_399, -0.498_615_88],
-    [-0.969_224_25, 1.875_93, 0.041_554_23],
+    [3.241_003_2, -1.537_399, -0.498_615_9],
+    [-0.969_224_3, 1.875_93, 0.041_554_23],
     [0.055_639_42, -0.204_011_21, 1.057_149],
 ];
 /// The white point D65: XYZ of linear sRGB (1, 1, 1).
@@ -259,13 +259,15 @@ mod tests {
 
     /// A size of the test images, pixels per degree, and what flip-evaluator 1.7 says: the mean and the map at (0,
     /// h - 1), (5, 5), (w - 1, h / 2).
-    const FLIP_EVALUATOR_1_7: [((u32, u32), f64, f64, [f32; 3]); 6] = [
+    type Reference = ((u32, u32), f64, f64, [f32; 3]);
+
+    const FLIP_EVALUATOR_1_7: [Reference; 6] = [
         ((11, 11), FLIP_PIXELS_PER_DEGREE, 0.187_880_02, [0.406_710_48, 0.136_711_3, 0.207_070_13]),
-        ((11, 11), 20.0, 0.285_912_45, [0.551_415_86, 0.334_070_41, 0.524_401_43]),
+        ((11, 11), 20.0, 0.285_912_45, [0.551_415_86, 0.334_070_4, 0.524_401_4]),
         ((37, 29), FLIP_PIXELS_PER_DEGREE, 0.126_558_68, [0.092_362_82, 0.014_455_585, 0.258_211_85]),
         ((37, 29), 20.0, 0.268_131_94, [0.133_491_02, 0.0, 0.267_160_15]),
         ((64, 48), FLIP_PIXELS_PER_DEGREE, 0.114_453_92, [0.108_250_89, 0.0, 0.127_054_45]),
-        ((64, 48), 20.0, 0.259_133_49, [0.216_972_99, 0.0, 0.369_280_49]),
+        ((64, 48), 20.0, 0.259_133_49, [0.216_972_99, 0.0, 0.369_280_5]),
     ];
 
     #[test]

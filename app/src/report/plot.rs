@@ -519,8 +519,8 @@ mod tests {
         }
         assert!(!svg.contains("NaN") && svg.trim_end().ends_with("</svg>"));
         // From the middle of the frame, 20 ms, up to its top, 40 ms; the first line is the legend's.
-        let lines = svg.lines().filter(|l| l.starts_with("<polyline") && l.contains("#3D3F44"));
-        let points = lines.last().unwrap().split("points=\"").nth(1).unwrap();
+        let mut lines = svg.lines().filter(|l| l.starts_with("<polyline") && l.contains("#3D3F44"));
+        let points = lines.next_back().unwrap().split("points=\"").nth(1).unwrap();
         let heights: Vec<i32> = points.split(' ').filter_map(|p| p.split(',').nth(1)?.parse().ok()).collect();
         let top = MARGIN + LINE + LINE / 2;
         let off = |height: i32, expected: i32| (height - expected).abs();

@@ -47,7 +47,7 @@ impl FrameStatistics {
             return 0;
         }
         self.intervals_ms.push(interval as f64 * 1e-6);
-        if !(refresh_hz > 0.0) {
+        if refresh_hz.is_nan() || refresh_hz <= 0.0 {
             return 0;
         }
         let refreshes = (interval as f64 * 1e-9 * refresh_hz as f64).round() as u32;

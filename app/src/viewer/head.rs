@@ -127,7 +127,7 @@ impl SampleInterval {
     const DEFAULT: f64 = 0.010;
 
     fn next(&mut self, seconds: f64) -> f64 {
-        if seconds > Self::LONGEST || seconds < 0.0 {
+        if !(0.0..=Self::LONGEST).contains(&seconds) {
             return if self.samples > 10 { self.seconds } else { Self::DEFAULT };
         }
         self.seconds = if self.samples == 0 { seconds } else { 0.95 * self.seconds + 0.05 * seconds };

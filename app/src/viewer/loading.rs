@@ -136,7 +136,7 @@ mod tests {
         std::fs::write(&room, "").unwrap();
         std::fs::write(folder.path().join("notes.txt"), "").unwrap();
         let folders = [folder.path().to_owned(), folder.path().join("missing")];
-        assert_eq!(list_scenes(&folders), [room.clone()]);
+        assert_eq!(list_scenes(&folders), std::slice::from_ref(&room));
         for name in ["room", "room.obj", "rooms", "rooms/room.obj", room.to_str().unwrap()] {
             let source = SceneSource::find(name, 1, &folders).unwrap();
             assert_eq!((&source, source.name().as_str()), (&SceneSource::File(room.clone()), "room"));
