@@ -64,10 +64,29 @@ fn only_what_is_missing_is_made() {
     assert_eq!(times(&scene), second, "a mistake changes nothing");
 }
 
+/// A patcher on image files does what it does on a group in memory.
+#[test]
+fn synthesize_with_a_patcher() {
+    let dir = tempfile::tempdir().unwrap();
+    succeed(dir.path(), "dataset prototype --groups 1 --size 96 --out data --patcher telea");
+    let scene = dir.path().join("data/prototype");
+    let command = group(&scene, 0)["synthesize"].as_str().unwrap().to_owned();
+    assert!(command.contains(" --patcher telea"), "{command}");
+    succeed(&scene, command.strip_prefix("yoro ").unwrap());
+    let load = |name: &str| picture::load_color(&scene.join(name)).unwrap();
+    let Psnr(again) =
+        psnr(&load("synthesized/000000.png"), &load("patched/000000.png"), Channels::Rgb).unwrap();
+    assert!(again > 45.0, "{again:.2} dB");
+}
+
 /// The command that a group's JSON states makes the other eye again, for either eye and either depth convention.
 #[test]
 fn groups_go_into_synthesize() {
-    for options in ["", "--dominant left --reversed-z --far inf --fov-y-degrees 75 --ipd 0.05"] {
+    for options in [
+        "",
+        "--dominant left --reversed-z --far inf --fov-y-degrees 75 --ipd 0.05",
+        "--pipeline paper --imbuffer 2 --no-linear-interpolation",
+    ] {
         let dir = tempfile::tempdir().unwrap();
         succeed(dir.path(), &format!("dataset prototype --groups 2 --size 160x128 --out data {options}"));
         let scene = dir.path().join("data/prototype");
@@ -166,7 +185,7 @@ fn mistakes() {
         "dataset prototype --groups 1 --size 32 --patcher neural --model noise.onnx",
         &["noise.onnx is not a model", "training/train.py"],
     );
-    refuses("dataset prototype --model noise.onnx", &["--patcher neural"]);
+    refuses("dataset prototype --patcher xiao --model noise.onnx", &["--model goes with --patcher neural"]);
     fs::create_dir_all(dir.path().join("dataset/prototype")).unwrap();
     fs::write(dir.path().join("dataset/prototype/dataset.json"), "{").unwrap();
     refuses("dataset prototype", &["dataset.json is damaged", "--out"]);

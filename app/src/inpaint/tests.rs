@@ -32,7 +32,10 @@ fn scattered(eye: Eye, seed: u64) -> Reprojected {
     let [w, h] = SIZE;
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
     let color = RgbImage::from_fn(w, h, |_, _| Rgb(std::array::from_fn(|_| rng.random_range(30..=220))));
-    let mut disparity = DepthImage::from_fn(w, h, |x, y| Luma([2.0 + x as f32 * 0.03 + y as f32 * 0.01]));
+    // On a plane, pixels would lie exactly halfway between the nearest and the farthest.
+    let mut disparity = DepthImage::from_fn(w, h, |x, y| {
+        Luma([2.0 + x as f32 * 0.03 + y as f32 * 0.01 + rng.random_range(0.0..0.3)])
+    });
     let mut mask = GrayImage::from_pixel(w, h, Luma([VALID]));
     let mut boxes = |count: usize, largest: [u32; 2]| -> Vec<[u32; 4]> {
         let one = |_| {
@@ -47,7 +50,7 @@ fn scattered(eye: Eye, seed: u64) -> Reprojected {
     holes.extend([[0, 10, 5, 40], [w - 9, 0, w, h / 2], [30, 5, 66, 44], [0, h - 2, w, h]]);
     for (i, b) in near.iter().enumerate() {
         for (x, y) in (b[1]..b[3]).flat_map(|y| (b[0]..b[2]).map(move |x| (x, y))) {
-            disparity.put_pixel(x, y, Luma([6.0 + 1.5 * i as f32]));
+            disparity.get_pixel_mut(x, y).0[0] += 4.0 + 1.5 * i as f32;
         }
     }
     for b in holes {
@@ -275,7 +278,17 @@ fn telea_and_navier_stokes_are_near_opencv() {
             let apart = distance_in_holes(&ours, &theirs, &image);
             let (our_error, their_error) =
                 (distance_in_holes(&ours, &truth, &image), distance_in_holes(&theirs, &truth, &image));
-            println!("{name} {file}: apart {apart:.2}, ours {our_error:.2}, theirs {their_error:.2}");
+            // Half a level more than found: the methods leave open in which order pixels are filled that the front reaches
+            // at the same time, and the derivative where neighbours are missing.
+            let limit = match (name, rule) {
+                ("talk", Rule::NavierStokes) => 6.1,
+                _ => 2.4,
+            };
+            assert!(apart < limit, "{name}, {rule:?}: {apart:.2} levels apart");
+            assert!(
+                our_error < their_error + 0.5,
+                "{name}, {rule:?}: {our_error:.2}, OpenCV {their_error:.2}"
+            );
         }
     }
 }
@@ -304,8 +317,7 @@ fn regions_in_parallel_are_the_whole_in_one_piece() {
             }
         }
     }
-    println!("{counts:?}");
-    assert_eq!(counts[0], 3);
+    assert_eq!(counts[0], 3, "regions of two lines with one gap that is wide enough");
 }
 
 #[test]
