@@ -202,7 +202,6 @@ fn hybrid_is_near_conventional_with_the_split_in_the_midst() {
                     mean_difference(&mono[second], &expected[second]),
                 );
                 let label = format!("{}, {name}: {ours} against {doing_nothing}", stage.scene.name);
-                eprintln!("{label}");
                 ensure!(ours < 0.7 * doing_nothing, "{label}");
                 ensure!(both != expected, "{label}: nothing was far");
             }
@@ -229,7 +228,6 @@ fn reprojected_shading_is_near_that_of_two_renders() {
                     mean_difference(&mono[second], &expected[second]),
                 );
                 let label = format!("{}, {name}: {ours} against {doing_nothing}", stage.scene.name);
-                eprintln!("{label}");
                 ensure!(ours < 0.4 * doing_nothing, "{label}");
             }
         }
