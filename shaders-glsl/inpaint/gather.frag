@@ -31,7 +31,7 @@ void main() {
         float weights = 2.0;
         for (int i = 0; i < 4; ++i) {
             int j = i < 2 ? i - 2 : i - 1;
-            int y = clamp(pixel.y + int(round(float(j) * spread)), 0, size.y - 1);
+            int y = clamp(pixel.y + int(floor(float(j) * spread + 0.5)), 0, size.y - 1);
             float weight = is_hole(edge, y) || disparity_at(edge, y) > background + 1.0 ? 0.0 : 1.0;
             sum += weight * color_at(edge, y);
             weights += weight;

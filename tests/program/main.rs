@@ -5,6 +5,7 @@ mod program;
 
 mod bench;
 mod compare;
+mod dataset;
 mod interrupt;
 mod memory;
 mod mistakes;

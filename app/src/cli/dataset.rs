@@ -10,16 +10,17 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::cli::stage::{self, EyeArgs, Stage};
-use crate::cli::{GlArgs, SynthesisArgs, interrupted, progress_bar};
+use crate::cli::{GlArgs, PatcherArgs, SynthesisArgs, interrupted, progress_bar};
 use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use crate::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
 use crate::files;
 use crate::gl::Context;
-use crate::inpaint::{self, Patcher, PatcherKind, PatcherOptions};
+use crate::inpaint::{Patcher, PatcherKind};
 use crate::picture;
 use crate::render::RenderSettings;
 use crate::scene::builtin::{self, BUILTINS};
 use crate::scene::{CameraPath, Scene, ShadingStyle, Viewpoint};
+use crate::synthesis::{ImBufferSize, Pipeline};
 
 /// The pictures of a group; each has a folder of this name.
 const PICTURES: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
@@ -42,12 +43,6 @@ pub struct DatasetArgs {
     /// Folder for the groups; one folder for each scene is made in it. Finished groups in it are kept
     #[arg(long, default_value = "dataset", value_name = "FOLDER")]
     out: PathBuf,
-    /// Fill the holes of patched/ by this patcher instead of the pipeline's own fill
-    #[arg(long, value_enum, value_name = "KIND")]
-    patcher: Option<PatcherKind>,
-    /// neural: another ONNX file than the built-in model
-    #[arg(long, value_name = "FILE")]
-    model: Option<PathBuf>,
     /// Smooth the edges of both rendered images (FXAA) before reprojection, as in the paper
     #[arg(long)]
     anti_aliasing: bool,
@@ -61,6 +56,8 @@ pub struct DatasetArgs {
     eyes: EyeArgs,
     #[command(flatten)]
     synthesis: SynthesisArgs,
+    #[command(flatten)]
+    patcher: PatcherArgs,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -133,6 +130,7 @@ pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
         args.eyes.half_angles_degrees.is_none(),
         "--half-angles-degrees cannot be used here: `yoro synthesize` reads the groups and takes symmetric frusta; leave it out"
     );
+    args.patcher.check()?;
     let path = args.path.as_deref().map(camera_path).transpose()?;
     let names: Vec<String> = match args.scenes.as_slice() {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
@@ -154,8 +152,7 @@ pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
     if missing > 0 {
         let headless = args.gl.open()?;
         let gl = headless.gl();
-        let options = PatcherOptions { model: args.model.clone() };
-        let mut patcher = args.patcher.map(|kind| inpaint::create(gl, kind, &options)).transpose()?;
+        let mut patcher = args.patcher.create(gl)?;
         for job in &jobs {
             job.run(args, gl, path.as_deref(), &mut patcher, &bar)?;
         }
@@ -219,8 +216,8 @@ impl<'a> Job<'a> {
             near: args.eyes.near,
             far: args.eyes.far,
             depth: args.eyes.pair(Pose::IDENTITY).depth.convention,
-            patcher: args.patcher,
-            model: args.model.as_deref(),
+            patcher: args.patcher.patcher,
+            model: args.patcher.model.as_deref(),
             options: group_options(args),
         })?;
         check_settings(&folder, &settings)?;
@@ -342,10 +339,11 @@ fn encoding(convention: DepthConvention) -> &'static str {
     }
 }
 
+/// The command line that makes `patched` again from `rgb` and `depth`.
 fn synthesize_command(args: &DatasetArgs, index: u32) -> String {
     let eyes = &args.eyes;
-    format!(
-        "yoro synthesize --color {} --depth {} --depth-encoding {} --near {} --far {} --fov-y-degrees {} --ipd {} --dominant {} --out {}",
+    let mut command = format!(
+        "yoro synthesize --color {} --depth {} --depth-encoding {} --near {} --far {} --fov-y-degrees {} --ipd {} --dominant {} --pipeline {}",
         picture_name("rgb", index),
         picture_name("depth", index),
         encoding(eyes.pair(Pose::IDENTITY).depth.convention),
@@ -354,8 +352,32 @@ fn synthesize_command(args: &DatasetArgs, index: u32) -> String {
         fov_y_degrees(args),
         eyes.ipd,
         eyes.dominant.name(),
-        picture_name("synthesized", index),
-    )
+        args.synthesis.pipeline.name(),
+    );
+    let mut add = |option: String| command.extend([" --", option.as_str()]);
+    if args.synthesis.pipeline == Pipeline::Paper {
+        let paper = args.synthesis.options().paper;
+        add(match paper.imbuffer {
+            ImBufferSize::Divisor(n) => format!("imbuffer {n}"),
+            ImBufferSize::Fixed([w, h]) => format!("imbuffer {w}x{h}"),
+        });
+        add(format!("kernel-height {}", paper.kernel_height));
+        if !paper.linear_interpolation {
+            add("no-linear-interpolation".into());
+        }
+        if paper.strict {
+            add("strict".into());
+        }
+    }
+    if let Some(kind) = args.patcher.patcher {
+        add(format!("patcher {}", kind.name()));
+    }
+    if let Some(model) = &args.patcher.model {
+        let model = std::path::absolute(model).unwrap_or_else(|_| model.clone());
+        add(format!("model {}", model.display()));
+    }
+    add(format!("out {}", picture_name("synthesized", index)));
+    command
 }
 
 /// A group is finished when its JSON file, which is written last, and all pictures are there.

@@ -13,14 +13,18 @@ pub mod stage;
 pub mod synthesize;
 pub mod view;
 
+use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use anyhow::bail;
+use anyhow::{bail, ensure};
 use clap::builder::RangedU64ValueParser;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::eyes::MAX_IPD;
+use crate::gl::Context;
+use crate::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
 use crate::platform::{Backend, Headless, PlatformError};
 use crate::synthesis::{ImBufferSize, PaperOptions, Pipeline, SynthesisOptions};
 
@@ -73,6 +77,34 @@ impl SynthesisArgs {
                 strict: self.strict,
             },
         }
+    }
+}
+
+/// The patcher, where it is not the pipeline itself that fills the holes.
+#[derive(clap::Args, Clone, Debug)]
+pub struct PatcherArgs {
+    /// Fill the holes by this patcher instead of the pipeline's own fill
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub patcher: Option<PatcherKind>,
+    /// neural: another ONNX file than the built-in model
+    #[arg(long, value_name = "FILE", requires = "patcher")]
+    pub model: Option<PathBuf>,
+}
+
+impl PatcherArgs {
+    /// Refuses a model without the patcher that runs it.
+    pub fn check(&self) -> anyhow::Result<()> {
+        ensure!(
+            self.model.is_none() || self.patcher == Some(PatcherKind::Neural),
+            "--model goes with --patcher neural only: give that, or leave it out"
+        );
+        Ok(())
+    }
+
+    /// Makes the patcher, if one was asked for.
+    pub fn create(&self, gl: &Rc<Context>) -> Result<Option<Box<dyn Patcher>>, InpaintError> {
+        let options = PatcherOptions { model: self.model.clone() };
+        self.patcher.map(|kind| inpaint::create(gl, kind, &options)).transpose()
     }
 }
 

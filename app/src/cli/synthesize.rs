@@ -6,10 +6,12 @@ use anyhow::{Context as _, bail, ensure};
 use image::{GrayImage, Luma};
 
 use crate::cli::{
-    GlArgs, SynthesisArgs, parse_fov, parse_ipd, parse_positive, progress_bar, stop_if_interrupted,
+    GlArgs, PatcherArgs, SynthesisArgs, parse_fov, parse_ipd, parse_positive, progress_bar,
+    stop_if_interrupted,
 };
 use crate::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
 use crate::files;
+use crate::inpaint::{Patcher, Reprojected};
 use crate::picture::{self, DepthImage, DepthSamples};
 use crate::synthesis::{Offline, SourceMapEntry, SynthesizedImage};
 
@@ -93,6 +95,8 @@ pub struct SynthesizeArgs {
     #[command(flatten)]
     synthesis: SynthesisArgs,
     #[command(flatten)]
+    patcher: PatcherArgs,
+    #[command(flatten)]
     gl: GlArgs,
 }
 
@@ -109,15 +113,17 @@ struct Job {
 /// Synthesizes one image or a folder of them.
 pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
     ensure!(args.near < args.far, "--near {} must be less than --far {}", args.near, args.far);
+    args.patcher.check()?;
     let jobs = jobs(args)?;
     let headless = args.gl.open()?;
     let mut offline = Offline::new(headless.gl(), &args.synthesis.options())?;
+    let mut patcher = args.patcher.create(headless.gl())?;
     let bar = progress_bar(jobs.len() as u64);
     let mut written = Vec::new();
     for job in &jobs {
         stop_if_interrupted()?;
         bar.set_message(job.color.display().to_string());
-        written = run_job(args, job, &mut offline)?;
+        written = run_job(args, job, &mut offline, &mut patcher)?;
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -189,7 +195,12 @@ fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
 }
 
 /// Returns the paths of the synthesized images.
-fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::Result<Vec<PathBuf>> {
+fn run_job(
+    args: &SynthesizeArgs,
+    job: &Job,
+    offline: &mut Offline,
+    patcher: &mut Option<Box<dyn Patcher>>,
+) -> anyhow::Result<Vec<PathBuf>> {
     let color = picture::load_color(&job.color)?;
     let depth = picture::load_depth(&job.depth)?;
     if color.dimensions() != depth.image.dimensions() {
@@ -232,7 +243,11 @@ fn run_job(args: &SynthesizeArgs, job: &Job, offline: &mut Offline) -> anyhow::R
             DepthImage::from_fn(size[0], size[1], |x, y| Luma([value(&entries[(y * size[0] + x) as usize])]))
         };
         written.push(named(&job.out));
-        picture::save_color(&named(&job.out), &rgb_image(&result.rgba, size))?;
+        let image = match patcher {
+            Some(patcher) => patcher.patch(&Reprojected::from_synthesis(&result, &warp)?)?.image,
+            None => rgb_image(&result.rgba, size),
+        };
+        picture::save_color(&named(&job.out), &image)?;
         if let Some(path) = &job.mask {
             let holes = GrayImage::from_fn(size[0], size[1], |x, y| {
                 Luma([if entries[(y * size[0] + x) as usize].hole { 0 } else { 255 }])

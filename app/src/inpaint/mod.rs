@@ -275,3 +275,12 @@ pub fn create(
         PatcherKind::Neural => Box::new(neural::Neural::new(options.model.as_deref())?),
     })
 }
+
+/// For each row, itself if it is `known`, or else the nearest row that is; the upper one when two are equally near.
+fn nearest_rows(height: u32, known: impl Fn(u32) -> bool) -> Vec<u32> {
+    let nearest = |y: u32| {
+        let around = |d: u32| [y.checked_sub(d), (y + d < height).then_some(y + d)];
+        (0..height).flat_map(around).flatten().find(|&y| known(y)).unwrap_or(y)
+    };
+    (0..height).map(nearest).collect()
+}

@@ -12,7 +12,7 @@ use rten::{Dimension, Model, ValueOrView};
 use rten_tensor::prelude::*;
 use rten_tensor::{NdTensor, Tensor};
 
-use super::{InpaintError, PatchTime, Patched, Patcher, Reprojected};
+use super::{InpaintError, PatchTime, Patched, Patcher, Reprojected, nearest_rows};
 use crate::eyes::Eye;
 use crate::files;
 
@@ -134,7 +134,7 @@ fn model_input(image: &Reprojected) -> NdTensor<f32, 4> {
 }
 
 /// Each hole takes colour and disparity of the farther of its two ends in the row, the one behind in forward columns
-/// when they are equally far. Rows without a valid pixel stay black.
+/// when they are equally far. Rows without a valid pixel repeat the nearest row that has one.
 fn rough_fill(image: &Reprojected) -> (RgbImage, Vec<f32>) {
     let [width, height] = image.size();
     let mut color = image.color.clone();
@@ -161,6 +161,13 @@ fn rough_fill(image: &Reprojected) -> (RgbImage, Vec<f32>) {
                 disparity[(y * width + at(c)) as usize] = filling.1;
             }
             column = end;
+        }
+    }
+    let rows = nearest_rows(height, |y| (0..width).any(|x| !image.is_hole(x, y)));
+    for (y, source) in (0..height).zip(rows).filter(|(y, source)| y != source) {
+        for x in 0..width {
+            color.put_pixel(x, y, *color.get_pixel(x, source));
+            disparity[(y * width + x) as usize] = disparity[(source * width + x) as usize];
         }
     }
     (color, disparity)

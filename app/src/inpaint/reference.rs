@@ -110,7 +110,7 @@ impl Field {
             let spread = 0.5 * f64::from((x - edge).clamp(-12, 12).abs().max(1));
             let (mut sum, mut weights) = (end.color.map(|c| 2.0 * c), 2.0);
             for j in [-2.0, -1.0, 1.0, 2.0] {
-                let row = (y + (j * spread).round() as i32).clamp(0, self.height - 1);
+                let row = (y + (j * spread + 0.5).floor() as i32).clamp(0, self.height - 1);
                 if let Some(tap) = self.at(edge, row).filter(|tap| tap.disparity <= end.disparity + 1.0) {
                     (0..3).for_each(|c| sum[c] += tap.color[c]);
                     weights += 1.0;

@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::IVec2;
 use image::{GrayImage, Rgb, RgbImage};
 
-use super::{HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID};
+use super::{HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID, nearest_rows};
 use crate::eyes::Eye;
 use crate::gl::{
     Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
@@ -123,22 +123,10 @@ impl Patcher for Screen {
 /// The result as an image. A row without any valid pixel, which a patcher of rows cannot fill (alpha is still 0),
 /// repeats the nearest row that has one.
 fn filled(rgba: &[u8], size: [u32; 2]) -> RgbImage {
-    let [width, height] = size.map(|n| n as usize);
-    let rows: Vec<&[u8]> = rgba.chunks_exact(width * 4).rev().collect();
-    let known = |y: usize| rows[y][3] == VALID;
-    let mut source: Vec<usize> = (0..height).collect();
-    for y in (0..height).filter(|&y| !known(y)) {
-        let above = (0..y).rev().find(|&y| known(y));
-        let below = (y + 1..height).find(|&y| known(y));
-        source[y] = match (above, below) {
-            (Some(a), Some(b)) if b - y < y - a => b,
-            (Some(a), _) => a,
-            (None, Some(b)) => b,
-            (None, None) => y,
-        };
-    }
+    let rows: Vec<&[u8]> = rgba.chunks_exact(size[0] as usize * 4).rev().collect();
+    let source = nearest_rows(size[1], |y| rows[y as usize][3] == VALID);
     RgbImage::from_fn(size[0], size[1], |x, y| {
-        let pixel = &rows[source[y as usize]][x as usize * 4..];
+        let pixel = &rows[source[y as usize] as usize][x as usize * 4..];
         Rgb([pixel[0], pixel[1], pixel[2]])
     })
 }

@@ -32,7 +32,10 @@ fn scattered(eye: Eye, seed: u64) -> Reprojected {
     let [w, h] = SIZE;
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
     let color = RgbImage::from_fn(w, h, |_, _| Rgb(std::array::from_fn(|_| rng.random_range(30..=220))));
-    let mut disparity = DepthImage::from_fn(w, h, |x, y| Luma([2.0 + x as f32 * 0.03 + y as f32 * 0.01]));
+    // On a plane, pixels would lie exactly halfway between the nearest and the farthest.
+    let mut disparity = DepthImage::from_fn(w, h, |x, y| {
+        Luma([2.0 + x as f32 * 0.03 + y as f32 * 0.01 + rng.random_range(0.0..0.3)])
+    });
     let mut mask = GrayImage::from_pixel(w, h, Luma([VALID]));
     let mut boxes = |count: usize, largest: [u32; 2]| -> Vec<[u32; 4]> {
         let one = |_| {
@@ -47,7 +50,7 @@ fn scattered(eye: Eye, seed: u64) -> Reprojected {
     holes.extend([[0, 10, 5, 40], [w - 9, 0, w, h / 2], [30, 5, 66, 44], [0, h - 2, w, h]]);
     for (i, b) in near.iter().enumerate() {
         for (x, y) in (b[1]..b[3]).flat_map(|y| (b[0]..b[2]).map(move |x| (x, y))) {
-            disparity.put_pixel(x, y, Luma([6.0 + 1.5 * i as f32]));
+            disparity.get_pixel_mut(x, y).0[0] += 4.0 + 1.5 * i as f32;
         }
     }
     for b in holes {
@@ -275,15 +278,36 @@ fn telea_and_navier_stokes_are_near_opencv() {
             let apart = distance_in_holes(&ours, &theirs, &image);
             let (our_error, their_error) =
                 (distance_in_holes(&ours, &truth, &image), distance_in_holes(&theirs, &truth, &image));
-            println!("{name} {file}: apart {apart:.2}, ours {our_error:.2}, theirs {their_error:.2}");
+            // Half a level more than found: the methods leave open in which order pixels are filled that the front reaches
+            // at the same time, and the derivative where neighbours are missing.
+            let limit = match (name, rule) {
+                ("talk", Rule::NavierStokes) => 6.1,
+                _ => 2.4,
+            };
+            assert!(apart < limit, "{name}, {rule:?}: {apart:.2} levels apart");
+            assert!(
+                our_error < their_error + 0.5,
+                "{name}, {rule:?}: {our_error:.2}, OpenCV {their_error:.2}"
+            );
         }
     }
 }
 
 #[test]
 fn regions_in_parallel_are_the_whole_in_one_piece() {
-    for image in [scattered(Eye::Left, 10), stored_case("shapes"), stored_case("talk")] {
+    // Two lines of holes; the upper one has a gap just wide enough to be filled apart, and one a column too narrow.
+    let apart = scattered(Eye::Left, 10);
+    let hole = |x: u32, y: u32| match y {
+        10..13 => !(30..39).contains(&x) && !(60..68).contains(&x),
+        35..39 => true,
+        _ => false,
+    };
+    let mask = GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([if hole(x, y) { HOLE } else { VALID }]));
+    let apart = Reprojected::new(apart.color, mask, apart.disparity, Eye::Left).unwrap();
+    let mut counts = Vec::new();
+    for image in [apart, scattered(Eye::Left, 11), stored_case("shapes"), stored_case("talk")] {
         let regions = march::regions(&image);
+        counts.push(regions.len());
         let mut all: Vec<[u32; 2]> = regions.iter().flatten().copied().collect();
         all.sort_unstable_by_key(|&[x, y]| (y, x));
         for rule in [Rule::Telea, Rule::NavierStokes] {
@@ -293,7 +317,7 @@ fn regions_in_parallel_are_the_whole_in_one_piece() {
             }
         }
     }
-    assert!(march::regions(&stored_case("talk")).len() > 3, "nothing is parallel in the test");
+    assert_eq!(counts[0], 3, "regions of two lines with one gap that is wide enough");
 }
 
 #[test]

@@ -1,0 +1,192 @@
+//! `yoro dataset`, resumed, interrupted, and read again by `yoro synthesize`.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime};
+
+use yoro::metrics::{Channels, Psnr, psnr};
+use yoro::picture;
+
+use crate::program::{run, succeed, yoro};
+
+const KINDS: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
+
+fn times(folder: &Path) -> BTreeMap<PathBuf, SystemTime> {
+    let files = yoro::files::find(folder, &["png", "json"]).unwrap();
+    files
+        .into_iter()
+        .map(|file| (file.clone(), fs::metadata(folder.join(file)).unwrap().modified().unwrap()))
+        .collect()
+}
+
+fn group(folder: &Path, index: u32) -> serde_json::Value {
+    serde_json::from_slice(&fs::read(folder.join(format!("group/{index:06}.json"))).unwrap()).unwrap()
+}
+
+#[test]
+fn only_what_is_missing_is_made() {
+    let dir = tempfile::tempdir().unwrap();
+    let line = "dataset prototype --groups 3 --size 64 --out data --patcher median";
+    assert_eq!(succeed(dir.path(), line).stdout, "3 groups in data (3 new)\n");
+    let scene = dir.path().join("data/prototype");
+    let first = times(&scene);
+    assert_eq!(first.len(), 3 * (KINDS.len() + 1) + 1);
+
+    let pixels = fs::read(scene.join("patched/000001.png")).unwrap();
+    let json = fs::read(scene.join("group/000001.json")).unwrap();
+    // As an interruption leaves it: some pictures, no JSON.
+    fs::remove_file(scene.join("patched/000001.png")).unwrap();
+    fs::remove_file(scene.join("group/000001.json")).unwrap();
+    assert_eq!(succeed(dir.path(), line).stdout, "3 groups in data (1 new)\n");
+    assert_eq!(
+        fs::read(scene.join("patched/000001.png")).unwrap(),
+        pixels,
+        "a group depends on its index alone"
+    );
+    assert_eq!(fs::read(scene.join("group/000001.json")).unwrap(), json);
+    let second = times(&scene);
+    for (file, time) in &first {
+        let remade = file.to_string_lossy().contains("000001") || file.ends_with("dataset.json");
+        assert!(remade || second[file] == *time, "{} was made again", file.display());
+    }
+    assert_eq!(succeed(dir.path(), line).stdout, "3 groups in data (0 new)\n");
+    assert_eq!(times(&scene), second);
+
+    run(dir.path(), &format!("{line} --ipd 0.07")).refuses(&[
+        "prototype holds groups of other settings",
+        "ipd",
+        "--out",
+    ]);
+    run(dir.path(), &line.replace("median", "gather")).refuses(&["patcher \"median\" instead of \"gather\""]);
+    assert_eq!(times(&scene), second, "a mistake changes nothing");
+}
+
+/// A patcher on image files does what it does on a group in memory.
+#[test]
+fn synthesize_with_a_patcher() {
+    let dir = tempfile::tempdir().unwrap();
+    succeed(dir.path(), "dataset prototype --groups 1 --size 96 --out data --patcher telea");
+    let scene = dir.path().join("data/prototype");
+    let command = group(&scene, 0)["synthesize"].as_str().unwrap().to_owned();
+    assert!(command.contains(" --patcher telea"), "{command}");
+    succeed(&scene, command.strip_prefix("yoro ").unwrap());
+    let load = |name: &str| picture::load_color(&scene.join(name)).unwrap();
+    let Psnr(again) =
+        psnr(&load("synthesized/000000.png"), &load("patched/000000.png"), Channels::Rgb).unwrap();
+    assert!(again > 45.0, "{again:.2} dB");
+}
+
+/// The command that a group's JSON states makes the other eye again, for either eye and either depth convention.
+#[test]
+fn groups_go_into_synthesize() {
+    for options in [
+        "",
+        "--dominant left --reversed-z --far inf --fov-y-degrees 75 --ipd 0.05",
+        "--pipeline paper --imbuffer 2 --no-linear-interpolation",
+    ] {
+        let dir = tempfile::tempdir().unwrap();
+        succeed(dir.path(), &format!("dataset prototype --groups 2 --size 160x128 --out data {options}"));
+        let scene = dir.path().join("data/prototype");
+        let command = group(&scene, 1)["synthesize"].as_str().unwrap().to_owned();
+        let line = format!("{} --mask-out holes.png", command.strip_prefix("yoro ").unwrap());
+        succeed(&scene, &line);
+        let load = |name: &str| picture::load_color(&scene.join(name)).unwrap();
+        let likeness = |a: &str, b: &str| {
+            let Psnr(db) = psnr(&load(a), &load(b), Channels::Rgb).unwrap();
+            db
+        };
+        // 16 bits of depth are a little coarser than the depth buffer.
+        let again = likeness("synthesized/000001.png", "patched/000001.png");
+        assert!(again > 45.0, "{options}: {again:.2} dB");
+        let (real, same) = (
+            likeness("synthesized/000001.png", "truth/000001.png"),
+            likeness("rgb/000001.png", "truth/000001.png"),
+        );
+        assert!(real > same + 4.0, "{options}: {real:.2} dB, the same image {same:.2} dB");
+        let mask = |name: &str| picture::load_mask(&scene.join(name)).unwrap();
+        let (holes, stored) = (mask("holes.png"), mask("mask/000001.png"));
+        let different = holes.iter().zip(stored.iter()).filter(|(a, b)| a != b).count();
+        assert!(different * 200 < holes.len(), "{options}: {different} pixels of the mask differ");
+        let share = stored.iter().filter(|m| **m == 0).count() as f64 / stored.len() as f64;
+        assert_eq!(group(&scene, 1)["holes"].as_f64(), Some(share));
+        assert!(share > 0.005, "{options}: {share}");
+    }
+}
+
+#[test]
+fn reprojected_and_patched_differ_in_holes_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    succeed(
+        dir.path(),
+        "dataset prototype --groups 1 --size 96 --out data --patcher navier-stokes --anti-aliasing",
+    );
+    let scene = dir.path().join("data/prototype");
+    let load = |kind: &str| picture::load_color(&scene.join(format!("{kind}/000000.png"))).unwrap();
+    let mask = picture::load_mask(&scene.join("mask/000000.png")).unwrap();
+    let depth = picture::load_depth(&scene.join("reprojected-depth/000000.png")).unwrap().image;
+    let (reprojected, patched) = (load("reprojected"), load("patched"));
+    for (x, y, mask) in mask.enumerate_pixels() {
+        if mask.0[0] == 0 {
+            assert_eq!(reprojected.get_pixel(x, y).0, [0; 3]);
+            assert_eq!(depth.get_pixel(x, y).0[0], 1.0);
+        } else {
+            assert_eq!(reprojected.get_pixel(x, y), patched.get_pixel(x, y));
+        }
+    }
+}
+
+#[test]
+fn ctrl_c_keeps_finished_groups() {
+    let dir = tempfile::tempdir().unwrap();
+    let line = "dataset prototype --groups 4000 --size 32 --out data";
+    let mut child = yoro(line.split(' '))
+        .current_dir(dir.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let groups = dir.path().join("data/prototype/group");
+    let finished = || fs::read_dir(&groups).map_or(0, |entries| entries.count());
+    let start = Instant::now();
+    while finished() < 4 {
+        assert!(start.elapsed() < Duration::from_secs(120), "no groups");
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended by itself");
+        thread::sleep(Duration::from_millis(20));
+    }
+    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    assert!(killed.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let count = finished();
+    for index in 0..count as u32 {
+        for (_, name) in group(&dir.path().join("data/prototype"), index)["pictures"].as_object().unwrap() {
+            image::open(dir.path().join("data/prototype").join(name.as_str().unwrap())).unwrap();
+        }
+    }
+    assert_eq!(yoro::files::find(&dir.path().join("data"), &["part"]).unwrap(), Vec::<PathBuf>::new());
+}
+
+#[test]
+fn mistakes() {
+    let dir = tempfile::tempdir().unwrap();
+    let refuses = |line: &str, naming: &[&str]| run(dir.path(), line).refuses(naming);
+    refuses("dataset nowhere", &["nowhere"]);
+    refuses("dataset prototype --groups 0", &["--groups"]);
+    refuses("dataset prototype --half-angles-degrees 52,42", &["--half-angles-degrees", "symmetric"]);
+    refuses("dataset prototype --path none.json", &["none.json does not exist"]);
+    fs::write(dir.path().join("path.json"), "[{\"position\": [0, 1, 2]}]").unwrap();
+    refuses("dataset prototype --path path.json", &["path.json is not a camera path"]);
+    fs::write(dir.path().join("path.json"), "[]").unwrap();
+    refuses("dataset prototype --path path.json", &["path.json has no viewpoint"]);
+    fs::write(dir.path().join("noise.onnx"), "noise").unwrap();
+    refuses(
+        "dataset prototype --groups 1 --size 32 --patcher neural --model noise.onnx",
+        &["noise.onnx is not a model", "training/train.py"],
+    );
+    refuses("dataset prototype --patcher xiao --model noise.onnx", &["--model goes with --patcher neural"]);
+    fs::create_dir_all(dir.path().join("dataset/prototype")).unwrap();
+    fs::write(dir.path().join("dataset/prototype/dataset.json"), "{").unwrap();
+    refuses("dataset prototype", &["dataset.json is damaged", "--out"]);
+}
