@@ -47,12 +47,11 @@ pub mod metric {
     /// GPU time of all passes of a frame by timer queries, in ms; only where they can be trusted. One value per
     /// round, at the setting's first frame.
     pub const GPU_MS: &str = "gpu_ms";
-    /// What the contender adds to the resident memory of the process: the peak while it is made and renders its
-    /// first frame, less what there was before, in MiB; one value. Textures are part of it on a CPU rasterizer only.
-    pub const OWN_MEMORY_MIB: &str = "own_memory_mib";
-    /// Peak memory of a process with the scene and this contender alone: resident memory with the scene and
-    /// without any contender, plus the contender's own, in MiB; one value.
-    pub const PEAK_MEMORY_MIB: &str = "peak_memory_mib";
+    /// Textures that the contender holds after its first frame, by their formats, in MiB; one value.
+    pub const TEXTURE_MIB: &str = "texture_mib";
+    /// The same with the resident memory of the process that has loaded the scene and made no contender yet, in MiB;
+    /// one value.
+    pub const MEMORY_MIB: &str = "memory_mib";
 
     /// PSNR of red, green and blue in dB; null for identical images.
     pub const PSNR: &str = "psnr";

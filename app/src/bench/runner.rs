@@ -434,7 +434,7 @@ impl<'a> Runner<'a> {
             if job.imbuffer > 1 {
                 options.synthesis.paper.imbuffer = ImBufferSize::Divisor(job.imbuffer);
             }
-            let before = if process::forget_peak() { process::resident_mib() } else { None };
+            let before = self.gl.texture_bytes();
             let ready = Entrant::new(self.gl, method, &job.render, &options).map_err(anyhow::Error::from);
             let ready = ready.and_then(|mut entrant| {
                 if cost {
@@ -446,11 +446,10 @@ impl<'a> Runner<'a> {
             match ready {
                 Ok(entrant) => {
                     let mut memory = Measurement::new(&job.setting, contender, 0);
-                    if let (true, Some(base), Some(before), Some(peak)) =
-                        (cost, base, before, process::peak_mib())
-                    {
-                        memory.push(metric::OWN_MEMORY_MIB, peak - before);
-                        memory.push(metric::PEAK_MEMORY_MIB, base + peak - before);
+                    if cost {
+                        let own = (self.gl.texture_bytes() - before) as f64 / f64::from(1 << 20);
+                        memory.push(metric::TEXTURE_MIB, own);
+                        memory.push(metric::MEMORY_MIB, base.map_or(f64::NAN, |base| base + own));
                     }
                     field.memory.push(memory);
                     field.entrants.push((contender, entrant));

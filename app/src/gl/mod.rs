@@ -78,6 +78,7 @@ pub struct Context {
     capabilities: Capabilities,
     profiler: RefCell<profiler::Profiler>,
     objects: Cell<usize>,
+    texture_bytes: Cell<usize>,
     shader_files: RefCell<BTreeSet<String>>,
     empty_vertex_array: glow::VertexArray,
 }
@@ -138,6 +139,7 @@ impl Context {
             capabilities,
             profiler,
             objects: Cell::new(0),
+            texture_bytes: Cell::new(0),
             shader_files,
             empty_vertex_array,
         }))
@@ -165,6 +167,15 @@ impl Context {
 
     fn count(&self, change: isize) {
         self.objects.set(self.objects.get().wrapping_add_signed(change));
+    }
+
+    /// Bytes of all live textures of this library, render targets among them, by their formats; drivers may pad.
+    pub fn texture_bytes(&self) -> usize {
+        self.texture_bytes.get()
+    }
+
+    fn count_texture_bytes(&self, change: isize) {
+        self.texture_bytes.set(self.texture_bytes.get().wrapping_add_signed(change));
     }
 
     /// Runs one pass inside a KHR_debug group and, while profiling, a timer, both called `name`.

@@ -92,6 +92,8 @@ pub struct Texture {
     target: u32,
     size: [u32; 2],
     format: Format,
+    /// All levels and layers.
+    bytes: usize,
 }
 
 impl Texture {
@@ -172,7 +174,11 @@ impl Texture {
             raw
         };
         gl.count(1);
-        let texture = Texture { gl: gl.clone(), raw, target, size: [width, height], format };
+        let mut texture = Texture { gl: gl.clone(), raw, target, size: [width, height], format, bytes: 0 };
+        // A full mip chain adds a third.
+        let level_0 = texture.byte_len() * layers.unwrap_or(1) as usize;
+        texture.bytes = if mipmapped { level_0 / 3 * 4 } else { level_0 };
+        gl.count_texture_bytes(texture.bytes as isize);
         // SAFETY: no arguments.
         if unsafe { raw_gl.get_error() } == glow::OUT_OF_MEMORY {
             let reason = "out of memory; choose a smaller size".into();
@@ -253,5 +259,6 @@ impl Drop for Texture {
         // SAFETY: created in `new`, deleted once.
         unsafe { self.gl.raw().delete_texture(self.raw) };
         self.gl.count(-1);
+        self.gl.count_texture_bytes(-(self.bytes as isize));
     }
 }

@@ -749,23 +749,23 @@ fn overhead(suite: &Suite) -> Section {
     );
     section.figure(
         "memory",
-        "Peak memory over two full renders",
-        "Of the whole process. The paper's: memory of its applications over conventional rendering's.",
+        "Memory over two full renders",
+        "Of the process with the scene and the textures of one method. The paper's: memory of its applications over conventional rendering's.",
         scene_dots(
             suite,
-            Axis::new("peak memory / conventional"),
+            Axis::new("memory / conventional"),
             &others,
             |setting, name| {
-                let base = setting.conventional()?.mean(metric::PEAK_MEMORY_MIB)?;
-                Some(setting.find(name)?.mean(metric::PEAK_MEMORY_MIB)? / base)
+                let base = setting.conventional()?.mean(metric::MEMORY_MIB)?;
+                Some(setting.find(name)?.mean(metric::MEMORY_MIB)? / base)
             },
             papers(|o| o.memory),
         ),
     );
     let columns = [
         ("CPU time, ms", metric::CPU_MS, 1),
-        ("peak memory, MiB", metric::PEAK_MEMORY_MIB, 1),
-        ("memory of its own, MiB", metric::OWN_MEMORY_MIB, 1),
+        ("memory, MiB", metric::MEMORY_MIB, 1),
+        ("textures of the method, MiB", metric::TEXTURE_MIB, 1),
         ("GPU time, ms", metric::GPU_MS, 3),
     ];
     section.table(means_table(suite, "Means over the scenes", &contenders, &columns));

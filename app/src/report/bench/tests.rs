@@ -114,7 +114,7 @@ fn both(ms: f64, psnr: f64, round: u32) -> Vec<Figures<'static>> {
             found.extend(if round == 0 { values } else { Vec::new() });
         }
     }
-    let extra = [("cpu_ms", 7.5), ("peak_memory_mib", 300.0), ("pass_ms/lighting", 1.25)];
+    let extra = [("cpu_ms", 7.5), ("memory_mib", 300.0), ("pass_ms/lighting", 1.25)];
     for (_, values) in &mut figures {
         values.extend(extra.map(|(name, value)| (name, vec![value])));
     }
