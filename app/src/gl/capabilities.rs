@@ -33,7 +33,7 @@ pub struct Capabilities {
     pub float_render_targets: bool,
     /// KHR_debug groups.
     pub debug_groups: bool,
-    /// Largest anisotropy, 1 without the extension.
+    /// Largest anisotropy, 1 without the extension and on a CPU rasterizer.
     pub max_anisotropy: f32,
     /// Timer queries that can be trusted: present, and not a CPU rasterizer.
     pub timer_queries: bool,
@@ -82,8 +82,10 @@ impl Capabilities {
                     || has("GL_EXT_color_buffer_float")
                     || has("GL_EXT_color_buffer_half_float"),
                 debug_groups: gl.supports_debug(),
-                max_anisotropy: if has("GL_EXT_texture_filter_anisotropic")
-                    || has("GL_ARB_texture_filter_anisotropic")
+                // llvmpipe walks the whole ellipse under a pixel, which has millions of texels where derivatives
+                // are extrapolated across the horizon: a frame in a few hundred takes minutes or crashes.
+                max_anisotropy: if !software
+                    && (has("GL_EXT_texture_filter_anisotropic") || has("GL_ARB_texture_filter_anisotropic"))
                 {
                     gl.get_parameter_f32(glow::MAX_TEXTURE_MAX_ANISOTROPY_EXT)
                 } else {

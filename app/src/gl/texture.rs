@@ -84,6 +84,9 @@ pub enum Filter {
     Compare,
 }
 
+/// More taps cost time and show nothing.
+const MAX_ANISOTROPY: f32 = 8.0;
+
 /// A 2-D texture, or an array of them.
 pub struct Texture {
     gl: Rc<Context>,
@@ -165,9 +168,7 @@ impl Texture {
                 raw_gl.tex_parameter_i32(target, glow::TEXTURE_COMPARE_MODE, mode);
                 raw_gl.tex_parameter_i32(target, glow::TEXTURE_COMPARE_FUNC, glow::LEQUAL as i32);
             }
-            // On a CPU rasterizer eight taps more than double the time of a textured g-buffer.
-            let wanted = if gl.capabilities().software { 2.0 } else { 8.0 };
-            let anisotropy = gl.capabilities().max_anisotropy.min(wanted);
+            let anisotropy = gl.capabilities().max_anisotropy.min(MAX_ANISOTROPY);
             if mipmapped && anisotropy > 1.0 {
                 raw_gl.tex_parameter_f32(target, glow::TEXTURE_MAX_ANISOTROPY_EXT, anisotropy);
             }

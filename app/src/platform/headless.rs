@@ -52,6 +52,9 @@ enum Holder {
 }
 
 /// A GL context without a window, current on the calling thread.
+///
+/// Several may exist on one thread. With Mesa's llvmpipe (seen with 22.3) contexts of two threads must not draw at the
+/// same time: a defect of the driver, which crashes now and then.
 pub struct Headless {
     context: Option<Rc<Context>>,
     backend: Backend,

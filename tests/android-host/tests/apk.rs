@@ -324,7 +324,6 @@ fn settings_come_from_file_extras_and_properties() {
 }
 
 #[test]
-#[ignore = "some frames after a turn of the head take the CPU rasterizer many seconds, and the cause is not found yet"]
 fn random_events_are_survived() {
     let Some(run) = play("random", &device(&SETTINGS, ""), &host::script("random.toml")) else { return };
     run.assert_clean();

@@ -110,9 +110,8 @@ impl ALooper {
         samples.into_iter().chain(choreographer::next(self)).min()
     }
 
-    /// Polls for real; `also` is one more descriptor to wait for. Gives what is ready, or an error.
-    fn poll(&self, milliseconds: c_int, also: c_int) -> Result<Vec<Ready>, ()> {
-        let entries = lock(&self.entries).clone();
+    /// What to poll: the entries, in their order, and then the wake-up.
+    fn descriptors(&self, entries: &[Entry]) -> Vec<libc::pollfd> {
         let mut fds: Vec<_> = entries
             .iter()
             .map(|entry| libc::pollfd {
@@ -125,6 +124,13 @@ impl ALooper {
             })
             .collect();
         fds.push(libc::pollfd { fd: self.wake.raw(), events: libc::POLLIN, revents: 0 });
+        fds
+    }
+
+    /// Polls for real; `also` is one more descriptor to wait for. Gives what is ready, or an error.
+    fn poll(&self, milliseconds: c_int, also: c_int) -> Result<Vec<Ready>, ()> {
+        let entries = lock(&self.entries).clone();
+        let mut fds = self.descriptors(&entries);
         fds.push(libc::pollfd { fd: also, events: libc::POLLIN, revents: 0 });
         // SAFETY: the pointer and the length are of one live vector.
         let result = unsafe { libc::poll(fds.as_mut_ptr(), fds.len() as _, milliseconds) };
@@ -341,18 +347,7 @@ unsafe extern "C" fn ALooper_pollOnce(
 impl ALooper {
     /// Waits until something is ready, without taking it.
     fn poll_only(&self, milliseconds: c_int) -> bool {
-        let mut fds: Vec<_> = lock(&self.entries)
-            .iter()
-            .map(|entry| libc::pollfd {
-                fd: entry.fd,
-                events: EVENTS
-                    .iter()
-                    .filter(|(event, _)| entry.events & event != 0)
-                    .fold(0, |bits, (_, bit)| bits | bit),
-                revents: 0,
-            })
-            .collect();
-        fds.push(libc::pollfd { fd: self.wake.raw(), events: libc::POLLIN, revents: 0 });
+        let mut fds = self.descriptors(&lock(&self.entries));
         // SAFETY: the pointer and the length are of one live vector.
         unsafe { libc::poll(fds.as_mut_ptr(), fds.len() as _, milliseconds) > 0 }
     }
