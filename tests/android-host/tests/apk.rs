@@ -11,7 +11,7 @@ use yoro::platform::{Backend, Headless};
 use yoro::telemetry::Line;
 use yoro::viewer::{FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings, Viewer};
 
-use host::{Run, device, play};
+use host::{Run, device, play, play_arm64};
 
 /// What each test's device has in its properties, as the desktop's settings: a scene and a quality that a CPU draws fast.
 const SETTINGS: [(&str, &str); 8] = [
@@ -72,6 +72,20 @@ fn decibels(one: &RgbImage, other: &RgbImage) -> f64 {
     psnr(one, other, Channels::Rgb).unwrap().0
 }
 
+/// Share of the pixels that differ by more than rounding does.
+fn differing(one: &RgbImage, other: &RgbImage) -> f64 {
+    assert_eq!(one.dimensions(), other.dimensions());
+    let pairs = one.pixels().zip(other.pixels());
+    let differ = pairs.filter(|(one, other)| one.0.iter().zip(other.0).any(|(a, b)| a.abs_diff(b) > 2));
+    differ.count() as f64 / f64::from(one.width() * one.height())
+}
+
+fn methods(run: &Run) -> Vec<String> {
+    let mut methods: Vec<_> = lines(run).into_iter().map(|line| line.method).collect();
+    methods.dedup();
+    methods
+}
+
 #[test]
 fn boots_to_the_first_frame() {
     let Some(run) = play(
@@ -102,12 +116,7 @@ fn the_picture_is_the_desktop_viewers() {
     };
     run.assert_clean();
     let (phone, desktop) = (run.picture("phone.png"), desktop(&[], None));
-    let differing = phone
-        .pixels()
-        .zip(desktop.pixels())
-        .filter(|(one, other)| one.0.iter().zip(other.0).any(|(one, other)| one.abs_diff(other) > 2))
-        .count();
-    let share = differing as f64 / f64::from(SIZE[0] * SIZE[1]);
+    let share = differing(&phone, &desktop);
     run.keep("desktop.png", &desktop);
     assert!(
         share < 0.005,
@@ -160,9 +169,7 @@ fn taps_switch_methods_and_keys_the_ipd() {
     );
     let Some(run) = play("taps", &device(&settings, ""), &steps) else { return };
     run.assert_clean();
-    let mut methods: Vec<_> = lines(&run).into_iter().map(|line| line.method).collect();
-    methods.dedup();
-    assert_eq!(methods, ["yoro", "conventional", "mono", "yoro", "mono"]);
+    assert_eq!(methods(&run), ["yoro", "conventional", "mono", "yoro", "mono"]);
     assert_eq!(run.summary.log_of("YORO").filter(|text| text.starts_with("ipd: ")).count(), 2);
     assert_eq!(run.summary.input.sent, run.summary.input.finished);
     assert_eq!(run.summary.input.sent, run.summary.input.handled);
@@ -336,5 +343,37 @@ fn random_events_are_survived() {
             && end.window_references == 0,
         "{}",
         end.objects()
+    );
+}
+
+/// One run for all of it: starting under qemu takes longest.
+#[test]
+fn the_arm64_library_does_what_the_x86_64_library_does() {
+    let settings: Vec<_> =
+        SETTINGS.into_iter().chain([("methods", "yoro,conventional"), ("method", "yoro")]).collect();
+    let device = device(&settings, "");
+    let steps = format!(
+        r#""launch", {READY}, {{ capture = "phone.png" }}, {{ seconds = 1.2 }}, {{ tap = {{}} }}, {{ seconds = 1.2 }}, "quit""#
+    );
+    let Some(arm64) = play_arm64("arm64", &device, &steps) else { return };
+    arm64.assert_clean();
+    assert_eq!(arm64.summary.abi, "arm64-v8a");
+    assert_eq!(arm64.summary.trapped_symbols, Vec::<String>::new());
+    assert!(arm64.summary.gl.version.starts_with("OpenGL ES 3."), "{}", arm64.summary.gl.version);
+    assert_eq!(methods(&arm64), ["yoro", "conventional"]);
+    assert!(arm64.summary.input.sent > 0);
+    assert_eq!(arm64.summary.input.sent, arm64.summary.input.handled);
+
+    let Some(x86_64) = play("x86_64", &device, &steps) else { return };
+    assert_eq!(x86_64.summary.abi, "x86_64");
+    let objects = |run: &Run| run.summary.mark("end").unwrap().gl_objects.clone();
+    assert_eq!(objects(&arm64), objects(&x86_64));
+    let share = differing(&arm64.picture("phone.png"), &x86_64.picture("phone.png"));
+    assert!(
+        share < 0.005,
+        "{:.2} % of the pixels differ from x86_64's: {} and {}",
+        share * 100.0,
+        arm64.folder(),
+        x86_64.folder()
     );
 }
