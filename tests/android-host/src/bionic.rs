@@ -49,11 +49,14 @@ pub fn exports() -> Vec<Export> {
         ];
         System::Dl, 1: [dl_iterate_phdr, dladdr, dlclose, dlerror, dlopen, dlsym];
     ];
-    for (library, names) in [(System::C, SAME_C), (System::M, SAME_M)] {
+    // Nothing else makes sure that it is loaded. It stays for the process's life.
+    // SAFETY: glibc's own library, whose constructors do nothing to others.
+    let math = unsafe { libc::dlopen(c"libm.so.6".as_ptr(), libc::RTLD_NOW) };
+    for (library, handle, names) in [(System::C, libc::RTLD_DEFAULT, SAME_C), (System::M, math, SAME_M)] {
         for name in names.split_ascii_whitespace() {
             let symbol = CString::new(name).expect("the lists hold no NUL");
             // SAFETY: looks a symbol up in the libraries of this process, by a terminated name.
-            let address = unsafe { libc::dlsym(libc::RTLD_DEFAULT, symbol.as_ptr()) };
+            let address = unsafe { libc::dlsym(handle, symbol.as_ptr()) };
             if !address.is_null() {
                 all.push(Export { library, name, address: address as usize, since: 1 });
             }

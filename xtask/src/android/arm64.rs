@@ -4,7 +4,6 @@
 //! qemu and the libraries that the host needs come from Debian's packages, which are only unpacked, in a folder of
 //! their own: apt gets its own state for that, and nothing is installed.
 
-use std::env;
 use std::fs;
 use std::io::Write as _;
 use std::os::unix::fs::PermissionsExt as _;
