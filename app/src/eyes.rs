@@ -3,6 +3,9 @@
 //! Units are metres and radians; pixels have their centre at +0.5. The world is right-handed with Y up,
 //! and an eye looks along its own -Z with X to the right.
 
+use std::fmt::{self, Display};
+use std::str::FromStr;
+
 use glam::{Mat4, Quat, Vec3, Vec4};
 
 /// One of the two eyes.
@@ -280,6 +283,38 @@ pub enum GuardBand {
     Distance(f32),
     /// A number of pixels.
     Pixels(u32),
+}
+
+/// A text that is no [`GuardBand`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("give none, pixels such as 40px, or metres such as 1.0")]
+pub struct ParseGuardBandError;
+
+/// `none`, up to 1024 pixels (`40px`), or 0.05 to 1000 metres (`1.0`).
+impl FromStr for GuardBand {
+    type Err = ParseGuardBandError;
+
+    fn from_str(text: &str) -> Result<GuardBand, ParseGuardBandError> {
+        match (text, text.strip_suffix("px")) {
+            ("none", _) => Some(GuardBand::None),
+            (_, Some(pixels)) => pixels.parse().ok().filter(|n| *n <= 1024).map(GuardBand::Pixels),
+            (metres, None) => {
+                metres.parse().ok().filter(|z| (0.05..=1000.0).contains(z)).map(GuardBand::Distance)
+            }
+        }
+        .ok_or(ParseGuardBandError)
+    }
+}
+
+/// As [`FromStr`] reads it.
+impl Display for GuardBand {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            GuardBand::None => f.write_str("none"),
+            GuardBand::Pixels(n) => write!(f, "{n}px"),
+            GuardBand::Distance(z) => write!(f, "{z}"),
+        }
+    }
 }
 
 /// The two eyes of one frame.

@@ -52,7 +52,7 @@ pub struct SynthesisArgs {
     #[arg(long, value_enum, default_value_t)]
     pub pipeline: Pipeline,
     /// paper: ImBuffer resolution, as a divisor (1, 2, 4, 8, 16) or a fixed size (512x512)
-    #[arg(long, value_parser = parse_imbuffer, default_value = "1", value_name = "N|WxH")]
+    #[arg(long, default_value = "1", value_name = "N|WxH")]
     pub imbuffer: ImBufferSize,
     /// paper: do not interpolate between ImBuffer entries
     #[arg(long)]
@@ -106,15 +106,6 @@ impl PatcherArgs {
         let options = PatcherOptions { model: self.model.clone() };
         self.patcher.map(|kind| inpaint::create(gl, kind, &options)).transpose()
     }
-}
-
-fn parse_imbuffer(text: &str) -> Result<ImBufferSize, String> {
-    let number = |t: &str| t.parse::<u32>().ok().filter(|n| (1..=8192).contains(n));
-    match text.split_once('x') {
-        Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| ImBufferSize::Fixed([w, h])),
-        None => number(text).filter(|n| *n <= 64).map(ImBufferSize::Divisor),
-    }
-    .ok_or_else(|| "give a divisor from 1 to 64, such as 2, or a size, such as 512x512".into())
 }
 
 /// Parses an IPD in metres.

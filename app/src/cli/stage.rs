@@ -93,7 +93,7 @@ pub struct StereoArgs {
     synthesis: SynthesisArgs,
     /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in
     /// metres (`1.0`) [default: 1.0; paper: none]
-    #[arg(long, value_parser = parse_guard_band, value_name = "none|Npx|METRES")]
+    #[arg(long, value_name = "none|Npx|METRES")]
     guard_band: Option<GuardBand>,
     /// When to anti-alias [default: after; paper: before]
     #[arg(long, value_enum)]
@@ -217,15 +217,4 @@ fn parse_half_angles(text: &str) -> Result<[f32; 2], String> {
         .and_then(|(a, b)| parse(a).zip(parse(b)))
         .map(|(a, b)| [a, b])
         .ok_or_else(|| "give two angles from 1 to 85 degrees, outwards and inwards, such as 52,42".into())
-}
-
-fn parse_guard_band(text: &str) -> Result<GuardBand, String> {
-    if text == "none" {
-        return Ok(GuardBand::None);
-    }
-    let band = match text.strip_suffix("px") {
-        Some(pixels) => pixels.parse().ok().filter(|n| *n <= 1024).map(GuardBand::Pixels),
-        None => text.parse().ok().filter(|z| (0.05..=1000.0).contains(z)).map(GuardBand::Distance),
-    };
-    band.ok_or_else(|| "give none, pixels such as 40px, or metres such as 1.0".into())
 }

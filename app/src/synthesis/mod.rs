@@ -29,7 +29,7 @@ use crate::gl::{Context, Destination, GlError, Program, RasterState};
 pub use gather::Gather;
 pub use near_field::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
-pub use paper::{ImBufferSize, Paper, PaperOptions};
+pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 pub use rowgroup::Rowgroup;
 
 /// Bit of a source map entry that marks a hole.

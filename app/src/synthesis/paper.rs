@@ -1,6 +1,8 @@
 //! The paper's pipeline: Algorithms 1 to 3 with its knobs, in the corrected reading.
 
+use std::fmt::{self, Display};
 use std::rc::Rc;
+use std::str::FromStr;
 
 use glam::{IVec2, Vec2};
 use glow::HasContext;
@@ -22,6 +24,35 @@ pub enum ImBufferSize {
     Divisor(u32),
     /// A fixed size in pixels for the target, whatever the image's size.
     Fixed([u32; 2]),
+}
+
+/// A text that is no [`ImBufferSize`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("give a divisor from 1 to 64, such as 2, or a size, such as 512x512")]
+pub struct ParseImBufferSizeError;
+
+/// A divisor from 1 to 64 (`2`), or a width and a height from 1 to 8192 (`512x512`).
+impl FromStr for ImBufferSize {
+    type Err = ParseImBufferSizeError;
+
+    fn from_str(text: &str) -> Result<ImBufferSize, ParseImBufferSizeError> {
+        let number = |t: &str| t.parse::<u32>().ok().filter(|n| (1..=8192).contains(n));
+        match text.split_once('x') {
+            Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| ImBufferSize::Fixed([w, h])),
+            None => number(text).filter(|n| *n <= 64).map(ImBufferSize::Divisor),
+        }
+        .ok_or(ParseImBufferSizeError)
+    }
+}
+
+/// As [`FromStr`] reads it.
+impl Display for ImBufferSize {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            ImBufferSize::Divisor(n) => write!(f, "{n}"),
+            ImBufferSize::Fixed([w, h]) => write!(f, "{w}x{h}"),
+        }
+    }
 }
 
 /// Knobs of the paper's pipeline.
