@@ -72,14 +72,6 @@ fn decibels(one: &RgbImage, other: &RgbImage) -> f64 {
     psnr(one, other, Channels::Rgb).unwrap().0
 }
 
-/// Share of the pixels that differ by more than rounding does.
-fn differing(one: &RgbImage, other: &RgbImage) -> f64 {
-    assert_eq!(one.dimensions(), other.dimensions());
-    let pairs = one.pixels().zip(other.pixels());
-    let differ = pairs.filter(|(one, other)| one.0.iter().zip(other.0).any(|(a, b)| a.abs_diff(b) > 2));
-    differ.count() as f64 / f64::from(one.width() * one.height())
-}
-
 #[test]
 fn boots_to_the_first_frame() {
     let Some(run) = play(
@@ -110,7 +102,12 @@ fn the_picture_is_the_desktop_viewers() {
     };
     run.assert_clean();
     let (phone, desktop) = (run.picture("phone.png"), desktop(&[], None));
-    let share = differing(&phone, &desktop);
+    let differing = phone
+        .pixels()
+        .zip(desktop.pixels())
+        .filter(|(one, other)| one.0.iter().zip(other.0).any(|(one, other)| one.abs_diff(other) > 2))
+        .count();
+    let share = differing as f64 / f64::from(SIZE[0] * SIZE[1]);
     run.keep("desktop.png", &desktop);
     assert!(
         share < 0.005,
@@ -347,7 +344,7 @@ fn random_events_are_survived() {
 fn the_arm64_library_does_what_the_x86_64_library_does() {
     let settings: Vec<_> =
         SETTINGS.into_iter().chain([("methods", "yoro,conventional"), ("method", "yoro")]).collect();
-    let device = device(&settings, "");
+    let device = device(&settings, "sensors = []");
     let steps = format!(
         r#""launch", {READY}, {{ capture = "yoro.png" }}, {{ tap = {{}} }}, {{ wait-log = {{ text = "method: conventional", frames = 60 }} }},
             {{ frames = 3 }}, {{ capture = "conventional.png" }}, "quit""#
@@ -363,14 +360,11 @@ fn the_arm64_library_does_what_the_x86_64_library_does() {
     let Some(x86_64) = play("x86_64", &device, &steps) else { return };
     x86_64.assert_clean();
     assert_eq!(x86_64.summary.abi, "x86_64");
+    // llvmpipe computes in vectors of another width for arm64, with other approximations: shades differ, no edge does.
     for picture in ["yoro.png", "conventional.png"] {
-        let share = differing(&arm64.picture(picture), &x86_64.picture(picture));
-        assert!(
-            share < 0.005,
-            "{:.2} % of the pixels of {picture} differ: {} and {}",
-            share * 100.0,
-            arm64.folder(),
-            x86_64.folder()
-        );
+        let same = decibels(&arm64.picture(picture), &x86_64.picture(picture));
+        assert!(same > 40.0, "{picture}: {same:.1} dB between {} and {}", arm64.folder(), x86_64.folder());
     }
+    let methods = decibels(&arm64.picture("yoro.png"), &x86_64.picture("conventional.png"));
+    assert!(methods < 40.0, "the two methods' pictures are the same: {methods:.1} dB");
 }
