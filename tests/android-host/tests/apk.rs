@@ -240,6 +240,23 @@ fn below_3_0_there_is_one_clear_message() {
     assert_eq!(run.summary.violations, Vec::<String>::new());
     let errors = run.summary.log.iter().filter(|line| line.priority == 'E' && line.tag == "YORO").count();
     assert_eq!(errors, 1, "{:#?}", run.summary.log);
+    let toasts = run.summary.jni_invented.iter().filter(|(call, _)| call.contains("Toast.makeText"));
+    assert_eq!(toasts.map(|(_, times)| times).sum::<u64>(), 1, "{:#?}", run.summary.jni_invented);
+}
+
+#[test]
+fn without_a_choreographer_the_swap_sets_the_pace() {
+    // Of before `AChoreographer_postFrameCallback64`.
+    let Some(run) = play(
+        "choreographer",
+        &device(&SETTINGS, "sdk = 28"),
+        &format!(r#""launch", {READY}, {{ frames = 20 }}, "quit""#),
+    ) else {
+        return;
+    };
+    run.assert_clean();
+    assert!(run.summary.log_of("YORO").any(|line| line.contains("no choreographer")), "{:#?}", run.summary.log);
+    assert!(run.summary.frames >= 20, "{}", run.summary.frames);
 }
 
 #[test]
