@@ -75,18 +75,17 @@ impl Summary {
     }
 }
 
-/// The tests of the APK; they ask for YORO_TEST_APK.
-const APK_TESTS: [&str; 5] = ["test", "--package", "yoro-android-host", "--test", "*"];
-
-/// A test of the APK has one of the filters in its name. Without filters all of them are wanted.
-pub fn wants_apk(filters: &[String]) -> bool {
+/// A test of the APK has one of the filters in its name, and `part` as well. Without filters all of them are wanted.
+pub fn wants_apk(filters: &[String], part: &str) -> bool {
     if filters.is_empty() {
         return true;
     }
-    let list = cargo().args(APK_TESTS).args(["--quiet", "--", "--list"]).args(filters).output();
+    let list = ["test", "--package", "yoro-android-host", "--test", "*", "--quiet", "--", "--list"];
+    let list = cargo().args(list).args(filters).output();
     // What does not compile is told when the tests are to be run.
     list.is_ok_and(|output| {
-        String::from_utf8_lossy(&output.stdout).lines().any(|line| line.ends_with(": test"))
+        let list = String::from_utf8_lossy(&output.stdout);
+        list.lines().any(|line| line.strip_suffix(": test").is_some_and(|name| name.contains(part)))
     })
 }
 
@@ -97,6 +96,8 @@ pub struct Equipment {
     pub osmesa: bool,
     /// The Android application.
     pub apk: Equipped,
+    /// The simulated Android host for arm64.
+    pub arm64: Equipped,
     /// A browser for report pages.
     pub browser: Equipped,
 }
@@ -145,6 +146,7 @@ pub fn test(filters: &[String], bless: bool, equipment: &Equipment) -> anyhow::R
         command.env("YORO_TEST_WITHOUT_OSMESA", "1");
     }
     equipment.apk.tell("APK", &mut command);
+    equipment.arm64.tell("ARM64_HOST", &mut command);
     equipment.browser.tell("CHROMIUM", &mut command);
     let mut child = command.spawn().context("cargo cannot be started")?;
     let mut summary = Summary::default();
@@ -161,6 +163,10 @@ pub fn test(filters: &[String], bless: bool, equipment: &Equipment) -> anyhow::R
     let absent = [
         ("OSMesa is not here", !equipment.osmesa),
         ("The APK cannot be built here (cargo xtask doctor)", matches!(equipment.apk, Equipped::Missing)),
+        (
+            "The simulated Android host for arm64 cannot be set up here (see the warning above)",
+            matches!(equipment.arm64, Equipped::Missing),
+        ),
         ("Chromium is not here", matches!(equipment.browser, Equipped::Missing)),
     ];
     for (what, _) in absent.iter().filter(|(_, missing)| *missing) {

@@ -14,22 +14,21 @@ use crate::host::{fatal, host, lock};
 
 /// Functions of libc.so that are glibc's.
 const SAME_C: &str = "\
-    __cxa_atexit __cxa_finalize __cxa_thread_atexit_impl __errno_location accept4 aligned_alloc bind calloc chmod close closedir \
-    connect copy_file_range dirfd dup dup2 dup3 environ epoll_create1 epoll_ctl epoll_wait eventfd fchmod fcntl fdatasync fdopendir \
-    flock free fstat fstatat fsync ftruncate ftruncate64 futimens getauxval getcwd getegid getenv geteuid getgid getpeername getpid \
-    getppid getrandom getrusage getsockname getsockopt gettid getuid ioctl isatty ldexp link linkat listen lseek lseek64 lstat \
-    madvise malloc malloc_usable_size memalign memchr memcmp memcpy memmem memmove memrchr memset mkdir mkdirat mmap mmap64 mprotect \
-    mremap munmap pipe pipe2 poll posix_fadvise posix_madvise posix_memalign ppoll prctl pread pread64 preadv preadv64 \
-    pthread_atfork pthread_attr_destroy pthread_attr_getguardsize pthread_attr_getstack pthread_attr_init pthread_attr_setguardsize \
-    pthread_attr_setstacksize pthread_cond_broadcast pthread_cond_destroy pthread_cond_init pthread_cond_signal pthread_cond_wait \
-    pthread_condattr_destroy pthread_condattr_init pthread_condattr_setclock pthread_create pthread_detach pthread_getattr_np \
-    pthread_getspecific pthread_join pthread_key_create pthread_key_delete pthread_kill pthread_mutex_destroy pthread_mutex_init \
+    __cxa_atexit __cxa_finalize __cxa_thread_atexit_impl __errno_location accept4 aligned_alloc bind calloc chmod close \
+    closedir connect copy_file_range dirfd dup dup2 dup3 environ epoll_create1 epoll_ctl epoll_wait eventfd fchmod fcntl \
+    fdatasync fdopendir flock free fstat fstatat fsync ftruncate ftruncate64 futimens getauxval getcwd getegid getenv geteuid \
+    getgid getpeername getpid getppid getrandom getrusage getsockname getsockopt gettid getuid ioctl isatty ldexp link linkat \
+    listen lseek lseek64 lstat madvise malloc malloc_usable_size memalign memchr memcmp memcpy memmem memmove memrchr memset \
+    mkdir mkdirat mmap mmap64 mprotect mremap munmap pipe pipe2 poll posix_fadvise posix_madvise posix_memalign ppoll prctl \
+    pread pread64 preadv preadv64 pthread_atfork pthread_cond_broadcast pthread_cond_destroy pthread_cond_init \
+    pthread_cond_signal pthread_cond_wait pthread_condattr_destroy pthread_condattr_init pthread_condattr_setclock \
+    pthread_detach pthread_getspecific pthread_join pthread_key_create pthread_key_delete pthread_kill pthread_mutex_destroy \
     pthread_mutex_lock pthread_mutex_trylock pthread_mutex_unlock pthread_mutexattr_destroy pthread_mutexattr_init \
-    pthread_mutexattr_settype pthread_once pthread_rwlock_destroy pthread_rwlock_rdlock pthread_rwlock_unlock pthread_rwlock_wrlock \
-    pthread_self pthread_setspecific pwrite pwrite64 pwritev pwritev64 read readdir readlink readv realloc \
-    realpath recv recvfrom rename renameat rewinddir rmdir sched_getaffinity sched_setaffinity sched_yield send sendfile sendto \
-    setenv setpriority getpriority setsockopt shutdown socket socketpair splice stat statvfs statx strchr strcmp strlen strncmp strnlen \
-    strtol strtoul strtoull symlink uname unlink unlinkat unsetenv utimensat write writev";
+    pthread_mutexattr_settype pthread_once pthread_rwlock_destroy pthread_rwlock_rdlock pthread_rwlock_unlock \
+    pthread_rwlock_wrlock pthread_self pthread_setspecific pwrite pwrite64 pwritev pwritev64 read readdir readlink readv \
+    realloc realpath recv recvfrom rename renameat rewinddir rmdir sched_getaffinity sched_setaffinity sched_yield send \
+    sendfile sendto setenv setpriority getpriority setsockopt shutdown socket socketpair splice stat statvfs statx strchr \
+    strcmp strlen strncmp strnlen strtol strtoul strtoull symlink uname unlink unlinkat unsetenv utimensat write writev";
 
 /// Functions of libm.so that are glibc's.
 const SAME_M: &str = "\
@@ -44,17 +43,20 @@ pub fn exports() -> Vec<Export> {
     let mut all = exports![
         System::C, 1: [
             __errno, __system_property_find, __system_property_get, __system_property_read_callback, _exit, abort, android_set_abort_message,
-            clock_gettime, clock_nanosleep, exit, gettimeofday, nanosleep, open, open64, openat, opendir, pthread_cond_timedwait,
-            pthread_setname_np,
-            strerror_r, syscall, sysconf, time, usleep,
+            clock_gettime, clock_nanosleep, exit, gettimeofday, nanosleep, open, open64, openat, opendir, pthread_attr_destroy,
+            pthread_attr_getguardsize, pthread_attr_getstack, pthread_attr_init, pthread_attr_setguardsize, pthread_attr_setstacksize,
+            pthread_cond_timedwait, pthread_create, pthread_getattr_np, pthread_mutex_init, pthread_setname_np, strerror_r, syscall, sysconf, time, usleep,
         ];
         System::Dl, 1: [dl_iterate_phdr, dladdr, dlclose, dlerror, dlopen, dlsym];
     ];
-    for (library, names) in [(System::C, SAME_C), (System::M, SAME_M)] {
+    // Nothing else makes sure that it is loaded. It stays for the process's life.
+    // SAFETY: glibc's own library, whose constructors do nothing to others.
+    let math = unsafe { libc::dlopen(c"libm.so.6".as_ptr(), libc::RTLD_NOW) };
+    for (library, handle, names) in [(System::C, libc::RTLD_DEFAULT, SAME_C), (System::M, math, SAME_M)] {
         for name in names.split_ascii_whitespace() {
             let symbol = CString::new(name).expect("the lists hold no NUL");
             // SAFETY: looks a symbol up in the libraries of this process, by a terminated name.
-            let address = unsafe { libc::dlsym(libc::RTLD_DEFAULT, symbol.as_ptr()) };
+            let address = unsafe { libc::dlsym(handle, symbol.as_ptr()) };
             if !address.is_null() {
                 all.push(Export { library, name, address: address as usize, since: 1 });
             }
@@ -148,6 +150,93 @@ pub unsafe fn text(string: *const c_char) -> String {
     }
     // SAFETY: the caller's promise.
     unsafe { CStr::from_ptr(string) }.to_string_lossy().into_owned()
+}
+
+// Threads
+
+/// The application's room for a `pthread_attr_t` has 56 bytes. glibc's has 64 on arm64, so that it lies elsewhere and the
+/// room holds its address.
+type Attributes = *mut *mut libc::pthread_attr_t;
+
+/// # Safety
+/// `attributes` has room, and holds nothing that must be released.
+unsafe fn new_attributes(attributes: Attributes) -> *mut libc::pthread_attr_t {
+    // SAFETY: plain data for which zero is valid; all functions of glibc expect it to be filled in at first.
+    let new = Box::into_raw(Box::new(unsafe { std::mem::zeroed::<libc::pthread_attr_t>() }));
+    // SAFETY: the caller's promise.
+    unsafe { attributes.write(new) };
+    new
+}
+
+unsafe extern "C" fn pthread_attr_init(attributes: Attributes) -> c_int {
+    // SAFETY: the caller gives room for what is new.
+    unsafe { libc::pthread_attr_init(new_attributes(attributes)) }
+}
+
+unsafe extern "C" fn pthread_getattr_np(thread: libc::pthread_t, attributes: Attributes) -> c_int {
+    // SAFETY: the caller gives room for what is new, and a thread that lives.
+    unsafe { libc::pthread_getattr_np(thread, new_attributes(attributes)) }
+}
+
+unsafe extern "C" fn pthread_attr_destroy(attributes: Attributes) -> c_int {
+    // SAFETY: made by one of the two functions above, and not destroyed before.
+    unsafe {
+        let result = libc::pthread_attr_destroy(*attributes);
+        drop(Box::from_raw(attributes.replace(std::ptr::null_mut())));
+        result
+    }
+}
+
+unsafe extern "C" fn pthread_attr_getguardsize(attributes: Attributes, size: *mut usize) -> c_int {
+    // SAFETY: attributes that were made, and room for a size.
+    unsafe { libc::pthread_attr_getguardsize(*attributes, size) }
+}
+
+unsafe extern "C" fn pthread_attr_setguardsize(attributes: Attributes, size: usize) -> c_int {
+    // SAFETY: attributes that were made.
+    unsafe { libc::pthread_attr_setguardsize(*attributes, size) }
+}
+
+unsafe extern "C" fn pthread_attr_setstacksize(attributes: Attributes, size: usize) -> c_int {
+    // SAFETY: attributes that were made.
+    unsafe { libc::pthread_attr_setstacksize(*attributes, size) }
+}
+
+unsafe extern "C" fn pthread_attr_getstack(
+    attributes: Attributes,
+    start: *mut *mut c_void,
+    size: *mut usize,
+) -> c_int {
+    // SAFETY: attributes that were made, and room for both results.
+    unsafe { libc::pthread_attr_getstack(*attributes, start, size) }
+}
+
+unsafe extern "C" fn pthread_create(
+    thread: *mut libc::pthread_t,
+    attributes: Attributes,
+    start: extern "C" fn(*mut c_void) -> *mut c_void,
+    argument: *mut c_void,
+) -> c_int {
+    // SAFETY: null, or attributes that were made; the rest as the caller has it.
+    unsafe {
+        let attributes = if attributes.is_null() { std::ptr::null() } else { (*attributes).cast_const() };
+        libc::pthread_create(thread, attributes, start, argument)
+    }
+}
+
+/// The application's room for a `pthread_mutex_t` has 40 bytes. glibc's has 48 on arm64, of which it uses 40, but it clears
+/// all of them here.
+unsafe extern "C" fn pthread_mutex_init(
+    mutex: *mut [u64; 5],
+    attributes: *const libc::pthread_mutexattr_t,
+) -> c_int {
+    let mut new = libc::PTHREAD_MUTEX_INITIALIZER;
+    // SAFETY: the attributes are glibc's or null; a mutex that nobody uses yet may be moved.
+    unsafe {
+        let result = libc::pthread_mutex_init(&raw mut new, attributes);
+        mutex.write((&raw const new).cast::<[u64; 5]>().read());
+        result
+    }
 }
 
 // Files

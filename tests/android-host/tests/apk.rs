@@ -11,7 +11,7 @@ use yoro::platform::{Backend, Headless};
 use yoro::telemetry::Line;
 use yoro::viewer::{FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings, Viewer};
 
-use host::{Run, device, play};
+use host::{Run, device, play, play_arm64};
 
 /// What each test's device has in its properties, as the desktop's settings: a scene and a quality that a CPU draws fast.
 const SETTINGS: [(&str, &str); 8] = [
@@ -72,6 +72,14 @@ fn decibels(one: &RgbImage, other: &RgbImage) -> f64 {
     psnr(one, other, Channels::Rgb).unwrap().0
 }
 
+/// Share of the pixels that differ by more than rounding does.
+fn differing(one: &RgbImage, other: &RgbImage) -> f64 {
+    assert_eq!(one.dimensions(), other.dimensions());
+    let pairs = one.pixels().zip(other.pixels());
+    let differ = pairs.filter(|(one, other)| one.0.iter().zip(other.0).any(|(a, b)| a.abs_diff(b) > 2));
+    differ.count() as f64 / f64::from(one.width() * one.height())
+}
+
 #[test]
 fn boots_to_the_first_frame() {
     let Some(run) = play(
@@ -102,12 +110,7 @@ fn the_picture_is_the_desktop_viewers() {
     };
     run.assert_clean();
     let (phone, desktop) = (run.picture("phone.png"), desktop(&[], None));
-    let differing = phone
-        .pixels()
-        .zip(desktop.pixels())
-        .filter(|(one, other)| one.0.iter().zip(other.0).any(|(one, other)| one.abs_diff(other) > 2))
-        .count();
-    let share = differing as f64 / f64::from(SIZE[0] * SIZE[1]);
+    let share = differing(&phone, &desktop);
     run.keep("desktop.png", &desktop);
     assert!(
         share < 0.005,
@@ -354,4 +357,37 @@ fn random_events_are_survived() {
         "{}",
         end.objects()
     );
+}
+
+/// One run for all of it: under qemu, the driver's compiler takes most of the time.
+#[test]
+fn the_arm64_library_does_what_the_x86_64_library_does() {
+    let settings: Vec<_> =
+        SETTINGS.into_iter().chain([("methods", "yoro,conventional"), ("method", "yoro")]).collect();
+    let device = device(&settings, "");
+    let steps = format!(
+        r#""launch", {READY}, {{ capture = "yoro.png" }}, {{ tap = {{}} }}, {{ wait-log = {{ text = "method: conventional", frames = 60 }} }},
+            {{ frames = 3 }}, {{ capture = "conventional.png" }}, "quit""#
+    );
+    let Some(arm64) = play_arm64("arm64", &device, &steps) else { return };
+    arm64.assert_clean();
+    assert_eq!(arm64.summary.abi, "arm64-v8a");
+    assert_eq!(arm64.summary.trapped_symbols, Vec::<String>::new());
+    assert!(arm64.summary.gl.version.starts_with("OpenGL ES 3."), "{}", arm64.summary.gl.version);
+    assert!(arm64.summary.input.sent > 0);
+    assert_eq!(arm64.summary.input.sent, arm64.summary.input.handled);
+
+    let Some(x86_64) = play("x86_64", &device, &steps) else { return };
+    x86_64.assert_clean();
+    assert_eq!(x86_64.summary.abi, "x86_64");
+    for picture in ["yoro.png", "conventional.png"] {
+        let share = differing(&arm64.picture(picture), &x86_64.picture(picture));
+        assert!(
+            share < 0.005,
+            "{:.2} % of the pixels of {picture} differ: {} and {}",
+            share * 100.0,
+            arm64.folder(),
+            x86_64.folder()
+        );
+    }
 }

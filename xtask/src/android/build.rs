@@ -112,7 +112,8 @@ pub fn for_tests() -> anyhow::Result<Equipped> {
     Ok(Equipped::At(apk(Options { release: true, yes: true })?))
 }
 
-fn root() -> PathBuf {
+/// The workspace's folder.
+pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
@@ -174,9 +175,12 @@ fn link_flags() -> Vec<String> {
     flags
 }
 
-/// cargo-apk takes the first cargo in PATH. What the cargo that started this program has set for its own must not
+/// Cargo's subcommands take the first cargo in PATH. What the cargo that started this program has set for its own must not
 /// reach it.
-fn use_rust(command: &mut Command, rust: &Rust) -> anyhow::Result<()> {
+///
+/// # Errors
+/// When PATH cannot be extended.
+pub fn use_rust(command: &mut Command, rust: &Rust) -> anyhow::Result<()> {
     let mut path = OsString::from(&rust.programs);
     if let Some(rest) = env::var_os("PATH") {
         path = env::join_paths([rust.programs.clone()].into_iter().chain(env::split_paths(&rest)))

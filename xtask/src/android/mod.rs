@@ -1,5 +1,6 @@
 //! The Android application: what builds it, the building, and the check of the result.
 
+mod arm64;
 mod build;
 pub mod check;
 mod keystore;
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 
+pub use arm64::host_for_tests;
 pub use build::{Options, apk, for_tests};
 pub use toolchain::doctor;
 

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 
 use super::stand_in::FRAMEWORK;
 use super::{ARCHITECTURES, MIN_API};
@@ -116,6 +116,13 @@ impl Rust {
         version(env!("CARGO_PKG_RUST_VERSION")).is_some_and(|minimum| self.version >= minimum)
     }
 
+    /// A Rust that can compile for `triple`, and whether it has to compile std, too.
+    pub fn for_target(surroundings: &Surroundings, triple: &str) -> Option<(Self, bool)> {
+        let prebuilt = surroundings.rust.clone().filter(|rust| rust.has_target(triple));
+        let prebuilt = prebuilt.map(|rust| (rust, false));
+        prebuilt.or_else(|| Some((Self::with_source(surroundings)?, true)))
+    }
+
     /// A Rust that can compile std for Android: the user's own, where it has std's source, or Debian's.
     pub fn with_source(surroundings: &Surroundings) -> Option<Self> {
         let debian = || Self::at("/usr/bin".into());
@@ -210,12 +217,6 @@ fn google(sdk: &Path, ndk: &Path) -> Vec<Need> {
 }
 
 fn stand_in(surroundings: &Surroundings) -> Vec<Need> {
-    let minimum = env!("CARGO_PKG_RUST_VERSION");
-    let rust = Rust::with_source(surroundings);
-    let found = rust.map(|rust| {
-        let (major, minor) = rust.version;
-        format!("{} ({major}.{minor})", rust.programs.join("rustc").display())
-    });
     vec![
         program("clang", &["clang"]),
         program("ld.lld", &["lld"]),
@@ -230,16 +231,31 @@ fn stand_in(surroundings: &Surroundings) -> Vec<Need> {
             "apt-get install android-framework-res",
             &["android-framework-res"],
         ),
-        Need {
-            what: "std's source",
-            found: found.ok_or_else(|| format!("no Rust since {minimum} has it")),
-            remedy:
-                "apt-get install rustc-web cargo-web rust-web-src (Debian 12 with its security updates), \
-                     or rustup component add rust-src"
-                    .to_owned(),
-            packages: &["rustc-web", "cargo-web", "rust-web-src"],
-        },
+        source(Rust::with_source(surroundings).as_ref()),
     ]
+}
+
+/// std's source, which `rust` has.
+fn source(rust: Option<&Rust>) -> Need {
+    let minimum = env!("CARGO_PKG_RUST_VERSION");
+    let found = rust.map(|rust| {
+        let (major, minor) = rust.version;
+        format!("{} ({major}.{minor})", rust.programs.join("rustc").display())
+    });
+    Need {
+        what: "std's source",
+        found: found.ok_or_else(|| format!("no Rust since {minimum} has it")),
+        remedy: "apt-get install rustc-web cargo-web rust-web-src (Debian 12 with its security updates), \
+                 or rustup component add rust-src"
+            .to_owned(),
+        packages: &["rustc-web", "cargo-web", "rust-web-src"],
+    }
+}
+
+/// What a program for another Linux is compiled and linked with.
+fn cross(surroundings: &Surroundings, triple: &str) -> Vec<Need> {
+    let rust = Rust::for_target(surroundings, triple).map(|(rust, _)| rust);
+    vec![program("clang", &["clang"]), program("ld.lld", &["lld"]), source(rust.as_ref())]
 }
 
 /// The newest build tools of an SDK, as cargo-apk chooses them.
@@ -268,32 +284,40 @@ pub fn build_tool(name: &str) -> anyhow::Result<PathBuf> {
 /// # Errors
 /// When something is still missing: what, and the remedy.
 pub fn ensure(toolchain: &Toolchain, surroundings: &Surroundings, yes: bool) -> anyhow::Result<()> {
-    let missing = missing(toolchain, surroundings);
+    provide(|| toolchain.needs(surroundings), yes).map_err(|error| match toolchain {
+        Toolchain::Google { .. } => error,
+        Toolchain::StandIn => anyhow!(
+            "{error}; or set ANDROID_HOME and ANDROID_NDK_ROOT to Google's SDK and NDK and add rustup's android targets"
+        ),
+    })
+}
+
+/// Installs, without asking, what compiling for another Linux lacks.
+///
+/// # Errors
+/// When something is still missing: what, and the remedy.
+pub fn ensure_cross(surroundings: &Surroundings, triple: &str) -> anyhow::Result<()> {
+    provide(|| cross(surroundings, triple), true)
+}
+
+fn provide(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
+    let missing = || needs().into_iter().filter(|need| need.found.is_err()).collect::<Vec<_>>();
+    let at_first = missing();
     let groups: Vec<&[&str]> =
-        missing.iter().map(|need| need.packages).filter(|packages| !packages.is_empty()).collect();
+        at_first.iter().map(|need| need.packages).filter(|packages| !packages.is_empty()).collect();
     if !groups.is_empty() && apt::find_program("apt-get").is_some() {
         apt::consent(&groups.concat(), yes)?;
         if let Err(error) = apt::install(&groups) {
             eprintln!("warning: {error:#}");
         }
     }
-    let still = self::missing(toolchain, surroundings);
+    let still = missing();
     if still.is_empty() {
         return Ok(());
     }
     let sentences: Vec<String> =
         still.iter().map(|need| format!("{} is missing ({})", need.what, need.remedy)).collect();
-    let other = match toolchain {
-        Toolchain::Google { .. } => "",
-        Toolchain::StandIn => {
-            "; or set ANDROID_HOME and ANDROID_NDK_ROOT to Google's SDK and NDK and add rustup's android targets"
-        }
-    };
-    bail!("{}{other}", sentences.join(", "))
-}
-
-fn missing(toolchain: &Toolchain, surroundings: &Surroundings) -> Vec<Need> {
-    toolchain.needs(surroundings).into_iter().filter(|need| need.found.is_err()).collect()
+    bail!("{}", sentences.join(", "))
 }
 
 /// Which way `cargo xtask apk` would go, and what it lacks, as a text; and whether nothing is missing.

@@ -401,9 +401,6 @@ fn functions() -> Vec<(&'static str, usize)> {
         GetObjectClass,
         IsInstanceOf,
         GetMethodID,
-        GetStaticMethodID,
-        GetFieldID,
-        GetStaticFieldID,
         CallObjectMethodA,
         CallBooleanMethodA,
         CallIntMethodA,
@@ -437,8 +434,12 @@ fn functions() -> Vec<(&'static str, usize)> {
         ExceptionCheck,
         GetObjectRefType,
     ];
-    // A static call has a class in the place of the object; otherwise they are alike.
+    // A member is a class, a name and a signature, whatever kind it is. A static call has a class in the place of the object;
+    // otherwise they are alike.
     all.extend([
+        ("GetStaticMethodID", GetMethodID as *const () as usize),
+        ("GetFieldID", GetMethodID as *const () as usize),
+        ("GetStaticFieldID", GetMethodID as *const () as usize),
         ("CallStaticObjectMethodA", CallObjectMethodA as *const () as usize),
         ("CallStaticBooleanMethodA", CallBooleanMethodA as *const () as usize),
         ("CallStaticIntMethodA", CallIntMethodA as *const () as usize),
@@ -586,43 +587,13 @@ unsafe extern "C" fn GetMethodID(
     name: *const c_char,
     signature: *const c_char,
 ) -> *const Member {
-    let class = match &get(class, "GetMethodID").data {
+    let class = match &get(class, "the look-up of a method or a field").data {
         Data::Class(name) => name.clone(),
-        _ => fatal("JNI: GetMethodID of something that is no class"),
+        _ => fatal("JNI: a method or a field of something that is no class"),
     };
     // SAFETY: terminated strings by contract.
     let (name, signature) = unsafe { (text(name), text(signature)) };
     host().jni.member(Member { class, name, signature })
-}
-
-unsafe extern "C" fn GetStaticMethodID(
-    env: Env,
-    class: Handle,
-    name: *const c_char,
-    signature: *const c_char,
-) -> *const Member {
-    // SAFETY: same contract as the caller's.
-    unsafe { GetMethodID(env, class, name, signature) }
-}
-
-unsafe extern "C" fn GetFieldID(
-    env: Env,
-    class: Handle,
-    name: *const c_char,
-    signature: *const c_char,
-) -> *const Member {
-    // SAFETY: same contract as the caller's.
-    unsafe { GetMethodID(env, class, name, signature) }
-}
-
-unsafe extern "C" fn GetStaticFieldID(
-    env: Env,
-    class: Handle,
-    name: *const c_char,
-    signature: *const c_char,
-) -> *const Member {
-    // SAFETY: same contract as the caller's.
-    unsafe { GetMethodID(env, class, name, signature) }
 }
 
 /// The arguments of a call, by the method's signature.

@@ -9,6 +9,8 @@ use yoro_android_host::summary::Summary;
 
 /// Of `cargo xtask test`.
 const APK: &str = "YORO_TEST_APK";
+/// A program that runs the simulated host for arm64, of `cargo xtask test`, too.
+const ARM64_HOST: &str = "YORO_TEST_ARM64_HOST";
 
 /// A finished run.
 pub struct Run {
@@ -35,31 +37,44 @@ pub fn script(name: &str) -> String {
 
 /// Plays steps on a device; none, with a loud line, where there is no APK.
 pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
-    let Some(apk) = std::env::var_os(APK) else {
-        // Not eprintln!, which the test harness keeps to itself.
-        let line =
-            format!("LEFT OUT: {name}: there is no APK ({APK} is not set); `cargo xtask test` builds one\n");
-        _ = std::io::stderr().write_all(line.as_bytes());
-        return None;
-    };
+    let apk = named(APK).or_else(|| left_out(name, "there is no APK", APK, "builds one"))?;
+    Some(run(Path::new(env!("CARGO_BIN_EXE_yoro-android-host")), &apk, name, device, steps))
+}
+
+/// As [`play`], with the APK's arm64 library under qemu; none, with a loud line, where that cannot be.
+pub fn play_arm64(name: &str, device: &str, steps: &str) -> Option<Run> {
+    let apk = named(APK).or_else(|| left_out(name, "there is no APK", APK, "builds one"))?;
+    let remedy = "sets one up where Debian's packages are";
+    let host =
+        named(ARM64_HOST).or_else(|| left_out(name, "there is no host for arm64", ARM64_HOST, remedy))?;
+    Some(run(&host, &apk, name, device, steps))
+}
+
+/// A file that the environment names.
+fn named(variable: &str) -> Option<PathBuf> {
+    let path = std::env::var_os(variable)?;
     // Cargo runs tests in the package's folder.
-    let apk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(apk);
+    Some(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path))
+}
+
+fn left_out<T>(name: &str, reason: &str, variable: &str, remedy: &str) -> Option<T> {
+    // Not eprintln!, which the test harness keeps to itself.
+    let line = format!("LEFT OUT: {name}: {reason} ({variable} is not set); `cargo xtask test` {remedy}\n");
+    _ = std::io::stderr().write_all(line.as_bytes());
+    None
+}
+
+fn run(host: &Path, apk: &Path, name: &str, device: &str, steps: &str) -> Run {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     let script = folder.join("script.toml");
     std::fs::write(&script, format!("name = \"{name}\"\nsteps = [{steps}]\n{device}")).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_yoro-android-host"))
-        .arg(&apk)
-        .arg(&script)
-        .arg("--out")
-        .arg(&folder)
-        .output()
-        .unwrap();
+    let output = Command::new(host).arg(apk).arg(&script).arg("--out").arg(&folder).output().unwrap();
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     let summary = std::fs::read(folder.join("summary.json"))
         .unwrap_or_else(|error| panic!("{name}: no summary ({error}): {text}"));
-    Some(Run { summary: serde_json::from_slice(&summary).unwrap(), folder })
+    Run { summary: serde_json::from_slice(&summary).unwrap(), folder }
 }
 
 impl Run {
