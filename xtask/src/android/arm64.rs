@@ -228,8 +228,10 @@ fn build(surroundings: &Surroundings, system: &System, target: &Path) -> anyhow:
 
 fn write_launcher(launcher: &Path, system: &System, program: &Path) -> anyhow::Result<()> {
     let quoted = |path: &Path| format!("'{}'", path.display().to_string().replace('\'', r"'\''"));
+    // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
     let text = format!(
-        "#!/bin/sh\n# The simulated Android host for arm64, in qemu's user mode.\nexec {} -U LD_LIBRARY_PATH -L {} {} \"$@\"\n",
+        "#!/bin/sh\n# The simulated Android host for arm64, in qemu's user mode.\n\
+         exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
         quoted(&system.qemu),
         quoted(&system.root),
         quoted(program)
