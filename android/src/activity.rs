@@ -66,6 +66,7 @@ struct Activity {
     samples: Vec<(yoro::viewer::Sample, i64)>,
 
     is_resumed: bool,
+    is_finishing: bool,
     is_over: bool,
     is_summarized: bool,
     has_input: bool,
@@ -116,6 +117,7 @@ impl Activity {
             events: Vec::new(),
             samples: Vec::new(),
             is_resumed: false,
+            is_finishing: false,
             is_over: false,
             is_summarized: false,
             has_input: false,
@@ -452,7 +454,11 @@ impl Activity {
         if report.session_over {
             self.summarize();
         }
-        self.is_over |= report.exit;
+        if report.exit && !self.is_finishing {
+            // Not by returning: only a loop that still runs gives window and input queue back.
+            self.is_finishing = true;
+            self.java.finish();
+        }
         Ok(())
     }
 

@@ -271,6 +271,13 @@ impl Java {
         });
     }
 
+    /// Asks Android to end the activity. The events of its end follow, up to `Destroy`.
+    pub fn finish(&self) {
+        self.on_main_thread("the activity's end", |env, activity| {
+            env.call_method(activity, jni_str!("finish"), jni_sig!("()V"), &[])?.v()
+        });
+    }
+
     /// Views belong to the thread that made them.
     fn on_main_thread(
         &self,

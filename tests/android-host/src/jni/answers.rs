@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use crate::android::thermal;
 use crate::host::{Host, host, lock};
@@ -67,6 +68,10 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
             Value::Void
         }
 
+        "finish" if member.signature == "()V" => {
+            host.finish_asked.store(true, Ordering::Release);
+            Value::Void
+        }
         "getSystemService" => system_service(&text(0)?),
         "registerReceiver" => Value::Object(battery_intent(host)),
         "getIntProperty" if class == "android/os/BatteryManager" => {
