@@ -384,7 +384,7 @@ fn the_arm64_library_does_what_the_x86_64_library_does() {
     let Some(x86_64) = play("x86_64", &device, &steps) else { return };
     x86_64.assert_clean();
     assert_eq!(x86_64.summary.abi, "x86_64");
-    // llvmpipe computes in vectors of another width for arm64, with other approximations: shades differ, no edge does.
+    // llvmpipe compiles other code for arm64, in vectors of 128 bits, not 256: shades differ, no edge does.
     for picture in ["yoro.png", "conventional.png"] {
         let same = decibels(&arm64.picture(picture), &x86_64.picture(picture));
         assert!(same > 40.0, "{picture}: {same:.1} dB between {} and {}", arm64.folder(), x86_64.folder());
