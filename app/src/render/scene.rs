@@ -161,8 +161,12 @@ impl GpuScene {
         let mesh = Mesh::new(gl, &model.vertices, &indices)?;
         model.vertices = Vec::new();
         drop(indices);
-        let textures =
-            model.textures.into_iter().map(|image| upload_picture(gl, image)).collect::<Result<_, _>>()?;
+        // No texture of a voxel world is filtered, whichever file it comes from.
+        let unfiltered = style == ShadingStyle::Voxel;
+        let upload = |image: TextureImage| {
+            upload_picture(gl, TextureImage { nearest: image.nearest || unfiltered, ..image })
+        };
+        let textures = model.textures.into_iter().map(upload).collect::<Result<_, _>>()?;
         let materials = model.materials.iter().enumerate().map(|(i, m)| GpuMaterial::new(i, m)).collect();
         Ok(GpuScene {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
