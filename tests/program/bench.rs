@@ -2,13 +2,10 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use crate::program::{run, succeed, yoro};
+use crate::program::{interrupt, run, succeed};
 
 fn records(file: &Path) -> Vec<Value> {
     let text = fs::read_to_string(file).unwrap_or_default();
@@ -191,24 +188,8 @@ fn ctrl_c_keeps_finished_rounds_and_says_how_to_go_on() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("long.jsonl");
     let line = "bench lights --scene prototype --size 64x64 --viewpoints 1 --rounds 1000 --contender mono --out long.jsonl";
-    let mut child = yoro(line.split(' '))
-        .current_dir(dir.path())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let start = Instant::now();
     let rounds = || fs::read_to_string(&file).unwrap_or_default().matches(r#""record":"round""#).count();
-    while rounds() < 2 {
-        assert!(start.elapsed() < Duration::from_secs(120), "no rounds");
-        assert_eq!(child.try_wait().unwrap(), None, "it has ended by itself");
-        thread::sleep(Duration::from_millis(20));
-    }
-    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
-    assert!(killed.success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = interrupt(dir.path(), line, || rounds() >= 2).stderr;
     assert!(said.contains("interrupted") && said.contains("--out long.jsonl"), "{said}");
     let records = records(&file);
     assert_eq!(records.last().unwrap()["record"], "round");

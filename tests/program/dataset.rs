@@ -3,14 +3,12 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::thread;
-use std::time::{Duration, Instant, SystemTime};
+use std::time::SystemTime;
 
 use yoro::metrics::{Channels, Psnr, psnr};
 use yoro::picture;
 
-use crate::program::{run, succeed, yoro};
+use crate::program::{interrupt, run, succeed};
 
 const KINDS: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
 
@@ -142,23 +140,9 @@ fn reprojected_and_patched_differ_in_holes_alone() {
 fn ctrl_c_keeps_finished_groups() {
     let dir = tempfile::tempdir().unwrap();
     let line = "dataset prototype --groups 4000 --size 32 --out data";
-    let mut child = yoro(line.split(' '))
-        .current_dir(dir.path())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
     let groups = dir.path().join("data/prototype/group");
     let finished = || fs::read_dir(&groups).map_or(0, |entries| entries.count());
-    let start = Instant::now();
-    while finished() < 4 {
-        assert!(start.elapsed() < Duration::from_secs(120), "no groups");
-        assert_eq!(child.try_wait().unwrap(), None, "it has ended by itself");
-        thread::sleep(Duration::from_millis(20));
-    }
-    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
-    assert!(killed.success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    interrupt(dir.path(), line, || finished() >= 4);
     let count = finished();
     for index in 0..count as u32 {
         for (_, name) in group(&dir.path().join("data/prototype"), index)["pictures"].as_object().unwrap() {

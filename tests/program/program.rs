@@ -3,6 +3,8 @@
 use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// What a finished run said.
 pub struct Run {
@@ -68,4 +70,32 @@ pub fn succeed(folder: &Path, line: &str) -> Run {
 /// Runs a command to its end.
 pub fn finish(command: &mut Command) -> Run {
     Run::new(command.output().expect("the program starts"))
+}
+
+/// Runs the program with a line of arguments in a folder until `begun`, then presses Ctrl-C: it must not have ended by
+/// itself, and must end soon, with the exit code 130. What it writes to standard output is lost.
+#[track_caller]
+pub fn interrupt(folder: &Path, line: &str, begun: impl Fn() -> bool) -> Run {
+    let mut command = yoro(line.split_whitespace());
+    let command = command.current_dir(folder).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    let start = Instant::now();
+    while !begun() {
+        assert!(start.elapsed() < Duration::from_secs(120), "yoro {line}: nothing was finished");
+        assert_eq!(child.try_wait().unwrap(), None, "yoro {line}: it has ended by itself");
+        thread::sleep(Duration::from_millis(20));
+    }
+    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    assert!(killed.success());
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > Duration::from_secs(20) {
+            child.kill().unwrap();
+            panic!("yoro {line}: it goes on after Ctrl-C");
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+    let run = Run::new(child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(130), "yoro {line}: {}", run.stderr);
+    run
 }

@@ -17,6 +17,7 @@ use crate::eyes::{DepthRange, Eye};
 use crate::gl::Context;
 use crate::inpaint::PatcherOptions;
 use crate::scene::builtin;
+use crate::scene::load::sidecar_file;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
 #[derive(clap::Args, Clone, Debug)]
@@ -173,10 +174,8 @@ impl BenchArgs {
 
 /// Tells of an OBJ file whose viewpoints will be made up: figures say little of a walk that nobody chose.
 fn warn_without_camera(scene: &Path) {
-    let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
-    let beside = [format!("{stem}.camera.json"), "camera.json".to_owned()];
     let is_obj = scene.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
-    if is_obj && !beside.iter().any(|name| scene.with_file_name(name).is_file()) {
+    if is_obj && sidecar_file(scene, "camera.json").is_none() {
         log::warn!(
             "{} has no camera.json beside it, so its viewpoints are made up: write one, or give --path FILE",
             scene.display()

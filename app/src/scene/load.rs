@@ -162,14 +162,19 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     })
 }
 
-/// Reads `NAME.suffix`, or else `suffix`, beside a file; none if there is neither.
+/// `NAME.suffix`, or else `suffix`, beside a file; none if there is neither.
+pub(crate) fn sidecar_file(path: &Path, suffix: &str) -> Option<PathBuf> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let candidates = [path.with_file_name(format!("{stem}.{suffix}")), path.with_file_name(suffix)];
+    candidates.into_iter().find(|c| c.is_file())
+}
+
+/// Reads [`sidecar_file`]; none if there is none.
 fn sidecar<T: serde::de::DeserializeOwned>(
     path: &Path,
     suffix: &str,
 ) -> Result<Option<(PathBuf, T)>, SceneError> {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let candidates = [path.with_file_name(format!("{stem}.{suffix}")), path.with_file_name(suffix)];
-    let Some(file) = candidates.into_iter().find(|c| c.is_file()) else { return Ok(None) };
+    let Some(file) = sidecar_file(path, suffix) else { return Ok(None) };
     let mut bytes = Vec::new();
     File::open(&file)
         .and_then(|f| f.take(MAX_SIDECAR).read_to_end(&mut bytes))

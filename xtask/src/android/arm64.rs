@@ -12,7 +12,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 
-use super::build::{root, use_rust};
+use super::build::{build_std, root, use_rust};
 use super::target_folder;
 use super::toolchain::{self, Rust, Surroundings};
 use crate::apt;
@@ -205,10 +205,7 @@ fn build(surroundings: &Surroundings, system: &System, target: &Path) -> anyhow:
         .env("CARGO_PROFILE_DEV_PANIC", "abort")
         .env_remove("RUSTFLAGS");
     if with_std {
-        command
-            .env("RUSTC_BOOTSTRAP", "1")
-            .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
-            .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", "");
+        build_std(&mut command);
     }
     use_rust(&mut command, &rust)?;
     let flags = [

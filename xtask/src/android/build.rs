@@ -63,13 +63,8 @@ pub fn apk(options: Options) -> anyhow::Result<PathBuf> {
         Toolchain::StandIn => {
             let stand_in = StandIn::make(&target.join("android/stand-in"))?;
             flags.extend(stand_in.link_arguments().map(|argument| format!("-Clink-arg={argument}")));
-            command
-                .env("ANDROID_HOME", &stand_in.sdk)
-                .env("ANDROID_NDK_ROOT", &stand_in.ndk)
-                .env("RUSTC_BOOTSTRAP", "1")
-                .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
-                // Without backtraces: there are no symbols to show.
-                .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", "");
+            command.env("ANDROID_HOME", &stand_in.sdk).env("ANDROID_NDK_ROOT", &stand_in.ndk);
+            build_std(&mut command);
             Rust::with_source(&surroundings)
         }
     };
@@ -191,6 +186,15 @@ pub fn use_rust(command: &mut Command, rust: &Rust) -> anyhow::Result<()> {
         command.env_remove(variable);
     }
     Ok(())
+}
+
+/// Has cargo compile std from its source.
+pub fn build_std(command: &mut Command) {
+    command
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
+        // Without backtraces: there are no symbols to show.
+        .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", "");
 }
 
 /// zipalign lists every file: that is shown only when something fails.
