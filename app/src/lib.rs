@@ -11,6 +11,8 @@ pub mod bench;
 pub mod cli;
 #[cfg(feature = "desktop")]
 pub mod dataset;
+#[cfg(feature = "desktop")]
+pub mod device;
 pub mod eyes;
 #[cfg(feature = "desktop")]
 pub mod files;
