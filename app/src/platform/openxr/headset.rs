@@ -182,6 +182,11 @@ impl Headset {
         }
     }
 
+    /// Whether the session is being ended.
+    pub fn is_exiting(&self) -> bool {
+        self.exit.is_some()
+    }
+
     /// Does what the user wants in the next frame.
     pub fn event(&mut self, event: Event) {
         if let Some(session) = &mut self.session {
