@@ -44,6 +44,14 @@ pub enum XrError {
     /// The runtime takes the session away.
     #[error("the OpenXR runtime has ended the session by itself: a new one is begun")]
     Lost,
+    /// One session after the other has failed.
+    #[error("{sessions} OpenXR sessions in a row have failed; the last one: {last}")]
+    GivenUp {
+        /// Number of sessions.
+        sessions: u32,
+        /// Why the last one failed.
+        last: Box<XrError>,
+    },
     /// The GL context cannot be used.
     #[error("the OpenGL ES context cannot be used with OpenXR: {0}")]
     Context(String),

@@ -75,12 +75,6 @@ impl Android {
 /// What a session consists of at first.
 pub(super) type NewSession = (xr::Session<xr::OpenGlEs>, xr::FrameWaiter, xr::FrameStream<xr::OpenGlEs>);
 
-/// The extension by which this system's runtimes take an EGL context.
-#[cfg(target_os = "android")]
-pub(super) const EXTENSION: &str = "XR_KHR_opengl_es_enable";
-#[cfg(not(target_os = "android"))]
-pub(super) const EXTENSION: &str = "XR_MNDX_egl_enable";
-
 /// xrCreateSession.
 pub(super) fn create_session(
     instance: &xr::Instance,

@@ -15,7 +15,7 @@ use crate::viewer::{Event, Viewer};
 /// The pause before the first new session; it doubles with each that fails.
 const PAUSE: Duration = Duration::from_millis(500);
 /// Sessions in a row that fail before the headset is given up.
-const MOST_FAILURES: u32 = 5;
+const MOST_FAILURES: u32 = 3;
 /// A session that has shown so many frames was a good one.
 const GOOD_FRAMES: u32 = 200;
 /// A runtime that was asked to end a session and does not is left alone after this.
@@ -66,7 +66,17 @@ impl Headset {
         viewer: &Viewer,
         options: Options,
     ) -> Result<Headset, XrError> {
-        let session = Session::open(&runtime, graphics, gl, viewer.settings(), &options)?;
+        let open = || Session::open(&runtime, graphics, gl, viewer.settings(), &options);
+        // A runtime that is just being started or replaced loses what was begun.
+        let session = open().or_else(|error| {
+            if !error.is_loss() {
+                return Err(error);
+            }
+            log::warn!("{error} (after a pause of {:.1} s)", PAUSE.as_secs_f32());
+            std::thread::sleep(PAUSE);
+            make_current(graphics)?;
+            open()
+        })?;
         Ok(Headset {
             description: session.description().clone(),
             session: Some(session),
@@ -140,10 +150,10 @@ impl Headset {
         }
         self.failures += 1;
         if self.failures > MOST_FAILURES {
-            return Err(error);
+            return Err(XrError::GivenUp { sessions: self.failures, last: Box::new(error) });
         }
         let pause = PAUSE * 2u32.pow(self.failures - 1);
-        log::warn!("{error} (in {:.1} s)", pause.as_secs_f32());
+        log::warn!("{error} (after a pause of {:.1} s)", pause.as_secs_f32());
         self.retry = Some(Instant::now() + pause);
         Ok(Step::Idle)
     }

@@ -831,7 +831,7 @@ fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance,
     #[cfg(not(target_os = "android"))]
     {
         if !offered.mndx_egl_enable {
-            return Err(XrError::Extension { extension: graphics::EXTENSION });
+            return Err(XrError::Extension { extension: "XR_MNDX_egl_enable" });
         }
         enabled.mndx_egl_enable = true;
     }
