@@ -196,7 +196,7 @@ impl Manifest {
             Some(format!("no category {category}: headsets would show a flat panel"))
         } else if self.one("provider").text("android:authorities") != AUTHORITIES {
             Some("no queries for the runtime brokers: headsets would show a flat panel".to_owned())
-        } else if value("com.oculus.vr.focusaware") != "true" {
+        } else if !["true", "0xffffffff"].contains(&value("com.oculus.vr.focusaware").as_str()) {
             Some("com.oculus.vr.focusaware should be true: the system's panels would pause it".to_owned())
         } else {
             let missing = !value("com.oculus.supportedDevices").split('|').any(|device| device == "quest3");
