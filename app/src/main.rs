@@ -27,6 +27,7 @@ enum Command {
     Dataset(cli::dataset::DatasetArgs),
     Scenes(cli::scenes::ScenesArgs),
     View(cli::view::ViewArgs),
+    Xr(cli::xr::XrArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -52,6 +53,7 @@ fn main() -> ExitCode {
         Command::Dataset(args) => cli::dataset::run(args),
         Command::Scenes(args) => cli::scenes::run(args),
         Command::View(args) => cli::view::run(args),
+        Command::Xr(args) => cli::xr::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {
