@@ -37,6 +37,11 @@ pub unsafe trait Graphics {
     fn make_current(&self) -> Result<(), String>;
 }
 
+/// Makes the context current again; runtimes may change that in any call that has to do with images or frames.
+pub(super) fn make_current(graphics: &dyn Graphics) -> Result<(), XrError> {
+    graphics.make_current().map_err(XrError::Context)
+}
+
 /// The Java side of an Android application.
 #[cfg(target_os = "android")]
 #[derive(Clone, Copy, Debug)]
@@ -114,6 +119,7 @@ pub(super) fn create_session(
     let mut handle = sys::Session::NULL;
     // SAFETY: the structures live through the call and the binding is valid by the contract of `Graphics`.
     let result = unsafe { (instance.fp().create_session)(instance.as_raw(), &info, &mut handle) };
+    make_current(graphics)?;
     check("xrCreateSession", result)?;
     // SAFETY: a new session of this instance, made for OpenGL ES.
     Ok(unsafe { xr::Session::from_raw(instance.clone(), handle, Box::new(())) })
