@@ -16,3 +16,4 @@ mod run;
 mod scenes;
 mod synthesize;
 mod view;
+mod xr;
