@@ -157,6 +157,9 @@ pub struct Settings {
     pub display: DisplayKind,
     /// Measure the GPU time of each stage, where the driver has timer queries.
     pub profiling: bool,
+    /// Name of this run in the log line, for scripts that start several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
 }
 
 /// The keys of [`Settings`], in order.
@@ -191,10 +194,11 @@ pub const KEYS: &[&str] = &[
     "auto-exit",
     "display",
     "profiling",
+    "run",
 ];
 
 /// Keys that may be left to the program: the value `auto` takes them back.
-const OPTIONAL: &[&str] = &["guard-band", "anti-aliasing", "near-field", "ipd", "duration"];
+const OPTIONAL: &[&str] = &["guard-band", "anti-aliasing", "near-field", "ipd", "duration", "run"];
 
 impl Default for Settings {
     fn default() -> Settings {
@@ -231,6 +235,7 @@ impl Default for Settings {
             auto_exit: false,
             display: DisplayKind::Auto,
             profiling: true,
+            run: None,
         }
     }
 }
