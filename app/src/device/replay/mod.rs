@@ -40,8 +40,10 @@ impl Replay {
     /// Plays a script that comes from `path`.
     pub fn new(path: &Path, script: Script) -> Replay {
         let (seed, speed) = (script.seed, script.speed);
-        let device =
-            |phone: Phone| (phone.serial.clone(), Arc::new(Mutex::new(World::new(phone, seed, speed))));
+        let device = |phone: Phone| {
+            let kept = script.state.as_ref().map(|folder| folder.join(format!("{}.json", phone.serial)));
+            (phone.serial.clone(), Arc::new(Mutex::new(World::new(phone, seed, speed, kept))))
+        };
         Replay { path: path.into(), devices: script.device.into_iter().map(device).collect() }
     }
 }
@@ -60,7 +62,7 @@ impl Adb for Replay {
             || {
                 ::log::debug!("{} has no device {serial}", self.path.display());
                 let phone = Phone { serial: serial.into(), state: "offline".into(), ..Phone::default() };
-                Arc::new(Mutex::new(World::new(phone, 0, None)))
+                Arc::new(Mutex::new(World::new(phone, 0, None, None)))
             },
             |(_, world)| world.clone(),
         );

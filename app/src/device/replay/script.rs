@@ -34,6 +34,9 @@ pub struct Script {
     pub seed: u64,
     /// Seconds of the replay in a real second; as fast as it goes if there is none.
     pub speed: Option<f64>,
+    /// A folder, relative to the script, in which the devices keep settings, properties and files from one replay to the
+    /// next; each replay is the first if there is none.
+    pub state: Option<PathBuf>,
     /// The devices.
     #[serde(default)]
     pub device: Vec<Phone>,
@@ -237,6 +240,7 @@ impl Script {
             refused(format!("line {line}: {}", error.message()))
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
+        script.state = script.state.map(|state| folder.join(state));
         for log in script.device.iter_mut().flat_map(|phone| &mut phone.logs) {
             *log = folder.join(&*log);
         }

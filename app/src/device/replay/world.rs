@@ -1,11 +1,12 @@
 //! A device that does not exist: its time, its battery, its log, and the application on it.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use serde::{Deserialize, Serialize};
 
 use super::script::{Current, Fault, FaultKind, Load, Phone};
 use crate::cli::interrupted;
@@ -62,6 +63,14 @@ impl Application {
     }
 }
 
+/// What a device keeps when it is off.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Kept {
+    settings: BTreeMap<String, String>,
+    properties: BTreeMap<String, String>,
+    files: BTreeMap<String, String>,
+}
+
 /// A device that does not exist.
 pub struct World {
     script: Phone,
@@ -83,9 +92,9 @@ pub struct World {
     forgotten: usize,
     /// Changes whenever readers of the log are cut off.
     generation: u32,
-    settings: BTreeMap<String, String>,
-    properties: BTreeMap<String, String>,
-    files: BTreeMap<String, String>,
+    kept: Kept,
+    /// Where that lies between replays.
+    kept_in: Option<PathBuf>,
     charge_mah: f64,
     celsius: f64,
     plugged_until: f64,
@@ -96,8 +105,14 @@ pub struct World {
 }
 
 impl World {
-    /// The device of a script, in its initial state.
-    pub fn new(script: Phone, seed: u64, speed: Option<f64>) -> World {
+    /// The device of a script, in its initial state but for what an earlier replay has kept in a file.
+    pub fn new(script: Phone, seed: u64, speed: Option<f64>, kept_in: Option<PathBuf>) -> World {
+        let first = || Kept {
+            settings: script.settings.clone(),
+            properties: script.properties.clone(),
+            files: script.files.clone(),
+        };
+        let earlier = kept_in.as_ref().and_then(|path| serde_json::from_slice(&files::read(path).ok()?).ok());
         // Devices of one script differ.
         let own = script
             .serial
@@ -117,9 +132,8 @@ impl World {
             log: Vec::new(),
             forgotten: 0,
             generation: 0,
-            settings: script.settings.clone(),
-            properties: script.properties.clone(),
-            files: script.files.clone(),
+            kept: earlier.unwrap_or_else(first),
+            kept_in,
             charge_mah: script.capacity_mah * script.level_percent / 100.0,
             celsius: script.celsius,
             plugged_until: if script.plugged { f64::INFINITY } else { f64::NEG_INFINITY },
@@ -229,7 +243,7 @@ impl World {
                 self.booted_at = until;
                 self.forgotten += self.log.len();
                 self.log.clear();
-                self.properties.retain(|name, _| !name.starts_with("debug."));
+                self.kept.properties.retain(|name, _| !name.starts_with("debug."));
                 self.application = None;
             }
             FaultKind::Crash => {
@@ -416,8 +430,13 @@ impl World {
         if self.script.storage_full {
             return Err(self.refused(&["cat", ">", path], "No space left on device"));
         }
-        self.files.insert(path.into(), text.into());
-        Ok(())
+        self.kept.files.insert(path.into(), text.into());
+        self.keep()
+    }
+
+    fn keep(&self) -> Result<(), DeviceError> {
+        let Some(path) = &self.kept_in else { return Ok(()) };
+        Ok(files::write_with(path, |out| Ok(serde_json::to_writer(out, &self.kept)?))?)
     }
 
     fn refused(&self, words: &[&str], reason: &str) -> DeviceError {
@@ -429,14 +448,14 @@ impl World {
     pub fn shell(&mut self, words: &[&str]) -> Result<String, DeviceError> {
         self.reach()?;
         match words {
-            ["getprop"] => Ok(self.properties.iter().map(|(k, v)| format!("[{k}]: [{v}]\n")).collect()),
+            ["getprop"] => Ok(self.kept.properties.iter().map(|(k, v)| format!("[{k}]: [{v}]\n")).collect()),
             ["getprop", name] => Ok(self.property(name) + "\n"),
             ["setprop", name, value] => {
-                self.properties.insert((*name).into(), (*value).into());
-                Ok(String::new())
+                self.kept.properties.insert((*name).into(), (*value).into());
+                self.keep().map(|()| String::new())
             }
             ["settings", "get", "system", key] => {
-                Ok(self.settings.get(*key).cloned().unwrap_or_else(|| "null".into()) + "\n")
+                Ok(self.kept.settings.get(*key).cloned().unwrap_or_else(|| "null".into()) + "\n")
             }
             ["settings", "put" | "delete", "system", key, ..]
                 if self.script.fixed_settings.iter().any(|k| k == key) =>
@@ -444,20 +463,23 @@ impl World {
                 Err(self.refused(words, "java.lang.SecurityException: you cannot change it"))
             }
             ["settings", "put", "system", key, value] => {
-                self.settings.insert((*key).into(), (*value).into());
-                Ok(String::new())
+                self.kept.settings.insert((*key).into(), (*value).into());
+                self.keep().map(|()| String::new())
             }
             ["settings", "delete", "system", key] => {
-                self.settings.remove(*key);
-                Ok(String::new())
+                self.kept.settings.remove(*key);
+                self.keep().map(|()| String::new())
             }
             ["cat", "/proc/sys/kernel/random/boot_id"] => Ok(format!("{:08}-simulated\n", self.boots)),
-            ["cat", path] => {
-                self.files.get(*path).cloned().ok_or_else(|| self.refused(words, "No such file or directory"))
-            }
+            ["cat", path] => self
+                .kept
+                .files
+                .get(*path)
+                .cloned()
+                .ok_or_else(|| self.refused(words, "No such file or directory")),
             ["rm", "-f", path] => {
-                self.files.remove(*path);
-                Ok(String::new())
+                self.kept.files.remove(*path);
+                self.keep().map(|()| String::new())
             }
             ["dumpsys", "battery"] => Ok(self.battery()),
             ["dumpsys", "batterystats"] => {
@@ -491,7 +513,7 @@ impl World {
             "sys.boot_completed" if self.now >= self.booted_at + BOOT_S => Some("1".into()),
             _ => None,
         };
-        own.or_else(|| self.properties.get(name).cloned()).unwrap_or_default()
+        own.or_else(|| self.kept.properties.get(name).cloned()).unwrap_or_default()
     }
 
     fn battery(&self) -> String {
@@ -510,7 +532,7 @@ impl World {
             return Ok(format!("Error type 3\nError: Activity class {{{activity}}} does not exist.\n"));
         }
         let pairs = extras.chunks_exact(3).map(|words| (words[1].to_owned(), words[2].to_owned()));
-        let properties = self.properties.iter().filter_map(|(name, value)| {
+        let properties = self.kept.properties.iter().filter_map(|(name, value)| {
             Some((name.strip_prefix(phone::PROPERTY_PREFIX)?.to_owned(), value.clone()))
         });
         let mut settings = Settings::default();
