@@ -1,0 +1,3 @@
+//! OpenXR: head-mounted displays.
+
+pub mod runtime;
