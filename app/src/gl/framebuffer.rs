@@ -24,6 +24,26 @@ impl Destination {
     }
 }
 
+impl Context {
+    /// Copies a rectangle of colour to one of the same size. Bits stay what they are, unless just one of the two
+    /// is stored as sRGB.
+    pub fn copy(&self, from: &Destination, to: &Destination) {
+        let gl = self.raw();
+        let [x, y] = from.origin.map(|n| n as i32);
+        let ([tx, ty], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
+        let buffer = if from.framebuffer.is_some() { glow::COLOR_ATTACHMENT0 } else { glow::BACK };
+        // SAFETY: both framebuffers are live; GL clips rectangles that do not fit.
+        unsafe {
+            gl.disable(glow::SCISSOR_TEST);
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, from.framebuffer);
+            gl.read_buffer(buffer);
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, to.framebuffer);
+            let (mask, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
+            gl.blit_framebuffer(x, y, x + w, y + h, tx, ty, tx + w, ty + h, mask, filter);
+        }
+    }
+}
+
 /// A framebuffer with its own textures. Resizing to the size it has costs nothing.
 pub struct RenderTarget {
     gl: Rc<Context>,
@@ -183,18 +203,7 @@ impl RenderTarget {
     /// Copies the rectangle of colour attachment 0 whose lower left corner is `crop` into a destination of the
     /// same size as the rectangle.
     pub fn copy_color(&self, crop: [u32; 2], to: &Destination) {
-        let gl = self.gl.raw();
-        let [x, y] = crop.map(|n| n as i32);
-        let ([tx, ty], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
-        // SAFETY: both framebuffers are live; GL clips rectangles that do not fit.
-        unsafe {
-            gl.disable(glow::SCISSOR_TEST);
-            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.raw));
-            gl.read_buffer(glow::COLOR_ATTACHMENT0);
-            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, to.framebuffer);
-            let (mask, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
-            gl.blit_framebuffer(x, y, x + w, y + h, tx, ty, tx + w, ty + h, mask, filter);
-        }
+        self.gl.copy(&Destination { framebuffer: Some(self.raw), origin: crop, size: to.size }, to);
     }
 
     /// Starts to read all of colour attachment 0, as RGBA8, into a buffer; does not wait.

@@ -66,11 +66,28 @@ pub enum SettingsError {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DisplayKind {
-    /// The best that there is: a Cardboard-compatible viewer, until headsets are supported.
+    /// A headset where there is an OpenXR runtime, else a Cardboard-compatible viewer.
     #[default]
     Auto,
+    /// A headset with an OpenXR runtime.
+    OpenXr,
     /// A phone in a Cardboard-compatible viewer.
     Cardboard,
+}
+
+/// How fast a headset's processors should run, where its runtime lets applications say (XR_EXT_performance_settings).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Performance {
+    /// As slowly as can be.
+    PowerSaving,
+    /// Slowly; the rate may be missed.
+    SustainedLow,
+    /// As fast as can be held for as long as one likes.
+    #[default]
+    SustainedHigh,
+    /// As fast as can be, for a short time.
+    Boost,
 }
 
 /// Ambient occlusion.
@@ -126,7 +143,7 @@ pub struct Settings {
     pub viewer: String,
     /// The eye that is rendered.
     pub dominant: Eye,
-    /// Distance between the eyes in metres; by default that of the viewer's lenses.
+    /// Distance between the eyes in metres; by default that of the viewer's lenses, or of the headset.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ipd: Option<f32>,
     /// Rendered pixels per screen pixel at the lens's centre, per axis, 0.25 to 2; the upper limit when
@@ -155,6 +172,11 @@ pub struct Settings {
     pub auto_exit: bool,
     /// On what the eyes are shown.
     pub display: DisplayKind,
+    /// Headsets: refreshes per second, the nearest of what the runtime offers; by default the runtime's choice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refresh_rate: Option<f32>,
+    /// Headsets: how fast the processors should run.
+    pub performance: Performance,
     /// Measure the GPU time of each stage, where the driver has timer queries.
     pub profiling: bool,
 }
@@ -190,11 +212,13 @@ pub const KEYS: &[&str] = &[
     "duration",
     "auto-exit",
     "display",
+    "refresh-rate",
+    "performance",
     "profiling",
 ];
 
 /// Keys that may be left to the program: the value `auto` takes them back.
-const OPTIONAL: &[&str] = &["guard-band", "anti-aliasing", "near-field", "ipd", "duration"];
+const OPTIONAL: &[&str] = &["guard-band", "anti-aliasing", "near-field", "ipd", "duration", "refresh-rate"];
 
 impl Default for Settings {
     fn default() -> Settings {
@@ -230,6 +254,8 @@ impl Default for Settings {
             duration: None,
             auto_exit: false,
             display: DisplayKind::Auto,
+            refresh_rate: None,
+            performance: Performance::default(),
             profiling: true,
         }
     }
@@ -366,6 +392,10 @@ impl Settings {
             }
             "shadow-map" => ensure(self.shadow_map <= 8192, "give texels from 0 to 8192"),
             "point-lights" => ensure(self.point_lights <= MAX_POINT_LIGHTS, "give a number from 0 to 24"),
+            "refresh-rate" => ensure(
+                self.refresh_rate.is_none_or(|hz| (1.0..=1000.0).contains(&hz)),
+                "give refreshes per second, such as 90, or auto",
+            ),
             "duration" => ensure(
                 self.duration.is_none_or(|s| s > 0.0 && s.is_finite()),
                 "give seconds above 0, or auto",
@@ -488,7 +518,14 @@ mod tests {
 
     #[test]
     fn the_list_of_keys_is_complete() {
-        let full = with(&["guard-band=40px", "anti-aliasing=off", "near-field=1", "ipd=0.06", "duration=10"]);
+        let full = with(&[
+            "guard-band=40px",
+            "anti-aliasing=off",
+            "near-field=1",
+            "ipd=0.06",
+            "duration=10",
+            "refresh-rate=90",
+        ]);
         let table = Table::try_from(full.unwrap()).unwrap();
         let mut keys: Vec<_> = table.keys().map(String::as_str).collect();
         let mut listed = KEYS.to_vec();
@@ -545,7 +582,8 @@ mod tests {
         refused("kernel-height=40", &["15"]);
         refused("seed=-1", &["\"seed\""]);
         refused("methods=yoro,fast", &["\"methods\"", "fast"]);
-        refused("display=openxr", &["\"display\"", "cardboard"]);
+        refused("display=oculus", &["\"display\"", "openxr", "cardboard"]);
+        refused("refresh-rate=0", &["\"refresh-rate\"", "auto"]);
     }
 
     #[test]
@@ -582,7 +620,7 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn any_text_is_taken_or_refused(key in 0usize..30, value in ".{0,12}") {
+        fn any_text_is_taken_or_refused(key in 0usize..KEYS.len(), value in ".{0,12}") {
             let _ = with(&[&format!("{}={value}", KEYS[key])]);
         }
     }
