@@ -546,7 +546,7 @@ fn log_action(action: Action) {
         Action::Hud(is_shown) => log::info!("HUD: {}", if is_shown { "on" } else { "off" }),
         Action::Viewpoint(n) => log::info!("viewpoint: {n}"),
         Action::Scene => log::info!("another scene"),
-        Action::Nothing => {}
+        Action::Marker(_) | Action::Answer | Action::Nothing => {}
     }
 }
 
