@@ -609,6 +609,7 @@ impl Viewer {
             scene: self.scene_name.clone(),
             render_scale: self.render_scale(),
             imbuffer: self.imbuffer_divisor(),
+            run: self.settings.run.clone(),
         };
         let line = self.telemetry.line(now_ns, &state, device);
         self.last_line = Some(line.clone());

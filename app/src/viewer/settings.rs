@@ -189,6 +189,9 @@ pub struct Settings {
     pub performance: Performance,
     /// Measure the GPU time of each stage, where the driver has timer queries.
     pub profiling: bool,
+    /// Name of this run in the log line, for scripts that start several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
 }
 
 /// The keys of [`Settings`], in order.
@@ -229,11 +232,21 @@ pub const KEYS: &[&str] = &[
     "refresh-rate",
     "performance",
     "profiling",
+    "run",
 ];
 
 /// Keys that may be left to the program: the value `auto` takes them back.
-const OPTIONAL: &[&str] =
-    &["guard-band", "anti-aliasing", "near-field", "ipd", "duration", "participant", "trial", "refresh-rate"];
+const OPTIONAL: &[&str] = &[
+    "guard-band",
+    "anti-aliasing",
+    "near-field",
+    "ipd",
+    "duration",
+    "participant",
+    "trial",
+    "refresh-rate",
+    "run",
+];
 
 impl Default for Settings {
     fn default() -> Settings {
@@ -276,6 +289,7 @@ impl Default for Settings {
             refresh_rate: None,
             performance: Performance::default(),
             profiling: true,
+            run: None,
         }
     }
 }
