@@ -29,6 +29,7 @@ mod settings;
 #[cfg(all(test, feature = "desktop"))]
 mod tests;
 
+use std::fmt;
 use std::path::PathBuf;
 use std::rc::Rc;
 
@@ -126,6 +127,20 @@ pub enum Action {
     Answer,
     /// Nothing, because a question is being asked, or there is no other method, viewpoint or scene.
     Nothing,
+}
+
+impl fmt::Display for Action {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Action::Method(method) => write!(f, "method: {}", method.name()),
+            Action::Recenter => f.write_str("recentered"),
+            Action::Ipd(ipd) => write!(f, "ipd: {ipd:.3} m"),
+            Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
+            Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),
+            Action::Scene => f.write_str("another scene"),
+            Action::Nothing => f.write_str("nothing"),
+        }
+    }
 }
 
 /// The times of a frame, all on the monotonic clock of the sensors' timestamps where the platform has one.
