@@ -138,6 +138,8 @@ impl fmt::Display for Action {
             Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
             Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),
             Action::Scene => f.write_str("another scene"),
+            Action::Marker(rating) => write!(f, "marker: {rating}"),
+            Action::Answer => f.write_str("answered"),
             Action::Nothing => f.write_str("nothing"),
         }
     }
