@@ -28,6 +28,7 @@ enum Command {
     Scenes(cli::scenes::ScenesArgs),
     Device(cli::device::DeviceArgs),
     View(cli::view::ViewArgs),
+    Xr(cli::xr::XrArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
         Command::Scenes(args) => cli::scenes::run(args),
         Command::Device(args) => cli::device::run(args),
         Command::View(args) => cli::view::run(args),
+        Command::Xr(args) => cli::xr::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {

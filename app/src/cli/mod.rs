@@ -13,6 +13,7 @@ pub mod scenes;
 pub mod stage;
 pub mod synthesize;
 pub mod view;
+pub mod xr;
 
 use std::path::PathBuf;
 use std::rc::Rc;

@@ -10,7 +10,7 @@ use super::power::BatteryStatus;
 /// The first field of every line.
 pub const VERSION: u32 = 1;
 /// What stands for a missing value.
-const MISSING: &str = "na";
+pub(super) const MISSING: &str = "na";
 
 /// GPU time of one stage.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +103,8 @@ pub enum LineError {
     },
 }
 
-struct Na<T>(Option<T>, usize, &'static str);
+/// A value with so many decimals and its unit.
+pub(super) struct Na<T>(pub Option<T>, pub usize, pub &'static str);
 
 impl<T: Display> Display for Na<T> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -115,7 +116,7 @@ impl<T: Display> Display for Na<T> {
 }
 
 /// Text that cannot end its field.
-fn word(text: &str) -> String {
+pub(super) fn word(text: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "-._/".contains(c) { c } else { '-' };
     let word: String = text.chars().map(plain).collect();
     if word.is_empty() || word == MISSING { "-".into() } else { word }
@@ -197,15 +198,19 @@ pub fn fields(line: &str) -> impl Iterator<Item = Field<'_>> {
 }
 
 /// The fields of a line by key.
-struct Reader<'a>(Vec<Field<'a>>);
+pub(super) struct Reader<'a>(Vec<Field<'a>>);
 
 impl<'a> Reader<'a> {
-    fn text(&self, key: &'static str) -> Result<&'a str, LineError> {
+    pub fn new(line: &'a str) -> Reader<'a> {
+        Reader(fields(line).collect())
+    }
+
+    pub fn text(&self, key: &'static str) -> Result<&'a str, LineError> {
         let field = self.0.iter().find(|field| field.key == key);
         field.and_then(|field| field.value).ok_or(LineError::Missing(key))
     }
 
-    fn optional<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<Option<T>, LineError> {
+    pub fn optional<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<Option<T>, LineError> {
         number(key, self.text(key)?, unit)
     }
 
@@ -214,7 +219,7 @@ impl<'a> Reader<'a> {
         self.text(key).unwrap_or(MISSING)
     }
 
-    fn required<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<T, LineError> {
+    pub fn required<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<T, LineError> {
         self.optional(key, unit)?.ok_or_else(|| LineError::Value { key, value: MISSING.into() })
     }
 }
@@ -231,7 +236,7 @@ impl FromStr for Line {
     type Err = LineError;
 
     fn from_str(text: &str) -> Result<Line, LineError> {
-        let reader = Reader(fields(text).collect());
+        let reader = Reader::new(text);
         let version = format!("{VERSION}");
         if reader.0.first().is_none_or(|f| f.key != "v" || f.value != Some(version.as_str())) {
             return Err(LineError::Version);
