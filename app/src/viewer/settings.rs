@@ -558,6 +558,7 @@ mod tests {
             "near-field=1",
             "ipd=0.06",
             "duration=10",
+            "run=a",
             "participant=P03",
             "trial=4",
             "refresh-rate=90",
