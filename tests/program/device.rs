@@ -51,11 +51,9 @@ fn minute(script: &str) -> Capture {
     capture
 }
 
-/// The seconds from 1 to 61 that the capture has not.
+/// How many of the seconds from 1 to 61 the capture has not.
 fn missing(capture: &Capture) -> usize {
-    let has =
-        |second: &u32| capture.samples.iter().any(|sample| (sample.time_s - f64::from(*second)).abs() < 0.4);
-    (1..=61).filter(|second| !has(second)).count()
+    61 - capture.samples.iter().filter(|sample| (0.5..61.5).contains(&sample.time_s)).count()
 }
 
 fn fault(kind: &str, rest: &str) -> String {
@@ -74,7 +72,7 @@ fn nothing_is_lost_and_each_fault_is_named() {
         "{sample:?}"
     );
 
-    let away = fault("disconnect", "at = 20.0\nseconds = 25.0");
+    let away = fault("disconnect", "at = 20.5\nseconds = 25.0");
     let jump = fault("clock-jump", "at = 30.0\nby = -3600.0");
     for (script, expected, lost) in [
         (away.clone(), vec![Disconnected], 0),
@@ -179,7 +177,8 @@ fn mistakes_and_conditions_are_one_sentence() {
     write(at, "s.toml", &device(""));
     run(at, "device install --replay s.toml").refuses(&["target/apk/yoro.apk", "cargo xtask apk"]);
     run(at, "device list --replay none.toml").refuses(&["none.toml", "does not exist"]);
-    run(at, "device list --replay .").refuses(&["no capture"]);
+    fs::create_dir(at.join("empty")).unwrap();
+    run(at, "device list --replay empty").refuses(&["no capture"]);
     run(at, "device experiment none.toml --replay s.toml").refuses(&["none.toml"]);
     run(at, "device experiment s.toml --dry-run").refuses(&["s.toml", "device"]);
     run(at, "device run --set speed=1 --replay s.toml").refuses(&["speed"]);
@@ -301,7 +300,7 @@ fn an_experiment_goes_on_where_it_was_interrupted_or_killed() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     write(at, "e.toml", SMALL);
-    write(at, "s.toml", &two_devices("speed = 40.0", ""));
+    write(at, "s.toml", &two_devices("speed = 12.0", ""));
     let line = "device experiment e.toml --replay s.toml --serial SIM1 --out out";
     let folder = at.join("out/SIM1");
     let begun = |n: usize| {
@@ -378,7 +377,7 @@ fn what_the_device_does_not_allow_is_told() {
 #[test]
 fn a_dry_run_is_a_plan() {
     let dir = tempfile::tempdir().unwrap();
-    for (name, runs, length) in [("paper", 40, "7 h 3"), ("five-minutes", 4, "5 min")] {
+    for (name, runs, length) in [("paper", 40, "7 h 1"), ("five-minutes", 4, "5 min")] {
         let line = format!("device experiment {EXPERIMENTS}/{name}.toml --dry-run");
         let said = succeed(dir.path(), &line).stdout;
         assert!(said.contains(&format!("{runs} runs on a device: {length}")), "{said}");
@@ -456,6 +455,33 @@ fn a_log_is_followed() {
     assert!(said.contains("0 samples, 0 damaged lines") && said.contains("capture: log"), "{said}");
     let capture = read(&at.join("log"));
     assert!(capture.info.device.simulated && capture.info.method == "unknown", "{:?}", capture.info);
+    // Over everything that can happen to a log.
+    let faults = [
+        fault("disconnect", "at = 10.5\nseconds = 10.0"),
+        fault("log-ends", "at = 30.5"),
+        fault("clock-jump", "at = 35.5\nby = -100.0"),
+        fault("truncate", "at = 40.5"),
+        fault("tap", "at = 50.5"),
+        fault("reboot", "at = 60.5\nseconds = 10.0"),
+    ];
+    let running = "[[device]]\nserial = \"SIM1\"\nvr-api = true\n[device.running]\nmethod = \"mono\"\nscene = \"talk\"\n";
+    write(at, "s.toml", &format!("{running}{}", faults.concat()));
+    let run = succeed(at, "device logcat --seconds 90 --out live --replay s.toml");
+    assert!(run.stdout.contains("mono in talk") && run.stdout.contains("damaged line ("), "{}", run.stdout);
+    assert!(
+        run.stderr.contains("SIM1 is back after 10 s") && run.stderr.contains("was started anew"),
+        "{}",
+        run.stderr
+    );
+    let live = read(&at.join("live"));
+    let seconds: Vec<u32> = live.samples.iter().map(|sample| sample.time_s.round() as u32).collect();
+    assert_eq!(seconds, (1..=60).filter(|second| *second != 41).collect::<Vec<_>>());
+    assert_eq!(
+        (live.info.method.as_str(), live.samples[20].other["VrApi.Prd"].as_str()),
+        ("several", "38ms")
+    );
+    use FaultKind::*;
+    assert_eq!(kinds(&live), [Disconnected, ClockJump, DamagedLines, Rebooted]);
 }
 
 /// The program adb itself is not here: a shell script that answers as it does.
@@ -476,6 +502,7 @@ case "$*" in
     "install -r"*) echo Success ;;
     logcat*) exec tail -n +1 -f "$here/log" ;;
     *boot_id*) echo one-boot ;;
+    *date*) echo 1700000000.000000000 ;;
     "shell cat > "*) cat > "$here/put" ;;
     "shell cat "*) echo 'cat: No such file or directory' >&2; exit 1 ;;
     *"dumpsys battery") printf '  AC powered: false\n  level: 80\n  temperature: 250\n' ;;
@@ -528,7 +555,7 @@ fn the_program_adb_is_asked_as_it_should_be() {
         "--es duration 4.5",
         "settings put system screen_brightness 100",
         "shell am force-stop io.github.yoro",
-        "logcat -v threadtime -v epoch -v usec -T 1 YORO:V VrApi:V",
+        "logcat -v threadtime -v epoch -v usec -T 1700000000.000000 YORO:V VrApi:V",
     ] {
         assert!(asked.contains(words), "{words}: {asked}");
     }

@@ -52,9 +52,8 @@ impl<'a> Follower<'a> {
     /// [`DeviceError`].
     pub fn new(device: &'a dyn Device, from_oldest: bool) -> Result<Follower<'a>, DeviceError> {
         let boot = phone::boot_id(device)?;
-        // One line from before tells that the log is being read; the number is of lines, not a time.
-        let since = if from_oldest { None } else { Some("1") };
-        let stream = Some(device.logcat(since)?);
+        let since = if from_oldest { None } else { Some(phone::clock(device)?) };
+        let stream = Some(device.logcat(since.as_deref())?);
         let seen = VecDeque::with_capacity(REMEMBERED);
         Ok(Follower { device, stream, seen, overlaps: false, clock_s: None, boot, lost_at: None })
     }

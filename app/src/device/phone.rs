@@ -89,6 +89,21 @@ pub fn boot_id(device: &dyn Device) -> Result<String, DeviceError> {
     Ok(device.shell(&["cat", "/proc/sys/kernel/random/boot_id"])?.trim().to_owned())
 }
 
+/// The device's clock as logcat takes it: seconds since 1970 with decimals.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn clock(device: &dyn Device) -> Result<String, DeviceError> {
+    let text = device.shell(&["date", "+%s.%N"])?;
+    let seconds = text.trim().parse::<f64>().ok().filter(|seconds| seconds.is_finite());
+    let refused = || DeviceError::Refused {
+        serial: device.serial().into(),
+        command: "date".into(),
+        reason: format!("it says \"{}\"", text.trim()),
+    };
+    seconds.map(|seconds| format!("{seconds:.6}")).ok_or_else(refused)
+}
+
 /// Version of the application on the device; none if it is not there.
 ///
 /// # Errors

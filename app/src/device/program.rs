@@ -46,6 +46,8 @@ impl AdbProgram {
                 folders.find_map(|folder| Some(folder.join(&name)).filter(|path| path.is_file()))
             }
         };
+        // Without its folder, a program is looked for in PATH.
+        let program = program.map(|path| std::path::absolute(&path).unwrap_or(path));
         let looked = given.map_or("PATH and ANDROID_HOME".into(), |path| path.display().to_string());
         let adb = AdbProgram { program: program.ok_or(DeviceError::NoAdb { looked })? };
         // A server that a later command starts would keep that command's pipes open.

@@ -68,13 +68,17 @@ pub struct Reading {
     /// The run whose lines count; all if none.
     run: Option<String>,
     session: Option<Session>,
-    /// What the runtime has said since the last sample.
-    runtime: BTreeMap<String, String>,
+    /// What the runtime has said since the last sample: its own sample, should nobody else say anything.
+    runtime: Option<Sample>,
     /// The clock at the first line of a log that has only the runtime's lines.
     runtime_begin: Option<f64>,
     /// Time of the last sample.
     time_s: f64,
     methods: Vec<(String, String)>,
+    /// Whether the lines have nothing before the message; none until one was recognised.
+    is_raw: Option<bool>,
+    /// Lines before that, which are damaged, or words in a raw log.
+    unknown: u64,
 
     seconds: u64,
     damaged: Count,
@@ -106,6 +110,11 @@ impl Reading {
         self.seconds
     }
 
+    /// Whether any line was one of logcat's.
+    pub fn has_read(&self) -> bool {
+        self.is_raw.is_some()
+    }
+
     /// How many damaged lines there were.
     pub fn damaged(&self) -> u64 {
         self.damaged.times
@@ -119,11 +128,24 @@ impl Reading {
     /// Reads a line of logcat. `passed_s` is how long by this computer's clock there was no line before it, where that is
     /// known: it stands in for the device's clock where that makes no sense.
     pub fn line(&mut self, line: &str, passed_s: Option<f64>) -> News {
-        match log::parse(line) {
+        let kind = log::parse(line);
+        if let (None, Kind::Entry(entry)) = (self.is_raw, &kind) {
+            let is_raw = entry.time_s.is_none() && entry.pid.is_none();
+            self.is_raw = Some(is_raw);
+            self.damaged.add(if is_raw { 0 } else { self.unknown }, 0.0);
+        }
+        match kind {
             Kind::Entry(entry) if entry.tag == LOG_TAG => self.own(&entry, passed_s),
             Kind::Entry(entry) if entry.tag == VRAPI_TAG => self.runtime(&entry),
             Kind::Entry(_) | Kind::Mark => News::Other,
-            Kind::Damaged => self.damage("it is no line of logcat".into()),
+            Kind::Damaged => match self.is_raw {
+                Some(false) => self.damage("it is no line of logcat".into()),
+                Some(true) => News::Other,
+                None => {
+                    self.unknown += 1;
+                    News::Other
+                }
+            },
         }
     }
 
@@ -219,7 +241,7 @@ impl Reading {
     }
 
     fn sample(&mut self, line: Line, message: &str, time_s: f64) -> Sample {
-        let mut other = std::mem::take(&mut self.runtime);
+        let mut other = self.runtime.take().map(|runtime| runtime.other).unwrap_or_default();
         // What the run says already needs no column.
         let is_known = |key: &str| KNOWN.contains(&key) || key == "method" || key == "scene";
         for field in fields(message).filter(|field| !is_known(field.key)) {
@@ -275,14 +297,11 @@ impl Reading {
         let Some((fps, refresh)) = value("FPS").and_then(|rates| rates.split_once('/')) else {
             return self.damage("a line of VrApi without FPS=a/b: it is cut or damaged".into());
         };
-        if self.session.is_some() || self.run.is_some() {
-            self.runtime = found;
-            return News::Other;
-        }
         let number = |text: Option<&str>, unit: &str| text?.strip_suffix(unit)?.parse::<f64>().ok();
         let begin = entry.time_s.map(|clock| *self.runtime_begin.get_or_insert(clock));
         // A log without times has at least a line a second.
-        let time_s = entry.time_s.zip(begin).map_or(self.seconds as f64, |(clock, begin)| clock - begin);
+        let count = self.runtime.as_ref().map_or(0.0, |before| before.time_s + 1.0);
+        let time_s = entry.time_s.zip(begin).map_or(count, |(clock, begin)| clock - begin);
         let celsius = value("Temp").and_then(|text| text.split('/').next());
         let sample = Sample {
             time_s,
@@ -294,9 +313,24 @@ impl Reading {
             other: found,
             ..Sample::default()
         };
-        self.time_s = time_s;
+        let before = self.runtime.replace(sample);
+        // Beside the application's own lines, two between two of them are one too many.
+        if self.session.is_some() || self.run.is_some() {
+            return News::Other;
+        }
+        before.map_or(News::Other, |before| News::Sample(Box::new(self.alone(before))))
+    }
+
+    fn alone(&mut self, sample: Sample) -> Sample {
+        self.time_s = sample.time_s;
         self.seconds += 1;
-        News::Sample(Box::new(sample))
+        sample
+    }
+
+    /// The last sample of a log that has only the runtime's lines: each waits for a line of the application.
+    pub fn end(&mut self) -> Option<Sample> {
+        let last = self.runtime.take()?;
+        (self.session.is_none() && self.run.is_none()).then(|| self.alone(last))
     }
 
     /// What was wrong up to now, in the order of [`FaultKind`].
@@ -412,9 +446,11 @@ mod tests {
     #[test]
     fn unknown_keys_stages_and_the_runtime_are_kept() {
         let mut reading = Reading::default();
+        assert_eq!(reading.line("1000000000.2 1 2 I VrApi   : FPS=70/72", None), News::Other);
         let runtime = "1000000000.5 1 2 I VrApi   : FPS=72/72,Stale=3,1171/441MHz,LCnt=2(DR72,LM2),GPU%=0.43";
         let mut text = line(1.0).to_string().replace("App=na", "App=2.00ms(march=1.500,lens=0.500)");
-        sample(reading.line(&logged(1e9, 7, &text), None));
+        let first = sample(reading.line(&logged(1e9, 7, &text), None));
+        assert_eq!((first.other["VrApi.FPS"].as_str(), reading.samples()), ("70/72", 1));
         assert_eq!(reading.line(runtime, None), News::Other);
         text = text.replace("t=1.0s", "t=2.0s") + ",gaze=0.5";
         let kept = sample(reading.line(&logged(1e9 + 1.0, 7, &text), None));
@@ -430,14 +466,21 @@ mod tests {
     #[test]
     fn another_application_on_a_headset() {
         let mut reading = Reading::default();
+        let mut read = Vec::new();
         for i in 0..3 {
             let text = format!("100000000{i}.5 1 2 I VrApi   : FPS=71/72,Stale=3,Temp=32.2C/0.0C,App=4.49ms");
-            let read = sample(reading.line(&text, None));
-            assert_eq!((read.time_s, read.fps, read.refresh_hz), (i as f64, Some(71.0), Some(72.0)));
-            assert_eq!((read.stale, read.gpu_ms, read.battery_celsius), (Some(3.0), Some(4.49), Some(32.2)));
+            if let News::Sample(sample) = reading.line(&text, None) {
+                read.push(*sample);
+            }
         }
         assert!(matches!(reading.line("1000000009.5 1 2 I VrApi   : FPS=7", None), News::Damaged(_)));
-        assert_eq!(kinds(&reading), [FaultKind::DamagedLines]);
+        read.extend(reading.end());
+        assert_eq!(read.iter().map(|sample| sample.time_s).collect::<Vec<_>>(), [0.0, 1.0, 2.0]);
+        for sample in read {
+            assert_eq!((sample.fps, sample.refresh_hz, sample.stale), (Some(71.0), Some(72.0), Some(3.0)));
+            assert_eq!((sample.gpu_ms, sample.battery_celsius), (Some(4.49), Some(32.2)));
+        }
+        assert_eq!((kinds(&reading), reading.end()), (vec![FaultKind::DamagedLines], None));
     }
 
     #[test]
@@ -480,6 +523,21 @@ mod tests {
         assert_eq!((faults[4].at_s, faults[6].at_s), (Some(1.0), Some(2.0)));
         // 3, 5 and 6, and 9 to 27.
         assert!(faults[6].detail.starts_with("22 seconds"), "{faults:?}");
+    }
+
+    #[test]
+    fn what_is_damaged_depends_on_the_format() {
+        let text = line(1.0).to_string();
+        let of = |lines: &[&str]| {
+            let mut reading = Reading::default();
+            lines.iter().for_each(|line| drop(reading.line(line, None)));
+            (reading.samples(), reading.damaged())
+        };
+        // Only messages: other words are messages, too.
+        assert_eq!(of(&["yoro 0.1.0 starts", &text, "rating,v=1", &text[..50]]), (1, 1));
+        let full = logged(1e9, 7, &text);
+        assert_eq!(of(&["00I YORO    : v=1", &full, "10000000"]), (1, 2));
+        assert_eq!(of(&["nothing", "of ours"]), (0, 0));
     }
 
     #[test]

@@ -151,7 +151,8 @@ pub fn capture(
         writer: Writer::create(folder, info)?,
         own_faults: Vec::new(),
         restarts: 0,
-        last_line_s: started_unix_s,
+        heard_s: started_unix_s,
+        silent_since_s: started_unix_s,
         delay_s: 0.0,
         has_ended: false,
     };
@@ -182,8 +183,11 @@ pub fn capture(
                 }
                 _ => Outcome::Interrupted { reason: error.to_string() },
             };
-            session.renew_faults()?;
-            session.writer.finish(outcome)?;
+            // Where the disk is full, that is what counts, not that it still is.
+            let noted = session.renew_faults().and_then(|()| Ok(session.writer.finish(outcome)?));
+            if let Err(again) = noted {
+                log::debug!("{again}");
+            }
             Err(error)
         }
     }
@@ -201,8 +205,10 @@ struct Session<'a> {
     /// What went wrong between this computer and the device; the rest is in the log.
     own_faults: Vec<Fault>,
     restarts: u32,
-    /// When the last line of the run came, or the application was started.
-    last_line_s: f64,
+    /// When the last second came.
+    heard_s: f64,
+    /// Since when nothing has come, after the last second or the last start.
+    silent_since_s: f64,
     /// How late lines come that the device has kept while it was gone.
     delay_s: f64,
     /// Whether the application has logged its summary.
@@ -212,7 +218,12 @@ struct Session<'a> {
 impl Session<'_> {
     /// Starts the application for what is left of the run.
     fn start(&mut self) -> Result<(), DeviceError> {
-        let left_s = self.plan.seconds() - self.reading.time_s() + MARGIN_S;
+        // Time goes on while the application does not run.
+        let passed_s = match self.reading.samples() {
+            0 => 0.0,
+            _ => self.reading.time_s() + self.device.now() - self.heard_s,
+        };
+        let left_s = self.plan.seconds() - passed_s + MARGIN_S;
         let settings = Settings {
             duration: Some(left_s.max(MARGIN_S) as f32),
             auto_exit: true,
@@ -221,7 +232,7 @@ impl Session<'_> {
         };
         self.bar.set_message("starting");
         self.has_ended = false;
-        self.last_line_s = self.device.now();
+        self.silent_since_s = self.device.now();
         phone::start(self.device, &settings)
     }
 
@@ -254,11 +265,11 @@ impl Session<'_> {
     fn line(&mut self, line: &str) -> Result<Option<Outcome>, DeviceError> {
         self.writer.log(line)?;
         let now = self.device.now();
-        let passed_s = now - self.last_line_s + self.delay_s;
+        let passed_s = now - self.heard_s + self.delay_s;
         let damaged = self.reading.damaged();
         let outcome = match self.reading.line(line, Some(passed_s)) {
             News::Sample(sample) => {
-                self.last_line_s = now;
+                (self.heard_s, self.silent_since_s) = (now, now);
                 self.writer.sample(&sample)?;
                 self.show(&sample);
                 self.stranger(&sample)
@@ -268,7 +279,7 @@ impl Session<'_> {
                 None
             }
             News::Damaged(why) => {
-                self.bar.suspend(|| log::warn!("{}: a damaged line: {why}", self.device.serial()));
+                self.bar.suspend(|| log::warn!("{}: a line is left out: {why}", self.device.serial()));
                 None
             }
             News::Other => None,
@@ -335,13 +346,16 @@ impl Session<'_> {
                 format!("{} was lost and did not come back within {seconds:.0} s", self.device.serial());
             return Ok((seconds > LOST_PATIENCE_S).then_some(Outcome::Interrupted { reason }));
         }
-        let silent_s = self.device.now() - self.last_line_s;
+        let silent_s = self.device.now() - self.silent_since_s;
         if silent_s < SILENCE_S {
             return Ok(None);
         }
         let running = match phone::is_running(self.device) {
-            // The log will say so, too.
-            Err(error) if error.is_lost() => return Ok(None),
+            // Mostly the log ends, too; but adb may wait for the device without a word.
+            Err(error) if error.is_lost() => {
+                let outcome = Outcome::Interrupted { reason: error.to_string() };
+                return Ok((silent_s > LOST_PATIENCE_S).then_some(outcome));
+            }
             answer => answer?,
         };
         if running {

@@ -19,7 +19,7 @@ pub fn run(args: &ListArgs) -> anyhow::Result<()> {
         return Err(DeviceError::NoDevice.into());
     }
     println!(
-        "{:<22} {:<14} {:<26} {:<8} {:>7} {:>7}  {:<8} YORO",
+        "{:<22} {:<14} {:<36} {:<8} {:>7} {:>7}  {:<8} YORO",
         "SERIAL", "STATE", "DEVICE", "ANDROID", "BATTERY", "TEMP", "PLUGGED"
     );
     for listed in devices {
@@ -45,7 +45,7 @@ fn details(device: &dyn Device) -> Result<String, DeviceError> {
         value.map_or("na".into(), |value| format!("{value:.decimals$} {unit}"))
     };
     Ok(format!(
-        " {name:<26} {:<8} {:>7} {:>7}  {:<8} {}",
+        " {name:<36} {:<8} {:>7} {:>7}  {:<8} {}",
         info.android,
         number(battery.level_percent, 0, "%"),
         number(battery.celsius, 1, "C"),

@@ -78,7 +78,7 @@ fn saved(args: &LogcatArgs, file: &Path) -> anyhow::Result<()> {
         table.line(String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']), None)?;
         line.clear();
     }
-    if table.reading.samples() == 0 && table.reading.damaged() == 0 {
+    if !table.reading.has_read() {
         bail!(
             "{} has no line of the tags YORO and VrApi: save it by adb logcat -v threadtime -v epoch",
             file.display()
@@ -196,10 +196,7 @@ impl Table {
         }
         match self.reading.line(line, passed_s) {
             News::Sample(sample) => {
-                if let Some(writer) = &mut self.writer {
-                    writer.sample(&sample)?;
-                }
-                self.row(&sample)?;
+                self.sample(&sample)?;
             }
             News::Damaged(why) => {
                 let text: String = line.chars().take(60).collect();
@@ -208,6 +205,13 @@ impl Table {
             News::Summary | News::Other => {}
         }
         Ok(())
+    }
+
+    fn sample(&mut self, sample: &Sample) -> anyhow::Result<()> {
+        if let Some(writer) = &mut self.writer {
+            writer.sample(sample)?;
+        }
+        self.row(sample)
     }
 
     fn row(&mut self, sample: &Sample) -> anyhow::Result<()> {
@@ -269,6 +273,9 @@ impl Table {
     }
 
     fn finish(mut self) -> anyhow::Result<()> {
+        if let Some(last) = self.reading.end() {
+            self.sample(&last)?;
+        }
         let faults: Vec<Fault> = self.own_faults.iter().cloned().chain(self.reading.faults()).collect();
         for fault in &faults {
             let at = fault.at_s.map_or(String::new(), |at_s| format!(" (from {at_s:.0} s)"));

@@ -58,6 +58,8 @@ pub struct Phone {
     pub state: String,
     /// Whether the application is there from the beginning.
     pub installed: bool,
+    /// The application runs from the beginning, with these settings.
+    pub running: Option<BTreeMap<String, String>>,
     /// Whether there is no room to install anything.
     pub storage_full: bool,
     /// Capacity of the battery in mAh.
@@ -104,6 +106,7 @@ impl Default for Phone {
             android: "14".into(),
             state: "device".into(),
             installed: true,
+            running: None,
             storage_full: false,
             capacity_mah: 4500.0,
             level_percent: 90.0,

@@ -118,7 +118,8 @@ impl World {
             .serial
             .bytes()
             .fold(seed, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
-        World {
+        let running = script.running.clone();
+        let mut world = World {
             speed,
             now: BEGIN,
             clock_offset: 0.25,
@@ -142,7 +143,18 @@ impl World {
             truncate: false,
             random: Pcg64Mcg::seed_from_u64(own),
             script,
+        };
+        if let Some(settings) = running {
+            let words: Vec<String> =
+                settings.iter().flat_map(|(k, v)| ["--es".into(), k.clone(), v.clone()]).collect();
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            match world.start("", &words) {
+                Ok(said) if !said.starts_with("Error") => {}
+                Ok(said) => ::log::warn!("the replay starts nothing: {}", said.trim()),
+                Err(error) => ::log::warn!("the replay starts nothing: {error}"),
+            }
         }
+        world
     }
 
     /// This computer's clock in seconds since 1970.
@@ -481,6 +493,7 @@ impl World {
                 self.kept.files.remove(*path);
                 self.keep().map(|()| String::new())
             }
+            ["date", "+%s.%N"] => Ok(format!("{:.9}\n", self.now + self.clock_offset)),
             ["dumpsys", "battery"] => Ok(self.battery()),
             ["dumpsys", "batterystats"] => {
                 Ok(format!("  Estimated battery capacity: {:.0} mAh\n", self.script.capacity_mah))
