@@ -17,3 +17,4 @@ mod run;
 mod scenes;
 mod synthesize;
 mod view;
+mod xr;

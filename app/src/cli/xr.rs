@@ -73,7 +73,11 @@ impl XrArgs {
         let places = match &self.runtime {
             None => runtime::linux_places(|name| std::env::var_os(name)),
             Some(file) => {
-                ensure!(file.exists(), "there is no runtime {}: give its manifest or a loader", file.display());
+                ensure!(
+                    file.exists(),
+                    "there is no runtime {}: give its manifest or a loader",
+                    file.display()
+                );
                 let is_manifest = files::has_extension(file, &["json"]);
                 vec![if is_manifest { Place::Manifest(file.clone()) } else { Place::Loader(file.clone()) }]
             }
@@ -324,7 +328,11 @@ impl fmt::Display for XrSummary {
             writeln!(f, "sessions  {}", self.restarts + 1)?;
         }
         writeln!(f, "scene     {}", self.scene)?;
-        writeln!(f, "\n{:<22}{:>8}{:>10}{:>10}{:>8}{:>8}", "method", "frames", "CPU ms", "GPU ms", "FPS", "stale")?;
+        writeln!(
+            f,
+            "\n{:<22}{:>8}{:>10}{:>10}{:>8}{:>8}",
+            "method", "frames", "CPU ms", "GPU ms", "FPS", "stale"
+        )?;
         let number = |value: Option<f64>| value.map_or("na".to_owned(), |value| format!("{value:.2}"));
         for m in &self.methods {
             writeln!(
