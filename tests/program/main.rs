@@ -6,6 +6,7 @@ mod program;
 mod bench;
 mod compare;
 mod dataset;
+mod device;
 mod interrupt;
 mod memory;
 mod mistakes;

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod compare;
 pub mod dataset;
+pub mod device;
 pub mod info;
 pub mod machine;
 pub mod render;

@@ -3,5 +3,18 @@
 //! ```text
 //! adb / replayed device ──> capture (a folder a run) ──> report (power, FPS, ... per method and scene)
 //! ```
+//!
+//! [`adb`] says what is asked of a device; [`program`] asks the program adb, [`replay`] plays a script. [`follow`] reads a
+//! log over lost connections, [`reading`] makes samples of its lines, [`run`] captures one run, and [`experiment`] many.
 
+pub mod adb;
 pub mod capture;
+pub mod experiment;
+pub mod follow;
+pub mod log;
+pub mod phone;
+pub mod pins;
+pub mod program;
+pub mod reading;
+pub mod replay;
+pub mod run;

@@ -44,6 +44,7 @@ impl Viewer {
             self.quality = Quality::FULL;
         }
         if settings.duration != before.duration {
+            self.questionnaire = None;
             self.is_over = false;
         }
         if let Some(graphics) = &mut self.graphics {

@@ -24,6 +24,7 @@ mod lens;
 mod loading;
 mod optics;
 mod params;
+mod rating;
 mod settings;
 #[cfg(all(test, feature = "desktop"))]
 mod tests;
@@ -49,9 +50,10 @@ use crate::render::{GpuScene, Renderer};
 use crate::scene::{Scene, Viewpoint};
 use crate::stereo::{self, EyeTarget, Method, StereoError, StereoMethod};
 use crate::synthesis::{ImBufferSize, Pipeline};
-use crate::telemetry::{DeviceState, Line, SessionSummary, Telemetry, ViewerState};
+use crate::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 use hud::Hud;
 use loading::Loader;
+use rating::Questionnaire;
 
 /// The IPD changes by this much at a time, in metres.
 const IPD_STEP: f32 = 0.001;
@@ -119,7 +121,11 @@ pub enum Action {
     Viewpoint(usize),
     /// Another scene is being loaded: [`Viewer::scene_name`].
     Scene,
-    /// Nothing, because there is no other method, viewpoint or scene.
+    /// The marker of the slider was moved to this rating.
+    Marker(f32),
+    /// A question was answered: the last of [`Viewer::ratings`].
+    Answer,
+    /// Nothing, because a question is being asked, or there is no other method, viewpoint or scene.
     Nothing,
 }
 
@@ -132,6 +138,8 @@ impl fmt::Display for Action {
             Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
             Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),
             Action::Scene => f.write_str("another scene"),
+            Action::Marker(rating) => write!(f, "marker: {rating}"),
+            Action::Answer => f.write_str("answered"),
             Action::Nothing => f.write_str("nothing"),
         }
     }
@@ -170,8 +178,8 @@ pub struct FrameReport {
     pub gpu_ms: Option<f32>,
     /// A second has passed: collect a [`DeviceState`] and call [`Viewer::telemetry`].
     pub telemetry_due: bool,
-    /// The session's `duration` has passed since the scene came into view: log [`Viewer::summary`]. True in one
-    /// report only.
+    /// The session's `duration` has passed since the scene came into view, and its questions are answered: log
+    /// [`Viewer::summary`]. True in one report only.
     pub session_over: bool,
     /// The session is over and `auto-exit` is on: end the program. True from then on.
     pub exit: bool,
@@ -225,6 +233,9 @@ pub struct Viewer {
     text: String,
     now_ns: i64,
     ready_ns: Option<i64>,
+    /// What is asked after the session; none before its end.
+    questionnaire: Option<Questionnaire>,
+    ratings: Vec<Rating>,
     is_over: bool,
 }
 
@@ -261,6 +272,8 @@ impl Viewer {
             text: String::with_capacity(3 * hud::COLUMNS),
             now_ns: 0,
             ready_ns: None,
+            questionnaire: None,
+            ratings: Vec::new(),
             is_over: false,
             settings,
         })
@@ -300,6 +313,7 @@ impl Viewer {
         self.source = source;
         self.failure = None;
         self.ready_ns = None;
+        self.questionnaire = None;
         self.is_over = false;
     }
 
@@ -308,6 +322,9 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::Gl`] when a method cannot be made; the one before stays.
     pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
+        if self.is_asking() {
+            return Ok(self.reply(event));
+        }
         let action = match event {
             Event::Tap => self.other_method(1)?,
             Event::PreviousMethod => self.other_method(-1)?,
@@ -332,10 +349,69 @@ impl Viewer {
             Action::Recenter => "recentered".into(),
             Action::Ipd(ipd) => format!("IPD {:.0} mm", ipd * 1e3),
             Action::Viewpoint(n) => format!("viewpoint {n}"),
-            Action::Hud(_) | Action::Scene | Action::Nothing => String::new(),
+            Action::Hud(_) | Action::Scene | Action::Marker(_) | Action::Answer | Action::Nothing => {
+                String::new()
+            }
         };
         self.message_until_ns = if self.message.is_empty() { 0 } else { self.now_ns + MESSAGE_NS };
         Ok(action)
+    }
+
+    /// Whether a question is in view.
+    fn is_asking(&self) -> bool {
+        self.questionnaire.as_ref().is_some_and(|questions| !questions.is_done())
+    }
+
+    /// What an event means while a question is in view.
+    fn reply(&mut self, event: Event) -> Action {
+        let Some(questions) = &mut self.questionnaire else { return Action::Nothing };
+        let mut nudge = |steps| {
+            questions.nudge(steps, self.now_ns);
+            Action::Marker(questions.rating())
+        };
+        match event {
+            Event::IpdUp => nudge(1.0),
+            Event::IpdDown => nudge(-1.0),
+            Event::Tap => {
+                self.answer();
+                Action::Answer
+            }
+            Event::LongPress => {
+                questions.recenter();
+                Action::Recenter
+            }
+            Event::PreviousMethod | Event::ToggleHud | Event::NextViewpoint | Event::NextScene => {
+                Action::Nothing
+            }
+        }
+    }
+
+    /// Logs the answer to the question in view.
+    fn answer(&mut self) {
+        let Some((question, rating)) = self.questionnaire.as_mut().and_then(Questionnaire::answer) else {
+            return;
+        };
+        let rating = Rating {
+            participant: self.settings.participant.clone(),
+            trial: self.settings.trial,
+            method: self.method.name().to_owned(),
+            pipeline: self.uses_synthesis().then(|| self.pipeline.name().to_owned()),
+            scene: self.scene_name.clone(),
+            question,
+            rating: f64::from(rating),
+        };
+        log::info!("{rating}");
+        self.ratings.push(rating);
+    }
+
+    /// Asks the questions of the settings when the session's time is up; true when there is nothing more to ask.
+    fn ask(&mut self) -> bool {
+        let Settings { questions, best_rating, .. } = &self.settings;
+        let asked = self.questionnaire.get_or_insert_with(|| Questionnaire::new(questions, *best_rating));
+        if asked.has_settled(self.now_ns) {
+            self.answer();
+        }
+        !self.is_asking()
     }
 
     fn change_ipd(&mut self, change: f32) -> Action {
@@ -435,6 +511,9 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
     pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
+        if let Some(questions) = &mut self.questionnaire {
+            questions.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
+        }
         let unfit = self.method.needs_aligned_eyes().then(|| pair.synthesis(GuardBand::None).err()).flatten();
         let substitute = unfit.is_some();
         if unfit.as_ref().map(std::mem::discriminant) != self.unfit.as_ref().map(std::mem::discriminant) {
@@ -475,7 +554,14 @@ impl Viewer {
     /// [`ViewerError::NoContext`].
     pub fn hud(&mut self) -> Result<Option<Panel<'_>>, ViewerError> {
         self.write_text();
+        let is_asking = self.is_asking();
         let graphics = self.graphics.as_mut().ok_or(ViewerError::NoContext)?;
+        if is_asking {
+            let progress = self.questionnaire.as_ref().map(Questionnaire::position);
+            return Ok(Some(
+                graphics.hud.set(hud::Content { text: &self.text, progress }, Placement::Middle),
+            ));
+        }
         let is_empty = graphics.stage.is_none();
         if !self.hud_shown && !is_empty && self.now_ns >= self.message_until_ns {
             return Ok(None);
@@ -507,7 +593,8 @@ impl Viewer {
         }
         let shown_ns = self.ready_ns.map_or(0, |ready| timing.now_ns - ready);
         let was_over = self.is_over;
-        self.is_over |= self.settings.duration.is_some_and(|s| shown_ns as f64 >= s as f64 * 1e9);
+        let is_time_up = self.settings.duration.is_some_and(|s| shown_ns as f64 >= s as f64 * 1e9);
+        self.is_over = self.is_over || (is_time_up && self.ask());
         Ok(FrameReport {
             scene,
             late_refreshes,
@@ -539,6 +626,7 @@ impl Viewer {
             scene: self.scene_name.clone(),
             render_scale: self.render_scale(),
             imbuffer: self.imbuffer_divisor(),
+            run: self.settings.run.clone(),
         };
         let line = self.telemetry.line(now_ns, &state, device);
         self.last_line = Some(line.clone());
@@ -548,6 +636,11 @@ impl Viewer {
     /// The session since the scene came into view, for the log at its end.
     pub fn summary(&self, now_ns: i64) -> SessionSummary {
         self.telemetry.summary(now_ns)
+    }
+
+    /// The answers to the questions of the settings so far; each is logged when it is given.
+    pub fn ratings(&self) -> &[Rating] {
+        &self.ratings
     }
 
     /// The settings the viewer was made with.
@@ -690,6 +783,9 @@ impl Viewer {
 
     /// What the HUD says now.
     fn write_text(&mut self) {
+        if let Some(questions) = self.questionnaire.as_ref().filter(|questions| !questions.is_done()) {
+            return questions.write(&mut self.text);
+        }
         let pipeline = self.uses_synthesis().then(|| self.pipeline.name());
         let event = match &self.loader {
             Some(_) => hud::Happening::Loading(&self.scene_name),

@@ -168,7 +168,17 @@ pub struct Settings {
     /// Length of the session in seconds, after which its summary is logged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub duration: Option<f32>,
-    /// End the program after `duration`.
+    /// What is asked after `duration`, to be answered on a slider; a `-` in a question is shown as a space.
+    pub questions: Vec<String>,
+    /// Ratings go from 1 (worst) to this, 2 to 100.
+    pub best_rating: u32,
+    /// Who answers, in the log. Words and numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub participant: Option<String>,
+    /// Number of the trial, in the log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trial: Option<u32>,
+    /// End the program after `duration` and the questions.
     pub auto_exit: bool,
     /// On what the eyes are shown.
     pub display: DisplayKind,
@@ -179,6 +189,9 @@ pub struct Settings {
     pub performance: Performance,
     /// Measure the GPU time of each stage, where the driver has timer queries.
     pub profiling: bool,
+    /// Name of this run in the log line, for scripts that start several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
 }
 
 /// The keys of [`Settings`], in order.
@@ -210,15 +223,30 @@ pub const KEYS: &[&str] = &[
     "bloom",
     "point-lights",
     "duration",
+    "questions",
+    "best-rating",
+    "participant",
+    "trial",
     "auto-exit",
     "display",
     "refresh-rate",
     "performance",
     "profiling",
+    "run",
 ];
 
 /// Keys that may be left to the program: the value `auto` takes them back.
-const OPTIONAL: &[&str] = &["guard-band", "anti-aliasing", "near-field", "ipd", "duration", "refresh-rate"];
+const OPTIONAL: &[&str] = &[
+    "guard-band",
+    "anti-aliasing",
+    "near-field",
+    "ipd",
+    "duration",
+    "participant",
+    "trial",
+    "refresh-rate",
+    "run",
+];
 
 impl Default for Settings {
     fn default() -> Settings {
@@ -252,11 +280,16 @@ impl Default for Settings {
             bloom: true,
             point_lights: MAX_POINT_LIGHTS / 2,
             duration: None,
+            questions: Vec::new(),
+            best_rating: 5,
+            participant: None,
+            trial: None,
             auto_exit: false,
             display: DisplayKind::Auto,
             refresh_rate: None,
             performance: Performance::default(),
             profiling: true,
+            run: None,
         }
     }
 }
@@ -396,6 +429,7 @@ impl Settings {
                 self.refresh_rate.is_none_or(|hz| (1.0..=1000.0).contains(&hz)),
                 "give refreshes per second, such as 90, or auto",
             ),
+            "best-rating" => ensure((2..=100).contains(&self.best_rating), "give a number from 2 to 100"),
             "duration" => ensure(
                 self.duration.is_none_or(|s| s > 0.0 && s.is_finite()),
                 "give seconds above 0, or auto",
@@ -524,6 +558,9 @@ mod tests {
             "near-field=1",
             "ipd=0.06",
             "duration=10",
+            "run=a",
+            "participant=P03",
+            "trial=4",
             "refresh-rate=90",
         ]);
         let table = Table::try_from(full.unwrap()).unwrap();
@@ -583,6 +620,7 @@ mod tests {
         refused("seed=-1", &["\"seed\""]);
         refused("methods=yoro,fast", &["\"methods\"", "fast"]);
         refused("display=oculus", &["\"display\"", "openxr", "cardboard"]);
+        refused("best-rating=1", &["\"best-rating\"", "2 to 100"]);
         refused("refresh-rate=0", &["\"refresh-rate\"", "auto"]);
     }
 

@@ -280,3 +280,43 @@ fn a_scene_that_cannot_be_loaded_is_said_in_view() {
     let mistake = Cardboard::new(settings(&["scene=palace"]), screen(), &folders).err().unwrap().to_string();
     assert!(mistake.contains("palace") && mistake.contains("room.obj"), "{mistake}");
 }
+
+#[test]
+fn questions_are_asked_after_the_session_and_answered_by_head_or_keys() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let settings = ["duration=0.1", "auto-exit=true", "hud=false", "participant=P03", "trial=4"];
+    let questions = ["questions=image-quality,comfort", "method=mono"];
+    let mut run = Run::new(headless.gl(), &[&settings[..], &questions].concat());
+    run.load();
+    let seen = run.frame();
+    assert!(!seen.session_over);
+    let scene = run.image();
+    for _ in 0..8 {
+        assert!(!run.frame().session_over, "it is not over before the questions are answered");
+    }
+    assert_ne!(run.image(), scene, "the panel");
+    // Keys mean something else now, and the method stays what is being judged.
+    assert_eq!(run.viewer.event(Event::IpdUp).unwrap(), Action::Marker(3.5));
+    assert_eq!(run.viewer.event(Event::NextViewpoint).unwrap(), Action::Nothing);
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Answer);
+    assert_eq!(run.viewer.viewer().method(), Method::Mono);
+    // The second question: the head turns to the left and stays there.
+    let hold = |run: &mut Run, left: f32| {
+        let head = Quat::from_rotation_y(left);
+        run.viewer.hold_head(Some(HeldHead { rendered: head, displayed: head }));
+    };
+    hold(&mut run, 0.0);
+    run.frame();
+    hold(&mut run, 0.35);
+    let mut report = run.frame();
+    for _ in 0..6 * 60 {
+        if report.session_over {
+            break;
+        }
+        report = run.frame();
+    }
+    assert!(report.session_over && report.exit, "a marker left alone is an answer");
+    let said: Vec<String> = run.viewer.viewer().ratings().iter().map(ToString::to_string).collect();
+    let line = "rating,v=1,participant=P03,trial=4,method=mono,pipeline=na,scene=prototype,question=";
+    assert_eq!(said, [format!("{line}image-quality,value=3.5"), format!("{line}comfort,value=1.0")]);
+}
