@@ -29,6 +29,8 @@ const IDLE_MILLIWATTS: f64 = 300.0;
 const CELSIUS_PER_WATT: f64 = 5.0;
 /// Seconds after which a difference of temperature has fallen to a third.
 const WARMING_S: f64 = 400.0;
+/// By how much the same run differs from time to time, as a share.
+const LUCK: f64 = 0.02;
 /// Time that a start of Android takes after the device is connected again, in seconds.
 const BOOT_S: f64 = 10.0;
 
@@ -47,6 +49,8 @@ struct Application {
     /// Lines of a recorded log, repeated; none if they are generated.
     recorded: Option<Vec<Line>>,
     lines: u32,
+    /// What this start costs more or less than others of its kind, as a factor.
+    luck: f64,
     normalizer: CurrentNormalizer,
     faults: Vec<Fault>,
 }
@@ -334,6 +338,7 @@ impl World {
         // A scene costs what its name makes of it, the same for all methods.
         let scene = &application.settings.scene;
         let weight = 0.85 + 0.3 * (scene.bytes().map(u32::from).sum::<u32>() % 100) as f64 / 100.0;
+        let weight = weight * application.luck;
         let volts = self.volts();
         let mut noise = |share: f64| 1.0 + share * self.random.random_range(-1.0..1.0);
         let refresh_hz = self.script.refresh_hz;
@@ -573,6 +578,7 @@ impl World {
             first_frame: self.now + LOADING_S,
             recorded,
             lines: 0,
+            luck: 1.0 + LUCK * self.random.random_range(-1.0..1.0),
             normalizer: CurrentNormalizer::default(),
             faults,
         });
