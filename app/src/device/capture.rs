@@ -1,20 +1,92 @@
 //! What one run on a device leaves behind: a folder with `run.json`, `log.txt` and `samples.csv`.
 //!
 //! `run.json` is a [`RunInfo`]; `log.txt` holds the raw lines of logcat as they came; `samples.csv` one [`Sample`] a
-//! row, under the column names of the OVR Metrics Tool where that has the quantity.
+//! row, under the column names of the OVR Metrics Tool where that has the quantity in a documented unit. An empty cell
+//! is a value that the device does not give. While a run lasts, both grow line by line; `run.json` is replaced as a
+//! whole whenever there is news, and says until the end that the run was cut off.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs::{self, File, OpenOptions};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::files::{self, FileError};
+
 /// Version of the folder's format.
 pub const VERSION: u32 = 1;
+/// What the run was and how it went.
+pub const RUN_FILE: &str = "run.json";
+/// The raw lines of logcat.
+pub const LOG_FILE: &str = "log.txt";
+/// The samples.
+pub const SAMPLES_FILE: &str = "samples.csv";
+
+/// Why a capture cannot be read or written: one sentence.
+#[derive(Debug, thiserror::Error)]
+pub enum CaptureError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The folder holds no run.
+    #[error("{} is no capture (it has no {RUN_FILE}): name a folder that yoro device has written", folder.display())]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// There is no run in any of the folders.
+    #[error("there is no capture in {folders}: name folders that yoro device has written")]
+    None {
+        /// The folders, with commas.
+        folders: String,
+    },
+    /// A run is there already.
+    #[error("{} holds a run already: name another folder", folder.display())]
+    Exists {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Written by another version.
+    #[error(
+        "{} has version {version} of the capture format and this yoro reads version {VERSION}: use the yoro that wrote it",
+        path.display()
+    )]
+    Version {
+        /// Its `run.json`.
+        path: PathBuf,
+        /// What it says.
+        version: u64,
+    },
+    /// `run.json` is damaged.
+    #[error("{} is damaged ({what}): leave the run out, or measure it again", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A row of `samples.csv` is damaged.
+    #[error(
+        "{}, line {line}: {what}; remove the line, or make the samples anew from the log beside it by yoro device logcat",
+        path.display()
+    )]
+    Row {
+        /// The file.
+        path: PathBuf,
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong.
+        what: String,
+    },
+}
 
 /// The device that a run was made on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviceInfo {
-    /// Serial number, or address and port, as adb knows the device.
+    /// Serial number; what adb calls the device where it does not tell one.
     pub serial: String,
     /// Manufacturer.
     pub manufacturer: String,
@@ -172,4 +244,444 @@ pub struct Capture {
     pub info: RunInfo,
     /// Second by second, warm-up included, in order of time.
     pub samples: Vec<Sample>,
+}
+
+/// What `samples.csv` calls the numbers of a [`Sample`], with what is to be multiplied for its unit. The OVR Metrics Tool
+/// has voltage and wattage, too, but does not say in what units.
+struct Column {
+    name: &'static str,
+    scale: f64,
+    get: fn(&Sample) -> Option<f64>,
+    set: fn(&mut Sample, f64),
+}
+
+macro_rules! column {
+    ($name:literal, $field:ident) => {
+        column!($name, $field, 1.0)
+    };
+    ($name:literal, $field:ident, $scale:literal) => {
+        Column { name: $name, scale: $scale, get: |s| s.$field, set: |s, value| s.$field = Some(value) }
+    };
+    ($name:literal, $field:ident as $integer:ty) => {
+        Column {
+            name: $name,
+            scale: 1.0,
+            get: |s| s.$field.map(|value| value as f64),
+            set: |s, value| s.$field = Some(value as $integer),
+        }
+    };
+}
+
+const TIME: &str = "Time Stamp";
+const COLUMNS: &[Column] = &[
+    Column { name: TIME, scale: 1e3, get: |s| Some(s.time_s), set: |s, value| s.time_s = value },
+    column!("average_frame_rate", fps),
+    column!("display_refresh_rate", refresh_hz),
+    column!("stale_frame_count", stale),
+    column!("frame_time_milliseconds", frame_ms),
+    column!("frame_time_p99_milliseconds", p99_ms),
+    column!("app_gpu_time_microseconds", gpu_ms, 1e3),
+    column!("app_cpu_percentage_of_one_core", cpu_percent),
+    column!("app_rss_MB", rss_mb),
+    column!("battery_current_raw", current_raw as i64),
+    column!("battery_current_now_milliamps", current_ma),
+    column!("battery_voltage_millivolts", voltage_mv),
+    column!("battery_level_percentage", level_percent),
+    column!("battery_charge_microampere_hours", charge_uah),
+    column!("battery_plugged", plugged as i32),
+    column!("battery_temperature_celcius", battery_celsius),
+    column!("skin_temperature_celcius", skin_celsius),
+    column!("thermal_status", thermal_status as i32),
+];
+
+/// A number without needless zeros; microseconds, microvolts and the like are kept.
+fn number(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Reads the run in `folder`. A last row that was cut off in writing is left out.
+///
+/// # Errors
+/// [`CaptureError`].
+pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
+    let info = read_info(folder)?;
+    let path = folder.join(SAMPLES_FILE);
+    let bytes = files::read(&path)?;
+    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+    let mut samples = Vec::new();
+    if whole > 0 {
+        let mut table = csv::Reader::from_reader(&bytes[..whole]);
+        let row_error = |error: csv::Error| {
+            let line = error.position().map_or(1, csv::Position::line);
+            let what = match error.kind() {
+                csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+                    format!("{len} cells where the header has {expected_len}")
+                }
+                csv::ErrorKind::Utf8 { .. } => "this is no text".into(),
+                _ => "this is no row of a table".into(),
+            };
+            CaptureError::Row { path: path.clone(), line, what }
+        };
+        let header = table.headers().map_err(row_error)?.clone();
+        for row in table.records() {
+            let row = row.map_err(row_error)?;
+            let line = row.position().map_or(0, csv::Position::line);
+            let sample = read_row(&header, &row).map_err(|what| CaptureError::Row {
+                path: path.clone(),
+                line,
+                what,
+            })?;
+            samples.push(sample);
+        }
+    }
+    Ok(Capture { info, samples })
+}
+
+/// What the run in `folder` was.
+///
+/// # Errors
+/// [`CaptureError`].
+pub fn read_info(folder: &Path) -> Result<RunInfo, CaptureError> {
+    let path = folder.join(RUN_FILE);
+    if folder.is_dir() && !path.exists() {
+        return Err(CaptureError::Foreign { folder: folder.into() });
+    }
+    let bytes = files::read(&path)?;
+    let damaged =
+        |error: serde_json::Error| CaptureError::Damaged { path: path.clone(), what: error.to_string() };
+    let value: serde_json::Value = serde_json::from_slice(&bytes).map_err(damaged)?;
+    match value.get("version").and_then(serde_json::Value::as_u64) {
+        Some(version) if version != u64::from(VERSION) => {
+            Err(CaptureError::Version { path: path.clone(), version })
+        }
+        _ => serde_json::from_value(value).map_err(damaged),
+    }
+}
+
+fn read_row(header: &csv::StringRecord, row: &csv::StringRecord) -> Result<Sample, String> {
+    let mut sample = Sample::default();
+    let mut has_time = false;
+    for (name, cell) in header.iter().zip(row).filter(|(_, cell)| !cell.is_empty()) {
+        let Some(column) = COLUMNS.iter().find(|column| column.name == name) else {
+            sample.other.insert(name.into(), cell.into());
+            continue;
+        };
+        let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
+        let value = value.ok_or_else(|| format!("\"{cell}\" in the column \"{name}\" is no number"))?;
+        (column.set)(&mut sample, value / column.scale);
+        has_time |= name == TIME;
+    }
+    if has_time { Ok(sample) } else { Err(format!("there is nothing in the column \"{TIME}\"")) }
+}
+
+/// The folders of all runs in `folders` and below, sorted, each once. Links to folders are not followed.
+///
+/// # Errors
+/// [`CaptureError`]: also where a folder does not exist, or there is no run at all.
+pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
+    let mut found = Vec::new();
+    for folder in folders {
+        for file in files::find(folder, &["json"])? {
+            if file.file_name().is_some_and(|name| name == RUN_FILE) {
+                found.push(folder.join(file.parent().unwrap_or(Path::new(""))));
+            }
+        }
+    }
+    found.sort();
+    found.dedup();
+    if found.is_empty() {
+        let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+        return Err(CaptureError::None { folders: names.join(", ") });
+    }
+    Ok(found)
+}
+
+/// Reads all runs in `folders` and below, in order of their paths.
+///
+/// # Errors
+/// The first that [`find`] or [`read`] gives.
+pub fn read_all(folders: &[PathBuf]) -> Result<Vec<Capture>, CaptureError> {
+    find(folders)?.iter().map(|folder| read(folder)).collect()
+}
+
+/// Writes a run while it lasts.
+#[derive(Debug)]
+pub struct Writer {
+    folder: PathBuf,
+    info: RunInfo,
+    log: File,
+    samples: File,
+    /// Keys of [`Sample::other`] that have a column.
+    others: Vec<String>,
+}
+
+impl Writer {
+    /// Begins a run in a folder, which is made. Until [`Writer::finish`], the run counts as cut off.
+    ///
+    /// # Errors
+    /// [`CaptureError`]: also where the folder holds a run already.
+    pub fn create(folder: &Path, mut info: RunInfo) -> Result<Writer, CaptureError> {
+        files::create_folder(folder)?;
+        if folder.join(RUN_FILE).exists() {
+            return Err(CaptureError::Exists { folder: folder.into() });
+        }
+        info.outcome = Outcome::Interrupted { reason: "the program that captured it was ended".into() };
+        let new = |name: &str| {
+            let path = folder.join(name);
+            File::create(&path).map_err(|source| FileError::Write { path, source })
+        };
+        let writer = Writer {
+            folder: folder.into(),
+            info,
+            log: new(LOG_FILE)?,
+            samples: new(SAMPLES_FILE)?,
+            others: Vec::new(),
+        };
+        writer.append(
+            &writer.samples,
+            SAMPLES_FILE,
+            &writer.row(|column| column.name.into(), String::clone),
+        )?;
+        writer.renew()?;
+        Ok(writer)
+    }
+
+    /// What the run is, up to now.
+    pub fn info(&self) -> &RunInfo {
+        &self.info
+    }
+
+    /// Where it lies.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Adds a line of the log.
+    ///
+    /// # Errors
+    /// [`CaptureError::File`].
+    pub fn log(&mut self, line: &str) -> Result<(), CaptureError> {
+        self.append(&self.log, LOG_FILE, &format!("{line}\n"))
+    }
+
+    /// Adds a sample. A key that no sample had before becomes a column of the whole table.
+    ///
+    /// # Errors
+    /// [`CaptureError`].
+    pub fn sample(&mut self, sample: &Sample) -> Result<(), CaptureError> {
+        let before = self.others.len();
+        for key in sample.other.keys() {
+            if !self.others.contains(key) {
+                self.others.push(key.clone());
+            }
+        }
+        if self.others.len() > before {
+            self.widen(before)?;
+        }
+        let cell = |column: &Column| (column.get)(sample).map_or(String::new(), |v| number(v * column.scale));
+        let row = self.row(cell, |key| sample.other.get(key).cloned().unwrap_or_default());
+        self.append(&self.samples, SAMPLES_FILE, &row)
+    }
+
+    /// Notes that something went wrong.
+    ///
+    /// # Errors
+    /// [`CaptureError::File`].
+    pub fn fault(&mut self, fault: Fault) -> Result<(), CaptureError> {
+        self.info.faults.push(fault);
+        self.renew()
+    }
+
+    /// Ends the run.
+    ///
+    /// # Errors
+    /// [`CaptureError::File`].
+    pub fn finish(mut self, outcome: Outcome) -> Result<RunInfo, CaptureError> {
+        self.info.outcome = outcome;
+        self.renew()?;
+        Ok(self.info)
+    }
+
+    /// Changes what the run says of itself.
+    ///
+    /// # Errors
+    /// [`CaptureError::File`].
+    pub fn change(&mut self, change: impl FnOnce(&mut RunInfo)) -> Result<(), CaptureError> {
+        change(&mut self.info);
+        self.renew()
+    }
+
+    fn renew(&self) -> Result<(), CaptureError> {
+        Ok(files::write_with(&self.folder.join(RUN_FILE), |out| {
+            serde_json::to_writer_pretty(&mut *out, &self.info)?;
+            out.write_all(b"\n")
+        })?)
+    }
+
+    /// A row in one piece: a reader never sees half a line.
+    fn append(&self, mut file: &File, name: &str, text: &str) -> Result<(), CaptureError> {
+        let failed = |source| FileError::Write { path: self.folder.join(name), source };
+        Ok(file.write_all(text.as_bytes()).map_err(failed)?)
+    }
+
+    fn row(&self, cell: impl Fn(&Column) -> String, other: impl Fn(&String) -> String) -> String {
+        let cells = COLUMNS.iter().map(cell).chain(self.others.iter().map(other));
+        let mut row = String::new();
+        for (i, cell) in cells.enumerate() {
+            let comma = if i == 0 { "" } else { "," };
+            // What comes from one line of a log has no line breaks; a row must be one line.
+            let cell = cell.replace(['\n', '\r'], " ");
+            let written = if cell.contains([',', '"']) {
+                write!(row, "{comma}\"{}\"", cell.replace('"', "\"\""))
+            } else {
+                write!(row, "{comma}{cell}")
+            };
+            written.expect("a string takes everything");
+        }
+        row + "\n"
+    }
+
+    /// Writes the table anew with empty cells in the columns that are new since there were `before` of the others.
+    fn widen(&mut self, before: usize) -> Result<(), CaptureError> {
+        let path = self.folder.join(SAMPLES_FILE);
+        let text = String::from_utf8_lossy(&files::read(&path)?).into_owned();
+        let header = self.row(|column| column.name.into(), String::clone);
+        let commas = ",".repeat(self.others.len() - before);
+        files::write_with(&path, |out| {
+            out.write_all(header.as_bytes())?;
+            text.lines().skip(1).try_for_each(|row| writeln!(out, "{row}{commas}"))
+        })?;
+        let open = OpenOptions::new().append(true).open(&path);
+        self.samples = open.map_err(|source| FileError::Write { path, source })?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn info() -> RunInfo {
+        RunInfo {
+            version: VERSION,
+            device: DeviceInfo { serial: "S1".into(), simulated: true, ..DeviceInfo::default() },
+            experiment: Some("test".into()),
+            method: "yoro".into(),
+            scene: "prototype".into(),
+            repetition: 1,
+            order: 1,
+            settings: BTreeMap::from([("hud".into(), "false".into())]),
+            started_unix_s: 1.7e9,
+            duration_s: 60.0,
+            warm_up_s: 5.0,
+            start_celsius: None,
+            application: Some("0.1.0".into()),
+            outcome: Outcome::Complete,
+            faults: Vec::new(),
+        }
+    }
+
+    fn others(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
+        pairs.iter().map(|(key, value)| ((*key).into(), (*value).into())).collect()
+    }
+
+    #[test]
+    fn a_run_is_readable_at_any_time() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = dir.path().join("a/b");
+        let mut writer = Writer::create(&folder, info()).unwrap();
+        let none = read(&folder).unwrap();
+        assert!(matches!(none.info.outcome, Outcome::Interrupted { .. }) && none.samples.is_empty());
+        writer.log("one").unwrap();
+        let first = Sample { time_s: 1.0, gpu_ms: Some(4.49), ..Sample::default() };
+        writer.sample(&first).unwrap();
+        let second = Sample {
+            time_s: 2.1,
+            current_raw: Some(-512_000),
+            plugged: Some(0),
+            other: others(&[("App.march", "1.5"), ("VrApi.LCnt", "2(DR72,LM2)"), ("odd", "a \"b\"")]),
+            ..Sample::default()
+        };
+        writer.sample(&second).unwrap();
+        let third = Sample { time_s: 3.0, other: others(&[("later", "1")]), ..Sample::default() };
+        writer.sample(&third).unwrap();
+        let fault = Fault { kind: FaultKind::ClockJump, at_s: Some(2.0), detail: "by an hour".into() };
+        writer.fault(fault.clone()).unwrap();
+        let cut = read(&folder).unwrap();
+        assert_eq!(cut.samples, [first.clone(), second.clone(), third.clone()]);
+        assert_eq!(cut.info.faults, [fault]);
+        let done = writer.finish(Outcome::Complete).unwrap();
+        assert_eq!(read(&folder).unwrap().info, done);
+        assert_eq!(fs::read_to_string(folder.join(LOG_FILE)).unwrap(), "one\n");
+        assert!(matches!(Writer::create(&folder, info()), Err(CaptureError::Exists { .. })));
+        // What was cut off in writing does not count.
+        let path = folder.join(SAMPLES_FILE);
+        let mut text = fs::read_to_string(&path).unwrap();
+        assert!(text.starts_with("Time Stamp,average_frame_rate,display_refresh_rate,stale_frame_count,"));
+        text.push_str("4000,72,7");
+        fs::write(&path, &text).unwrap();
+        assert_eq!(read(&folder).unwrap().samples, [first, second, third]);
+        assert_eq!(find(&[dir.path().into(), folder.clone()]).unwrap(), [folder]);
+    }
+
+    #[test]
+    fn damaged_folders_are_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let sentence = |folder: &Path| read(folder).unwrap_err().to_string();
+        assert!(sentence(dir.path()).contains("is no capture"));
+        assert!(sentence(&dir.path().join("none")).contains("does not exist"));
+        let error = read_all(&[dir.path().into()]).unwrap_err();
+        assert!(matches!(error, CaptureError::None { .. }), "{error}");
+        let folder = dir.path().join("run");
+        let mut writer = Writer::create(&folder, info()).unwrap();
+        writer.sample(&Sample::default()).unwrap();
+        let (run, samples) = (folder.join(RUN_FILE), folder.join(SAMPLES_FILE));
+        let good = fs::read_to_string(&run).unwrap();
+        for (damage, word) in [("{", "damaged"), ("{}", "missing field"), ("{\"version\":9}", "version 9")] {
+            fs::write(&run, damage).unwrap();
+            assert!(sentence(&folder).contains(word), "{}", sentence(&folder));
+        }
+        fs::write(&run, good.replace("\"scene\"", "\"scenery\"")).unwrap();
+        assert!(sentence(&folder).contains("scenery"));
+        fs::write(&run, good).unwrap();
+        let table = fs::read_to_string(&samples).unwrap();
+        for (row, word) in [
+            ("x,1\n", "2 cells"),
+            ("abc,,,,,,,,,,,,,,,,,\n", "no number"),
+            (",,,,,,,,,,,,,,,,,\n", "Time Stamp"),
+        ] {
+            fs::write(&samples, format!("{table}{row}")).unwrap();
+            assert!(
+                sentence(&folder).contains("line 3") && sentence(&folder).contains(word),
+                "{}",
+                sentence(&folder)
+            );
+        }
+        fs::remove_file(&samples).unwrap();
+        assert!(sentence(&folder).contains(SAMPLES_FILE));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_is_read_again(
+            numbers in proptest::collection::vec(proptest::option::of(-1_000_000_000i64..1_000_000_000), 10),
+            key in "[A-Za-z][A-Za-z./,\" ]{0,8}", value in "[ -~]{1,12}",
+        ) {
+            let real = |i: usize| numbers[i].map(|n| n as f64 / 1e3);
+            let sample = Sample {
+                time_s: real(0).unwrap_or(0.0), fps: real(1), stale: real(2), frame_ms: real(3), current_raw: numbers[4],
+                current_ma: real(5), charge_uah: numbers[6].map(|n| n as f64), thermal_status: numbers[7].map(|n| n as i32),
+                plugged: numbers[8].map(|n| n as i32), skin_celsius: real(9),
+                other: others(&[(&key, &value)]), ..Sample::default()
+            };
+            let dir = tempfile::tempdir().unwrap();
+            let folder = dir.path().join("run");
+            let mut writer = Writer::create(&folder, info()).unwrap();
+            writer.sample(&sample).unwrap();
+            prop_assert_eq!(read(&folder).unwrap().samples, [sample]);
+        }
+    }
 }
