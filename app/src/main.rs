@@ -26,6 +26,8 @@ enum Command {
     Compare(cli::compare::CompareArgs),
     Dataset(cli::dataset::DatasetArgs),
     Scenes(cli::scenes::ScenesArgs),
+    Device(cli::device::DeviceArgs),
+    Study(cli::study::StudyArgs),
     View(cli::view::ViewArgs),
     Info(cli::info::InfoArgs),
 }
@@ -51,6 +53,8 @@ fn main() -> ExitCode {
         Command::Compare(args) => cli::compare::run(args),
         Command::Dataset(args) => cli::dataset::run(args),
         Command::Scenes(args) => cli::scenes::run(args),
+        Command::Device(args) => cli::device::run(args),
+        Command::Study(args) => cli::study::run(args),
         Command::View(args) => cli::view::run(args),
         Command::Info(args) => cli::info::run(args),
     };

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod compare;
 pub mod dataset;
+pub mod device;
 pub mod info;
 pub mod machine;
 pub mod render;
@@ -10,6 +11,7 @@ pub mod report;
 pub mod run;
 pub mod scenes;
 pub mod stage;
+pub mod study;
 pub mod synthesize;
 pub mod view;
 

@@ -293,6 +293,7 @@ fn gauss_legendre(from: f64, to: f64, panels: usize, f: impl Fn(f64) -> f64) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::paper;
 
     const ALPHA: f64 = 0.05;
 
@@ -445,37 +446,10 @@ mod tests {
     /// is read as one of 95 %; an interval of 90 %, which goes with two one-sided tests, would give another t.
     #[test]
     fn the_papers_user_study_agrees_with_itself() {
-        struct Printed {
-            t: f64,
-            p: f64,
-            d_z: f64,
-            power: f64,
-            interval: [f64; 2],
-            p_lower: f64,
-            p_upper: f64,
-        }
-        let image_quality = Printed {
-            t: 0.6196,
-            p: 0.5462,
-            d_z: 0.1656,
-            power: 0.0887,
-            interval: [-0.0559, 0.1008],
-            p_lower: 1.1343e-9,
-            p_upper: 3.4048e-9,
-        };
-        let experience = Printed {
-            t: 0.2946,
-            p: 0.7730,
-            d_z: 0.0787,
-            power: 0.0586,
-            interval: [-0.0802, 0.1055],
-            p_lower: 1.1266e-8,
-            p_upper: 2.0626e-8,
-        };
-        for printed in [image_quality, experience] {
+        for printed in paper::STUDY {
             let mean = (printed.interval[0] + printed.interval[1]) / 2.0;
-            let error = mean / printed.t;
-            let sample = Sample { n: 14, mean, std: error * 14f64.sqrt() };
+            let n = paper::STUDY_PARTICIPANTS;
+            let sample = Sample { n, mean, std: mean / printed.t * (n as f64).sqrt() };
             assert!((sample.p().unwrap() - printed.p).abs() < 1e-4);
             assert!((sample.d_z().unwrap() - printed.d_z).abs() < 1e-4);
             assert!((sample.power(0.05).unwrap() - printed.power).abs() < 1e-4);

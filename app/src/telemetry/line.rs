@@ -8,7 +8,7 @@ use std::str::FromStr;
 /// The first field of every line.
 pub const VERSION: u32 = 1;
 /// What stands for a missing value.
-const MISSING: &str = "na";
+pub(super) const MISSING: &str = "na";
 
 /// GPU time of one stage.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,7 +107,7 @@ impl<T: Display> Display for Na<T> {
 }
 
 /// Text that cannot end its field.
-fn word(text: &str) -> String {
+pub(super) fn word(text: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "-._/".contains(c) { c } else { '-' };
     let word: String = text.chars().map(plain).collect();
     if word.is_empty() || word == MISSING { "-".into() } else { word }
@@ -186,10 +186,10 @@ pub fn fields(line: &str) -> impl Iterator<Item = Field<'_>> {
 }
 
 /// The fields of a line by key.
-struct Reader<'a>(Vec<Field<'a>>);
+pub(super) struct Reader<'a>(pub(super) Vec<Field<'a>>);
 
 impl<'a> Reader<'a> {
-    fn text(&self, key: &'static str) -> Result<&'a str, LineError> {
+    pub(super) fn text(&self, key: &'static str) -> Result<&'a str, LineError> {
         let field = self.0.iter().find(|field| field.key == key);
         field.and_then(|field| field.value).ok_or(LineError::Missing(key))
     }
@@ -198,7 +198,7 @@ impl<'a> Reader<'a> {
         number(key, self.text(key)?, unit)
     }
 
-    fn required<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<T, LineError> {
+    pub(super) fn required<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<T, LineError> {
         self.optional(key, unit)?.ok_or_else(|| LineError::Value { key, value: MISSING.into() })
     }
 }
