@@ -113,7 +113,7 @@ fn known_differences_come_out_and_faults_are_named() {
     near(&of("fps")["change"], 100.0);
     near(&of("frame-time")["change"], -50.0);
     assert_eq!((&of("power")["pairs"], &of("fps")["pairs"]), (&5.into(), &6.into()));
-    assert_eq!(of("power")["interval"][1], "repetitions");
+    assert_eq!(of("power")["interval"]["basis"], "repetitions");
     let mean =
         find(&report, "means", &[("scene", "atrium"), ("method", "conventional"), ("quantity", "power")]);
     // 505, 510, 515: t(0.975, 2) = 4.302653 times 5 / sqrt(3).

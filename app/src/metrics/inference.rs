@@ -158,6 +158,23 @@ pub enum Basis {
     Blocks,
 }
 
+/// An interval and on what it rests.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BlockInterval {
+    /// The interval.
+    #[serde(flatten)]
+    pub interval: Interval,
+    /// On what it rests.
+    pub basis: Basis,
+}
+
+impl BlockInterval {
+    /// Both ends by a function that grows with its argument.
+    pub fn map(self, f: impl Fn(f64) -> f64) -> BlockInterval {
+        BlockInterval { interval: self.interval.map(f), ..self }
+    }
+}
+
 /// The mean of the means of blocks, each block weighing the same.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Blocks {
@@ -167,8 +184,8 @@ pub struct Blocks {
     pub n: usize,
     /// The mean.
     pub mean: f64,
-    /// Its interval and what that rests on; none of a single value.
-    pub interval: Option<(Interval, Basis)>,
+    /// Its interval; none of a single value.
+    pub interval: Option<BlockInterval>,
 }
 
 impl Blocks {
@@ -191,9 +208,11 @@ impl Blocks {
             let error = (squares / df * weights).sqrt() / samples.len() as f64;
             let reach = t_quantile(0.5 + confidence / 2.0, df) * error;
             let mean = over_blocks.mean;
-            Some((Interval { low: mean - reach, high: mean + reach }, Basis::Repetitions))
+            let interval = Interval { low: mean - reach, high: mean + reach };
+            Some(BlockInterval { interval, basis: Basis::Repetitions })
         } else {
-            over_blocks.interval(confidence).map(|interval| (interval, Basis::Blocks))
+            let interval = over_blocks.interval(confidence);
+            interval.map(|interval| BlockInterval { interval, basis: Basis::Blocks })
         };
         Some(Blocks { blocks: samples.len(), n, mean: over_blocks.mean, interval })
     }
@@ -478,9 +497,9 @@ mod tests {
         for v in vectors.blocks {
             let blocks = Blocks::of(&v.groups, 0.95).unwrap();
             near(blocks.mean, v.mean, &v.name);
-            let (interval, basis) = blocks.interval.unwrap();
-            assert_eq!(basis, Basis::Repetitions);
-            near_interval(interval, v.interval, &v.name);
+            let found = blocks.interval.unwrap();
+            assert_eq!(found.basis, Basis::Repetitions);
+            near_interval(found.interval, v.interval, &v.name);
         }
     }
 
@@ -494,7 +513,7 @@ mod tests {
         assert_eq!((Sample::of(&[]), Sample::of(&[f64::NAN])), (None, None));
         let once = Blocks::of(&[vec![1.0], vec![], vec![3.0]], 0.95).unwrap();
         assert_eq!((once.blocks, once.n, once.mean), (2, 2, 2.0));
-        assert_eq!(once.interval.unwrap().1, Basis::Blocks);
+        assert_eq!(once.interval.unwrap().basis, Basis::Blocks);
         assert_eq!(Blocks::of(&[vec![1.0]], 0.95).unwrap().interval, None);
         assert_eq!(Blocks::of(&[vec![]], 0.95), None);
     }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::run::{Quantity, Run};
 use super::{CONFIDENCE, Device};
-use crate::metrics::inference::{Basis, Blocks, Interval, Sample};
+use crate::metrics::inference::{Basis, BlockInterval, Blocks, Interval, Sample};
 
 /// A method on a scene: all its runs that count.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -46,8 +46,8 @@ pub struct Difference {
     /// In percent of the baseline, by the geometric mean of the ratios; for quantities that have no ratio the mean
     /// difference in their unit.
     pub change: f64,
-    /// Of the change, and on what it rests; none where nothing was repeated.
-    pub interval: Option<(Interval, Basis)>,
+    /// Of the change; none where nothing was repeated.
+    pub interval: Option<BlockInterval>,
 }
 
 impl Difference {
@@ -169,14 +169,16 @@ pub fn over_devices(differences: &[Difference], devices: &[&Device]) -> Vec<Diff
             ours: mean(|difference| difference.ours),
             baseline: mean(|difference| difference.baseline),
             change: back(sample.mean),
-            interval: sample.interval(CONFIDENCE).map(|interval| (interval.map(back), Basis::Blocks)),
+            interval: sample
+                .interval(CONFIDENCE)
+                .map(|interval| BlockInterval { interval: interval.map(back), basis: Basis::Blocks }),
         });
     }
     found
 }
 
 /// The change over blocks of pairs and its interval.
-fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Option<(Interval, Basis)>)> {
+fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Option<BlockInterval>)> {
     let value = |(ours, baseline): &(f64, f64)| {
         if !quantity.is_ratio() {
             return Some(ours - baseline);
@@ -189,7 +191,7 @@ fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Optio
         .collect::<Option<_>>()?;
     let blocks = Blocks::of(&blocks, CONFIDENCE)?;
     let back = |value: f64| unscale(quantity, value);
-    let interval = blocks.interval.map(|(interval, basis)| (interval.map(back), basis));
+    let interval = blocks.interval.map(|interval| interval.map(back));
     Some((back(blocks.mean), interval))
 }
 

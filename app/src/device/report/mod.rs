@@ -42,7 +42,7 @@ pub struct Device {
     pub applications: BTreeSet<String>,
     /// Scenes, in the order of tables.
     pub scenes: Vec<String>,
-    /// Methods, in the order of tables: the baseline first.
+    /// Methods, in the order of tables: the baseline first, then what this project is about.
     pub methods: Vec<String>,
 }
 
@@ -259,7 +259,8 @@ fn devices<'a>(
         let place =
             |scene: &str| BUILTINS.iter().position(|builtin| builtin.name == scene).unwrap_or(BUILTINS.len());
         device.scenes.sort_by_key(|scene| (place(scene), scene.clone()));
-        device.methods.sort_by_key(|method| (method != baseline, method.clone()));
+        let rank = |method: &str| (method != baseline, !method.starts_with("yoro"));
+        device.methods.sort_by_key(|method| (rank(method), method.clone()));
     }
     devices.sort_by(|a, b| (a.simulated, &a.name).cmp(&(b.simulated, &b.name)));
     devices
@@ -295,7 +296,7 @@ fn left_out(runs: &[Run], devices: &[Device], baseline: &str) -> Vec<Note> {
     }
     for device in devices {
         for run in compare::without_partner(runs, device, baseline) {
-            let detail = format!("it has no run of {baseline} to be compared with; its own means count");
+            let detail = format!("no run of {baseline} that counts is there to compare it with; its own means count");
             notes.push(Note { name: "no partner", of: run.name(), detail });
         }
     }
@@ -311,7 +312,8 @@ fn faults(runs: &[Run]) -> Vec<Note> {
             notes.push(Note { name: fault_name(fault.kind), of: run.name(), detail });
         }
         if run.gaps > 0 {
-            let detail = format!("{} gap(s) were not bridged: {:.0} s count", run.gaps, run.covered_s);
+            let gaps = page::count(run.gaps, "gap");
+            let detail = format!("{gaps} in the samples, not bridged: {:.0} s count", run.covered_s);
             notes.push(Note { name: "gaps", of: run.name(), detail });
         }
         let counted = run.counted.filter(|_| run.counts(Quantity::Power));

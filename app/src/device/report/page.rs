@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use minijinja::context;
+use serde::Serialize;
 
 use super::run::{COUNTER_TOLERANCE, LEAST_COVERED, PAPER_VOLTS};
 use super::{CONFIDENCE, Device, DeviceReport, Difference, Note, Quantity, Run};
-use crate::metrics::inference::{Basis, Interval};
+use crate::metrics::inference::{Basis, BlockInterval, Interval};
 use crate::report::grid::{Cell, Table};
 use crate::report::page::{figures, fill};
 use crate::report::plot::{Axis, DotRow, Figure, Mark, Panel, Series};
@@ -42,7 +43,7 @@ pub(super) fn html(report: &DeviceReport) -> Result<String, ReportError> {
         simulated => report.simulated,
         baseline => &report.baseline,
         warnings => warnings(report),
-        sentences => sentences(report),
+        answers => answers(report),
         overview => overview_tables(report),
         devices => report.devices.iter().enumerate().map(device).collect::<Result<Vec<_>, _>>()?,
         left_out => notes_table("What does not count", &report.left_out, simulated_mark(report)),
@@ -84,7 +85,7 @@ pub(super) fn markdown(report: &DeviceReport) -> String {
 
 pub(super) fn text(report: &DeviceReport) -> String {
     let mut out = String::new();
-    for line in warnings(report).into_iter().chain(sentences(report).map_lines()) {
+    for line in warnings(report).into_iter().chain(answers(report).iter().map(Answer::sentence)) {
         let _ = writeln!(out, "{line}");
     }
     let runs = report.runs.len();
@@ -138,77 +139,86 @@ fn warnings(report: &DeviceReport) -> Vec<String> {
     warnings
 }
 
-/// The answer in a sentence, with what stands out.
-struct Sentence {
+/// The answer for a method on a device: the change of a quantity, from what to what, and the interval.
+#[derive(Serialize)]
+struct Answer {
     device: String,
     method: String,
-    power: String,
-    fps: String,
+    changes: Vec<AnswerChange>,
     how_sure: String,
 }
 
-struct Sentences(Vec<Sentence>);
+#[derive(Serialize)]
+struct AnswerChange {
+    /// `-22.7 %`; a dash without a pair.
+    change: String,
+    name: &'static str,
+    /// `1939 mW instead of 2510 mW`.
+    values: String,
+    /// `95 % interval -24.1 to -21.3 %`; nothing without.
+    interval: String,
+}
 
-impl Sentences {
-    fn map_lines(self) -> impl Iterator<Item = String> {
-        self.0
-            .into_iter()
-            .map(|s| format!("{}, {}: {}; {}. {}", s.device, s.method, s.power, s.fps, s.how_sure))
+impl Answer {
+    fn sentence(&self) -> String {
+        let change = |c: &AnswerChange| {
+            let interval = if c.interval.is_empty() { String::new() } else { format!(", {}", c.interval) };
+            format!("{} {} ({}{interval})", c.name, c.change, c.values)
+        };
+        let changes: Vec<String> = self.changes.iter().map(change).collect();
+        format!("{}, {}: {}. {}", self.device, self.method, changes.join("; "), self.how_sure)
     }
 }
 
-impl serde::Serialize for Sentences {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.iter().map(|s| {
-            context! { device => s.device, method => s.method, power => s.power, fps => s.fps, how_sure => s.how_sure }
-        }))
-    }
-}
-
-fn sentences(report: &DeviceReport) -> Sentences {
-    let mut sentences = Vec::new();
+fn answers(report: &DeviceReport) -> Vec<Answer> {
+    let mut answers = Vec::new();
     for device in &report.devices {
         for method in device.methods.iter().filter(|method| **method != report.baseline) {
             let find = |quantity| report.find(Some(&device.name), None, method, quantity);
-            let (power, fps) = (find(Quantity::Power), find(Quantity::Fps));
-            let side = |difference: Option<&Difference>, quantity: Quantity| match difference {
-                None => format!("no {} to compare", quantity.name()),
-                Some(d) => format!(
-                    "{} {} instead of {} {}, {}",
-                    number(quantity, d.ours),
-                    quantity.unit(),
-                    number(quantity, d.baseline),
-                    quantity.unit(),
-                    change_in_words(d)
-                ),
-            };
-            let how_sure = match power.or(fps) {
-                None => "No run of it has a partner.".into(),
+            let changes = [Quantity::Power, Quantity::Fps].map(|quantity| match find(quantity) {
+                None => AnswerChange {
+                    change: "–".into(),
+                    name: quantity.name(),
+                    values: "no two runs to compare".into(),
+                    interval: String::new(),
+                },
                 Some(d) => {
-                    let scenes = report.scenes_of(&device.name, method, d.quantity);
-                    let basis = match d.interval {
-                        None => "nothing was repeated, so there is no interval",
-                        Some((_, Basis::Repetitions)) => "intervals rest on the repetitions",
-                        Some((_, Basis::Blocks)) => {
-                            "every scene was measured once, so intervals rest on the scenes"
-                        }
-                    };
-                    format!("{} of runs on {}; {basis}.", count(d.pairs, "pair"), count(scenes, "scene"))
+                    let (decimals, unit) = change_format(d);
+                    let value = |value| format!("{} {}", number(quantity, value), quantity.unit());
+                    let interval = d.interval.map(|BlockInterval { interval: Interval { low, high }, .. }| {
+                        let confidence = 100.0 * CONFIDENCE;
+                        format!("{confidence:.0} % interval {low:+.decimals$} to {high:+.decimals$} {unit}")
+                    });
+                    AnswerChange {
+                        change: change(d),
+                        name: quantity.name(),
+                        values: format!("{} instead of {}", value(d.ours), value(d.baseline)),
+                        interval: interval.unwrap_or_default(),
+                    }
                 }
-            };
-            sentences.push(Sentence {
-                device: device.name.clone(),
-                method: method.clone(),
-                power: side(power, Quantity::Power),
-                fps: side(fps, Quantity::Fps),
-                how_sure,
             });
+            let found = find(Quantity::Power).or(find(Quantity::Fps));
+            let how_sure = found.map_or("No run of it has a partner.".into(), |d| {
+                let scenes = report.scenes_of(&device.name, method, d.quantity);
+                let basis = match d.interval {
+                    None => "nothing was repeated, so there is no interval",
+                    Some(BlockInterval { basis: Basis::Repetitions, .. }) => "intervals rest on the repetitions",
+                    Some(BlockInterval { basis: Basis::Blocks, .. }) => {
+                        "every scene was measured once, so intervals rest on the scenes"
+                    }
+                };
+                let (pairs, scenes) = (count(d.pairs, "pair"), count(scenes, "scene"));
+                format!("{pairs} of runs on {scenes}; {basis}.")
+            });
+            let (device, method) = (device.name.clone(), method.clone());
+            answers.push(Answer { device, method, changes: changes.into(), how_sure });
         }
     }
-    Sentences(sentences)
+    answers
 }
 
-fn count(n: usize, noun: &str) -> String {
+/// `1 run`, `2 runs`.
+pub(super) fn count(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
@@ -264,22 +274,11 @@ fn change_interval(difference: &Difference) -> String {
     let (decimals, _) = change_format(difference);
     match difference.interval {
         None => String::new(),
-        Some((Interval { low, high }, basis)) => {
+        Some(BlockInterval { interval: Interval { low, high }, basis }) => {
             let mark = if basis == Basis::Blocks { OVER_BLOCKS } else { "" };
             format!(" [{low:+.decimals$}, {high:+.decimals$}]{mark}")
         }
     }
-}
-
-fn change_in_words(difference: &Difference) -> String {
-    let (decimals, unit) = change_format(difference);
-    let surely = match difference.interval {
-        None => String::new(),
-        Some((Interval { low, high }, _)) => {
-            format!(" ({:.0} % interval {low:+.decimals$} to {high:+.decimals$} {unit})", 100.0 * CONFIDENCE)
-        }
-    };
-    format!("{}{surely}", change(difference))
 }
 
 fn facts(report: &DeviceReport, device: &Device) -> String {
@@ -313,7 +312,9 @@ fn overview_tables(report: &DeviceReport) -> Vec<Table> {
         for i in 0..mean_columns {
             columns.push(if i == 0 { "mean of the devices" } else { "mean of the simulated" }.into());
         }
-        columns.extend(paper::DEVICES.iter().map(|device| format!("{}, the paper's", device.name)));
+        // The paper has this table for its own method only.
+        let papers: &[paper::PaperDevice] = if method.starts_with("yoro") { &paper::DEVICES } else { &[] };
+        columns.extend(papers.iter().map(|device| format!("{}, the paper's", device.name)));
         let mut table =
             Table::new(format!("{method}: change per device{}", simulated_mark(report)), &columns);
         let capacity = |capacity: Option<f64>| capacity.map(|c| format!("{c:.0} mAh"));
@@ -322,11 +323,11 @@ fn overview_tables(report: &DeviceReport) -> Vec<Table> {
             report.devices.iter().map(|d| Cell::plain(capacity(d.capacity_mah).unwrap_or("–".into()))),
         );
         cells.extend((0..mean_columns).map(|_| Cell::plain("")));
-        cells.extend(paper::DEVICES.iter().map(|d| Cell::paper(capacity(Some(d.capacity_mah)))));
+        cells.extend(papers.iter().map(|d| Cell::paper(capacity(Some(d.capacity_mah)))));
         table.push(cells);
-        type Papers = fn(&paper::PaperDevice) -> f64;
-        for (name, quantity, papers) in [
-            ("power", Quantity::Power, (|d| d.power) as Papers),
+        type Printed = fn(&paper::PaperDevice) -> f64;
+        for (name, quantity, printed) in [
+            ("power", Quantity::Power, (|d| d.power) as Printed),
             ("frame rate", Quantity::Fps, |d| d.fps),
             ("execution time of a frame", Quantity::FrameTime, |d| d.time),
             ("memory", Quantity::Memory, |d| d.memory),
@@ -339,7 +340,7 @@ fn overview_tables(report: &DeviceReport) -> Vec<Table> {
             let mut means: Vec<Cell> = over_devices(quantity).map(|d| Cell::ours(Some(text(d)))).collect();
             means.resize(mean_columns, Cell::ours(None::<String>));
             cells.extend(means);
-            cells.extend(paper::DEVICES.iter().map(|d| Cell::paper(Some(format!("{:+.1} %", papers(d))))));
+            cells.extend(papers.iter().map(|d| Cell::paper(Some(format!("{:+.1} %", printed(d))))));
             table.push(cells);
         }
         table.note = format!(
@@ -606,7 +607,7 @@ fn change_figures(report: &DeviceReport, device: &Device, id: &str) -> Vec<Figur
                 marks.extend(papers.map(|value| Mark::papers(look, label, value)));
                 let ours = report.find(Some(&device.name), scene, method, quantity);
                 marks.extend(ours.map(|d| Mark {
-                    interval: d.interval.map(|(interval, _)| interval),
+                    interval: d.interval.map(|found| found.interval),
                     ..Mark::new(method, method, d.change)
                 }));
             }

@@ -252,7 +252,11 @@ impl Run {
                 temperature: thinned(&temperature, longest_step),
             },
         };
-        run.exclude(capture, &samples);
+        if let Some((name, reason)) = run.worthless(capture) {
+            run.leave_out(name, reason);
+        } else if let Some((name, reason)) = run.without_power(capture, &samples) {
+            run.exclusions.push(Exclusion { power_only: true, name, reason });
+        }
         if run.counts(Quantity::Power) {
             run.set(Quantity::Power, &power, integrated.map(|i| i.milliwatts));
         }
@@ -306,55 +310,50 @@ impl Run {
         self.std_over_seconds.extend(std.map(|std| (quantity, std)));
     }
 
-    fn exclude(&mut self, capture: &Capture, samples: &[&Sample]) {
-        let planned = self.planned_s;
-        let faults = self.faults.clone();
-        let find = |kind: FaultKind| faults.iter().find(|fault| fault.kind == kind);
-        let mut exclude = |power_only: bool, name: &'static str, reason: String| {
-            self.exclusions.push(Exclusion { power_only, name, reason });
-        };
+    fn find(&self, kind: FaultKind) -> Option<&Fault> {
+        self.faults.iter().find(|fault| fault.kind == kind)
+    }
+
+    /// Why nothing of it counts: the first reason, from which others would follow.
+    fn worthless(&self, capture: &Capture) -> Option<(&'static str, String)> {
         match &capture.info.outcome {
             Outcome::Complete => {}
-            Outcome::Interrupted { reason } => exclude(false, "interrupted", reason.clone()),
-            Outcome::Failed { reason } => exclude(false, "failed", reason.clone()),
+            Outcome::Interrupted { reason } => return Some(("interrupted", reason.clone())),
+            Outcome::Failed { reason } => return Some(("failed", reason.clone())),
         }
-        for (kind, name) in
-            [(FaultKind::Rebooted, "rebooted"), (FaultKind::Restarted, "application restarted")]
-        {
-            if let Some(fault) = find(kind) {
-                exclude(false, name, fault.detail.clone());
-            }
+        if let Some(fault) = self.find(FaultKind::Rebooted) {
+            return Some(("rebooted", fault.detail.clone()));
         }
-        if self.covered_s < LEAST_COVERED * planned {
-            let covered = self.covered_s;
-            exclude(false, "too short", format!("{covered:.0} s of {planned:.0} s have frame rates"));
+        // What happens in the warm-up is over when it counts.
+        let late = |fault: &&Fault| fault.at_s.is_none_or(|at| at >= capture.info.warm_up_s);
+        if let Some(fault) = self.find(FaultKind::Restarted).filter(late) {
+            return Some(("application restarted", fault.detail.clone()));
         }
-        let plugged =
-            capture.samples.iter().filter(|s| s.plugged.is_some_and(|plugged| plugged != 0)).count();
-        if plugged > 0 || find(FaultKind::PluggedIn).is_some() {
-            let detail = find(FaultKind::PluggedIn).map(|fault| fault.detail.clone());
-            let reason = detail.unwrap_or_else(|| format!("a charger was plugged in for {plugged} samples"));
-            exclude(true, "plugged in", reason);
+        let (covered, planned) = (self.covered_s, self.planned_s);
+        (covered < LEAST_COVERED * planned)
+            .then(|| ("too short", format!("{covered:.0} s of {planned:.0} s have frame rates")))
+    }
+
+    /// Why its power does not count.
+    fn without_power(&self, capture: &Capture, samples: &[&Sample]) -> Option<(&'static str, String)> {
+        let plugged = capture.samples.iter().filter(|s| s.plugged.is_some_and(|plugged| plugged != 0)).count();
+        if let Some(fault) = self.find(FaultKind::PluggedIn) {
+            return Some(("plugged in", fault.detail.clone()));
         }
-        match self.integrated {
-            None => {
-                let none = samples.iter().all(|s| s.current_ma.is_none());
-                let what = if none { "the battery's current" } else { "current and voltage together" };
-                exclude(true, "no current", format!("the device does not give {what}"));
-            }
-            Some(integrated) if integrated.seconds < LEAST_COVERED * planned => {
-                let seconds = integrated.seconds;
-                exclude(
-                    true,
-                    "current missing",
-                    format!("{seconds:.0} s of {planned:.0} s have current and voltage"),
-                );
-            }
-            Some(integrated) if integrated.milliwatts <= 0.0 => {
-                exclude(true, "charging", "on the mean, the battery was charged".into());
-            }
-            Some(_) => {}
+        if plugged > 0 {
+            return Some(("plugged in", format!("a charger was plugged in for {plugged} samples")));
         }
+        let Some(integrated) = self.integrated else {
+            let none = samples.iter().all(|s| s.current_ma.is_none());
+            let what = if none { "the battery's current" } else { "current and voltage together" };
+            return Some(("no current", format!("the device does not give {what}")));
+        };
+        let (seconds, planned) = (integrated.seconds, self.planned_s);
+        if seconds < LEAST_COVERED * planned {
+            return Some(("current missing", format!("{seconds:.0} s of {planned:.0} s have current and voltage")));
+        }
+        let charging = integrated.milliwatts <= 0.0;
+        charging.then(|| ("charging", "on the mean, the battery was charged".into()))
     }
 }
 

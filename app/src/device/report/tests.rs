@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::*;
 use crate::device::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION};
-use crate::metrics::inference::Basis;
+use crate::metrics::inference::{Basis, BlockInterval};
 
 const WARM_UP: u32 = 10;
 const DURATION: u32 = 100;
@@ -262,7 +262,7 @@ fn changes_agree_with_scipy() {
         for scene in [Some("street"), None] {
             let power = difference(&report, scene, Quantity::Power);
             near(power.change, 100.0 * (v.ratio - 1.0), 1e-6);
-            let (interval, basis) = power.interval.unwrap();
+            let BlockInterval { interval, basis } = power.interval.unwrap();
             assert_eq!((basis, power.pairs), (Basis::Repetitions, v.a.len()));
             near(interval.low, 100.0 * (v.interval[0] - 1.0), 1e-6);
             near(interval.high, 100.0 * (v.interval[1] - 1.0), 1e-6);
@@ -282,7 +282,7 @@ fn changes_agree_with_scipy() {
         let report = report(captures);
         let power = difference(&report, None, Quantity::Power);
         near(power.change, 100.0 * v.mean.exp_m1(), 1e-6);
-        let (interval, basis) = power.interval.unwrap();
+        let BlockInterval { interval, basis } = power.interval.unwrap();
         assert_eq!(basis, Basis::Repetitions);
         near(interval.low, 100.0 * v.interval[0].exp_m1(), 1e-6);
         near(interval.high, 100.0 * v.interval[1].exp_m1(), 1e-6);
@@ -303,7 +303,7 @@ fn without_repetitions_there_is_no_interval() {
 
     let scenes = report([pair("street", 400.0), pair("atrium", 350.0), pair("talk", 380.0)].concat());
     assert_eq!(difference(&scenes, Some("street"), Quantity::Power).interval, None);
-    let (interval, basis) = difference(&scenes, None, Quantity::Power).interval.unwrap();
+    let BlockInterval { interval, basis } = difference(&scenes, None, Quantity::Power).interval.unwrap();
     assert_eq!(basis, Basis::Blocks);
     assert!(interval.low < -24.7 && interval.high > -24.7, "{interval:?}");
     assert!(scenes.to_text().contains("intervals rest on the scenes"));
