@@ -10,7 +10,7 @@ use yoro::gl::{Context, Destination};
 use yoro::platform::android::{Window, WindowError};
 use yoro::scene::builtin::BUILTINS;
 use yoro::viewer::{
-    Action, Event, FrameTiming, Rotation, Screen, Settings, Viewer, ViewerError, list_scenes,
+    Action, Cardboard, Event, FrameTiming, Rotation, Screen, Settings, ViewerError, list_scenes,
 };
 
 use crate::device::Device;
@@ -47,7 +47,7 @@ pub fn run(app: &AndroidApp) {
 /// Everything that one run of `android_main` holds.
 struct Activity {
     // What lives in the GL context goes before the context.
-    viewer: Option<Viewer>,
+    viewer: Option<Cardboard>,
     gl: Option<Rc<Context>>,
     window: Option<Window>,
 
@@ -131,7 +131,7 @@ impl Activity {
     }
 
     fn is_ready(&self) -> bool {
-        self.viewer.as_ref().is_some_and(Viewer::is_attached)
+        self.viewer.as_ref().is_some_and(Cardboard::is_attached)
     }
 
     fn is_drawing(&self) -> bool {
@@ -225,11 +225,12 @@ impl Activity {
 
     /// What the user has changed since the settings were read.
     fn changes(&self) -> Vec<settings::Pair> {
-        let Some(viewer) = &self.viewer else { return self.sources.saved.clone() };
+        let Some(cardboard) = &self.viewer else { return self.sources.saved.clone() };
+        let viewer = cardboard.viewer();
         let method =
             (viewer.method() != self.settings.method).then(|| ("method", viewer.method().name().to_owned()));
-        let default_ipd = self.settings.ipd.unwrap_or(viewer.optics().params().inter_lens);
-        let ipd = (viewer.ipd() != default_ipd).then(|| ("ipd", viewer.ipd().to_string()));
+        let ipd = viewer.chosen_ipd().filter(|ipd| Some(*ipd) != self.settings.ipd);
+        let ipd = ipd.map(|ipd| ("ipd", ipd.to_string()));
         [method, ipd].into_iter().flatten().map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
@@ -285,14 +286,14 @@ impl Activity {
     }
 
     /// A viewer with the settings from outside; mistakes in them are told, and the defaults take their place.
-    fn make_viewer(&mut self, screen: Screen) -> Option<Viewer> {
+    fn make_viewer(&mut self, screen: Screen) -> Option<Cardboard> {
         let settings = self.resolve();
         self.log_scenes();
         self.settings = settings.clone();
         let mut possible = settings;
         let defaults = Settings::default();
         loop {
-            let error = match Viewer::new(possible.clone(), screen, &self.folders) {
+            let error = match Cardboard::new(possible.clone(), screen, &self.folders) {
                 Ok(viewer) => return Some(viewer),
                 Err(error) => error,
             };
@@ -435,7 +436,7 @@ impl Activity {
             expected_display_ns: refresh_ns.unwrap_or(now) + ahead,
             refresh_hz: self.refresh_hz,
         };
-        let mut feed = |viewer: &mut Viewer| {
+        let mut feed = |viewer: &mut Cardboard| {
             if let Some(pulse) = self.pulse {
                 pulse.drain(&mut self.samples, |sample, time| viewer.sensor(sample, time));
             }
@@ -466,7 +467,7 @@ impl Activity {
         let Some(viewer) = &mut self.viewer else { return };
         let report = self.device.as_ref().map(Device::report).unwrap_or_default();
         self.refresh_hz = report.refresh_hz.unwrap_or(self.refresh_hz);
-        log::info!("{}", viewer.telemetry(now_ns(), &report.state));
+        log::info!("{}", viewer.viewer_mut().telemetry(now_ns(), &report.state));
         if let Some(errors) = self.gl.as_ref().and_then(|gl| gl.take_errors()) {
             log::warn!("GL errors in the last second: {errors}");
         }
@@ -488,16 +489,16 @@ impl Activity {
         // What was not to be found at the start is not looked for again with every change.
         let mut possible = settings.clone();
         if settings.scene == self.settings.scene {
-            possible.scene.clone_from(&viewer.settings().scene);
+            possible.scene.clone_from(&viewer.viewer().settings().scene);
         }
         if settings.viewer == self.settings.viewer {
-            possible.viewer.clone_from(&viewer.settings().viewer);
+            possible.viewer.clone_from(&viewer.viewer().settings().viewer);
         }
         // Another scene begins another session.
         self.is_summarized = false;
         match viewer.configure(possible, &self.folders) {
             Ok(()) => {
-                log::info!("settings: {}", viewer.settings());
+                log::info!("settings: {}", viewer.viewer().settings());
                 self.settings = settings;
             }
             Err(error) => log::warn!("{error}; the settings stay as they were"),
@@ -508,7 +509,7 @@ impl Activity {
         if let Some(viewer) = &self.viewer
             && !self.is_summarized
         {
-            log::info!("{}", viewer.summary(now_ns()));
+            log::info!("{}", viewer.viewer().summary(now_ns()));
             self.is_summarized = true;
         }
     }
@@ -544,7 +545,8 @@ fn log_action(action: Action) {
         Action::Ipd(ipd) => log::info!("ipd: {ipd:.3} m"),
         Action::Hud(is_shown) => log::info!("HUD: {}", if is_shown { "on" } else { "off" }),
         Action::Viewpoint(n) => log::info!("viewpoint: {n}"),
-        Action::Nothing => {}
+        Action::Scene => log::info!("another scene"),
+        Action::Marker(_) | Action::Answer | Action::Nothing => {}
     }
 }
 

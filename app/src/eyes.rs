@@ -318,7 +318,7 @@ impl Display for GuardBand {
 }
 
 /// The two eyes of one frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EyePair {
     /// Pose of each eye in the world, indexed by [`Eye::index`].
     pub poses: [Pose; 2],
@@ -364,6 +364,55 @@ impl EyePair {
     /// Distance between the eyes in metres along their X axis.
     pub fn ipd(&self) -> f32 {
         (self.poses[1].position - self.poses[0].position).dot(self.poses[0].right())
+    }
+
+    /// The same eyes with frusta of one width and one height, over the same rows: each grows around its own as far
+    /// as it takes.
+    pub fn evened(&self) -> EyePair {
+        let [l, r] = self.frusta;
+        let width = l.width().max(r.width());
+        let (bottom, top) = (l.bottom.min(r.bottom), l.top.max(r.top));
+        let grown = |f: Frustum| {
+            let more = (width - f.width()) / 2.0;
+            Frustum { left: f.left - more, right: f.right + more, bottom, top }
+        };
+        EyePair { frusta: self.frusta.map(grown), ..*self }
+    }
+
+    /// Eyes at the same places that look in one direction, at right angles to the line between them, with frusta
+    /// that contain those of these eyes. An image that is rendered so holds what a canted eye sees, turned about the
+    /// eye's own centre: whoever shows it can turn it back, exactly. Not for eyes that see further than 80 degrees
+    /// from that direction.
+    pub fn parallelized(&self) -> Option<EyePair> {
+        let between = self.poses[1].position - self.poses[0].position;
+        let x = between.try_normalize().unwrap_or(self.poses[0].right());
+        let ahead = self.poses[0].forward() + self.poses[1].forward();
+        let z = -(ahead - x * ahead.dot(x)).try_normalize()?;
+        let orientation = Quat::from_mat3(&glam::Mat3::from_cols(x, z.cross(x), z));
+        let mut eyes = *self;
+        for (pose, frustum) in eyes.poses.iter_mut().zip(&mut eyes.frusta) {
+            let turn = orientation.inverse() * pose.orientation;
+            let corners = [
+                (frustum.left, frustum.bottom),
+                (frustum.right, frustum.bottom),
+                (frustum.left, frustum.top),
+                (frustum.right, frustum.top),
+            ];
+            let mut seen = Frustum { left: f32::MAX, right: f32::MIN, bottom: f32::MAX, top: f32::MIN };
+            for (x, y) in corners {
+                let direction = (turn * Vec3::new(x, y, -1.0)).normalize();
+                if -direction.z < 80f32.to_radians().cos() {
+                    return None;
+                }
+                let tangent = direction.truncate() / -direction.z;
+                seen.left = seen.left.min(tangent.x);
+                seen.right = seen.right.max(tangent.x);
+                seen.bottom = seen.bottom.min(tangent.y);
+                seen.top = seen.top.max(tangent.y);
+            }
+            (pose.orientation, *frustum) = (orientation, seen);
+        }
+        Some(eyes.evened())
     }
 
     /// Focal length in pixels along X: pixels per unit tangent.

@@ -29,6 +29,7 @@ enum Command {
     Device(cli::device::DeviceArgs),
     Study(cli::study::StudyArgs),
     View(cli::view::ViewArgs),
+    Xr(cli::xr::XrArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -56,6 +57,7 @@ fn main() -> ExitCode {
         Command::Device(args) => cli::device::run(args),
         Command::Study(args) => cli::study::run(args),
         Command::View(args) => cli::view::run(args),
+        Command::Xr(args) => cli::xr::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {

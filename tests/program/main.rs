@@ -6,6 +6,7 @@ mod program;
 mod bench;
 mod compare;
 mod dataset;
+mod device;
 mod device_report;
 mod interrupt;
 mod memory;

@@ -12,7 +12,7 @@ use crate::program::{run, succeed};
 /// What a participant answers who likes both the same, give or take.
 fn rating(participant: usize, method: &str, scene: usize) -> f64 {
     let taste = 3.0 + 0.1 * (participant % 5) as f64;
-    let whim = if method == "yoro" { 0.05 * ((participant * 7 + scene * 3) % 5) as f64 - 0.1 } else { 0.0 };
+    let whim = if method == "yoro" { 0.1 * ((participant * 7 + scene * 3) % 5) as f64 - 0.2 } else { 0.0 };
     taste + whim
 }
 
@@ -46,14 +46,14 @@ fn from_a_plan_to_a_verdict() {
         let _ = writeln!(
             log,
             "11-21 10:00:01.000  1  1 I YORO    : rating,v=1,participant={participant},trial={},method={method},\
-             scene={scene},question=image-quality,rating={value:.2}",
+             pipeline=na,scene={scene},question=image-quality,value={value:.1}",
             cells[1]
         );
     }
     // One answer is cut off, and its participant therefore incomplete.
     log.truncate(log.trim_end().len() - 1);
     fs::write(at.join("log.txt"), &log).unwrap();
-    let collected = succeed(at, "study collect log.txt --out ratings.csv");
+    let collected = succeed(at, "study collect log.txt --plan plan.csv --out ratings.csv");
     assert!(
         collected.stdout.contains("35 ratings") && collected.stdout.contains("1 damaged"),
         "{}",
@@ -103,6 +103,7 @@ fn mistakes() {
         ("study plan --participants 0", &["--participants"]),
         ("study collect empty.log", &["no rating in empty.log"]),
         ("study collect nowhere.log", &["nowhere.log does not exist"]),
+        ("study collect empty.log --plan one.csv", &["one.csv, line 1", "no row of a plan"]),
         ("study analyse nowhere.csv", &["nowhere.csv does not exist"]),
         ("study analyse one.csv", &["nobody has rated conventional", "yoro"]),
         ("study analyse one.csv --baseline yoro", &["only yoro was rated"]),
@@ -118,5 +119,5 @@ fn mistakes() {
         "study plan --methods conventional,mine --set mine:method=yoro --set mine:pipeline=paper --out plan.csv",
     );
     let plan = fs::read_to_string(at.join("plan.csv")).unwrap();
-    assert!(plan.contains("method=yoro pipeline=paper scene="), "{plan}");
+    assert!(plan.contains("method=yoro participant=P01 pipeline=paper "), "{plan}");
 }

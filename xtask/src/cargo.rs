@@ -75,12 +75,13 @@ impl Summary {
     }
 }
 
-/// A test of the APK has one of the filters in its name, and `part` as well. Without filters all of them are wanted.
-pub fn wants_apk(filters: &[String], part: &str) -> bool {
+/// An end-to-end test of the package has one of the filters in its name, and `part` as well. Without filters all of them are
+/// wanted.
+pub fn wants(package: &str, filters: &[String], part: &str) -> bool {
     if filters.is_empty() {
         return true;
     }
-    let list = ["test", "--package", "yoro-android-host", "--test", "*", "--quiet", "--", "--list"];
+    let list = ["test", "--package", package, "--test", "*", "--quiet", "--", "--list"];
     let list = cargo().args(list).args(filters).output();
     // What does not compile is told when the tests are to be run.
     list.is_ok_and(|output| {
@@ -100,6 +101,8 @@ pub struct Equipment {
     pub arm64: Equipped,
     /// A browser for report pages.
     pub browser: Equipped,
+    /// The folder of Monado, an OpenXR runtime.
+    pub monado: Equipped,
 }
 
 /// Is a file for tests here?
@@ -148,6 +151,7 @@ pub fn test(filters: &[String], bless: bool, equipment: &Equipment) -> anyhow::R
     equipment.apk.tell("APK", &mut command);
     equipment.arm64.tell("ARM64_HOST", &mut command);
     equipment.browser.tell("CHROMIUM", &mut command);
+    equipment.monado.tell("MONADO", &mut command);
     let mut child = command.spawn().context("cargo cannot be started")?;
     let mut summary = Summary::default();
     if let Some(stdout) = child.stdout.take() {
@@ -168,6 +172,10 @@ pub fn test(filters: &[String], bless: bool, equipment: &Equipment) -> anyhow::R
             matches!(equipment.arm64, Equipped::Missing),
         ),
         ("Chromium is not here", matches!(equipment.browser, Equipped::Missing)),
+        (
+            "Monado cannot be set up here (see the warning above)",
+            matches!(equipment.monado, Equipped::Missing),
+        ),
     ];
     for (what, _) in absent.iter().filter(|(_, missing)| *missing) {
         println!("{what}: what needs it was left out");

@@ -3,6 +3,8 @@
 mod android;
 mod apt;
 mod cargo;
+mod monado;
+mod packages;
 mod setup;
 
 use std::io::{self, Write as _};
@@ -113,18 +115,21 @@ fn show(text: &str) {
 /// Installs and builds what the tests need that have one of the filters in their names.
 fn equip(filters: &[String]) -> anyhow::Result<Equipment> {
     let osmesa = setup::ensure()?.osmesa;
-    let apk = if cargo::wants_apk(filters, "") { android::for_tests()? } else { Equipped::NotWanted };
+    let wants = |part| cargo::wants("yoro-android-host", filters, part);
+    let apk = if wants("") { android::for_tests()? } else { Equipped::NotWanted };
     // A machine of arm64 runs that library by itself.
     let foreign = cfg!(target_arch = "x86_64");
     let arm64 = match apk {
-        Equipped::At(_) if foreign && cargo::wants_apk(filters, "arm64") => android::host_for_tests()?,
+        Equipped::At(_) if foreign && wants("arm64") => android::host_for_tests()?,
         _ => Equipped::NotWanted,
     };
     // A few chosen tests are not worth the wait for an installation.
     let all = filters.is_empty();
     let absent = if all { Equipped::Missing } else { Equipped::NotWanted };
     let browser = setup::browser(all).map_or(absent, Equipped::At);
-    Ok(Equipment { osmesa, apk, arm64, browser })
+    let monado =
+        if cargo::wants("yoro", filters, "monado") { monado::for_tests() } else { Equipped::NotWanted };
+    Ok(Equipment { osmesa, apk, arm64, browser, monado })
 }
 
 fn lint() -> anyhow::Result<()> {

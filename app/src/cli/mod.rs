@@ -14,6 +14,7 @@ pub mod stage;
 pub mod study;
 pub mod synthesize;
 pub mod view;
+pub mod xr;
 
 use std::path::PathBuf;
 use std::rc::Rc;

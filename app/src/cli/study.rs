@@ -11,7 +11,7 @@ use super::machine;
 use crate::files;
 use crate::scene::builtin::{BUILTINS, DEFAULT_SEED};
 use crate::stereo::Method;
-use crate::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError};
+use crate::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
 use crate::viewer::Settings;
 
 /// Plan a user study, collect its ratings, analyse them
@@ -44,6 +44,14 @@ struct PlanArgs {
     /// Scenes, with commas between; all built-in scenes by default
     #[arg(long, value_delimiter = ',', value_name = "SCENE,...")]
     scenes: Vec<String>,
+    /// What the viewer asks after each trial, with commas between
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_value = "image-quality,user-experience",
+        value_name = "QUESTION,..."
+    )]
+    questions: Vec<String>,
     /// Another seed gives other orders
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
@@ -58,6 +66,9 @@ struct CollectArgs {
     /// Logs, - for standard input
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
+    /// The plan that the participants followed: methods get its names, and what is not in it is left out
+    #[arg(long, value_name = "PLAN.csv")]
+    plan: Option<PathBuf>,
     /// The ratings
     #[arg(long, default_value = "ratings.csv", value_name = "FILE.csv")]
     out: PathBuf,
@@ -140,7 +151,7 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
     refuse_twice("method", &args.methods)?;
     ensure!(methods.len() > 1, "one method cannot be compared: name two with --methods");
     let participants = usize::from(args.participants);
-    let plan = Plan::new(participants, &scenes, &methods, args.seed);
+    let plan = Plan::new(participants, &scenes, &methods, &args.questions, args.seed);
     let text = match files::has_extension(&args.out, &["json"]) {
         true => serde_json::to_string_pretty(&plan)?,
         false => plan.to_csv(),
@@ -205,6 +216,7 @@ fn conditions(names: &[String], settings: &[String]) -> anyhow::Result<Vec<Condi
 const DAMAGED_SHOWN: usize = 10;
 
 fn collect(args: &CollectArgs) -> anyhow::Result<()> {
+    let plan = args.plan.as_deref().map(read_trials).transpose()?;
     let mut collected = Collected::default();
     for path in &args.logs {
         let bytes = match path.as_os_str() == "-" {
@@ -215,7 +227,7 @@ fn collect(args: &CollectArgs) -> anyhow::Result<()> {
             }
             false => files::read(path)?,
         };
-        collected.add(&path.display().to_string(), &String::from_utf8_lossy(&bytes));
+        collected.add(&path.display().to_string(), &String::from_utf8_lossy(&bytes), plan.as_ref());
     }
     for (name, line, what) in collected.damaged.iter().take(DAMAGED_SHOWN) {
         log::warn!("{name}, line {line}: {what}");

@@ -11,7 +11,7 @@ use crate::cli::{GlArgs, progress_bar, stop_if_interrupted};
 use crate::files;
 use crate::gl::{Destination, Filter, Format, RenderTarget};
 use crate::picture::{self, PictureError};
-use crate::viewer::{FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings, Viewer};
+use crate::viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
 
 /// The refresh rate of the imagined display.
 const REFRESH_HZ: f32 = 60.0;
@@ -90,7 +90,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         return Err(PictureError::Extension { path: args.png.clone(), allowed: ".png" }.into());
     }
     let screen = Screen { size: args.screen, dpi: [args.dpi; 2], rotation: Rotation::LandscapeLeft };
-    let mut viewer = Viewer::new(args.resolve()?, screen, &[])?;
+    let mut viewer = Cardboard::new(args.resolve()?, screen, &[])?;
     viewer.hold_head(Some(args.head()));
     let headless = args.gl.open()?;
     let gl = headless.gl();
@@ -99,7 +99,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let to = Destination::whole(&window);
     let period_ns = (1e9 / REFRESH_HZ) as i64;
     let mut now_ns = 0;
-    let mut frame = |viewer: &mut Viewer| {
+    let mut frame = |viewer: &mut Cardboard| {
         now_ns += period_ns;
         let timing = FrameTiming { now_ns, expected_display_ns: now_ns + period_ns, refresh_hz: REFRESH_HZ };
         viewer.frame(&to, &timing)
@@ -108,11 +108,11 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         frame(&mut viewer)?;
     } else {
         let bar = progress_bar(FRAMES as u64);
-        while viewer.scene_state() != SceneState::Ready {
+        while viewer.viewer().scene_state() != SceneState::Ready {
             stop_if_interrupted()?;
-            viewer.poll_scene();
-            if viewer.scene_state() == SceneState::Failed {
-                bail!(viewer.failure().unwrap_or_default().to_owned());
+            viewer.viewer_mut().poll_scene();
+            if viewer.viewer().scene_state() == SceneState::Failed {
+                bail!(viewer.viewer().failure().unwrap_or_default().to_owned());
             }
             std::thread::sleep(Duration::from_millis(5));
         }

@@ -24,6 +24,26 @@ impl Destination {
     }
 }
 
+impl Context {
+    /// Copies a rectangle of colour to one of the same size. Bits stay what they are, unless just one of the two
+    /// is stored as sRGB.
+    pub fn copy(&self, from: &Destination, to: &Destination) {
+        let gl = self.raw();
+        let [x, y] = from.origin.map(|n| n as i32);
+        let ([tx, ty], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
+        let buffer = if from.framebuffer.is_some() { glow::COLOR_ATTACHMENT0 } else { glow::BACK };
+        // SAFETY: both framebuffers are live; GL clips rectangles that do not fit.
+        unsafe {
+            gl.disable(glow::SCISSOR_TEST);
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, from.framebuffer);
+            gl.read_buffer(buffer);
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, to.framebuffer);
+            let (mask, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
+            gl.blit_framebuffer(x, y, x + w, y + h, tx, ty, tx + w, ty + h, mask, filter);
+        }
+    }
+}
+
 /// A framebuffer with its own textures. Resizing to the size it has costs nothing.
 pub struct RenderTarget {
     gl: Rc<Context>,
@@ -183,18 +203,7 @@ impl RenderTarget {
     /// Copies the rectangle of colour attachment 0 whose lower left corner is `crop` into a destination of the
     /// same size as the rectangle.
     pub fn copy_color(&self, crop: [u32; 2], to: &Destination) {
-        let gl = self.gl.raw();
-        let [x, y] = crop.map(|n| n as i32);
-        let ([tx, ty], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
-        // SAFETY: both framebuffers are live; GL clips rectangles that do not fit.
-        unsafe {
-            gl.disable(glow::SCISSOR_TEST);
-            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.raw));
-            gl.read_buffer(glow::COLOR_ATTACHMENT0);
-            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, to.framebuffer);
-            let (mask, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
-            gl.blit_framebuffer(x, y, x + w, y + h, tx, ty, tx + w, ty + h, mask, filter);
-        }
+        self.gl.copy(&Destination { framebuffer: Some(self.raw), origin: crop, size: to.size }, to);
     }
 
     /// Starts to read all of colour attachment 0, as RGBA8, into a buffer; does not wait.
@@ -284,6 +293,100 @@ impl RenderTarget {
             let [w, h] = size.map(|n| n as i32);
             gl.read_pixels(x, y, w, h, format, ty, glow::PixelPackData::Slice(Some(bytes)));
         }
+    }
+}
+
+/// A framebuffer around a texture that belongs to somebody else, an OpenXR runtime for instance.
+pub struct ForeignTarget {
+    gl: Rc<Context>,
+    raw: glow::Framebuffer,
+    size: [u32; 2],
+}
+
+impl ForeignTarget {
+    /// A framebuffer that draws into a 2-D texture, or into a layer of an array of them: colour, or depth alone.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] when the driver cannot render to the texture.
+    ///
+    /// # Safety
+    /// The texture is one of this context, of the kind that `layer` says and of this size, and lives longer than
+    /// the framebuffer is used.
+    pub unsafe fn new(
+        gl: &Rc<Context>,
+        texture: glow::Texture,
+        layer: Option<u32>,
+        is_depth: bool,
+        size: [u32; 2],
+    ) -> Result<ForeignTarget, GlError> {
+        let raw_gl = gl.raw();
+        let attachment = if is_depth { glow::DEPTH_ATTACHMENT } else { glow::COLOR_ATTACHMENT0 };
+        // SAFETY: the caller's texture fits the call; the framebuffer is new.
+        unsafe {
+            let raw = raw_gl
+                .create_framebuffer()
+                .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
+            gl.count(1);
+            let target = ForeignTarget { gl: gl.clone(), raw, size };
+            raw_gl.bind_framebuffer(glow::FRAMEBUFFER, Some(raw));
+            match layer {
+                Some(layer) => raw_gl.framebuffer_texture_layer(
+                    glow::FRAMEBUFFER,
+                    attachment,
+                    Some(texture),
+                    0,
+                    layer as i32,
+                ),
+                None => raw_gl.framebuffer_texture_2d(
+                    glow::FRAMEBUFFER,
+                    attachment,
+                    glow::TEXTURE_2D,
+                    Some(texture),
+                    0,
+                ),
+            }
+            if is_depth {
+                raw_gl.draw_buffers(&[glow::NONE]);
+            }
+            match raw_gl.check_framebuffer_status(glow::FRAMEBUFFER) {
+                glow::FRAMEBUFFER_COMPLETE => Ok(target),
+                status => Err(GlError::Unsupported(format!(
+                    "the GL driver cannot render to a texture that was handed to it (status 0x{status:x})"
+                ))),
+            }
+        }
+    }
+
+    /// The lower left part of this size.
+    pub fn part(&self, size: [u32; 2]) -> Destination {
+        let size = [0, 1].map(|i| size[i].min(self.size[i]));
+        Destination { framebuffer: Some(self.raw), origin: [0, 0], size }
+    }
+}
+
+impl Drop for ForeignTarget {
+    fn drop(&mut self) {
+        // SAFETY: created in `new`, deleted once.
+        unsafe { self.gl.raw().delete_framebuffer(self.raw) };
+        self.gl.count(-1);
+    }
+}
+
+impl Context {
+    /// Reads a rectangle of colour as it is stored, in RGBA, rows from the bottom. Waits for the GPU.
+    pub fn read_rgba8(&self, from: &Destination) -> Vec<u8> {
+        let gl = self.raw();
+        let ([x, y], [w, h]) = (from.origin.map(|n| n as i32), from.size.map(|n| n as i32));
+        let mut bytes = vec![0; from.size[0] as usize * from.size[1] as usize * 4];
+        let buffer = if from.framebuffer.is_some() { glow::COLOR_ATTACHMENT0 } else { glow::BACK };
+        // SAFETY: `bytes` is as long as GL writes.
+        unsafe {
+            gl.bind_framebuffer(glow::FRAMEBUFFER, from.framebuffer);
+            gl.read_buffer(buffer);
+            let data = glow::PixelPackData::Slice(Some(&mut bytes));
+            gl.read_pixels(x, y, w, h, glow::RGBA, glow::UNSIGNED_BYTE, data);
+        }
+        bytes
     }
 }
 

@@ -19,7 +19,7 @@ use std::rc::Rc;
 use glow::HasContext;
 
 pub use capabilities::{Capabilities, GlApi};
-pub use framebuffer::{Destination, RenderTarget};
+pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
 pub use mesh::Mesh;
 pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};

@@ -17,6 +17,7 @@ type QueryDevices = extern "system" fn(c_int, *mut *mut c_void, *mut c_int) -> c
 pub(super) struct EglContext {
     egl: Egl,
     display: egl::Display,
+    config: egl::Config,
     context: egl::Context,
     surface: Option<egl::Surface>,
 }
@@ -80,7 +81,7 @@ impl EglContext {
                 egl.create_context(display, config, None, &version).ok()
             })
             .ok_or("no OpenGL ES 3 context")?;
-        let mut this = EglContext { egl, display, context, surface: None };
+        let mut this = EglContext { egl, display, config, context, surface: None };
         if this.egl.make_current(display, None, None, Some(context)).is_err() {
             let size = [egl::WIDTH, 16, egl::HEIGHT, 16, egl::NONE];
             let surface =
@@ -101,6 +102,21 @@ impl EglContext {
 }
 
 impl EglContext {
+    /// Makes the context current on this thread again.
+    pub(super) fn make_current(&self) -> Result<(), String> {
+        if self.egl.get_current_context() == Some(self.context) {
+            return Ok(());
+        }
+        self.egl
+            .make_current(self.display, self.surface, self.surface, Some(self.context))
+            .map_err(|e| format!("eglMakeCurrent failed ({e})"))
+    }
+
+    /// EGLDisplay, EGLConfig and EGLContext.
+    pub(super) fn handles(&self) -> [*mut c_void; 3] {
+        [self.display.as_ptr(), self.config.as_ptr(), self.context.as_ptr()]
+    }
+
     /// A GL function by name, or null.
     pub(super) fn entry_point(&self, name: &CStr) -> *const c_void {
         let function = name.to_str().ok().and_then(|name| self.egl.get_proc_address(name));

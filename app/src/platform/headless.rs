@@ -45,7 +45,7 @@ pub enum PlatformError {
 }
 
 /// Keeps a context current on this thread until it is dropped.
-#[allow(dead_code, reason = "held for its Drop")]
+#[allow(dead_code, reason = "OSMesa is held for its Drop")]
 enum Holder {
     Egl(Box<egl::EglContext>),
     Osmesa(osmesa::OsmesaContext),
@@ -58,7 +58,7 @@ enum Holder {
 pub struct Headless {
     context: Option<Rc<Context>>,
     backend: Backend,
-    _holder: Holder,
+    holder: Holder,
 }
 
 impl Headless {
@@ -95,12 +95,20 @@ impl Headless {
         };
         // SAFETY: both loaders give the entry points of the context that they have made current.
         let context = unsafe { Context::with_loader(raw, load) }?;
-        Ok(Headless { context: Some(context), backend, _holder: holder })
+        Ok(Headless { context: Some(context), backend, holder: holder })
     }
 
     /// The GL context.
     pub fn gl(&self) -> &Rc<Context> {
         self.context.as_ref().expect("present until dropped")
+    }
+
+    /// The EGL context, if it is one.
+    pub(super) fn egl(&self) -> Option<&egl::EglContext> {
+        match &self.holder {
+            Holder::Egl(context) => Some(context),
+            Holder::Osmesa(_) => None,
+        }
     }
 
     /// The backend that was opened, never [`Backend::Auto`].

@@ -6,6 +6,7 @@ pub mod android;
 mod egl;
 #[cfg(feature = "desktop")]
 mod headless;
+pub mod openxr;
 #[cfg(feature = "desktop")]
 mod osmesa;
 

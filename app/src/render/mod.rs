@@ -6,6 +6,7 @@
 
 mod bloom;
 mod cluster;
+mod depth_copy;
 mod fxaa;
 mod g_buffer;
 mod geometry;
@@ -24,6 +25,7 @@ use std::rc::Rc;
 
 use bloom::{BloomPass, BloomTargets};
 pub use cluster::{Culler, Selection};
+pub use depth_copy::DepthCopy;
 pub use fxaa::Fxaa;
 pub(crate) use g_buffer::{GBuffer, Layout, Seam};
 use geometry::GeometryPass;

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::{AntiAliasing, Finish, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use super::{AntiAliasing, EyeTarget, Finish, StereoError, StereoMethod, StereoOptions};
 use crate::eyes::{DepthConvention, Eye, EyePair};
 use crate::gl::{Context, GlError};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
@@ -29,19 +29,19 @@ impl Conventional {
         })
     }
 
-    /// Renders one eye into the frame.
+    /// Renders one eye to where it is wanted.
     pub(super) fn render_eye(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
         eye: Eye,
-        frame: &StereoFrame,
+        to: &EyeTarget,
     ) -> Result<(), StereoError> {
         let view = pair.view(eye);
         renderer.render(&mut self.targets, scene, &view, Selection::All)?;
         let (color, depth) = (self.targets.color_target(), DepthImage::whole(self.targets.depth()));
-        Ok(self.finish.eye(renderer, scene, &view, color, depth, frame.eye(eye))?)
+        Ok(self.finish.eye(renderer, scene, &view, color, depth, to)?)
     }
 
     /// The targets that hold the eye that was rendered last.
@@ -51,17 +51,16 @@ impl Conventional {
 }
 
 impl StereoMethod for Conventional {
-    fn render(
+    fn render_to(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
-        frame: &mut StereoFrame,
+        to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
-        frame.resize(pair.size)?;
         // The dominant eye last, so that its depth is at hand.
         for eye in [pair.dominant.other(), pair.dominant] {
-            self.render_eye(renderer, scene, pair, eye, frame)?;
+            self.render_eye(renderer, scene, pair, eye, &to[eye.index()])?;
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use glam::IVec2;
 
-use super::{AntiAliasing, Finish, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use super::{AntiAliasing, EyeTarget, Finish, StereoError, StereoMethod, StereoOptions};
 use crate::eyes::{DepthConvention, Eye, EyePair, GuardBand, Pose, View};
 use crate::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource};
 use crate::render::{
@@ -97,7 +97,7 @@ impl Hybrid {
         self.gl.draw_screen();
     }
 
-    /// Completes an eye's depth by that of the far field, for what is drawn over the finished image.
+    /// Completes an eye's depth by that of the far field, for whoever needs the depth of the finished image.
     fn merge_depth(&self, eye: &RenderTarget, view: &View, crop: IVec2) {
         self.gl.pass("merge depth", || {
             let depth = depth_test(view.depth.convention);
@@ -135,12 +135,12 @@ impl StereoMethod for Hybrid {
         Ok(renderer.prepare(scene, Layout::Single, &roles)?)
     }
 
-    fn render(
+    fn render_to(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
-        frame: &mut StereoFrame,
+        to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
         let union = pair.synthesis(GuardBand::None)?.source;
@@ -151,7 +151,6 @@ impl StereoMethod for Hybrid {
         if split.far.is_none() {
             split.near = Some([pair.depth.near, pair.depth.far]);
         }
-        frame.resize(pair.size)?;
         self.light.resize(pair.size)?;
         self.image.resize(pair.size)?;
         for eye in Eye::BOTH {
@@ -174,11 +173,12 @@ impl StereoMethod for Hybrid {
             };
             renderer.light(&self.light, near, scene, &view, role);
             renderer.finish(&self.image, &self.light);
-            if split.far.is_some() && scene.has_transparent() {
+            let to = &to[eye.index()];
+            if split.far.is_some() && (scene.has_transparent() || to.depth.is_some()) {
                 self.merge_depth(near.target(), &view, crop);
             }
             let depth = DepthImage::whole(near.target().depth());
-            self.finish.eye(renderer, scene, &view, self.image.color(), depth, frame.eye(eye))?;
+            self.finish.eye(renderer, scene, &view, self.image.color(), depth, to)?;
         }
         Ok(())
     }

@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 use crate::eyes::{Eye, EyePair, EyesError, GuardBand, View};
 use crate::gl::{Capabilities, Context, Destination, Filter, Format, GlError, RenderTarget};
-use crate::render::{DepthImage, Fxaa, GpuScene, RenderSettings, Renderer};
+use crate::render::{DepthCopy, DepthImage, Fxaa, GpuScene, RenderSettings, Renderer};
 use crate::synthesis::{NearFieldPolicy, Pipeline, SynthesisOptions};
 
 pub use conventional::Conventional;
@@ -79,6 +79,12 @@ impl Method {
             Method::Mono => "mono",
             Method::Yoro => "yoro",
         }
+    }
+
+    /// Whether the method moves pixels from one eye to the other, which needs eyes that look in the same direction
+    /// ([`EyePair::synthesis`]).
+    pub fn needs_aligned_eyes(self) -> bool {
+        matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Yoro)
     }
 
     /// Whether a driver can run the method; what a pipeline of [`Method::Yoro`] needs is its own to say.
@@ -184,6 +190,29 @@ impl StereoFrame {
     pub fn eye(&self, eye: Eye) -> &RenderTarget {
         &self.eyes[eye.index()]
     }
+
+    /// Both images as targets, without depth.
+    pub fn targets(&self) -> [EyeTarget<'static>; 2] {
+        Eye::BOTH.map(|eye| EyeTarget { color: Destination::whole(self.eye(eye)), depth: None })
+    }
+}
+
+/// Where one eye of a frame goes. The rectangles have the pair's size.
+#[derive(Clone, Copy)]
+pub struct EyeTarget<'a> {
+    /// Takes display-referred sRGB with luma in alpha, and stores it as it is written.
+    pub color: Destination,
+    /// Takes the eye's window depth, if somebody wants it.
+    pub depth: Option<DepthTarget<'a>>,
+}
+
+/// Where the window depth of an eye goes.
+#[derive(Clone, Copy)]
+pub struct DepthTarget<'a> {
+    /// Framebuffer with a depth attachment and nothing else.
+    pub to: Destination,
+    /// The pass that writes it.
+    pub copy: &'a DepthCopy,
 }
 
 /// A method with its own programs and targets.
@@ -197,17 +226,32 @@ pub trait StereoMethod {
         Ok(())
     }
 
-    /// Renders both eyes of a frame. `frame` is resized to the pair's size.
+    /// Renders both eyes of a frame to wherever they are wanted, by [`Eye::index`].
     ///
     /// # Errors
     /// [`StereoError`] for a pair of eyes that the method cannot do, or when GL refuses.
+    fn render_to(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError>;
+
+    /// Renders both eyes into a frame, which is resized to the pair's size.
+    ///
+    /// # Errors
+    /// As [`StereoMethod::render_to`].
     fn render(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
         frame: &mut StereoFrame,
-    ) -> Result<(), StereoError>;
+    ) -> Result<(), StereoError> {
+        frame.resize(pair.size)?;
+        self.render_to(renderer, scene, pair, &frame.targets())
+    }
 }
 
 /// Makes a method; all that does not depend on the scene is compiled here ([`StereoMethod::prepare`] does the rest).
@@ -252,20 +296,28 @@ impl Finish {
         view: &View,
         color: &RenderTarget,
         depth: DepthImage,
-        to: &RenderTarget,
+        to: &EyeTarget,
     ) -> Result<(), GlError> {
         if scene.has_transparent() {
             renderer.draw_transparent(&Destination::whole(color), depth, scene, view)?;
         }
-        self.run(color, [0, 0], to);
+        self.color(color, [0, 0], &to.color);
+        Finish::depth(depth, to);
         Ok(())
     }
 
     /// Fills `to` from the part of `from` whose lower left corner is `crop`.
-    fn run(&self, from: &RenderTarget, crop: [u32; 2], to: &RenderTarget) {
+    fn color(&self, from: &RenderTarget, crop: [u32; 2], to: &Destination) {
         match &self.fxaa {
-            Some(fxaa) => fxaa.run(from.color(0), crop, &Destination::whole(to)),
-            None => self.gl.pass("copy", || from.copy_color(crop, &Destination::whole(to))),
+            Some(fxaa) => fxaa.run(from.color(0), crop, to),
+            None => self.gl.pass("copy", || from.copy_color(crop, to)),
+        }
+    }
+
+    /// Hands an eye's depth to whoever wants it.
+    fn depth(from: DepthImage, to: &EyeTarget) {
+        if let Some(depth) = &to.depth {
+            depth.copy.run(from, &depth.to);
         }
     }
 }

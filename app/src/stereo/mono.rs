@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
-use super::{Conventional, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use super::{Conventional, EyeTarget, Finish, StereoError, StereoMethod, StereoOptions};
 use crate::eyes::EyePair;
-use crate::gl::{Context, Destination, GlError};
-use crate::render::{GpuScene, RenderSettings, Renderer};
+use crate::gl::{Context, GlError};
+use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer};
 
 /// One render, one copy.
 pub struct Mono {
@@ -28,17 +28,17 @@ impl Mono {
 }
 
 impl StereoMethod for Mono {
-    fn render(
+    fn render_to(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
-        frame: &mut StereoFrame,
+        to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
-        frame.resize(pair.size)?;
-        self.eye.render_eye(renderer, scene, pair, pair.dominant, frame)?;
-        let (from, to) = (frame.eye(pair.dominant), frame.eye(pair.dominant.other()));
-        self.gl.pass("copy", || from.copy_color([0, 0], &Destination::whole(to)));
+        let [from, to] = [pair.dominant, pair.dominant.other()].map(|eye| &to[eye.index()]);
+        self.eye.render_eye(renderer, scene, pair, pair.dominant, from)?;
+        self.gl.pass("copy", || self.gl.copy(&from.color, &to.color));
+        Finish::depth(DepthImage::whole(self.eye.targets().depth()), to);
         Ok(())
     }
 }

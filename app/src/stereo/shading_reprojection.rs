@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use glam::Vec2;
 
-use super::{AntiAliasing, Finish, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use super::{AntiAliasing, EyeTarget, Finish, StereoError, StereoMethod, StereoOptions};
 use crate::eyes::{DepthConvention, DisparityLaw, EyePair, GuardBand};
 use crate::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 use crate::render::{
@@ -87,12 +87,12 @@ impl StereoMethod for ShadingReprojection {
         Ok(renderer.prepare(scene, Layout::Single, &[RoleKind::Whole, RoleKind::Reprojected])?)
     }
 
-    fn render(
+    fn render_to(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
-        frame: &mut StereoFrame,
+        to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
         // The law for the dominant eye's own image instead of one with both frusta: what is outside is shaded.
@@ -100,7 +100,6 @@ impl StereoMethod for ShadingReprojection {
         let [left, bottom] = views.dominant_crop;
         let law = DisparityLaw { offset: views.warp.law.offset + f64::from(left), ..views.warp.law };
         let row_offset = views.warp.row_offset + bottom as i32;
-        frame.resize(pair.size)?;
         for g_buffer in &mut self.g_buffers {
             g_buffer.fit(pair.size, pair.depth.convention)?;
         }
@@ -126,7 +125,7 @@ impl StereoMethod for ShadingReprojection {
             renderer.light(&self.light[i], g_buffer, scene, &view, role);
             renderer.finish(&self.image, &self.light[i]);
             let depth = DepthImage::whole(g_buffer.target().depth());
-            self.finish.eye(renderer, scene, &view, self.image.color(), depth, frame.eye(eye))?;
+            self.finish.eye(renderer, scene, &view, self.image.color(), depth, &to[eye.index()])?;
         }
         Ok(())
     }

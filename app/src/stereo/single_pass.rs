@@ -3,7 +3,7 @@
 
 use std::rc::Rc;
 
-use super::{AntiAliasing, Finish, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use super::{AntiAliasing, EyeTarget, Finish, StereoError, StereoMethod, StereoOptions};
 use crate::eyes::{DepthConvention, Eye, EyePair};
 use crate::gl::{Context, GlError};
 use crate::render::{
@@ -72,15 +72,14 @@ impl StereoMethod for SinglePass {
         Ok(renderer.prepare(scene, self.layout, &[role])?)
     }
 
-    fn render(
+    fn render_to(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
-        frame: &mut StereoFrame,
+        to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        frame.resize(pair.size)?;
         self.g_buffer.fit(pair.size, pair.depth.convention)?;
         self.light.resize(pair.size)?;
         self.image.resize(pair.size)?;
@@ -96,7 +95,7 @@ impl StereoMethod for SinglePass {
                 origin: self.layout.origin(pair.size, eye),
                 layer: (self.layout == Layout::Layered).then_some(eye.index() as u32),
             };
-            self.finish.eye(renderer, scene, view, self.image.color(), depth, frame.eye(eye))?;
+            self.finish.eye(renderer, scene, view, self.image.color(), depth, &to[eye.index()])?;
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::near_field::{Composite, NearFraction};
-use super::{AntiAliasing, Conventional, Finish, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use super::{AntiAliasing, Conventional, EyeTarget, Finish, StereoError, StereoMethod, StereoOptions};
 use crate::eyes::{DepthConvention, EyePair, SynthesisViews};
 use crate::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
@@ -107,7 +107,7 @@ impl Yoro {
         let mut color = self.targets.color();
         if let Some(smooth) = &mut self.smooth {
             smooth.resize(views.source.size)?;
-            self.before.run(self.targets.color_target(), [0, 0], smooth);
+            self.before.color(self.targets.color_target(), [0, 0], &Destination::whole(smooth));
             color = smooth.color(0);
         }
         self.other.resize(pair.size)?;
@@ -118,25 +118,24 @@ impl Yoro {
 }
 
 impl StereoMethod for Yoro {
-    fn render(
+    fn render_to(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
-        frame: &mut StereoFrame,
+        to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         if let Some(switch) = &mut self.switch {
             if let Some(fraction) = switch.fraction.take() {
                 switch.mode = switch.policy.next(switch.mode, fraction);
             }
             if switch.mode == FrameMode::BothRendered {
-                switch.conventional.render(renderer, scene, pair, frame)?;
+                switch.conventional.render_to(renderer, scene, pair, to)?;
                 let depth = switch.conventional.targets().depth();
                 switch.fraction.measure(depth, [0, 0], pair.size, &pair.depth, switch.policy.distance);
                 return Ok(());
             }
         }
-        frame.resize(pair.size)?;
         let views = pair.synthesis(self.options.guard_band)?;
         self.synthesize(renderer, scene, pair, &views)?;
         if let Some(switch) = &mut self.switch {
@@ -168,8 +167,14 @@ impl StereoMethod for Yoro {
                 renderer.draw_transparent(&image.color_only(), DepthImage::whole(depth), scene, view)?;
             }
         }
-        self.after.run(dominant, views.dominant_crop, frame.eye(pair.dominant));
-        self.after.run(other, [0, 0], frame.eye(pair.dominant.other()));
+        let crop = views.dominant_crop;
+        let cropped = DepthImage { origin: crop, ..DepthImage::whole(dominant_depth) };
+        let depth = DepthImage::whole(other.depth());
+        let [dominant_to, other_to] = [pair.dominant, pair.dominant.other()].map(|eye| &to[eye.index()]);
+        self.after.color(dominant, crop, &dominant_to.color);
+        Finish::depth(cropped, dominant_to);
+        self.after.color(other, [0, 0], &other_to.color);
+        Finish::depth(depth, other_to);
         Ok(())
     }
 }

@@ -12,7 +12,7 @@ mod ratings;
 use std::path::PathBuf;
 
 pub use analysis::{Excluded, Options, Question, Scale, Study, Verdict};
-pub use plan::{Condition, Plan, Trial};
+pub use plan::{Condition, Plan, Trial, read_trials};
 pub use ratings::{Collected, Ratings, Row};
 
 use crate::files::FileError;
@@ -50,6 +50,8 @@ pub enum StudyError {
         what: String,
     },
     /// No line of the logs is a rating.
-    #[error("there is no rating in {0}: ratings are lines of the viewer's log that begin with rating,v=1")]
+    #[error(
+        "there is no rating in {0}: ratings are lines of the viewer's log that begin with rating,v=1, and name a participant"
+    )]
     NoRating(String),
 }

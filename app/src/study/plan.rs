@@ -1,11 +1,15 @@
 //! Who sees what in which order.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
 use rand_pcg::Pcg32;
 use serde::Serialize;
+
+use super::StudyError;
+use crate::files;
 
 /// A method as the study calls it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,7 +54,16 @@ impl Plan {
     /// Scenes are in the order of a balanced Latin square (Williams 1949), and so are the methods inside a scene; which
     /// scene, method and participant gets which row is drawn from the seed. The rows of the methods shift from scene to
     /// scene, so that no participant has one method first all the time.
-    pub fn new(participants: usize, scenes: &[String], methods: &[Condition], seed: u64) -> Plan {
+    ///
+    /// The settings of a trial name participant and trial for the log, hide the HUD, which shows the method, and have the
+    /// viewer ask the `questions`, if there are any.
+    pub fn new(
+        participants: usize,
+        scenes: &[String],
+        methods: &[Condition],
+        questions: &[String],
+        seed: u64,
+    ) -> Plan {
         let mut random = Pcg32::seed_from_u64(seed);
         let mut shuffled = |n: usize| {
             let mut order: Vec<usize> = (0..n).collect();
@@ -66,7 +79,7 @@ impl Plan {
         let width = participants.to_string().len().max(2);
         let mut trials = Vec::new();
         for (participant, (scene_row, method_row)) in scene_rows.into_iter().zip(method_rows).enumerate() {
-            let mut trial = 0;
+            let (mut trial, participant) = (0, format!("P{:0width$}", participant + 1));
             for &place in &scene_square[scene_row % scene_square.len()] {
                 let scene = scene_names[place];
                 for &place in &method_square[(method_row + shifts[scene]) % method_square.len()] {
@@ -74,8 +87,14 @@ impl Plan {
                     trial += 1;
                     let mut settings = method.settings.clone();
                     settings.insert("scene".into(), scenes[scene].clone());
+                    settings.insert("participant".into(), participant.clone());
+                    settings.insert("trial".into(), trial.to_string());
+                    settings.insert("hud".into(), "false".into());
+                    if !questions.is_empty() {
+                        settings.insert("questions".into(), questions.join(","));
+                    }
                     trials.push(Trial {
-                        participant: format!("P{:0width$}", participant + 1),
+                        participant: participant.clone(),
                         trial,
                         scene: scenes[scene].clone(),
                         method: method.name.clone(),
@@ -101,6 +120,35 @@ impl Plan {
         }
         String::from_utf8(table.into_inner().expect("memory takes it")).expect("all cells are text")
     }
+}
+
+/// Scene and method by participant and trial, from a plan as a table.
+///
+/// # Errors
+/// [`StudyError`]: also for a column that is not there, and a row that is damaged.
+pub fn read_trials(path: &Path) -> Result<BTreeMap<(String, u32), (String, String)>, StudyError> {
+    let bytes = files::read(path)?;
+    let damaged = |line: u64| StudyError::Row {
+        path: path.into(),
+        line,
+        what: "this is no row of a plan: draw it again by yoro study plan".into(),
+    };
+    let mut table = csv::Reader::from_reader(&bytes[..]);
+    let header = table.headers().map_err(|_| damaged(1))?.clone();
+    let names = ["participant", "trial", "scene", "method"];
+    let at = names
+        .map(|name| header.iter().position(|column| column == name))
+        .into_iter()
+        .collect::<Option<Vec<_>>>();
+    let at = at.ok_or_else(|| damaged(1))?;
+    let mut trials = BTreeMap::new();
+    for (row, line) in table.records().zip(2..) {
+        let row = row.map_err(|_| damaged(line))?;
+        let [participant, trial, scene, method] = [0, 1, 2, 3].map(|i| row[at[i]].to_owned());
+        let trial = trial.parse().map_err(|_| damaged(line))?;
+        trials.insert((participant, trial), (scene, method));
+    }
+    Ok(trials)
 }
 
 /// Rows in each of which every number below `n` is once; taken together each is equally often at each place, and
@@ -166,7 +214,7 @@ mod tests {
 
     #[test]
     fn every_participant_sees_everything_once() {
-        let plan = Plan::new(14, &names("s", 8), &conditions(2), 7);
+        let plan = Plan::new(14, &names("s", 8), &conditions(2), &[], 7);
         assert_eq!((plan.trials.len(), plan.balanced_at), (14 * 16, 8));
         for trials in plan.trials.chunk_by(|a, b| a.participant == b.participant) {
             assert!(trials.iter().map(|t| t.trial).eq(1..=16));
@@ -189,7 +237,7 @@ mod tests {
 
     #[test]
     fn sixteen_participants_balance_eight_scenes() {
-        let plan = Plan::new(16, &names("s", 8), &conditions(2), 3);
+        let plan = Plan::new(16, &names("s", 8), &conditions(2), &[], 3);
         let scenes: Vec<Vec<&String>> = plan
             .trials
             .chunk_by(|a, b| a.participant == b.participant)
@@ -206,12 +254,24 @@ mod tests {
 
     #[test]
     fn the_seed_decides() {
-        let plan = |seed| Plan::new(5, &names("s", 3), &conditions(3), seed);
+        let plan = |seed| Plan::new(5, &names("s", 3), &conditions(3), &names("q", 2), seed);
         assert_eq!(plan(1), plan(1));
         assert_ne!(plan(1).trials, plan(2).trials);
         let csv = plan(1).to_csv();
         assert_eq!(csv.lines().count(), 1 + 5 * 9);
         assert!(csv.starts_with("participant,trial,scene,method,settings\nP01,1,"), "{csv}");
-        assert!(csv.lines().nth(1).unwrap().contains("method=m"), "{csv}");
+        let first = csv.lines().nth(1).unwrap();
+        for needed in ["method=m", "participant=P01", "trial=1", "hud=false", "questions=q0,q1"] {
+            assert!(first.contains(needed), "{needed}: {first}");
+        }
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("plan.csv");
+        std::fs::write(&path, csv).unwrap();
+        let read = read_trials(&path).unwrap();
+        for trial in plan(1).trials {
+            assert_eq!(read[&(trial.participant, trial.trial)], (trial.scene, trial.method));
+        }
+        std::fs::write(&path, "participant,trial,scene,method\nP01,x,s,m\n").unwrap();
+        assert!(read_trials(&path).unwrap_err().to_string().contains("plan.csv, line 2"));
     }
 }

@@ -1,11 +1,12 @@
 //! What participants answered, from a table or from logs.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::StudyError;
+use crate::device::log::{self, Kind};
 use crate::files;
-use crate::telemetry::Rating;
+use crate::telemetry::{LOG_TAG, Rating};
 
 /// Columns of a table of ratings; others are left alone.
 const COLUMNS: [&str; 5] = ["participant", "method", "scene", "question", "rating"];
@@ -104,7 +105,7 @@ impl Ratings {
 /// Ratings found in logs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Collected {
-    /// Of each participant, trial and question the last.
+    /// Of each participant, trial and question the last. All name a participant.
     pub ratings: Vec<Rating>,
     /// Ratings that a later one has replaced.
     pub replaced: usize,
@@ -113,12 +114,18 @@ pub struct Collected {
 }
 
 impl Collected {
-    /// Adds the ratings of a log; lines of other things are passed over.
-    pub fn add(&mut self, name: &str, log: &str) {
+    /// Adds the ratings of a log; lines of other things are passed over. With the trials of a plan (see
+    /// [`read_trials`](super::read_trials)), methods get the plan's names.
+    pub fn add(&mut self, name: &str, log: &str, plan: Option<&BTreeMap<(String, u32), (String, String)>>) {
         for (index, line) in log.lines().enumerate() {
-            let Some(found) = Rating::find(line) else { continue };
-            match found.parse::<Rating>() {
-                Err(error) => self.damaged.push((name.into(), index + 1, error.to_string())),
+            let found = match log::parse(line) {
+                Kind::Entry(entry) if entry.tag == LOG_TAG && Rating::is_line(entry.message) => entry.message,
+                Kind::Damaged if line.contains("rating,v=") => line,
+                _ => continue,
+            };
+            let rating = found.parse::<Rating>().map_err(|error| error.to_string());
+            match rating.and_then(|rating| planned(rating, plan)) {
+                Err(what) => self.damaged.push((name.into(), index + 1, what)),
                 Ok(rating) => {
                     let same = |other: &Rating| Rating { rating: rating.rating, ..other.clone() } == rating;
                     match self.ratings.iter_mut().find(|other| same(other)) {
@@ -133,16 +140,47 @@ impl Collected {
         }
     }
 
-    /// As the table that [`Ratings::read`] takes, with the trials.
+    /// As the table that [`Ratings::read`] takes, with the trials. A method that was rated with several pipelines is
+    /// several methods.
     pub fn to_csv(&self) -> String {
+        let mut pipelines: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();
+        for rating in &self.ratings {
+            pipelines.entry(&rating.method).or_default().insert(rating.pipeline.as_deref());
+        }
         let mut table = csv::Writer::from_writer(Vec::new());
         let mut write = |cells: [&str; 6]| table.write_record(cells).expect("memory takes it");
         write(["participant", "trial", "method", "scene", "question", "rating"]);
         for r in &self.ratings {
-            let (trial, rating) = (r.trial.to_string(), format!("{:.2}", r.rating));
-            write([&r.participant, &trial, &r.method, &r.scene, &r.question, &rating]);
+            let method = match &r.pipeline {
+                Some(pipeline) if pipelines[r.method.as_str()].len() > 1 => {
+                    format!("{}-{pipeline}", r.method)
+                }
+                _ => r.method.clone(),
+            };
+            let trial = r.trial.map(|trial| trial.to_string()).unwrap_or_default();
+            let participant = r.participant.as_deref().unwrap_or_default();
+            write([participant, &trial, &method, &r.scene, &r.question, &r.rating.to_string()]);
         }
         String::from_utf8(table.into_inner().expect("memory takes it")).expect("all cells are text")
+    }
+}
+
+/// A rating under the plan's names; the error says why it is none of the study's.
+fn planned(
+    rating: Rating,
+    plan: Option<&BTreeMap<(String, u32), (String, String)>>,
+) -> Result<Rating, String> {
+    let Some(participant) = rating.participant.clone() else {
+        return Err("the rating names no participant: set participant in the viewer".into());
+    };
+    let Some(plan) = plan else { return Ok(rating) };
+    let key = (participant, rating.trial.unwrap_or_default());
+    match plan.get(&key) {
+        None => Err(format!("the plan has no trial {} of {}", key.1, key.0)),
+        Some((scene, _)) if *scene != rating.scene => {
+            Err(format!("in trial {} of {} the plan has {scene}, not {}", key.1, key.0, rating.scene))
+        }
+        Some((_, method)) => Ok(Rating { method: method.clone(), pipeline: None, ..rating }),
     }
 }
 
@@ -195,24 +233,45 @@ mod tests {
 
     #[test]
     fn logs_give_ratings_and_name_damage() {
-        let line = |trial: u32, rating: &str| {
+        let line = |trial: u32, pipeline: &str, value: &str| {
             format!(
-                "I YORO: rating,v=1,participant=P01,trial={trial},method=yoro,scene=street,question=q,rating={rating}\n"
+                "11-21 10:00:01.000  4242  4260 I YORO    : rating,v=1,participant=P01,trial={trial},method=yoro,\
+                 pipeline={pipeline},scene=street,question=q,value={value}\n"
             )
         };
         let log = [
-            "I YORO: v=1,t=1.0s\n".to_owned(),
-            line(1, "3.00"),
-            line(2, "4.00"),
-            line(1, "3.50"),
-            line(3, "4."),
+            "11-21 10:00:01.000  4242  4260 I YORO    : v=1,t=1.0s\n".to_owned(),
+            line(1, "gather", "3.0"),
+            line(2, "paper", "4.0"),
+            line(1, "gather", "3.5"),
+            line(3, "paper", "4."),
+            line(4, "paper", "4.0").replace("P01", "na"),
+            "11-21 10:00:01.000 rating,v=1\n".to_owned(),
         ];
         let mut collected = Collected::default();
-        collected.add("log.txt", &log.concat());
-        let found: Vec<(u32, f64)> = collected.ratings.iter().map(|r| (r.trial, r.rating)).collect();
+        collected.add("log.txt", &log.concat(), None);
+        let found: Vec<(u32, f64)> = collected.ratings.iter().map(|r| (r.trial.unwrap(), r.rating)).collect();
         assert_eq!((found, collected.replaced), (vec![(1, 3.5), (2, 4.0)], 1));
-        assert_eq!((collected.damaged.len(), collected.damaged[0].1), (1, 5));
-        assert_eq!(collected.to_csv().lines().nth(1), Some("P01,1,yoro,street,q,3.50"));
-        assert!(read(&collected.to_csv()).unwrap_err().contains("already"), "two trials of one thing");
+        let lines: Vec<usize> = collected.damaged.iter().map(|(_, line, _)| *line).collect();
+        assert_eq!(lines, [5, 6, 7], "{:?}", collected.damaged);
+        let csv = collected.to_csv();
+        assert!(csv.contains("P01,1,yoro-gather,street,q,3.5\nP01,2,yoro-paper,street,q,4\n"), "{csv}");
+
+        let trial = |number: u32, scene: &str, method: &str| {
+            (("P01".to_owned(), number), (scene.to_owned(), method.to_owned()))
+        };
+        let plan = [trial(1, "street", "ours"), trial(2, "atrium", "paper's")].into();
+        let mut planned = Collected::default();
+        planned.add(
+            "log.txt",
+            &(line(1, "gather", "3.0") + &line(2, "paper", "4.0") + &line(9, "paper", "4.0")),
+            Some(&plan),
+        );
+        assert_eq!(planned.to_csv().lines().nth(1), Some("P01,1,ours,street,q,3"));
+        let reasons: Vec<&str> = planned.damaged.iter().map(|(_, _, what)| what.as_str()).collect();
+        assert_eq!(
+            reasons,
+            ["in trial 2 of P01 the plan has atrium, not street", "the plan has no trial 9 of P01"]
+        );
     }
 }

@@ -5,6 +5,8 @@
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
+use super::power::BatteryStatus;
+
 /// The first field of every line.
 pub const VERSION: u32 = 1;
 /// What stands for a missing value.
@@ -72,6 +74,12 @@ pub struct Line {
     pub render_scale: f64,
     /// Divisor of the ImBuffer's resolution; missing without ImBuffer.
     pub imbuffer: Option<u32>,
+    /// Times between frames in this second.
+    pub frames: Option<u32>,
+    /// Whether the battery charges.
+    pub status: Option<BatteryStatus>,
+    /// What the settings call this run.
+    pub run: Option<String>,
 }
 
 /// Why a text is not a line.
@@ -95,7 +103,8 @@ pub enum LineError {
     },
 }
 
-struct Na<T>(Option<T>, usize, &'static str);
+/// A value with so many decimals and its unit.
+pub(super) struct Na<T>(pub Option<T>, pub usize, pub &'static str);
 
 impl<T: Display> Display for Na<T> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -139,7 +148,7 @@ impl Display for Line {
         }
         write!(
             f,
-            ",CPU={},RSS={},mA_raw={},mA={},mV={},level={},uAh={},plug={},Tbat={},Tskin={},thermal={},headroom={},scale={:.2},imbuffer={}",
+            ",CPU={},RSS={},mA_raw={},mA={},mV={},level={},uAh={},plug={},Tbat={},Tskin={},thermal={},headroom={},scale={:.2},imbuffer={},frames={},status={},run={}",
             Na(self.cpu_percent, 1, "%"),
             Na(self.rss_mb, 1, "MB"),
             Na(self.current_raw, 0, ""),
@@ -154,6 +163,9 @@ impl Display for Line {
             Na(self.thermal_headroom, 2, ""),
             self.render_scale,
             Na(self.imbuffer, 0, ""),
+            Na(self.frames, 0, ""),
+            Na(self.status.map(BatteryStatus::name), 64, ""),
+            Na(self.run.as_deref().map(word), 64, ""),
         )
     }
 }
@@ -186,19 +198,28 @@ pub fn fields(line: &str) -> impl Iterator<Item = Field<'_>> {
 }
 
 /// The fields of a line by key.
-pub(super) struct Reader<'a>(pub(super) Vec<Field<'a>>);
+pub(super) struct Reader<'a>(Vec<Field<'a>>);
 
 impl<'a> Reader<'a> {
-    pub(super) fn text(&self, key: &'static str) -> Result<&'a str, LineError> {
+    pub fn new(line: &'a str) -> Reader<'a> {
+        Reader(fields(line).collect())
+    }
+
+    pub fn text(&self, key: &'static str) -> Result<&'a str, LineError> {
         let field = self.0.iter().find(|field| field.key == key);
         field.and_then(|field| field.value).ok_or(LineError::Missing(key))
     }
 
-    fn optional<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<Option<T>, LineError> {
+    pub fn optional<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<Option<T>, LineError> {
         number(key, self.text(key)?, unit)
     }
 
-    pub(super) fn required<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<T, LineError> {
+    /// A key that lines of earlier programs do not have.
+    fn later(&self, key: &'static str) -> &'a str {
+        self.text(key).unwrap_or(MISSING)
+    }
+
+    pub fn required<T: FromStr>(&self, key: &'static str, unit: &str) -> Result<T, LineError> {
         self.optional(key, unit)?.ok_or_else(|| LineError::Value { key, value: MISSING.into() })
     }
 }
@@ -215,7 +236,7 @@ impl FromStr for Line {
     type Err = LineError;
 
     fn from_str(text: &str) -> Result<Line, LineError> {
-        let reader = Reader(fields(text).collect());
+        let reader = Reader::new(text);
         let version = format!("{VERSION}");
         if reader.0.first().is_none_or(|f| f.key != "v" || f.value != Some(version.as_str())) {
             return Err(LineError::Version);
@@ -234,6 +255,13 @@ impl FromStr for Line {
                     Some(StageTime { name: name.into(), milliseconds: time.parse().ok()? })
                 };
                 (total, list.split(',').map(stage).collect::<Option<_>>().ok_or_else(damaged)?)
+            }
+        };
+        let status = match reader.later("status") {
+            MISSING => None,
+            name => {
+                let damaged = || LineError::Value { key: "status", value: name.into() };
+                Some(BatteryStatus::from_name(name).ok_or_else(damaged)?)
             }
         };
         Ok(Line {
@@ -262,6 +290,9 @@ impl FromStr for Line {
             thermal_headroom: reader.optional("headroom", "")?,
             render_scale: reader.required("scale", "")?,
             imbuffer: reader.optional("imbuffer", "")?,
+            frames: number("frames", reader.later("frames"), "")?,
+            status,
+            run: Some(reader.later("run")).filter(|run| *run != MISSING).map(str::to_owned),
         })
     }
 }
@@ -292,6 +323,9 @@ mod tests {
             voltage_mv: Some(3921),
             plugged: Some(0),
             render_scale: 0.8,
+            frames: Some(72),
+            status: Some(BatteryStatus::Discharging),
+            run: Some("first".into()),
             ..Line::default()
         }
     }
@@ -300,7 +334,7 @@ mod tests {
     fn a_line_as_people_read_it() {
         assert_eq!(
             example().to_string(),
-            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na"
+            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first"
         );
         assert_eq!(example().to_string().parse(), Ok(example()));
     }
@@ -309,7 +343,7 @@ mod tests {
     fn nothing_known_is_na_and_not_zero() {
         let empty = Line { method: "yoro".into(), scene: "x".into(), ..Line::default() };
         let text = empty.to_string();
-        assert_eq!(text.matches("na").count(), 20, "{text}");
+        assert_eq!(text.matches("na").count(), 23, "{text}");
         assert_eq!(text.parse(), Ok(empty));
     }
 
@@ -327,6 +361,15 @@ mod tests {
         assert_eq!(found.len(), 8);
         assert_eq!(found[3], Field { key: "1171/441MHz", value: None });
         assert_eq!(found[6], Field { key: "LCnt", value: Some("2(DR72,LM2)") });
+    }
+
+    #[test]
+    fn keys_that_came_later_may_be_missing() {
+        let text = example().to_string();
+        let (early, _) = text.split_once(",frames=").unwrap();
+        let read: Line = early.parse().unwrap();
+        assert_eq!(read, Line { frames: None, status: None, run: None, ..example() });
+        assert!(text.replace("discharging", "disch").parse::<Line>().is_err());
     }
 
     #[test]

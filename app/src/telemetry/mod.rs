@@ -14,7 +14,7 @@ pub use frames::{FrameStatistics, SecondStatistics};
 pub use line::{Field, Line, LineError, StageTime, VERSION, fields};
 pub use power::{BatteryStatus, CurrentNormalizer, CurrentUnit, Energy};
 pub use process::{ProcessSample, cpu_load};
-pub use rating::{Rating, RatingError};
+pub use rating::Rating;
 pub use session::{SessionSummary, Telemetry, ViewerState};
 
 /// The tag of the log lines on Android.

@@ -27,6 +27,21 @@ impl BatteryStatus {
             _ => return None,
         })
     }
+
+    /// As in the log line.
+    pub fn name(self) -> &'static str {
+        match self {
+            BatteryStatus::Charging => "charging",
+            BatteryStatus::Discharging => "discharging",
+            BatteryStatus::NotCharging => "not-charging",
+            BatteryStatus::Full => "full",
+        }
+    }
+
+    /// From its name.
+    pub fn from_name(name: &str) -> Option<BatteryStatus> {
+        (2..=5).filter_map(BatteryStatus::from_android).find(|status| status.name() == name)
+    }
 }
 
 /// The unit in which a device reports its current.

@@ -27,6 +27,8 @@ pub struct ViewerState {
     pub render_scale: f32,
     /// Divisor of the ImBuffer's resolution, for pipelines with one.
     pub imbuffer: Option<u32>,
+    /// What the settings call this run.
+    pub run: Option<String>,
 }
 
 /// Sum of one stage's GPU times.
@@ -164,6 +166,9 @@ impl Telemetry {
             thermal_headroom: optional(device.thermal_headroom),
             render_scale: viewer.render_scale as f64,
             imbuffer: viewer.imbuffer,
+            frames: frames.map(|f| f.frames),
+            status: device.status,
+            run: viewer.run.clone(),
         }
     }
 

@@ -2,9 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::lens::LensPass;
-use super::{Controller, Optics, Quality, SceneSource, Settings, Viewer, ViewerError, ViewerParams};
-use crate::eyes::MAX_IPD;
+use super::{Controller, Quality, SceneSource, Settings, Viewer, ViewerError};
 use crate::gl::{Context, Profiling};
 use crate::render::Renderer;
 use crate::synthesis::Pipeline;
@@ -14,12 +12,11 @@ impl Viewer {
     /// hand stays, unless that very setting differs.
     ///
     /// # Errors
-    /// [`ViewerError::NoScene`], [`ViewerError::Params`] and [`ViewerError::Gl`] when the driver cannot do what is
-    /// asked for; the settings before stay.
+    /// [`ViewerError::NoScene`], and [`ViewerError::Gl`] when the driver cannot do what is asked for; the settings
+    /// before stay.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         // What may fail by a mistake in the settings comes first.
         let source = self.other_scene(&settings, folders)?;
-        let params = self.other_params(&settings, folders)?;
         if let Some(graphics) = &self.graphics
             && settings.method != self.settings.method
         {
@@ -33,13 +30,8 @@ impl Viewer {
             return Err(error);
         }
         let settings = &self.settings;
-        let lenses_differ = params.is_some();
-        if let Some(params) = params {
-            self.params = params;
-            self.optics = Optics::new(&self.params, self.screen.metres());
-        }
-        if settings.ipd != before.ipd || (lenses_differ && settings.ipd.is_none()) {
-            self.ipd = settings.ipd.unwrap_or(self.params.inter_lens).min(MAX_IPD);
+        if settings.ipd != before.ipd {
+            self.ipd = settings.ipd;
         }
         if settings.hud != before.hud {
             self.hud_shown = settings.hud;
@@ -52,6 +44,7 @@ impl Viewer {
             self.quality = Quality::FULL;
         }
         if settings.duration != before.duration {
+            self.questionnaire = None;
             self.is_over = false;
         }
         if let Some(graphics) = &mut self.graphics {
@@ -62,10 +55,8 @@ impl Viewer {
                     Profiling::Off
                 });
             }
-            if lenses_differ || settings.chromatic != before.chromatic {
-                graphics.lens = LensPass::new(&graphics.gl, &self.optics, settings.chromatic)?;
-            }
         }
+        self.folders = folders.to_vec();
         if let Some(source) = source {
             self.viewpoint = self.settings.viewpoint;
             self.load_scene(source);
@@ -82,17 +73,6 @@ impl Viewer {
             return Ok(None);
         }
         SceneSource::find(&settings.scene, settings.seed, folders).map(Some)
-    }
-
-    fn other_params(
-        &self,
-        settings: &Settings,
-        folders: &[PathBuf],
-    ) -> Result<Option<ViewerParams>, ViewerError> {
-        if settings.viewer == self.settings.viewer {
-            return Ok(None);
-        }
-        Ok(Some(ViewerParams::find_in(&settings.viewer, folders)?))
     }
 
     /// Makes renderer and method again, if the settings before were others.
@@ -137,32 +117,32 @@ mod tests {
     use crate::gl::GlError;
     use crate::platform::{Backend, Headless};
     use crate::stereo::Method;
-    use crate::viewer::{Event, FrameTiming, Rotation, SceneState, Screen};
+    use crate::viewer::{Cardboard, Event, FrameTiming, Rotation, SceneState, Screen};
 
     const TIMING: FrameTiming = FrameTiming { now_ns: 1, expected_display_ns: 2, refresh_hz: 60.0 };
 
-    fn viewer(headless: &Headless) -> Viewer {
+    fn viewer(headless: &Headless) -> Cardboard {
         let screen = Screen { size: [256, 128], dpi: [0.0; 2], rotation: Rotation::LandscapeLeft };
         let mut settings = Settings::default();
         for pair in ["scene=prototype", "render-scale=0.25", "shadow-map=0", "ssao=off", "bloom=false"] {
             settings.apply(pair).unwrap();
         }
-        let mut viewer = Viewer::new(settings, screen, &[]).unwrap();
+        let mut viewer = Cardboard::new(settings, screen, &[]).unwrap();
         viewer.attach(headless.gl().clone()).unwrap();
         wait(&mut viewer);
         viewer
     }
 
-    fn wait(viewer: &mut Viewer) {
-        while viewer.loader.is_some() {
+    fn wait(viewer: &mut Cardboard) {
+        while viewer.viewer.loader.is_some() {
             std::thread::sleep(std::time::Duration::from_millis(5));
-            viewer.poll_scene();
+            viewer.viewer.poll_scene();
         }
-        assert_eq!(viewer.scene_state(), SceneState::Ready);
+        assert_eq!(viewer.viewer.scene_state(), SceneState::Ready);
     }
 
-    fn with(viewer: &Viewer, pairs: &[&str]) -> Settings {
-        let mut settings = viewer.settings().clone();
+    fn with(viewer: &Cardboard, pairs: &[&str]) -> Settings {
+        let mut settings = viewer.viewer.settings().clone();
         pairs.iter().for_each(|pair| settings.apply(pair).unwrap());
         settings
     }
@@ -172,19 +152,22 @@ mod tests {
         let headless = Headless::open(Backend::Auto).unwrap();
         let mut viewer = viewer(&headless);
         viewer.event(Event::IpdUp).unwrap();
-        let ipd = viewer.ipd();
+        let ipd = viewer.viewer.ipd();
         viewer.configure(with(&viewer, &["method=mono", "timewarp=false", "hud=false"]), &[]).unwrap();
-        assert_eq!((viewer.method(), viewer.ipd(), viewer.hud_shown), (Method::Mono, ipd, false));
+        assert_eq!(
+            (viewer.viewer.method(), viewer.viewer.ipd(), viewer.viewer.hud_shown),
+            (Method::Mono, ipd, false)
+        );
         viewer.event(Event::Tap).unwrap();
-        assert_ne!(viewer.method(), Method::Mono);
-        let tapped = viewer.method();
+        assert_ne!(viewer.viewer.method(), Method::Mono);
+        let tapped = viewer.viewer.method();
         viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "ssao=half"]), &[]).unwrap();
-        assert_eq!((viewer.method(), viewer.ipd()), (tapped, 0.05));
+        assert_eq!((viewer.viewer.method(), viewer.viewer.ipd()), (tapped, 0.05));
         assert!((viewer.optics().params().inter_lens - 0.060).abs() < 1e-6);
         viewer.configure(with(&viewer, &["ipd=auto"]), &[]).unwrap();
-        assert_eq!(viewer.ipd(), viewer.optics().params().inter_lens);
+        assert_eq!(viewer.viewer.ipd(), viewer.optics().params().inter_lens);
         viewer.configure(with(&viewer, &["seed=2"]), &[]).unwrap();
-        assert!(viewer.loader.is_some());
+        assert!(viewer.viewer.loader.is_some());
         wait(&mut viewer);
         viewer.render(&TIMING).unwrap();
         assert_eq!(headless.gl().take_errors(), None);
@@ -194,16 +177,16 @@ mod tests {
     fn mistakes_change_nothing() {
         let headless = Headless::open(Backend::Auto).unwrap();
         let mut viewer = viewer(&headless);
-        let before = viewer.settings().clone();
+        let before = viewer.viewer.settings().clone();
         for pair in ["scene=nowhere", "viewer=/no/such/file"] {
             let settings = with(&viewer, &[pair, "method=mono", "ipd=0.02"]);
             assert!(viewer.configure(settings, &[]).is_err());
-            assert_eq!((viewer.settings(), viewer.method()), (&before, before.method));
+            assert_eq!((viewer.viewer.settings(), viewer.viewer.method()), (&before, before.method));
         }
         if !headless.gl().capabilities().multiview {
             let settings = with(&viewer, &["method=multiview"]);
             assert!(matches!(viewer.configure(settings, &[]), Err(ViewerError::Gl(GlError::Unsupported(_)))));
-            assert_eq!((viewer.settings(), viewer.method()), (&before, before.method));
+            assert_eq!((viewer.viewer.settings(), viewer.viewer.method()), (&before, before.method));
         }
         viewer.render(&TIMING).unwrap();
     }

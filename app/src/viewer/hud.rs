@@ -9,11 +9,12 @@ use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
 use embedded_graphics::text::{Baseline, Text};
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 use crate::eyes::{Eye, EyePair};
-use crate::gl::{Blend, Context, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture};
-use crate::stereo::StereoFrame;
+use crate::gl::{
+    Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
+};
 use crate::telemetry::Line;
 
 /// Characters of a line; longer ones are cut.
@@ -102,15 +103,15 @@ pub(super) fn write_sentence(text: &mut String, sentence: &str) {
 }
 
 /// The panel's pixels, rows from the top, 0 or 255.
-struct Panel(Vec<u8>);
+struct Pixels(Vec<u8>);
 
-impl OriginDimensions for Panel {
+impl OriginDimensions for Pixels {
     fn size(&self) -> Size {
         Size::new(SIZE[0] as u32, SIZE[1] as u32)
     }
 }
 
-impl DrawTarget for Panel {
+impl DrawTarget for Pixels {
     type Color = BinaryColor;
     type Error = std::convert::Infallible;
 
@@ -127,7 +128,7 @@ impl DrawTarget for Panel {
     }
 }
 
-impl Panel {
+impl Pixels {
     fn draw(&mut self, content: Content) {
         self.0.fill(0);
         let style = MonoTextStyle::new(&FONT_10X20, BinaryColor::On);
@@ -159,13 +160,15 @@ pub(super) struct Hud {
     gl: Rc<Context>,
     program: Program,
     texture: Texture,
-    panel: Panel,
+    pixels: Pixels,
     rows: Vec<u8>,
     /// What the texture shows.
     text: String,
     progress: Option<f32>,
     /// Rows in use, from the top.
     used: usize,
+    /// Number of changes.
+    version: u64,
 }
 
 impl Hud {
@@ -174,59 +177,124 @@ impl Hud {
             gl: gl.clone(),
             program: Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?,
             texture: Texture::new(gl, SIZE.map(|n| n as u32), Format::R8, Filter::Linear)?,
-            panel: Panel(vec![0; SIZE[0] * SIZE[1]]),
+            pixels: Pixels(vec![0; SIZE[0] * SIZE[1]]),
             rows: Vec::with_capacity(SIZE[0] * SIZE[1]),
             text: String::with_capacity(256),
             progress: Some(f32::NAN),
             used: SIZE[1],
+            version: 0,
         })
     }
 
     /// Changes what the panel says; nothing happens if it says that already.
-    pub fn set(&mut self, content: Content) {
-        if self.text == content.text && self.progress == content.progress {
-            return;
+    pub fn set(&mut self, content: Content, placement: Placement) -> Panel<'_> {
+        if self.text != content.text || self.progress != content.progress {
+            self.text.clear();
+            self.text.push_str(content.text);
+            self.progress = content.progress;
+            self.used = match content.progress {
+                Some(_) => SIZE[1],
+                None => 2 * MARGIN + content.text.lines().count().min(LINES) * FONT[1],
+            };
+            self.version += 1;
+            self.pixels.draw(content);
+            self.pixels.flip_into(&mut self.rows);
+            self.texture.upload(&self.rows);
         }
-        self.text.clear();
-        self.text.push_str(content.text);
-        self.progress = content.progress;
-        self.used = match content.progress {
-            Some(_) => SIZE[1],
-            None => 2 * MARGIN + content.text.lines().count().min(LINES) * FONT[1],
-        };
-        self.panel.draw(content);
-        self.panel.flip_into(&mut self.rows);
-        self.texture.upload(&self.rows);
+        Panel { hud: self, placement }
     }
 
-    /// Draws the panel into both eyes, below the horizon or in the middle.
-    pub fn draw(&self, pair: &EyePair, frame: &StereoFrame, in_the_middle: bool) {
-        let state = RasterState { blend: Blend::Over, ..RasterState::SCREEN };
-        self.gl.pass("hud", || {
-            self.gl.set_raster_state(&state);
+    /// Blends the part in use over a rectangle.
+    fn draw(&self, to: &Destination) {
+        self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+        let rectangle = [to.origin[0], to.origin[1], to.size[0], to.size[1]].map(|n| n as f32);
+        self.program
+            .bind()
+            .texture("panel", 0, self.texture.raw())
+            .set("rectangle", Vec4::from(rectangle))
+            .set("used", self.used as f32 / SIZE[1] as f32);
+        self.gl.draw_screen();
+    }
+}
+
+/// Where the panel hangs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placement {
+    /// Below what is looked at.
+    Below,
+    /// Straight ahead: there is nothing else to look at.
+    Middle,
+}
+
+/// The panel as it is in one frame.
+pub struct Panel<'a> {
+    hud: &'a Hud,
+    placement: Placement,
+}
+
+impl Panel<'_> {
+    /// The largest size in pixels that a panel can have.
+    pub const MAX_SIZE: [u32; 2] = [SIZE[0] as u32, SIZE[1] as u32];
+
+    /// Size in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [SIZE[0], self.hud.used].map(|n| n as u32)
+    }
+
+    /// Size in metres.
+    pub fn metres(&self) -> [f32; 2] {
+        let width = WIDTH * DISTANCE;
+        [width, width * self.hud.used as f32 / SIZE[0] as f32]
+    }
+
+    /// Its centre in metres, as seen from between the eyes.
+    pub fn center(&self) -> Vec3 {
+        Vec3::new(0.0, below(self.placement), -1.0) * DISTANCE
+    }
+
+    /// Another number whenever it says something else.
+    pub fn version(&self) -> u64 {
+        self.hud.version
+    }
+
+    /// Fills a rectangle of its size, translucent where there are no letters; colour is not multiplied by alpha.
+    pub fn draw(&self, to: &Destination) {
+        self.hud.gl.pass("hud", || {
+            self.hud.gl.set_raster_state(&RasterState::SCREEN);
+            self.hud.draw(to);
+        });
+    }
+
+    /// Draws it into the images of both eyes.
+    pub(super) fn draw_into_eyes(&self, pair: &EyePair, eyes: &[Destination; 2]) {
+        let gl = &self.hud.gl;
+        gl.pass("hud", || {
+            gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
-                let (origin, size) = place(pair, eye, self.used, in_the_middle);
-                self.gl.bind_framebuffer(Some(frame.eye(eye).raw()), origin, size);
-                let rectangle = [origin[0], origin[1], size[0], size[1]].map(|n| n as f32);
-                self.program
-                    .bind()
-                    .texture("panel", 0, self.texture.raw())
-                    .set("rectangle", Vec4::from(rectangle))
-                    .set("used", self.used as f32 / SIZE[1] as f32);
-                self.gl.draw_screen();
+                let to = &eyes[eye.index()];
+                let ([x, y], size) = place(pair, eye, self.hud.used, self.placement);
+                let origin = [to.origin[0] + x, to.origin[1] + y];
+                self.hud.draw(&Destination { origin, size, ..*to });
             }
-            self.gl.set_raster_state(&RasterState::SCREEN);
+            gl.set_raster_state(&RasterState::SCREEN);
         });
     }
 }
 
+/// Tangent of the panel's centre.
+fn below(placement: Placement) -> f32 {
+    match placement {
+        Placement::Below => -BELOW,
+        Placement::Middle => 0.0,
+    }
+}
+
 /// Origin and size, in pixels of an eye's image, of the `used` upper rows of the panel.
-fn place(pair: &EyePair, eye: Eye, used: usize, in_the_middle: bool) -> ([u32; 2], [u32; 2]) {
+fn place(pair: &EyePair, eye: Eye, used: usize, placement: Placement) -> ([u32; 2], [u32; 2]) {
     let frustum = &pair.frusta[eye.index()];
     let height = WIDTH * used as f32 / SIZE[0] as f32;
     let x = -eye.side() * pair.ipd() / 2.0 / DISTANCE - WIDTH / 2.0;
-    let below = if in_the_middle { 0.0 } else { -BELOW };
-    let y = below.max(frustum.bottom + height) - height / 2.0;
+    let y = below(placement).max(frustum.bottom + height) - height / 2.0;
     let per_tangent = [pair.size[0] as f32 / frustum.width(), pair.size[1] as f32 / frustum.height()];
     let corner = [(x - frustum.left) * per_tangent[0], (y - frustum.bottom) * per_tangent[1]];
     let size = [WIDTH * per_tangent[0], height * per_tangent[1]];
@@ -240,8 +308,8 @@ mod tests {
 
     #[test]
     fn text_and_bar_are_drawn_where_they_should() {
-        let mut panel = Panel(vec![0; SIZE[0] * SIZE[1]]);
-        let lit = |panel: &Panel, rows: std::ops::Range<usize>| {
+        let mut panel = Pixels(vec![0; SIZE[0] * SIZE[1]]);
+        let lit = |panel: &Pixels, rows: std::ops::Range<usize>| {
             panel.0[rows.start * SIZE[0]..rows.end * SIZE[0]].iter().filter(|&&p| p == 255).count()
         };
         panel.draw(Content { text: "60 FPS\nyoro", progress: None });
@@ -276,7 +344,7 @@ mod tests {
     fn the_panel_hangs_at_its_distance() {
         let frustum = Frustum::from_angles(0.7, 0.7, 0.7, 0.7);
         let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.06, DepthRange::PAPER, [1000; 2], Eye::Right);
-        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, SIZE[1], false));
+        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, SIZE[1], Placement::Below));
         assert_eq!(left.1, right.1);
         let disparity = left.0[0] as f32 - right.0[0] as f32;
         assert!((disparity - 0.06 / DISTANCE * pair.focal_length_pixels()).abs() <= 1.0);

@@ -1,19 +1,22 @@
 //! Eyes to screen: the whole application without a platform.
 //!
-//! A [`Viewer`] owns scene, renderer, stereo method, lens distortion, HUD, head tracker, settings and
-//! statistics. A platform (the Android application, `yoro view` on the desktop) gives it a GL context, events,
-//! sensor samples and a framebuffer, and shows what comes out; all of them get the same picture.
+//! A [`Viewer`] owns scene, renderer, stereo method, HUD, settings and statistics; where the eyes are, how large
+//! their images are and how a person comes to see them is a display's matter. There are two: [`Cardboard`], a phone
+//! behind lenses with its own motion sensors, and a headset with an OpenXR runtime (`platform::openxr`). A
+//! platform (the Android application, `yoro view` and `yoro xr` on the desktop) gives a GL context, events and
+//! somewhere to draw.
 //!
 //! ```text
-//! Viewer::new ──> attach(gl) ──> [ sensor()* ── event()* ── render() ── sensor()* ── present() ]* ──> summary()
-//!                    ^   context lost: detach()   |          telemetry() when a report says so
-//!                    └────────────────────────────┘
+//! new ──> attach(gl) ──> [ event()* ── begin() ── render_eyes() ── hud() ── end() ]* ──> summary()
+//!             ^   context lost: detach()   |          telemetry() when a report says so
+//!             └────────────────────────────┘
 //! ```
 //!
-//! All calls come from one thread; those that may touch GL (`attach`, `event`, `render`, `present`, `frame`,
+//! All calls come from one thread; those that may touch GL (`attach`, `event`, `begin`, `render_eyes`, `hud`, `end`,
 //! `detach`, drop) need the context to be current there. Times are nanoseconds of a monotonic clock.
 
 mod adaptive;
+mod cardboard;
 mod configure;
 mod head;
 mod hud;
@@ -21,32 +24,36 @@ mod lens;
 mod loading;
 mod optics;
 mod params;
+mod rating;
 mod settings;
 #[cfg(all(test, feature = "desktop"))]
 mod tests;
 
+use std::fmt;
 use std::path::PathBuf;
 use std::rc::Rc;
 
 use glam::{Quat, Vec3};
 
 pub use adaptive::{Controller, Load, Quality};
+pub use cardboard::{Cardboard, HeldHead};
 pub use head::{HeadTracker, Sample, neck_offset};
+pub use hud::{Panel, Placement};
 pub use loading::{SceneSource, list_scenes};
 pub use optics::{Distortion, MESH_RESOLUTION, MeshVertex, Optics, Rotation, Screen, mesh_strip};
 pub use params::{ParamsError, VerticalAlignment, ViewerParams};
-pub use settings::{DisplayKind, KEYS, Settings, SettingsError, Ssao};
+pub use settings::{DisplayKind, KEYS, Performance, Settings, SettingsError, Ssao};
 
-use crate::eyes::{DepthRange, Eye, EyePair, MAX_IPD, Pose};
+use crate::eyes::{EyePair, EyesError, GuardBand, MAX_IPD, Pose};
 use crate::gl::{Context, Destination, GlError, PassTime, Profiling};
 use crate::render::{GpuScene, Renderer};
 use crate::scene::{Scene, Viewpoint};
-use crate::stereo::{self, Method, StereoError, StereoFrame, StereoMethod};
+use crate::stereo::{self, EyeTarget, Method, StereoError, StereoMethod};
 use crate::synthesis::{ImBufferSize, Pipeline};
-use crate::telemetry::{DeviceState, Line, SessionSummary, Telemetry, ViewerState};
+use crate::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 use hud::Hud;
-use lens::LensPass;
 use loading::Loader;
+use rating::Questionnaire;
 
 /// The IPD changes by this much at a time, in metres.
 const IPD_STEP: f32 = 0.001;
@@ -81,8 +88,10 @@ pub enum ViewerError {
 /// What the user does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A tap on the screen, or the viewer's trigger: the next method.
+    /// A tap on the screen, the viewer's trigger, or a controller's: the next method.
     Tap,
+    /// The method before.
+    PreviousMethod,
     /// A long press: straight ahead is where the head points now.
     LongPress,
     /// Volume up: the eyes a millimetre further apart.
@@ -93,6 +102,8 @@ pub enum Event {
     ToggleHud,
     /// Goes to the scene's next viewpoint.
     NextViewpoint,
+    /// Loads the next scene: the built-in ones, then the files in the scene folders.
+    NextScene,
 }
 
 /// What an event has led to, for the log.
@@ -100,7 +111,7 @@ pub enum Event {
 pub enum Action {
     /// The method that is used now.
     Method(Method),
-    /// The head's direction starts over.
+    /// The head's direction starts over: that is for the display to do.
     Recenter,
     /// The distance between the eyes in metres.
     Ipd(f32),
@@ -108,8 +119,30 @@ pub enum Action {
     Hud(bool),
     /// The viewpoint's number.
     Viewpoint(usize),
-    /// Nothing, because there is no other method or viewpoint.
+    /// Another scene is being loaded: [`Viewer::scene_name`].
+    Scene,
+    /// The marker of the slider was moved to this rating.
+    Marker(f32),
+    /// A question was answered: the last of [`Viewer::ratings`].
+    Answer,
+    /// Nothing, because a question is being asked, or there is no other method, viewpoint or scene.
     Nothing,
+}
+
+impl fmt::Display for Action {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Action::Method(method) => write!(f, "method: {}", method.name()),
+            Action::Recenter => f.write_str("recentered"),
+            Action::Ipd(ipd) => write!(f, "ipd: {ipd:.3} m"),
+            Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
+            Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),
+            Action::Scene => f.write_str("another scene"),
+            Action::Marker(rating) => write!(f, "marker: {rating}"),
+            Action::Answer => f.write_str("answered"),
+            Action::Nothing => f.write_str("nothing"),
+        }
+    }
 }
 
 /// The times of a frame, all on the monotonic clock of the sensors' timestamps where the platform has one.
@@ -141,34 +174,22 @@ pub struct FrameReport {
     pub scene: SceneState,
     /// Refreshes of the display for which this frame came too late.
     pub late_refreshes: u32,
+    /// GPU time in milliseconds of a frame some frames ago, where it is measured.
+    pub gpu_ms: Option<f32>,
     /// A second has passed: collect a [`DeviceState`] and call [`Viewer::telemetry`].
     pub telemetry_due: bool,
-    /// The session's `duration` has passed since the scene came into view: log [`Viewer::summary`]. True in one
-    /// report only.
+    /// The session's `duration` has passed since the scene came into view, and its questions are answered: log
+    /// [`Viewer::summary`]. True in one report only.
     pub session_over: bool,
     /// The session is over and `auto-exit` is on: end the program. True from then on.
     pub exit: bool,
 }
 
-/// A head that is held still, in place of the sensors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeldHead {
-    /// Rotation from head to world at which frames are rendered.
-    pub rendered: Quat,
-    /// Rotation from head to world at which they are shown: another one than `rendered` is what timewarp
-    /// makes up for.
-    pub displayed: Quat,
-}
-
 /// Everything that lives in the GL context.
 struct Graphics {
     gl: Rc<Context>,
-    frame: StereoFrame,
-    lens: LensPass,
     hud: Hud,
     stage: Option<Stage>,
-    /// The last frame that was rendered: rotation from head to world.
-    rendered: Option<Quat>,
     pass_times: Vec<PassTime>,
 }
 
@@ -177,20 +198,21 @@ struct Stage {
     scene: GpuScene,
     renderer: Renderer,
     method: Box<dyn StereoMethod>,
+    /// Renders both eyes, while they are such that none can be synthesized from the other.
+    substitute: Option<Box<dyn StereoMethod>>,
 }
 
 /// The application without a platform.
 pub struct Viewer {
     settings: Settings,
-    screen: Screen,
-    params: ViewerParams,
-    optics: Optics,
-    ipd: f32,
+    folders: Vec<PathBuf>,
+    /// The distance between the eyes that was asked for, in metres.
+    ipd: Option<f32>,
+    /// The distance that the display has by itself.
+    native_ipd: f32,
     method: Method,
     pipeline: Pipeline,
     hud_shown: bool,
-    tracker: HeadTracker,
-    held: Option<HeldHead>,
     source: SceneSource,
     scene_name: String,
     loader: Option<Loader>,
@@ -203,42 +225,35 @@ pub struct Viewer {
     telemetry: Telemetry,
     celsius: Option<f32>,
     last_line: Option<Line>,
+    /// Why the eyes of the last frame were such that none can be synthesized from the other.
+    unfit: Option<EyesError>,
     message_until_ns: i64,
     message: String,
     /// What the HUD says.
     text: String,
     now_ns: i64,
     ready_ns: Option<i64>,
+    /// What is asked after the session; none before its end.
+    questionnaire: Option<Questionnaire>,
+    ratings: Vec<Rating>,
     is_over: bool,
 }
 
 impl Viewer {
-    /// Puts a screen into a viewer and starts to load the scene in the background. `folders` are where scenes and
-    /// viewer files given by name are looked for.
+    /// Starts to load the scene in the background. `folders` are where scenes given by name are looked for.
     ///
     /// # Errors
-    /// [`ViewerError::Params`] and [`ViewerError::NoScene`]: mistakes in the settings.
-    pub fn new(settings: Settings, screen: Screen, folders: &[PathBuf]) -> Result<Viewer, ViewerError> {
-        let params = ViewerParams::find_in(&settings.viewer, folders)?;
+    /// [`ViewerError::NoScene`]: a mistake in the settings.
+    pub fn new(settings: Settings, folders: &[PathBuf]) -> Result<Viewer, ViewerError> {
         let source = SceneSource::find(&settings.scene, settings.seed, folders)?;
-        let optics = Optics::new(&params, screen.metres());
         log::info!("settings: {settings}");
-        log::info!(
-            "viewer: {} {}, screen {:.1?} mm",
-            params.vendor,
-            params.model,
-            screen.metres().map(|m| m * 1e3)
-        );
         Ok(Viewer {
-            screen,
-            optics,
-            ipd: settings.ipd.unwrap_or(params.inter_lens).min(MAX_IPD),
-            params,
+            folders: folders.to_vec(),
+            ipd: settings.ipd,
+            native_ipd: 0.0,
             method: settings.method,
             pipeline: settings.pipeline,
             hud_shown: settings.hud,
-            tracker: HeadTracker::new(screen.rotation),
-            held: None,
             loader: Some(Loader::start(&source)),
             scene_name: source.name(),
             source,
@@ -251,11 +266,14 @@ impl Viewer {
             telemetry: Telemetry::default(),
             celsius: None,
             last_line: None,
+            unfit: None,
             message_until_ns: 0,
             message: String::new(),
             text: String::with_capacity(3 * hud::COLUMNS),
             now_ns: 0,
             ready_ns: None,
+            questionnaire: None,
+            ratings: Vec::new(),
             is_over: false,
             settings,
         })
@@ -269,15 +287,8 @@ impl Viewer {
         let profiling = if self.settings.profiling { Profiling::Queries } else { Profiling::Off };
         gl.set_profiling(profiling);
         self.choose_pipeline(&gl);
-        self.graphics = Some(Graphics {
-            frame: StereoFrame::new(&gl, self.eye_size())?,
-            lens: LensPass::new(&gl, &self.optics, self.settings.chromatic)?,
-            hud: Hud::new(&gl)?,
-            stage: None,
-            rendered: None,
-            pass_times: Vec::with_capacity(64),
-            gl,
-        });
+        self.graphics =
+            Some(Graphics { hud: Hud::new(&gl)?, stage: None, pass_times: Vec::with_capacity(64), gl });
         if self.loader.is_none() && self.failure.is_none() {
             self.loader = Some(Loader::start(&self.source));
         }
@@ -295,24 +306,6 @@ impl Viewer {
         self.graphics.is_some()
     }
 
-    /// The screen has another size, or is turned otherwise.
-    ///
-    /// # Errors
-    /// [`ViewerError::Gl`].
-    pub fn resize(&mut self, screen: Screen) -> Result<(), ViewerError> {
-        if screen == self.screen {
-            return Ok(());
-        }
-        self.screen = screen;
-        self.optics = Optics::new(&self.params, screen.metres());
-        self.tracker.set_rotation(screen.rotation);
-        if let Some(graphics) = &mut self.graphics {
-            graphics.lens = LensPass::new(&graphics.gl, &self.optics, self.settings.chromatic)?;
-            graphics.rendered = None;
-        }
-        Ok(())
-    }
-
     /// Replaces the scene; the old one stays in view until the new one is loaded.
     pub fn load_scene(&mut self, source: SceneSource) {
         self.loader = Some(Loader::start(&source));
@@ -320,6 +313,7 @@ impl Viewer {
         self.source = source;
         self.failure = None;
         self.ready_ns = None;
+        self.questionnaire = None;
         self.is_over = false;
     }
 
@@ -328,12 +322,13 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::Gl`] when a method cannot be made; the one before stays.
     pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
+        if self.is_asking() {
+            return Ok(self.reply(event));
+        }
         let action = match event {
-            Event::Tap => self.next_method()?,
-            Event::LongPress => {
-                self.tracker.recenter();
-                Action::Recenter
-            }
+            Event::Tap => self.other_method(1)?,
+            Event::PreviousMethod => self.other_method(-1)?,
+            Event::LongPress => Action::Recenter,
             Event::IpdUp => self.change_ipd(IPD_STEP),
             Event::IpdDown => self.change_ipd(-IPD_STEP),
             Event::ToggleHud => {
@@ -347,29 +342,107 @@ impl Viewer {
                     Action::Viewpoint(self.viewpoint)
                 }
             },
+            Event::NextScene => self.next_scene(),
         };
         self.message = match action {
             Action::Method(method) => method.name().to_owned(),
             Action::Recenter => "recentered".into(),
             Action::Ipd(ipd) => format!("IPD {:.0} mm", ipd * 1e3),
             Action::Viewpoint(n) => format!("viewpoint {n}"),
-            Action::Hud(_) | Action::Nothing => String::new(),
+            Action::Hud(_) | Action::Scene | Action::Marker(_) | Action::Answer | Action::Nothing => {
+                String::new()
+            }
         };
         self.message_until_ns = if self.message.is_empty() { 0 } else { self.now_ns + MESSAGE_NS };
         Ok(action)
     }
 
-    fn change_ipd(&mut self, change: f32) -> Action {
-        self.ipd = (self.ipd + change).clamp(0.0, MAX_IPD);
-        Action::Ipd(self.ipd)
+    /// Whether a question is in view.
+    fn is_asking(&self) -> bool {
+        self.questionnaire.as_ref().is_some_and(|questions| !questions.is_done())
     }
 
-    /// Goes to the next method of the list that the driver can do.
-    fn next_method(&mut self) -> Result<Action, ViewerError> {
+    /// What an event means while a question is in view.
+    fn reply(&mut self, event: Event) -> Action {
+        let Some(questions) = &mut self.questionnaire else { return Action::Nothing };
+        let mut nudge = |steps| {
+            questions.nudge(steps, self.now_ns);
+            Action::Marker(questions.rating())
+        };
+        match event {
+            Event::IpdUp => nudge(1.0),
+            Event::IpdDown => nudge(-1.0),
+            Event::Tap => {
+                self.answer();
+                Action::Answer
+            }
+            Event::LongPress => {
+                questions.recenter();
+                Action::Recenter
+            }
+            Event::PreviousMethod | Event::ToggleHud | Event::NextViewpoint | Event::NextScene => {
+                Action::Nothing
+            }
+        }
+    }
+
+    /// Logs the answer to the question in view.
+    fn answer(&mut self) {
+        let Some((question, rating)) = self.questionnaire.as_mut().and_then(Questionnaire::answer) else {
+            return;
+        };
+        let rating = Rating {
+            participant: self.settings.participant.clone(),
+            trial: self.settings.trial,
+            method: self.method.name().to_owned(),
+            pipeline: self.uses_synthesis().then(|| self.pipeline.name().to_owned()),
+            scene: self.scene_name.clone(),
+            question,
+            rating: f64::from(rating),
+        };
+        log::info!("{rating}");
+        self.ratings.push(rating);
+    }
+
+    /// Asks the questions of the settings when the session's time is up; true when there is nothing more to ask.
+    fn ask(&mut self) -> bool {
+        let Settings { questions, best_rating, .. } = &self.settings;
+        let asked = self.questionnaire.get_or_insert_with(|| Questionnaire::new(questions, *best_rating));
+        if asked.has_settled(self.now_ns) {
+            self.answer();
+        }
+        !self.is_asking()
+    }
+
+    fn change_ipd(&mut self, change: f32) -> Action {
+        let ipd = (self.ipd() + change).clamp(0.0, MAX_IPD);
+        self.ipd = Some(ipd);
+        Action::Ipd(ipd)
+    }
+
+    /// Loads the scene after this one.
+    fn next_scene(&mut self) -> Action {
+        let sources = SceneSource::all(self.settings.seed, &self.folders);
+        let at = sources.iter().position(|source| *source == self.source);
+        let next = at.map_or(0, |at| at + 1) % sources.len().max(1);
+        match sources.into_iter().nth(next) {
+            Some(source) if source != self.source => {
+                self.viewpoint = 0;
+                self.load_scene(source);
+                Action::Scene
+            }
+            _ => Action::Nothing,
+        }
+    }
+
+    /// Goes to the next (1) or previous (-1) method of the list that the driver can do.
+    fn other_method(&mut self, step: isize) -> Result<Action, ViewerError> {
         let methods = self.settings.methods.clone();
+        let count = methods.len() as isize;
         let at = methods.iter().position(|m| *m == self.method);
-        let start = at.map_or(0, |at| at + 1);
-        for next in (0..methods.len()).map(|i| methods[(start + i) % methods.len()]) {
+        // A method that is not in the list comes before its first and after its last.
+        let start = at.map_or(if step > 0 { 0 } else { -1 }, |at| at as isize + step);
+        for next in (0..count).map(|i| methods[(start + i * step).rem_euclid(count) as usize]) {
             if next == self.method {
                 continue;
             }
@@ -397,6 +470,7 @@ impl Viewer {
         {
             let (render, options) = (settings.render_settings(), settings.stereo_options());
             stage.method = stereo::create(&graphics.gl, method, &render, &options)?;
+            stage.substitute = None;
         }
         self.controller.restart();
         Ok(())
@@ -413,20 +487,9 @@ impl Viewer {
         Settings { pipeline: self.pipeline, imbuffer, ..self.settings.clone() }
     }
 
-    /// Takes a sample of a motion sensor with its own timestamp in nanoseconds.
-    pub fn sensor(&mut self, sample: Sample, timestamp_ns: i64) {
-        self.tracker.add(sample, timestamp_ns);
-    }
-
-    /// Holds the head still in place of the sensors, or lets it go.
-    pub fn hold_head(&mut self, head: Option<HeldHead>) {
-        self.held = head;
-    }
-
     /// The application goes to the background: nothing moves on, and the time until the next frame counts for
     /// nothing.
     pub fn pause(&mut self) {
-        self.tracker.pause();
         self.telemetry.pause();
         self.controller.restart();
     }
@@ -436,68 +499,87 @@ impl Viewer {
         self.controller.restart();
     }
 
-    /// [`Viewer::render`] and [`Viewer::present`].
-    ///
-    /// # Errors
-    /// As those.
-    pub fn frame(&mut self, window: &Destination, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
-        self.render(timing)?;
-        self.present(window, timing)
+    /// Begins a frame: what has been loaded comes into view.
+    pub fn begin(&mut self, timing: &FrameTiming) {
+        self.now_ns = timing.now_ns;
+        self.poll_scene();
     }
 
-    /// Renders both eyes for the head pose that is expected when the frame is seen. Until the scene is there,
-    /// that is a progress bar.
+    /// Renders both eyes; nothing but a backdrop until the scene is there. Eyes of which none can be synthesized
+    /// from the other (canted ones) are both rendered, whatever the method.
     ///
     /// # Errors
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
-    pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
-        self.now_ns = timing.now_ns;
-        self.poll_scene();
-        let head = self.head(timing).0;
-        let pair = self.eyes(head);
-        self.write_text();
-        let graphics = self.graphics.as_mut().ok_or(ViewerError::NoContext)?;
-        graphics.frame.resize(pair.size)?;
-        let mut progress = None;
-        match &mut graphics.stage {
-            Some(Stage { scene, renderer, method }) => {
-                method.render(renderer, scene, &pair, &mut graphics.frame)?;
-            }
-            None => {
-                for eye in Eye::BOTH {
-                    graphics.frame.eye(eye).bind();
-                    graphics.gl.fill([0, 0], pair.size, BACKDROP);
+    pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
+        if let Some(questions) = &mut self.questionnaire {
+            questions.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
+        }
+        let unfit = self.method.needs_aligned_eyes().then(|| pair.synthesis(GuardBand::None).err()).flatten();
+        let substitute = unfit.is_some();
+        if unfit.as_ref().map(std::mem::discriminant) != self.unfit.as_ref().map(std::mem::discriminant) {
+            match &unfit {
+                Some(reason) => {
+                    log::warn!("both eyes are rendered in place of {}: {reason}", self.method.name())
                 }
-                // To and fro once in two seconds.
-                let phase = (timing.now_ns.rem_euclid(2_000_000_000)) as f32 * 1e-9;
-                progress = self.loader.is_some().then_some(1.0 - (1.0 - phase).abs());
+                None => log::info!("{} can be used again", self.method.name()),
             }
         }
-        let is_empty = graphics.stage.is_none();
-        if self.hud_shown || is_empty || timing.now_ns < self.message_until_ns {
-            graphics.hud.set(hud::Content { text: &self.text, progress });
-            graphics.hud.draw(&pair, &graphics.frame, is_empty);
-        }
-        graphics.rendered = Some(head);
-        Ok(())
+        self.unfit = unfit;
+        let settings = substitute.then(|| self.method_settings());
+        let graphics = self.graphics.as_mut().ok_or(ViewerError::NoContext)?;
+        let Some(Stage { scene, renderer, method, substitute }) = &mut graphics.stage else {
+            for Destination { framebuffer, origin, size } in to.iter().map(|eye| eye.color) {
+                graphics.gl.bind_framebuffer(framebuffer, origin, size);
+                graphics.gl.fill(origin, size, BACKDROP);
+            }
+            return Ok(());
+        };
+        let method = match settings {
+            None => method,
+            Some(settings) => match substitute {
+                Some(made) => made,
+                None => {
+                    let (render, options) = (settings.render_settings(), settings.stereo_options());
+                    let made = stereo::create(&graphics.gl, Method::Conventional, &render, &options)?;
+                    substitute.insert(made)
+                }
+            },
+        };
+        Ok(method.render_to(renderer, scene, pair, to)?)
     }
 
-    /// Puts the frame that was rendered last on the screen: through the lenses, turned to where the head points
-    /// now. May be called again for the same frame, when the next one is late.
+    /// The HUD as it should be seen in this frame, if at all.
+    ///
+    /// # Errors
+    /// [`ViewerError::NoContext`].
+    pub fn hud(&mut self) -> Result<Option<Panel<'_>>, ViewerError> {
+        self.write_text();
+        let is_asking = self.is_asking();
+        let graphics = self.graphics.as_mut().ok_or(ViewerError::NoContext)?;
+        if is_asking {
+            let progress = self.questionnaire.as_ref().map(Questionnaire::position);
+            return Ok(Some(
+                graphics.hud.set(hud::Content { text: &self.text, progress }, Placement::Middle),
+            ));
+        }
+        let is_empty = graphics.stage.is_none();
+        if !self.hud_shown && !is_empty && self.now_ns >= self.message_until_ns {
+            return Ok(None);
+        }
+        // To and fro once in two seconds.
+        let phase = (self.now_ns.rem_euclid(2_000_000_000)) as f32 * 1e-9;
+        let progress = (is_empty && self.loader.is_some()).then_some(1.0 - (1.0 - phase).abs());
+        let placement = if is_empty { Placement::Middle } else { Placement::Below };
+        Ok(Some(graphics.hud.set(hud::Content { text: &self.text, progress }, placement)))
+    }
+
+    /// Ends a frame that is on its way to the display.
     ///
     /// # Errors
     /// [`ViewerError::NoContext`]; [`ViewerError::Gl`] when an adapted method cannot be made.
-    pub fn present(
-        &mut self,
-        window: &Destination,
-        timing: &FrameTiming,
-    ) -> Result<FrameReport, ViewerError> {
+    pub fn end(&mut self, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
         self.now_ns = timing.now_ns;
-        let displayed = self.head(timing).1;
         let graphics = self.graphics.as_mut().ok_or(ViewerError::NoContext)?;
-        let rendered = graphics.rendered.unwrap_or(displayed);
-        let turn = if self.settings.timewarp { rendered.inverse() * displayed } else { Quat::IDENTITY };
-        graphics.lens.run(&graphics.frame, turn, window);
         graphics.pass_times.clear();
         let timed = graphics.gl.end_timed_frame(&mut graphics.pass_times);
         let gpu_ms =
@@ -511,10 +593,12 @@ impl Viewer {
         }
         let shown_ns = self.ready_ns.map_or(0, |ready| timing.now_ns - ready);
         let was_over = self.is_over;
-        self.is_over |= self.settings.duration.is_some_and(|s| shown_ns as f64 >= s as f64 * 1e9);
+        let is_time_up = self.settings.duration.is_some_and(|s| shown_ns as f64 >= s as f64 * 1e9);
+        self.is_over = self.is_over || (is_time_up && self.ask());
         Ok(FrameReport {
             scene,
             late_refreshes,
+            gpu_ms,
             telemetry_due: self.telemetry.is_due(timing.now_ns),
             session_over: self.is_over && !was_over,
             exit: self.is_over && self.settings.auto_exit,
@@ -542,6 +626,7 @@ impl Viewer {
             scene: self.scene_name.clone(),
             render_scale: self.render_scale(),
             imbuffer: self.imbuffer_divisor(),
+            run: self.settings.run.clone(),
         };
         let line = self.telemetry.line(now_ns, &state, device);
         self.last_line = Some(line.clone());
@@ -553,19 +638,14 @@ impl Viewer {
         self.telemetry.summary(now_ns)
     }
 
+    /// The answers to the questions of the settings so far; each is logged when it is given.
+    pub fn ratings(&self) -> &[Rating] {
+        &self.ratings
+    }
+
     /// The settings the viewer was made with.
     pub fn settings(&self) -> &Settings {
         &self.settings
-    }
-
-    /// The viewer's parameters and the screen in it.
-    pub fn optics(&self) -> &Optics {
-        &self.optics
-    }
-
-    /// Where the head points.
-    pub fn tracker(&self) -> &HeadTracker {
-        &self.tracker
     }
 
     /// The method in use.
@@ -580,7 +660,44 @@ impl Viewer {
 
     /// Distance between the eyes in metres.
     pub fn ipd(&self) -> f32 {
+        self.ipd.unwrap_or(self.native_ipd).clamp(0.0, MAX_IPD)
+    }
+
+    /// The distance between the eyes that the settings or the user ask for, if not that of the display.
+    pub fn chosen_ipd(&self) -> Option<f32> {
         self.ipd
+    }
+
+    /// The display says which distance between the eyes it has by itself, in metres.
+    pub fn set_native_ipd(&mut self, ipd: f32) {
+        self.native_ipd = ipd;
+    }
+
+    /// The scene that is in view or on its way.
+    pub fn scene_name(&self) -> &str {
+        &self.scene_name
+    }
+
+    /// Number of the viewpoint.
+    pub fn viewpoint(&self) -> usize {
+        self.viewpoint
+    }
+
+    /// Time of the last frame in nanoseconds.
+    pub fn now_ns(&self) -> i64 {
+        self.now_ns
+    }
+
+    /// Where something is in the scene that is `pose` as seen from the viewpoint: metres, Y up, -Z ahead.
+    pub fn place(&self, pose: Pose) -> Pose {
+        let viewpoint = self.viewpoints.get(self.viewpoint).map_or(Pose::IDENTITY, Viewpoint::pose);
+        // Gravity says what is level; of the viewpoint only the heading is left.
+        let ahead = viewpoint.orientation * Vec3::NEG_Z;
+        let heading = Quat::from_rotation_y((-ahead.x).atan2(-ahead.z));
+        Pose {
+            position: viewpoint.position + heading * pose.position,
+            orientation: heading * pose.orientation,
+        }
     }
 
     /// Where the scene is.
@@ -597,9 +714,8 @@ impl Viewer {
         self.failure.as_deref()
     }
 
-    /// Size in pixels of each eye's image.
-    pub fn eye_size(&self) -> [u32; 2] {
-        let full = self.optics.full_size(self.screen.size);
+    /// Size in pixels of each eye's image on a display whose full size is `full`.
+    pub fn eye_size(&self, full: [f32; 2]) -> [u32; 2] {
         // Methods render a guard band beside the image.
         let limit = self.graphics.as_ref().map_or(4096, |g| g.gl.capabilities().max_texture_size) / 2;
         let steps = |pixels: f32| (pixels * self.render_scale() / SIZE_STEP).round().max(4.0) * SIZE_STEP;
@@ -621,7 +737,7 @@ impl Viewer {
         }
     }
 
-    /// Uploads the scene if its thread is done; [`Viewer::render`] does so by itself.
+    /// Uploads the scene if its thread is done; [`Viewer::begin`] does so by itself.
     pub fn poll_scene(&mut self) {
         let Some(graphics) = &self.graphics else { return };
         let Some(result) = self.loader.as_ref().and_then(Loader::poll) else { return };
@@ -655,7 +771,7 @@ impl Viewer {
             made => made,
         }?;
         log::info!("{}: {} triangles", scene.name, scene.triangle_count());
-        graphics.stage = Some(Stage { scene, renderer, method });
+        graphics.stage = Some(Stage { scene, renderer, method, substitute: None });
         // The session is what is seen of the scene; a lost context does not begin another.
         if self.ready_ns.is_none() {
             self.telemetry = Telemetry::default();
@@ -665,36 +781,11 @@ impl Viewer {
         Ok(())
     }
 
-    /// Rotation from head to world at which to render, and at which to show.
-    fn head(&self, timing: &FrameTiming) -> (Quat, Quat) {
-        if let Some(held) = self.held {
-            return (held.rendered, held.displayed);
-        }
-        let head = self.tracker.world_from_head(timing.now_ns, timing.expected_display_ns);
-        (head, head)
-    }
-
-    /// The eyes of a head that is turned like this, at the scene's viewpoint.
-    fn eyes(&self, head: Quat) -> EyePair {
-        let viewpoint = self.viewpoints.get(self.viewpoint).map_or(Pose::IDENTITY, Viewpoint::pose);
-        // Gravity says what is level; of the viewpoint only the heading is left.
-        let ahead = viewpoint.orientation * Vec3::NEG_Z;
-        let heading = Quat::from_rotation_y((-ahead.x).atan2(-ahead.z));
-        // At rest the eyes are where the scene's author has put them.
-        let moved = neck_offset(head) - neck_offset(Quat::IDENTITY);
-        let head = Pose { position: viewpoint.position + heading * moved, orientation: heading * head };
-        let poses = Eye::BOTH.map(|eye| head.translated_local(Vec3::X * (eye.side() * self.ipd / 2.0)));
-        EyePair {
-            poses,
-            frusta: Eye::BOTH.map(|eye| self.optics.frustum(eye)),
-            depth: DepthRange::PAPER,
-            size: self.eye_size(),
-            dominant: self.settings.dominant,
-        }
-    }
-
     /// What the HUD says now.
     fn write_text(&mut self) {
+        if let Some(questions) = self.questionnaire.as_ref().filter(|questions| !questions.is_done()) {
+            return questions.write(&mut self.text);
+        }
         let pipeline = self.uses_synthesis().then(|| self.pipeline.name());
         let event = match &self.loader {
             Some(_) => hud::Happening::Loading(&self.scene_name),

@@ -66,11 +66,28 @@ pub enum SettingsError {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DisplayKind {
-    /// The best that there is: a Cardboard-compatible viewer, until headsets are supported.
+    /// A headset where there is an OpenXR runtime, else a Cardboard-compatible viewer.
     #[default]
     Auto,
+    /// A headset with an OpenXR runtime.
+    OpenXr,
     /// A phone in a Cardboard-compatible viewer.
     Cardboard,
+}
+
+/// How fast a headset's processors should run, where its runtime lets applications say (XR_EXT_performance_settings).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Performance {
+    /// As slowly as can be.
+    PowerSaving,
+    /// Slowly; the rate may be missed.
+    SustainedLow,
+    /// As fast as can be held for as long as one likes.
+    #[default]
+    SustainedHigh,
+    /// As fast as can be, for a short time.
+    Boost,
 }
 
 /// Ambient occlusion.
@@ -126,7 +143,7 @@ pub struct Settings {
     pub viewer: String,
     /// The eye that is rendered.
     pub dominant: Eye,
-    /// Distance between the eyes in metres; by default that of the viewer's lenses.
+    /// Distance between the eyes in metres; by default that of the viewer's lenses, or of the headset.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ipd: Option<f32>,
     /// Rendered pixels per screen pixel at the lens's centre, per axis, 0.25 to 2; the upper limit when
@@ -151,12 +168,30 @@ pub struct Settings {
     /// Length of the session in seconds, after which its summary is logged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub duration: Option<f32>,
-    /// End the program after `duration`.
+    /// What is asked after `duration`, to be answered on a slider; a `-` in a question is shown as a space.
+    pub questions: Vec<String>,
+    /// Ratings go from 1 (worst) to this, 2 to 100.
+    pub best_rating: u32,
+    /// Who answers, in the log. Words and numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub participant: Option<String>,
+    /// Number of the trial, in the log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trial: Option<u32>,
+    /// End the program after `duration` and the questions.
     pub auto_exit: bool,
     /// On what the eyes are shown.
     pub display: DisplayKind,
+    /// Headsets: refreshes per second, the nearest of what the runtime offers; by default the runtime's choice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refresh_rate: Option<f32>,
+    /// Headsets: how fast the processors should run.
+    pub performance: Performance,
     /// Measure the GPU time of each stage, where the driver has timer queries.
     pub profiling: bool,
+    /// Name of this run in the log line, for scripts that start several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
 }
 
 /// The keys of [`Settings`], in order.
@@ -188,13 +223,30 @@ pub const KEYS: &[&str] = &[
     "bloom",
     "point-lights",
     "duration",
+    "questions",
+    "best-rating",
+    "participant",
+    "trial",
     "auto-exit",
     "display",
+    "refresh-rate",
+    "performance",
     "profiling",
+    "run",
 ];
 
 /// Keys that may be left to the program: the value `auto` takes them back.
-const OPTIONAL: &[&str] = &["guard-band", "anti-aliasing", "near-field", "ipd", "duration"];
+const OPTIONAL: &[&str] = &[
+    "guard-band",
+    "anti-aliasing",
+    "near-field",
+    "ipd",
+    "duration",
+    "participant",
+    "trial",
+    "refresh-rate",
+    "run",
+];
 
 impl Default for Settings {
     fn default() -> Settings {
@@ -228,9 +280,16 @@ impl Default for Settings {
             bloom: true,
             point_lights: MAX_POINT_LIGHTS / 2,
             duration: None,
+            questions: Vec::new(),
+            best_rating: 5,
+            participant: None,
+            trial: None,
             auto_exit: false,
             display: DisplayKind::Auto,
+            refresh_rate: None,
+            performance: Performance::default(),
             profiling: true,
+            run: None,
         }
     }
 }
@@ -366,6 +425,11 @@ impl Settings {
             }
             "shadow-map" => ensure(self.shadow_map <= 8192, "give texels from 0 to 8192"),
             "point-lights" => ensure(self.point_lights <= MAX_POINT_LIGHTS, "give a number from 0 to 24"),
+            "refresh-rate" => ensure(
+                self.refresh_rate.is_none_or(|hz| (1.0..=1000.0).contains(&hz)),
+                "give refreshes per second, such as 90, or auto",
+            ),
+            "best-rating" => ensure((2..=100).contains(&self.best_rating), "give a number from 2 to 100"),
             "duration" => ensure(
                 self.duration.is_none_or(|s| s > 0.0 && s.is_finite()),
                 "give seconds above 0, or auto",
@@ -488,7 +552,17 @@ mod tests {
 
     #[test]
     fn the_list_of_keys_is_complete() {
-        let full = with(&["guard-band=40px", "anti-aliasing=off", "near-field=1", "ipd=0.06", "duration=10"]);
+        let full = with(&[
+            "guard-band=40px",
+            "anti-aliasing=off",
+            "near-field=1",
+            "ipd=0.06",
+            "duration=10",
+            "run=a",
+            "participant=P03",
+            "trial=4",
+            "refresh-rate=90",
+        ]);
         let table = Table::try_from(full.unwrap()).unwrap();
         let mut keys: Vec<_> = table.keys().map(String::as_str).collect();
         let mut listed = KEYS.to_vec();
@@ -545,7 +619,9 @@ mod tests {
         refused("kernel-height=40", &["15"]);
         refused("seed=-1", &["\"seed\""]);
         refused("methods=yoro,fast", &["\"methods\"", "fast"]);
-        refused("display=openxr", &["\"display\"", "cardboard"]);
+        refused("display=oculus", &["\"display\"", "openxr", "cardboard"]);
+        refused("best-rating=1", &["\"best-rating\"", "2 to 100"]);
+        refused("refresh-rate=0", &["\"refresh-rate\"", "auto"]);
     }
 
     #[test]
@@ -582,7 +658,7 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn any_text_is_taken_or_refused(key in 0usize..30, value in ".{0,12}") {
+        fn any_text_is_taken_or_refused(key in 0usize..KEYS.len(), value in ".{0,12}") {
             let _ = with(&[&format!("{}={value}", KEYS[key])]);
         }
     }

@@ -5,9 +5,12 @@ use std::time::Duration;
 
 use glam::{Quat, Vec2, Vec3};
 
+use super::lens::LensPass;
 use super::*;
+use crate::eyes::Eye;
 use crate::gl::{Filter, Format, RenderTarget};
 use crate::platform::{Backend, Headless};
+use crate::stereo::StereoFrame;
 
 const WINDOW: [u32; 2] = [320, 180];
 const PERIOD_NS: i64 = 16_666_667;
@@ -115,14 +118,14 @@ fn settings(pairs: &[&str]) -> Settings {
 
 /// A display and a clock for a viewer.
 struct Run {
-    viewer: Viewer,
+    viewer: Cardboard,
     window: RenderTarget,
     now_ns: i64,
 }
 
 impl Run {
     fn new(gl: &Rc<Context>, pairs: &[&str]) -> Run {
-        let mut viewer = Viewer::new(settings(pairs), screen(), &[]).unwrap();
+        let mut viewer = Cardboard::new(settings(pairs), screen(), &[]).unwrap();
         viewer.attach(gl.clone()).unwrap();
         Run { viewer, window: window(gl), now_ns: 0 }
     }
@@ -138,8 +141,8 @@ impl Run {
     }
 
     fn load(&mut self) {
-        while self.viewer.scene_state() == SceneState::Loading {
-            self.viewer.poll_scene();
+        while self.viewer.viewer().scene_state() == SceneState::Loading {
+            self.viewer.viewer_mut().poll_scene();
             std::thread::sleep(Duration::from_millis(2));
         }
     }
@@ -166,7 +169,7 @@ fn from_loading_to_the_end_of_a_session() {
         assert_eq!(report.exit, over > 0);
         if report.telemetry_due {
             let device = DeviceState { battery_celsius: Some(31.0), ..DeviceState::default() };
-            lines.push((i, run.viewer.telemetry(run.now_ns, &device)));
+            lines.push((i, run.viewer.viewer_mut().telemetry(run.now_ns, &device)));
         }
     }
     assert_eq!(over, 1);
@@ -177,7 +180,7 @@ fn from_loading_to_the_end_of_a_session() {
     assert_eq!((line.method.as_str(), line.pipeline.as_deref()), ("yoro", Some("gather")));
     assert_eq!((line.scene.as_str(), line.stale, line.current_ma), ("prototype", Some(0), None));
     assert!((line.fps.unwrap() - 60.0).abs() < 0.1, "{line}");
-    let summary = run.viewer.summary(run.now_ns).to_string();
+    let summary = run.viewer.viewer().summary(run.now_ns).to_string();
     assert!(summary.contains("frames=60,FPS=60.0"), "{summary}");
 
     // The context is lost and comes back; the scene is loaded again.
@@ -212,7 +215,7 @@ fn events_change_what_is_seen() {
         run.viewer.event(Event::Tap).unwrap();
         run.frame();
     }
-    assert_eq!(run.viewer.method(), Method::Mono);
+    assert_eq!(run.viewer.viewer().method(), Method::Mono);
     assert_eq!(gl.object_count(), objects, "switching leaves nothing behind");
     run.viewer.event(Event::Tap).unwrap();
     let Action::Ipd(ipd) = run.viewer.event(Event::IpdUp).unwrap() else { panic!() };
@@ -220,7 +223,7 @@ fn events_change_what_is_seen() {
     for _ in 0..100 {
         run.viewer.event(Event::IpdUp).unwrap();
     }
-    assert_eq!(run.viewer.ipd(), MAX_IPD);
+    assert_eq!(run.viewer.viewer().ipd(), MAX_IPD);
     run.frame();
     assert_ne!(run.image(), yoro);
     assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Recenter);
@@ -267,13 +270,53 @@ fn a_scene_that_cannot_be_loaded_is_said_in_view() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("room.obj"), "f 1 2 3\n").unwrap();
     let folders: [PathBuf; 1] = [folder.path().into()];
-    let mut viewer = Viewer::new(settings(&["scene=room"]), screen(), &folders).unwrap();
+    let mut viewer = Cardboard::new(settings(&["scene=room"]), screen(), &folders).unwrap();
     viewer.attach(headless.gl().clone()).unwrap();
     let mut run = Run { viewer, window: window(headless.gl()), now_ns: 0 };
     run.load();
     assert_eq!(run.frame().scene, SceneState::Failed);
-    assert!(run.viewer.failure().unwrap().contains("room.obj"));
+    assert!(run.viewer.viewer().failure().unwrap().contains("room.obj"));
     assert!(run.image().chunks_exact(4).any(|p| p[0] > 200), "the reason is in view");
-    let mistake = Viewer::new(settings(&["scene=palace"]), screen(), &folders).err().unwrap().to_string();
+    let mistake = Cardboard::new(settings(&["scene=palace"]), screen(), &folders).err().unwrap().to_string();
     assert!(mistake.contains("palace") && mistake.contains("room.obj"), "{mistake}");
+}
+
+#[test]
+fn questions_are_asked_after_the_session_and_answered_by_head_or_keys() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let settings = ["duration=0.1", "auto-exit=true", "hud=false", "participant=P03", "trial=4"];
+    let questions = ["questions=image-quality,comfort", "method=mono"];
+    let mut run = Run::new(headless.gl(), &[&settings[..], &questions].concat());
+    run.load();
+    let seen = run.frame();
+    assert!(!seen.session_over);
+    let scene = run.image();
+    for _ in 0..8 {
+        assert!(!run.frame().session_over, "it is not over before the questions are answered");
+    }
+    assert_ne!(run.image(), scene, "the panel");
+    // Keys mean something else now, and the method stays what is being judged.
+    assert_eq!(run.viewer.event(Event::IpdUp).unwrap(), Action::Marker(3.5));
+    assert_eq!(run.viewer.event(Event::NextViewpoint).unwrap(), Action::Nothing);
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Answer);
+    assert_eq!(run.viewer.viewer().method(), Method::Mono);
+    // The second question: the head turns to the left and stays there.
+    let hold = |run: &mut Run, left: f32| {
+        let head = Quat::from_rotation_y(left);
+        run.viewer.hold_head(Some(HeldHead { rendered: head, displayed: head }));
+    };
+    hold(&mut run, 0.0);
+    run.frame();
+    hold(&mut run, 0.35);
+    let mut report = run.frame();
+    for _ in 0..6 * 60 {
+        if report.session_over {
+            break;
+        }
+        report = run.frame();
+    }
+    assert!(report.session_over && report.exit, "a marker left alone is an answer");
+    let said: Vec<String> = run.viewer.viewer().ratings().iter().map(ToString::to_string).collect();
+    let line = "rating,v=1,participant=P03,trial=4,method=mono,pipeline=na,scene=prototype,question=";
+    assert_eq!(said, [format!("{line}image-quality,value=3.5"), format!("{line}comfort,value=1.0")]);
 }

@@ -9,7 +9,7 @@ use yoro::gl::{Destination, Filter, Format, RenderTarget};
 use yoro::metrics::{Channels, psnr};
 use yoro::platform::{Backend, Headless};
 use yoro::telemetry::Line;
-use yoro::viewer::{FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings, Viewer};
+use yoro::viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
 
 use host::{Run, device, play, play_arm64};
 
@@ -42,7 +42,7 @@ fn lines(run: &Run) -> Vec<Line> {
 fn desktop(extra: &[(&str, &str)], yaw_degrees: Option<f32>) -> RgbImage {
     let pairs = SETTINGS.iter().chain(extra).map(|(key, value)| format!("{key}={value}"));
     let screen = Screen { size: SIZE, dpi: [DPI; 2], rotation: Rotation::LandscapeLeft };
-    let mut viewer = Viewer::new(Settings::resolve(None, pairs).unwrap(), screen, &[]).unwrap();
+    let mut viewer = Cardboard::new(Settings::resolve(None, pairs).unwrap(), screen, &[]).unwrap();
     if let Some(degrees) = yaw_degrees {
         let head = Quat::from_euler(EulerRot::YXZ, degrees.to_radians(), 0.0, 0.0);
         viewer.hold_head(Some(HeldHead { rendered: head, displayed: head }));
@@ -51,11 +51,11 @@ fn desktop(extra: &[(&str, &str)], yaw_degrees: Option<f32>) -> RgbImage {
     let gl = headless.gl();
     viewer.attach(gl.clone()).unwrap();
     let window = RenderTarget::new(gl, SIZE, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
-    while viewer.scene_state() == SceneState::Loading {
-        viewer.poll_scene();
+    while viewer.viewer().scene_state() == SceneState::Loading {
+        viewer.viewer_mut().poll_scene();
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    assert_eq!(viewer.scene_state(), SceneState::Ready);
+    assert_eq!(viewer.viewer().scene_state(), SceneState::Ready);
     for frame in 1..=3 {
         let now_ns = frame * 16_666_667;
         let timing = FrameTiming { now_ns, expected_display_ns: now_ns + 33_333_333, refresh_hz: 60.0 };

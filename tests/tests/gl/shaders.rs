@@ -6,7 +6,7 @@ use std::rc::Rc;
 use glam::Vec3;
 use yoro::gl::{self, Context, Program, ShaderSource};
 use yoro::inpaint::{self, PatcherKind, PatcherOptions};
-use yoro::render::{GpuScene, RenderSettings, Renderer};
+use yoro::render::{DepthCopy, GpuScene, RenderSettings, Renderer};
 use yoro::scene::{Scene, ShadingStyle};
 use yoro::stereo::{self, AntiAliasing, Method, StereoOptions};
 use yoro::synthesis::{self, ImBufferSize, Outputs, PaperOptions, Pipeline, SynthesisOptions};
@@ -85,6 +85,7 @@ fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
         Program::new(gl, source, &defines)?;
     }
     Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
+    DepthCopy::new(gl)?;
     Ok(())
 }
 

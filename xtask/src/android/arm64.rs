@@ -5,18 +5,16 @@
 //! their own: apt gets its own state for that, and nothing is installed.
 
 use std::fs;
-use std::io::Write as _;
-use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
 use super::build::{build_std, root, use_rust};
 use super::target_folder;
 use super::toolchain::{self, Rust, Surroundings};
-use crate::apt;
 use crate::cargo::Equipped;
+use crate::packages::{self, PrivateApt, quoted, write_launcher};
 
 const TRIPLE: &str = "aarch64-unknown-linux-gnu";
 /// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs; libgcc's package has a number in its name.
@@ -44,7 +42,15 @@ pub fn host_for_tests() -> anyhow::Result<Equipped> {
     };
     let program = build(&surroundings, &system, &folder.join("build"))?;
     let launcher = folder.join("yoro-android-host");
-    write_launcher(&launcher, &system, &program)?;
+    // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
+    let text = format!(
+        "# The simulated Android host for arm64, in qemu's user mode.\n\
+         exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
+        quoted(&system.qemu),
+        quoted(&system.root),
+        quoted(&program)
+    );
+    write_launcher(&launcher, &text)?;
     Ok(Equipped::At(launcher))
 }
 
@@ -65,91 +71,31 @@ impl System {
                 fs::remove_dir_all(folder)
                     .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
             }
-            let apt = PrivateApt::new(folder.join("apt"))?;
-            for package in apt.fetch()? {
-                unpack(&package, &root)?;
+            let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], None)?;
+            for package in fetch(&apt)? {
+                // qemu's packages have a program of several megabytes for every processor that there is.
+                let is_qemu =
+                    package.file_name().is_some_and(|name| name.to_string_lossy().starts_with("qemu-user"));
+                let only: &[&str] = if is_qemu { &["./usr/bin/qemu-aarch64*"] } else { &[] };
+                packages::unpack(&package, &root, only, &[])?;
             }
             fs::write(&stamp, recipe).with_context(|| format!("{} cannot be written", stamp.display()))?;
             // The packages are unpacked; without them half of the space is enough.
-            fs::remove_dir_all(&apt.folder).ok();
+            apt.remove();
         }
         let qemu = QEMU.map(|name| root.join(name)).into_iter().find(|program| program.is_file());
         Ok(Self { qemu: qemu.context("qemu is not where Debian's packages have it")?, root })
     }
 }
 
-/// apt with this machine's sources, but with a state of its own: for it nothing is installed, and this machine runs
-/// arm64's packages, too.
-struct PrivateApt {
-    folder: PathBuf,
-}
-
-impl PrivateApt {
-    fn new(folder: PathBuf) -> anyhow::Result<Self> {
-        for tool in ["apt-get", "dpkg-deb", "tar"] {
-            apt::find_program(tool)
-                .with_context(|| format!("{tool} is not here: only Debian's packages have all of it"))?;
-        }
-        for path in ["state/lists/partial", "cache/archives/partial"] {
-            let path = folder.join(path);
-            fs::create_dir_all(&path).with_context(|| format!("{} cannot be made", path.display()))?;
-        }
-        let status = folder.join("state/status");
-        fs::write(&status, "").with_context(|| format!("{} cannot be written", status.display()))?;
-        Ok(Self { folder })
-    }
-
-    fn command(&self, program: &str, arguments: &[&str]) -> Command {
-        let own = |path: &str| self.folder.join(path).display().to_string();
-        let mut command = Command::new(program);
-        for option in [
-            "APT::Architecture=amd64".to_owned(),
-            "APT::Architectures=amd64,arm64".to_owned(),
-            // The user that root's apt downloads as may not see this folder.
-            "APT::Sandbox::User=root".to_owned(),
-            "Acquire::Languages=none".to_owned(),
-            "Acquire::Retries=3".to_owned(),
-            format!("Dir::State={}", own("state")),
-            format!("Dir::State::status={}", own("state/status")),
-            format!("Dir::Cache={}", own("cache")),
-        ] {
-            command.args(["-o", &option]);
-        }
-        command.args(arguments).stdin(Stdio::null());
-        command
-    }
-
-    fn get(&self, arguments: &[&str]) -> anyhow::Result<()> {
-        eprintln!("$ apt-get {} (arm64, into {})", arguments.join(" "), self.folder.display());
-        let output = self
-            .command("apt-get", &["--quiet=2"])
-            .args(arguments)
-            .output()
-            .context("apt-get cannot be started")?;
-        if !output.status.success() {
-            bail!("apt-get {} failed: {}", arguments[0], String::from_utf8_lossy(&output.stderr).trim());
-        }
-        Ok(())
-    }
-
-    /// Downloads the packages and all that they need; their files.
-    fn fetch(&self) -> anyhow::Result<Vec<PathBuf>> {
-        self.get(&["update"])?;
-        let names = self.command("apt-cache", &["pkgnames", "libgcc-"]).output();
-        let names = names.context("apt-cache cannot be started")?.stdout;
-        let libgcc = newest_libgcc(&String::from_utf8_lossy(&names))
-            .context("this distribution has no libgcc-dev for the linker")?;
-        let mut packages: Vec<String> = PACKAGES.iter().map(|name| format!("{name}:arm64")).collect();
-        packages.extend([format!("{libgcc}:arm64"), "qemu-user-static:amd64".to_owned()]);
-        let mut arguments = vec!["install", "--yes", "--download-only", "--no-install-recommends"];
-        arguments.extend(packages.iter().map(String::as_str));
-        self.get(&arguments)?;
-        let archives = self.folder.join("cache/archives");
-        let entries =
-            fs::read_dir(&archives).with_context(|| format!("{} cannot be read", archives.display()))?;
-        let files = entries.flatten().map(|entry| entry.path());
-        Ok(files.filter(|path| path.extension().is_some_and(|extension| extension == "deb")).collect())
-    }
+/// Downloads the packages and all that they need; their files.
+fn fetch(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
+    apt.update()?;
+    let libgcc = newest_libgcc(&apt.names("libgcc-")?)
+        .context("this distribution has no libgcc-dev for the linker")?;
+    let mut packages: Vec<String> = PACKAGES.iter().map(|name| format!("{name}:arm64")).collect();
+    packages.extend([format!("{libgcc}:arm64"), "qemu-user-static:amd64".to_owned()]);
+    apt.download(&packages)
 }
 
 /// Of package names, one per line, the `libgcc-N-dev` of the largest number.
@@ -157,35 +103,6 @@ fn newest_libgcc(names: &str) -> Option<String> {
     let number = |name: &str| name.strip_prefix("libgcc-")?.strip_suffix("-dev")?.parse::<u32>().ok();
     let newest = names.lines().filter_map(number).max()?;
     Some(format!("libgcc-{newest}-dev"))
-}
-
-/// Puts a package's files into `root`, without running anything of it.
-fn unpack(package: &Path, root: &Path) -> anyhow::Result<()> {
-    // Newer distributions have all libraries below usr and expect links beside it.
-    if !root.exists() {
-        fs::create_dir_all(root.join("usr/lib"))
-            .and_then(|()| std::os::unix::fs::symlink("usr/lib", root.join("lib")))
-            .with_context(|| format!("{} cannot be made", root.display()))?;
-    }
-    let mut archive = Command::new("dpkg-deb")
-        .arg("--fsys-tarfile")
-        .arg(package)
-        .stdout(Stdio::piped())
-        .spawn()
-        .context("dpkg-deb cannot be started")?;
-    let tar = archive.stdout.take().context("dpkg-deb's output cannot be read")?;
-    let mut extract = Command::new("tar");
-    extract.args(["--extract", "--keep-directory-symlink", "--no-same-owner", "--directory"]).arg(root);
-    // qemu's packages have a program of several megabytes for every processor that there is.
-    if package.file_name().is_some_and(|name| name.to_string_lossy().starts_with("qemu-user")) {
-        extract.args(["--wildcards", "./usr/bin/qemu-aarch64*"]);
-    }
-    let extracted = extract.stdin(tar).status().context("tar cannot be started")?;
-    let read = archive.wait().context("dpkg-deb is gone")?;
-    if !extracted.success() || !read.success() {
-        bail!("{} cannot be unpacked", package.display());
-    }
-    Ok(())
 }
 
 /// Compiles the host for arm64; the program.
@@ -221,24 +138,6 @@ fn build(surroundings: &Surroundings, system: &System, target: &Path) -> anyhow:
         bail!("the simulated Android host does not compile for arm64: see above");
     }
     Ok(target.join(TRIPLE).join("debug/yoro-android-host"))
-}
-
-fn write_launcher(launcher: &Path, system: &System, program: &Path) -> anyhow::Result<()> {
-    let quoted = |path: &Path| format!("'{}'", path.display().to_string().replace('\'', r"'\''"));
-    // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
-    let text = format!(
-        "#!/bin/sh\n# The simulated Android host for arm64, in qemu's user mode.\n\
-         exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
-        quoted(&system.qemu),
-        quoted(&system.root),
-        quoted(program)
-    );
-    fs::File::create(launcher)
-        .and_then(|mut file| {
-            file.write_all(text.as_bytes())?;
-            file.set_permissions(fs::Permissions::from_mode(0o755))
-        })
-        .with_context(|| format!("{} cannot be written", launcher.display()))
 }
 
 #[cfg(test)]

@@ -44,7 +44,10 @@ struct Architecture {
 const PAGE: u64 = 16 * 1024;
 
 /// Cargo's target folder, which this program lies in: `target/debug/xtask`.
-fn target_folder() -> anyhow::Result<PathBuf> {
+///
+/// # Errors
+/// When this program lies elsewhere.
+pub fn target_folder() -> anyhow::Result<PathBuf> {
     let program = std::env::current_exe().context("this program does not know where it lies")?;
     let folder = program.ancestors().nth(2).context("this program lies in no target folder")?;
     Ok(folder.to_owned())

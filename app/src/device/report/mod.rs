@@ -296,7 +296,8 @@ fn left_out(runs: &[Run], devices: &[Device], baseline: &str) -> Vec<Note> {
     }
     for device in devices {
         for run in compare::without_partner(runs, device, baseline) {
-            let detail = format!("no run of {baseline} that counts is there to compare it with; its own means count");
+            let detail =
+                format!("no run of {baseline} that counts is there to compare it with; its own means count");
             notes.push(Note { name: "no partner", of: run.name(), detail });
         }
     }

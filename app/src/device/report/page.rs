@@ -56,10 +56,13 @@ pub(super) fn html(report: &DeviceReport) -> Result<String, ReportError> {
 
 pub(super) fn markdown(report: &DeviceReport) -> String {
     let mut out = format!("# {}\n\n", title(report));
-    for line in warnings(report).into_iter().map(|w| format!("**{w}**")).chain(sentences(report).map_lines())
-    {
-        let _ = writeln!(out, "{line}\n");
+    for warning in warnings(report) {
+        let _ = writeln!(out, "**{warning}**\n");
     }
+    for answer in answers(report) {
+        let _ = writeln!(out, "- {}", answer.sentence());
+    }
+    out.push('\n');
     for table in overview_tables(report) {
         let _ = writeln!(out, "{}", table.markdown());
     }
@@ -185,10 +188,13 @@ fn answers(report: &DeviceReport) -> Vec<Answer> {
                 Some(d) => {
                     let (decimals, unit) = change_format(d);
                     let value = |value| format!("{} {}", number(quantity, value), quantity.unit());
-                    let interval = d.interval.map(|BlockInterval { interval: Interval { low, high }, .. }| {
-                        let confidence = 100.0 * CONFIDENCE;
-                        format!("{confidence:.0} % interval {low:+.decimals$} to {high:+.decimals$} {unit}")
-                    });
+                    let interval =
+                        d.interval.map(|BlockInterval { interval: Interval { low, high }, .. }| {
+                            let confidence = 100.0 * CONFIDENCE;
+                            format!(
+                                "{confidence:.0} % interval {low:+.decimals$} to {high:+.decimals$} {unit}"
+                            )
+                        });
                     AnswerChange {
                         change: change(d),
                         name: quantity.name(),
@@ -202,7 +208,9 @@ fn answers(report: &DeviceReport) -> Vec<Answer> {
                 let scenes = report.scenes_of(&device.name, method, d.quantity);
                 let basis = match d.interval {
                     None => "nothing was repeated, so there is no interval",
-                    Some(BlockInterval { basis: Basis::Repetitions, .. }) => "intervals rest on the repetitions",
+                    Some(BlockInterval { basis: Basis::Repetitions, .. }) => {
+                        "intervals rest on the repetitions"
+                    }
                     Some(BlockInterval { basis: Basis::Blocks, .. }) => {
                         "every scene was measured once, so intervals rest on the scenes"
                     }

@@ -336,7 +336,8 @@ impl Run {
 
     /// Why its power does not count.
     fn without_power(&self, capture: &Capture, samples: &[&Sample]) -> Option<(&'static str, String)> {
-        let plugged = capture.samples.iter().filter(|s| s.plugged.is_some_and(|plugged| plugged != 0)).count();
+        let plugged =
+            capture.samples.iter().filter(|s| s.plugged.is_some_and(|plugged| plugged != 0)).count();
         if let Some(fault) = self.find(FaultKind::PluggedIn) {
             return Some(("plugged in", fault.detail.clone()));
         }
@@ -350,7 +351,10 @@ impl Run {
         };
         let (seconds, planned) = (integrated.seconds, self.planned_s);
         if seconds < LEAST_COVERED * planned {
-            return Some(("current missing", format!("{seconds:.0} s of {planned:.0} s have current and voltage")));
+            return Some((
+                "current missing",
+                format!("{seconds:.0} s of {planned:.0} s have current and voltage"),
+            ));
         }
         let charging = integrated.milliwatts <= 0.0;
         charging.then(|| ("charging", "on the mean, the battery was charged".into()))

@@ -164,10 +164,17 @@ impl BenchReport {
         );
     }
 
-    /// The GL renderer, where another one measured the same suite.
-    fn place<'a>(&self, suite: &'a Suite) -> Option<&'a str> {
-        let several = self.suites.iter().filter(|other| other.name == suite.name).count() > 1;
-        several.then_some(suite.header.machine.gl_renderer.as_str())
+    /// The GL renderer, where another one measured the same suite; with its version, where only that differs.
+    fn place(&self, suite: &Suite) -> Option<String> {
+        let (renderer, version) = gl(suite);
+        let same_suite = |other: &&Suite| other.name == suite.name;
+        let others: Vec<_> = self.suites.iter().filter(same_suite).map(gl).collect();
+        let another_version = others.iter().any(|(r, v)| *r == renderer && *v != version);
+        match (others.len() > 1, another_version) {
+            (false, _) => None,
+            (true, false) => Some(renderer.to_owned()),
+            (true, true) => Some(format!("{renderer}, {version}")),
+        }
     }
 
     /// Writes `report.html`, `results.md` and `summary.md` into `folder`, and the figures as SVG files into another
@@ -202,6 +209,12 @@ impl BenchReport {
         files::write(&written.page, page.as_bytes())?;
         Ok(Written { figures: drawn.into_iter().map(|(path, _)| path).collect(), ..written })
     }
+}
+
+/// Renderer and version of GL that a suite was measured with.
+fn gl(suite: &Suite) -> (&str, &str) {
+    let machine = &suite.header.machine;
+    (&machine.gl_renderer, &machine.gl_version)
 }
 
 /// How a file in `folder` refers to `target`, with slashes.

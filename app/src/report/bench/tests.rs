@@ -122,8 +122,8 @@ fn both(ms: f64, psnr: f64, round: u32) -> Vec<Figures<'static>> {
 }
 
 /// Every suite, on a few settings each.
-fn write_results(path: &Path, renderer: &str) {
-    let (mut writer, _) = Writer::open(path, &header(renderer)).unwrap();
+fn write_results(path: &Path, header: &Header) {
+    let (mut writer, _) = Writer::open(path, header).unwrap();
     let w = &mut writer;
     let scenes = [("street <b>&\"café\"</b>", "Bistro", 1_240_000), ("atrium | columns", "Sponza", 365_000)];
     for (i, (scene, stands_for, triangles)) in scenes.iter().enumerate() {
@@ -211,7 +211,7 @@ fn write_results(path: &Path, renderer: &str) {
 
 fn report(dir: &Path) -> BenchReport {
     let path = dir.join("run.jsonl");
-    write_results(&path, "llvmpipe");
+    write_results(&path, &header("llvmpipe"));
     let picture = |shift: u32| {
         RgbImage::from_fn(48, 32, |x, y| {
             Rgb([((x + shift) * 5) as u8, (y * 7) as u8, ((x + shift) * y) as u8])
@@ -368,16 +368,22 @@ fn the_page_is_escaped_self_contained_and_has_its_pictures() {
 #[test]
 fn two_machines_stand_side_by_side_and_one_machines_files_go_together() {
     let dir = tempfile::tempdir().unwrap();
-    let [a, b, c] = ["a", "b", "c"].map(|name| dir.path().join(format!("{name}.jsonl")));
-    write_results(&a, "llvmpipe");
-    write_results(&b, "a GPU");
-    write_results(&c, "llvmpipe");
+    let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| dir.path().join(format!("{name}.jsonl")));
+    write_results(&a, &header("llvmpipe"));
+    write_results(&b, &header("a GPU"));
+    write_results(&c, &header("llvmpipe"));
+    let mut newer = header("llvmpipe");
+    newer.machine.gl_version = "OpenGL ES 3.2 Mesa 25".into();
+    write_results(&d, &newer);
     let read = |paths: &[&PathBuf]| {
         BenchReport::new(paths.iter().map(|path| Results::read(path).unwrap()).collect()).unwrap()
     };
     let html = read(&[&a, &b]).to_html().unwrap();
     assert!(html.contains("id=\"complexity\"") && html.contains("id=\"complexity-2\""));
     assert!(html.contains("id=\"complexity-2-ms\"") && html.contains("· a GPU"));
+    let markdown = read(&[&a, &d]).to_markdown(None);
+    assert!(markdown.contains("(llvmpipe, OpenGL ES 3.2 Mesa)\n"));
+    assert!(markdown.contains("(llvmpipe, OpenGL ES 3.2 Mesa 25)\n"));
     let markdown = read(&[&a, &c]).to_markdown(None);
     assert_eq!(markdown.matches("## Complexity").count(), 1);
     let start = markdown.find("**Frame times in full**").unwrap();

@@ -1,0 +1,36 @@
+//! `yoro device install`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::ensure;
+
+use super::{WhichArgs, each};
+
+/// Where `cargo xtask apk` puts what it makes, the release first.
+const BUILT: [&str; 2] = ["target/apk/yoro.apk", "target/apk/yoro-debug.apk"];
+
+/// Install the application, over an earlier one
+#[derive(clap::Args, Clone, Debug)]
+pub struct InstallArgs {
+    /// The APK [default: what cargo xtask apk has made]
+    #[arg(long, value_name = "FILE")]
+    apk: Option<PathBuf>,
+    #[command(flatten)]
+    which: WhichArgs,
+}
+
+/// Installs it on each device.
+pub fn run(args: &InstallArgs) -> anyhow::Result<()> {
+    let built = || BUILT.iter().map(Path::new).find(|path| path.is_file()).unwrap_or(Path::new(BUILT[0]));
+    let apk = args.apk.as_deref().unwrap_or_else(built);
+    ensure!(
+        apk.is_file(),
+        "there is no APK at {}: make one by cargo xtask apk --release, or give --apk FILE",
+        apk.display()
+    );
+    each(args.which.choose()?, |device, bar| {
+        bar.set_message("installing");
+        device.install(apk)?;
+        Ok(format!("installed {}", apk.display()))
+    })
+}

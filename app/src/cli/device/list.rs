@@ -1,0 +1,55 @@
+//! `yoro device list`.
+
+use super::SourceArgs;
+use crate::device::adb::{Device, DeviceError, State};
+use crate::device::phone;
+
+/// List the devices, their batteries and the yoro on them
+#[derive(clap::Args, Clone, Debug)]
+pub struct ListArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+}
+
+/// Prints a table.
+pub fn run(args: &ListArgs) -> anyhow::Result<()> {
+    let adb = args.source.open()?;
+    let devices = adb.devices()?;
+    if devices.is_empty() {
+        return Err(DeviceError::NoDevice.into());
+    }
+    println!(
+        "{:<22} {:<14} {:<36} {:<8} {:>7} {:>7}  {:<8} YORO",
+        "SERIAL", "STATE", "DEVICE", "ANDROID", "BATTERY", "TEMP", "PLUGGED"
+    );
+    for listed in devices {
+        let mut row = format!("{:<22} {:<14}", listed.serial, listed.state.name());
+        if listed.state == State::Ready {
+            match details(&*adb.open(&listed.serial)) {
+                Ok(details) => row += &details,
+                Err(error) => row += &format!(" {error}"),
+            }
+        }
+        println!("{}", row.trim_end());
+    }
+    Ok(())
+}
+
+fn details(device: &dyn Device) -> Result<String, DeviceError> {
+    let info = phone::info(device)?;
+    let battery = phone::battery(device)?;
+    let version = phone::version(device)?;
+    let name =
+        format!("{} {}{}", info.manufacturer, info.model, if info.simulated { " (simulated)" } else { "" });
+    let number = |value: Option<f64>, decimals: usize, unit: &str| {
+        value.map_or("na".into(), |value| format!("{value:.decimals$} {unit}"))
+    };
+    Ok(format!(
+        " {name:<36} {:<8} {:>7} {:>7}  {:<8} {}",
+        info.android,
+        number(battery.level_percent, 0, "%"),
+        number(battery.celsius, 1, "C"),
+        if battery.plugged { "yes" } else { "no" },
+        version.as_deref().unwrap_or("not installed"),
+    ))
+}

@@ -1,0 +1,314 @@
+//! `yoro device logcat`.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+use anyhow::{Context, bail, ensure};
+
+use super::WhichArgs;
+use crate::cli::{interrupted, parse_positive};
+use crate::device::adb::{Device, DeviceError};
+use crate::device::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
+use crate::device::follow::{Event, Follower};
+use crate::device::log::SIMULATED_MARK;
+use crate::device::phone;
+use crate::device::reading::{News, Reading};
+use crate::files::FileError;
+
+/// On a terminal, the head of the table comes again after so many rows.
+const ROWS: u64 = 24;
+/// What a capture calls its method and scene if the log has several, or does not say.
+const SEVERAL: &str = "several";
+const UNKNOWN: &str = "unknown";
+
+/// Follow a device's log as a table, or read a saved one; keep it as a capture
+#[derive(clap::Args, Clone, Debug)]
+pub struct LogcatArgs {
+    /// A saved log instead of a device; - for standard input
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Folder for the capture: the log as it came, and samples.csv [default for a device: out/logcat-TIME; for a file:
+    /// none]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Stop after so many seconds [default: with Ctrl-C]
+    #[arg(long, value_parser = parse_positive, value_name = "S", conflicts_with = "file")]
+    seconds: Option<f32>,
+    /// Begin with what the device has kept of its log
+    #[arg(long, conflicts_with = "file")]
+    from_oldest: bool,
+    #[command(flatten)]
+    which: WhichArgs,
+}
+
+/// Follows or reads, and says what was wrong.
+pub fn run(args: &LogcatArgs) -> anyhow::Result<()> {
+    match &args.file {
+        Some(file) => saved(args, file),
+        None => live(args),
+    }
+}
+
+fn saved(args: &LogcatArgs, file: &Path) -> anyhow::Result<()> {
+    let given = &args.which;
+    ensure!(
+        given.serials.is_empty() && !given.all && given.source.adb.is_none() && given.source.replay.is_none(),
+        "a saved log needs no device: leave --serial, --all, --adb and --replay out"
+    );
+    let is_stdin = file == Path::new("-");
+    let failed = |source| FileError::Read { path: file.into(), source };
+    let mut input: Box<dyn BufRead> = if is_stdin {
+        Box::new(io::stdin().lock())
+    } else {
+        // A pipe such as /dev/fd/63 is a file, too.
+        ensure!(!file.is_dir(), FileError::IsFolder { path: file.into() });
+        let missing = |error: &io::Error| error.kind() == io::ErrorKind::NotFound;
+        Box::new(BufReader::new(File::open(file).map_err(|source| {
+            if missing(&source) { FileError::Missing { path: file.into() } } else { failed(source) }
+        })?))
+    };
+    let began = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_secs_f64();
+    let device = DeviceInfo { serial: UNKNOWN.into(), ..DeviceInfo::default() };
+    let mut table = Table::new(args.out.as_deref(), device, began, None)?;
+    let mut line = Vec::new();
+    while !interrupted() && input.read_until(b'\n', &mut line).map_err(failed)? > 0 {
+        table.line(String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']), None)?;
+        line.clear();
+    }
+    if !table.reading.has_read() {
+        bail!(
+            "{} has no line of the tags YORO and VrApi: save it by adb logcat -v threadtime -v epoch",
+            file.display()
+        );
+    }
+    table.finish()
+}
+
+fn live(args: &LogcatArgs) -> anyhow::Result<()> {
+    let devices = args.which.choose()?;
+    let [device] = &devices[..] else {
+        let serials = devices.iter().map(|device| device.serial().to_owned()).collect();
+        return Err(DeviceError::Several { serials }).context("one log at a time");
+    };
+    let device = &**device;
+    let info = phone::info(device)?;
+    let began = device.now();
+    let out = args.out.clone().unwrap_or_else(|| {
+        let time = SystemTime::UNIX_EPOCH + Duration::from_secs(began as u64);
+        let time = humantime::format_rfc3339_seconds(time).to_string();
+        PathBuf::from(format!("out/logcat-{}", time.replace([':', '-', 'Z'], "").replace('T', "-")))
+    });
+    let version = phone::version(device)?;
+    let mut follower = Follower::new(device, args.from_oldest)?;
+    let mut table = Table::new(Some(&out), info, began, version)?;
+    let done = follow(args, device, &mut follower, &mut table, began);
+    // Whatever has ended it: the capture says what it was.
+    table.finish()?;
+    done
+}
+
+fn follow(
+    args: &LogcatArgs,
+    device: &dyn Device,
+    follower: &mut Follower,
+    table: &mut Table,
+    began: f64,
+) -> anyhow::Result<()> {
+    let mut last = began;
+    while !interrupted() && args.seconds.is_none_or(|seconds| device.now() - began < f64::from(seconds)) {
+        match follower.next(Duration::from_secs(1))? {
+            Event::Line(line) => {
+                let now = device.now();
+                table.line(&line, Some(now - last))?;
+                last = now;
+            }
+            Event::Lost => eprintln!("{} is lost: connect it again, or stop with Ctrl-C", device.serial()),
+            Event::Back { seconds, rebooted } => {
+                let what = if rebooted { "was started anew" } else { "is back" };
+                eprintln!("{} {what} after {seconds:.0} s", device.serial());
+                table.back(seconds, rebooted)?;
+            }
+            Event::Quiet => {}
+        }
+    }
+    Ok(())
+}
+
+/// Prints the samples of a log, and writes them if there is a folder.
+struct Table {
+    reading: Reading,
+    writer: Option<Writer>,
+    own_faults: Vec<Fault>,
+    rows: u64,
+    is_terminal: bool,
+    simulated: bool,
+    named: Option<(String, String)>,
+}
+
+impl Table {
+    fn new(
+        out: Option<&Path>,
+        device: DeviceInfo,
+        started_unix_s: f64,
+        application: Option<String>,
+    ) -> anyhow::Result<Table> {
+        let simulated = device.simulated;
+        let info = RunInfo {
+            version: VERSION,
+            device,
+            experiment: None,
+            method: UNKNOWN.into(),
+            scene: UNKNOWN.into(),
+            repetition: 1,
+            order: 1,
+            settings: BTreeMap::new(),
+            started_unix_s,
+            duration_s: 0.0,
+            warm_up_s: 0.0,
+            start_celsius: None,
+            application,
+            outcome: Outcome::Complete,
+            faults: Vec::new(),
+        };
+        let writer = out.map(|folder| Writer::create(folder, info)).transpose()?;
+        let is_terminal = io::stdout().is_terminal();
+        Ok(Table {
+            reading: Reading::new(None),
+            writer,
+            own_faults: Vec::new(),
+            rows: 0,
+            is_terminal,
+            simulated,
+            named: None,
+        })
+    }
+
+    fn line(&mut self, line: &str, passed_s: Option<f64>) -> anyhow::Result<()> {
+        if let Some(writer) = &mut self.writer {
+            writer.log(line)?;
+        }
+        if line.starts_with(SIMULATED_MARK) && !self.simulated {
+            self.simulated = true;
+            print(&format!("SIMULATED: {}", line.trim_matches(['-', ' '])))?;
+        }
+        match self.reading.line(line, passed_s) {
+            News::Sample(sample) => {
+                self.sample(&sample)?;
+            }
+            News::Damaged(why) => {
+                let text: String = line.chars().take(60).collect();
+                print(&format!("damaged line ({why}): {text}..."))?;
+            }
+            News::Summary | News::Other => {}
+        }
+        Ok(())
+    }
+
+    fn sample(&mut self, sample: &Sample) -> anyhow::Result<()> {
+        if let Some(writer) = &mut self.writer {
+            writer.sample(sample)?;
+        }
+        self.row(sample)
+    }
+
+    fn row(&mut self, sample: &Sample) -> anyhow::Result<()> {
+        let head = [
+            "TIME", "FPS", "STALE", "FRAME ms", "P99 ms", "GPU ms", "CPU %", "RSS MB", "mA", "W", "LEVEL %",
+            "BATT C", "SKIN C", "PLUG", "THERMAL",
+        ];
+        let named = self.reading.methods().last().cloned();
+        let is_other = named != self.named;
+        if is_other {
+            if let Some((method, scene)) = &named {
+                print(&format!("{method} in {scene}"))?;
+            }
+            self.named = named;
+        }
+        if self.rows == 0 || is_other || self.is_terminal && self.rows.is_multiple_of(ROWS) {
+            print(&cells(head.map(str::to_owned)))?;
+        }
+        self.rows += 1;
+        let real =
+            |value: Option<f64>, decimals: usize| value.map_or("na".into(), |v| format!("{v:.decimals$}"));
+        let whole = |value: Option<i32>| value.map_or("na".into(), |v| v.to_string());
+        let rate = match (sample.fps, sample.refresh_hz) {
+            (Some(fps), Some(hz)) => format!("{fps:.1}/{hz:.0}"),
+            (fps, _) => real(fps, 1),
+        };
+        let watts = sample.current_ma.zip(sample.voltage_mv).map(|(ma, mv)| -ma * mv / 1e6);
+        print(&cells([
+            format!("{:.1}", sample.time_s),
+            rate,
+            real(sample.stale, 0),
+            real(sample.frame_ms, 2),
+            real(sample.p99_ms, 2),
+            real(sample.gpu_ms, 2),
+            real(sample.cpu_percent, 0),
+            real(sample.rss_mb, 0),
+            real(sample.current_ma, 0),
+            real(watts, 2),
+            real(sample.level_percent, 0),
+            real(sample.battery_celsius, 1),
+            real(sample.skin_celsius, 1),
+            whole(sample.plugged),
+            whole(sample.thermal_status),
+        ]))
+    }
+
+    fn back(&mut self, seconds: f64, rebooted: bool) -> anyhow::Result<()> {
+        let at_s = Some(self.reading.time_s());
+        let mut add = |kind, detail| self.own_faults.push(Fault { kind, at_s, detail });
+        add(FaultKind::Disconnected, format!("lost for {seconds:.0} s"));
+        if rebooted {
+            add(FaultKind::Rebooted, "the device was started anew, and its log with it".into());
+        }
+        let faults = self.own_faults.clone();
+        if let Some(writer) = &mut self.writer {
+            writer.change(|info| info.faults = faults)?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> anyhow::Result<()> {
+        if let Some(last) = self.reading.end() {
+            self.sample(&last)?;
+        }
+        let faults: Vec<Fault> = self.own_faults.iter().cloned().chain(self.reading.faults()).collect();
+        for fault in &faults {
+            let at = fault.at_s.map_or(String::new(), |at_s| format!(" (from {at_s:.0} s)"));
+            print(&format!("fault: {}{at}", fault.detail))?;
+        }
+        print(&format!("{} samples, {} damaged lines", self.reading.samples(), self.reading.damaged()))?;
+        let Some(mut writer) = self.writer.take() else { return Ok(()) };
+        let (method, scene) = match self.reading.methods() {
+            [] => (UNKNOWN, UNKNOWN),
+            [(method, scene)] => (method.as_str(), scene.as_str()),
+            _ => (SEVERAL, SEVERAL),
+        };
+        writer.change(|info| {
+            (info.method, info.scene) = (method.into(), scene.into());
+            info.device.simulated = self.simulated;
+            info.duration_s = self.reading.time_s();
+            info.faults = faults;
+        })?;
+        let folder = writer.folder().to_path_buf();
+        writer.finish(Outcome::Complete)?;
+        print(&format!("capture: {}", folder.display()))
+    }
+}
+
+/// A row of cells that are wide enough for all that is usual.
+fn cells<const N: usize>(cells: [String; N]) -> String {
+    cells.iter().map(|cell| format!("{cell:>8}")).collect::<Vec<_>>().join(" ")
+}
+
+/// Prints a line. Whoever reads may have seen enough: that ends the program without a word.
+fn print(line: &str) -> anyhow::Result<()> {
+    match writeln!(io::stdout(), "{line}") {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => std::process::exit(0),
+        written => Ok(written?),
+    }
+}

@@ -1,0 +1,354 @@
+//! `yoro xr`: in a headset, by any OpenXR runtime.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use anyhow::{bail, ensure};
+use serde::Serialize;
+
+use crate::cli::{GlArgs, interrupted, progress_bar};
+use crate::eyes::{Eye, EyePair};
+use crate::files;
+use crate::gl::Context;
+use crate::metrics::stats::median;
+use crate::picture;
+use crate::platform::openxr::runtime::{self, NoBroker, Place, Runtime};
+use crate::platform::openxr::{Capture, Description, Frame, HeadlessGraphics, Headset, Options, Step};
+use crate::stereo::Method;
+use crate::telemetry::DeviceState;
+use crate::viewer::{SceneState, Settings, Viewer};
+
+/// The pause before a runtime that wants no frame is asked again.
+const PAUSE: Duration = Duration::from_millis(5);
+/// With --frames, a runtime that wants none for so long is given up.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Show a scene in a headset, by any OpenXR runtime with XR_MNDX_egl_enable
+#[derive(clap::Args, Clone, Debug)]
+pub struct XrArgs {
+    /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file [default: prototype]
+    scene: Option<String>,
+    /// The runtime: its manifest (.json), or a loader library; otherwise XR_RUNTIME_JSON or the system's own
+    #[arg(long, value_name = "FILE")]
+    runtime: Option<PathBuf>,
+    /// End after so many frames of the scene with each method [default: go on until Ctrl-C]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "N")]
+    frames: Option<u32>,
+    /// The stereo methods, one after the other with --frames [default: yoro]
+    #[arg(long = "method", value_enum, value_delimiter = ',', value_name = "METHODS")]
+    methods: Vec<Method>,
+    /// Write the last frame of each method, as the runtime gets it, to this folder
+    #[arg(long, value_name = "FOLDER", requires = "frames")]
+    capture: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// One view in place of two, where the runtime has that
+    #[arg(long)]
+    mono: bool,
+    /// Leave out the HUD
+    #[arg(long)]
+    no_hud: bool,
+    /// Settings of the viewer in a TOML file
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// One setting of the viewer; as often as needed
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
+    #[command(flatten)]
+    gl: GlArgs,
+}
+
+impl XrArgs {
+    fn resolve(&self) -> anyhow::Result<Settings> {
+        let scene = self.scene.as_ref().map(|scene| format!("scene={scene}"));
+        let method = self.methods.first().map(|method| format!("method={}", method.name()));
+        let hud = self.no_hud.then(|| "hud=false".to_owned());
+        let overrides = self.overrides.iter().cloned().chain(scene).chain(method).chain(hud);
+        Ok(Settings::resolve(self.settings.as_deref(), overrides)?)
+    }
+
+    fn find_runtime(&self) -> anyhow::Result<Runtime> {
+        let places = match &self.runtime {
+            None => runtime::linux_places(|name| std::env::var_os(name)),
+            Some(file) => {
+                ensure!(
+                    file.exists(),
+                    "there is no runtime {}: give its manifest or a loader",
+                    file.display()
+                );
+                let is_manifest = files::has_extension(file, &["json"]);
+                vec![if is_manifest { Place::Manifest(file.clone()) } else { Place::Loader(file.clone()) }]
+            }
+        };
+        Ok(runtime::find(&places, &NoBroker, None)?)
+    }
+}
+
+/// What a method costs, and what it has drawn.
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+struct MethodSummary {
+    method: String,
+    frames: u32,
+    /// Medians in milliseconds: this program's thread, and the GPU where it is measured.
+    cpu_ms: Option<f64>,
+    gpu_ms: Option<f64>,
+    /// By the times at which the runtime expects the frames to be seen.
+    fps: Option<f64>,
+    stale: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    capture: Option<Captured>,
+}
+
+/// The last frame.
+#[derive(Clone, Debug, Serialize)]
+struct Captured {
+    left: PathBuf,
+    right: PathBuf,
+    /// The eyes in the scene.
+    eyes: EyePair,
+}
+
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+struct XrSummary {
+    found: String,
+    #[serde(flatten)]
+    description: Description,
+    scene: String,
+    states: Vec<String>,
+    restarts: u32,
+    /// Frames without images, which the runtime asks for while nobody looks.
+    empty_frames: u32,
+    methods: Vec<MethodSummary>,
+}
+
+/// Frames of one method.
+#[derive(Default)]
+struct Collected {
+    frames: u32,
+    cpu_ms: Vec<f64>,
+    gpu_ms: Vec<f64>,
+    /// The first and the last, in nanoseconds.
+    shown_ns: Option<[i64; 2]>,
+    stale: u32,
+    captured: Option<Captured>,
+}
+
+impl Collected {
+    fn add(&mut self, frame: &Frame, now_ns: i64) {
+        self.frames += 1;
+        // Enough for any median, and bounded for those who watch for hours.
+        if self.cpu_ms.len() < 10_000 {
+            self.cpu_ms.push(frame.cpu_ms);
+            self.gpu_ms.extend(frame.report.and_then(|report| report.gpu_ms).map(f64::from));
+        }
+        self.shown_ns = Some([self.shown_ns.map_or(now_ns, |[first, _]| first), now_ns]);
+        self.stale += frame.report.map_or(0, |report| report.late_refreshes);
+    }
+
+    fn summary(self, method: Method) -> MethodSummary {
+        let seconds = self.shown_ns.map_or(0.0, |[first, last]| (last - first) as f64 * 1e-9);
+        MethodSummary {
+            method: method.name().into(),
+            frames: self.frames,
+            cpu_ms: median(&self.cpu_ms),
+            gpu_ms: median(&self.gpu_ms),
+            fps: (seconds > 0.0).then(|| f64::from(self.frames - 1) / seconds),
+            stale: self.stale,
+            capture: self.captured,
+        }
+    }
+}
+
+/// Shows the scene until the user, the runtime or --frames ends it.
+pub fn run(args: &XrArgs) -> anyhow::Result<()> {
+    let settings = args.resolve()?;
+    let runtime = args.find_runtime()?;
+    let found = runtime.found().to_string();
+    log::info!("{found}");
+    if let Some(folder) = &args.capture {
+        files::create_folder(folder)?;
+    }
+    let headless = args.gl.open()?;
+    let gl = headless.gl();
+    for method in &args.methods {
+        method.supported(gl.capabilities())?;
+    }
+    let mut viewer = Viewer::new(settings, &[])?;
+    viewer.attach(gl.clone())?;
+    let graphics = HeadlessGraphics::new(&headless)?;
+    let options = Options { mono: args.mono };
+    let mut headset = Headset::open(runtime, &graphics, gl, &viewer, options)?;
+    let run = show(args, &graphics, gl, &mut headset, &mut viewer);
+    let summary = run.map(|(methods, empty_frames)| XrSummary {
+        found,
+        description: headset.description().clone(),
+        scene: viewer.scene_name().to_owned(),
+        states: headset.states().to_vec(),
+        restarts: headset.restarts(),
+        empty_frames,
+        methods,
+    });
+    // What has framebuffers goes while the context is current.
+    drop((headset, viewer));
+    let summary = summary?;
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&summary)?);
+    } else {
+        print!("{summary}");
+    }
+    Ok(())
+}
+
+fn show(
+    args: &XrArgs,
+    graphics: &HeadlessGraphics,
+    gl: &Context,
+    headset: &mut Headset,
+    viewer: &mut Viewer,
+) -> anyhow::Result<(Vec<MethodSummary>, u32)> {
+    let mut methods = if args.methods.is_empty() { vec![viewer.method()] } else { args.methods.clone() };
+    if args.frames.is_none() {
+        methods.truncate(1);
+    }
+    let mut waiting = methods.clone().into_iter();
+    let mut method = waiting.next().unwrap_or(viewer.method());
+    let bar = args.frames.map(|frames| progress_bar(u64::from(frames) * methods.len() as u64));
+    let (mut summaries, mut empty_frames) = (Vec::new(), 0);
+    let mut collected = Collected::default();
+    let (mut is_over, mut last_frame) = (false, Instant::now());
+    loop {
+        if (interrupted() || is_over) && !headset.is_exiting() {
+            headset.request_exit();
+        }
+        let frame = match headset.step(graphics, viewer)? {
+            Step::Ended => break,
+            Step::Idle => {
+                if args.frames.is_some() && !is_over && last_frame.elapsed() > PATIENCE {
+                    bail!(
+                        "the OpenXR runtime has wanted no frame for {} s: put the headset on, or look into its log",
+                        PATIENCE.as_secs()
+                    );
+                }
+                std::thread::sleep(PAUSE);
+                continue;
+            }
+            Step::Frame(frame) => frame,
+        };
+        last_frame = Instant::now();
+        let Some(report) = frame.report else {
+            empty_frames += 1;
+            continue;
+        };
+        if report.scene == SceneState::Failed {
+            bail!(viewer.failure().unwrap_or_default().to_owned());
+        }
+        if report.telemetry_due {
+            log::info!("{}", viewer.telemetry(viewer.now_ns(), &DeviceState::default()));
+        }
+        is_over |= report.exit;
+        if is_over || report.scene != SceneState::Ready {
+            continue;
+        }
+        if args.frames.is_none() && viewer.method() != method {
+            // By controller.
+            summaries.push(std::mem::take(&mut collected).summary(method));
+            method = viewer.method();
+        }
+        collected.add(&frame, viewer.now_ns());
+        if let Some(bar) = &bar {
+            bar.inc(1);
+        }
+        if let (Some(folder), Some(capture)) = (&args.capture, &frame.capture) {
+            collected.captured = Some(write(folder, method, capture)?);
+        }
+        let Some(wanted) = args.frames else { continue };
+        let is_captured = args.capture.is_none() || collected.captured.is_some();
+        if collected.frames + 1 >= wanted && !is_captured {
+            headset.capture();
+        }
+        if collected.frames < wanted || !is_captured {
+            continue;
+        }
+        summaries.push(std::mem::take(&mut collected).summary(method));
+        match waiting.next() {
+            Some(next) => {
+                method = next;
+                viewer.configure(Settings { method, ..viewer.settings().clone() }, &[])?;
+            }
+            None => is_over = true,
+        }
+    }
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    if collected.frames > 0 {
+        summaries.push(collected.summary(method));
+    }
+    if let Some(frames) = args.frames
+        && !(summaries.len() == methods.len() && summaries.iter().all(|s| s.frames >= frames))
+    {
+        match interrupted() {
+            true => bail!("interrupted before the last frame"),
+            false => bail!("the OpenXR runtime has ended the session before the last frame"),
+        }
+    }
+    if let Some(errors) = gl.take_errors() {
+        bail!("the GL driver reports {errors}: please report this as a bug");
+    }
+    Ok((summaries, empty_frames))
+}
+
+fn write(folder: &Path, method: Method, capture: &Capture) -> anyhow::Result<Captured> {
+    let path = |eye: Eye| folder.join(format!("{}.{}.png", method.name(), eye.name()));
+    for (eye, pixels) in Eye::BOTH.into_iter().zip(&capture.eyes) {
+        picture::save_color(&path(eye), &picture::rgb_image(pixels, capture.pair.size))?;
+    }
+    Ok(Captured { left: path(Eye::Left), right: path(Eye::Right), eyes: capture.pair })
+}
+
+impl fmt::Display for XrSummary {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let d = &self.description;
+        let [w, h] = d.size;
+        writeln!(f, "runtime   {} ({})", d.runtime, self.found)?;
+        writeln!(f, "system    {}", d.system)?;
+        writeln!(
+            f,
+            "views     {}, {w}x{h} pixels each, {}, depth {}",
+            d.views,
+            d.format,
+            d.depth.as_deref().unwrap_or("none")
+        )?;
+        writeln!(f, "states    {}", self.states.join(" "))?;
+        if self.restarts > 0 {
+            writeln!(f, "sessions  {}", self.restarts + 1)?;
+        }
+        writeln!(f, "scene     {}", self.scene)?;
+        writeln!(
+            f,
+            "\n{:<22}{:>8}{:>10}{:>10}{:>8}{:>8}",
+            "method", "frames", "CPU ms", "GPU ms", "FPS", "stale"
+        )?;
+        let number = |value: Option<f64>| value.map_or("na".to_owned(), |value| format!("{value:.2}"));
+        for m in &self.methods {
+            writeln!(
+                f,
+                "{:<22}{:>8}{:>10}{:>10}{:>8}{:>8}",
+                m.method,
+                m.frames,
+                number(m.cpu_ms),
+                number(m.gpu_ms),
+                number(m.fps),
+                m.stale
+            )?;
+        }
+        for captured in self.methods.iter().filter_map(|m| m.capture.as_ref()) {
+            writeln!(f, "{}\n{}", captured.left.display(), captured.right.display())?;
+        }
+        Ok(())
+    }
+}

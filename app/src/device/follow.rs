@@ -1,0 +1,134 @@
+//! A device's log, followed over lost connections: each line once, none left out that the device still has.
+
+use std::collections::VecDeque;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::time::Duration;
+
+use super::adb::{Device, DeviceError, LogEvent, LogStream};
+use super::{log, phone};
+
+/// When a connection is back, the log is read from so much before its last line, in seconds: lines of one moment need
+/// not come in order.
+const OVERLAP_S: f64 = 5.0;
+/// Lines remembered to be told from new ones in the overlap.
+const REMEMBERED: usize = 4096;
+/// Time between attempts to get a device back.
+const RETRY: Duration = Duration::from_secs(1);
+
+/// What comes of following.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// A line that was not there before.
+    Line(String),
+    /// Nothing for as long as was waited.
+    Quiet,
+    /// The device is gone.
+    Lost,
+    /// The device is back.
+    Back {
+        /// Seconds for which it was gone.
+        seconds: f64,
+        /// Whether it was started anew.
+        rebooted: bool,
+    },
+}
+
+/// Follows a log.
+pub struct Follower<'a> {
+    device: &'a dyn Device,
+    stream: Option<Box<dyn LogStream>>,
+    seen: VecDeque<u64>,
+    /// Whether lines may come that were seen: the connection was lost before.
+    overlaps: bool,
+    clock_s: Option<f64>,
+    boot: String,
+    lost_at: Option<f64>,
+}
+
+impl<'a> Follower<'a> {
+    /// Follows from now on, or from the oldest line that the device has.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn new(device: &'a dyn Device, from_oldest: bool) -> Result<Follower<'a>, DeviceError> {
+        let boot = phone::boot_id(device)?;
+        let since = if from_oldest { None } else { Some(phone::clock(device)?) };
+        let stream = Some(device.logcat(since.as_deref())?);
+        let seen = VecDeque::with_capacity(REMEMBERED);
+        Ok(Follower { device, stream, seen, overlaps: false, clock_s: None, boot, lost_at: None })
+    }
+
+    /// For how many seconds the device has been gone; none while it is there.
+    pub fn lost_for(&self) -> Option<f64> {
+        self.lost_at.map(|then| self.device.now() - then)
+    }
+
+    /// The next event, for which is waited so long, or somewhat longer while a device does not answer.
+    ///
+    /// # Errors
+    /// [`DeviceError`]: what does not pass by itself.
+    pub fn next(&mut self, wait: Duration) -> Result<Event, DeviceError> {
+        loop {
+            let Some(stream) = &mut self.stream else { return self.come_back() };
+            match stream.next(wait) {
+                LogEvent::Quiet => return Ok(Event::Quiet),
+                LogEvent::Line(line) => {
+                    if self.is_new(&line) {
+                        return Ok(Event::Line(line));
+                    }
+                }
+                LogEvent::Ended => {
+                    self.stream = None;
+                    self.lost_at = Some(self.device.now());
+                    return Ok(Event::Lost);
+                }
+            }
+        }
+    }
+
+    fn is_new(&mut self, line: &str) -> bool {
+        let entry = match log::parse(line) {
+            log::Kind::Entry(entry) => Some(entry),
+            // Logcat's marks come with each connection.
+            log::Kind::Mark => return !self.overlaps,
+            log::Kind::Damaged => None,
+        };
+        let mut hasher = DefaultHasher::new();
+        line.hash(&mut hasher);
+        let hash = hasher.finish();
+        if self.overlaps && self.seen.contains(&hash) {
+            return false;
+        }
+        if self.seen.len() == REMEMBERED {
+            self.seen.pop_front();
+        }
+        self.seen.push_back(hash);
+        self.clock_s = entry.and_then(|entry| entry.time_s).or(self.clock_s);
+        true
+    }
+
+    fn come_back(&mut self) -> Result<Event, DeviceError> {
+        match self.open_again() {
+            Ok(event) => Ok(event),
+            Err(error) if error.is_lost() => {
+                self.device.reconnect();
+                self.device.sleep(RETRY);
+                Ok(Event::Quiet)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn open_again(&mut self) -> Result<Event, DeviceError> {
+        let boot = phone::boot_id(self.device)?;
+        let rebooted = boot != self.boot;
+        // After a restart all lines are new, and the clock may have been set back.
+        let since = self.clock_s.filter(|_| !rebooted).map(|clock| format!("{:.6}", clock - OVERLAP_S));
+        self.stream = Some(self.device.logcat(since.as_deref())?);
+        self.overlaps = true;
+        self.boot = boot;
+        let seconds = self.lost_for().unwrap_or(0.0);
+        self.lost_at = None;
+        Ok(Event::Back { seconds, rebooted })
+    }
+}

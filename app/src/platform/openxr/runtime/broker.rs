@@ -1,0 +1,81 @@
+//! The runtime broker of Android: a content provider that knows the active runtime.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::error::Failure;
+use super::library::Candidate;
+
+/// The rows of a table: in each, a text or nothing for every column that was asked for, in that order.
+pub type Rows = Vec<Vec<Option<String>>>;
+
+/// Asks content providers, which on Android takes Java: `ContentResolver.query`.
+pub trait Broker {
+    /// All rows of the table at `uri`, with `columns` as texts (`Cursor.getString`; nothing for null and for a column
+    /// that the table does not have); none where no provider answers (a null cursor).
+    ///
+    /// # Errors
+    /// What the system said, an exception for instance.
+    fn query(&self, uri: &str, columns: &[&str]) -> Result<Option<Rows>, String>;
+}
+
+/// A system without content providers.
+pub struct NoBroker;
+
+impl Broker for NoBroker {
+    fn query(&self, _: &str, _: &[&str]) -> Result<Option<Rows>, String> {
+        Ok(None)
+    }
+}
+
+/// The name of this architecture in the broker's tables.
+const ABI: &str = match std::env::consts::ARCH.as_bytes() {
+    b"aarch64" => "arm64-v8a",
+    b"arm" => "armeabi-v7l",
+    b"x86" => "x86",
+    _ => "x86_64",
+};
+
+const PACKAGE: &str = "package_name";
+const FOLDER: &str = "native_lib_dir";
+const FILE: &str = "so_filename";
+const HAS_FUNCTIONS: &str = "has_functions";
+
+/// The libraries that the broker at `authority` offers, the preferred one first.
+pub(super) fn ask(broker: &dyn Broker, authority: &str) -> Result<Vec<Result<Candidate, Failure>>, Failure> {
+    let table = |path: &str, columns: &[&str]| {
+        broker
+            .query(&format!("content://{authority}/openxr/1/abi/{ABI}/runtimes/{path}/"), columns)
+            .map_err(|reason| Failure::Broker { authority: authority.into(), reason })
+    };
+    let rows = table("active", &[PACKAGE, FOLDER, FILE, HAS_FUNCTIONS])?
+        .ok_or_else(|| Failure::NoBroker { authority: authority.into() })?;
+    if rows.is_empty() {
+        return Err(Failure::NoActiveRuntime { authority: authority.into() });
+    }
+    let candidate = |row: Vec<Option<String>>| {
+        let mut cells = row.into_iter();
+        let mut text = |column| {
+            let cell = cells.next().flatten().filter(|text| !text.is_empty());
+            cell.ok_or_else(|| Failure::BrokerRow { authority: authority.into(), column })
+        };
+        let (package, folder, file) = (text(PACKAGE), text(FOLDER)?, text(FILE)?);
+        // Cursor.getString of a number or of a truth value.
+        let renamed = matches!(text(HAS_FUNCTIONS).as_deref(), Ok("1" | "true"));
+        let mut functions = HashMap::new();
+        if renamed {
+            let package = package?;
+            let rows = table(&format!("{package}/functions"), &["function_name", "symbol_name"])?;
+            for row in rows.unwrap_or_default() {
+                if let [Some(function), Some(symbol)] = <[_; 2]>::try_from(row).unwrap_or_default() {
+                    functions.insert(function, symbol);
+                }
+            }
+            if functions.is_empty() {
+                return Err(Failure::BrokerFunctions { authority: authority.into(), package });
+            }
+        }
+        Ok(Candidate { library: Path::new(&folder).join(file), functions })
+    };
+    Ok(rows.into_iter().map(candidate).collect())
+}

@@ -1,0 +1,186 @@
+//! A runtime's library: loading it and negotiating with it.
+
+use std::collections::HashMap;
+use std::ffi::c_void;
+use std::mem;
+use std::path::PathBuf;
+use std::ptr;
+
+use libloading::Library;
+use openxr::sys::{self, Handle as _, pfn};
+
+use super::error::Failure;
+
+/// The version of the interface between loaders and runtimes.
+const INTERFACE: u32 = 1;
+
+/// The Java side of an Android application, for `xrInitializeLoaderKHR`.
+#[derive(Clone, Copy, Debug)]
+pub struct JavaContext {
+    vm: *mut c_void,
+    activity: *mut c_void,
+}
+
+impl JavaContext {
+    /// A `JavaVM*` and a JNI reference to the `android.app.Activity`.
+    ///
+    /// # Safety
+    /// Both are valid as long as the context is used; the reference is a global one.
+    pub unsafe fn new(vm: *mut c_void, activity: *mut c_void) -> JavaContext {
+        JavaContext { vm, activity }
+    }
+}
+
+/// `XrLoaderInitInfoAndroidKHR`, which `openxr` has on Android only; the tests need it everywhere.
+#[repr(C)]
+struct LoaderInitInfoAndroid {
+    ty: sys::StructureType,
+    next: *const c_void,
+    application_vm: *mut c_void,
+    application_context: *mut c_void,
+}
+
+/// A library that a place names.
+#[derive(Debug)]
+pub(super) struct Candidate {
+    /// Path, or plain name.
+    pub(super) library: PathBuf,
+    /// Symbols of the functions that have another name than in the specification.
+    pub(super) functions: HashMap<String, String>,
+}
+
+impl Candidate {
+    /// Loads a runtime and agrees on versions; gives its `xrGetInstanceProcAddr` and the version of the API.
+    pub(super) fn negotiate(
+        &self,
+        java: Option<&JavaContext>,
+    ) -> Result<(pfn::GetInstanceProcAddr, sys::Version), Failure> {
+        let library = self.open()?;
+        // SAFETY: the functions of a runtime have the types that the specification gives them.
+        let (initialize, negotiate) = unsafe {
+            (
+                self.function::<pfn::InitializeLoaderKHR>(&library, "xrInitializeLoaderKHR"),
+                self.function::<pfn::NegotiateLoaderRuntimeInterface>(
+                    &library,
+                    "xrNegotiateLoaderRuntimeInterface",
+                ),
+            )
+        };
+        let negotiate = negotiate.map_err(|symbol| self.no_symbol(symbol, "runtime"))?;
+        // A runtime that exports the function wants it before the negotiation, others after it.
+        let initialize = initialize.ok();
+        if let (Some(java), Some(initialize)) = (java, initialize) {
+            self.initialize(initialize, java)?;
+        }
+        let loader = sys::NegotiateLoaderInfo {
+            struct_type: sys::NegotiateLoaderInfo::TYPE,
+            struct_version: sys::NegotiateLoaderInfo::VERSION,
+            struct_size: mem::size_of::<sys::NegotiateLoaderInfo>(),
+            min_interface_version: INTERFACE,
+            max_interface_version: INTERFACE,
+            min_api_version: sys::Version::new(1, 0, 0),
+            // The largest version that every loader of OpenXR 1 names: a runtime compares its own newest one with it.
+            max_api_version: sys::Version::new(1, 0x3ff, 0xfff),
+        };
+        let mut request = sys::NegotiateRuntimeRequest {
+            struct_type: sys::NegotiateRuntimeRequest::TYPE,
+            struct_version: sys::NegotiateRuntimeRequest::VERSION,
+            struct_size: mem::size_of::<sys::NegotiateRuntimeRequest>(),
+            runtime_interface_version: 0,
+            runtime_api_version: sys::Version::new(0, 0, 0),
+            get_instance_proc_addr: None,
+        };
+        // SAFETY: both structures are complete and live through the call.
+        let result = unsafe { negotiate(&loader, &mut request) };
+        let path = || self.library.clone();
+        if result.into_raw() < 0 {
+            return Err(Failure::Refused { library: path(), result });
+        }
+        let (interface, api) = (request.runtime_interface_version, request.runtime_api_version);
+        if interface != INTERFACE || api.major() != 1 {
+            return Err(Failure::Version { library: path(), interface, api });
+        }
+        let get = request.get_instance_proc_addr.ok_or_else(|| Failure::NoEntryPoint { library: path() })?;
+        if let (Some(java), None) = (java, initialize) {
+            self.initialize_by(get, java)?;
+        }
+        keep(library);
+        Ok((get, api))
+    }
+
+    /// Loads a loader; gives its `xrGetInstanceProcAddr`.
+    pub(super) fn open_loader(
+        &self,
+        java: Option<&JavaContext>,
+    ) -> Result<pfn::GetInstanceProcAddr, Failure> {
+        let library = self.open()?;
+        // SAFETY: a loader exports the function with the type that the specification gives it.
+        let get = unsafe { self.function::<pfn::GetInstanceProcAddr>(&library, "xrGetInstanceProcAddr") };
+        let get = get.map_err(|symbol| self.no_symbol(symbol, "loader"))?;
+        if let Some(java) = java {
+            self.initialize_by(get, java)?;
+        }
+        keep(library);
+        Ok(get)
+    }
+
+    fn open(&self) -> Result<Library, Failure> {
+        // SAFETY: the initialisers of the system's active runtime, or of a loader that the user has chosen, are trusted
+        // as a driver's are.
+        unsafe { Library::new(&self.library) }.map_err(|error| {
+            // glibc begins with the path, which the failure says itself.
+            let reason = error.to_string();
+            let path = format!("{}: ", self.library.display());
+            let reason = reason.strip_prefix(&path).unwrap_or(&reason).to_owned();
+            Failure::Open { library: self.library.clone(), reason }
+        })
+    }
+
+    fn no_symbol(&self, symbol: String, kind: &'static str) -> Failure {
+        Failure::Symbol { library: self.library.clone(), symbol, kind }
+    }
+
+    /// A function by its name in the specification; the error is the name that was looked for.
+    ///
+    /// # Safety
+    /// `T` is the type of the function, and nothing calls it after the library is unloaded.
+    unsafe fn function<T: Copy>(&self, library: &Library, name: &str) -> Result<T, String> {
+        let symbol = self.functions.get(name).map_or(name, String::as_str);
+        // SAFETY: the caller vouches for the type.
+        unsafe { library.get::<T>(symbol.as_bytes()) }.map(|found| *found).map_err(|_| symbol.into())
+    }
+
+    /// Calls `xrInitializeLoaderKHR` where `get` knows it.
+    fn initialize_by(&self, get: pfn::GetInstanceProcAddr, java: &JavaContext) -> Result<(), Failure> {
+        let mut function = None;
+        // SAFETY: the name ends with 0, and the null instance is allowed for this function.
+        let result = unsafe { get(sys::Instance::NULL, c"xrInitializeLoaderKHR".as_ptr(), &mut function) };
+        match function.filter(|_| result == sys::Result::SUCCESS) {
+            // SAFETY: the function of this name has this type.
+            Some(function) => unsafe {
+                self.initialize(mem::transmute::<pfn::VoidFunction, pfn::InitializeLoaderKHR>(function), java)
+            },
+            None => Ok(()),
+        }
+    }
+
+    fn initialize(&self, initialize: pfn::InitializeLoaderKHR, java: &JavaContext) -> Result<(), Failure> {
+        let info = LoaderInitInfoAndroid {
+            ty: sys::StructureType::LOADER_INIT_INFO_ANDROID_KHR,
+            next: ptr::null(),
+            application_vm: java.vm,
+            application_context: java.activity,
+        };
+        // SAFETY: the structure is what Android's runtimes and loaders take; it lives through the call.
+        let result = unsafe { initialize((&raw const info).cast()) };
+        if result.into_raw() < 0 {
+            return Err(Failure::Initialize { library: self.library.clone(), result });
+        }
+        Ok(())
+    }
+}
+
+/// Never unloads the library: see [`super::Runtime`].
+fn keep(library: Library) {
+    mem::forget(library);
+}

@@ -1,0 +1,50 @@
+//! Manifest files: a runtime's library and its renamed functions, as JSON.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::error::Failure;
+use super::library::Candidate;
+
+/// The one format there is. Unknown keys are allowed by the specification.
+#[derive(Deserialize)]
+struct Manifest {
+    file_format_version: String,
+    runtime: Runtime,
+}
+
+#[derive(Deserialize)]
+struct Runtime {
+    library_path: String,
+    #[serde(default)]
+    functions: HashMap<String, String>,
+}
+
+/// The library that the manifest at `path` names.
+pub(super) fn read(path: &Path) -> Result<Candidate, Failure> {
+    let text = fs::read(path).map_err(|source| match source.kind() {
+        io::ErrorKind::NotFound => Failure::NoManifest { path: path.into() },
+        _ => Failure::ReadManifest { path: path.into(), source },
+    })?;
+    let manifest: Manifest =
+        serde_json::from_slice(&text).map_err(|source| Failure::Manifest { path: path.into(), source })?;
+    if manifest.file_format_version != "1.0.0" {
+        return Err(Failure::ManifestVersion { path: path.into(), version: manifest.file_format_version });
+    }
+    let library = locate(&manifest.runtime.library_path, path);
+    Ok(Candidate { library, functions: manifest.runtime.functions })
+}
+
+/// A plain name is left to the dynamic linker; other paths are relative to the manifest, to the real one where
+/// `manifest` is a link to it.
+fn locate(library: &str, manifest: &Path) -> PathBuf {
+    if !library.contains('/') {
+        return library.into();
+    }
+    let real = fs::canonicalize(manifest).unwrap_or_else(|_| manifest.into());
+    real.parent().unwrap_or(Path::new("/")).join(library)
+}

@@ -1,0 +1,82 @@
+//! Where a runtime may be, by the conventions of each system.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// The installable broker, which the user can choose, and the one that comes with the system.
+const AUTHORITIES: [&str; 2] =
+    ["org.khronos.openxr.runtime_broker", "org.khronos.openxr.system_runtime_broker"];
+/// Partitions of Android, the most specific first.
+const ANDROID_ETC: [&str; 5] = ["/product/etc", "/odm/etc", "/oem/etc", "/vendor/etc", "/system/etc"];
+/// The name under which an Android package carries a loader.
+const ANDROID_LOADER: &str = "libopenxr_loader.so";
+
+/// One place to look.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// A loader library by its path, or by a plain name that `dlopen` looks for itself. The loader finds the runtime
+    /// and API layers by its own rules.
+    Loader(PathBuf),
+    /// The runtime broker at this authority: a content provider of Android.
+    Broker(String),
+    /// A manifest file.
+    Manifest(PathBuf),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Place::Loader(library) => write!(f, "loader {}", library.display()),
+            Place::Broker(authority) => write!(f, "broker {authority}"),
+            Place::Manifest(path) => write!(f, "{}", path.display()),
+        }
+    }
+}
+
+/// Android: the loader in the application's own package if it has one, the brokers, and the manifest files of the
+/// system's partitions.
+pub fn android_places() -> Vec<Place> {
+    let mut places = vec![Place::Loader(ANDROID_LOADER.into())];
+    places.extend(AUTHORITIES.map(|authority| Place::Broker(authority.into())));
+    places.extend(ANDROID_ETC.into_iter().flat_map(|etc| manifests(Path::new(etc))));
+    places
+}
+
+/// Linux: the manifest that `XR_RUNTIME_JSON` names and no other, or else those of the XDG configuration directories,
+/// the user's before the system's.
+///
+/// `environment` is asked for `XR_RUNTIME_JSON`, `XDG_CONFIG_HOME`, `XDG_CONFIG_DIRS` and `HOME`. A program that runs
+/// with more rights than its user should answer none.
+pub fn linux_places(environment: impl Fn(&str) -> Option<OsString>) -> Vec<Place> {
+    let set = |name: &str| environment(name).filter(|value| !value.is_empty());
+    if let Some(manifest) = set("XR_RUNTIME_JSON") {
+        return vec![Place::Manifest(manifest.into())];
+    }
+    let user = set("XDG_CONFIG_HOME")
+        .map(PathBuf::from)
+        .or_else(|| set("HOME").map(|home| Path::new(&home).join(".config")));
+    let system = set("XDG_CONFIG_DIRS").unwrap_or_else(|| "/etc/xdg".into());
+    let mut directories: Vec<PathBuf> = user.into_iter().collect();
+    directories.extend(std::env::split_paths(&system).filter(|path| !path.as_os_str().is_empty()));
+    directories.push("/etc".into());
+    let mut places: Vec<Place> = Vec::new();
+    for place in directories.iter().flat_map(|directory| manifests(directory)) {
+        if !places.contains(&place) {
+            places.push(place);
+        }
+    }
+    places
+}
+
+/// A manifest for this architecture alone goes before that for all.
+fn manifests(configuration: &Path) -> [Place; 2] {
+    let architecture = match std::env::consts::ARCH {
+        "x86" => "i686",
+        "arm" => "armv7a-vfp",
+        other => other,
+    };
+    let folder = configuration.join("openxr/1");
+    [format!("active_runtime.{architecture}.json"), "active_runtime.json".into()]
+        .map(|name| Place::Manifest(folder.join(name)))
+}

@@ -1,0 +1,946 @@
+//! One session: from xrCreateInstance to the last frame.
+
+use std::rc::Rc;
+use std::time::Instant;
+
+use glam::{Quat, Vec3};
+use openxr as xr;
+use xr::sys;
+
+use super::error::{XrError, call, check, optional};
+use super::graphics::{self, Graphics};
+use super::images::{EyeImages, Images, Kind};
+use super::input::Input;
+use super::mask::Mask;
+use super::runtime::Runtime;
+use super::storage::{self, Storage};
+use crate::eyes::{DepthConvention, DepthRange, Eye, EyePair, EyesError, Frustum, GuardBand, Pose};
+use crate::gl::{Context, Destination};
+use crate::render::DepthCopy;
+use crate::stereo::{DepthTarget, EyeTarget};
+use crate::viewer::{
+    Action, Event, FrameReport, FrameTiming, Panel, Performance, Settings, Viewer, ViewerError,
+};
+
+/// More events than this in one frame are a runtime gone mad.
+const MAX_EVENTS: usize = 64;
+/// The images of the eyes are multiples of this many pixels, where they are scaled.
+const SIZE_STEP: f32 = 16.0;
+/// Half of the angle beyond which no frustum makes sense, in radians.
+const WIDEST: f32 = 1.55;
+/// Canted eyes are rendered parallel only while their frusta grow by no more than this factor on either axis.
+const MOST_GROWTH: f32 = 1.5;
+
+/// What a session should be like, besides the viewer's settings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// One view in place of two: to find mistakes with.
+    pub mono: bool,
+    /// The activity.
+    #[cfg(target_os = "android")]
+    pub android: Option<super::Android>,
+}
+
+/// What runtime, system and session are like.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Description {
+    /// The runtime's name and version.
+    pub runtime: String,
+    /// The system's name.
+    pub system: String,
+    /// `stereo` or `mono`.
+    pub views: String,
+    /// The size in pixels that the runtime recommends for each eye.
+    pub recommended: [u32; 2],
+    /// The size in pixels of the images.
+    pub size: [u32; 2],
+    /// Format of the images.
+    pub format: String,
+    /// Whether both eyes are layers of one swapchain.
+    pub array: bool,
+    /// Whether eyes are drawn straight into the runtime's images.
+    pub direct: bool,
+    /// Format of the depth that is submitted, if any.
+    pub depth: Option<String>,
+    /// Whether the lenses hide a part of the images.
+    pub mask: bool,
+    /// Refresh rates that the display offers, in Hz, where the runtime says.
+    pub refresh_rates: Vec<f32>,
+    /// Whether controllers are used.
+    pub input: bool,
+}
+
+/// A frame of both eyes as the runtime gets it.
+#[derive(Clone, Debug)]
+pub struct Capture {
+    /// RGBA, rows from the bottom.
+    pub eyes: [Vec<u8>; 2],
+    /// The eyes in the scene.
+    pub pair: EyePair,
+}
+
+/// A frame that was handed to the runtime.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// What the viewer says of it; none for a frame without images, which the runtime asks for while nobody looks.
+    pub report: Option<FrameReport>,
+    /// Time that this program's thread worked on it, in milliseconds; waiting for the runtime does not count.
+    pub cpu_ms: f64,
+    /// Its images, if they were asked for.
+    pub capture: Option<Capture>,
+}
+
+/// What a call of [`Session::step`] has led to.
+pub(super) enum Progress {
+    Idle,
+    Frame(Frame),
+    Ended,
+}
+
+/// The HUD's own images.
+struct PanelImages {
+    images: Images,
+    /// What they show: [`Panel::version`].
+    version: Option<u64>,
+}
+
+/// Depth of both eyes.
+struct Depth {
+    images: EyeImages,
+    copy: DepthCopy,
+    format: u32,
+}
+
+/// What is shown of a frame.
+struct Layers {
+    eyes: Option<EyePair>,
+    panel: Option<sys::CompositionLayerQuad>,
+}
+
+/// A session with everything that belongs to it. What has framebuffers goes before the images, and those before the
+/// session.
+pub(super) struct Session {
+    eyes: EyeImages,
+    depth: Option<Depth>,
+    panel: Option<PanelImages>,
+    storage: Storage,
+    mask: Option<Mask>,
+    input: Option<Input>,
+    /// The head.
+    head: xr::Space,
+    /// Where the runtime says that straight ahead is.
+    base: xr::Space,
+    /// Where the user says so.
+    space: xr::Space,
+    waiter: xr::FrameWaiter,
+    stream: xr::FrameStream<xr::OpenGlEs>,
+    session: xr::Session<xr::OpenGlEs>,
+    instance: xr::Instance,
+
+    gl: Rc<Context>,
+    views: xr::ViewConfigurationType,
+    blend: xr::EnvironmentBlendMode,
+    state: xr::SessionState,
+    is_running: bool,
+    /// What was asked of the runtime by extensions.
+    applied: Option<(Option<f32>, Performance)>,
+    /// Why the eyes are rendered otherwise than the runtime has them.
+    realigned: Option<EyesError>,
+    recenter: bool,
+    events: Vec<Event>,
+    last_error: String,
+    description: Description,
+}
+
+impl Session {
+    /// Begins a session with a runtime.
+    pub fn open(
+        runtime: &Runtime,
+        graphics: &dyn Graphics,
+        gl: &Rc<Context>,
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<Session, XrError> {
+        graphics.make_current().map_err(XrError::Context)?;
+        let instance = create_instance(runtime, options)?;
+        let properties = call("xrGetInstanceProperties", instance.properties())?;
+        let system = call("xrGetSystem", instance.system(xr::FormFactor::HEAD_MOUNTED_DISPLAY))?;
+        let system_properties = call("xrGetSystemProperties", instance.system_properties(system))?;
+        let configurations =
+            call("xrEnumerateViewConfigurations", instance.enumerate_view_configurations(system))?;
+        let wanted = match options.mono {
+            true => [xr::ViewConfigurationType::PRIMARY_MONO, xr::ViewConfigurationType::PRIMARY_STEREO],
+            false => [xr::ViewConfigurationType::PRIMARY_STEREO, xr::ViewConfigurationType::PRIMARY_MONO],
+        };
+        let views = wanted
+            .into_iter()
+            .find(|views| configurations.contains(views))
+            .ok_or_else(|| XrError::Nonsense("offers neither one view nor two".into()))?;
+        let view_sizes = call(
+            "xrEnumerateViewConfigurationViews",
+            instance.enumerate_view_configuration_views(system, views),
+        )?;
+        let recommended = view_sizes.iter().fold([0, 0], |size, view| {
+            [size[0].max(view.recommended_image_rect_width), size[1].max(view.recommended_image_rect_height)]
+        });
+        let most = view_sizes.iter().fold([u32::MAX; 2], |size, view| {
+            [size[0].min(view.max_image_rect_width), size[1].min(view.max_image_rect_height)]
+        });
+        if recommended.contains(&0) || most.contains(&0) {
+            return Err(XrError::Nonsense("recommends images without pixels".into()));
+        }
+        let limit = most.map(|n| n.min(gl.capabilities().max_texture_size / 2));
+        let size = image_size(recommended, settings.render_scale, limit);
+        let blends = call(
+            "xrEnumerateEnvironmentBlendModes",
+            instance.enumerate_environment_blend_modes(system, views),
+        )?;
+        let opaque = xr::EnvironmentBlendMode::OPAQUE;
+        let blend = match blends.first() {
+            Some(first) if !blends.contains(&opaque) => *first,
+            _ => opaque,
+        };
+
+        graphics::check_version(&instance, system, gl.capabilities().version)?;
+        let (session, waiter, stream) = graphics::create_session(&instance, system, graphics)?;
+        let formats = call("xrEnumerateSwapchainFormats", session.enumerate_swapchain_formats())?;
+        let format = storage::choose(&storage::COLOR_FORMATS, &formats).ok_or_else(|| {
+            XrError::Nonsense("offers no format of images that OpenGL ES can draw to".into())
+        })?;
+        let color = Kind { format, is_depth: false, size, layers: 2 };
+        let eyes = EyeImages::new(gl, &session, color)?;
+        let depth = match instance.exts().khr_composition_layer_depth {
+            Some(_) => optional("no depth is submitted", make_depth(gl, &session, &formats, size))?.flatten(),
+            None => None,
+        };
+        let panel = Images::new(gl, &session, Kind { size: Panel::MAX_SIZE, layers: 1, ..color });
+        let panel = optional("there is no HUD", panel)?.map(|images| PanelImages { images, version: None });
+        let mut mask = None;
+        if instance.exts().khr_visibility_mask.is_some() {
+            let mut made = Mask::new(gl)?;
+            let count = if views == xr::ViewConfigurationType::PRIMARY_STEREO { 2 } else { 1 };
+            for eye in Eye::BOTH.into_iter().take(count) {
+                optional("nothing is masked", made.update(&session, views, eye))?;
+            }
+            mask = Some(made);
+        }
+        let reference =
+            |kind| call("xrCreateReferenceSpace", session.create_reference_space(kind, xr::Posef::IDENTITY));
+        let local = xr::ReferenceSpaceType::LOCAL;
+        let (head, base, space) =
+            (reference(xr::ReferenceSpaceType::VIEW)?, reference(local)?, reference(local)?);
+        let input = optional("controllers are not used", Input::new(&instance, &session))?;
+        let refresh_rates = match instance.exts().fb_display_refresh_rate {
+            Some(_) => optional(
+                "refresh rates are not known",
+                call("xrEnumerateDisplayRefreshRatesFB", session.enumerate_display_refresh_rates()),
+            )?
+            .unwrap_or_default(),
+            None => Vec::new(),
+        };
+        graphics.make_current().map_err(XrError::Context)?;
+        let storage = Storage::new(gl, format)?;
+        let stereo = views == xr::ViewConfigurationType::PRIMARY_STEREO;
+        let description = Description {
+            runtime: format!("{} {}", properties.runtime_name, properties.runtime_version),
+            system: system_properties.system_name,
+            views: if stereo { "stereo" } else { "mono" }.into(),
+            recommended,
+            size,
+            format: storage::format_name(format),
+            array: eyes.is_array(),
+            direct: storage.is_direct(),
+            depth: depth.as_ref().map(|depth| storage::format_name(depth.format)),
+            mask: mask.as_ref().is_some_and(Mask::hides),
+            refresh_rates,
+            input: input.is_some(),
+        };
+        log_description(&description);
+        Ok(Session {
+            eyes,
+            depth,
+            panel,
+            storage,
+            mask,
+            input,
+            head,
+            base,
+            space,
+            waiter,
+            stream,
+            session,
+            instance,
+            gl: gl.clone(),
+            views,
+            blend,
+            state: xr::SessionState::UNKNOWN,
+            is_running: false,
+            applied: None,
+            realigned: None,
+            recenter: false,
+            events: Vec::with_capacity(8),
+            last_error: String::new(),
+            description,
+        })
+    }
+
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// Whether the runtime wants frames.
+    pub fn is_running(&self) -> bool {
+        self.is_running
+    }
+
+    /// Does what the user wants in the next frame.
+    pub fn event(&mut self, event: Event) {
+        self.events.push(event);
+    }
+
+    /// Asks the runtime to end the session.
+    pub fn request_exit(&self) -> Result<(), XrError> {
+        call("xrRequestExitSession", self.session.request_exit())
+    }
+
+    /// Takes the runtime's events, and makes a frame if it wants one. New states go to `states`.
+    pub fn step(
+        &mut self,
+        graphics: &dyn Graphics,
+        viewer: &mut Viewer,
+        states: &mut dyn FnMut(xr::SessionState),
+        capture: bool,
+    ) -> Result<Progress, XrError> {
+        if self.poll_events(viewer, states)? {
+            return Ok(Progress::Ended);
+        }
+        if !self.is_running {
+            self.events.clear();
+            return Ok(Progress::Idle);
+        }
+        self.apply_settings(viewer.settings())?;
+        let wait = call("xrWaitFrame", self.waiter.wait())?;
+        let begin = Instant::now();
+        graphics.make_current().map_err(XrError::Context)?;
+        let (time, period) = (wait.predicted_display_time, wait.predicted_display_period.as_nanos());
+        call("xrBeginFrame", self.stream.begin())?;
+        let timing = FrameTiming {
+            now_ns: time.as_nanos(),
+            expected_display_ns: time.as_nanos(),
+            refresh_hz: if period > 0 { (1e9 / period as f64) as f32 } else { 0.0 },
+        };
+        self.poll_input(viewer, time)?;
+        viewer.begin(&timing);
+        let mut layers = Layers { eyes: None, panel: None };
+        let mut captured = None;
+        if wait.should_render {
+            layers = self.render(graphics, viewer, time, capture, &mut captured)?;
+        }
+        self.end_frame(time, &layers)?;
+        graphics.make_current().map_err(XrError::Context)?;
+        let cpu_ms = begin.elapsed().as_secs_f64() * 1e3;
+        let report = match layers.eyes {
+            Some(_) => self.told(viewer.end(&timing)),
+            None => None,
+        };
+        Ok(Progress::Frame(Frame { report, cpu_ms, capture: captured }))
+    }
+
+    /// What a viewer's call has led to; an error that comes with every frame is said once.
+    fn told<T>(&mut self, result: Result<T, ViewerError>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(error) => {
+                let sentence = error.to_string();
+                if sentence != self.last_error {
+                    log::error!("{sentence}");
+                    self.last_error = sentence;
+                }
+                None
+            }
+        }
+    }
+
+    /// True when the session is over for good.
+    fn poll_events(
+        &mut self,
+        viewer: &mut Viewer,
+        states: &mut dyn FnMut(xr::SessionState),
+    ) -> Result<bool, XrError> {
+        for _ in 0..MAX_EVENTS {
+            let mut buffer = std::mem::MaybeUninit::<sys::EventDataBuffer>::uninit();
+            // SAFETY: type and next are all that the runtime reads; the event is looked at only after success, when
+            // the runtime has written it.
+            let event = unsafe {
+                let head = buffer.as_mut_ptr().cast::<sys::BaseInStructure>();
+                head.write(sys::BaseInStructure { ty: sys::EventDataBuffer::TYPE, next: std::ptr::null() });
+                let result = (self.instance.fp().poll_event)(self.instance.as_raw(), buffer.as_mut_ptr());
+                if check("xrPollEvent", result)? == sys::Result::EVENT_UNAVAILABLE {
+                    return Ok(false);
+                }
+                xr::Event::from_raw(&buffer)
+            };
+            match event {
+                Some(xr::Event::SessionStateChanged(change)) if change.session() == self.session.as_raw() => {
+                    states(change.state());
+                    if self.change_state(change.state(), viewer)? {
+                        return Ok(true);
+                    }
+                }
+                Some(xr::Event::InstanceLossPending(_)) => return Err(XrError::Lost),
+                Some(xr::Event::ReferenceSpaceChangePending(change))
+                    if change.session() == self.session.as_raw()
+                        && change.reference_space_type() == xr::ReferenceSpaceType::LOCAL =>
+                {
+                    log::info!("recentered by the system");
+                    self.set_space(xr::Posef::IDENTITY)?;
+                }
+                Some(xr::Event::VisibilityMaskChangedKHR(change)) => {
+                    if let Some(mask) = &mut self.mask {
+                        let eye = Eye::BOTH.get(change.view_index() as usize).copied();
+                        if let Some(eye) = eye {
+                            optional("the mask stays", mask.update(&self.session, self.views, eye))?;
+                        }
+                    }
+                }
+                Some(xr::Event::DisplayRefreshRateChangedFB(change)) => {
+                    log::info!("refresh rate: {} Hz", change.to_display_refresh_rate());
+                }
+                Some(xr::Event::PerfSettingsEXT(change)) => {
+                    log::info!(
+                        "the runtime's level of {:?} performance ({:?}): {:?}, before {:?}",
+                        change.domain(),
+                        change.sub_domain(),
+                        change.to_level(),
+                        change.from_level()
+                    );
+                }
+                Some(xr::Event::EventsLost(lost)) => {
+                    log::warn!("{} events of the runtime were lost", lost.lost_event_count());
+                }
+                _ => {}
+            }
+        }
+        Ok(false)
+    }
+
+    /// True when the session is over for good.
+    fn change_state(&mut self, state: xr::SessionState, viewer: &mut Viewer) -> Result<bool, XrError> {
+        log::info!("OpenXR session: {state:?}");
+        let is_visible = |state| matches!(state, xr::SessionState::VISIBLE | xr::SessionState::FOCUSED);
+        match (is_visible(self.state), is_visible(state)) {
+            (false, true) => viewer.resume(),
+            (true, false) => viewer.pause(),
+            _ => {}
+        }
+        if state != xr::SessionState::FOCUSED
+            && let Some(input) = &mut self.input
+        {
+            input.forget();
+        }
+        self.state = state;
+        match state {
+            xr::SessionState::READY if !self.is_running => {
+                call("xrBeginSession", self.session.begin(self.views))?;
+                self.is_running = true;
+            }
+            xr::SessionState::STOPPING if self.is_running => {
+                self.is_running = false;
+                call("xrEndSession", self.session.end())?;
+            }
+            xr::SessionState::LOSS_PENDING => return Err(XrError::Lost),
+            xr::SessionState::EXITING => return Ok(true),
+            _ => {}
+        }
+        Ok(false)
+    }
+
+    /// Reads the controllers and does what the user wants.
+    fn poll_input(&mut self, viewer: &mut Viewer, time: xr::Time) -> Result<(), XrError> {
+        if self.state == xr::SessionState::FOCUSED
+            && let Some(input) = &mut self.input
+        {
+            let polled = input.poll(&self.session, time.as_nanos(), &mut self.events);
+            if optional("controllers are not used any more", polled)?.is_none() {
+                self.input = None;
+            }
+        }
+        let mut events = std::mem::take(&mut self.events);
+        for event in events.drain(..) {
+            match viewer.event(event) {
+                Ok(Action::Nothing) => {}
+                Ok(action) => {
+                    log::info!("{action}");
+                    self.recenter |= action == Action::Recenter;
+                }
+                Err(error) => log::error!("{error}"),
+            }
+        }
+        self.events = events;
+        if std::mem::take(&mut self.recenter) {
+            let place = call("xrLocateSpace", self.head.locate(&self.base, time))?;
+            let flags = xr::SpaceLocationFlags::POSITION_VALID | xr::SpaceLocationFlags::ORIENTATION_VALID;
+            if place.location_flags.contains(flags) {
+                let ahead = to_pose(&place.pose).forward();
+                let heading = Quat::from_rotation_y((-ahead.x).atan2(-ahead.z));
+                let q = xr::Quaternionf { x: heading.x, y: heading.y, z: heading.z, w: heading.w };
+                self.set_space(xr::Posef { orientation: q, position: place.pose.position })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Says where straight ahead is, as seen from where the runtime says so.
+    fn set_space(&mut self, pose: xr::Posef) -> Result<(), XrError> {
+        let space = self.session.create_reference_space(xr::ReferenceSpaceType::LOCAL, pose);
+        self.space = call("xrCreateReferenceSpace", space)?;
+        Ok(())
+    }
+
+    /// Asks for the refresh rate and the performance of the settings, when they have changed.
+    fn apply_settings(&mut self, settings: &Settings) -> Result<(), XrError> {
+        let wanted = (settings.refresh_rate, settings.performance);
+        let before = self.applied.replace(wanted);
+        if before == Some(wanted) {
+            return Ok(());
+        }
+        let rates = &self.description.refresh_rates;
+        if let Some(hz) = settings.refresh_rate
+            && before.map(|(rate, _)| rate) != Some(settings.refresh_rate)
+        {
+            let nearest = rates.iter().copied().min_by(|a, b| (a - hz).abs().total_cmp(&(b - hz).abs()));
+            match nearest {
+                Some(rate) => {
+                    let asked = self.session.request_display_refresh_rate(rate);
+                    let asked = call("xrRequestDisplayRefreshRateFB", asked);
+                    if optional("the refresh rate stays", asked)?.is_some() {
+                        log::info!("refresh rate asked for: {rate} Hz");
+                    }
+                }
+                None => log::warn!("the runtime does not let the refresh rate be chosen: it stays"),
+            }
+        }
+        if let Some(extension) = &self.instance.exts().ext_performance_settings
+            && before.map(|(_, level)| level) != Some(settings.performance)
+        {
+            let level = match settings.performance {
+                Performance::PowerSaving => xr::PerfSettingsLevelEXT::POWER_SAVINGS,
+                Performance::SustainedLow => xr::PerfSettingsLevelEXT::SUSTAINED_LOW,
+                Performance::SustainedHigh => xr::PerfSettingsLevelEXT::SUSTAINED_HIGH,
+                Performance::Boost => xr::PerfSettingsLevelEXT::BOOST,
+            };
+            for domain in [xr::PerfSettingsDomainEXT::CPU, xr::PerfSettingsDomainEXT::GPU] {
+                // SAFETY: a live session and valid enums.
+                let result = unsafe {
+                    (extension.perf_settings_set_performance_level)(self.session.as_raw(), domain, level)
+                };
+                let asked = check("xrPerfSettingsSetPerformanceLevelEXT", result);
+                optional("the performance level stays", asked)?;
+            }
+            log::info!("performance level: {level:?}");
+        }
+        Ok(())
+    }
+
+    /// Where the eyes will be, as the runtime has them; none while it does not know.
+    fn locate(
+        &self,
+        settings: &Settings,
+        time: xr::Time,
+        size: [u32; 2],
+    ) -> Result<Option<EyePair>, XrError> {
+        let (flags, views) = call("xrLocateViews", self.session.locate_views(self.views, time, &self.space))?;
+        if !flags.contains(xr::ViewStateFlags::ORIENTATION_VALID | xr::ViewStateFlags::POSITION_VALID) {
+            return Ok(None);
+        }
+        let [left, right] = match views.as_slice() {
+            [left, right] => [left, right],
+            [one] => [one, one],
+            _ => return Err(XrError::Nonsense(format!("locates {} views", views.len()))),
+        };
+        let mut frusta = [Frustum { left: 0.0, right: 0.0, bottom: 0.0, top: 0.0 }; 2];
+        for (frustum, view) in frusta.iter_mut().zip([left, right]) {
+            *frustum = to_frustum(&view.fov)
+                .ok_or_else(|| XrError::Nonsense(format!("gives an eye the field of view {:?}", view.fov)))?;
+        }
+        let poses = [to_pose(&left.pose), to_pose(&right.pose)];
+        if poses.iter().any(|pose| !pose.position.is_finite() || !pose.orientation.is_normalized()) {
+            return Err(XrError::Nonsense("gives an eye a pose that is none".into()));
+        }
+        Ok(Some(EyePair { poses, frusta, depth: DepthRange::PAPER, size, dominant: settings.dominant }))
+    }
+
+    /// Eyes that the viewer's method can do, near those of the runtime.
+    fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
+        let reason = match viewer.method().needs_aligned_eyes() {
+            true => native.synthesis(GuardBand::None).err(),
+            false => None,
+        };
+        let aligned = match reason {
+            None => None,
+            Some(EyesError::Density { .. }) => Some(native.evened()),
+            Some(EyesError::Canted { .. } | EyesError::OffAxis { .. }) => native.parallelized(),
+            Some(_) => None,
+        };
+        let growth = |eyes: &EyePair| {
+            let of =
+                |eye: usize, size: fn(&Frustum) -> f32| size(&eyes.frusta[eye]) / size(&native.frusta[eye]);
+            [of(0, Frustum::width), of(1, Frustum::width), of(0, Frustum::height), of(1, Frustum::height)]
+                .into_iter()
+                .fold(1.0, f32::max)
+        };
+        let aligned =
+            aligned.filter(|eyes| growth(eyes) <= MOST_GROWTH && eyes.synthesis(GuardBand::None).is_ok());
+        let kind = std::mem::discriminant::<EyesError>;
+        if reason.as_ref().map(kind) != self.realigned.as_ref().map(kind) {
+            if let (Some(eyes), Some(reason)) = (&aligned, &reason) {
+                let more = (growth(eyes) - 1.0) * 100.0;
+                log::info!(
+                    "{}: both eyes are rendered parallel and alike, in frusta up to {more:.0} % wider, and the compositor turns them back",
+                    match reason {
+                        EyesError::Canted { degrees } =>
+                            format!("the eyes are canted by {degrees:.1} degrees"),
+                        EyesError::OffAxis { off_axis } =>
+                            format!("the eyes are {off_axis:.4} m off one line"),
+                        _ => "the frusta of the eyes differ in size".into(),
+                    }
+                );
+            }
+            self.realigned = reason;
+        }
+        aligned.unwrap_or(native)
+    }
+
+    /// Renders both eyes and the HUD into the runtime's images.
+    fn render(
+        &mut self,
+        graphics: &dyn Graphics,
+        viewer: &mut Viewer,
+        time: xr::Time,
+        capture: bool,
+        captured: &mut Option<Capture>,
+    ) -> Result<Layers, XrError> {
+        let nothing = Layers { eyes: None, panel: None };
+        let size = self.frame_size(viewer);
+        let Some(native) = self.locate(viewer.settings(), time, size)? else { return Ok(nothing) };
+        viewer.set_native_ipd(native.ipd());
+        let shown = self.align(viewer, native);
+        let mut pair = shown;
+        if let Some(ipd) = viewer.chosen_ipd() {
+            let middle = pair.middle();
+            let axis = (pair.poses[1].position - pair.poses[0].position)
+                .try_normalize()
+                .unwrap_or(pair.poses[0].right());
+            for eye in Eye::BOTH {
+                pair.poses[eye.index()].position = middle + axis * (eye.side() * ipd / 2.0);
+            }
+        }
+        pair.poses = pair.poses.map(|pose| viewer.place(pose));
+
+        self.eyes.acquire()?;
+        if let Some(depth) = &mut self.depth {
+            depth.images.acquire()?;
+        }
+        graphics.make_current().map_err(XrError::Context)?;
+        let no_image = || XrError::Nonsense("has no image to draw into".into());
+        let images = self.eyes.destinations(size).ok_or_else(no_image)?;
+        let rendered = self.render_eyes(viewer, &pair, images)?;
+        if capture && rendered {
+            let eyes = images.map(|image| self.gl.read_rgba8(&image));
+            *captured = Some(Capture { eyes, pair });
+        }
+        self.eyes.release()?;
+        if let Some(depth) = &mut self.depth {
+            depth.images.release()?;
+        }
+        if !rendered {
+            return Ok(nothing);
+        }
+        let panel = self.render_panel(graphics, viewer)?;
+        Ok(Layers { eyes: Some(shown), panel })
+    }
+
+    /// Renders both eyes into images; false when the viewer cannot.
+    fn render_eyes(
+        &mut self,
+        viewer: &mut Viewer,
+        pair: &EyePair,
+        images: [Destination; 2],
+    ) -> Result<bool, XrError> {
+        let color = self.storage.begin(images)?;
+        let depth = self.depth.as_ref().and_then(|depth| {
+            Some(depth.images.destinations(pair.size)?.map(|to| DepthTarget { to, copy: &depth.copy }))
+        });
+        let targets = Eye::BOTH
+            .map(|eye| EyeTarget { color: color[eye.index()], depth: depth.map(|depth| depth[eye.index()]) });
+        let rendered = viewer.render_eyes(pair, &targets);
+        if let Some(mask) = &self.mask
+            && self.realigned.is_none()
+        {
+            mask.draw(&pair.frusta, &color);
+        }
+        self.storage.end(images);
+        // The runtime may read on another queue.
+        // SAFETY: no arguments.
+        unsafe { glow::HasContext::flush(self.gl.raw()) };
+        Ok(self.told(rendered).is_some())
+    }
+
+    /// Brings the HUD up to date, if it is to be seen.
+    fn render_panel(
+        &mut self,
+        graphics: &dyn Graphics,
+        viewer: &mut Viewer,
+    ) -> Result<Option<sys::CompositionLayerQuad>, XrError> {
+        let Some(PanelImages { images, version }) = &mut self.panel else { return Ok(None) };
+        let panel = match viewer.hud() {
+            Ok(Some(panel)) => panel,
+            Ok(None) => return Ok(None),
+            Err(error) => {
+                self.told::<()>(Err(error));
+                return Ok(None);
+            }
+        };
+        if *version != Some(panel.version()) {
+            images.acquire()?;
+            graphics.make_current().map_err(XrError::Context)?;
+            if let Some(to) = images.destination(0, panel.size()) {
+                panel.draw(&to);
+                // SAFETY: no arguments.
+                unsafe { glow::HasContext::flush(self.gl.raw()) };
+            }
+            images.release()?;
+            *version = Some(panel.version());
+        }
+        let ([width, height], center) = (panel.metres(), panel.center());
+        let mut pose = xr::Posef::IDENTITY;
+        pose.position = xr::Vector3f { x: center.x, y: center.y, z: center.z };
+        Ok(Some(sys::CompositionLayerQuad {
+            ty: sys::CompositionLayerQuad::TYPE,
+            next: std::ptr::null(),
+            layer_flags: xr::CompositionLayerFlags::BLEND_TEXTURE_SOURCE_ALPHA
+                | xr::CompositionLayerFlags::UNPREMULTIPLIED_ALPHA,
+            space: self.head.as_raw(),
+            eye_visibility: xr::EyeVisibility::BOTH,
+            sub_image: images.sub_image(0, panel.size()),
+            pose,
+            size: xr::Extent2Df { width, height },
+        }))
+    }
+
+    /// Size in pixels of each eye in this frame, which is no larger than the images.
+    fn frame_size(&self, viewer: &Viewer) -> [u32; 2] {
+        let wanted = viewer.eye_size(self.description.recommended.map(|n| n as f32));
+        [0, 1].map(|i| wanted[i].min(self.description.size[i]))
+    }
+
+    /// xrEndFrame.
+    fn end_frame(&mut self, time: xr::Time, layers: &Layers) -> Result<(), XrError> {
+        let eyes = layers.eyes.as_ref();
+        let depth_info = |eye: Eye| {
+            let (depth, eyes) = (self.depth.as_ref()?, eyes?);
+            let DepthRange { near, far, convention } = eyes.depth;
+            let [near_z, far_z] = match convention {
+                DepthConvention::Standard => [near, far],
+                DepthConvention::Reversed => [far, near],
+            };
+            Some(sys::CompositionLayerDepthInfoKHR {
+                ty: sys::CompositionLayerDepthInfoKHR::TYPE,
+                next: std::ptr::null(),
+                sub_image: depth.images.sub_image(eye, eyes.size),
+                min_depth: 0.0,
+                max_depth: 1.0,
+                near_z,
+                far_z,
+            })
+        };
+        let depths = Eye::BOTH.map(depth_info);
+        let views = eyes.map(|eyes| {
+            Eye::BOTH.map(|eye| sys::CompositionLayerProjectionView {
+                ty: sys::CompositionLayerProjectionView::TYPE,
+                next: depths[eye.index()]
+                    .as_ref()
+                    .map_or(std::ptr::null(), |info| std::ptr::from_ref(info).cast()),
+                pose: from_pose(&eyes.poses[eye.index()]),
+                fov: from_frustum(&eyes.frusta[eye.index()]),
+                sub_image: self.eyes.sub_image(eye, eyes.size),
+            })
+        });
+        let count = if self.views == xr::ViewConfigurationType::PRIMARY_STEREO { 2 } else { 1 };
+        let projection = views.as_ref().map(|views| sys::CompositionLayerProjection {
+            ty: sys::CompositionLayerProjection::TYPE,
+            next: std::ptr::null(),
+            layer_flags: xr::CompositionLayerFlags::EMPTY,
+            space: self.space.as_raw(),
+            view_count: count,
+            views: views.as_ptr(),
+        });
+        let mut shown = [std::ptr::null::<sys::CompositionLayerBaseHeader>(); 2];
+        let headers = projection
+            .as_ref()
+            .map(|layer| std::ptr::from_ref(layer).cast())
+            .into_iter()
+            .chain(layers.panel.as_ref().map(|layer| std::ptr::from_ref(layer).cast()));
+        let mut layer_count = 0;
+        for (slot, header) in shown.iter_mut().zip(headers) {
+            *slot = header;
+            layer_count += 1;
+        }
+        let info = sys::FrameEndInfo {
+            ty: sys::FrameEndInfo::TYPE,
+            next: std::ptr::null(),
+            display_time: time,
+            environment_blend_mode: self.blend,
+            layer_count,
+            layers: shown.as_ptr(),
+        };
+        // SAFETY: all that the structures point to is on this stack or lives in `self`.
+        let result = unsafe { (self.instance.fp().end_frame)(self.session.as_raw(), &info) };
+        check("xrEndFrame", result).map(drop)
+    }
+}
+
+/// An instance with the extensions that are of use.
+fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance, XrError> {
+    let entry = call("xrGetInstanceProcAddr", runtime.entry())?;
+    let offered = call("xrEnumerateInstanceExtensionProperties", entry.enumerate_extensions())?;
+    let mut enabled = xr::ExtensionSet::default();
+    if !offered.khr_opengl_es_enable {
+        return Err(XrError::Extension { extension: "XR_KHR_opengl_es_enable" });
+    }
+    enabled.khr_opengl_es_enable = true;
+    #[cfg(target_os = "android")]
+    {
+        enabled.khr_android_create_instance = true;
+    }
+    #[cfg(not(target_os = "android"))]
+    {
+        if !offered.mndx_egl_enable {
+            return Err(XrError::Extension { extension: graphics::EXTENSION });
+        }
+        enabled.mndx_egl_enable = true;
+    }
+    enabled.khr_composition_layer_depth = offered.khr_composition_layer_depth;
+    enabled.khr_visibility_mask = offered.khr_visibility_mask;
+    enabled.fb_display_refresh_rate = offered.fb_display_refresh_rate;
+    enabled.ext_performance_settings = offered.ext_performance_settings;
+    let application = xr::ApplicationInfo {
+        application_name: "yoro",
+        application_version: 1,
+        engine_name: "yoro",
+        engine_version: 1,
+        api_version: xr::Version::new(1, 0, 0),
+    };
+    #[cfg(target_os = "android")]
+    let created = match options.android {
+        Some(android) => entry.create_instance(&application, &enabled, &[], &android.platform()),
+        None => entry.create_instance(&application, &enabled, &[], &()),
+    };
+    #[cfg(not(target_os = "android"))]
+    let created = {
+        let _ = options;
+        entry.create_instance(&application, &enabled, &[], &())
+    };
+    call("xrCreateInstance", created)
+}
+
+fn make_depth(
+    gl: &Rc<Context>,
+    session: &xr::Session<xr::OpenGlEs>,
+    formats: &[u32],
+    size: [u32; 2],
+) -> Result<Option<Depth>, XrError> {
+    let Some(format) = storage::choose(&storage::DEPTH_FORMATS, formats) else {
+        log::info!("no depth is submitted: the runtime takes none of the formats of OpenGL ES");
+        return Ok(None);
+    };
+    let images = EyeImages::new(gl, session, Kind { format, is_depth: true, size, layers: 2 })?;
+    Ok(Some(Depth { images, copy: DepthCopy::new(gl)?, format }))
+}
+
+/// Size of the images: what is recommended, scaled.
+fn image_size(recommended: [u32; 2], scale: f32, limit: [u32; 2]) -> [u32; 2] {
+    let scaled = |n: u32| match scale == 1.0 {
+        true => n,
+        false => ((n as f32 * scale / SIZE_STEP).ceil() * SIZE_STEP) as u32,
+    };
+    [0, 1].map(|i| scaled(recommended[i]).clamp(1, limit[i].max(1)))
+}
+
+fn log_description(d: &Description) {
+    let [w, h] = d.size;
+    let rates: Vec<String> = d.refresh_rates.iter().map(|hz| format!("{hz:.0}")).collect();
+    log::info!(
+        "OpenXR: {}, system {}, {} views of {w}x{h} ({} as {}, {}), depth {}, hidden part {}, refresh rates {}",
+        d.runtime,
+        d.system,
+        d.views,
+        d.format,
+        if d.array { "one array" } else { "two swapchains" },
+        if d.direct { "drawn straight into" } else { "drawn aside and decoded" },
+        d.depth.as_deref().unwrap_or("none"),
+        if d.mask { "masked" } else { "unknown" },
+        if rates.is_empty() { "unknown".to_owned() } else { format!("{} Hz", rates.join(", ")) },
+    );
+}
+
+fn to_pose(pose: &xr::Posef) -> Pose {
+    let (p, q) = (pose.position, pose.orientation);
+    Pose { position: Vec3::new(p.x, p.y, p.z), orientation: Quat::from_xyzw(q.x, q.y, q.z, q.w) }
+}
+
+fn from_pose(pose: &Pose) -> xr::Posef {
+    let (p, q) = (pose.position, pose.orientation);
+    xr::Posef {
+        position: xr::Vector3f { x: p.x, y: p.y, z: p.z },
+        orientation: xr::Quaternionf { x: q.x, y: q.y, z: q.z, w: q.w },
+    }
+}
+
+/// None for a field of view that no image can have.
+fn to_frustum(fov: &xr::Fovf) -> Option<Frustum> {
+    let angles = [fov.angle_left, fov.angle_right, fov.angle_down, fov.angle_up];
+    let fits = angles.iter().all(|angle| angle.abs() < WIDEST);
+    let [left, right, bottom, top] = angles.map(f32::tan);
+    (fits && left < right && bottom < top).then_some(Frustum { left, right, bottom, top })
+}
+
+fn from_frustum(frustum: &Frustum) -> xr::Fovf {
+    xr::Fovf {
+        angle_left: frustum.left.atan(),
+        angle_right: frustum.right.atan(),
+        angle_up: frustum.top.atan(),
+        angle_down: frustum.bottom.atan(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_of_view_that_are_none_are_refused() {
+        let fov = xr::Fovf { angle_left: -0.9, angle_right: 0.7, angle_up: 0.8, angle_down: -0.6 };
+        let frustum = to_frustum(&fov).unwrap();
+        assert!((frustum.left + 0.9f32.tan()).abs() < 1e-6 && frustum.bottom < 0.0);
+        let back = from_frustum(&frustum);
+        assert!((back.angle_left - fov.angle_left).abs() < 1e-6 && (back.angle_up - 0.8).abs() < 1e-6);
+        for wrong in [
+            xr::Fovf { angle_left: 0.8, ..fov },
+            xr::Fovf { angle_up: -0.7, ..fov },
+            xr::Fovf { angle_right: f32::NAN, ..fov },
+            xr::Fovf { angle_right: 1.6, ..fov },
+            xr::Fovf::default(),
+        ] {
+            assert_eq!(to_frustum(&wrong), None, "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn image_sizes_stay_within_limits() {
+        assert_eq!(image_size([1833, 1921], 1.0, [4096; 2]), [1833, 1921]);
+        assert_eq!(image_size([1000, 1000], 0.5, [4096; 2]), [512, 512]);
+        assert_eq!(image_size([1000, 1000], 2.0, [1200, 4096]), [1200, 2000]);
+    }
+}

@@ -1,0 +1,352 @@
+//! Frames, views, and what is submitted.
+
+use openxr_sys as sys;
+use sys::Handle;
+
+use crate::log::{Depth, Entry, Image, Layer, View};
+use crate::script::At;
+use crate::session::{Frame, views_of};
+use crate::space::{compose, inverse, pose, raw_pose};
+use crate::world::{DONE, Refusal, World, enter, forbidden};
+
+/// When the stub's time begins.
+const BEGINNING_NS: i64 = 1_000_000_000;
+
+impl World {
+    fn period_ns(&self) -> i64 {
+        (1e9 / f64::from(self.refresh_rate)) as i64
+    }
+
+    /// The time at which the last frame that was waited for is displayed.
+    pub fn time(&self) -> sys::Time {
+        sys::Time::from_nanos(BEGINNING_NS + i64::from(self.frames) * self.period_ns())
+    }
+}
+
+pub unsafe extern "system" fn wait_frame(
+    session: sys::Session,
+    _: *const sys::FrameWaitInfo,
+    out: *mut sys::FrameState,
+) -> sys::Result {
+    enter("xrWaitFrame", |world| {
+        running(world, session)?;
+        let number = world.frames;
+        world.happen(|at| matches!(at, At::Frame(n) if *n == number));
+        let should_render_from = world.script.should_render_from;
+        world.frames += 1;
+        let time = world.time();
+        let period = sys::Duration::from_nanos(world.period_ns());
+        let known = world.session(session)?;
+        if known.frames.waited.is_some() {
+            return Err(forbidden(
+                sys::Result::ERROR_CALL_ORDER_INVALID,
+                "the last frame that was waited for has not begun: a real runtime would wait for ever",
+            ));
+        }
+        let visible = matches!(known.state, crate::script::State::Visible | crate::script::State::Focused);
+        let should_render = visible && known.frames.count >= should_render_from;
+        known.frames.count += 1;
+        known.frames.waited = Some(Frame { number, time, should_render });
+        // SAFETY: as the caller says.
+        let out = unsafe { &mut *out };
+        out.predicted_display_time = time;
+        out.predicted_display_period = period;
+        out.should_render = should_render.into();
+        world.success()
+    })
+}
+
+pub unsafe extern "system" fn begin_frame(
+    session: sys::Session,
+    _: *const sys::FrameBeginInfo,
+) -> sys::Result {
+    enter("xrBeginFrame", |world| {
+        running(world, session)?;
+        let frames = &mut world.session(session)?.frames;
+        let frame = frames
+            .waited
+            .take()
+            .ok_or_else(|| forbidden(sys::Result::ERROR_CALL_ORDER_INVALID, "no frame was waited for"))?;
+        if frames.begun.replace(frame).is_some() {
+            return Ok(sys::Result::FRAME_DISCARDED);
+        }
+        world.success()
+    })
+}
+
+/// Frames are for running sessions.
+fn running(world: &mut World, session: sys::Session) -> Result<(), Refusal> {
+    if world.session(session)?.views == 0 {
+        return Err(forbidden(sys::Result::ERROR_SESSION_NOT_RUNNING, "it is not running"));
+    }
+    Ok(())
+}
+
+pub unsafe extern "system" fn locate_views(
+    session: sys::Session,
+    info: *const sys::ViewLocateInfo,
+    state: *mut sys::ViewState,
+    capacity: u32,
+    count: *mut u32,
+    out: *mut sys::View,
+) -> sys::Result {
+    enter("xrLocateViews", |world| {
+        // SAFETY: as the caller says.
+        let (info, state) = unsafe { (&*info, &mut *state) };
+        world.session(session)?;
+        if info.display_time.as_nanos() <= 0 {
+            return Err(forbidden(sys::Result::ERROR_TIME_INVALID, "the time is not positive"));
+        }
+        let number = views_of(world, info.view_configuration_type)?;
+        let base = world.space_pose(info.space)?;
+        let frame = world.frames.saturating_sub(1);
+        let tracked = !world.script.untracked.contains(&frame);
+        state.view_state_flags = if tracked {
+            sys::ViewStateFlags::ORIENTATION_VALID
+                | sys::ViewStateFlags::POSITION_VALID
+                | sys::ViewStateFlags::ORIENTATION_TRACKED
+                | sys::ViewStateFlags::POSITION_TRACKED
+        } else {
+            sys::ViewStateFlags::EMPTY
+        };
+        let head = compose(inverse(base), world.head());
+        let ipd = world.script.ipd(frame);
+        let views: Vec<(sys::Posef, sys::Fovf)> = (0..number as usize)
+            .map(|i| {
+                let eye = world.script.eyes[i];
+                // Left, right; outwards is to the left for the left eye.
+                let side = if i == 0 { -1.0 } else { 1.0 };
+                let (offset, cant) =
+                    if number == 1 { (0.0, 0.0) } else { (side * ipd / 2.0, -side * eye.cant_degrees) };
+                let turn = glam::Quat::from_rotation_y(cant.to_radians());
+                let view = compose(head, (turn, glam::Vec3::new(offset, 0.0, 0.0)));
+                let [left, right, up, down] = eye.fov_degrees.map(f32::to_radians);
+                let fov = sys::Fovf { angle_left: left, angle_right: right, angle_up: up, angle_down: down };
+                (raw_pose(view), fov)
+            })
+            .collect();
+        // SAFETY: as the caller says.
+        unsafe {
+            crate::instance::fill(capacity, count, out, &views, |to, (pose, fov)| {
+                to.pose = *pose;
+                to.fov = *fov;
+            })
+        }?;
+        world.success()
+    })
+}
+
+pub unsafe extern "system" fn end_frame(
+    session: sys::Session,
+    info: *const sys::FrameEndInfo,
+) -> sys::Result {
+    enter("xrEndFrame", |world| {
+        running(world, session)?;
+        // SAFETY: as the caller says.
+        let info = unsafe { &*info };
+        let views = world.session(session)?.views;
+        let frame = world
+            .session(session)?
+            .frames
+            .begun
+            .ok_or_else(|| forbidden(sys::Result::ERROR_CALL_ORDER_INVALID, "no frame has begun"))?;
+        if info.display_time != frame.time {
+            return Err(forbidden(
+                sys::Result::ERROR_TIME_INVALID,
+                format!("it was predicted for {:?} and is submitted for {:?}", frame.time, info.display_time),
+            ));
+        }
+        if info.environment_blend_mode != sys::EnvironmentBlendMode::OPAQUE {
+            return Err(forbidden(
+                sys::Result::ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED,
+                "only OPAQUE is offered",
+            ));
+        }
+        let mut layers = Vec::new();
+        for i in 0..info.layer_count as usize {
+            // SAFETY: the array has that many pointers to layers.
+            let layer = unsafe { *info.layers.add(i) };
+            if layer.is_null() {
+                return Err(forbidden(sys::Result::ERROR_LAYER_INVALID, "a layer is null"));
+            }
+            // SAFETY: a layer, of the type that it says.
+            layers.push(unsafe { submitted(world, layer, views) }?);
+        }
+        write_pictures(world, &layers, frame.number)?;
+        world.log.write(&Entry::Frame { frame: frame.number, should_render: frame.should_render, layers });
+        let unbind = world.script.unbind_context;
+        let instance = world.current()?;
+        let Some(known) = &mut instance.session else { return DONE };
+        known.frames.begun = None;
+        known.frames.ended += 1;
+        known.settle(&mut instance.events);
+        if unbind {
+            known.graphics.unbind();
+        }
+        world.success()
+    })
+}
+
+/// Checks a layer and puts down what it shows.
+///
+/// # Safety
+/// `layer` points to a structure of the type that it says.
+unsafe fn submitted(
+    world: &mut World,
+    layer: *const sys::CompositionLayerBaseHeader,
+    expected: u32,
+) -> Result<Layer, Refusal> {
+    // SAFETY: as the caller says.
+    let header = unsafe { &*layer };
+    world.space_pose(header.space)?;
+    match header.ty {
+        sys::StructureType::COMPOSITION_LAYER_PROJECTION => {
+            // SAFETY: of this type.
+            let projection = unsafe { &*layer.cast::<sys::CompositionLayerProjection>() };
+            if projection.view_count != expected {
+                return Err(forbidden(
+                    sys::Result::ERROR_VALIDATION_FAILURE,
+                    format!("{} views instead of {expected}", projection.view_count),
+                ));
+            }
+            let mut views = Vec::new();
+            for i in 0..projection.view_count as usize {
+                // SAFETY: the array has that many views.
+                views.push(submitted_view(world, unsafe { &*projection.views.add(i) })?);
+            }
+            Ok(Layer::Projection { views })
+        }
+        sys::StructureType::COMPOSITION_LAYER_QUAD => {
+            // SAFETY: of this type.
+            let quad = unsafe { &*layer.cast::<sys::CompositionLayerQuad>() };
+            pose(&quad.pose)?;
+            let image = submitted_image(world, &quad.sub_image, false)?;
+            Ok(Layer::Quad { image, size: [quad.size.width, quad.size.height] })
+        }
+        other => Err(forbidden(sys::Result::ERROR_LAYER_INVALID, format!("{other:?} is not offered"))),
+    }
+}
+
+fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView) -> Result<View, Refusal> {
+    if view.ty != sys::CompositionLayerProjectionView::TYPE {
+        return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, "the view's type is wrong"));
+    }
+    let (orientation, position) = pose(&view.pose)?;
+    let fov = [view.fov.angle_left, view.fov.angle_right, view.fov.angle_up, view.fov.angle_down];
+    let [left, right, up, down] = fov;
+    let limit = std::f32::consts::FRAC_PI_2;
+    if !(left < right && down < up && fov.iter().all(|angle| angle.abs() < limit)) {
+        return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, format!("the frustum {fov:?} is none")));
+    }
+    let image = submitted_image(world, &view.sub_image, false)?;
+    let mut depth = None;
+    let mut next = view.next.cast::<sys::BaseInStructure>();
+    while !next.is_null() {
+        // SAFETY: a chain of structures.
+        let structure = unsafe { &*next };
+        if structure.ty == sys::CompositionLayerDepthInfoKHR::TYPE {
+            // SAFETY: of this type.
+            let info = unsafe { &*next.cast::<sys::CompositionLayerDepthInfoKHR>() };
+            if !world.current()?.extensions.iter().any(|e| e == "XR_KHR_composition_layer_depth") {
+                return Err(forbidden(
+                    sys::Result::ERROR_VALIDATION_FAILURE,
+                    "depth is submitted without XR_KHR_composition_layer_depth",
+                ));
+            }
+            let range = [info.min_depth, info.max_depth];
+            let near_far = [info.near_z, info.far_z];
+            let sane = (0.0..=1.0).contains(&range[0])
+                && (0.0..=1.0).contains(&range[1])
+                && range[0] < range[1]
+                && near_far[0] > 0.0
+                && near_far[1] > 0.0
+                && near_far[0] != near_far[1];
+            if !sane {
+                return Err(forbidden(
+                    sys::Result::ERROR_VALIDATION_FAILURE,
+                    format!("depth {range:?} stands for {near_far:?} m"),
+                ));
+            }
+            let image = submitted_image(world, &info.sub_image, true)?;
+            depth = Some(Depth { image, range, near_far });
+        }
+        next = structure.next;
+    }
+    let degrees = fov.map(f32::to_degrees);
+    Ok(View {
+        position: position.to_array(),
+        orientation: orientation.to_array(),
+        fov_degrees: degrees,
+        image,
+        depth,
+    })
+}
+
+fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: bool) -> Result<Image, Refusal> {
+    let swapchain = world.swapchain(image.swapchain)?;
+    let refuse = |what: String| Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, what));
+    if swapchain.is_depth() != depth {
+        return refuse(format!("the swapchain's format {:#x} is of the other kind", swapchain.format));
+    }
+    if !swapchain.acquired.is_empty() {
+        return refuse("an image of the swapchain is still acquired".into());
+    }
+    if swapchain.released.is_none() {
+        return Err(forbidden(sys::Result::ERROR_LAYER_INVALID, "no image of the swapchain was released"));
+    }
+    if image.image_array_index >= swapchain.layers {
+        return refuse(format!("layer {} of {}", image.image_array_index, swapchain.layers));
+    }
+    let (offset, extent) = (image.image_rect.offset, image.image_rect.extent);
+    let inside = offset.x >= 0
+        && offset.y >= 0
+        && extent.width > 0
+        && extent.height > 0
+        && offset.x + extent.width <= swapchain.size[0] as i32
+        && offset.y + extent.height <= swapchain.size[1] as i32;
+    if !inside {
+        return Err(forbidden(
+            sys::Result::ERROR_SWAPCHAIN_RECT_INVALID,
+            format!("{:?} of {:?}", image.image_rect, swapchain.size),
+        ));
+    }
+    Ok(Image {
+        swapchain: image.swapchain.into_raw(),
+        layer: image.image_array_index,
+        rect: [offset.x, offset.y, extent.width, extent.height],
+    })
+}
+
+/// Writes what was submitted in a frame, where the script wants it.
+fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(), Refusal> {
+    let Some(pictures) = world.script.pictures.clone().filter(|p| p.frames.contains(&frame)) else {
+        return Ok(());
+    };
+    let mut quads = 0;
+    for layer in layers {
+        let images: Vec<(String, &Image)> = match layer {
+            Layer::Projection { views } => {
+                let name = |(i, view)| (format!("view-{i}"), &(view as &View).image);
+                views.iter().enumerate().map(name).collect()
+            }
+            Layer::Quad { image, .. } => {
+                quads += 1;
+                vec![(format!("quad-{}", quads - 1), image)]
+            }
+            Layer::Other { .. } => Vec::new(),
+        };
+        for (name, image) in images {
+            let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain))?.shown();
+            let graphics = &mut world.its_session()?.graphics;
+            let Some(pixels) = texture.and_then(|t| graphics.read(t, image.layer, image.rect)) else {
+                return Err(forbidden(sys::Result::ERROR_RUNTIME_FAILURE, "the image cannot be read"));
+            };
+            let path = pictures.folder.join(format!("frame-{frame}-{name}.png"));
+            let size = [image.rect[2] as u32, image.rect[3] as u32];
+            let picture = image::RgbaImage::from_raw(size[0], size[1], pixels).expect("four bytes a pixel");
+            let written = image::imageops::flip_vertical(&picture).save(&path);
+            written.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,258 @@
+//! OpenGL ES in the application's context.
+
+use std::ffi::{CStr, CString, c_void};
+use std::ptr;
+
+use glow::HasContext as _;
+use openxr_sys as sys;
+
+use crate::script::POISON;
+use crate::world::{Refusal, forbidden};
+
+const EGL_LIBRARIES: [&str; 2] = ["libEGL.so.1", "libEGL.so"];
+
+type GetProcAddress = unsafe extern "system" fn(*const i8) -> *const c_void;
+type GetCurrentContext = unsafe extern "system" fn() -> *const c_void;
+type MakeCurrent =
+    unsafe extern "system" fn(*const c_void, *const c_void, *const c_void, *const c_void) -> u32;
+
+/// The context that a session is bound to.
+pub struct Graphics {
+    /// Functions of GL, from the first time that they are needed.
+    gl: Option<glow::Context>,
+    get_proc_address: GetProcAddress,
+    get_current_context: GetCurrentContext,
+    make_current: MakeCurrent,
+    display: *const c_void,
+    context: *const c_void,
+}
+
+// SAFETY: it is only used on threads that have made the context current, which can be only one at a time.
+unsafe impl Send for Graphics {}
+
+/// The binding of `XR_KHR_opengl_es_enable`, which the crate of the types has on Android only.
+#[repr(C)]
+struct AndroidBinding {
+    ty: sys::StructureType,
+    next: *const c_void,
+    display: *const c_void,
+    config: *const c_void,
+    context: *const c_void,
+}
+
+impl Graphics {
+    /// The graphics binding in a chain of structures, and its name.
+    ///
+    /// # Safety
+    /// `next` begins a chain of structures of the types that they say.
+    pub unsafe fn bind(
+        next: *const c_void,
+        extensions: &[String],
+    ) -> Result<(&'static str, Graphics), Refusal> {
+        let enabled = |name: &str| extensions.iter().any(|extension| extension == name);
+        if !enabled("XR_KHR_opengl_es_enable") {
+            return Err(forbidden(
+                sys::Result::ERROR_GRAPHICS_DEVICE_INVALID,
+                "XR_KHR_opengl_es_enable is not enabled",
+            ));
+        }
+        let mut next = next.cast::<sys::BaseInStructure>();
+        while !next.is_null() {
+            // SAFETY: as the caller says.
+            let structure = unsafe { &*next };
+            let found = match structure.ty {
+                sys::StructureType::GRAPHICS_BINDING_EGL_MNDX if enabled("XR_MNDX_egl_enable") => {
+                    // SAFETY: of this type.
+                    let binding = unsafe { &*next.cast::<sys::GraphicsBindingEGLMNDX>() };
+                    if binding.get_proc_address.is_none() {
+                        return Err(forbidden(
+                            sys::Result::ERROR_VALIDATION_FAILURE,
+                            "the binding has no getProcAddress",
+                        ));
+                    }
+                    Some(("egl", binding.display as *const c_void, binding.context as *const c_void))
+                }
+                sys::StructureType::GRAPHICS_BINDING_OPENGL_ES_ANDROID_KHR => {
+                    // SAFETY: of this type.
+                    let binding = unsafe { &*next.cast::<AndroidBinding>() };
+                    Some(("android", binding.display, binding.context))
+                }
+                _ => None,
+            };
+            if let Some((name, display, context)) = found {
+                if display.is_null() || context.is_null() {
+                    return Err(forbidden(
+                        sys::Result::ERROR_GRAPHICS_DEVICE_INVALID,
+                        "display or context is null",
+                    ));
+                }
+                return Ok((name, Graphics::new(display, context)?));
+            }
+            next = structure.next;
+        }
+        Err(forbidden(sys::Result::ERROR_GRAPHICS_DEVICE_INVALID, "there is no graphics binding"))
+    }
+
+    fn new(display: *const c_void, context: *const c_void) -> Result<Graphics, Refusal> {
+        // SAFETY: the application uses this library already.
+        let library = EGL_LIBRARIES.iter().find_map(|name| unsafe { libloading::Library::new(name).ok() });
+        let library = library.ok_or(sys::Result::ERROR_RUNTIME_FAILURE)?;
+        // SAFETY: EGL's functions have these types, and the library stays.
+        let functions = unsafe {
+            (
+                library.get(b"eglGetProcAddress").map(|f| *f),
+                library.get(b"eglGetCurrentContext").map(|f| *f),
+                library.get(b"eglMakeCurrent").map(|f| *f),
+            )
+        };
+        std::mem::forget(library);
+        let (Ok(get_proc_address), Ok(get_current_context), Ok(make_current)) = functions else {
+            return Err(sys::Result::ERROR_RUNTIME_FAILURE.into());
+        };
+        Ok(Graphics { gl: None, get_proc_address, get_current_context, make_current, display, context })
+    }
+
+    /// The session's context is current on this thread.
+    pub fn is_current(&self) -> bool {
+        // SAFETY: always allowed.
+        let current = unsafe { (self.get_current_context)() };
+        !current.is_null() && current == self.context
+    }
+
+    /// Makes no context current.
+    pub fn unbind(&self) {
+        // SAFETY: the display is the application's.
+        unsafe { (self.make_current)(self.display, ptr::null(), ptr::null(), ptr::null()) };
+    }
+
+    /// GL's functions; the context must be current.
+    fn gl(&mut self) -> &glow::Context {
+        let get = self.get_proc_address;
+        self.gl.get_or_insert_with(|| {
+            // SAFETY: the context is current, and GL's library stays.
+            unsafe {
+                glow::Context::from_loader_function_cstr(|name: &CStr| {
+                    let name = CString::from(name);
+                    get(name.as_ptr().cast())
+                })
+            }
+        })
+    }
+
+    /// A texture: of an array where there are several layers.
+    pub fn texture(&mut self, format: u32, [width, height]: [u32; 2], layers: u32) -> Option<glow::Texture> {
+        let gl = self.gl();
+        let (target, binding) = if layers > 1 {
+            (glow::TEXTURE_2D_ARRAY, glow::TEXTURE_BINDING_2D_ARRAY)
+        } else {
+            (glow::TEXTURE_2D, glow::TEXTURE_BINDING_2D)
+        };
+        // SAFETY: plain GL calls; the application's binding is put back.
+        unsafe {
+            let before = gl.get_parameter_texture(binding);
+            let texture = gl.create_texture().ok()?;
+            gl.bind_texture(target, Some(texture));
+            if layers > 1 {
+                gl.tex_storage_3d(target, 1, format, width as i32, height as i32, layers as i32);
+            } else {
+                gl.tex_storage_2d(target, 1, format, width as i32, height as i32);
+            }
+            let error = gl.get_error();
+            gl.bind_texture(target, before);
+            (error == glow::NO_ERROR).then_some(texture)
+        }
+    }
+
+    /// Deletes textures, where that is possible.
+    pub fn delete(&mut self, textures: &[glow::Texture]) {
+        if self.is_current() {
+            let gl = self.gl();
+            for texture in textures {
+                // SAFETY: made in this context.
+                unsafe { gl.delete_texture(*texture) };
+            }
+        }
+    }
+
+    /// Runs with a layer of a texture as the framebuffer's colour; the application's state is put back.
+    fn with_layer<T>(
+        &mut self,
+        texture: glow::Texture,
+        layer: u32,
+        work: impl Fn(&glow::Context) -> T,
+    ) -> Option<T> {
+        if !self.is_current() {
+            return None;
+        }
+        let gl = self.gl();
+        // SAFETY: plain GL calls in the context that the texture is of. A texture without layers refuses to be attached
+        // as one of an array.
+        unsafe {
+            let read = gl.get_parameter_framebuffer(glow::READ_FRAMEBUFFER_BINDING);
+            let draw = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
+            let framebuffer = gl.create_framebuffer().ok()?;
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
+            let color = glow::COLOR_ATTACHMENT0;
+            gl.framebuffer_texture_layer(glow::FRAMEBUFFER, color, Some(texture), 0, layer as i32);
+            if gl.get_error() != glow::NO_ERROR {
+                gl.framebuffer_texture_2d(glow::FRAMEBUFFER, color, glow::TEXTURE_2D, Some(texture), 0);
+            }
+            let complete = gl.check_framebuffer_status(glow::FRAMEBUFFER) == glow::FRAMEBUFFER_COMPLETE;
+            let result = complete.then(|| work(gl));
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, read);
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, draw);
+            gl.delete_framebuffer(framebuffer);
+            result
+        }
+    }
+
+    /// Fills every layer with [`POISON`].
+    pub fn poison(&mut self, texture: glow::Texture, layers: u32) {
+        for layer in 0..layers {
+            self.with_layer(texture, layer, |gl| {
+                // SAFETY: plain GL calls; the state that restricts a clear is put back.
+                unsafe {
+                    let scissor = gl.is_enabled(glow::SCISSOR_TEST);
+                    let mask = gl.get_parameter_bool_array::<4>(glow::COLOR_WRITEMASK);
+                    gl.disable(glow::SCISSOR_TEST);
+                    gl.color_mask(true, true, true, true);
+                    gl.clear_buffer_f32_slice(glow::COLOR, 0, &POISON.map(|c| f32::from(c) / 255.0));
+                    gl.color_mask(mask[0], mask[1], mask[2], mask[3]);
+                    if scissor {
+                        gl.enable(glow::SCISSOR_TEST);
+                    }
+                }
+            });
+        }
+    }
+
+    /// The bytes of a rectangle, four a pixel, the lowest row first, as they are stored.
+    pub fn read(&mut self, texture: glow::Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
+        let [x, y, width, height] = rect;
+        self.with_layer(texture, layer, |gl| {
+            let mut pixels = vec![0; (width * height * 4) as usize];
+            // SAFETY: the array has room for all pixels; the application's state of packing is put back.
+            unsafe {
+                let buffer = gl.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING);
+                let settings = [
+                    glow::PACK_ALIGNMENT,
+                    glow::PACK_ROW_LENGTH,
+                    glow::PACK_SKIP_ROWS,
+                    glow::PACK_SKIP_PIXELS,
+                ];
+                let before = settings.map(|setting| gl.get_parameter_i32(setting));
+                gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+                for (setting, value) in settings.into_iter().zip([4, 0, 0, 0]) {
+                    gl.pixel_store_i32(setting, value);
+                }
+                let target = glow::PixelPackData::Slice(Some(&mut pixels));
+                gl.read_pixels(x, y, width, height, glow::RGBA, glow::UNSIGNED_BYTE, target);
+                for (setting, value) in settings.into_iter().zip(before) {
+                    gl.pixel_store_i32(setting, value);
+                }
+                gl.bind_buffer(glow::PIXEL_PACK_BUFFER, buffer);
+            }
+            pixels
+        })
+    }
+}

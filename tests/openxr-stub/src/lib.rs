@@ -1,0 +1,52 @@
+//! A simulated OpenXR runtime for tests.
+//!
+//! The library is negotiated with like any runtime. Its headset is scripted ([`script`]): frusta, canted views, a
+//! changing IPD, states, losses, controllers, and results instead of calls. Time is virtual: `xrWaitFrame` never sleeps,
+//! and each frame is one period later than the last. Swapchain images are real GL textures, made in the application's
+//! context. What the application does is checked against the specification and written to a log ([`log`]); what is
+//! forbidden is a [`log::Entry::Violation`].
+//!
+//! Nothing is composed and nothing is shown. Only what an application on OpenGL ES needs is there; the functions of other
+//! extensions are not offered.
+
+mod action;
+mod extension;
+mod frame;
+mod graphics;
+mod instance;
+pub mod log;
+pub mod script;
+mod session;
+mod space;
+mod swapchain;
+mod table;
+mod world;
+
+use openxr_sys as sys;
+
+/// What a loader calls first.
+///
+/// # Safety
+/// Both point to structures of the sizes that they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "system" fn xrNegotiateLoaderRuntimeInterface(
+    info: *const sys::NegotiateLoaderInfo,
+    request: *mut sys::NegotiateRuntimeRequest,
+) -> sys::Result {
+    // SAFETY: the caller gives complete structures.
+    let (info, request) = unsafe { (&*info, &mut *request) };
+    let fits = info.struct_type == sys::NegotiateLoaderInfo::TYPE
+        && info.struct_size == size_of::<sys::NegotiateLoaderInfo>()
+        && request.struct_type == sys::NegotiateRuntimeRequest::TYPE
+        && request.struct_size == size_of::<sys::NegotiateRuntimeRequest>()
+        && (info.min_interface_version..=info.max_interface_version).contains(&1)
+        && info.min_api_version <= instance::NEWEST
+        && info.max_api_version >= instance::NEWEST;
+    if !fits {
+        return sys::Result::ERROR_INITIALIZATION_FAILED;
+    }
+    request.runtime_interface_version = 1;
+    request.runtime_api_version = instance::NEWEST;
+    request.get_instance_proc_addr = Some(table::get_instance_proc_addr);
+    sys::Result::SUCCESS
+}

@@ -1,0 +1,122 @@
+//! What the stub saw: JSON lines.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Write as _;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::script::State;
+
+/// One line of the log.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "event", rename_all = "kebab-case")]
+#[allow(missing_docs)]
+pub enum Entry {
+    /// An instance was created.
+    Instance { application: String, api: String, extensions: Vec<String>, android: bool },
+    /// A session was created.
+    Session { binding: String },
+    /// A session has begun.
+    Begun { views: u32 },
+    /// A swapchain was created.
+    Swapchain { id: u64, format: i64, width: u32, height: u32, layers: u32 },
+    /// The application was told of a state.
+    State { state: State },
+    /// A frame has ended.
+    Frame { frame: u32, should_render: bool, layers: Vec<Layer> },
+    /// A request: a rate of the display, a level of performance, the end of the session, haptics.
+    Request { what: String, value: f64 },
+    /// Bindings were suggested.
+    Bindings { profile: String, paths: Vec<String> },
+    /// Something has happened as the script says.
+    Scripted { what: String },
+    /// A call failed as the script says.
+    Fault { call: String, nth: u32, result: i32 },
+    /// The application did something that the specification forbids.
+    Violation { call: String, what: String },
+    /// A session or an instance was destroyed.
+    Destroyed { what: String },
+    /// How often each function was called; at the end of an instance.
+    Calls { counts: BTreeMap<String, u32> },
+}
+
+/// A submitted layer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "kebab-case")]
+#[allow(missing_docs)]
+pub enum Layer {
+    Projection { views: Vec<View> },
+    Quad { image: Image, size: [f32; 2] },
+    Other { structure: i32 },
+}
+
+/// A submitted view.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct View {
+    /// Where the view was rendered from, in the layer's space.
+    pub position: [f32; 3],
+    /// x, y, z, w.
+    pub orientation: [f32; 4],
+    /// Left, right, up, down.
+    pub fov_degrees: [f32; 4],
+    /// Its colour.
+    pub image: Image,
+    /// Its depth, where it was submitted.
+    pub depth: Option<Depth>,
+}
+
+/// A part of a swapchain's image.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Image {
+    /// The swapchain, as in [`Entry::Swapchain`].
+    pub swapchain: u64,
+    /// The layer of its array.
+    pub layer: u32,
+    /// x, y, width, height in pixels.
+    pub rect: [i32; 4],
+}
+
+/// Depth of a view.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Depth {
+    /// Where it is.
+    pub image: Image,
+    /// The smallest and the largest value of the depth buffer.
+    pub range: [f32; 2],
+    /// What they stand for, in metres.
+    pub near_far: [f32; 2],
+}
+
+/// Reads a log.
+///
+/// # Panics
+/// When the file is none: a test is mistaken.
+pub fn read(path: &Path) -> Vec<Entry> {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    text.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{line}: {e}"))).collect()
+}
+
+/// The end that is written to. Every line is written at once: a crash must lose none.
+pub(crate) struct Log(Option<File>);
+
+impl Log {
+    pub(crate) fn open(path: Option<&Path>) -> Log {
+        Log(path.map(|path| {
+            File::options()
+                .create(true)
+                .append(true)
+                .open(path)
+                .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+        }))
+    }
+
+    pub(crate) fn write(&mut self, entry: &Entry) {
+        if let Some(file) = &mut self.0 {
+            let mut line = serde_json::to_vec(entry).expect("entries are plain data");
+            line.push(b'\n');
+            let _ = file.write_all(&line);
+        }
+    }
+}

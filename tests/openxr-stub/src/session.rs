@@ -1,0 +1,331 @@
+//! Sessions and their states.
+
+use std::collections::VecDeque;
+
+use openxr_sys as sys;
+use sys::Handle;
+
+use crate::graphics::Graphics;
+use crate::instance::{check_system, fill};
+use crate::log::Entry;
+use crate::script::State;
+use crate::world::{DONE, Event, Refusal, World, enter, forbidden};
+
+pub struct Session {
+    pub handle: u64,
+    pub lost: bool,
+    pub loss_pending: bool,
+    /// Views of the configuration that it was begun with; 0 while it is not running.
+    pub views: u32,
+    pub state: State,
+    /// The last state that the application was told of.
+    pub told: State,
+    /// The state that it may get to.
+    pub level: State,
+    /// What follows the end: `EXITING`, or `READY` after a number of calls for events.
+    put_on_again_at: Option<u32>,
+    exiting: bool,
+    pub frames: FrameCalls,
+    pub attached: bool,
+    pub graphics: Graphics,
+}
+
+/// Frames between `xrWaitFrame` and `xrEndFrame`.
+#[derive(Default)]
+pub struct FrameCalls {
+    pub waited: Option<Frame>,
+    pub begun: Option<Frame>,
+    /// Frames that have ended since the session began.
+    pub ended: u32,
+    /// Frames that were waited for since the session began.
+    pub count: u32,
+}
+
+#[derive(Clone, Copy)]
+pub struct Frame {
+    pub number: u32,
+    pub time: sys::Time,
+    pub should_render: bool,
+}
+
+impl Session {
+    fn go(&mut self, state: State, events: &mut VecDeque<Event>) {
+        self.state = state;
+        events.push_back(Event::State(state));
+    }
+
+    /// Goes from state to state as far as `level` and the frames so far allow.
+    pub fn settle(&mut self, events: &mut VecDeque<Event>) {
+        const LEVELS: [State; 4] = [State::Ready, State::Synchronized, State::Visible, State::Focused];
+        let index = |state| LEVELS.iter().position(|level| *level == state);
+        let (true, Some(mut now), Some(most)) = (self.views > 0, index(self.state), index(self.level)) else {
+            return;
+        };
+        let target = most.min(self.frames.ended as usize);
+        while now != target {
+            now = if now < target { now + 1 } else { now - 1 };
+            self.go(LEVELS[now], events);
+        }
+    }
+
+    /// The runtime ends the session: for ever, or until the headset is put on again.
+    pub fn stop(&mut self, events: &mut VecDeque<Event>, put_on_again_at: Option<u32>) {
+        self.put_on_again_at = put_on_again_at;
+        self.exiting = put_on_again_at.is_none();
+        if self.views == 0 {
+            self.go(State::Idle, events);
+            if self.exiting {
+                self.go(State::Exiting, events);
+            }
+            return;
+        }
+        for state in [State::Visible, State::Synchronized] {
+            if self.state > state {
+                self.go(state, events);
+            }
+        }
+        self.go(State::Stopping, events);
+    }
+
+    /// After enough calls for events the headset is on a head again.
+    pub fn put_on_again(&mut self, polls: u32, events: &mut VecDeque<Event>) {
+        if self.state == State::Idle && self.put_on_again_at.is_some_and(|at| at <= polls) {
+            self.put_on_again_at = None;
+            self.go(State::Ready, events);
+        }
+    }
+}
+
+pub unsafe extern "system" fn get_graphics_requirements(
+    instance: sys::Instance,
+    system: sys::SystemId,
+    requirements: *mut sys::GraphicsRequirementsOpenGLESKHR,
+) -> sys::Result {
+    enter("xrGetOpenGLESGraphicsRequirementsKHR", |world| {
+        let instance = world.instance(instance)?;
+        check_system(system)?;
+        instance.requirements_asked = true;
+        // SAFETY: as the caller says.
+        let requirements = unsafe { &mut *requirements };
+        requirements.min_api_version_supported = sys::Version::new(3, 0, 0);
+        requirements.max_api_version_supported = sys::Version::new(3, 2, 0);
+        DONE
+    })
+}
+
+pub unsafe extern "system" fn create_session(
+    instance: sys::Instance,
+    info: *const sys::SessionCreateInfo,
+    out: *mut sys::Session,
+) -> sys::Result {
+    enter("xrCreateSession", |world| {
+        let known = world.instance(instance)?;
+        // SAFETY: as the caller says.
+        let info = unsafe { &*info };
+        check_system(info.system_id)?;
+        if known.session.is_some() {
+            return Err(forbidden(sys::Result::ERROR_LIMIT_REACHED, "there is a session already"));
+        }
+        if !known.requirements_asked {
+            return Err(forbidden(
+                sys::Result::ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
+                "the graphics requirements were not asked for",
+            ));
+        }
+        // SAFETY: a chain of structures.
+        let (binding, graphics) = unsafe { Graphics::bind(info.next, &known.extensions) }?;
+        let handle = world.new_handle();
+        world.log.write(&Entry::Session { binding: binding.into() });
+        let known = world.instance(instance)?;
+        let mut session = Session {
+            handle,
+            lost: false,
+            loss_pending: false,
+            views: 0,
+            state: State::Idle,
+            told: State::Idle,
+            level: State::Focused,
+            put_on_again_at: None,
+            exiting: false,
+            frames: FrameCalls::default(),
+            attached: false,
+            graphics,
+        };
+        session.go(State::Idle, &mut known.events);
+        session.go(State::Ready, &mut known.events);
+        known.session = Some(session);
+        // SAFETY: as the caller says.
+        unsafe { *out = sys::Session::from_raw(handle) };
+        DONE
+    })
+}
+
+pub unsafe extern "system" fn destroy_session(session: sys::Session) -> sys::Result {
+    enter("xrDestroySession", |world| {
+        let known = world.instance.as_mut();
+        let known = known.filter(|i| i.session.as_ref().is_some_and(|s| s.handle == session.into_raw()));
+        let known = known.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not a session"))?;
+        known.session = None;
+        known.spaces.clear();
+        known.swapchains.clear();
+        known.events.retain(|event| !matches!(event, Event::State(_)));
+        known.actions.detach();
+        world.log.write(&Entry::Destroyed { what: "session".into() });
+        DONE
+    })
+}
+
+pub unsafe extern "system" fn begin_session(
+    session: sys::Session,
+    info: *const sys::SessionBeginInfo,
+) -> sys::Result {
+    enter("xrBeginSession", |world| {
+        // SAFETY: as the caller says.
+        let configuration = unsafe { (*info).primary_view_configuration_type };
+        let views = views_of(world, configuration)?;
+        let known = world.session(session)?;
+        if known.views > 0 {
+            return Err(forbidden(sys::Result::ERROR_SESSION_RUNNING, "it is running"));
+        }
+        if known.state != State::Ready {
+            return Err(forbidden(sys::Result::ERROR_SESSION_NOT_READY, format!("it is {:?}", known.state)));
+        }
+        known.views = views;
+        known.frames = FrameCalls::default();
+        world.log.write(&Entry::Begun { views });
+        world.success()
+    })
+}
+
+/// How many views a configuration has.
+pub fn views_of(world: &World, configuration: sys::ViewConfigurationType) -> Result<u32, Refusal> {
+    match configuration {
+        sys::ViewConfigurationType::PRIMARY_STEREO if world.script.stereo => Ok(2),
+        sys::ViewConfigurationType::PRIMARY_MONO if world.script.mono => Ok(1),
+        other => Err(forbidden(
+            sys::Result::ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED,
+            format!("{other:?} is not offered"),
+        )),
+    }
+}
+
+pub unsafe extern "system" fn end_session(session: sys::Session) -> sys::Result {
+    enter("xrEndSession", |world| {
+        let known = world.session(session)?;
+        if known.views == 0 {
+            return Err(forbidden(sys::Result::ERROR_SESSION_NOT_RUNNING, "it is not running"));
+        }
+        if known.state != State::Stopping {
+            return Err(forbidden(
+                sys::Result::ERROR_SESSION_NOT_STOPPING,
+                format!("it is {:?}", known.state),
+            ));
+        }
+        known.views = 0;
+        let instance = world.current()?;
+        let (events, Some(known)) = (&mut instance.events, &mut instance.session) else { return DONE };
+        known.go(State::Idle, events);
+        if known.exiting {
+            known.go(State::Exiting, events);
+        }
+        world.success()
+    })
+}
+
+pub unsafe extern "system" fn request_exit_session(session: sys::Session) -> sys::Result {
+    enter("xrRequestExitSession", |world| {
+        if world.session(session)?.views == 0 {
+            return Err(forbidden(sys::Result::ERROR_SESSION_NOT_RUNNING, "it is not running"));
+        }
+        world.log.write(&Entry::Request { what: "exit".into(), value: 1.0 });
+        let instance = world.current()?;
+        if let Some(known) = instance.session.as_mut().filter(|known| known.state != State::Stopping) {
+            known.stop(&mut instance.events, None);
+        }
+        world.success()
+    })
+}
+
+pub unsafe extern "system" fn enumerate_view_configurations(
+    instance: sys::Instance,
+    system: sys::SystemId,
+    capacity: u32,
+    count: *mut u32,
+    types: *mut sys::ViewConfigurationType,
+) -> sys::Result {
+    enter("xrEnumerateViewConfigurations", |world| {
+        world.instance(instance)?;
+        check_system(system)?;
+        let offered: Vec<_> = [
+            (sys::ViewConfigurationType::PRIMARY_STEREO, world.script.stereo),
+            (sys::ViewConfigurationType::PRIMARY_MONO, world.script.mono),
+        ]
+        .into_iter()
+        .filter_map(|(configuration, offered)| offered.then_some(configuration))
+        .collect();
+        // SAFETY: as the caller says.
+        unsafe { fill(capacity, count, types, &offered, |to, from| *to = *from) }
+    })
+}
+
+pub unsafe extern "system" fn get_view_configuration_properties(
+    instance: sys::Instance,
+    system: sys::SystemId,
+    configuration: sys::ViewConfigurationType,
+    properties: *mut sys::ViewConfigurationProperties,
+) -> sys::Result {
+    enter("xrGetViewConfigurationProperties", |world| {
+        world.instance(instance)?;
+        check_system(system)?;
+        views_of(world, configuration)?;
+        // SAFETY: as the caller says.
+        let properties = unsafe { &mut *properties };
+        properties.view_configuration_type = configuration;
+        properties.fov_mutable = sys::TRUE;
+        DONE
+    })
+}
+
+pub unsafe extern "system" fn enumerate_view_configuration_views(
+    instance: sys::Instance,
+    system: sys::SystemId,
+    configuration: sys::ViewConfigurationType,
+    capacity: u32,
+    count: *mut u32,
+    views: *mut sys::ViewConfigurationView,
+) -> sys::Result {
+    enter("xrEnumerateViewConfigurationViews", |world| {
+        world.instance(instance)?;
+        check_system(system)?;
+        let number = views_of(world, configuration)? as usize;
+        let sizes: Vec<[u32; 2]> = world.script.eyes[..number].iter().map(|eye| eye.size).collect();
+        // SAFETY: as the caller says.
+        unsafe {
+            fill(capacity, count, views, &sizes, |view, [width, height]| {
+                view.recommended_image_rect_width = *width;
+                view.recommended_image_rect_height = *height;
+                view.max_image_rect_width = 4096;
+                view.max_image_rect_height = 4096;
+                view.recommended_swapchain_sample_count = 1;
+                view.max_swapchain_sample_count = 1;
+            })
+        }
+    })
+}
+
+pub unsafe extern "system" fn enumerate_environment_blend_modes(
+    instance: sys::Instance,
+    system: sys::SystemId,
+    configuration: sys::ViewConfigurationType,
+    capacity: u32,
+    count: *mut u32,
+    modes: *mut sys::EnvironmentBlendMode,
+) -> sys::Result {
+    enter("xrEnumerateEnvironmentBlendModes", |world| {
+        world.instance(instance)?;
+        check_system(system)?;
+        views_of(world, configuration)?;
+        // SAFETY: as the caller says.
+        unsafe { fill(capacity, count, modes, &[sys::EnvironmentBlendMode::OPAQUE], |to, from| *to = *from) }
+    })
+}

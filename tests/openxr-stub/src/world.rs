@@ -1,0 +1,267 @@
+//! All that the stub knows, and how calls get at it.
+
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::sync::Mutex;
+
+use glam::{Quat, Vec3};
+use openxr_sys as sys;
+use sys::Handle;
+
+use crate::action::Actions;
+use crate::log::{Entry, Log};
+use crate::script::{At, Script, State, What};
+use crate::session::Session;
+use crate::space::Space;
+use crate::swapchain::Swapchain;
+
+/// Why a call fails; with a violation, the application is to blame.
+pub struct Refusal {
+    pub result: sys::Result,
+    pub violation: Option<String>,
+}
+
+impl From<sys::Result> for Refusal {
+    fn from(result: sys::Result) -> Refusal {
+        Refusal { result, violation: None }
+    }
+}
+
+/// The application did something that it must not do.
+pub fn forbidden(result: sys::Result, what: impl Into<String>) -> Refusal {
+    Refusal { result, violation: Some(what.into()) }
+}
+
+pub type Answer = Result<sys::Result, Refusal>;
+pub const DONE: Answer = Ok(sys::Result::SUCCESS);
+
+/// The process: script and log are there as long as it is, also over several instances.
+pub struct World {
+    pub script: Script,
+    pub log: Log,
+    /// Calls of each function.
+    calls: BTreeMap<String, u32>,
+    /// Which events of the script have happened.
+    happened: Vec<bool>,
+    last_handle: u64,
+    /// Frames that were waited for.
+    pub frames: u32,
+    /// Calls for events while there were none.
+    pub idle_polls: u32,
+    /// `xrGetSystem` in vain.
+    pub unavailable: u32,
+    pub profile: Option<String>,
+    pub refresh_rate: f32,
+    pub instance: Option<Instance>,
+}
+
+/// The instance; there is at most one.
+pub struct Instance {
+    pub handle: u64,
+    pub extensions: Vec<String>,
+    pub lost: bool,
+    pub requirements_asked: bool,
+    pub events: VecDeque<Event>,
+    pub paths: Vec<String>,
+    pub actions: Actions,
+    pub session: Option<Session>,
+    pub spaces: HashMap<u64, Space>,
+    pub swapchains: HashMap<u64, Swapchain>,
+    /// The local space's turn, in radians.
+    pub local_yaw: f32,
+}
+
+/// An event, not yet told.
+pub enum Event {
+    State(State),
+    InstanceLoss,
+    ReferenceSpace(f32),
+    Profile,
+    RefreshRate(f32, f32),
+    Mask,
+    Lost,
+}
+
+static WORLD: Mutex<Option<World>> = Mutex::new(None);
+
+/// Every call comes through here: it is counted, may fail as the script says, and is logged where it is forbidden.
+pub fn enter(call: &str, work: impl FnOnce(&mut World) -> Answer) -> sys::Result {
+    let mut guard = WORLD.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let world = guard.get_or_insert_with(World::new);
+    let nth = world.calls.entry(call.into()).or_insert(0);
+    *nth += 1;
+    let nth = *nth;
+    let fault = world
+        .script
+        .faults
+        .iter()
+        .find(|fault| fault.call == call && (fault.nth == nth || fault.and_later && fault.nth <= nth));
+    if let Some(fault) = fault {
+        let entry = Entry::Fault { call: call.into(), nth, result: fault.result };
+        world.log.write(&entry);
+        return sys::Result::from_raw(fault.result);
+    }
+    let answer = work(world);
+    match answer {
+        Ok(result) => result,
+        Err(Refusal { result, violation }) => {
+            if let Some(what) = violation {
+                world.log.write(&Entry::Violation { call: call.into(), what });
+            }
+            result
+        }
+    }
+}
+
+impl World {
+    fn new() -> World {
+        let script = Script::load();
+        World {
+            log: Log::open(script.log.as_deref()),
+            calls: BTreeMap::new(),
+            happened: vec![false; script.events.len()],
+            last_handle: 0,
+            frames: 0,
+            idle_polls: 0,
+            unavailable: 0,
+            profile: script.profile.clone(),
+            refresh_rate: script.refresh_rates.first().copied().unwrap_or(72.0),
+            instance: None,
+            script,
+        }
+    }
+
+    pub fn new_handle(&mut self) -> u64 {
+        self.last_handle += 1;
+        self.last_handle
+    }
+
+    /// The instance, whether or not it is lost.
+    pub fn any_instance(&mut self, handle: sys::Instance) -> Result<&mut Instance, Refusal> {
+        let instance = self.instance.as_mut().filter(|instance| instance.handle == handle.into_raw());
+        instance.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not an instance"))
+    }
+
+    pub fn instance(&mut self, handle: sys::Instance) -> Result<&mut Instance, Refusal> {
+        let instance = self.any_instance(handle)?;
+        if instance.lost {
+            return Err(sys::Result::ERROR_INSTANCE_LOST.into());
+        }
+        Ok(instance)
+    }
+
+    /// The instance of an object that is not the instance itself.
+    pub fn current(&mut self) -> Result<&mut Instance, Refusal> {
+        let instance = self
+            .instance
+            .as_mut()
+            .ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "no instance"))?;
+        if instance.lost {
+            return Err(sys::Result::ERROR_INSTANCE_LOST.into());
+        }
+        Ok(instance)
+    }
+
+    /// The session, if neither it nor its instance is lost.
+    pub fn session(&mut self, handle: sys::Session) -> Result<&mut Session, Refusal> {
+        let session = self.current()?.session.as_mut().filter(|s| s.handle == handle.into_raw());
+        let session = session.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not a session"))?;
+        if session.lost {
+            return Err(sys::Result::ERROR_SESSION_LOST.into());
+        }
+        Ok(session)
+    }
+
+    /// The session of an object that belongs to one.
+    pub fn its_session(&mut self) -> Result<&mut Session, Refusal> {
+        let session = self.current()?.session.as_mut();
+        let session = session.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "no session"))?;
+        if session.lost {
+            return Err(sys::Result::ERROR_SESSION_LOST.into());
+        }
+        Ok(session)
+    }
+
+    /// Whether the session will be lost: the result of calls that go well.
+    pub fn success(&mut self) -> Answer {
+        let pending = self.its_session().is_ok_and(|session| session.loss_pending);
+        Ok(if pending { sys::Result::SESSION_LOSS_PENDING } else { sys::Result::SUCCESS })
+    }
+
+    /// Everything that the script has for a moment.
+    pub fn happen(&mut self, now: impl Fn(&At) -> bool) {
+        for i in 0..self.script.events.len() {
+            if !self.happened[i] && now(&self.script.events[i].at) {
+                self.happened[i] = true;
+                let what = self.script.events[i].what.clone();
+                self.log.write(&Entry::Scripted { what: format!("{what:?}") });
+                self.apply(what);
+            }
+        }
+    }
+
+    fn apply(&mut self, what: What) {
+        let rate = self.refresh_rate;
+        let Some(instance) = &mut self.instance else { return };
+        let events = &mut instance.events;
+        match what {
+            What::LoseSession => {
+                if let Some(session) = &mut instance.session {
+                    session.lost = true;
+                    events.push_back(Event::State(State::LossPending));
+                }
+            }
+            What::SessionLossPending => {
+                if let Some(session) = &mut instance.session {
+                    session.loss_pending = true;
+                    events.push_back(Event::State(State::LossPending));
+                }
+            }
+            What::LoseInstance => {
+                instance.lost = true;
+                events.push_back(Event::InstanceLoss);
+            }
+            What::Exit => {
+                if let Some(session) = &mut instance.session {
+                    session.stop(events, None);
+                }
+            }
+            What::TakeOff(polls) => {
+                if let Some(session) = &mut instance.session {
+                    session.stop(events, Some(self.idle_polls + polls));
+                }
+            }
+            What::Level(level) => {
+                if let Some(session) = &mut instance.session {
+                    session.level = level;
+                    session.settle(events);
+                }
+            }
+            What::Recenter(degrees) => {
+                instance.local_yaw += degrees.to_radians();
+                events.push_back(Event::ReferenceSpace(degrees.to_radians()));
+            }
+            What::RefreshRate(hertz) => {
+                self.refresh_rate = hertz;
+                events.push_back(Event::RefreshRate(rate, hertz));
+            }
+            What::Profile(profile) => {
+                self.profile = profile;
+                events.push_back(Event::Profile);
+            }
+            What::MaskChanged => events.push_back(Event::Mask),
+            What::EventsLost => events.push_back(Event::Lost),
+        }
+    }
+
+    /// How often each function was called.
+    pub fn counts(&self) -> BTreeMap<String, u32> {
+        self.calls.clone()
+    }
+
+    /// The head in the floor's space.
+    pub fn head(&self) -> (Quat, Vec3) {
+        let turns = self.frames.saturating_sub(1) as f32;
+        let yaw = self.script.yaw_degrees + turns * self.script.yaw_per_frame_degrees;
+        (Quat::from_rotation_y(yaw.to_radians()), self.script.position.into())
+    }
+}
