@@ -68,9 +68,6 @@ impl FromStr for Rating {
         let name = |key| -> Result<Option<String>, LineError> {
             Ok(Some(reader.text(key)?).filter(|text| *text != MISSING).map(str::to_owned))
         };
-        let value = reader.text("value")?;
-        let one_decimal = value.split_once('.').is_some_and(|(_, decimals)| decimals.len() == 1);
-        let rating = value.parse().ok().filter(|_| one_decimal);
         Ok(Rating {
             participant: name("participant")?,
             trial: reader.optional("trial", "")?,
@@ -78,9 +75,15 @@ impl FromStr for Rating {
             pipeline: name("pipeline")?,
             scene: reader.text("scene")?.into(),
             question: reader.text("question")?.into(),
-            rating: rating.ok_or_else(|| LineError::Value { key: "value", value: value.into() })?,
+            rating: answer(reader.text("value")?)?,
         })
     }
+}
+
+fn answer(text: &str) -> Result<f64, LineError> {
+    let one_decimal = text.split_once('.').is_some_and(|(_, decimals)| decimals.len() == 1);
+    let answer = text.parse().ok().filter(|_| one_decimal);
+    answer.ok_or_else(|| LineError::Value { key: "value", value: text.into() })
 }
 
 #[cfg(test)]
