@@ -1,4 +1,8 @@
 //! The activity's life, and its main loop.
+//!
+//! On a headset with an OpenXR runtime the application is immersive: the runtime says when to draw, and where the eyes
+//! are. Everywhere else it is a Cardboard-compatible viewer on Android's window. Which one is decided once, when the
+//! activity comes to the front for the first time.
 
 use std::ffi::CString;
 use std::path::PathBuf;
@@ -8,9 +12,11 @@ use std::time::{Duration, Instant};
 use android_activity::{AndroidApp, MainEvent, PollEvent, WindowManagerFlags};
 use yoro::gl::{Context, Destination};
 use yoro::platform::android::{Window, WindowError};
+use yoro::platform::openxr::{Android, Headset, Options, Step, XrError, runtime};
 use yoro::scene::builtin::BUILTINS;
 use yoro::viewer::{
-    Action, Cardboard, Event, FrameTiming, Rotation, Screen, Settings, ViewerError, list_scenes,
+    Action, Cardboard, DisplayKind, Event, FrameTiming, Rotation, Screen, Settings, Viewer, ViewerError,
+    list_scenes,
 };
 
 use crate::device::Device;
@@ -27,6 +33,9 @@ const RETRY: Duration = Duration::from_millis(250);
 const USUAL_HZ: f32 = 60.0;
 /// A frame that is begun at one refresh is seen at the second one after it.
 const REFRESHES_AHEAD: f64 = 2.0;
+/// How often a headset's runtime is asked for events while it wants no frames: in front, and in the background.
+const HEADSET_POLL: Duration = Duration::from_millis(10);
+const HEADSET_BACKGROUND_POLL: Duration = Duration::from_millis(100);
 /// The screen of a device that cannot show anything else, display-referred.
 const FAILURE_COLOR: [f32; 3] = [0.45, 0.05, 0.05];
 
@@ -47,7 +56,10 @@ pub fn run(app: &AndroidApp) {
 /// Everything that one run of `android_main` holds.
 struct Activity {
     // What lives in the GL context goes before the context.
-    viewer: Option<Cardboard>,
+    headset: Option<Headset>,
+    /// What the headset shows.
+    immersive: Option<Viewer>,
+    cardboard: Option<Cardboard>,
     gl: Option<Rc<Context>>,
     window: Option<Window>,
 
@@ -65,6 +77,8 @@ struct Activity {
     events: Vec<Event>,
     samples: Vec<(yoro::viewer::Sample, i64)>,
 
+    /// Whether it is decided on what the eyes are shown.
+    is_display_chosen: bool,
     is_resumed: bool,
     is_finishing: bool,
     is_over: bool,
@@ -101,7 +115,9 @@ impl Activity {
             saved: Vec::new(),
         };
         Activity {
-            viewer: None,
+            headset: None,
+            immersive: None,
+            cardboard: None,
             gl: None,
             window: None,
             app: app.clone(),
@@ -116,6 +132,7 @@ impl Activity {
             input: Input::default(),
             events: Vec::new(),
             samples: Vec::new(),
+            is_display_chosen: false,
             is_resumed: false,
             is_finishing: false,
             is_over: false,
@@ -131,7 +148,12 @@ impl Activity {
     }
 
     fn is_ready(&self) -> bool {
-        self.viewer.as_ref().is_some_and(Cardboard::is_attached)
+        self.cardboard.as_ref().is_some_and(Cardboard::is_attached)
+    }
+
+    /// The application, on whatever it is shown.
+    fn viewer(&self) -> Option<&Viewer> {
+        self.immersive.as_ref().or(self.cardboard.as_ref().map(Cardboard::viewer))
     }
 
     fn is_drawing(&self) -> bool {
@@ -141,7 +163,14 @@ impl Activity {
 
     /// Sleeps until there is something to do, and lets Android's events in.
     fn wait(&mut self) {
-        let mut timeout = if self.retry.is_some() {
+        let mut timeout = if let Some(headset) = &self.headset {
+            Some(match (headset.is_running(), self.is_resumed) {
+                // The runtime sets the pace.
+                (true, _) => Duration::ZERO,
+                (false, true) => HEADSET_POLL,
+                (false, false) => HEADSET_BACKGROUND_POLL,
+            })
+        } else if self.retry.is_some() {
             Some(PATIENCE)
         } else if !self.is_drawing() {
             None
@@ -181,11 +210,12 @@ impl Activity {
             }
             MainEvent::GainedFocus => self.java.hide_system_bars(),
             MainEvent::Resume { loader, .. } => {
-                if self.viewer.is_none()
+                if self.viewer().is_none()
                     && let Some(saved) = loader.load()
                 {
                     self.sources.saved = settings::restore(&saved);
                 }
+                self.choose_display();
                 self.resume();
             }
             MainEvent::Pause => self.pause(),
@@ -202,11 +232,13 @@ impl Activity {
         self.is_display_stale = true;
         self.last_frame = Instant::now();
         self.device = Some(Device::watch(&self.java));
-        if let Some(pulse) = self.pulse {
+        if self.headset.is_none()
+            && let Some(pulse) = self.pulse
+        {
             pulse.resume(self.app.create_waker());
         }
-        if let Some(viewer) = &mut self.viewer {
-            viewer.resume();
+        if let Some(cardboard) = &mut self.cardboard {
+            cardboard.resume();
         }
         self.java.hide_system_bars();
     }
@@ -218,15 +250,14 @@ impl Activity {
         if let Some(pulse) = self.pulse {
             pulse.pause();
         }
-        if let Some(viewer) = &mut self.viewer {
-            viewer.pause();
+        if let Some(cardboard) = &mut self.cardboard {
+            cardboard.pause();
         }
     }
 
     /// What the user has changed since the settings were read.
     fn changes(&self) -> Vec<settings::Pair> {
-        let Some(cardboard) = &self.viewer else { return self.sources.saved.clone() };
-        let viewer = cardboard.viewer();
+        let Some(viewer) = self.viewer() else { return self.sources.saved.clone() };
         let method =
             (viewer.method() != self.settings.method).then(|| ("method", viewer.method().name().to_owned()));
         let ipd = viewer.chosen_ipd().filter(|ipd| Some(*ipd) != self.settings.ipd);
@@ -236,17 +267,131 @@ impl Activity {
 
     /// In the background everything on the GPU can go; it is made again with the next window.
     fn free_memory(&mut self) {
-        if self.window.as_ref().is_some_and(Window::is_attached) {
+        if self.headset.is_some() || self.window.as_ref().is_some_and(Window::is_attached) {
             log::warn!("Android is short of memory: a smaller render-scale or scene needs less");
-        } else if let Some(viewer) = &mut self.viewer {
+        } else if let Some(cardboard) = &mut self.cardboard {
             log::info!("Android is short of memory: what is on the GPU is dropped");
-            viewer.detach();
+            cardboard.detach();
         }
     }
 
-    /// Draws on Android's window, if there is one, and makes what is needed for it.
+    /// Decides on what the eyes are shown, and says why in one line.
+    fn choose_display(&mut self) {
+        if std::mem::replace(&mut self.is_display_chosen, true) {
+            return;
+        }
+        let settings = self.resolve();
+        if settings.display == DisplayKind::Cardboard {
+            log::info!("display: Cardboard-compatible viewer, since the settings say so");
+            return;
+        }
+        // SAFETY: the process's VM, and a global reference that lives as long as `self.app`.
+        let android = unsafe { Android::new(self.app.vm_as_ptr(), self.app.activity_as_ptr()) };
+        let found = match runtime::find(&runtime::android_places(), &self.java, Some(&android.context())) {
+            Ok(found) => found,
+            // A phone: nothing is wrong.
+            Err(reason) if reason.nothing_installed() && settings.display == DisplayKind::Auto => {
+                log::info!("display: Cardboard-compatible viewer, since {reason}");
+                return;
+            }
+            Err(reason) => {
+                log::warn!("display: Cardboard-compatible viewer, since {reason}");
+                return;
+            }
+        };
+        let line = found.found().to_string();
+        match self.open_headset(found, android) {
+            Ok(()) => log::info!("display: headset, by {line}"),
+            Err(reason) => {
+                self.close_headset();
+                log::warn!("display: Cardboard-compatible viewer, since {reason}");
+            }
+        }
+    }
+
+    fn open_headset(&mut self, found: runtime::Runtime, android: Android) -> Result<(), HeadsetError> {
+        let window = match self.window.take() {
+            Some(window) => window,
+            None => Window::open()?,
+        };
+        let window = self.window.insert(window);
+        if self.gl.is_none() {
+            let gl = window.gl().map_err(ViewerError::Gl)?;
+            log::info!("driver: {}", gl.capabilities().summary());
+            self.gl = Some(gl);
+        }
+        let mut viewer = self.make_viewer(Viewer::new)?;
+        let (Some(gl), Some(window)) = (&self.gl, &self.window) else { return Ok(()) };
+        viewer.attach(gl.clone())?;
+        let options = Options { android: Some(android), ..Options::default() };
+        self.headset = Some(Headset::open(found, window, gl, &viewer, options)?);
+        self.immersive = Some(viewer);
+        Ok(())
+    }
+
+    /// Leaves the headset; Android's window is next, if there is one.
+    fn close_headset(&mut self) {
+        self.headset = None;
+        self.immersive = None;
+    }
+
+    /// One step of the headset: a frame, unless the runtime wants none.
+    fn step_headset(&mut self) {
+        let (Some(headset), Some(viewer), Some(window)) =
+            (&mut self.headset, &mut self.immersive, &self.window)
+        else {
+            return;
+        };
+        self.events.drain(..).for_each(|event| headset.event(event));
+        let scene = viewer.scene_name().to_owned();
+        let frame = match headset.step(window, viewer) {
+            Ok(Step::Idle) => return,
+            Ok(Step::Frame(frame)) => frame,
+            Ok(Step::Ended) => return self.finish(),
+            Err(error) => {
+                log::error!("display: Cardboard-compatible viewer from now on, since {error}");
+                self.summarize();
+                self.is_summarized = false;
+                self.close_headset();
+                self.open_window();
+                if self.is_resumed {
+                    self.resume();
+                }
+                return;
+            }
+        };
+        if viewer.scene_name() != scene {
+            self.is_summarized = false;
+        }
+        let Some(report) = frame.report else { return };
+        if report.telemetry_due {
+            self.every_second();
+        }
+        if report.session_over {
+            self.summarize();
+        }
+        if report.exit
+            && let Some(headset) = &mut self.headset
+        {
+            headset.request_exit();
+        }
+    }
+
+    /// Asks Android to end the activity.
+    fn finish(&mut self) {
+        // Not by returning: only a loop that still runs gives window and input queue back.
+        if !std::mem::replace(&mut self.is_finishing, true) {
+            self.java.finish();
+        }
+    }
+
+    /// Draws on Android's window, if there is one and the headset does not need the context, and makes what is needed
+    /// for it.
     fn open_window(&mut self) {
         self.retry = None;
+        if self.headset.is_some() {
+            return;
+        }
         let Some(native) = self.app.native_window() else { return };
         let window = match self.window.take().map_or_else(Window::open, Ok) {
             Ok(window) => self.window.insert(window),
@@ -274,40 +419,42 @@ impl Activity {
     fn attach_viewer(&mut self) {
         let Some(screen) = self.screen() else { return };
         let Some(gl) = self.gl.clone() else { return };
-        if self.viewer.is_none() {
-            self.viewer = self.make_viewer(screen);
+        if self.cardboard.is_none() {
+            match self.make_viewer(|settings, folders| Cardboard::new(settings, screen, folders)) {
+                Ok(cardboard) => self.cardboard = Some(cardboard),
+                Err(error) => return self.fail(error.to_string()),
+            }
         }
-        let Some(viewer) = &mut self.viewer else { return };
-        if !viewer.is_attached()
-            && let Err(error) = viewer.attach(gl)
+        let Some(cardboard) = &mut self.cardboard else { return };
+        if !cardboard.is_attached()
+            && let Err(error) = cardboard.attach(gl)
         {
             self.fail(error.to_string());
         }
     }
 
     /// A viewer with the settings from outside; mistakes in them are told, and the defaults take their place.
-    fn make_viewer(&mut self, screen: Screen) -> Option<Cardboard> {
+    fn make_viewer<T>(
+        &mut self,
+        new: impl Fn(Settings, &[PathBuf]) -> Result<T, ViewerError>,
+    ) -> Result<T, ViewerError> {
         let settings = self.resolve();
         self.log_scenes();
         self.settings = settings.clone();
         let mut possible = settings;
         let defaults = Settings::default();
         loop {
-            let error = match Cardboard::new(possible.clone(), screen, &self.folders) {
-                Ok(viewer) => return Some(viewer),
+            let error = match new(possible.clone(), &self.folders) {
+                Ok(viewer) => return Ok(viewer),
                 Err(error) => error,
             };
             let (setting, default) = match error {
                 ViewerError::NoScene(_) => (&mut possible.scene, &defaults.scene),
                 ViewerError::Params(_) => (&mut possible.viewer, &defaults.viewer),
-                error => {
-                    self.fail(error.to_string());
-                    return None;
-                }
+                error => return Err(error),
             };
             if setting == default {
-                self.fail(error.to_string());
-                return None;
+                return Err(error);
             }
             log::warn!("{error}; {default} is taken");
             setting.clone_from(default);
@@ -347,8 +494,8 @@ impl Activity {
         self.log_error(error.to_string());
         match error {
             WindowError::ContextLost => {
-                if let Some(viewer) = &mut self.viewer {
-                    viewer.detach();
+                if let Some(cardboard) = &mut self.cardboard {
+                    cardboard.detach();
                 }
                 self.gl = None;
                 self.window = None;
@@ -394,6 +541,9 @@ impl Activity {
             let dpi = self.display.map_or(0.0, |display| display.dpi[0]);
             self.input.collect(&self.app, dpi, &mut self.events);
         }
+        if self.headset.is_some() {
+            return self.step_headset();
+        }
         // A window may have had no size when it came.
         if self.window.as_ref().is_some_and(Window::is_attached) && !self.is_ready() && self.failure.is_none()
         {
@@ -420,11 +570,12 @@ impl Activity {
     /// One frame, for the refresh that has just begun.
     fn frame(&mut self, refresh_ns: Option<i64>) -> Result<(), FrameError> {
         let Some(screen) = self.screen() else { return Ok(()) };
-        let (Some(viewer), Some(window)) = (&mut self.viewer, &self.window) else { return Ok(()) };
+        let (Some(viewer), Some(window)) = (&mut self.cardboard, &self.window) else { return Ok(()) };
         viewer.resize(screen)?;
         for event in self.events.drain(..) {
             match viewer.event(event) {
-                Ok(action) => log_action(action),
+                Ok(Action::Nothing) => {}
+                Ok(action) => log::info!("{action}"),
                 Err(error) => log::error!("{error}"),
             }
         }
@@ -455,19 +606,18 @@ impl Activity {
         if report.session_over {
             self.summarize();
         }
-        if report.exit && !self.is_finishing {
-            // Not by returning: only a loop that still runs gives window and input queue back.
-            self.is_finishing = true;
-            self.java.finish();
+        if report.exit {
+            self.finish();
         }
         Ok(())
     }
 
     fn every_second(&mut self) {
-        let Some(viewer) = &mut self.viewer else { return };
         let report = self.device.as_ref().map(Device::report).unwrap_or_default();
         self.refresh_hz = report.refresh_hz.unwrap_or(self.refresh_hz);
-        log::info!("{}", viewer.viewer_mut().telemetry(now_ns(), &report.state));
+        let viewer = self.immersive.as_mut().or(self.cardboard.as_mut().map(Cardboard::viewer_mut));
+        let Some(viewer) = viewer else { return };
+        log::info!("{}", viewer.telemetry(viewer.now_ns(), &report.state));
         if let Some(errors) = self.gl.as_ref().and_then(|gl| gl.take_errors()) {
             log::warn!("GL errors in the last second: {errors}");
         }
@@ -485,20 +635,27 @@ impl Activity {
         if (&settings.scene, settings.seed) != (&self.settings.scene, self.settings.seed) {
             self.summarize();
         }
-        let Some(viewer) = &mut self.viewer else { return };
+        let Some(viewer) = self.viewer() else { return };
         // What was not to be found at the start is not looked for again with every change.
         let mut possible = settings.clone();
         if settings.scene == self.settings.scene {
-            possible.scene.clone_from(&viewer.viewer().settings().scene);
+            possible.scene.clone_from(&viewer.settings().scene);
         }
         if settings.viewer == self.settings.viewer {
-            possible.viewer.clone_from(&viewer.viewer().settings().viewer);
+            possible.viewer.clone_from(&viewer.settings().viewer);
         }
         // Another scene begins another session.
         self.is_summarized = false;
-        match viewer.configure(possible, &self.folders) {
+        let configured = match (&mut self.immersive, &mut self.cardboard) {
+            (Some(viewer), _) => viewer.configure(possible, &self.folders),
+            (None, Some(cardboard)) => cardboard.configure(possible, &self.folders),
+            (None, None) => Ok(()),
+        };
+        match configured {
             Ok(()) => {
-                log::info!("settings: {}", viewer.viewer().settings());
+                if let Some(viewer) = self.viewer() {
+                    log::info!("settings: {}", viewer.settings());
+                }
                 self.settings = settings;
             }
             Err(error) => log::warn!("{error}; the settings stay as they were"),
@@ -506,10 +663,10 @@ impl Activity {
     }
 
     fn summarize(&mut self) {
-        if let Some(viewer) = &self.viewer
+        if let Some(viewer) = self.viewer()
             && !self.is_summarized
         {
-            log::info!("{}", viewer.viewer().summary(now_ns()));
+            log::info!("{}", viewer.summary(viewer.now_ns()));
             self.is_summarized = true;
         }
     }
@@ -517,6 +674,42 @@ impl Activity {
     fn end(&mut self) {
         self.pause();
         self.summarize();
+    }
+}
+
+/// Why there is a runtime and no headset.
+#[derive(Debug)]
+enum HeadsetError {
+    Window(WindowError),
+    Viewer(ViewerError),
+    Xr(XrError),
+}
+
+impl std::fmt::Display for HeadsetError {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            HeadsetError::Window(error) => error.fmt(f),
+            HeadsetError::Viewer(error) => error.fmt(f),
+            HeadsetError::Xr(error) => error.fmt(f),
+        }
+    }
+}
+
+impl From<WindowError> for HeadsetError {
+    fn from(error: WindowError) -> HeadsetError {
+        HeadsetError::Window(error)
+    }
+}
+
+impl From<ViewerError> for HeadsetError {
+    fn from(error: ViewerError) -> HeadsetError {
+        HeadsetError::Viewer(error)
+    }
+}
+
+impl From<XrError> for HeadsetError {
+    fn from(error: XrError) -> HeadsetError {
+        HeadsetError::Xr(error)
     }
 }
 
@@ -535,18 +728,6 @@ impl From<WindowError> for FrameError {
 impl From<ViewerError> for FrameError {
     fn from(error: ViewerError) -> FrameError {
         FrameError::Viewer(error)
-    }
-}
-
-fn log_action(action: Action) {
-    match action {
-        Action::Method(method) => log::info!("method: {}", method.name()),
-        Action::Recenter => log::info!("recentered"),
-        Action::Ipd(ipd) => log::info!("ipd: {ipd:.3} m"),
-        Action::Hud(is_shown) => log::info!("HUD: {}", if is_shown { "on" } else { "off" }),
-        Action::Viewpoint(n) => log::info!("viewpoint: {n}"),
-        Action::Scene => log::info!("another scene"),
-        Action::Marker(_) | Action::Answer | Action::Nothing => {}
     }
 }
 

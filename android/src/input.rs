@@ -80,6 +80,7 @@ impl Input {
             },
             Keycode::H | Keycode::ButtonX if is_down => events.push(Event::ToggleHud),
             Keycode::N | Keycode::ButtonY if is_down => events.push(Event::NextViewpoint),
+            Keycode::S if is_down => events.push(Event::NextScene),
             _ => return InputStatus::Unhandled,
         }
         InputStatus::Handled

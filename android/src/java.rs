@@ -5,6 +5,7 @@ use jni::objects::{JObject, JString};
 use jni::refs::Global;
 use jni::vm::JavaVM;
 use jni::{Env, JValue, jni_sig, jni_str};
+use yoro::platform::openxr::runtime::{Broker, Rows};
 
 /// `BatteryManager.BATTERY_PROPERTY_*`.
 #[derive(Clone, Copy, Debug)]
@@ -68,13 +69,20 @@ impl Java {
         what: &str,
         question: impl FnOnce(&mut Env, &JObject) -> jni::errors::Result<T>,
     ) -> Option<T> {
-        let answer = self.vm.attach_current_thread(|env| -> jni::errors::Result<T> {
+        self.try_ask(question).inspect_err(|error| log::debug!("{what}: {error}")).ok()
+    }
+
+    /// Asks the activity; an exception is cleared and returned.
+    fn try_ask<T>(
+        &self,
+        question: impl FnOnce(&mut Env, &JObject) -> jni::errors::Result<T>,
+    ) -> jni::errors::Result<T> {
+        self.vm.attach_current_thread(|env| -> jni::errors::Result<T> {
             let raw = self.app.activity_as_ptr() as jni::sys::jobject;
             // SAFETY: a global reference that android-activity owns and keeps as long as `app` lives.
             let activity = unsafe { env.as_cast_raw::<Global<JObject<'static>>>(&raw)? };
             question(env, activity.as_ref())
-        });
-        answer.inspect_err(|error| log::debug!("{what}: {error}")).ok()
+        })
     }
 
     /// The display, if Java says anything of it.
@@ -289,6 +297,103 @@ impl Java {
             java.ask(what, action);
         }));
     }
+}
+
+/// Content providers, through `ContentResolver.query`.
+impl Broker for Java {
+    fn query(&self, uri: &str, columns: &[&str]) -> Result<Option<Rows>, String> {
+        self.try_ask(|env, activity| rows(env, activity, uri, columns)).map_err(|error| error.to_string())
+    }
+}
+
+/// All rows of a table.
+fn rows(env: &mut Env, activity: &JObject, uri: &str, columns: &[&str]) -> jni::errors::Result<Option<Rows>> {
+    let resolver = env
+        .call_method(
+            activity,
+            jni_str!("getContentResolver"),
+            jni_sig!("()Landroid/content/ContentResolver;"),
+            &[],
+        )?
+        .l()?;
+    let text = JString::new(env, uri)?;
+    let uri = env
+        .call_static_method(
+            jni_str!("android/net/Uri"),
+            jni_str!("parse"),
+            jni_sig!("(Ljava/lang/String;)Landroid/net/Uri;"),
+            &[JValue::Object(text.as_ref())],
+        )?
+        .l()?;
+    let names = env.new_object_type_array::<JString>(columns.len(), JString::null())?;
+    for (i, column) in columns.iter().enumerate() {
+        let name = JString::new(env, column)?;
+        names.set_element(env, i, &name)?;
+    }
+    let null = JObject::null();
+    let cursor = env
+        .call_method(
+            &resolver,
+            jni_str!("query"),
+            jni_sig!(
+                "(Landroid/net/Uri;[Ljava/lang/String;Ljava/lang/String;[Ljava/lang/String;Ljava/lang/String;)Landroid/database/Cursor;"
+            ),
+            &[
+                JValue::Object(&uri),
+                JValue::Object(names.as_ref()),
+                JValue::Object(&null),
+                JValue::Object(&null),
+                JValue::Object(&null),
+            ],
+        )?
+        .l()?;
+    if cursor.is_null() {
+        return Ok(None);
+    }
+    let read = read_rows(env, &cursor, columns);
+    env.call_method(&cursor, jni_str!("close"), jni_sig!("()V"), &[])?.v()?;
+    read.map(Some)
+}
+
+fn read_rows(env: &mut Env, cursor: &JObject, columns: &[&str]) -> jni::errors::Result<Rows> {
+    let mut indices = Vec::new();
+    for column in columns {
+        let name = JString::new(env, column)?;
+        let index = env
+            .call_method(
+                cursor,
+                jni_str!("getColumnIndex"),
+                jni_sig!("(Ljava/lang/String;)I"),
+                &[JValue::Object(name.as_ref())],
+            )?
+            .i()?;
+        indices.push(index);
+    }
+    let mut rows = Rows::new();
+    while env.call_method(cursor, jni_str!("moveToNext"), jni_sig!("()Z"), &[])?.z()? {
+        let mut row = Vec::new();
+        for &index in &indices {
+            if index < 0 {
+                row.push(None);
+                continue;
+            }
+            let cell = env
+                .call_method(
+                    cursor,
+                    jni_str!("getString"),
+                    jni_sig!("(I)Ljava/lang/String;"),
+                    &[JValue::Int(index)],
+                )?
+                .l()?;
+            row.push(if cell.is_null() {
+                None
+            } else {
+                Some(env.cast_local::<JString>(cell)?.try_to_string(env)?)
+            });
+        }
+        rows.push(row);
+    }
+    Ok(rows)
 }
 
 /// `toString()`.

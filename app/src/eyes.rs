@@ -687,4 +687,53 @@ mod tests {
         assert!((minimum_object_distance(0.075, fov) - 0.065).abs() < 1e-3);
         assert!((full_overlap_distance(0.075, fov) - 0.129).abs() < 2e-3);
     }
+
+    #[test]
+    fn evened_eyes_contain_the_eyes_and_can_be_synthesized() {
+        let mut eyes = pair(Eye::Right);
+        eyes.frusta = [Frustum::from_angles(0.9, 0.7, 0.8, 0.75), Frustum::from_angles(0.5, 0.8, 0.81, 0.7)];
+        assert!(matches!(eyes.synthesis(GuardBand::None), Err(EyesError::Density { .. })));
+        let even = eyes.evened();
+        even.synthesis(GuardBand::None).unwrap();
+        for (grown, own) in even.frusta.iter().zip(&eyes.frusta) {
+            assert!(grown.left <= own.left + 1e-6 && grown.right >= own.right - 1e-6, "{grown:?}");
+            assert!(grown.bottom <= own.bottom && grown.top >= own.top, "{grown:?}");
+        }
+    }
+
+    #[test]
+    fn canted_eyes_see_nothing_beside_their_parallel_ones() {
+        let mut eyes = pair(Eye::Right);
+        eyes.frusta =
+            [Frustum::from_angles(0.8, 0.7, 0.75, 0.75), Frustum::from_angles(0.7, 0.8, 0.75, 0.75)];
+        // Outwards by 5 degrees each, and the head askew.
+        let head = Quat::from_euler(glam::EulerRot::YXZ, 0.4, -0.2, 0.1);
+        for (pose, side) in eyes.poses.iter_mut().zip([1.0, -1.0]) {
+            pose.position = head * Vec3::new(-side * 0.032, 0.0, 0.0);
+            pose.orientation = head * Quat::from_rotation_y(side * 5f32.to_radians());
+        }
+        assert!(matches!(eyes.synthesis(GuardBand::None), Err(EyesError::Canted { .. })));
+        let parallel = eyes.parallelized().unwrap();
+        parallel.synthesis(GuardBand::None).unwrap();
+        assert!(
+            (parallel.ipd() - 0.064).abs() < 1e-6 && parallel.poses[0].position == eyes.poses[0].position
+        );
+        for eye in Eye::BOTH {
+            let (own, wide) = (eyes.view(eye), parallel.view(eye));
+            for (x, y) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.5, 0.5)] {
+                let tangent = Vec3::new(
+                    own.frustum.left + x * own.frustum.width(),
+                    own.frustum.bottom + y * own.frustum.height(),
+                    -1.0,
+                );
+                let clip =
+                    wide.view_projection() * (own.pose.position + own.pose.orientation * tangent).extend(1.0);
+                let seen = clip.truncate() / clip.w;
+                assert!(seen.x.abs() < 1.0001 && seen.y.abs() < 1.0001, "{eye:?} {seen}");
+            }
+        }
+        // Nearly back to back.
+        eyes.poses[1].orientation = Quat::from_rotation_y(-2.5);
+        assert_eq!(eyes.parallelized(), None);
+    }
 }

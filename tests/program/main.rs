@@ -19,3 +19,4 @@ mod scenes;
 mod study;
 mod synthesize;
 mod view;
+mod xr;

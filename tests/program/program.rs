@@ -14,7 +14,8 @@ pub struct Run {
 }
 
 impl Run {
-    fn new(output: Output) -> Run {
+    /// What a finished process said.
+    pub fn new(output: Output) -> Run {
         let text = |bytes| String::from_utf8(bytes).expect("the program prints UTF-8");
         Run { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
     }

@@ -1,4 +1,5 @@
-//! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`.
+//! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`,
+//! `monado`.
 
 mod android;
 mod apt;
@@ -58,6 +59,8 @@ enum Task {
         /// The APK
         file: PathBuf,
     },
+    /// Set up Monado, an OpenXR runtime with a simulated headset, beside the system, and say how to use it
+    Monado,
     /// Formatting, clippy, documentation, and the library without the desktop program
     Lint,
 }
@@ -102,6 +105,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             show(&report.to_string());
             return Ok(report.passed());
         }
+        Task::Monado => show(&monado::usage()?),
         Task::Lint => lint()?,
     }
     Ok(true)

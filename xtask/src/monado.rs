@@ -48,6 +48,19 @@ pub fn for_tests() -> Equipped {
     }
 }
 
+/// Sets it up; how it is used.
+///
+/// # Errors
+/// When it cannot be had on this machine.
+pub fn usage() -> anyhow::Result<String> {
+    let folder = make()?.display().to_string();
+    Ok(format!(
+        "export XDG_RUNTIME_DIR=$(mktemp -d)\n\
+         {folder}/monado-service &\n\
+         {folder}/run target/release/yoro xr --frames 100\n"
+    ))
+}
+
 /// Fetches and unpacks it, unless what is there is complete.
 fn make() -> anyhow::Result<PathBuf> {
     if !cfg!(target_arch = "x86_64") {

@@ -8,6 +8,7 @@ use glow::HasContext as _;
 use khronos_egl as egl;
 use ndk::native_window::NativeWindow;
 
+use super::openxr::{Binding, Graphics};
 use crate::gl::{Context, GlError};
 
 // khronos-egl names no library when it does not ask pkg-config.
@@ -195,6 +196,26 @@ impl Window {
             egl::Error::ContextLost => WindowError::ContextLost,
             error => WindowError::Surface(format!("{what} failed: {error}")),
         }
+    }
+}
+
+// SAFETY: the context lives as long as the window object, on the thread that opened it.
+unsafe impl Graphics for Window {
+    fn binding(&self) -> Binding {
+        Binding {
+            display: self.display.as_ptr(),
+            config: self.config.as_ptr(),
+            context: self.context.as_ptr(),
+            get_proc_address: ptr::null(),
+        }
+    }
+
+    fn make_current(&self) -> Result<(), String> {
+        if self.egl.get_current_context() == Some(self.context) {
+            return Ok(());
+        }
+        let surface = self.shown.as_ref().map_or(self.placeholder, |shown| shown.surface);
+        Window::make_current(self, surface).map_err(|e| format!("eglMakeCurrent failed ({e})"))
     }
 }
 

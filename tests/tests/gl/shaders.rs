@@ -86,6 +86,9 @@ fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
     }
     Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
     DepthCopy::new(gl)?;
+    Program::new(gl, ShaderSource::Screen("openxr/transfer.frag"), &[])?;
+    let hidden = ShaderSource::Raster { vertex: "openxr/hidden.vert", fragment: "openxr/hidden.frag" };
+    Program::new(gl, hidden, &[])?;
     Ok(())
 }
 

@@ -13,7 +13,7 @@ pub enum XrError {
     #[error(transparent)]
     NotFound(#[from] NotFound),
     /// A call was refused.
-    #[error("{function} of the OpenXR runtime failed with XR_{result:?}: {}", remedy(*result))]
+    #[error("{function} of the OpenXR runtime failed with XR_{result:?}: {}", remedy(function, *result))]
     Call {
         /// The function's name in the specification.
         function: &'static str,
@@ -44,6 +44,14 @@ pub enum XrError {
     /// The runtime takes the session away.
     #[error("the OpenXR runtime has ended the session by itself: a new one is begun")]
     Lost,
+    /// One session after the other has failed.
+    #[error("{sessions} OpenXR sessions in a row have failed; the last one: {last}")]
+    GivenUp {
+        /// Number of sessions.
+        sessions: u32,
+        /// Why the last one failed.
+        last: Box<XrError>,
+    },
     /// The GL context cannot be used.
     #[error("the OpenGL ES context cannot be used with OpenXR: {0}")]
     Context(String),
@@ -67,13 +75,16 @@ impl XrError {
 }
 
 /// What to do about a result.
-fn remedy(result: sys::Result) -> &'static str {
+fn remedy(function: &str, result: sys::Result) -> &'static str {
     match result {
         sys::Result::ERROR_FORM_FACTOR_UNAVAILABLE => "connect the headset, switch it on and start again",
         sys::Result::ERROR_FORM_FACTOR_UNSUPPORTED => {
             "this runtime serves no headsets, so choose another one by XR_RUNTIME_JSON"
         }
         sys::Result::ERROR_RUNTIME_UNAVAILABLE | sys::Result::ERROR_INITIALIZATION_FAILED => {
+            "start the runtime's service, and look into its log"
+        }
+        sys::Result::ERROR_RUNTIME_FAILURE if function == "xrCreateInstance" => {
             "start the runtime's service, and look into its log"
         }
         sys::Result::ERROR_API_VERSION_UNSUPPORTED => "update the runtime: OpenXR 1.0 is needed",

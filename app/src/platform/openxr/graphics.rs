@@ -37,6 +37,11 @@ pub unsafe trait Graphics {
     fn make_current(&self) -> Result<(), String>;
 }
 
+/// Makes the context current again; runtimes may change that in any call that has to do with images or frames.
+pub(super) fn make_current(graphics: &dyn Graphics) -> Result<(), XrError> {
+    graphics.make_current().map_err(XrError::Context)
+}
+
 /// The Java side of an Android application.
 #[cfg(target_os = "android")]
 #[derive(Clone, Copy, Debug)]
@@ -69,12 +74,6 @@ impl Android {
 
 /// What a session consists of at first.
 pub(super) type NewSession = (xr::Session<xr::OpenGlEs>, xr::FrameWaiter, xr::FrameStream<xr::OpenGlEs>);
-
-/// The extension by which this system's runtimes take an EGL context.
-#[cfg(target_os = "android")]
-pub(super) const EXTENSION: &str = "XR_KHR_opengl_es_enable";
-#[cfg(not(target_os = "android"))]
-pub(super) const EXTENSION: &str = "XR_MNDX_egl_enable";
 
 /// xrCreateSession.
 pub(super) fn create_session(
@@ -114,6 +113,7 @@ pub(super) fn create_session(
     let mut handle = sys::Session::NULL;
     // SAFETY: the structures live through the call and the binding is valid by the contract of `Graphics`.
     let result = unsafe { (instance.fp().create_session)(instance.as_raw(), &info, &mut handle) };
+    make_current(graphics)?;
     check("xrCreateSession", result)?;
     // SAFETY: a new session of this instance, made for OpenGL ES.
     Ok(unsafe { xr::Session::from_raw(instance.clone(), handle, Box::new(())) })

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use openxr as xr;
 
 use super::error::XrError;
-use super::graphics::Graphics;
+use super::graphics::{Graphics, make_current};
 use super::runtime::Runtime;
 use super::session::{Description, Frame, Options, Progress, Session};
 use crate::gl::Context;
@@ -15,7 +15,7 @@ use crate::viewer::{Event, Viewer};
 /// The pause before the first new session; it doubles with each that fails.
 const PAUSE: Duration = Duration::from_millis(500);
 /// Sessions in a row that fail before the headset is given up.
-const MOST_FAILURES: u32 = 5;
+const MOST_FAILURES: u32 = 3;
 /// A session that has shown so many frames was a good one.
 const GOOD_FRAMES: u32 = 200;
 /// A runtime that was asked to end a session and does not is left alone after this.
@@ -49,6 +49,8 @@ pub struct Headset {
     frames: u32,
     retry: Option<Instant>,
     exit: Option<Instant>,
+    /// The runtime cannot end the session.
+    is_refused: bool,
     capture: bool,
 }
 
@@ -64,7 +66,17 @@ impl Headset {
         viewer: &Viewer,
         options: Options,
     ) -> Result<Headset, XrError> {
-        let session = Session::open(&runtime, graphics, gl, viewer.settings(), &options)?;
+        let open = || Session::open(&runtime, graphics, gl, viewer.settings(), &options);
+        // A runtime that is just being started or replaced loses what was begun.
+        let session = open().or_else(|error| {
+            if !error.is_loss() {
+                return Err(error);
+            }
+            log::warn!("{error} (after a pause of {:.1} s)", PAUSE.as_secs_f32());
+            std::thread::sleep(PAUSE);
+            make_current(graphics)?;
+            open()
+        })?;
         Ok(Headset {
             description: session.description().clone(),
             session: Some(session),
@@ -77,6 +89,7 @@ impl Headset {
             frames: 0,
             retry: None,
             exit: None,
+            is_refused: false,
             capture: false,
         })
     }
@@ -87,11 +100,14 @@ impl Headset {
     /// # Errors
     /// [`XrError`] when several sessions in a row have failed.
     pub fn step(&mut self, graphics: &dyn Graphics, viewer: &mut Viewer) -> Result<Step, XrError> {
-        if self.exit.is_some_and(|since| since.elapsed() > EXIT_PATIENCE) {
-            log::warn!(
-                "the OpenXR runtime does not end the session when it is asked to: it is left as it is"
-            );
-            self.session = None;
+        let is_late = self.exit.is_some_and(|since| since.elapsed() > EXIT_PATIENCE);
+        if is_late || self.is_refused {
+            if is_late {
+                log::warn!(
+                    "the OpenXR runtime does not end the session, although it was asked to: it is left"
+                );
+            }
+            self.close(graphics)?;
             return Ok(Step::Ended);
         }
         let Some(session) = &mut self.session else { return self.reopen(graphics, viewer) };
@@ -112,7 +128,7 @@ impl Headset {
                 Ok(Step::Frame(frame))
             }
             Ok(Progress::Ended) => {
-                self.session = None;
+                self.close(graphics)?;
                 Ok(Step::Ended)
             }
             Err(error) => self.fail(error, graphics, viewer),
@@ -126,23 +142,28 @@ impl Headset {
         graphics: &dyn Graphics,
         viewer: &mut Viewer,
     ) -> Result<Step, XrError> {
-        // What is dropped has framebuffers.
-        let current = graphics.make_current();
-        self.session = None;
+        self.close(graphics)?;
         viewer.pause();
-        current.map_err(XrError::Context)?;
         if self.exit.is_some() {
             log::warn!("{error}");
             return Ok(Step::Ended);
         }
         self.failures += 1;
         if self.failures > MOST_FAILURES {
-            return Err(error);
+            return Err(XrError::GivenUp { sessions: self.failures, last: Box::new(error) });
         }
         let pause = PAUSE * 2u32.pow(self.failures - 1);
-        log::warn!("{error} (in {:.1} s)", pause.as_secs_f32());
+        log::warn!("{error} (after a pause of {:.1} s)", pause.as_secs_f32());
         self.retry = Some(Instant::now() + pause);
         Ok(Step::Idle)
+    }
+
+    /// Drops the session, which has framebuffers.
+    fn close(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        let before = make_current(graphics);
+        self.session = None;
+        before?;
+        make_current(graphics)
     }
 
     /// Begins a new session, when it is time.
@@ -172,14 +193,15 @@ impl Headset {
         }
         self.exit = Some(Instant::now());
         // A session that has not begun has nothing to end.
-        let running = self.session.take_if(|session| !session.is_running()).is_none();
-        if running
-            && let Some(session) = &self.session
-            && let Err(error) = session.request_exit()
+        if let Some(session) = &self.session
+            && session.is_running()
         {
-            log::warn!("{error}");
-            self.session = None;
+            match session.request_exit() {
+                Ok(()) => return,
+                Err(error) => log::warn!("{error}"),
+            }
         }
+        self.is_refused = true;
     }
 
     /// Whether the session is being ended.

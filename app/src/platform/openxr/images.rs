@@ -8,6 +8,7 @@ use openxr as xr;
 use xr::sys;
 
 use super::error::{XrError, call, check};
+use super::graphics::{Graphics, make_current};
 use crate::eyes::Eye;
 use crate::gl::{Context, Destination, ForeignTarget};
 
@@ -40,26 +41,32 @@ pub(super) struct Images {
 
 impl Images {
     /// xrCreateSwapchain.
-    pub fn new(gl: &Rc<Context>, session: &xr::Session<xr::OpenGlEs>, kind: Kind) -> Result<Images, XrError> {
+    pub fn new(
+        graphics: &dyn Graphics,
+        gl: &Rc<Context>,
+        session: &xr::Session<xr::OpenGlEs>,
+        kind: Kind,
+    ) -> Result<Images, XrError> {
         let usage = match kind.is_depth {
             true => xr::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             false => xr::SwapchainUsageFlags::COLOR_ATTACHMENT | xr::SwapchainUsageFlags::SAMPLED,
         };
-        let swapchain = call(
-            "xrCreateSwapchain",
-            session.create_swapchain(&xr::SwapchainCreateInfo {
-                create_flags: xr::SwapchainCreateFlags::EMPTY,
-                usage_flags: usage,
-                format: kind.format,
-                sample_count: 1,
-                width: kind.size[0],
-                height: kind.size[1],
-                face_count: 1,
-                array_size: kind.layers,
-                mip_count: 1,
-            }),
-        )?;
-        let images = call("xrEnumerateSwapchainImages", swapchain.enumerate_images())?;
+        let swapchain = session.create_swapchain(&xr::SwapchainCreateInfo {
+            create_flags: xr::SwapchainCreateFlags::EMPTY,
+            usage_flags: usage,
+            format: kind.format,
+            sample_count: 1,
+            width: kind.size[0],
+            height: kind.size[1],
+            face_count: 1,
+            array_size: kind.layers,
+            mip_count: 1,
+        });
+        make_current(graphics)?;
+        let swapchain = call("xrCreateSwapchain", swapchain)?;
+        let images = swapchain.enumerate_images();
+        make_current(graphics)?;
+        let images = call("xrEnumerateSwapchainImages", images)?;
         if images.is_empty() {
             return Err(XrError::Nonsense("offers a swapchain without images".into()));
         }
@@ -83,11 +90,12 @@ impl Images {
     }
 
     /// xrAcquireSwapchainImage and xrWaitSwapchainImage: the next image can be drawn into.
-    pub fn acquire(&mut self) -> Result<(), XrError> {
+    pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
         let (fp, raw) = (self.instance.fp(), self.swapchain.as_raw());
         let mut index = 0;
         // SAFETY: a live swapchain; the result has a place.
         let result = unsafe { (fp.acquire_swapchain_image)(raw, std::ptr::null(), &mut index) };
+        make_current(graphics)?;
         check("xrAcquireSwapchainImage", result)?;
         let info = sys::SwapchainImageWaitInfo {
             ty: sys::SwapchainImageWaitInfo::TYPE,
@@ -98,6 +106,7 @@ impl Images {
         loop {
             // SAFETY: as above.
             let result = unsafe { (fp.wait_swapchain_image)(raw, &info) };
+            make_current(graphics)?;
             if check("xrWaitSwapchainImage", result)? != sys::Result::TIMEOUT_EXPIRED {
                 break;
             }
@@ -113,7 +122,7 @@ impl Images {
     }
 
     /// xrReleaseSwapchainImage: what was drawn can be shown.
-    pub fn release(&mut self) -> Result<(), XrError> {
+    pub fn release(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
         if self.current.take().is_none() {
             return Ok(());
         }
@@ -121,7 +130,13 @@ impl Images {
         let result = unsafe {
             (self.instance.fp().release_swapchain_image)(self.swapchain.as_raw(), std::ptr::null())
         };
+        make_current(graphics)?;
         check("xrReleaseSwapchainImage", result).map(drop)
+    }
+
+    /// Deletes the framebuffers; nothing more can be drawn.
+    pub fn close(&mut self) {
+        self.framebuffers.clear();
     }
 
     /// Where to draw a layer of the image that was acquired.
@@ -149,16 +164,17 @@ pub(super) struct EyeImages(Vec<Images>);
 impl EyeImages {
     /// `kind.layers` is found out.
     pub fn new(
+        graphics: &dyn Graphics,
         gl: &Rc<Context>,
         session: &xr::Session<xr::OpenGlEs>,
         kind: Kind,
     ) -> Result<EyeImages, XrError> {
-        match Images::new(gl, session, Kind { layers: 2, ..kind }) {
+        match Images::new(graphics, gl, session, Kind { layers: 2, ..kind }) {
             Ok(images) => Ok(EyeImages(vec![images])),
             Err(error) if error.is_loss() => Err(error),
             Err(error) => {
                 log::info!("each eye has its own swapchain, since {error}");
-                let single = || Images::new(gl, session, Kind { layers: 1, ..kind });
+                let single = || Images::new(graphics, gl, session, Kind { layers: 1, ..kind });
                 Ok(EyeImages(vec![single()?, single()?]))
             }
         }
@@ -177,12 +193,16 @@ impl EyeImages {
         }
     }
 
-    pub fn acquire(&mut self) -> Result<(), XrError> {
-        self.0.iter_mut().try_for_each(Images::acquire)
+    pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        self.0.iter_mut().try_for_each(|images| images.acquire(graphics))
     }
 
-    pub fn release(&mut self) -> Result<(), XrError> {
-        self.0.iter_mut().try_for_each(Images::release)
+    pub fn release(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        self.0.iter_mut().try_for_each(|images| images.release(graphics))
+    }
+
+    pub fn close(&mut self) {
+        self.0.iter_mut().for_each(Images::close);
     }
 
     /// Where to draw both eyes.

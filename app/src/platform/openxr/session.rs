@@ -8,7 +8,7 @@ use openxr as xr;
 use xr::sys;
 
 use super::error::{XrError, call, check, optional};
-use super::graphics::{self, Graphics};
+use super::graphics::{self, Graphics, make_current};
 use super::images::{EyeImages, Images, Kind};
 use super::input::Input;
 use super::mask::Mask;
@@ -107,8 +107,8 @@ struct PanelImages {
 
 /// Depth of both eyes.
 struct Depth {
-    images: EyeImages,
     copy: DepthCopy,
+    images: EyeImages,
     format: u32,
 }
 
@@ -121,11 +121,11 @@ struct Layers {
 /// A session with everything that belongs to it. What has framebuffers goes before the images, and those before the
 /// session.
 pub(super) struct Session {
-    eyes: EyeImages,
-    depth: Option<Depth>,
-    panel: Option<PanelImages>,
     storage: Storage,
     mask: Option<Mask>,
+    depth: Option<Depth>,
+    eyes: EyeImages,
+    panel: Option<PanelImages>,
     input: Option<Input>,
     /// The head.
     head: xr::Space,
@@ -162,7 +162,7 @@ impl Session {
         settings: &Settings,
         options: &Options,
     ) -> Result<Session, XrError> {
-        graphics.make_current().map_err(XrError::Context)?;
+        make_current(graphics)?;
         let instance = create_instance(runtime, options)?;
         let properties = call("xrGetInstanceProperties", instance.properties())?;
         let system = call("xrGetSystem", instance.system(xr::FormFactor::HEAD_MOUNTED_DISPLAY))?;
@@ -209,12 +209,13 @@ impl Session {
             XrError::Nonsense("offers no format of images that OpenGL ES can draw to".into())
         })?;
         let color = Kind { format, is_depth: false, size, layers: 2 };
-        let eyes = EyeImages::new(gl, &session, color)?;
+        let eyes = EyeImages::new(graphics, gl, &session, color)?;
         let depth = match instance.exts().khr_composition_layer_depth {
-            Some(_) => optional("no depth is submitted", make_depth(gl, &session, &formats, size))?.flatten(),
+            Some(_) => optional("no depth is submitted", make_depth(graphics, gl, &session, &formats, size))?
+                .flatten(),
             None => None,
         };
-        let panel = Images::new(gl, &session, Kind { size: Panel::MAX_SIZE, layers: 1, ..color });
+        let panel = Images::new(graphics, gl, &session, Kind { size: Panel::MAX_SIZE, layers: 1, ..color });
         let panel = optional("there is no HUD", panel)?.map(|images| PanelImages { images, version: None });
         let mut mask = None;
         if instance.exts().khr_visibility_mask.is_some() {
@@ -239,7 +240,7 @@ impl Session {
             .unwrap_or_default(),
             None => Vec::new(),
         };
-        graphics.make_current().map_err(XrError::Context)?;
+        make_current(graphics)?;
         let storage = Storage::new(gl, format)?;
         let stereo = views == xr::ViewConfigurationType::PRIMARY_STEREO;
         let description = Description {
@@ -322,9 +323,10 @@ impl Session {
         self.apply_settings(viewer.settings())?;
         let wait = call("xrWaitFrame", self.waiter.wait())?;
         let begin = Instant::now();
-        graphics.make_current().map_err(XrError::Context)?;
         let (time, period) = (wait.predicted_display_time, wait.predicted_display_period.as_nanos());
-        call("xrBeginFrame", self.stream.begin())?;
+        let begun = self.stream.begin();
+        make_current(graphics)?;
+        call("xrBeginFrame", begun)?;
         let timing = FrameTiming {
             now_ns: time.as_nanos(),
             expected_display_ns: time.as_nanos(),
@@ -337,8 +339,9 @@ impl Session {
         if wait.should_render {
             layers = self.render(graphics, viewer, time, capture, &mut captured)?;
         }
-        self.end_frame(time, &layers)?;
-        graphics.make_current().map_err(XrError::Context)?;
+        let ended = self.end_frame(time, &layers);
+        make_current(graphics)?;
+        ended?;
         let cpu_ms = begin.elapsed().as_secs_f64() * 1e3;
         let report = match layers.eyes {
             Some(_) => self.told(viewer.end(&timing)),
@@ -638,11 +641,10 @@ impl Session {
         }
         pair.poses = pair.poses.map(|pose| viewer.place(pose));
 
-        self.eyes.acquire()?;
+        self.eyes.acquire(graphics)?;
         if let Some(depth) = &mut self.depth {
-            depth.images.acquire()?;
+            depth.images.acquire(graphics)?;
         }
-        graphics.make_current().map_err(XrError::Context)?;
         let no_image = || XrError::Nonsense("has no image to draw into".into());
         let images = self.eyes.destinations(size).ok_or_else(no_image)?;
         let rendered = self.render_eyes(viewer, &pair, images)?;
@@ -650,9 +652,9 @@ impl Session {
             let eyes = images.map(|image| self.gl.read_rgba8(&image));
             *captured = Some(Capture { eyes, pair });
         }
-        self.eyes.release()?;
+        self.eyes.release(graphics)?;
         if let Some(depth) = &mut self.depth {
-            depth.images.release()?;
+            depth.images.release(graphics)?;
         }
         if !rendered {
             return Ok(nothing);
@@ -703,14 +705,13 @@ impl Session {
             }
         };
         if *version != Some(panel.version()) {
-            images.acquire()?;
-            graphics.make_current().map_err(XrError::Context)?;
+            images.acquire(graphics)?;
             if let Some(to) = images.destination(0, panel.size()) {
                 panel.draw(&to);
                 // SAFETY: no arguments.
                 unsafe { glow::HasContext::flush(self.gl.raw()) };
             }
-            images.release()?;
+            images.release(graphics)?;
             *version = Some(panel.version());
         }
         let ([width, height], center) = (panel.metres(), panel.center());
@@ -801,6 +802,19 @@ impl Session {
     }
 }
 
+impl Drop for Session {
+    fn drop(&mut self) {
+        // Whether the context is still current after a swapchain is destroyed is up to the runtime.
+        self.eyes.close();
+        if let Some(depth) = &mut self.depth {
+            depth.images.close();
+        }
+        if let Some(panel) = &mut self.panel {
+            panel.images.close();
+        }
+    }
+}
+
 /// An instance with the extensions that are of use.
 fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance, XrError> {
     let entry = call("xrGetInstanceProcAddr", runtime.entry())?;
@@ -817,7 +831,7 @@ fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance,
     #[cfg(not(target_os = "android"))]
     {
         if !offered.mndx_egl_enable {
-            return Err(XrError::Extension { extension: graphics::EXTENSION });
+            return Err(XrError::Extension { extension: "XR_MNDX_egl_enable" });
         }
         enabled.mndx_egl_enable = true;
     }
@@ -846,6 +860,7 @@ fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance,
 }
 
 fn make_depth(
+    graphics: &dyn Graphics,
     gl: &Rc<Context>,
     session: &xr::Session<xr::OpenGlEs>,
     formats: &[u32],
@@ -855,7 +870,7 @@ fn make_depth(
         log::info!("no depth is submitted: the runtime takes none of the formats of OpenGL ES");
         return Ok(None);
     };
-    let images = EyeImages::new(gl, session, Kind { format, is_depth: true, size, layers: 2 })?;
+    let images = EyeImages::new(graphics, gl, session, Kind { format, is_depth: true, size, layers: 2 })?;
     Ok(Some(Depth { images, copy: DepthCopy::new(gl)?, format }))
 }
 

@@ -14,8 +14,14 @@ const PACKAGE: &str = "io.github.yoro";
 const ACTIVITY: &str = "android.app.NativeActivity";
 const LIBRARY: &str = "yoro_android";
 const TARGET_API: u32 = 34;
-/// What the application asks the user or the system for.
-const PERMISSIONS: [&str; 0] = [];
+/// What the application asks the user or the system for: OpenXR runtimes may want to be asked.
+const PERMISSIONS: [&str; 2] =
+    ["org.khronos.openxr.permission.OPENXR", "org.khronos.openxr.permission.OPENXR_SYSTEM"];
+/// Whom it means to talk to: without that Android hides them.
+const AUTHORITIES: &str = "org.khronos.openxr.runtime_broker;org.khronos.openxr.system_runtime_broker";
+/// What makes it an immersive application on headsets, besides the launcher's category.
+const IMMERSIVE: [&str; 2] =
+    ["com.oculus.intent.category.VR", "org.khronos.openxr.intent.category.IMMERSIVE_HMD"];
 /// Everything that may change while the activity goes on: locale, touchscreen, keyboard, keyboardHidden, navigation,
 /// orientation, screenLayout, uiMode, screenSize, smallestScreenSize, density, layoutDirection, colorMode, fontScale.
 const CONFIG_CHANGES: u64 = 0x4000_7ffc;
@@ -181,6 +187,23 @@ impl Manifest {
         };
         report.row("launcher", "exported, MAIN, LAUNCHER", problem.map(str::to_owned));
 
+        let value = |name: &str| {
+            let data = self.all("meta-data").find(|e| e.text("android:name") == name);
+            data.map(|element| element.text("android:value").to_owned()).unwrap_or_default()
+        };
+        let absent = IMMERSIVE.iter().find(|category| !has("category", category));
+        let problem = if let Some(category) = absent {
+            Some(format!("no category {category}: headsets would show a flat panel"))
+        } else if self.one("provider").text("android:authorities") != AUTHORITIES {
+            Some("no queries for the runtime brokers: headsets would show a flat panel".to_owned())
+        } else if !["true", "0xffffffff"].contains(&value("com.oculus.vr.focusaware").as_str()) {
+            Some("com.oculus.vr.focusaware should be true: the system's panels would pause it".to_owned())
+        } else {
+            let missing = !value("com.oculus.supportedDevices").split('|').any(|device| device == "quest3");
+            missing.then(|| "com.oculus.supportedDevices should list the headsets".to_owned())
+        };
+        report.row("headsets", "immersive by OpenXR", problem);
+
         let landscape = activity.number("android:screenOrientation") == Some(0);
         let themed = !self.one("application").text("android:theme").is_empty();
         let changes = activity.number("android:configChanges").unwrap_or(0);
@@ -272,6 +295,11 @@ mod tests {
             "launcher",
         );
         changed_fails("android.intent.category.LAUNCHER", "android.intent.category.HOME", "launcher");
+        changed_fails("com.oculus.intent.category.VR", "com.oculus.intent.category.2D", "headsets");
+        changed_fails("IMMERSIVE_HMD", "PANEL", "headsets");
+        changed_fails("org.khronos.openxr.runtime_broker;", "", "headsets");
+        changed_fails("com.oculus.vr.focusaware", "com.oculus.vr.other", "headsets");
+        changed_fails("quest3|", "", "headsets");
         changed_fails(
             "screenOrientation(0x0101001e)=(type 0x10)0x0",
             "screenOrientation(0x0101001e)=(type 0x10)0x1",

@@ -1,0 +1,664 @@
+//! `yoro xr`, on the simulated runtime of ../openxr-stub and on Monado.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use image::{Rgb, RgbImage};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use yoro::cli::stage::eye_image;
+use yoro::eyes::{Eye, EyePair};
+use yoro::metrics::{Channels, Quality};
+use yoro::picture;
+use yoro::platform::{Backend, Headless};
+use yoro::render::{GpuScene, Renderer};
+use yoro::scene::builtin;
+use yoro::stereo::{self, Method, StereoFrame};
+use yoro::viewer::Settings;
+use yoro_openxr_stub::log::{self, Entry, Layer, View};
+use yoro_openxr_stub::script::{
+    At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
+};
+
+use crate::program::{Run, finish, yoro};
+
+/// Rendering that costs little.
+const CHEAP: [&str; 4] = ["shadow-map=0", "ssao=off", "bloom=false", "hud=false"];
+/// No run takes this long.
+const LIMIT: Duration = Duration::from_secs(60);
+
+fn cheap() -> impl Iterator<Item = &'static str> {
+    CHEAP.iter().flat_map(|setting| ["--set", *setting])
+}
+
+/// Runs to the end, which must come in time.
+#[track_caller]
+fn in_time(command: &mut Command) -> Run {
+    let mut child =
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > LIMIT {
+            child.kill().unwrap();
+            let output = child.wait_with_output().unwrap();
+            panic!("it hangs: {}", String::from_utf8_lossy(&output.stderr));
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    Run::new(child.wait_with_output().unwrap())
+}
+
+/// The simulated runtime with a script, and what it has seen.
+struct Simulated {
+    folder: TempDir,
+}
+
+impl Simulated {
+    fn new(script: &Script) -> Simulated {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let mut script = script.clone();
+        script.log = Some(at("log.jsonl"));
+        if let Some(pictures) = &mut script.pictures {
+            pictures.folder = folder.path().into();
+        }
+        fs::write(at("script.json"), serde_json::to_string(&script).unwrap()).unwrap();
+        // Cargo builds it for these tests, beside them.
+        let library = std::env::current_exe().unwrap().with_file_name("libyoro_openxr_stub.so");
+        let manifest = json!({
+            "file_format_version": "1.0.0",
+            "runtime": { "name": "simulated", "library_path": library },
+        });
+        fs::write(at("runtime.json"), manifest.to_string()).unwrap();
+        Simulated { folder }
+    }
+
+    /// Runs `yoro xr` with a line of arguments and cheap rendering.
+    #[track_caller]
+    fn run(&self, line: &str) -> Run {
+        self.run_as(line, cheap())
+    }
+
+    #[track_caller]
+    fn run_as(&self, line: &str, more: impl IntoIterator<Item = &'static str>) -> Run {
+        let arguments = ["xr", "--runtime", "runtime.json"].into_iter().chain(line.split_whitespace());
+        let mut command = yoro(arguments.chain(more));
+        command.env(VARIABLE, "script.json").env("RUST_LOG", "yoro=info").current_dir(&self.folder);
+        in_time(&mut command)
+    }
+
+    /// As [`Simulated::run`]; it must end well, without anything that the specification forbids.
+    #[track_caller]
+    fn succeed(&self, line: &str) -> Run {
+        let run = self.run(line);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        self.check();
+        run
+    }
+
+    fn log(&self) -> Vec<Entry> {
+        log::read(&self.path("log.jsonl"))
+    }
+
+    /// Nothing was done that the specification forbids.
+    #[track_caller]
+    fn check(&self) {
+        let violations: Vec<Entry> =
+            self.log().into_iter().filter(|entry| matches!(entry, Entry::Violation { .. })).collect();
+        assert!(violations.is_empty(), "{violations:#?}");
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn picture(&self, name: &str) -> RgbImage {
+        picture::load_color(&self.path(name)).unwrap()
+    }
+
+    /// The views of each frame that has any, with the frame's number.
+    fn views(&self) -> Vec<(u32, Vec<View>)> {
+        let views = |entry| match entry {
+            Entry::Frame { frame, layers, .. } => layers.into_iter().find_map(|layer| match layer {
+                Layer::Projection { views } => Some((frame, views)),
+                _ => None,
+            }),
+            _ => None,
+        };
+        self.log().into_iter().filter_map(views).collect()
+    }
+
+    fn count(&self, is: impl Fn(&Entry) -> bool) -> usize {
+        self.log().iter().filter(|entry| is(entry)).count()
+    }
+}
+
+fn event(at: At, what: What) -> Event {
+    Event { at, what }
+}
+
+/// Lines of the log that tell of a failure.
+fn failures(run: &Run) -> Vec<&str> {
+    run.stderr.lines().filter(|line| line.contains("OpenXR runtime")).collect()
+}
+
+#[track_caller]
+fn assert_no_crash(run: &Run) {
+    assert!(matches!(run.code, Some(0 | 2)), "{:?}: {}", run.code, run.stderr);
+    for internal in ["panicked", "stack backtrace", "RUST_BACKTRACE"] {
+        assert!(!run.stderr.contains(internal), "{}", run.stderr);
+    }
+}
+
+/// Columns and rows at the edges, and everything between, hold no pixel that was never drawn.
+#[track_caller]
+fn assert_drawn(image: &RgbImage) {
+    let poison = Rgb([POISON[0], POISON[1], POISON[2]]);
+    let undrawn = image.enumerate_pixels().find(|(_, _, pixel)| **pixel == poison);
+    assert_eq!(undrawn, None, "a pixel that was never drawn");
+}
+
+#[test]
+fn a_session_from_beginning_to_end() {
+    let script = Script {
+        poison: true,
+        pictures: Some(Pictures { folder: PathBuf::new(), frames: vec![3, 6] }),
+        ..Script::default()
+    };
+    let simulated = Simulated::new(&script.asymmetric());
+    let run = simulated.succeed("--method conventional,yoro --frames 3 --capture captured --json");
+    let summary = run.json();
+    assert_eq!(
+        summary["states"],
+        json!([
+            "IDLE",
+            "READY",
+            "SYNCHRONIZED",
+            "VISIBLE",
+            "FOCUSED",
+            "VISIBLE",
+            "SYNCHRONIZED",
+            "STOPPING",
+            "IDLE",
+            "EXITING"
+        ])
+    );
+    assert_eq!(summary["methods"].as_array().unwrap().len(), 2);
+    for entry in simulated.log() {
+        if let Entry::Frame { should_render, layers, .. } = entry {
+            assert_eq!(should_render, !layers.is_empty(), "images exactly when they are wanted");
+        }
+    }
+    let views = simulated.views();
+    assert!(views.len() >= 6);
+    for (_, views) in &views {
+        let [left, right] = views.as_slice() else { panic!("{views:?}") };
+        assert!((right.position[0] - left.position[0] - 0.063).abs() < 1e-4);
+        for (view, fov) in [(left, [-52.0, 42.0, 47.0, -50.0]), (right, [-42.0, 52.0, 47.0, -50.0])] {
+            for (submitted, located) in view.fov_degrees.into_iter().zip(fov) {
+                assert!((submitted - located).abs() < 0.01, "{view:?}");
+            }
+        }
+        assert_eq!(
+            (left.image.swapchain, left.image.layer, right.image.layer),
+            (right.image.swapchain, 0, 1),
+            "one array for both eyes"
+        );
+        for view in views {
+            let depth = view.depth.as_ref().expect("depth is submitted where the extension exists");
+            assert_eq!(depth.image.layer, view.image.layer);
+            assert!(depth.near_far[0] < depth.near_far[1], "{depth:?}");
+        }
+    }
+    // What the runtime got is what the program says that it drew: an array's layers are not swapped.
+    let (frame, _) = views[2];
+    let pictures = [0, 1].map(|view| simulated.picture(&format!("frame-{frame}-view-{view}.png")));
+    pictures.iter().for_each(assert_drawn);
+    assert!(pictures[0] != pictures[1]);
+    assert_eq!(simulated.count(|entry| matches!(entry, Entry::Destroyed { .. })), 2, "session and instance");
+}
+
+#[test]
+fn what_the_runtime_gets_is_what_is_captured() {
+    let script = Script {
+        pictures: Some(Pictures { folder: PathBuf::new(), frames: (0..8).collect() }),
+        ..Script::default()
+    };
+    let simulated = Simulated::new(&script.asymmetric());
+    simulated.succeed("--frames 2 --capture captured");
+    let (frame, _) = *simulated.views().last().unwrap();
+    let captured = ["left", "right"].map(|eye| simulated.picture(&format!("captured/yoro.{eye}.png")));
+    let candidates: Vec<[RgbImage; 2]> = (0..=frame)
+        .filter(|frame| simulated.path(&format!("frame-{frame}-view-0.png")).exists())
+        .map(|frame| [0, 1].map(|view| simulated.picture(&format!("frame-{frame}-view-{view}.png"))))
+        .collect();
+    assert!(candidates.contains(&captured), "the captured images are those of no frame");
+}
+
+#[test]
+fn any_call_may_fail_once() {
+    let clean = Simulated::new(&Script::default());
+    clean.succeed("--frames 2");
+    let Some(Entry::Calls { counts }) = clean.log().pop() else { panic!("the log ends with the calls") };
+    assert!(counts.len() > 40, "{counts:?}");
+    for call in counts.keys() {
+        // Of xrGetInstanceProcAddr's calls those before the instance are the ones that matter.
+        let fault = Fault { call: call.clone(), nth: 1, and_later: false, result: -2 };
+        let simulated = Simulated::new(&Script { faults: vec![fault], ..Script::default() });
+        let run = simulated.run("--frames 2");
+        assert_no_crash(&run);
+        simulated.check();
+        assert_eq!(simulated.count(|entry| matches!(entry, Entry::Fault { .. })), 1, "{call}");
+        let told = failures(&run).into_iter().filter(|line| line.contains("failed with")).collect::<Vec<_>>();
+        // Nothing is lost when something cannot be destroyed.
+        let expected = if call.starts_with("xrDestroy") { 0 } else { 1 };
+        assert_eq!(told.len(), expected, "{call}: {}", run.stderr);
+        assert!(told.iter().all(|line| line.contains(call)), "{call}: {told:?}");
+    }
+}
+
+#[test]
+fn a_call_that_fails_for_ever_ends_the_program() {
+    let fault = Fault { call: "xrWaitFrame".into(), nth: 3, and_later: true, result: -2 };
+    let simulated = Simulated::new(&Script { faults: vec![fault], ..Script::default() });
+    let run = simulated.run("--frames 9");
+    assert_eq!(run.code, Some(2), "{}", run.stderr);
+    assert!(failures(&run).len() < 10, "{}", run.stderr);
+    simulated.check();
+}
+
+#[test]
+fn a_session_is_lost_in_every_state() {
+    let states =
+        [State::Idle, State::Ready, State::Synchronized, State::Visible, State::Focused, State::Stopping];
+    for state in states {
+        for what in [What::LoseSession, What::SessionLossPending, What::LoseInstance] {
+            let case = format!("{what:?} in {state:?}");
+            let events = vec![event(At::State(state), what)];
+            let simulated = Simulated::new(&Script { events, ..Script::default() });
+            let run = simulated.run("--frames 2");
+            assert_no_crash(&run);
+            simulated.check();
+            assert_eq!(simulated.count(|e| matches!(e, Entry::Scripted { .. })), 1, "{case}");
+            if state == State::Stopping {
+                // All frames were there: nothing needs to be begun again.
+                continue;
+            }
+            assert_eq!(run.code, Some(0), "{case}: {}", run.stderr);
+            assert_eq!(
+                failures(&run).iter().filter(|line| !line.contains("INFO")).count(),
+                1,
+                "{case}: {}",
+                run.stderr
+            );
+            assert_eq!(simulated.count(|e| matches!(e, Entry::Session { .. })), 2, "{case}");
+            let frames = simulated.views().len();
+            assert!(frames >= 2, "{case}: {frames} frames");
+        }
+    }
+}
+
+#[test]
+fn a_long_evening() {
+    let events = vec![
+        event(At::Frame(6), What::Level(State::Visible)),
+        event(At::Frame(8), What::Level(State::Synchronized)),
+        event(At::Frame(10), What::Level(State::Focused)),
+        event(At::Frame(14), What::Recenter(30.0)),
+        event(At::Frame(16), What::RefreshRate(90.0)),
+        event(At::Frame(18), What::Profile(None)),
+        event(At::Frame(19), What::Profile(Some("/interaction_profiles/khr/simple_controller".into()))),
+        event(At::Frame(20), What::EventsLost),
+        event(At::Frame(21), What::MaskChanged),
+        event(At::Frame(24), What::TakeOff(5)),
+    ];
+    let script = Script {
+        events,
+        visibility_mask: true,
+        untracked: vec![12, 13],
+        ipd: vec![(0, 0.063), (15, 0.058), (22, 0.068)],
+        ..Script::default()
+    };
+    let simulated = Simulated::new(&script.asymmetric());
+    let run = simulated.succeed("--frames 30 --json");
+    assert_eq!(simulated.count(|e| matches!(e, Entry::Begun { .. })), 2, "taken off and put on again");
+    assert_eq!(run.json()["restarts"], 0);
+    for (frame, views) in simulated.views() {
+        let wanted = if frame < 15 {
+            0.063
+        } else if frame < 22 {
+            0.058
+        } else {
+            0.068
+        };
+        let across: f32 = (0..3).map(|i| (views[1].position[i] - views[0].position[i]).powi(2)).sum();
+        assert!((across.sqrt() - wanted).abs() < 1e-4, "frame {frame}: {views:?}");
+        assert!(![12, 13].contains(&frame), "nothing is shown from a pose that nobody knows");
+    }
+}
+
+#[test]
+fn the_user_ends_it() {
+    let events = vec![event(At::Frame(6), What::Exit)];
+    let simulated = Simulated::new(&Script { events, ..Script::default() });
+    let run = simulated.succeed("");
+    assert!(run.stdout.contains("EXITING"), "{}", run.stdout);
+}
+
+#[test]
+fn controllers_switch_methods() {
+    let press =
+        |frame, path: &str, value| Input { frame, path: format!("/user/hand/{path}"), value: [value, 0.0] };
+    let script = Script {
+        inputs: vec![
+            press(10, "right/input/a/click", 1.0),
+            press(12, "right/input/a/click", 0.0),
+            press(20, "left/input/thumbstick", -1.0),
+            press(22, "left/input/thumbstick", 0.0),
+        ],
+        events: vec![event(At::Frame(30), What::Exit)],
+        ..Script::default()
+    };
+    let simulated = Simulated::new(&script);
+    let run = simulated.succeed("--json");
+    let summary = run.json();
+    let methods: Vec<&str> =
+        summary["methods"].as_array().unwrap().iter().map(|m| m["method"].as_str().unwrap()).collect();
+    assert_eq!(methods, ["yoro", "conventional", "yoro"]);
+}
+
+#[test]
+fn what_the_runtime_lacks_is_done_without() {
+    let optional = [
+        "XR_KHR_composition_layer_depth",
+        "XR_KHR_visibility_mask",
+        "XR_FB_display_refresh_rate",
+        "XR_EXT_performance_settings",
+        "XR_EXT_local_floor",
+    ];
+    let missing_extensions = optional.map(str::to_owned).into();
+    let simulated = Simulated::new(&Script { missing_extensions, ..Script::default() });
+    simulated.succeed("--frames 1 --set refresh-rate=90");
+    assert!(simulated.views().iter().flat_map(|(_, views)| views).all(|view| view.depth.is_none()));
+    let log = simulated.log();
+    assert!(!log.iter().any(|e| matches!(e, Entry::Request { what, .. } if what == "refresh-rate")));
+
+    // No sRGB, no depth; no controllers; no stereo.
+    let simulated = Simulated::new(&Script { formats: vec![0x8058], profile: None, ..Script::default() });
+    simulated.succeed("--frames 1");
+    let simulated = Simulated::new(&Script { stereo: false, ..Script::default() });
+    simulated.succeed("--frames 1 --mono");
+    assert!(simulated.views().iter().all(|(_, views)| views.len() == 1));
+}
+
+#[test]
+fn what_cannot_be_done_without_is_named() {
+    let refuse = |script: Script, naming: &[&str]| {
+        let simulated = Simulated::new(&script);
+        let arguments = ["xr", "--runtime", "runtime.json", "--frames", "1"];
+        let mut command = yoro(arguments);
+        command.env(VARIABLE, "script.json").current_dir(&simulated.folder);
+        in_time(&mut command).refuses(naming);
+    };
+    for extension in ["XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable"] {
+        refuse(
+            Script { missing_extensions: vec![extension.into()], ..Script::default() },
+            &[extension, "another runtime"],
+        );
+    }
+    refuse(Script { formats: Vec::new(), ..Script::default() }, &["format"]);
+    refuse(Script { unavailable: 99, ..Script::default() }, &["xrGetSystem", "connect the headset"]);
+    refuse(Script { stereo: false, mono: false, ..Script::default() }, &["OpenXR"]);
+
+    let folder = tempfile::tempdir().unwrap();
+    let xr = |arguments: &[&str], manifest: &str| {
+        fs::write(folder.path().join("r.json"), manifest).unwrap();
+        let mut command = yoro(["xr"].iter().chain(arguments));
+        in_time(command.current_dir(&folder).env("XR_RUNTIME_JSON", "r.json"))
+    };
+    xr(&["--runtime", "absent.json"], "").refuses(&["absent.json"]);
+    xr(&[], "{").refuses(&["r.json", "not the manifest"]);
+    let lost = r#"{ "file_format_version": "1.0.0", "runtime": { "library_path": "./lost.so" } }"#;
+    xr(&[], lost).refuses(&["lost.so"]);
+}
+
+#[test]
+fn the_refresh_rate_is_chosen() {
+    let simulated = Simulated::new(&Script::default());
+    simulated.succeed("--frames 2 --set refresh-rate=90");
+    let log = simulated.log();
+    let asked: Vec<f64> = log
+        .iter()
+        .filter_map(|entry| match entry {
+            Entry::Request { what, value } if what == "refresh-rate" => Some(*value),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(asked, [90.0]);
+}
+
+#[test]
+fn a_runtime_may_leave_another_context_current() {
+    let simulated = Simulated::new(&Script { unbind_context: true, ..Script::default() });
+    simulated.succeed("--frames 3 --method yoro,conventional");
+}
+
+#[test]
+fn eyes_of_other_kinds() {
+    let asymmetric = Script::default().asymmetric();
+    let [left, right] = asymmetric.eyes;
+    let cases = [
+        ("canted", [left, right].map(|eye| ScriptEye { cant_degrees: 5.0, ..eye })),
+        ("unlike in size", [ScriptEye { size: [128, 128], ..left }, ScriptEye { size: [96, 112], ..right }]),
+        ("far apart in height", [left, ScriptEye { fov_degrees: [-42.0, 52.0, 40.0, -44.0], ..right }]),
+        (
+            "a wide frustum and a narrow one",
+            [left, ScriptEye { fov_degrees: [-30.0, 30.0, 47.0, -50.0], ..right }],
+        ),
+    ];
+    for (case, eyes) in cases {
+        let script = Script {
+            eyes,
+            poison: true,
+            pictures: Some(Pictures { folder: PathBuf::new(), frames: (4..9).collect() }),
+            ..Script::default()
+        };
+        let simulated = Simulated::new(&script);
+        let run = simulated.run("--frames 4");
+        assert_eq!(run.code, Some(0), "{case}: {}", run.stderr);
+        simulated.check();
+        let views = simulated.views();
+        for (frame, _) in views.iter().filter(|(frame, _)| (4..9).contains(frame)) {
+            for view in 0..2 {
+                assert_drawn(&simulated.picture(&format!("frame-{frame}-view-{view}.png")));
+            }
+        }
+        if case == "canted" {
+            let lines = run.stderr.lines().filter(|line| line.contains("cant")).count();
+            assert_eq!(lines, 1, "{}", run.stderr);
+        }
+    }
+}
+
+/// The desktop's own renderer with the same eyes and settings.
+fn desktop(scene: &str, method: Method, pair: &EyePair, settings: &Settings) -> [RgbImage; 2] {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let scene = GpuScene::upload(gl, builtin::build(scene, builtin::DEFAULT_SEED).unwrap()).unwrap();
+    let (render, options) = (settings.render_settings(), settings.stereo_options());
+    let mut renderer = Renderer::new(gl, &render, &scene).unwrap();
+    let mut method = stereo::create(gl, method, &render, &options).unwrap();
+    method.prepare(&mut renderer, &scene).unwrap();
+    let mut frame = StereoFrame::new(gl, pair.size).unwrap();
+    method.render(&mut renderer, &scene, pair, &mut frame).unwrap();
+    Eye::BOTH.map(|eye| eye_image(&frame, eye))
+}
+
+fn captured(folder: &Path, summary: &Value) -> Vec<(Method, EyePair, [RgbImage; 2])> {
+    let methods = summary["methods"].as_array().unwrap().iter();
+    let load = |m: &Value| {
+        let name = m["method"].as_str().unwrap();
+        let method = clap::ValueEnum::from_str(name, false).unwrap();
+        let pair = serde_json::from_value(m["capture"]["eyes"].clone()).unwrap();
+        let eye = |eye: &str| picture::load_color(&folder.join(m["capture"][eye].as_str().unwrap())).unwrap();
+        (method, pair, [eye("left"), eye("right")])
+    };
+    methods.map(load).collect()
+}
+
+fn rgb(a: &RgbImage, b: &RgbImage) -> Quality {
+    Quality::of(a, b, Channels::Rgb).unwrap()
+}
+
+#[test]
+fn the_headset_shows_what_the_desktop_renders() {
+    let simulated = Simulated::new(&Script::default().asymmetric());
+    let run = simulated.succeed("--method conventional,yoro --frames 1 --capture captured --json");
+    let settings = Settings::resolve(None, CHEAP.map(str::to_owned)).unwrap();
+    let all = captured(simulated.folder.path(), &run.json());
+    assert_eq!(all.len(), 2);
+    for (method, pair, eyes) in all {
+        let expected = desktop("prototype", method, &pair, &settings);
+        for (eye, expected) in eyes.iter().zip(&expected) {
+            let quality = rgb(eye, expected);
+            assert!(quality.ssim_gaussian > 0.999, "{method:?}: {quality:?}");
+        }
+    }
+}
+
+/// The synthesized eye against the really rendered one with the frusta of a headset: quality, and that of the outer
+/// tenth of the image.
+fn synthesized(scene: &str, size: u32, more: &[&'static str]) -> (Quality, Quality) {
+    let mut script = Script { poison: true, ..Script::default() }.asymmetric();
+    for eye in &mut script.eyes {
+        eye.size = [size; 2];
+    }
+    let simulated = Simulated::new(&script);
+    let line = format!("{scene} --method conventional,yoro --frames 1 --capture captured --json --no-hud");
+    let run = simulated.run_as(&line, more.iter().copied());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    simulated.check();
+    let all = captured(simulated.folder.path(), &run.json());
+    let [(_, pair, real), (_, _, made)] = all.as_slice() else { panic!("two methods") };
+    let second = pair.dominant.other();
+    let (real, made) = (&real[second.index()], &made[second.index()]);
+    assert_drawn(made);
+    let width = size / 10;
+    let x = if second == Eye::Left { 0 } else { size - width };
+    let outer = |image: &RgbImage| image::imageops::crop_imm(image, x, 0, width, size).to_image();
+    (rgb(made, real), rgb(&outer(made), &outer(real)))
+}
+
+#[test]
+fn asymmetric_eyes_are_synthesized_well() {
+    let (whole, border) = synthesized("prototype", 256, &[]);
+    assert!(whole.ssim_gaussian > 0.97, "{whole:?}");
+    assert!(border.ssim_gaussian > 0.97, "at the outer border: {border:?}");
+}
+
+/// All scenes at the size of a real headset's eye take minutes: `cargo test -p yoro --test program -- --ignored
+/// asymmetric --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
+fn asymmetric_eyes_in_every_scene() {
+    for scene in builtin::BUILTINS {
+        let (whole, border) = synthesized(scene.name, 1024, &[]);
+        println!(
+            "{:<12} SSIM {:.4}, PSNR {:.2} dB; outer tenth: SSIM {:.4}, PSNR {:.2} dB",
+            scene.name, whole.ssim_gaussian, whole.psnr, border.ssim_gaussian, border.psnr
+        );
+    }
+}
+
+/// Monado's service in a folder of its own, until it is dropped.
+struct Monado {
+    programs: PathBuf,
+    folder: TempDir,
+    service: std::process::Child,
+}
+
+impl Monado {
+    /// None where the tests are told to do without.
+    fn start() -> Option<Monado> {
+        let Some(programs) = std::env::var_os("YORO_TEST_MONADO").map(PathBuf::from) else {
+            let without = std::env::var_os("YORO_TEST_WITHOUT_MONADO").is_some();
+            assert!(
+                without,
+                "set YORO_TEST_MONADO to the folder of `cargo xtask monado`, or YORO_TEST_WITHOUT_MONADO=1"
+            );
+            return None;
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let log = fs::File::create(folder.path().join("service.log")).unwrap();
+        let service = Command::new(programs.join("monado-service"))
+            .env("XDG_RUNTIME_DIR", folder.path())
+            .stdin(Stdio::null())
+            .stdout(log.try_clone().unwrap())
+            .stderr(log)
+            .spawn()
+            .unwrap();
+        let mut monado = Monado { programs, folder, service };
+        let start = Instant::now();
+        while !monado.folder.path().join("monado_comp_ipc").exists() {
+            assert_eq!(monado.service.try_wait().unwrap(), None, "{}", monado.log());
+            assert!(start.elapsed() < LIMIT, "{}", monado.log());
+            thread::sleep(Duration::from_millis(50));
+        }
+        Some(monado)
+    }
+
+    fn log(&self) -> String {
+        fs::read_to_string(self.folder.path().join("service.log")).unwrap()
+    }
+}
+
+impl Drop for Monado {
+    fn drop(&mut self) {
+        let _ = self.service.kill();
+        let _ = self.service.wait();
+    }
+}
+
+#[test]
+fn monado_shows_what_the_desktop_renders() {
+    let Some(monado) = Monado::start() else { return };
+    let methods = ["conventional", "instanced", "multiview", "hybrid", "yoro"];
+    let mut command = Command::new(monado.programs.join("run"));
+    command
+        .arg(env!("CARGO_BIN_EXE_yoro"))
+        .args(["xr", "--method", &methods.join(","), "--frames", "100", "--capture", "captured", "--json"])
+        .args(cheap())
+        .env("XDG_RUNTIME_DIR", monado.folder.path())
+        .env_remove("RUST_LOG")
+        .stdin(Stdio::null())
+        .current_dir(&monado.folder);
+    let run = finish(&mut command);
+    assert_eq!(run.code, Some(0), "{}\n{}", run.stderr, monado.log());
+    let summary = run.json();
+    let states: BTreeSet<&str> =
+        summary["states"].as_array().unwrap().iter().map(|state| state.as_str().unwrap()).collect();
+    assert!(states.contains("FOCUSED") && states.contains("EXITING"), "{states:?}");
+    assert_eq!(summary["restarts"], 0);
+    let frames: Vec<(&str, u64)> = summary["methods"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| (m["method"].as_str().unwrap(), m["frames"].as_u64().unwrap()))
+        .collect();
+    assert_eq!(frames.iter().map(|(method, _)| *method).collect::<Vec<_>>(), methods);
+    assert!(frames.iter().all(|(_, frames)| *frames >= 100), "{frames:?}");
+    let settings = Settings::resolve(None, CHEAP.map(str::to_owned)).unwrap();
+    for (method, pair, eyes) in captured(monado.folder.path(), &summary) {
+        // This machine's Mesa may not have what Monado's has.
+        let reference = if method == Method::Yoro { method } else { Method::Conventional };
+        let expected = desktop("prototype", reference, &pair, &settings);
+        for (eye, expected) in eyes.iter().zip(&expected) {
+            let quality = rgb(eye, expected);
+            assert!(quality.ssim_gaussian > 0.99, "{method:?}: {quality:?}");
+        }
+    }
+}
