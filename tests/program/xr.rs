@@ -28,8 +28,9 @@ use crate::program::{Run, finish, yoro};
 
 /// Rendering that costs little.
 const CHEAP: [&str; 4] = ["shadow-map=0", "ssao=off", "bloom=false", "hud=false"];
-/// No run takes this long.
+/// No run takes this long, but for those with large pictures of large scenes.
 const LIMIT: Duration = Duration::from_secs(60);
+const LARGE_LIMIT: Duration = Duration::from_secs(600);
 
 fn cheap() -> impl Iterator<Item = &'static str> {
     CHEAP.iter().flat_map(|setting| ["--set", *setting])
@@ -37,12 +38,12 @@ fn cheap() -> impl Iterator<Item = &'static str> {
 
 /// Runs to the end, which must come in time.
 #[track_caller]
-fn in_time(command: &mut Command) -> Run {
+fn in_time(command: &mut Command, limit: Duration) -> Run {
     let mut child =
         command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
     let start = Instant::now();
     while child.try_wait().unwrap().is_none() {
-        if start.elapsed() > LIMIT {
+        if start.elapsed() > limit {
             child.kill().unwrap();
             let output = child.wait_with_output().unwrap();
             panic!("it hangs: {}", String::from_utf8_lossy(&output.stderr));
@@ -80,16 +81,16 @@ impl Simulated {
     /// Runs `yoro xr` with a line of arguments and cheap rendering.
     #[track_caller]
     fn run(&self, line: &str) -> Run {
-        self.run_as(line, cheap())
+        self.run_as(line, cheap(), LIMIT)
     }
 
     #[track_caller]
-    fn run_as(&self, line: &str, more: impl IntoIterator<Item = &'static str>) -> Run {
+    fn run_as(&self, line: &str, more: impl IntoIterator<Item = &'static str>, limit: Duration) -> Run {
         let line = format!("xr --runtime runtime.json {line}");
         let arguments = line.split_whitespace().map(str::to_owned);
         let mut command = yoro(arguments.chain(more.into_iter().map(str::to_owned)));
         command.env(VARIABLE, "script.json").env("RUST_LOG", "yoro=info").current_dir(&self.folder);
-        in_time(&mut command)
+        in_time(&mut command, limit)
     }
 
     /// As [`Simulated::run`]; it must end well, without anything that the specification forbids.
@@ -395,7 +396,7 @@ fn what_cannot_be_done_without_is_named() {
         let arguments = ["xr", "--runtime", "runtime.json", "--frames", "1"];
         let mut command = yoro(arguments);
         command.env(VARIABLE, "script.json").current_dir(&simulated.folder);
-        in_time(&mut command).refuses(naming);
+        in_time(&mut command, LIMIT).refuses(naming);
     };
     for extension in ["XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable"] {
         refuse(
@@ -411,7 +412,7 @@ fn what_cannot_be_done_without_is_named() {
     let xr = |arguments: &[&str], manifest: &str| {
         fs::write(folder.path().join("r.json"), manifest).unwrap();
         let mut command = yoro(["xr"].iter().chain(arguments));
-        in_time(command.current_dir(&folder).env("XR_RUNTIME_JSON", "r.json"))
+        in_time(command.current_dir(&folder).env("XR_RUNTIME_JSON", "r.json"), LIMIT)
     };
     xr(&["--runtime", "absent.json"], "").refuses(&["absent.json"]);
     xr(&[], "{").refuses(&["r.json", "not the manifest"]);
@@ -524,7 +525,7 @@ fn the_headset_shows_what_the_desktop_renders() {
 fn synthesized(scene: &str, eyes: [ScriptEye; 2]) -> (Quality, Quality) {
     let simulated = Simulated::new(&Script { poison: true, eyes, ..Script::default() });
     let line = format!("{scene} --method conventional,yoro --frames 1 --capture captured --json --no-hud");
-    let run = simulated.run_as(&line, []);
+    let run = simulated.run_as(&line, [], LARGE_LIMIT);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     simulated.check();
     let all = captured(simulated.folder.path(), &run.json());

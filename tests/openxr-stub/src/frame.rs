@@ -1,6 +1,8 @@
 //! Frames, views, and what is submitted.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use openxr_sys as sys;
 use sys::Handle;
@@ -13,6 +15,11 @@ use crate::world::{DONE, Refusal, World, enter, forbidden};
 
 /// When the stub's time begins.
 const BEGINNING_NS: i64 = 1_000_000_000;
+
+/// Before the first picture a scene is loaded: frames without anything in them must not take its time.
+const LOADING_PAUSE: Duration = Duration::from_millis(5);
+/// There was no picture yet.
+pub static IS_BLANK: AtomicBool = AtomicBool::new(true);
 
 /// Called before every frame.
 pub static PACE: Mutex<Option<extern "C" fn()>> = Mutex::new(None);
@@ -36,6 +43,8 @@ pub unsafe extern "system" fn wait_frame(
     let pace = *PACE.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(pace) = pace {
         pace();
+    } else if IS_BLANK.load(Ordering::Relaxed) {
+        std::thread::sleep(LOADING_PAUSE);
     }
     enter("xrWaitFrame", |world| {
         running(world, session)?;

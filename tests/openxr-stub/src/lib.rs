@@ -1,8 +1,8 @@
 //! A simulated OpenXR runtime for tests.
 //!
 //! The library is negotiated with like any runtime. Its headset is scripted ([`script`]): frusta, canted views, a
-//! changing IPD, states, losses, controllers, and results instead of calls. Time is virtual: `xrWaitFrame` never sleeps,
-//! and each frame is one period later than the last. Swapchain images are real GL textures, made in the application's
+//! changing IPD, states, losses, controllers, and results instead of calls. Time is virtual: `xrWaitFrame` does not
+//! wait for a display, and each frame is one period later than the last. Swapchain images are real GL textures, made in the application's
 //! context. What the application does is checked against the specification and written to a log ([`log`]); what is
 //! forbidden is a [`log::Entry::Violation`].
 //!

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::sync::Mutex;
+use std::sync::atomic::Ordering;
 
 use glam::{Quat, Vec3};
 use openxr_sys as sys;
@@ -200,6 +201,7 @@ impl World {
         if self.before_picture.is_none() && look(self) {
             // The next one is frame 1.
             self.before_picture = Some(self.frames.saturating_sub(1));
+            crate::frame::IS_BLANK.store(false, Ordering::Relaxed);
         }
     }
 
