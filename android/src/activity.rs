@@ -193,7 +193,10 @@ impl Activity {
     fn on_event(&mut self, event: MainEvent) {
         log::debug!("{event:?}");
         match event {
-            MainEvent::InitWindow { .. } => self.open_window(),
+            MainEvent::InitWindow { .. } => {
+                self.choose_display();
+                self.open_window();
+            }
             MainEvent::TerminateWindow { .. } => {
                 self.input.cancel();
                 if let Some(window) = &mut self.window {

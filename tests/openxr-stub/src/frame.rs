@@ -344,7 +344,12 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
             let path = pictures.folder.join(format!("frame-{frame}-{name}.png"));
             let size = [image.rect[2] as u32, image.rect[3] as u32];
             let picture = image::RgbaImage::from_raw(size[0], size[1], pixels).expect("four bytes a pixel");
-            let written = image::imageops::flip_vertical(&picture).save(&path);
+            let picture = image::imageops::flip_vertical(&picture);
+            // Views are opaque, whatever their alpha is.
+            let written = match layer {
+                Layer::Quad { .. } => picture.save(&path),
+                _ => image::DynamicImage::from(picture).into_rgb8().save(&path),
+            };
             written.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         }
     }

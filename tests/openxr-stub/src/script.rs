@@ -166,7 +166,7 @@ pub struct Input {
 }
 
 /// Which pictures are written where: `frame-7-view-0.png` is what was submitted for the left eye in frame 7,
-/// `frame-7-quad-0.png` what the first quad layer shows.
+/// `frame-7-quad-0.png` what the first quad layer shows, with alpha.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Pictures {

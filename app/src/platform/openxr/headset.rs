@@ -145,7 +145,7 @@ impl Headset {
         self.close(graphics)?;
         viewer.pause();
         if self.exit.is_some() {
-            log::warn!("{error}");
+            log::info!("the session is over anyway: {error}");
             return Ok(Step::Ended);
         }
         self.failures += 1;

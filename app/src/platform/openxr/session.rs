@@ -627,7 +627,7 @@ impl Session {
         let nothing = Layers { eyes: None, panel: None };
         let size = self.frame_size(viewer);
         let Some(native) = self.locate(viewer.settings(), time, size)? else { return Ok(nothing) };
-        viewer.set_native_ipd(native.ipd());
+        viewer.set_native_ipd((native.poses[1].position - native.poses[0].position).length());
         let shown = self.align(viewer, native);
         let mut pair = shown;
         if let Some(ipd) = viewer.chosen_ipd() {
