@@ -87,7 +87,7 @@ pub struct Frame {
     /// Time that this program's thread worked on it, in milliseconds; waiting for the runtime does not count.
     pub cpu_ms: f64,
     /// Its images, if they were asked for.
-    pub capture: Option<Capture>,
+    pub capture: Option<Box<Capture>>,
 }
 
 /// What a call of [`Session::step`] has led to.
@@ -340,7 +340,7 @@ impl Session {
             Some(_) => self.told(viewer.end(&timing)),
             None => None,
         };
-        Ok(Progress::Frame(Frame { report, cpu_ms, capture: captured }))
+        Ok(Progress::Frame(Frame { report, cpu_ms, capture: captured.map(Box::new) }))
     }
 
     /// What a viewer's call has led to; an error that comes with every frame is said once.
