@@ -29,6 +29,8 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod stereo;
+#[cfg(feature = "desktop")]
+pub mod study;
 pub mod synthesis;
 pub mod telemetry;
 pub mod viewer;

@@ -206,19 +206,36 @@ fn find() -> Option<PathBuf> {
         .find_map(|name| folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file()))
 }
 
-/// What every page of ours must do in a browser: no script error, nothing from elsewhere, all pictures and figures
-/// there, the switch between pictures works by mouse and key, and no part is wider than a narrow window.
-pub fn check_page(browser: &mut Browser, page: &Path) {
+/// What every page of ours must do in a browser: no script error, nothing from elsewhere, all figures there, other
+/// colours in the dark, and no part wider than a narrow window.
+pub fn check_figures(browser: &mut Browser, page: &Path) {
     browser.show(1400, "light");
     browser.open(page);
     browser.expect_no_error();
-    let broken = "[...document.images].filter(i => !i.complete || i.naturalWidth === 0).length";
-    assert!(browser.evaluate("document.images.length").as_u64().unwrap() > 0, "no picture");
-    assert_eq!(browser.evaluate(broken), 0, "pictures that do not load");
-    let figures = "[...document.querySelectorAll('.plots svg')]";
+    let figures =
+        "[...document.querySelectorAll('.plots svg')].filter(s => !s.closest('details:not([open])'))";
     assert!(browser.evaluate(&format!("{figures}.length")).as_u64().unwrap() > 0, "no figure");
     let flat = format!("{figures}.filter(s => s.getBoundingClientRect().height < 50).length");
     assert_eq!(browser.evaluate(&flat), 0, "figures without height");
+    let colors = "JSON.stringify([getComputedStyle(document.body).backgroundColor, \
+                  getComputedStyle(document.querySelector('.plots svg text')).fill])";
+    let light = browser.evaluate(colors);
+    browser.show(500, "dark");
+    let dark = browser.evaluate(colors);
+    assert_ne!(light, dark, "a dark page has dark colours");
+    let wide = browser.evaluate("document.documentElement.scrollWidth");
+    assert!(wide.as_u64().unwrap() <= 500, "the page is {wide} pixels wide in a window of 500");
+    browser.expect_no_error();
+}
+
+/// As [`check_figures`]; besides, all pictures load, and the switch between them works by mouse and key.
+pub fn check_page(browser: &mut Browser, page: &Path) {
+    check_figures(browser, page);
+    browser.show(1400, "light");
+    browser.open(page);
+    let broken = "[...document.images].filter(i => !i.complete || i.naturalWidth === 0).length";
+    assert!(browser.evaluate("document.images.length").as_u64().unwrap() > 0, "no picture");
+    assert_eq!(browser.evaluate(broken), 0, "pictures that do not load");
 
     let shown = "[...document.querySelectorAll('.viewer .stack')].map(s => [...s.children].map(\
                  i => getComputedStyle(i).visibility === 'visible').map(Number).join(''))[0]";
@@ -238,14 +255,5 @@ pub fn check_page(browser: &mut Browser, page: &Path) {
     browser.press("s");
     let partner = "document.querySelector('.viewer .partner')?.naturalWidth ?? 0";
     assert!(browser.evaluate(partner).as_u64().unwrap() > 0, "key s shows both eyes");
-
-    let colors = "JSON.stringify([getComputedStyle(document.body).backgroundColor, \
-                  getComputedStyle(document.querySelector('.plots svg text')).fill])";
-    let light = browser.evaluate(colors);
-    browser.show(500, "dark");
-    let dark = browser.evaluate(colors);
-    assert_ne!(light, dark, "a dark page has dark colours");
-    let wide = browser.evaluate("document.documentElement.scrollWidth");
-    assert!(wide.as_u64().unwrap() <= 500, "the page is {wide} pixels wide in a window of 500");
     browser.expect_no_error();
 }

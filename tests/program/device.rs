@@ -72,6 +72,11 @@ fn nothing_is_lost_and_each_fault_is_named() {
         "{sample:?}"
     );
 
+    // The charge that is gone is the current's.
+    let charge = |i: usize| clean.samples[i].charge_uah.unwrap() / 1e3;
+    let integral: f64 = clean.samples[1..].iter().map(|sample| -sample.current_ma.unwrap() / 3600.0).sum();
+    assert!(((charge(0) - charge(61)) / integral - 1.0).abs() < 0.03, "{integral}");
+
     let away = fault("disconnect", "at = 20.5\nseconds = 25.0");
     let jump = fault("clock-jump", "at = 30.0\nby = -3600.0");
     for (script, expected, lost) in [

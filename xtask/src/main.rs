@@ -51,6 +51,9 @@ enum Task {
         /// Install missing packages (apt) without asking
         #[arg(long)]
         yes: bool,
+        /// An OpenXR loader for the APK: the file that somebody else's libopenxr_loader.so lies in; once for each processor
+        #[arg(long = "openxr-loader", value_name = "FILE")]
+        openxr_loaders: Vec<PathBuf>,
     },
     /// What the Android application would be built with, what is missing, and how to get it
     Doctor,
@@ -92,8 +95,8 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             let equipment = equip(&filters)?;
             cargo::test(&filters, bless, &equipment)?;
         }
-        Task::Apk { release, yes } => {
-            android::apk(android::Options { release, yes })?;
+        Task::Apk { release, yes, openxr_loaders } => {
+            android::apk(&android::Options { release, yes, openxr_loaders })?;
         }
         Task::Doctor => {
             let (text, complete) = android::doctor()?;

@@ -20,6 +20,11 @@ pub fn describe(capabilities: &Capabilities) -> Machine {
     }
 }
 
+/// Program, version, command line and date: what made a file.
+pub fn made_by() -> String {
+    format!("{} (yoro {}, {})", command(), env!("CARGO_PKG_VERSION"), date(SystemTime::now()))
+}
+
 fn cpu_name() -> Option<String> {
     let info = fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = info.lines().find(|line| line.starts_with("model name"))?;

@@ -11,6 +11,7 @@ pub mod report;
 pub mod run;
 pub mod scenes;
 pub mod stage;
+pub mod study;
 pub mod synthesize;
 pub mod view;
 pub mod xr;

@@ -1,6 +1,6 @@
 //! Lines of logcat: who says what, and when.
 
-use crate::telemetry::LOG_TAG;
+use crate::telemetry::{LOG_TAG, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
 pub const VRAPI_TAG: &str = "VrApi";
@@ -54,7 +54,7 @@ pub fn parse(line: &str) -> Kind<'_> {
 
 /// Whose line this is if there is nothing before it.
 fn raw_tag(line: &str) -> Option<&'static str> {
-    if line.starts_with("v=") {
+    if line.starts_with("v=") || Rating::is_line(line) {
         Some(LOG_TAG)
     } else if line.starts_with("FPS=") {
         Some(VRAPI_TAG)

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! [`adb`] says what is asked of a device; [`program`] asks the program adb, [`replay`] plays a script. [`follow`] reads a
-//! log over lost connections, [`reading`] makes samples of its lines, [`run`] captures one run, and [`experiment`] many.
+//! log over lost connections, [`reading`] makes samples of its lines, [`run`] captures one run, [`experiment`] many, and [`report`] makes figures
+//! of them.
 
 pub mod adb;
 pub mod capture;
@@ -17,4 +18,5 @@ pub mod pins;
 pub mod program;
 pub mod reading;
 pub mod replay;
+pub mod report;
 pub mod run;

@@ -6,6 +6,8 @@
 mod error_map;
 mod flicker;
 mod flip;
+#[cfg(feature = "desktop")]
+pub mod inference;
 mod psnr;
 mod ssim;
 pub mod stats;

@@ -7,7 +7,7 @@
 pub mod bd_rate;
 pub mod bench;
 pub mod grid;
-mod page;
+pub(crate) mod page;
 mod palette;
 pub mod paper;
 pub mod plot;

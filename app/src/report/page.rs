@@ -16,11 +16,13 @@ use crate::metrics::Quality;
 use crate::picture::encode_jpeg;
 
 /// The templates, by name.
-const TEMPLATES: [(&str, &str); 4] = [
+const TEMPLATES: [(&str, &str); 6] = [
     ("base.html.j2", include_str!("templates/base.html.j2")),
     ("parts.html.j2", include_str!("templates/parts.html.j2")),
     ("run.html.j2", include_str!("templates/run.html.j2")),
     ("bench.html.j2", include_str!("templates/bench.html.j2")),
+    ("device.html.j2", include_str!("templates/device.html.j2")),
+    ("study.html.j2", include_str!("templates/study.html.j2")),
 ];
 
 /// What all pictures of a page may take, encoded in base64.
@@ -37,7 +39,7 @@ pub(super) fn render(report: &RunReport) -> Result<String, ReportError> {
 }
 
 /// Fills in the page of this name; what all pages need comes with `page`.
-pub(super) fn fill(name: &str, title: &str, page: minijinja::Value) -> Result<String, ReportError> {
+pub(crate) fn fill(name: &str, title: &str, page: minijinja::Value) -> Result<String, ReportError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.set_trim_blocks(true);
@@ -54,7 +56,7 @@ pub(super) fn fill(name: &str, title: &str, page: minijinja::Value) -> Result<St
 }
 
 /// Figures as the template takes them.
-pub(super) fn figures(figures: &[Figure]) -> Result<Vec<minijinja::Value>, ReportError> {
+pub(crate) fn figures(figures: &[Figure]) -> Result<Vec<minijinja::Value>, ReportError> {
     let figure = |figure: &Figure| {
         Ok(context! {
             id => &figure.id,
@@ -361,22 +363,16 @@ fn plots(report: &RunReport) -> Vec<Figure> {
 }
 
 fn dot_row(scene: &SceneReport, quantity: &Quantity) -> DotRow {
-    let mark = |method: &str, papers: bool, label: &str, value: f64| Mark {
-        method: method.into(),
-        papers,
-        label: label.into(),
-        value,
-    };
     let rows = scene.rows();
     let mut marks = Vec::new();
     if let Some(row) = rows.first() {
         let paper = row.paper.as_ref().map(|paper| (quantity.papers)(paper));
-        marks.extend(paper.map(|value| mark("paper", true, "the paper's", value)));
-        marks.extend((quantity.baseline)(row).map(|value| mark("same image", false, "same image", value)));
+        marks.extend(paper.map(|value| Mark::papers("paper", "the paper's", value)));
+        marks.extend((quantity.baseline)(row).map(|value| Mark::new("same image", "same image", value)));
     }
     // Of methods with equal figures the first stays on top.
     let ours = rows.iter().rev();
-    marks.extend(ours.map(|row| mark(&row.method, false, &row.method, (quantity.ours)(row))));
+    marks.extend(ours.map(|row| Mark::new(&row.method, &row.method, (quantity.ours)(row))));
     DotRow { label: scene.name.clone(), marks }
 }
 

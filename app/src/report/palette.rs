@@ -38,7 +38,8 @@ pub const TEXT: (u32, u32) = (0x1D1E20, 0xE6E6E3);
 /// Grid lines.
 pub const GRID: (u32, u32) = (0xDCDCD8, 0x383B40);
 
-const NEUTRAL: (u32, u32) = (0x777A80, 0x9DA1A8);
+/// What belongs to no method.
+pub const NEUTRAL: (u32, u32) = (0x777A80, 0x9DA1A8);
 
 /// Methods and patchers by name. Two that do the same thing in different suites look the same.
 const LOOKS: [(&[&str], Look); 16] = [
@@ -48,7 +49,7 @@ const LOOKS: [(&[&str], Look); 16] = [
     (&["multiview"], look(0xB3578C, 0xDD92BD, Shape::Down)),
     (&["hybrid"], look(0x009E73, 0x35C79B, Shape::Diamond)),
     (&["shading-reprojection"], look(0x5A4FCF, 0xA39BF5, Shape::Square)),
-    (&["yoro-gather", "gather", "rgb-depth"], look(0x0072B2, 0x56B4E9, Shape::Circle)),
+    (&["yoro-gather", "yoro", "gather", "rgb-depth"], look(0x0072B2, 0x56B4E9, Shape::Circle)),
     (&["yoro-rowgroup", "rowgroup", "rgb-depth-packed"], look(0x00838F, 0x4DD0D8, Shape::Up)),
     (&["yoro-paper", "paper"], look(0xD55E00, 0xF08A3C, Shape::Diamond)),
     (&["yoro-paper-nearest"], look(0xB3402A, 0xF2836B, Shape::Square)),

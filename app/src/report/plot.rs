@@ -10,6 +10,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::palette::{self, Look, Shape};
+use crate::metrics::inference::Interval;
+use crate::metrics::stats::percentile;
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -44,6 +46,24 @@ pub enum Panel {
         /// One after the other, the last on top.
         series: Vec<Series>,
     },
+    /// Values over time, close together: thin lines without marks, broken where a point is not finite.
+    Traces {
+        /// To the right.
+        x: Axis,
+        /// Upwards.
+        y: Axis,
+        /// One after the other, the last on top; of equal labels one is in the legend.
+        series: Vec<Series>,
+    },
+    /// Values of the same persons under several methods: a box for each method, and a thin line for each person.
+    Paired {
+        /// Upwards.
+        value: Axis,
+        /// From left to right.
+        methods: Vec<String>,
+        /// For each person a value under each method.
+        persons: Vec<Vec<f64>>,
+    },
     /// A line for each category with a mark for each method.
     Dots {
         /// To the right.
@@ -72,8 +92,8 @@ pub struct Axis {
     pub scale: Scale,
     /// The axis reaches at least to these.
     pub include: Vec<f64>,
-    /// A line for a baseline.
-    pub line_at: Option<f64>,
+    /// Lines for a baseline, or for bounds.
+    pub lines_at: Vec<f64>,
 }
 
 impl Axis {
@@ -94,7 +114,14 @@ impl Axis {
 
     /// With a line for a baseline, and from zero.
     pub fn baseline(self, value: f64) -> Axis {
-        Axis { line_at: Some(value), include: vec![0.0, value], ..self }
+        self.from_zero().lines(&[value])
+    }
+
+    /// With lines at these values, and reaching at least to them.
+    pub fn lines(mut self, values: &[f64]) -> Axis {
+        self.lines_at.extend(values);
+        self.include.extend(values);
+        self
     }
 }
 
@@ -131,6 +158,20 @@ pub struct Mark {
     pub label: String,
     /// On the axis; what is not finite is not drawn.
     pub value: f64,
+    /// Drawn as a bar, and makes room for itself on its line.
+    pub interval: Option<Interval>,
+}
+
+impl Mark {
+    /// A figure of ours.
+    pub fn new(method: impl Into<String>, label: impl Into<String>, value: f64) -> Mark {
+        Mark { method: method.into(), papers: false, label: label.into(), value, interval: None }
+    }
+
+    /// A figure of the paper's.
+    pub fn papers(method: impl Into<String>, label: impl Into<String>, value: f64) -> Mark {
+        Mark { papers: true, ..Mark::new(method, label, value) }
+    }
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -144,6 +185,8 @@ const MARK: i32 = 9;
 const MARGIN: i32 = 24;
 const CURVES_HEIGHT: i32 = 560;
 const ROW_HEIGHT: i32 = 50;
+/// Between the marks of one row that have intervals.
+const LANE: i32 = 26;
 /// Characters that fit to the left of a dot plot.
 const LABEL: usize = 20;
 
@@ -169,17 +212,23 @@ impl Figure {
         let lines = legend_lines(&legend);
         let top = MARGIN + lines.len() as i32 * LINE + LINE / 2;
         let (left, height) = match &self.panel {
-            Panel::Curves { .. } => (6 * EM, CURVES_HEIGHT),
-            Panel::Dots { rows, .. } => (LABEL as i32 * EM * 6 / 10, ROW_HEIGHT * rows.len().max(1) as i32),
+            Panel::Curves { .. } | Panel::Traces { .. } | Panel::Paired { .. } => (6 * EM, CURVES_HEIGHT),
+            Panel::Dots { rows, .. } => {
+                (LABEL as i32 * EM * 6 / 10, rows.iter().map(row_height).sum::<i32>().max(ROW_HEIGHT))
+            }
         };
         let bottom = top + height;
         let size = (WIDTH as u32, (bottom + 2 * LINE + MARGIN) as u32);
         let root = SVGBackend::with_string(svg, size).into_drawing_area();
         root.fill(&rgb(palette::BACKGROUND.0))?;
-        draw_legend(&root, &lines)?;
+        draw_legend(&root, &lines, !matches!(self.panel, Panel::Traces { .. }))?;
         let frame = Frame { left, right: WIDTH - 2 * MARGIN, top, bottom };
         match &self.panel {
-            Panel::Curves { x, y, series } => draw_curves(&root, &frame, x, y, series)?,
+            Panel::Curves { x, y, series } => draw_curves(&root, &frame, x, y, series, true)?,
+            Panel::Traces { x, y, series } => draw_curves(&root, &frame, x, y, series, false)?,
+            Panel::Paired { value, methods, persons } => {
+                draw_paired(&root, &frame, value, methods, persons)?;
+            }
             Panel::Dots { value, rows } => draw_dots(&root, &frame, value, rows)?,
         }
         root.present()
@@ -188,10 +237,14 @@ impl Figure {
     /// Every method once: ours first, then the paper's. What is drawn last, on top, is named first.
     fn legend(&self) -> Vec<(String, bool, String)> {
         let all: Vec<(String, bool, String)> = match &self.panel {
-            Panel::Curves { series, .. } => {
+            Panel::Curves { series, .. } | Panel::Traces { series, .. } => {
                 let drawn =
                     series.iter().filter(|s| s.points.iter().any(|p| p.0.is_finite() && p.1.is_finite()));
                 drawn.map(|s| (s.method.clone(), s.papers, s.label.clone())).collect()
+            }
+            Panel::Paired { methods, persons, .. } => {
+                let methods = methods.iter().rev().filter(|_| !persons.is_empty());
+                methods.map(|method| (method.clone(), false, method.clone())).collect()
             }
             Panel::Dots { rows, .. } => {
                 let marks = rows.iter().flat_map(|row| &row.marks).filter(|mark| mark.value.is_finite());
@@ -247,13 +300,15 @@ fn legend_lines(legend: &[LegendEntry]) -> Vec<Vec<(i32, LegendEntry)>> {
     lines
 }
 
-fn draw_legend(root: &Area, lines: &[Vec<(i32, LegendEntry)>]) -> DrawingResult {
+fn draw_legend(root: &Area, lines: &[Vec<(i32, LegendEntry)>], marks: bool) -> DrawingResult {
     for (i, line) in lines.iter().enumerate() {
         let y = MARGIN + i as i32 * LINE + LINE / 2;
         for (x, (method, papers, label)) in line {
             let look = palette::of(method);
             stroke(root, vec![(*x, y), (x + 2 * EM, y)], &look, *papers)?;
-            mark(root, (x + EM, y), &look, *papers)?;
+            if marks {
+                mark(root, (x + EM, y), &look, *papers)?;
+            }
             root.draw_text(label, &text(EM, HPos::Left, VPos::Center), (x + 2 * EM + EM / 2, y))?;
         }
     }
@@ -413,7 +468,14 @@ fn draw_grid(
     Ok(())
 }
 
-fn draw_curves(root: &Area, frame: &Frame, x: &Axis, y: &Axis, series: &[Series]) -> DrawingResult {
+fn draw_curves(
+    root: &Area,
+    frame: &Frame,
+    x: &Axis,
+    y: &Axis,
+    series: &[Series],
+    marks: bool,
+) -> DrawingResult {
     let finite = |p: &&(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let points = || series.iter().flat_map(|s| &s.points).filter(finite);
     let xs = Range::of(x, points().map(|p| p.0), false);
@@ -428,8 +490,8 @@ fn draw_curves(root: &Area, frame: &Frame, x: &Axis, y: &Axis, series: &[Series]
     };
     draw_grid(root, frame, Some(&xs), Some(&ys), at)?;
     let line = rgb(palette::TEXT.0).stroke_width(3);
-    if let Some(value) = y.line_at {
-        let py = at(f64::NAN, value).1;
+    for value in &y.lines_at {
+        let py = at(f64::NAN, *value).1;
         root.draw(&PathElement::new(vec![(frame.left, py), (frame.right, py)], line))?;
     }
     root.draw_text(
@@ -441,6 +503,14 @@ fn draw_curves(root: &Area, frame: &Frame, x: &Axis, y: &Axis, series: &[Series]
     root.draw_text(&y.name, &vertical, (MARGIN / 2, (frame.top + frame.bottom) / 2))?;
     for series in series {
         let look = palette::of(&series.method);
+        if !marks {
+            let thin = rgb(look.light).stroke_width(2);
+            for piece in series.points.split(|p| !finite(&p)) {
+                let piece: Vec<(i32, i32)> = piece.iter().map(|p| at(p.0, p.1)).collect();
+                root.draw(&PathElement::new(piece, thin))?;
+            }
+            continue;
+        }
         let points: Vec<(i32, i32)> = series.points.iter().filter(finite).map(|p| at(p.0, p.1)).collect();
         if points.len() > 1 {
             stroke(root, points.clone(), &look, series.papers)?;
@@ -452,8 +522,67 @@ fn draw_curves(root: &Area, frame: &Frame, x: &Axis, y: &Axis, series: &[Series]
     Ok(())
 }
 
+/// Marks with intervals do not lie over each other.
+fn row_height(row: &DotRow) -> i32 {
+    let lanes = row.marks.iter().filter(|mark| mark.interval.is_some()).count() as i32;
+    ROW_HEIGHT.max((lanes + 1) * LANE)
+}
+
+fn draw_paired(
+    root: &Area,
+    frame: &Frame,
+    value: &Axis,
+    methods: &[String],
+    persons: &[Vec<f64>],
+) -> DrawingResult {
+    let ys = Range::of(value, persons.iter().flatten().copied(), true);
+    let coordinates = Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(
+        0.0..methods.len().max(1) as f64,
+        ys.coordinate(),
+        (frame.left..frame.right, frame.bottom..frame.top),
+    );
+    let area = root.clone().apply_coord_spec(coordinates);
+    let at = |column: usize, value: f64| area.map_coordinate(&(column as f64 + 0.5, ys.drawn(value)));
+    draw_grid(root, frame, None, Some(&ys), |_, value| at(0, if value.is_nan() { ys.low } else { value }))?;
+    let vertical = text(EM, HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
+    root.draw_text(&value.name, &vertical, (MARGIN / 2, (frame.top + frame.bottom) / 2))?;
+    for person in persons {
+        let line = person.iter().enumerate().map(|(column, value)| at(column, *value)).collect::<Vec<_>>();
+        root.draw(&PathElement::new(line, rgb(palette::NEUTRAL.0).stroke_width(2)))?;
+    }
+    for (column, method) in methods.iter().enumerate() {
+        let look = palette::of(method);
+        let values: Vec<f64> = persons.iter().filter_map(|person| person.get(column).copied()).collect();
+        let center = at(column, ys.low).0;
+        root.draw_text(method, &text(EM, HPos::Center, VPos::Top), (center, frame.bottom + EM / 3))?;
+        let height = |percent| percentile(&values, percent).map(|value| at(column, value).1);
+        let (Some(low), Some(first), Some(median), Some(third), Some(high)) =
+            (height(0.0), height(25.0), height(50.0), height(75.0), height(100.0))
+        else {
+            continue;
+        };
+        let (left, right) = (center - 2 * EM, center + 2 * EM);
+        let style = rgb(look.light).stroke_width(4);
+        let corners =
+            [(left, first), (right, first), (right, third), (left, third), (left, first), (right, first)];
+        root.draw(&PathElement::new(corners.to_vec(), style))?;
+        root.draw(&PathElement::new(vec![(left, median), (right, median)], style.stroke_width(8)))?;
+        for whisker in [(first, low), (third, high)] {
+            root.draw(&PathElement::new(vec![(center, whisker.0), (center, whisker.1)], style))?;
+        }
+        for value in values {
+            root.draw(&Circle::new(at(column, value), MARK / 2, rgb(look.light).filled()))?;
+        }
+    }
+    Ok(())
+}
+
 fn draw_dots(root: &Area, frame: &Frame, value: &Axis, rows: &[DotRow]) -> DrawingResult {
-    let values = rows.iter().flat_map(|row| &row.marks).map(|mark| mark.value);
+    let marks = rows.iter().flat_map(|row| &row.marks);
+    let values = marks.flat_map(|mark| {
+        let interval = mark.interval.map(|interval| [interval.low, interval.high]);
+        std::iter::once(mark.value).chain(interval.into_iter().flatten())
+    });
     let range = Range::of(value, values, true);
     let coordinates = Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(
         range.coordinate(),
@@ -463,23 +592,34 @@ fn draw_dots(root: &Area, frame: &Frame, value: &Axis, rows: &[DotRow]) -> Drawi
     let area = root.clone().apply_coord_spec(coordinates);
     let at = |value: f64, row: f64| area.map_coordinate(&(range.drawn(value), row));
     draw_grid(root, frame, Some(&range), None, |value, _| at(value, 0.0))?;
-    if let Some(value) = value.line_at {
-        let px = at(value, 0.0).0;
-        let line = rgb(palette::TEXT.0).stroke_width(3);
+    let line = rgb(palette::TEXT.0).stroke_width(3);
+    for value in &value.lines_at {
+        let px = at(*value, 0.0).0;
         root.draw(&PathElement::new(vec![(px, frame.top), (px, frame.bottom)], line))?;
     }
     let middle = (frame.left + frame.right) / 2;
     let below = frame.bottom + LINE + EM / 4;
     root.draw_text(&value.name, &text(EM, HPos::Center, VPos::Top), (middle, below))?;
     let grid = rgb(palette::GRID.0).stroke_width(2);
-    for (i, row) in rows.iter().enumerate() {
-        let y = frame.top + (2 * i as i32 + 1) * (frame.bottom - frame.top) / (2 * rows.len() as i32);
+    let mut top = frame.top;
+    for row in rows {
+        let height = row_height(row);
+        let y = top + height / 2;
+        top += height;
         root.draw(&PathElement::new(vec![(frame.left, y), (frame.right, y)], grid))?;
         let label = shortened(&row.label, LABEL);
         root.draw_text(&label, &text(EM, HPos::Right, VPos::Center), (frame.left - EM / 2, y))?;
+        let lanes = row.marks.iter().filter(|m| m.interval.is_some()).count() as i32;
+        let mut lane = 0;
         for m in row.marks.iter().filter(|m| m.value.is_finite()) {
-            let x = at(m.value, 0.0).0.clamp(frame.left, frame.right);
-            mark(root, (x, y), &palette::of(&m.method), m.papers)?;
+            let px = |value: f64| at(value, 0.0).0.clamp(frame.left, frame.right);
+            let (look, mut y) = (palette::of(&m.method), y);
+            if let Some(interval) = m.interval {
+                y += (2 * lane - lanes + 1) * LANE / 2;
+                lane += 1;
+                stroke(root, vec![(px(interval.low), y), (px(interval.high), y)], &look, m.papers)?;
+            }
+            mark(root, (px(m.value), y), &look, m.papers)?;
         }
     }
     Ok(())
@@ -529,8 +669,7 @@ mod tests {
 
     #[test]
     fn dots_sit_on_their_rows() {
-        let mark =
-            |method: &str, value| Mark { method: method.into(), papers: false, label: method.into(), value };
+        let mark = |method: &str, value| Mark::new(method, method, value);
         let row = |label: &str, value| DotRow {
             label: label.into(),
             marks: vec![mark("mono", value), mark("hybrid", f64::INFINITY)],
@@ -544,6 +683,51 @@ mod tests {
         let centres: Vec<&str> =
             svg.lines().filter(|l| l.contains("<circle") && l.contains("#777A80")).collect();
         assert_eq!(centres.len(), 3, "one in the legend, two on rows: {svg}");
+    }
+
+    #[test]
+    fn intervals_get_a_lane_each_and_bounds_a_line() {
+        let mark = |method: &str, value: f64, reach: f64| Mark {
+            interval: Some(Interval { low: value - reach, high: value + reach }),
+            ..Mark::new(method, method, value)
+        };
+        let rows = vec![DotRow {
+            label: "street".into(),
+            marks: vec![mark("hybrid", 1.0, 2.0), mark("mono", 0.5, 0.1)],
+        }];
+        let value = Axis::new("difference").lines(&[-3.0, 3.0]);
+        let svg = figure(Panel::Dots { value, rows }).svg().unwrap();
+        let bars = |color: &str| {
+            let lines = svg.lines().filter(|l| l.starts_with("<polyline") && l.contains(color));
+            lines.map(|l| l.split("points=\"").nth(1).unwrap().to_owned()).collect::<Vec<_>>()
+        };
+        // One in the legend, one on the row; on the row the bars have different heights.
+        let height =
+            |line: &str| line.split(',').nth(1).unwrap().split(' ').next().unwrap().parse::<i32>().unwrap();
+        let (hybrid, mono) = (bars("#009E73"), bars("#777A80"));
+        assert!(hybrid.len() >= 2 && mono.len() >= 2, "{svg}");
+        assert_eq!((height(hybrid.last().unwrap()) - height(mono.last().unwrap())).abs(), LANE);
+    }
+
+    #[test]
+    fn traces_break_at_gaps_and_pairs_have_boxes() {
+        let (x, y) = (Axis::new("s"), Axis::new("power, mW"));
+        let series =
+            vec![curve("hybrid", false, &[(0.0, 1.0), (1.0, 2.0), (2.0, f64::NAN), (3.0, 1.0), (4.0, 2.0)])];
+        let svg = figure(Panel::Traces { x, y, series }).svg().unwrap();
+        let lines = svg.lines().filter(|l| l.starts_with("<polyline") && l.contains("#009E73")).count();
+        assert_eq!(lines, 3, "one in the legend, two pieces: {svg}");
+        let panel = Panel::Paired {
+            value: Axis::new("rating"),
+            methods: vec!["hybrid".into(), "mono".into()],
+            persons: vec![vec![1.0, 2.0], vec![3.0, 4.0], vec![2.0, 5.0]],
+        };
+        let svg = figure(panel).svg().unwrap();
+        let persons = svg.lines().filter(|l| {
+            l.starts_with("<polyline") && l.contains("stroke-width=\"2\"") && l.contains("#777A80")
+        });
+        assert_eq!(persons.count(), 3, "{svg}");
+        assert!(svg.contains("rating") && svg.contains("hybrid"));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The line of an answer: `rating,v=1,participant=P03,trial=4,method=yoro,...,question=image-quality,value=4.5`.
 //!
-//! Like the keys of [`Line`](super::Line), these are a promise to scripts.
+//! Like the keys of [`Line`](super::Line), these are a promise to scripts. The answer stands last and has one decimal, so
+//! that a line that was cut is never taken for another answer.
 
 use std::fmt::{self, Display};
 use std::str::FromStr;
@@ -74,9 +75,15 @@ impl FromStr for Rating {
             pipeline: name("pipeline")?,
             scene: reader.text("scene")?.into(),
             question: reader.text("question")?.into(),
-            rating: reader.required("value", "")?,
+            rating: answer(reader.text("value")?)?,
         })
     }
+}
+
+fn answer(text: &str) -> Result<f64, LineError> {
+    let one_decimal = text.split_once('.').is_some_and(|(_, decimals)| decimals.len() == 1);
+    let answer = text.parse().ok().filter(|_| one_decimal);
+    answer.ok_or_else(|| LineError::Value { key: "value", value: text.into() })
 }
 
 #[cfg(test)]
@@ -117,7 +124,9 @@ mod tests {
         assert_eq!("v=1,t=0".parse::<Rating>(), Err(LineError::Version));
         assert_eq!(text.replace("v=1", "v=2").parse::<Rating>(), Err(LineError::Version));
         assert_eq!(text[..60].parse::<Rating>(), Err(LineError::Missing("scene")));
-        let twisted = text.replace("4.5", "4.x").parse::<Rating>();
-        assert_eq!(twisted, Err(LineError::Value { key: "value", value: "4.x".into() }));
+        for value in ["4.x", "4.", "4", "inf", "na"] {
+            let twisted = text.replace("4.5", value).parse::<Rating>();
+            assert_eq!(twisted, Err(LineError::Value { key: "value", value: value.into() }));
+        }
     }
 }

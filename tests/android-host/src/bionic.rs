@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use crate::exports::{self, Export, System, exports};
 use crate::host::{fatal, host, lock};
+use crate::openxr;
 
 /// Functions of libc.so that are glibc's.
 const SAME_C: &str = "\
@@ -539,6 +540,9 @@ unsafe extern "C" fn dlopen(path: *const c_char, _flags: c_int) -> *mut c_void {
     if host.library.get().is_some_and(|library| library.path.as_c_str().to_bytes() == name.as_bytes()) {
         return SELF as *mut c_void;
     }
+    if let Some(library) = openxr::open(&name) {
+        return library;
+    }
     match System::ALL.iter().position(|library| library.name() == name) {
         Some(index) => (index + 1) as *mut c_void,
         None => {
@@ -553,6 +557,13 @@ extern "C" fn dlclose(_handle: *mut c_void) -> c_int {
 }
 
 unsafe extern "C" fn dlsym(handle: *mut c_void, name: *const c_char) -> *mut c_void {
+    // SAFETY: a terminated name.
+    if let Some(address) = openxr::symbol(handle, unsafe { CStr::from_ptr(name) }) {
+        if address.is_null() {
+            dl_error("undefined symbol of the OpenXR runtime".into());
+        }
+        return address;
+    }
     // SAFETY: a terminated name.
     let name = unsafe { text(name) };
     let host = host();

@@ -19,6 +19,7 @@ mod frames;
 mod graphics;
 mod host;
 mod jni;
+mod openxr;
 mod player;
 mod random;
 pub mod script;
@@ -60,6 +61,10 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
         stderr: std::io::stderr().as_fd().try_clone_to_owned()?,
         started,
     };
+    if let Some(headset) = &script.device.openxr {
+        // SAFETY: the process has one thread.
+        unsafe { openxr::install(headset) }?;
+    }
     let host = Host::install(script, Assets::new(apk.assets), verbose, report)?;
     let (name, bytes) = apk.library;
     let sdk = host.device.sdk;

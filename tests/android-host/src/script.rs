@@ -110,6 +110,19 @@ pub struct Device {
     pub extras: BTreeMap<String, String>,
     /// Text files in the application's external folder, by relative path.
     pub files: BTreeMap<String, String>,
+    /// A headset: a runtime broker names the simulated OpenXR runtime. Without it no broker answers.
+    pub openxr: Option<OpenXr>,
+}
+
+/// A headset's OpenXR runtime, the library of `tests/openxr-stub`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct OpenXr {
+    /// What the runtime does: a script of its own, in JSON.
+    pub script: PathBuf,
+    /// The broker that names it is the system's, not one that a user has installed.
+    #[serde(default)]
+    pub system: bool,
 }
 
 impl Default for Device {
@@ -135,6 +148,7 @@ impl Default for Device {
             properties: BTreeMap::new(),
             extras: BTreeMap::new(),
             files: BTreeMap::new(),
+            openxr: None,
         }
     }
 }

@@ -11,6 +11,9 @@ use yoro::platform::{Backend, Headless};
 use yoro::telemetry::Line;
 use yoro::viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
 
+use yoro_openxr_stub::log::{self, Entry, Layer};
+use yoro_openxr_stub::script::{Pictures, Script as Headset};
+
 use host::{Run, device, play, play_arm64};
 
 /// What each test's device has in its properties, as the desktop's settings: a scene and a quality that a CPU draws fast.
@@ -361,6 +364,83 @@ fn random_events_are_survived() {
         "{}",
         end.objects()
     );
+}
+
+/// A `[device]` with a headset, in a folder that the runtime writes its log and pictures to.
+fn headset(folder: &std::path::Path, system: bool) -> String {
+    let script = Headset {
+        log: Some(folder.join("log.jsonl")),
+        poison: true,
+        pictures: Some(Pictures { folder: folder.into(), from: 1 }),
+        ..Headset::default()
+    };
+    let path = folder.join("headset.json");
+    std::fs::write(&path, serde_json::to_string(&script.asymmetric()).unwrap()).unwrap();
+    let settings: Vec<_> = SETTINGS.into_iter().filter(|(key, _)| *key != "render-scale").collect();
+    let keys = format!("[device.openxr]\nscript = {:?}\nsystem = {system}", path.display().to_string());
+    format!("{}\n{keys}", device(&settings, ""))
+}
+
+const IMMERSIVE: &str = r#""launch", { wait-log = { text = "display: headset", frames = 10 } },
+    { wait-log = { text = "triangles", frames = 2000 } }, { frames = 8 }, "pause", { frames = 2 }, "resume", { frames = 4 }, "quit""#;
+
+fn assert_immersive(run: &Run, folder: &std::path::Path) -> [RgbImage; 2] {
+    run.assert_clean();
+    let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
+    assert!(
+        matches!(display.as_slice(), [line] if line.contains("headset, by OpenXR 1.1.54 runtime")),
+        "{display:?}"
+    );
+    let log = log::read(&folder.join("log.jsonl"));
+    let violations: Vec<_> = log.iter().filter(|entry| matches!(entry, Entry::Violation { .. })).collect();
+    assert!(violations.is_empty(), "{violations:#?}");
+    assert!(log.iter().any(|entry| matches!(entry, Entry::Instance { android: true, .. })));
+    assert!(log.iter().any(|entry| matches!(entry, Entry::Session { binding } if binding == "android")));
+    let shown = |entry: &&Entry| matches!(entry, Entry::Frame { layers, .. } if layers.iter().any(|layer| matches!(layer, Layer::Projection { views } if views.len() == 2)));
+    assert!(log.iter().filter(shown).count() >= 8);
+    let views = [0, 1].map(|view| image::open(folder.join(format!("view-{view}.png"))).unwrap().into_rgb8());
+    for view in &views {
+        let colours: std::collections::HashSet<_> = view.pixels().collect();
+        assert!(colours.len() > 100, "a view has {} colours", colours.len());
+        assert!(!colours.contains(&image::Rgb([255, 0, 255])), "parts of a view are not drawn");
+    }
+    assert!(views[0] != views[1]);
+    views
+}
+
+#[test]
+fn a_headset_is_found_through_the_broker() {
+    for system in [false, true] {
+        let folder = tempfile::tempdir().unwrap();
+        let Some(run) = play("headset", &headset(folder.path(), system), IMMERSIVE) else { return };
+        assert_immersive(&run, folder.path());
+    }
+}
+
+#[test]
+fn a_phone_says_why_it_is_none() {
+    let Some(run) = play("phone", &device(&SETTINGS, ""), &format!(r#""launch", {READY}, "quit""#)) else {
+        return;
+    };
+    run.assert_clean();
+    let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
+    assert!(
+        matches!(display.as_slice(), [line] if line.contains("Cardboard") && line.contains("no broker at org.khronos.openxr.runtime_broker")),
+        "{display:?}"
+    );
+}
+
+#[test]
+fn the_arm64_library_runs_in_a_headset() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(arm64) = play_arm64("headset-arm64", &headset(folder.path(), false), IMMERSIVE) else { return };
+    let views = assert_immersive(&arm64, folder.path());
+    let other = tempfile::tempdir().unwrap();
+    let Some(x86_64) = play("headset-x86_64", &headset(other.path(), false), IMMERSIVE) else { return };
+    for (arm64, x86_64) in views.iter().zip(&assert_immersive(&x86_64, other.path())) {
+        let same = decibels(arm64, x86_64);
+        assert!(same > 40.0, "{same:.1} dB between the processors");
+    }
 }
 
 /// One run for all of it: under qemu, the driver's compiler takes most of the time.

@@ -269,7 +269,7 @@ pub unsafe extern "system" fn sync_actions(
             }
             active.push(set);
         }
-        let (frame, time) = (world.frames.saturating_sub(1), world.time());
+        let (frame, time) = (world.frame(), world.time());
         let bound: Vec<(u64, String)> = match &world.profile {
             Some(profile) => world.instance.as_ref().and_then(|i| i.actions.bindings.get(profile)).cloned(),
             None => None,

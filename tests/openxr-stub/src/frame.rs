@@ -1,5 +1,7 @@
 //! Frames, views, and what is submitted.
 
+use std::sync::{Mutex, PoisonError};
+
 use openxr_sys as sys;
 use sys::Handle;
 
@@ -11,6 +13,9 @@ use crate::world::{DONE, Refusal, World, enter, forbidden};
 
 /// When the stub's time begins.
 const BEGINNING_NS: i64 = 1_000_000_000;
+
+/// Called before every frame.
+pub static PACE: Mutex<Option<extern "C" fn()>> = Mutex::new(None);
 
 impl World {
     fn period_ns(&self) -> i64 {
@@ -28,12 +33,16 @@ pub unsafe extern "system" fn wait_frame(
     _: *const sys::FrameWaitInfo,
     out: *mut sys::FrameState,
 ) -> sys::Result {
+    let pace = *PACE.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(pace) = pace {
+        pace();
+    }
     enter("xrWaitFrame", |world| {
         running(world, session)?;
-        let number = world.frames;
-        world.happen(|at| matches!(at, At::Frame(n) if *n == number));
         let should_render_from = world.script.should_render_from;
         world.frames += 1;
+        let number = world.frame();
+        world.happen(|at| matches!(at, At::Frame(n) if *n == number));
         let time = world.time();
         let period = sys::Duration::from_nanos(world.period_ns());
         let known = world.session(session)?;
@@ -99,7 +108,7 @@ pub unsafe extern "system" fn locate_views(
         }
         let number = views_of(world, info.view_configuration_type)?;
         let base = world.space_pose(info.space)?;
-        let frame = world.frames.saturating_sub(1);
+        let frame = world.frame();
         let tracked = !world.script.untracked.contains(&frame);
         state.view_state_flags = if tracked {
             sys::ViewStateFlags::ORIENTATION_VALID
@@ -172,6 +181,7 @@ pub unsafe extern "system" fn end_frame(
             // SAFETY: a layer, of the type that it says.
             layers.push(unsafe { submitted(world, layer, views) }?);
         }
+        world.picture(|world| is_picture(world, &layers));
         write_pictures(world, &layers, frame.number)?;
         world.log.write(&Entry::Frame { frame: frame.number, should_render: frame.should_render, layers });
         let unbind = world.script.unbind_context;
@@ -317,9 +327,25 @@ fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: boo
     })
 }
 
+/// Whether the left view is of more than one colour.
+fn is_picture(world: &mut World, layers: &[Layer]) -> bool {
+    let left = layers.iter().find_map(|layer| match layer {
+        Layer::Projection { views } => views.first().map(|view| view.image.clone()),
+        _ => None,
+    });
+    let pixels = left.and_then(|image| read(world, &image));
+    pixels.is_some_and(|pixels| pixels.chunks_exact(4).any(|pixel| pixel != &pixels[..4]))
+}
+
+/// The pixels of a submitted image.
+fn read(world: &mut World, image: &Image) -> Option<Vec<u8>> {
+    let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()?;
+    world.its_session().ok()?.graphics.read(texture, image.layer, image.rect)
+}
+
 /// Writes what was submitted in a frame, where the script wants it.
 fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(), Refusal> {
-    let Some(pictures) = world.script.pictures.clone().filter(|p| p.frames.contains(&frame)) else {
+    let Some(pictures) = world.script.pictures.clone().filter(|p| p.from <= frame) else {
         return Ok(());
     };
     let mut quads = 0;
@@ -336,12 +362,10 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
             Layer::Other { .. } => Vec::new(),
         };
         for (name, image) in images {
-            let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain))?.shown();
-            let graphics = &mut world.its_session()?.graphics;
-            let Some(pixels) = texture.and_then(|t| graphics.read(t, image.layer, image.rect)) else {
+            let Some(pixels) = read(world, image) else {
                 return Err(forbidden(sys::Result::ERROR_RUNTIME_FAILURE, "the image cannot be read"));
             };
-            let path = pictures.folder.join(format!("frame-{frame}-{name}.png"));
+            let path = pictures.folder.join(format!("{name}.png"));
             let size = [image.rect[2] as u32, image.rect[3] as u32];
             let picture = image::RgbaImage::from_raw(size[0], size[1], pixels).expect("four bytes a pixel");
             let picture = image::imageops::flip_vertical(&picture);

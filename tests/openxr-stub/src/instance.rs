@@ -369,7 +369,7 @@ pub unsafe extern "system" fn poll_event(
         if buffer.ty != sys::EventDataBuffer::TYPE {
             return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, "the buffer's type is wrong"));
         }
-        let (now, frames) = (world.time(), world.frames);
+        let (now, frames) = (world.time(), world.frame());
         let known = world.any_instance(instance)?;
         // Of a lost instance nothing but its loss is told.
         if known.lost {

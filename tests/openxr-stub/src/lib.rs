@@ -24,6 +24,15 @@ mod world;
 
 use openxr_sys as sys;
 
+/// Has `pace` called before every frame, outside all locks: a simulated Android decides there when time goes on.
+///
+/// # Safety
+/// `pace` can be called from any thread until the process ends.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_openxr_stub_pace(pace: extern "C" fn()) {
+    *frame::PACE.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(pace);
+}
+
 /// What a loader calls first.
 ///
 /// # Safety

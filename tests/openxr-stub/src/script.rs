@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 /// The environment variable that names the script's file. Without it the headset is that of [`Script::default`].
 pub const VARIABLE: &str = "YORO_OPENXR_STUB";
 
-/// A headset, and what happens to it. Frames are counted from 0 by `xrWaitFrame`, over all sessions of the process.
+/// A headset, and what happens to it. Frames are counted from 0 by `xrWaitFrame`, over all sessions of the process, and from
+/// the first whose left view is not of one colour: until then it is frame 0, however long a scene takes to load.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Script {
@@ -165,15 +166,15 @@ pub struct Input {
     pub value: [f32; 2],
 }
 
-/// Which pictures are written where: `frame-7-view-0.png` is what was submitted for the left eye in frame 7,
-/// `frame-7-quad-0.png` what the first quad layer shows, with alpha.
+/// Where pictures are written: `view-0.png` is what was last submitted for the left eye, `quad-0.png` what the first quad layer
+/// showed, with alpha.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Pictures {
     /// The folder, which must exist.
     pub folder: PathBuf,
-    /// The frames.
-    pub frames: Vec<u32>,
+    /// From this frame on.
+    pub from: u32,
 }
 
 /// GL_SRGB8_ALPHA8, GL_RGBA8, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT16.

@@ -45,6 +45,8 @@ pub struct World {
     last_handle: u64,
     /// Frames that were waited for.
     pub frames: u32,
+    /// How many of them came before the first picture, once there was one.
+    before_picture: Option<u32>,
     /// Calls for events while there were none.
     pub idle_polls: u32,
     /// `xrGetSystem` in vain.
@@ -121,6 +123,7 @@ impl World {
             happened: vec![false; script.events.len()],
             last_handle: 0,
             frames: 0,
+            before_picture: None,
             idle_polls: 0,
             unavailable: 0,
             profile: script.profile.clone(),
@@ -185,6 +188,19 @@ impl World {
     pub fn success(&mut self) -> Answer {
         let pending = self.its_session().is_ok_and(|session| session.loss_pending);
         Ok(if pending { sys::Result::SESSION_LOSS_PENDING } else { sys::Result::SUCCESS })
+    }
+
+    /// The script's number of the last frame that was waited for.
+    pub fn frame(&self) -> u32 {
+        self.before_picture.map_or(0, |before| self.frames.saturating_sub(before + 1))
+    }
+
+    /// Whether there was a picture; if not, it is there now if `look` says so.
+    pub fn picture(&mut self, look: impl FnOnce(&mut World) -> bool) {
+        if self.before_picture.is_none() && look(self) {
+            // The next one is frame 1.
+            self.before_picture = Some(self.frames.saturating_sub(1));
+        }
     }
 
     /// Everything that the script has for a moment.
@@ -260,7 +276,7 @@ impl World {
 
     /// The head in the floor's space.
     pub fn head(&self) -> (Quat, Vec3) {
-        let turns = self.frames.saturating_sub(1) as f32;
+        let turns = self.frame() as f32;
         let yaw = self.script.yaw_degrees + turns * self.script.yaw_per_frame_degrees;
         (Quat::from_rotation_y(yaw.to_radians()), self.script.position.into())
     }

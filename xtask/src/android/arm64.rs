@@ -112,7 +112,7 @@ fn build(surroundings: &Surroundings, system: &System, target: &Path) -> anyhow:
     let cargo = rust.programs.join("cargo");
     let mut command = Command::new(cargo);
     let arguments =
-        ["build", "--package", "yoro-android-host", "--bin", "yoro-android-host", "--target", TRIPLE];
+        ["build", "--package", "yoro-android-host", "--package", "yoro-openxr-stub", "--target", TRIPLE];
     command
         .args(arguments)
         // Little of its time is spent in code of Rust: compiling that well would cost more than it saves.

@@ -10,6 +10,7 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 
 use super::keystore::{self, Keystore};
+use super::loader::Loaders;
 use super::stand_in::StandIn;
 use super::toolchain::{self, Rust, Surroundings, Toolchain};
 use super::{PAGE, check, target_folder};
@@ -20,21 +21,24 @@ const CARGO_APK: &str = "0.10.0";
 const NAME: &str = "yoro";
 
 /// How to build.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// Small and fast, by the profile `android`, instead of debuggable.
     pub release: bool,
     /// Install missing packages without asking.
     pub yes: bool,
+    /// OpenXR loaders that the APK is to carry: at most one for each processor.
+    pub openxr_loaders: Vec<PathBuf>,
 }
 
 /// Builds, signs and checks the APK; where it is.
 ///
 /// # Errors
 /// When something is missing or fails, or the result is not as it should be.
-pub fn apk(options: Options) -> anyhow::Result<PathBuf> {
+pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let surroundings = Surroundings::here();
+    let _loaders = Loaders::place(&options.openxr_loaders, &root().join("android/runtime-libs"))?;
     let (toolchain, against) = Toolchain::choose(&surroundings);
     eprintln!("building with {toolchain}");
     if surroundings.names_google() && !against.is_empty() {
@@ -104,7 +108,7 @@ pub fn for_tests() -> anyhow::Result<Equipped> {
         eprintln!("warning: the APK cannot be built here, so that its tests are left out: {error:#}");
         return Ok(Equipped::Missing);
     }
-    Ok(Equipped::At(apk(Options { release: true, yes: true })?))
+    Ok(Equipped::At(apk(&Options { release: true, yes: true, openxr_loaders: Vec::new() })?))
 }
 
 /// The workspace's folder.

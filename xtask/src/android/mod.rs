@@ -4,6 +4,7 @@ mod arm64;
 mod build;
 pub mod check;
 mod keystore;
+mod loader;
 mod stand_in;
 mod symbols;
 mod toolchain;

@@ -4,6 +4,7 @@ pub mod experiment;
 pub mod install;
 pub mod list;
 pub mod logcat;
+pub mod report;
 pub mod run;
 
 use std::path::{Path, PathBuf};
@@ -31,6 +32,7 @@ enum Command {
     Run(Box<run::RunArgs>),
     Logcat(logcat::LogcatArgs),
     Experiment(experiment::ExperimentArgs),
+    Report(report::ReportArgs),
 }
 
 /// Runs the subcommand.
@@ -41,6 +43,7 @@ pub fn run(args: &DeviceArgs) -> anyhow::Result<()> {
         Command::Run(args) => run::run(args),
         Command::Logcat(args) => logcat::run(args),
         Command::Experiment(args) => experiment::run(args),
+        Command::Report(args) => report::run(args),
     }
 }
 

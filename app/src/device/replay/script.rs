@@ -101,8 +101,8 @@ impl Default for Phone {
     fn default() -> Phone {
         Phone {
             serial: "SIMULATED".into(),
-            manufacturer: "Nobody".into(),
-            model: "Simulated phone".into(),
+            manufacturer: "Simulated".into(),
+            model: "phone".into(),
             android: "14".into(),
             state: "device".into(),
             installed: true,

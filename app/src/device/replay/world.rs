@@ -29,6 +29,8 @@ const IDLE_MILLIWATTS: f64 = 300.0;
 const CELSIUS_PER_WATT: f64 = 5.0;
 /// Seconds after which a difference of temperature has fallen to a third.
 const WARMING_S: f64 = 400.0;
+/// By how much the same run differs from time to time, as a share.
+const LUCK: f64 = 0.02;
 /// Time that a start of Android takes after the device is connected again, in seconds.
 const BOOT_S: f64 = 10.0;
 
@@ -47,6 +49,8 @@ struct Application {
     /// Lines of a recorded log, repeated; none if they are generated.
     recorded: Option<Vec<Line>>,
     lines: u32,
+    /// What this start costs more or less than others of its kind, as a factor.
+    luck: f64,
     normalizer: CurrentNormalizer,
     faults: Vec<Fault>,
 }
@@ -213,11 +217,13 @@ impl World {
         }
     }
 
-    fn load(&self) -> Load {
-        let Some(application) = &self.application else {
-            return Load { frame_ms: 0.0, milliwatts: IDLE_MILLIWATTS };
-        };
-        self.script.load.get(&application.method).copied().unwrap_or_default()
+    /// What the application costs now.
+    fn load(&self, application: &Application) -> Load {
+        let load = self.script.load.get(&application.method).copied().unwrap_or_default();
+        // A scene costs what its name makes of it, the same for all methods.
+        let name: u32 = application.settings.scene.bytes().map(u32::from).sum();
+        let weight = (0.85 + 0.3 * f64::from(name % 100) / 100.0) * application.luck;
+        Load { frame_ms: load.frame_ms * weight, milliwatts: load.milliwatts * weight }
     }
 
     fn volts(&self) -> f64 {
@@ -225,7 +231,8 @@ impl World {
     }
 
     fn discharge(&mut self, seconds: f64) {
-        let watts = self.load().milliwatts / 1e3;
+        let milliwatts = self.application.as_ref().map_or(IDLE_MILLIWATTS, |a| self.load(a).milliwatts);
+        let watts = milliwatts / 1e3;
         let hours = seconds / 3600.0;
         if self.now < self.plugged_until {
             self.charge_mah = (self.charge_mah + 1500.0 * hours).min(self.script.capacity_mah);
@@ -330,16 +337,13 @@ impl World {
 
     /// A second of made-up figures.
     fn generate(&mut self, application: &mut Application) -> Line {
-        let load = self.script.load.get(&application.method).copied().unwrap_or_default();
-        // A scene costs what its name makes of it, the same for all methods.
-        let scene = &application.settings.scene;
-        let weight = 0.85 + 0.3 * (scene.bytes().map(u32::from).sum::<u32>() % 100) as f64 / 100.0;
+        let load = self.load(application);
         let volts = self.volts();
         let mut noise = |share: f64| 1.0 + share * self.random.random_range(-1.0..1.0);
         let refresh_hz = self.script.refresh_hz;
-        let gpu_ms = load.frame_ms * weight * noise(0.03);
+        let gpu_ms = load.frame_ms * noise(0.03);
         let fps = (1e3 / gpu_ms).min(refresh_hz);
-        let milliwatts = load.milliwatts * weight * noise(0.04);
+        let milliwatts = load.milliwatts * noise(0.04);
         let (cpu_percent, rss_mb) = (45.0 * noise(0.1), 300.0 * noise(0.01));
         let plugged = self.now < self.plugged_until;
         let (current_ma, status) = if plugged {
@@ -573,6 +577,7 @@ impl World {
             first_frame: self.now + LOADING_S,
             recorded,
             lines: 0,
+            luck: 1.0 + LUCK * self.random.random_range(-1.0..1.0),
             normalizer: CurrentNormalizer::default(),
             faults,
         });

@@ -129,6 +129,11 @@ fn cell(contender: &str, text: Option<String>) -> Cell {
     if [CONVENTIONAL, MONO].contains(&contender) { Cell::base(text) } else { Cell::ours(text) }
 }
 
+/// The paper's figure of the system that a method here stands for.
+fn papers_mark(method: &str, value: f64) -> Mark {
+    Mark::papers(method, format!("{PAPERS}{}", paper::system(method)), value)
+}
+
 /// A dot plot with a line for each setting.
 fn scene_dots(
     suite: &Suite,
@@ -138,16 +143,11 @@ fn scene_dots(
     papers: impl Fn(&SettingData) -> Vec<(&'static str, f64)>,
 ) -> Panel {
     let rows = suite.settings.iter().map(|setting| {
-        let paper = papers(setting).into_iter().map(|(method, value)| Mark {
-            method: method.into(),
-            papers: true,
-            label: format!("{PAPERS}{}", paper::system(method)),
-            value,
-        });
+        let paper = papers(setting).into_iter().map(|(method, value)| papers_mark(method, value));
         // Of equal figures the first contender stays on top.
         let ours = contenders.iter().rev().filter_map(|name| {
             let value = value(setting, name)?;
-            Some(Mark { method: (*name).into(), papers: false, label: (*name).into(), value })
+            Some(Mark::new(*name, *name, value))
         });
         DotRow { label: setting.label(), marks: paper.chain(ours).collect() }
     });
@@ -305,12 +305,7 @@ fn frame_time(suite: &Suite) -> Section {
             (CONVENTIONAL, scene.fps_conventional),
             ("yoro-paper", scene.fps_yoro),
         ];
-        let mark = |(method, fps): (&str, f64)| Mark {
-            method: method.into(),
-            papers: true,
-            label: format!("{PAPERS}{}", paper::system(method)),
-            value: 1000.0 / fps,
-        };
+        let mark = |(method, fps): (&str, f64)| papers_mark(method, 1000.0 / fps);
         DotRow { label: scene.name.into(), marks: systems.map(mark).to_vec() }
     });
     section.figure(
@@ -833,17 +828,12 @@ fn few_lights(suite: &Suite) -> Section {
     );
     if let Panel::Dots { rows, .. } = &mut panel {
         let papers = paper::FEW_LIGHTS.iter().filter(|(method, ..)| *method != CONVENTIONAL);
-        let papers = papers.map(|(method, fps, _)| Mark {
-            method: (*method).into(),
-            papers: true,
-            label: format!("{PAPERS}{}", paper::system(method)),
-            value: conventional_fps / fps,
-        });
+        let papers = papers.map(|(method, fps, _)| papers_mark(method, conventional_fps / fps));
         let ours = others.iter().rev().filter_map(|name| {
             let costs =
                 suite.settings.iter().filter_map(|setting| Some(setting.cost(name)?.median)).collect();
             let value = geometric_mean(costs)?;
-            Some(Mark { method: (*name).into(), papers: false, label: (*name).into(), value })
+            Some(Mark::new(*name, *name, value))
         });
         let marks = papers.chain(ours).collect();
         rows.push(DotRow { label: "mean".into(), marks });
@@ -897,15 +887,10 @@ fn styles(suite: &Suite) -> Section {
                 metric::PSNR => Some(*psnr),
                 _ => None,
             });
-            let paper = paper.map(|value| Mark {
-                method: "yoro-paper".into(),
-                papers: true,
-                label: format!("{PAPERS}YORO"),
-                value,
-            });
+            let paper = paper.map(|value| papers_mark("yoro-paper", value));
             let ours = contenders.iter().rev().filter_map(|contender| {
                 let value = value(style, contender, name)?;
-                Some(Mark { method: (*contender).into(), papers: false, label: (*contender).into(), value })
+                Some(Mark::new(*contender, *contender, value))
             });
             DotRow { label: style.into(), marks: paper.into_iter().chain(ours).collect() }
         });
@@ -1025,11 +1010,9 @@ fn patchers(suite: &Suite) -> Section {
     };
     let dots = |axis: Axis, ours: &dyn Fn(&str) -> Option<f64>, papers: fn(&paper::PaperPatcher) -> f64| {
         // The patcher is the row; colours say whose figure it is.
-        let mark = |papers: bool, value: f64| Mark {
-            method: if papers { "yoro-paper".into() } else { "yoro-gather".into() },
-            papers,
-            label: if papers { "the paper's".into() } else { "here".into() },
-            value,
+        let mark = |papers: bool, value: f64| match papers {
+            true => Mark::papers("yoro-paper", "the paper's", value),
+            false => Mark::new("yoro-gather", "here", value),
         };
         let rows = contenders.iter().map(|name| {
             let paper = paper_of(name).map(|patcher| mark(true, papers(patcher)));

@@ -72,6 +72,45 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
             host.finish_asked.store(true, Ordering::Release);
             Value::Void
         }
+        "getContentResolver" => Value::object(Object::new("android/content/ContentResolver", Data::None)),
+        "parse" if class == "android/net/Uri" => {
+            Value::object(Object::new("android/net/Uri", Data::Text(text(0)?)))
+        }
+        "query" if class == "android/content/ContentResolver" => {
+            let columns = match arguments.get(1) {
+                Some(Value::Object(Some(names))) => match &names.data {
+                    Data::Array(names) => lock(names)
+                        .iter()
+                        .flatten()
+                        .filter_map(|name| name.text().map(str::to_owned))
+                        .collect(),
+                    _ => return None,
+                },
+                _ => Vec::new(),
+            };
+            Value::Object(crate::openxr::query(&text(0)?, columns))
+        }
+        "getColumnIndex" | "moveToNext" | "getString" | "isNull" | "getCount" | "close"
+            if matches!(receiver.data, Data::Cursor(_)) =>
+        {
+            let Data::Cursor(cursor) = &receiver.data else { return None };
+            let row = || cursor.rows.get(cursor.moves.load(Ordering::Acquire).wrapping_sub(1));
+            let cell = |column: i32| row().and_then(|row| row.get(usize::try_from(column).ok()?));
+            match member.name.as_str() {
+                "getColumnIndex" => {
+                    let wanted = text(0)?;
+                    let index = cursor.columns.iter().position(|name| *name == wanted);
+                    Value::Int(index.map_or(-1, |index| index as i32))
+                }
+                "moveToNext" => {
+                    Value::Boolean(cursor.moves.fetch_add(1, Ordering::AcqRel) < cursor.rows.len())
+                }
+                "getString" => Value::Object(cell(int(0)).map(|text| Object::string(text))),
+                "isNull" => Value::Boolean(cell(int(0)).is_none()),
+                "getCount" => Value::Int(cursor.rows.len() as i32),
+                _ => Value::Void,
+            }
+        }
         "getSystemService" => system_service(&text(0)?),
         "registerReceiver" => Value::Object(battery_intent(host)),
         "getIntProperty" if class == "android/os/BatteryManager" => {

@@ -8,5 +8,5 @@ pub mod answers;
 mod objects;
 mod table;
 
-pub use objects::{Argument, Data, Jni, Member, Object, Value};
+pub use objects::{Argument, Cursor, Data, Jni, Member, Object, Value};
 pub use table::{activity_reference, attach_main_thread, environment, release_activity, virtual_machine};

@@ -1,6 +1,7 @@
 //! Objects and references.
 
 use std::collections::{BTreeMap, HashMap};
+use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, Mutex};
 
 use crate::host::{fatal, lock};
@@ -27,6 +28,19 @@ pub enum Data {
     Extras(BTreeMap<String, Value>),
     /// An array or a collection of objects.
     Array(Mutex<Vec<Option<Arc<Object>>>>),
+    /// A table that a content provider gave.
+    Cursor(Cursor),
+}
+
+/// Rows of texts, and how many of them were moved to.
+#[derive(Debug)]
+pub struct Cursor {
+    /// Their names.
+    pub columns: Vec<String>,
+    /// In the columns' order.
+    pub rows: Vec<Vec<String>>,
+    /// The next is this one's number.
+    pub moves: AtomicUsize,
 }
 
 impl Object {

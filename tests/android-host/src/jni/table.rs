@@ -425,7 +425,9 @@ fn functions() -> Vec<(&'static str, usize)> {
         ReleaseStringUTFChars,
         GetStringUTFRegion,
         GetArrayLength,
+        NewObjectArray,
         GetObjectArrayElement,
+        SetObjectArrayElement,
         MonitorEnter,
         MonitorExit,
         GetJavaVM,
@@ -849,6 +851,27 @@ extern "C" fn GetObjectArrayElement(_env: Env, handle: Handle, index: i32) -> Ha
     match &get(handle, "GetObjectArrayElement").data {
         Data::Array(items) => local(lock(items).get(index as usize).cloned().flatten()),
         _ => fatal("JNI: GetObjectArrayElement of something that is no array"),
+    }
+}
+
+extern "C" fn NewObjectArray(_env: Env, length: i32, class: Handle, first: Handle) -> Handle {
+    let class = match &get(class, "NewObjectArray").data {
+        Data::Class(name) => format!("[L{name};"),
+        _ => fatal("JNI: NewObjectArray of something that is no class"),
+    };
+    let first = (first != 0).then(|| get(first, "NewObjectArray"));
+    let items = vec![first; length.max(0) as usize];
+    local(Some(Object::new(&class, Data::Array(items.into()))))
+}
+
+extern "C" fn SetObjectArrayElement(_env: Env, handle: Handle, index: i32, value: Handle) {
+    let value = (value != 0).then(|| get(value, "SetObjectArrayElement"));
+    match &get(handle, "SetObjectArrayElement").data {
+        Data::Array(items) => match lock(items).get_mut(index as usize) {
+            Some(item) => *item = value,
+            None => fatal("JNI: SetObjectArrayElement beyond the array"),
+        },
+        _ => fatal("JNI: SetObjectArrayElement of something that is no array"),
     }
 }
 

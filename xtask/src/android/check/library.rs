@@ -7,6 +7,7 @@ use goblin::elf::section_header::SHN_UNDEF;
 use goblin::elf::sym::STB_WEAK;
 use goblin::elf::{Elf, Sym, dynamic, header};
 
+use super::super::loader;
 use super::super::symbols::Public;
 use super::super::{ARCHITECTURES, Architecture, MIN_API, PAGE};
 use super::{Report, some};
@@ -40,6 +41,12 @@ pub fn check(name: &str, content: &[u8], public: &Public, report: &mut Report) -
     let fits =
         elf.is_64 && elf.header.e_type == header::ET_DYN && elf.header.e_machine == architecture.machine;
     let problem = (!fits).then(|| format!("should be a shared library for {folder}"));
+    if file == loader::FILE {
+        // Somebody else's, built by other rules.
+        let problem = problem.or_else(|| (!loader::exports(&elf)).then(|| "is no OpenXR loader".to_owned()));
+        report.row(format!("{folder} loader"), format!("{file}, {size:.2} MB, API layers"), problem);
+        return Ok(());
+    }
     report.row(format!("{folder} library"), format!("{file}, {size:.2} MB"), problem);
     pages(&elf, folder, report);
     protection(&elf, folder, report);
@@ -153,7 +160,7 @@ fn defined<'a>(elf: &'a Elf<'_>) -> impl Iterator<Item = &'a str> {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
 
     /// What a small library made here is like.
@@ -184,6 +191,11 @@ mod tests {
             weak: vec!["of_a_later_api"],
             exported: vec![ENTRY],
         }
+    }
+
+    /// An OpenXR loader for arm64.
+    pub fn loader() -> Vec<u8> {
+        Made { exported: vec![loader::ENTRY], ..good() }.bytes()
     }
 
     impl Made {
@@ -288,6 +300,17 @@ mod tests {
         let report = good().report();
         assert!(report.passed(), "{report}");
         assert_eq!(report.rows.len(), 6);
+    }
+
+    #[test]
+    fn a_loader_need_not_be_an_application() {
+        let name = "lib/arm64-v8a/libopenxr_loader.so";
+        let mut report = Report::default();
+        check(name, &loader(), &Public::Lists, &mut report).unwrap();
+        assert!(report.passed(), "{report}");
+        let mut report = Report::default();
+        check(name, &good().bytes(), &Public::Lists, &mut report).unwrap();
+        assert_eq!(report.problems(), ["arm64-v8a loader"], "{report}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Is an APK as Android wants it? The file itself is asked, not what it was built from.
 
 mod archive;
-mod library;
+pub(super) mod library;
 mod manifest;
 mod signature;
 

@@ -1,0 +1,268 @@
+//! `yoro study`: plan a user study, collect its ratings, analyse them.
+
+use std::collections::BTreeMap;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail, ensure};
+use clap::ValueEnum as _;
+
+use super::machine;
+use crate::files;
+use crate::scene::builtin::{BUILTINS, DEFAULT_SEED};
+use crate::stereo::Method;
+use crate::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
+use crate::viewer::Settings;
+
+/// Plan a user study, collect its ratings, analyse them
+#[derive(clap::Args, Clone, Debug)]
+pub struct StudyArgs {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(clap::Subcommand, Clone, Debug)]
+enum Command {
+    Plan(PlanArgs),
+    Collect(CollectArgs),
+    Analyse(AnalyseArgs),
+}
+
+/// Draw the order of scenes and methods for each participant
+#[derive(clap::Args, Clone, Debug)]
+struct PlanArgs {
+    /// Number of participants
+    #[arg(long, default_value_t = 14, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    participants: u16,
+    /// Methods to be compared, with commas between
+    #[arg(long, value_delimiter = ',', default_value = "conventional,yoro", value_name = "METHOD,...")]
+    methods: Vec<String>,
+    /// A setting of the viewer for one of the methods, such as paper:pipeline=paper; a name that is no stereo method
+    /// needs one of method=
+    #[arg(long = "set", value_name = "METHOD:KEY=VALUE")]
+    settings: Vec<String>,
+    /// Scenes, with commas between; all built-in scenes by default
+    #[arg(long, value_delimiter = ',', value_name = "SCENE,...")]
+    scenes: Vec<String>,
+    /// What the viewer asks after each trial, with commas between
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_value = "image-quality,user-experience",
+        value_name = "QUESTION,..."
+    )]
+    questions: Vec<String>,
+    /// Another seed gives other orders
+    #[arg(long, default_value_t = DEFAULT_SEED)]
+    seed: u64,
+    /// The plan, as CSV or, if the name ends in .json, as JSON
+    #[arg(long, default_value = "plan.csv", value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// Collect the ratings from logs of the viewer
+#[derive(clap::Args, Clone, Debug)]
+struct CollectArgs {
+    /// Logs, - for standard input
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+    /// The plan that the participants followed: methods get its names, and what is not in it is left out
+    #[arg(long, value_name = "PLAN.csv")]
+    plan: Option<PathBuf>,
+    /// The ratings
+    #[arg(long, default_value = "ratings.csv", value_name = "FILE.csv")]
+    out: PathBuf,
+}
+
+/// Test for each question whether the methods differ, and whether they are equivalent
+#[derive(clap::Args, Clone, Debug)]
+struct AnalyseArgs {
+    /// Table with the columns participant, method, scene, question and rating
+    #[arg(value_name = "RATINGS.csv")]
+    ratings: PathBuf,
+    /// The method that the others are held against
+    #[arg(long, default_value = "conventional", value_name = "METHOD")]
+    baseline: String,
+    /// Lowest and highest rating
+    #[arg(long, default_value = "1..5", value_parser = parse_scale, value_name = "LOW..HIGH")]
+    scale: Scale,
+    /// Differences of the mean up to this do not matter
+    #[arg(long, default_value_t = 0.5, value_parser = parse_above_zero, value_name = "DIFFERENCE")]
+    bound: f64,
+    /// Level of the tests
+    #[arg(long, default_value_t = 0.05, value_parser = parse_alpha)]
+    alpha: f64,
+    /// Power that the number of participants needed is given for
+    #[arg(long, default_value_t = 0.8, value_parser = parse_share)]
+    power: f64,
+    /// Folder for study.html, study.md and study.json
+    #[arg(long, default_value = "out/study", value_name = "FOLDER")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Scale([f64; 2]);
+
+fn parse_scale(text: &str) -> Result<Scale, String> {
+    let ends = text.split_once("..").and_then(|(low, high)| Some([low.parse().ok()?, high.parse().ok()?]));
+    let scale: Option<[f64; 2]> =
+        ends.filter(|[low, high]: &[f64; 2]| low < high && (high - low).is_finite());
+    scale.map(Scale).ok_or_else(|| "give the lowest and the highest rating: 1..5".into())
+}
+
+fn parse_above_zero(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
+    value.ok_or_else(|| "give a number above 0".into())
+}
+
+fn parse_share(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| *value > 0.0 && *value < 1.0);
+    value.ok_or_else(|| "give a number between 0 and 1".into())
+}
+
+fn parse_alpha(text: &str) -> Result<f64, String> {
+    parse_share(text)
+        .ok()
+        .filter(|alpha| *alpha < 0.5)
+        .ok_or_else(|| "give a number between 0 and 0.5".into())
+}
+
+/// Runs the subcommand.
+pub fn run(args: &StudyArgs) -> anyhow::Result<()> {
+    match &args.command {
+        Command::Plan(args) => plan(args),
+        Command::Collect(args) => collect(args),
+        Command::Analyse(args) => analyse(args),
+    }
+}
+
+fn plan(args: &PlanArgs) -> anyhow::Result<()> {
+    let scenes = match args.scenes.is_empty() {
+        true => BUILTINS.iter().map(|builtin| builtin.name.to_owned()).collect(),
+        false => args.scenes.clone(),
+    };
+    for scene in &scenes {
+        let file = files::has_extension(Path::new(scene), &["obj", "gltf", "glb"]);
+        let known = file || BUILTINS.iter().any(|builtin| builtin.name == *scene);
+        ensure!(known, "there is no scene {scene}: name one that yoro scenes lists, or a file of the device");
+    }
+    let methods = conditions(&args.methods, &args.settings)?;
+    refuse_twice("scene", &scenes)?;
+    refuse_twice("method", &args.methods)?;
+    ensure!(methods.len() > 1, "one method cannot be compared: name two with --methods");
+    let participants = usize::from(args.participants);
+    let plan = Plan::new(participants, &scenes, &methods, &args.questions, args.seed);
+    let text = match files::has_extension(&args.out, &["json"]) {
+        true => serde_json::to_string_pretty(&plan)?,
+        false => plan.to_csv(),
+    };
+    files::write(&args.out, text.as_bytes())?;
+    println!(
+        "{}: {} participants, {} trials each",
+        args.out.display(),
+        participants,
+        scenes.len() * methods.len()
+    );
+    if !participants.is_multiple_of(plan.balanced_at) {
+        println!(
+            "fully balanced with a multiple of {} participants; with {participants} the orders are as even as they can be",
+            plan.balanced_at
+        );
+    }
+    Ok(())
+}
+
+fn refuse_twice(what: &str, names: &[String]) -> anyhow::Result<()> {
+    for (i, name) in names.iter().enumerate() {
+        ensure!(!names[..i].contains(name), "the {what} {name} is named twice: name it once");
+    }
+    Ok(())
+}
+
+fn conditions(names: &[String], settings: &[String]) -> anyhow::Result<Vec<Condition>> {
+    let mut given: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for setting in settings {
+        let Some((method, pair)) = setting.split_once(':').filter(|(_, pair)| pair.contains('=')) else {
+            bail!(
+                "\"{setting}\" is no setting of a method: write METHOD:KEY=VALUE, such as paper:pipeline=paper"
+            );
+        };
+        ensure!(names.iter().any(|name| name == method), "{setting}: {method} is not among the --methods");
+        given.entry(method).or_default().push(pair);
+    }
+    let condition = |name: &String| {
+        let mut settings = BTreeMap::new();
+        if Method::from_str(name, false).is_ok() {
+            settings.insert("method".to_owned(), name.clone());
+        }
+        // What the viewer would refuse is told now.
+        let mut check = Settings::default();
+        for pair in given.get(name.as_str()).into_iter().flatten() {
+            check.apply(pair)?;
+            let (key, value) = pair.split_once('=').context("it was checked to have one")?;
+            ensure!(key != "scene", "{pair}: scenes are named by --scenes");
+            settings.insert(key.trim().to_owned(), value.trim().to_owned());
+        }
+        ensure!(
+            settings.contains_key("method"),
+            "{name} is no stereo method: add --set {name}:method=yoro, or another method and more settings"
+        );
+        Ok(Condition { name: name.clone(), settings })
+    };
+    names.iter().map(condition).collect()
+}
+
+/// Damaged lines that are told one by one.
+const DAMAGED_SHOWN: usize = 10;
+
+fn collect(args: &CollectArgs) -> anyhow::Result<()> {
+    let plan = args.plan.as_deref().map(read_trials).transpose()?;
+    let mut collected = Collected::default();
+    for path in &args.logs {
+        let bytes = match path.as_os_str() == "-" {
+            true => {
+                let mut bytes = Vec::new();
+                std::io::stdin().read_to_end(&mut bytes).context("cannot read standard input")?;
+                bytes
+            }
+            false => files::read(path)?,
+        };
+        collected.add(&path.display().to_string(), &String::from_utf8_lossy(&bytes), plan.as_ref());
+    }
+    for (name, line, what) in collected.damaged.iter().take(DAMAGED_SHOWN) {
+        log::warn!("{name}, line {line}: {what}");
+    }
+    if collected.ratings.is_empty() {
+        let names: Vec<String> = args.logs.iter().map(|path| path.display().to_string()).collect();
+        return Err(StudyError::NoRating(names.join(", ")).into());
+    }
+    files::write(&args.out, collected.to_csv().as_bytes())?;
+    println!(
+        "{}: {} ratings; {} were replaced by later ones, {} damaged lines were left out",
+        args.out.display(),
+        collected.ratings.len(),
+        collected.replaced,
+        collected.damaged.len()
+    );
+    Ok(())
+}
+
+fn analyse(args: &AnalyseArgs) -> anyhow::Result<()> {
+    let Scale(scale) = args.scale;
+    let ratings = Ratings::read(&args.ratings, scale)?;
+    let options = Options {
+        baseline: args.baseline.clone(),
+        scale,
+        bound: args.bound,
+        alpha: args.alpha,
+        power: args.power,
+    };
+    let study = Study::new(&ratings, options, machine::made_by())?;
+    files::create_folder(&args.out)?;
+    let written = study.write(&args.out)?;
+    print!("{}", study.to_text());
+    println!("page:   {}", written.page.display());
+    println!("tables: {}", written.markdown.display());
+    println!("json:   {}", written.json.display());
+    Ok(())
+}

@@ -1,0 +1,205 @@
+//! Means of methods, and what they are against the baseline.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::run::{Quantity, Run};
+use super::{CONFIDENCE, Device};
+use crate::metrics::inference::{Basis, BlockInterval, Blocks, Interval, Sample};
+
+/// A method on a scene: all its runs that count.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mean {
+    /// Device.
+    pub device: String,
+    /// Scene.
+    pub scene: String,
+    /// Method.
+    pub method: String,
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Mean of the runs, their number and standard deviation.
+    #[serde(flatten)]
+    pub sample: Sample,
+    /// Of the mean, by Student's t over the repetitions; none of one.
+    pub interval: Option<Interval>,
+}
+
+/// A method against the baseline, by pairs of runs of the same device, scene and repetition.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// Device; none for the mean of the devices.
+    pub device: Option<String>,
+    /// Scene; none for the mean of the scenes.
+    pub scene: Option<String>,
+    /// Method.
+    pub method: String,
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Pairs of runs.
+    pub pairs: usize,
+    /// Mean of the method, over the pairs in each scene, then over the scenes.
+    pub ours: f64,
+    /// The baseline's, likewise.
+    pub baseline: f64,
+    /// In percent of the baseline, by the geometric mean of the ratios; for quantities that have no ratio the mean
+    /// difference in their unit.
+    pub change: f64,
+    /// Of the change; none where nothing was repeated.
+    pub interval: Option<BlockInterval>,
+}
+
+impl Difference {
+    /// Whether `change` is in percent.
+    pub fn in_percent(&self) -> bool {
+        self.quantity.is_ratio()
+    }
+}
+
+/// The means of all methods and scenes of a device.
+pub fn means(runs: &[Run], device: &Device) -> Vec<Mean> {
+    let mut means = Vec::new();
+    for scene in &device.scenes {
+        for method in &device.methods {
+            for quantity in Quantity::ALL {
+                let of = runs.iter().filter(|r| r.device == device.name && r.scene == *scene);
+                let of = of.filter(|run| run.method == *method);
+                let values: Vec<f64> = of.filter_map(|run| run.values.get(&quantity).copied()).collect();
+                if let Some(sample) = Sample::of(&values) {
+                    means.push(Mean {
+                        device: device.name.clone(),
+                        scene: scene.clone(),
+                        method: method.clone(),
+                        quantity,
+                        sample,
+                        interval: sample.interval(CONFIDENCE),
+                    });
+                }
+            }
+        }
+    }
+    means
+}
+
+/// What makes two runs a pair.
+type Key<'a> = (usize, Option<&'a str>, &'a str, u32);
+
+fn key(run: &Run) -> Key<'_> {
+    (run.set, run.experiment.as_deref(), &run.scene, run.repetition)
+}
+
+/// The runs of a method that have nothing to be held against.
+pub fn without_partner<'a>(runs: &'a [Run], device: &Device, baseline: &str) -> Vec<&'a Run> {
+    let of =
+        || runs.iter().filter(|run| run.device == device.name && run.exclusions.iter().all(|e| e.power_only));
+    let partners: BTreeSet<Key> = of().filter(|run| run.method == baseline).map(key).collect();
+    of().filter(|run| run.method != baseline && !partners.contains(&key(run))).collect()
+}
+
+/// All methods against the baseline on a device: for each scene, then over the scenes.
+pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Difference> {
+    let mut differences = Vec::new();
+    for method in device.methods.iter().filter(|method| *method != baseline) {
+        for quantity in Quantity::ALL {
+            let values = |method: &str| -> BTreeMap<Key, f64> {
+                let of = runs.iter().filter(|run| run.device == device.name && run.method == method);
+                of.filter_map(|run| Some((key(run), *run.values.get(&quantity)?))).collect()
+            };
+            let (ours, theirs) = (values(method), values(baseline));
+            let pairs = |scene: &str| -> Vec<(f64, f64)> {
+                let of_scene = ours.iter().filter(|(key, _)| key.2 == scene);
+                of_scene.filter_map(|(key, value)| Some((*value, *theirs.get(key)?))).collect()
+            };
+            let scenes: Vec<(&String, Vec<(f64, f64)>)> = device
+                .scenes
+                .iter()
+                .map(|scene| (scene, pairs(scene)))
+                .filter(|(_, p)| !p.is_empty())
+                .collect();
+            let difference = |scene: Option<&String>, pairs: &[&Vec<(f64, f64)>]| {
+                let (change, interval) = change(quantity, pairs)?;
+                let mean = |side: fn(&(f64, f64)) -> f64| {
+                    let blocks: Vec<Vec<f64>> = pairs.iter().map(|p| p.iter().map(side).collect()).collect();
+                    Blocks::of(&blocks, CONFIDENCE).map(|blocks| blocks.mean)
+                };
+                Some(Difference {
+                    device: Some(device.name.clone()),
+                    scene: scene.cloned(),
+                    method: method.clone(),
+                    quantity,
+                    pairs: pairs.iter().map(|pairs| pairs.len()).sum(),
+                    ours: mean(|pair| pair.0)?,
+                    baseline: mean(|pair| pair.1)?,
+                    change,
+                    interval,
+                })
+            };
+            differences.extend(scenes.iter().filter_map(|(scene, pairs)| difference(Some(scene), &[pairs])));
+            let all: Vec<&Vec<(f64, f64)>> = scenes.iter().map(|(_, pairs)| pairs).collect();
+            differences.extend(difference(None, &all));
+        }
+    }
+    differences
+}
+
+/// The mean of the devices, each by its own mean over the scenes; the interval rests on the devices.
+pub fn over_devices(differences: &[Difference], devices: &[&Device]) -> Vec<Difference> {
+    let mut found = Vec::new();
+    let of_devices = differences.iter().filter(|difference| {
+        difference.scene.is_none() && devices.iter().any(|d| Some(&d.name) == difference.device.as_ref())
+    });
+    let mut groups: BTreeMap<(&str, Quantity), Vec<&Difference>> = BTreeMap::new();
+    for difference in of_devices {
+        groups.entry((&difference.method, difference.quantity)).or_default().push(difference);
+    }
+    for ((method, quantity), group) in groups {
+        let mean = |value: fn(&Difference) -> f64| {
+            group.iter().map(|difference| value(difference)).sum::<f64>() / group.len() as f64
+        };
+        let changes: Vec<f64> = group.iter().map(|d| scale(quantity, d.change)).collect();
+        let Some(sample) = Sample::of(&changes).filter(|sample| sample.n > 1) else { continue };
+        let back = |value: f64| unscale(quantity, value);
+        found.push(Difference {
+            device: None,
+            scene: None,
+            method: method.into(),
+            quantity,
+            pairs: group.iter().map(|difference| difference.pairs).sum(),
+            ours: mean(|difference| difference.ours),
+            baseline: mean(|difference| difference.baseline),
+            change: back(sample.mean),
+            interval: sample
+                .interval(CONFIDENCE)
+                .map(|interval| BlockInterval { interval: interval.map(back), basis: Basis::Blocks }),
+        });
+    }
+    found
+}
+
+/// The change over blocks of pairs and its interval.
+fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Option<BlockInterval>)> {
+    let value = |(ours, baseline): &(f64, f64)| {
+        if !quantity.is_ratio() {
+            return Some(ours - baseline);
+        }
+        (*ours > 0.0 && *baseline > 0.0).then(|| (ours / baseline).ln())
+    };
+    let blocks: Vec<Vec<f64>> = blocks
+        .iter()
+        .map(|block| block.iter().map(value).collect::<Option<Vec<f64>>>())
+        .collect::<Option<_>>()?;
+    let blocks = Blocks::of(&blocks, CONFIDENCE)?;
+    let back = |value: f64| unscale(quantity, value);
+    let interval = blocks.interval.map(|interval| interval.map(back));
+    Some((back(blocks.mean), interval))
+}
+
+/// From a change to what is averaged: ratios by their logarithms, so that half and double cancel out.
+fn scale(quantity: Quantity, change: f64) -> f64 {
+    if quantity.is_ratio() { (change / 100.0).ln_1p() } else { change }
+}
+
+fn unscale(quantity: Quantity, value: f64) -> f64 {
+    if quantity.is_ratio() { 100.0 * value.exp_m1() } else { value }
+}
