@@ -44,6 +44,7 @@ fn main() -> ExitCode {
         .format_timestamp(None)
         .format_target(false)
         .init();
+    cli::end_with_reader();
     cli::catch_interrupt();
     let result = match &arguments.command {
         Command::Bench(args) => cli::bench::run(args),

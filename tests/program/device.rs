@@ -301,6 +301,68 @@ fn an_experiment_on_two_devices_over_faults() {
 }
 
 #[test]
+fn from_an_experiment_to_its_report() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    write(at, "e.toml", &SMALL.replace("seconds = 20", "seconds = 40"));
+    let load = "[device.load]\nconventional = { frame-ms = 20.0, milliwatts = 4000.0 }\nyoro = { frame-ms = 10.0, milliwatts = 3000.0 }\n";
+    // Of each run one; what starts the application anew counts its starts on.
+    let faults = [
+        fault("disconnect", "start = 1\nat = 20.5\nseconds = 10.0"),
+        fault("plug", "start = 2\nat = 20.5\nseconds = 5.0"),
+        fault("reboot", "start = 3\nat = 20.5\nseconds = 5.0"),
+        fault("clock-jump", "start = 5\nat = 20.5\nby = 3600.0"),
+        fault("truncate", "start = 6\nat = 20.5"),
+        fault("silence", "start = 7\nat = 20.5\nseconds = 3.0"),
+        fault("throttle", "start = 8\nat = 20.5\nseconds = 3.0"),
+        fault("crash", "start = 9\nat = 20.5"),
+    ];
+    let devices = [
+        format!("[[device]]\nserial = \"FAULTY\"\nmodel = \"FAULTY\"\n{load}{}", faults.concat()),
+        format!(
+            "[[device]]\nserial = \"ODD\"\nmodel = \"ODD\"\ncurrent = \"milliamperes\"\npositive = true\n{load}"
+        ),
+        format!("[[device]]\nserial = \"DUMB\"\nmodel = \"DUMB\"\ncurrent = \"missing\"\n{load}"),
+    ];
+    write(at, "s.toml", &devices.concat());
+    succeed(at, "device experiment e.toml --replay s.toml --all --out captures");
+    let said = succeed(at, "device report captures --out report").stdout;
+    assert!(said.contains("Simulated: "), "{said}");
+    let report: serde_json::Value =
+        serde_json::from_slice(&fs::read(at.join("report/report.json")).unwrap()).unwrap();
+    assert_eq!(report["simulated"], true);
+    let named = |list: &str| -> BTreeSet<&str> {
+        report[list].as_array().unwrap().iter().filter_map(|entry| entry["name"].as_str()).collect()
+    };
+    for name in [
+        "application restarted",
+        "clock jump",
+        "current in mA",
+        "damaged lines",
+        "disconnected",
+        "missing lines",
+        "no current",
+        "plugged in",
+        "rebooted",
+        "sign of the current",
+        "too warm",
+    ] {
+        assert!(named("faults").contains(name), "{name}: {:?}", named("faults"));
+    }
+    assert!(named("left_out").contains("plugged in") && named("left_out").contains("rebooted"));
+    // What a device does wrong with each value is put right.
+    let power = report["differences"].as_array().unwrap().iter().find(|entry| {
+        entry["quantity"] == "power"
+            && entry["scene"].is_null()
+            && entry["device"].to_string().contains("ODD")
+    });
+    let change = power.unwrap()["change"].as_f64().unwrap();
+    assert!((change + 25.0).abs() < 3.0, "{change}");
+    let page = fs::read_to_string(at.join("report/report.md")).unwrap();
+    assert!(page.contains("simulated") && page.contains("no current"), "{page}");
+}
+
+#[test]
 fn an_experiment_goes_on_where_it_was_interrupted_or_killed() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();

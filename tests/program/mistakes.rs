@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Stdio;
 
 use image::RgbImage;
 use yoro::picture;
@@ -163,4 +164,14 @@ fn rows_too_long_for_the_rowgroup_pipeline() {
     run(at, &format!("{line} rowgroup")).refuses(&[&width.to_string(), "shared memory", "--pipeline gather"]);
     assert!(!at.join("out.png").exists());
     succeed(at, &format!("{line} gather"));
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_mistake() {
+    let mut command = yoro(["scenes"]);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+    assert_eq!(output.status.code(), Some(0));
 }

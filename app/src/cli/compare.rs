@@ -1,7 +1,6 @@
 //! `yoro compare`: how alike two images, or the images of two folders, are.
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
@@ -94,11 +93,8 @@ pub fn run(args: &CompareArgs) -> anyhow::Result<()> {
         log::warn!("{} has no partner and is left out", path.display());
     }
     let text = if args.json { serde_json::to_string_pretty(&report)? + "\n" } else { table(&report) };
-    match io::stdout().write_all(text.as_bytes()) {
-        // The reader of a pipe may have seen enough.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        other => other.context("cannot print the result"),
-    }
+    print!("{text}");
+    Ok(())
 }
 
 /// Compares without printing.

@@ -137,6 +137,19 @@ fn parse_fov(text: &str) -> Result<f32, String> {
     }
 }
 
+/// Ends the program without a word when nobody reads its standard output any more, as after `| head`: `print!` would
+/// panic.
+pub fn end_with_reader() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let message = info.payload_as_str().unwrap_or_default();
+        if message.starts_with("failed printing to stdout") && message.contains("Broken pipe") {
+            std::process::exit(0);
+        }
+        before(info);
+    }));
+}
+
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Makes Ctrl-C and SIGTERM end the program at the next step instead of at once, so that no half-made file

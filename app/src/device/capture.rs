@@ -479,7 +479,10 @@ impl Writer {
         if self.others.len() > before {
             self.widen(before)?;
         }
-        let cell = |column: &Column| (column.get)(sample).map_or(String::new(), |v| number(v * column.scale));
+        let cell = |column: &Column| {
+            let value = (column.get)(sample).filter(|value| value.is_finite());
+            value.map_or(String::new(), |value| number(value * column.scale))
+        };
         let row = self.row(cell, |key| sample.other.get(key).cloned().unwrap_or_default());
         self.append(&self.samples, SAMPLES_FILE, &row)
     }
@@ -627,6 +630,13 @@ mod tests {
         fs::write(&path, &text).unwrap();
         assert_eq!(read(&folder).unwrap().samples, [first, second, third]);
         assert_eq!(find(&[dir.path().into(), folder.clone()]).unwrap(), [folder]);
+        // What is no number is none for the reader.
+        let odd = dir.path().join("odd");
+        let mut writer = Writer::create(&odd, info()).unwrap();
+        writer
+            .sample(&Sample { fps: Some(f64::NAN), stale: Some(f64::INFINITY), ..Sample::default() })
+            .unwrap();
+        assert_eq!(read(&odd).unwrap().samples, [Sample::default()]);
     }
 
     #[test]

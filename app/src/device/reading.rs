@@ -44,7 +44,7 @@ struct Count {
 impl Count {
     fn add(&mut self, times: u64, at_s: f64) {
         if times > 0 {
-            self.times += times;
+            self.times = self.times.saturating_add(times);
             self.first_s.get_or_insert(at_s);
         }
     }
@@ -167,6 +167,9 @@ impl Reading {
             Ok(line) => line,
             Err(error) => return self.damage(format!("{error}")),
         };
+        if !line.time_s.is_finite() {
+            return self.damage("its time is no number".into());
+        }
         if let Some(run) = &self.run {
             match line.run.as_deref() {
                 Some(name) if name == run => {}

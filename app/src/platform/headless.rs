@@ -95,7 +95,7 @@ impl Headless {
         };
         // SAFETY: both loaders give the entry points of the context that they have made current.
         let context = unsafe { Context::with_loader(raw, load) }?;
-        Ok(Headless { context: Some(context), backend, holder: holder })
+        Ok(Headless { context: Some(context), backend, holder })
     }
 
     /// The GL context.

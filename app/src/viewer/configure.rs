@@ -47,14 +47,11 @@ impl Viewer {
             self.questionnaire = None;
             self.is_over = false;
         }
-        if let Some(graphics) = &mut self.graphics {
-            if settings.profiling != before.profiling {
-                graphics.gl.set_profiling(if settings.profiling {
-                    Profiling::Queries
-                } else {
-                    Profiling::Off
-                });
-            }
+        if let Some(graphics) = &self.graphics
+            && settings.profiling != before.profiling
+        {
+            let profiling = if settings.profiling { Profiling::Queries } else { Profiling::Off };
+            graphics.gl.set_profiling(profiling);
         }
         self.folders = folders.to_vec();
         if let Some(source) = source {

@@ -51,6 +51,7 @@ pub struct Headset {
     exit: Option<Instant>,
     /// The runtime cannot end the session.
     is_refused: bool,
+    is_over: bool,
     capture: bool,
 }
 
@@ -90,6 +91,7 @@ impl Headset {
             retry: None,
             exit: None,
             is_refused: false,
+            is_over: false,
             capture: false,
         })
     }
@@ -100,6 +102,15 @@ impl Headset {
     /// # Errors
     /// [`XrError`] when several sessions in a row have failed.
     pub fn step(&mut self, graphics: &dyn Graphics, viewer: &mut Viewer) -> Result<Step, XrError> {
+        let step = self.advance(graphics, viewer);
+        self.is_over |= matches!(step, Ok(Step::Ended));
+        step
+    }
+
+    fn advance(&mut self, graphics: &dyn Graphics, viewer: &mut Viewer) -> Result<Step, XrError> {
+        if self.is_over {
+            return Ok(Step::Ended);
+        }
         let is_late = self.exit.is_some_and(|since| since.elapsed() > EXIT_PATIENCE);
         if is_late || self.is_refused {
             if is_late {

@@ -1,12 +1,17 @@
 //! One session: from xrCreateInstance to the last frame.
 
+mod eyes;
+mod frame;
+
 use std::rc::Rc;
 use std::time::Instant;
 
-use glam::{Quat, Vec3};
+use glam::Quat;
 use openxr as xr;
 use xr::sys;
 
+use self::eyes::to_pose;
+use self::frame::Layers;
 use super::error::{XrError, call, check, optional};
 use super::graphics::{self, Graphics, make_current};
 use super::images::{EyeImages, Images, Kind};
@@ -14,10 +19,9 @@ use super::input::Input;
 use super::mask::Mask;
 use super::runtime::Runtime;
 use super::storage::{self, Storage};
-use crate::eyes::{DepthConvention, DepthRange, Eye, EyePair, EyesError, Frustum, GuardBand, Pose};
-use crate::gl::{Context, Destination};
+use crate::eyes::{Eye, EyePair, EyesError};
+use crate::gl::Context;
 use crate::render::DepthCopy;
-use crate::stereo::{DepthTarget, EyeTarget};
 use crate::viewer::{
     Action, Event, FrameReport, FrameTiming, Panel, Performance, Settings, Viewer, ViewerError,
 };
@@ -26,11 +30,6 @@ use crate::viewer::{
 const MAX_EVENTS: usize = 64;
 /// The images of the eyes are multiples of this many pixels, where they are scaled.
 const SIZE_STEP: f32 = 16.0;
-/// Half of the angle beyond which no frustum makes sense, in radians.
-const WIDEST: f32 = 1.55;
-/// Canted eyes are rendered parallel only while their frusta grow by no more than this factor on either axis.
-const MOST_GROWTH: f32 = 1.5;
-
 /// What a session should be like, besides the viewer's settings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
@@ -88,7 +87,7 @@ pub struct Frame {
     /// Time that this program's thread worked on it, in milliseconds; waiting for the runtime does not count.
     pub cpu_ms: f64,
     /// Its images, if they were asked for.
-    pub capture: Option<Capture>,
+    pub capture: Option<Box<Capture>>,
 }
 
 /// What a call of [`Session::step`] has led to.
@@ -110,12 +109,6 @@ struct Depth {
     copy: DepthCopy,
     images: EyeImages,
     format: u32,
-}
-
-/// What is shown of a frame.
-struct Layers {
-    eyes: Option<EyePair>,
-    panel: Option<sys::CompositionLayerQuad>,
 }
 
 /// A session with everything that belongs to it. What has framebuffers goes before the images, and those before the
@@ -347,7 +340,7 @@ impl Session {
             Some(_) => self.told(viewer.end(&timing)),
             None => None,
         };
-        Ok(Progress::Frame(Frame { report, cpu_ms, capture: captured }))
+        Ok(Progress::Frame(Frame { report, cpu_ms, capture: captured.map(Box::new) }))
     }
 
     /// What a viewer's call has led to; an error that comes with every frame is said once.
@@ -545,261 +538,6 @@ impl Session {
         }
         Ok(())
     }
-
-    /// Where the eyes will be, as the runtime has them; none while it does not know.
-    fn locate(
-        &self,
-        settings: &Settings,
-        time: xr::Time,
-        size: [u32; 2],
-    ) -> Result<Option<EyePair>, XrError> {
-        let (flags, views) = call("xrLocateViews", self.session.locate_views(self.views, time, &self.space))?;
-        if !flags.contains(xr::ViewStateFlags::ORIENTATION_VALID | xr::ViewStateFlags::POSITION_VALID) {
-            return Ok(None);
-        }
-        let [left, right] = match views.as_slice() {
-            [left, right] => [left, right],
-            [one] => [one, one],
-            _ => return Err(XrError::Nonsense(format!("locates {} views", views.len()))),
-        };
-        let mut frusta = [Frustum { left: 0.0, right: 0.0, bottom: 0.0, top: 0.0 }; 2];
-        for (frustum, view) in frusta.iter_mut().zip([left, right]) {
-            *frustum = to_frustum(&view.fov)
-                .ok_or_else(|| XrError::Nonsense(format!("gives an eye the field of view {:?}", view.fov)))?;
-        }
-        let poses = [to_pose(&left.pose), to_pose(&right.pose)];
-        if poses.iter().any(|pose| !pose.position.is_finite() || !pose.orientation.is_normalized()) {
-            return Err(XrError::Nonsense("gives an eye a pose that is none".into()));
-        }
-        Ok(Some(EyePair { poses, frusta, depth: DepthRange::PAPER, size, dominant: settings.dominant }))
-    }
-
-    /// Eyes that the viewer's method can do, near those of the runtime.
-    fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
-        let reason = match viewer.method().needs_aligned_eyes() {
-            true => native.synthesis(GuardBand::None).err(),
-            false => None,
-        };
-        let aligned = match reason {
-            None => None,
-            Some(EyesError::Density { .. }) => Some(native.evened()),
-            Some(EyesError::Canted { .. } | EyesError::OffAxis { .. }) => native.parallelized(),
-            Some(_) => None,
-        };
-        let growth = |eyes: &EyePair| {
-            let of =
-                |eye: usize, size: fn(&Frustum) -> f32| size(&eyes.frusta[eye]) / size(&native.frusta[eye]);
-            [of(0, Frustum::width), of(1, Frustum::width), of(0, Frustum::height), of(1, Frustum::height)]
-                .into_iter()
-                .fold(1.0, f32::max)
-        };
-        let aligned =
-            aligned.filter(|eyes| growth(eyes) <= MOST_GROWTH && eyes.synthesis(GuardBand::None).is_ok());
-        let kind = std::mem::discriminant::<EyesError>;
-        if reason.as_ref().map(kind) != self.realigned.as_ref().map(kind) {
-            if let (Some(eyes), Some(reason)) = (&aligned, &reason) {
-                let more = (growth(eyes) - 1.0) * 100.0;
-                log::info!(
-                    "{}: both eyes are rendered parallel and alike, in frusta up to {more:.0} % wider, and the compositor turns them back",
-                    match reason {
-                        EyesError::Canted { degrees } =>
-                            format!("the eyes are canted by {degrees:.1} degrees"),
-                        EyesError::OffAxis { off_axis } =>
-                            format!("the eyes are {off_axis:.4} m off one line"),
-                        _ => "the frusta of the eyes differ in size".into(),
-                    }
-                );
-            }
-            self.realigned = reason;
-        }
-        aligned.unwrap_or(native)
-    }
-
-    /// Renders both eyes and the HUD into the runtime's images.
-    fn render(
-        &mut self,
-        graphics: &dyn Graphics,
-        viewer: &mut Viewer,
-        time: xr::Time,
-        capture: bool,
-        captured: &mut Option<Capture>,
-    ) -> Result<Layers, XrError> {
-        let nothing = Layers { eyes: None, panel: None };
-        let size = self.frame_size(viewer);
-        let Some(native) = self.locate(viewer.settings(), time, size)? else { return Ok(nothing) };
-        viewer.set_native_ipd((native.poses[1].position - native.poses[0].position).length());
-        let shown = self.align(viewer, native);
-        let mut pair = shown;
-        if let Some(ipd) = viewer.chosen_ipd() {
-            let middle = pair.middle();
-            let axis = (pair.poses[1].position - pair.poses[0].position)
-                .try_normalize()
-                .unwrap_or(pair.poses[0].right());
-            for eye in Eye::BOTH {
-                pair.poses[eye.index()].position = middle + axis * (eye.side() * ipd / 2.0);
-            }
-        }
-        pair.poses = pair.poses.map(|pose| viewer.place(pose));
-
-        self.eyes.acquire(graphics)?;
-        if let Some(depth) = &mut self.depth {
-            depth.images.acquire(graphics)?;
-        }
-        let no_image = || XrError::Nonsense("has no image to draw into".into());
-        let images = self.eyes.destinations(size).ok_or_else(no_image)?;
-        let rendered = self.render_eyes(viewer, &pair, images)?;
-        if capture && rendered {
-            let eyes = images.map(|image| self.gl.read_rgba8(&image));
-            *captured = Some(Capture { eyes, pair });
-        }
-        self.eyes.release(graphics)?;
-        if let Some(depth) = &mut self.depth {
-            depth.images.release(graphics)?;
-        }
-        if !rendered {
-            return Ok(nothing);
-        }
-        let panel = self.render_panel(graphics, viewer)?;
-        Ok(Layers { eyes: Some(shown), panel })
-    }
-
-    /// Renders both eyes into images; false when the viewer cannot.
-    fn render_eyes(
-        &mut self,
-        viewer: &mut Viewer,
-        pair: &EyePair,
-        images: [Destination; 2],
-    ) -> Result<bool, XrError> {
-        let color = self.storage.begin(images)?;
-        let depth = self.depth.as_ref().and_then(|depth| {
-            Some(depth.images.destinations(pair.size)?.map(|to| DepthTarget { to, copy: &depth.copy }))
-        });
-        let targets = Eye::BOTH
-            .map(|eye| EyeTarget { color: color[eye.index()], depth: depth.map(|depth| depth[eye.index()]) });
-        let rendered = viewer.render_eyes(pair, &targets);
-        if let Some(mask) = &self.mask
-            && self.realigned.is_none()
-        {
-            mask.draw(&pair.frusta, &color);
-        }
-        self.storage.end(images);
-        // The runtime may read on another queue.
-        // SAFETY: no arguments.
-        unsafe { glow::HasContext::flush(self.gl.raw()) };
-        Ok(self.told(rendered).is_some())
-    }
-
-    /// Brings the HUD up to date, if it is to be seen.
-    fn render_panel(
-        &mut self,
-        graphics: &dyn Graphics,
-        viewer: &mut Viewer,
-    ) -> Result<Option<sys::CompositionLayerQuad>, XrError> {
-        let Some(PanelImages { images, version }) = &mut self.panel else { return Ok(None) };
-        let panel = match viewer.hud() {
-            Ok(Some(panel)) => panel,
-            Ok(None) => return Ok(None),
-            Err(error) => {
-                self.told::<()>(Err(error));
-                return Ok(None);
-            }
-        };
-        if *version != Some(panel.version()) {
-            images.acquire(graphics)?;
-            if let Some(to) = images.destination(0, panel.size()) {
-                panel.draw(&to);
-                // SAFETY: no arguments.
-                unsafe { glow::HasContext::flush(self.gl.raw()) };
-            }
-            images.release(graphics)?;
-            *version = Some(panel.version());
-        }
-        let ([width, height], center) = (panel.metres(), panel.center());
-        let mut pose = xr::Posef::IDENTITY;
-        pose.position = xr::Vector3f { x: center.x, y: center.y, z: center.z };
-        Ok(Some(sys::CompositionLayerQuad {
-            ty: sys::CompositionLayerQuad::TYPE,
-            next: std::ptr::null(),
-            layer_flags: xr::CompositionLayerFlags::BLEND_TEXTURE_SOURCE_ALPHA
-                | xr::CompositionLayerFlags::UNPREMULTIPLIED_ALPHA,
-            space: self.head.as_raw(),
-            eye_visibility: xr::EyeVisibility::BOTH,
-            sub_image: images.sub_image(0, panel.size()),
-            pose,
-            size: xr::Extent2Df { width, height },
-        }))
-    }
-
-    /// Size in pixels of each eye in this frame, which is no larger than the images.
-    fn frame_size(&self, viewer: &Viewer) -> [u32; 2] {
-        let wanted = viewer.eye_size(self.description.recommended.map(|n| n as f32));
-        [0, 1].map(|i| wanted[i].min(self.description.size[i]))
-    }
-
-    /// xrEndFrame.
-    fn end_frame(&mut self, time: xr::Time, layers: &Layers) -> Result<(), XrError> {
-        let eyes = layers.eyes.as_ref();
-        let depth_info = |eye: Eye| {
-            let (depth, eyes) = (self.depth.as_ref()?, eyes?);
-            let DepthRange { near, far, convention } = eyes.depth;
-            let [near_z, far_z] = match convention {
-                DepthConvention::Standard => [near, far],
-                DepthConvention::Reversed => [far, near],
-            };
-            Some(sys::CompositionLayerDepthInfoKHR {
-                ty: sys::CompositionLayerDepthInfoKHR::TYPE,
-                next: std::ptr::null(),
-                sub_image: depth.images.sub_image(eye, eyes.size),
-                min_depth: 0.0,
-                max_depth: 1.0,
-                near_z,
-                far_z,
-            })
-        };
-        let depths = Eye::BOTH.map(depth_info);
-        let views = eyes.map(|eyes| {
-            Eye::BOTH.map(|eye| sys::CompositionLayerProjectionView {
-                ty: sys::CompositionLayerProjectionView::TYPE,
-                next: depths[eye.index()]
-                    .as_ref()
-                    .map_or(std::ptr::null(), |info| std::ptr::from_ref(info).cast()),
-                pose: from_pose(&eyes.poses[eye.index()]),
-                fov: from_frustum(&eyes.frusta[eye.index()]),
-                sub_image: self.eyes.sub_image(eye, eyes.size),
-            })
-        });
-        let count = if self.views == xr::ViewConfigurationType::PRIMARY_STEREO { 2 } else { 1 };
-        let projection = views.as_ref().map(|views| sys::CompositionLayerProjection {
-            ty: sys::CompositionLayerProjection::TYPE,
-            next: std::ptr::null(),
-            layer_flags: xr::CompositionLayerFlags::EMPTY,
-            space: self.space.as_raw(),
-            view_count: count,
-            views: views.as_ptr(),
-        });
-        let mut shown = [std::ptr::null::<sys::CompositionLayerBaseHeader>(); 2];
-        let headers = projection
-            .as_ref()
-            .map(|layer| std::ptr::from_ref(layer).cast())
-            .into_iter()
-            .chain(layers.panel.as_ref().map(|layer| std::ptr::from_ref(layer).cast()));
-        let mut layer_count = 0;
-        for (slot, header) in shown.iter_mut().zip(headers) {
-            *slot = header;
-            layer_count += 1;
-        }
-        let info = sys::FrameEndInfo {
-            ty: sys::FrameEndInfo::TYPE,
-            next: std::ptr::null(),
-            display_time: time,
-            environment_blend_mode: self.blend,
-            layer_count,
-            layers: shown.as_ptr(),
-        };
-        // SAFETY: all that the structures point to is on this stack or lives in `self`.
-        let result = unsafe { (self.instance.fp().end_frame)(self.session.as_raw(), &info) };
-        check("xrEndFrame", result).map(drop)
-    }
 }
 
 impl Drop for Session {
@@ -900,57 +638,9 @@ fn log_description(d: &Description) {
     );
 }
 
-fn to_pose(pose: &xr::Posef) -> Pose {
-    let (p, q) = (pose.position, pose.orientation);
-    Pose { position: Vec3::new(p.x, p.y, p.z), orientation: Quat::from_xyzw(q.x, q.y, q.z, q.w) }
-}
-
-fn from_pose(pose: &Pose) -> xr::Posef {
-    let (p, q) = (pose.position, pose.orientation);
-    xr::Posef {
-        position: xr::Vector3f { x: p.x, y: p.y, z: p.z },
-        orientation: xr::Quaternionf { x: q.x, y: q.y, z: q.z, w: q.w },
-    }
-}
-
-/// None for a field of view that no image can have.
-fn to_frustum(fov: &xr::Fovf) -> Option<Frustum> {
-    let angles = [fov.angle_left, fov.angle_right, fov.angle_down, fov.angle_up];
-    let fits = angles.iter().all(|angle| angle.abs() < WIDEST);
-    let [left, right, bottom, top] = angles.map(f32::tan);
-    (fits && left < right && bottom < top).then_some(Frustum { left, right, bottom, top })
-}
-
-fn from_frustum(frustum: &Frustum) -> xr::Fovf {
-    xr::Fovf {
-        angle_left: frustum.left.atan(),
-        angle_right: frustum.right.atan(),
-        angle_up: frustum.top.atan(),
-        angle_down: frustum.bottom.atan(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn fields_of_view_that_are_none_are_refused() {
-        let fov = xr::Fovf { angle_left: -0.9, angle_right: 0.7, angle_up: 0.8, angle_down: -0.6 };
-        let frustum = to_frustum(&fov).unwrap();
-        assert!((frustum.left + 0.9f32.tan()).abs() < 1e-6 && frustum.bottom < 0.0);
-        let back = from_frustum(&frustum);
-        assert!((back.angle_left - fov.angle_left).abs() < 1e-6 && (back.angle_up - 0.8).abs() < 1e-6);
-        for wrong in [
-            xr::Fovf { angle_left: 0.8, ..fov },
-            xr::Fovf { angle_up: -0.7, ..fov },
-            xr::Fovf { angle_right: f32::NAN, ..fov },
-            xr::Fovf { angle_right: 1.6, ..fov },
-            xr::Fovf::default(),
-        ] {
-            assert_eq!(to_frustum(&wrong), None, "{wrong:?}");
-        }
-    }
 
     #[test]
     fn image_sizes_stay_within_limits() {
