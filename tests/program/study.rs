@@ -20,7 +20,7 @@ fn rating(participant: usize, method: &str, scene: usize) -> f64 {
 fn from_a_plan_to_a_verdict() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    let plan = "study plan --participants 6 --scenes street,atrium,talk --methods conventional,yoro --seed 4";
+    let plan = "study plan --participants 6 --scenes street,atrium,talk --methods conventional,yoro --seed 4 --questions image-quality";
     succeed(at, &format!("{plan} --out plan.csv"));
     succeed(at, &format!("{plan} --out plan.json"));
     let csv = fs::read_to_string(at.join("plan.csv")).unwrap();

@@ -12,7 +12,7 @@ mod ratings;
 use std::path::PathBuf;
 
 pub use analysis::{Excluded, Options, Question, Scale, Study, Verdict};
-pub use plan::{Condition, Plan, Trial, read_trials};
+pub use plan::{Condition, Plan, Trial, Trials, read_trials};
 pub use ratings::{Collected, Ratings, Row};
 
 use crate::files::FileError;

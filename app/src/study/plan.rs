@@ -122,11 +122,14 @@ impl Plan {
     }
 }
 
-/// Scene and method by participant and trial, from a plan as a table.
+/// Scene and method by participant and number of the trial.
+pub type Trials = BTreeMap<(String, u32), (String, String)>;
+
+/// The trials of a plan that lies there as a table.
 ///
 /// # Errors
 /// [`StudyError`]: also for a column that is not there, and a row that is damaged.
-pub fn read_trials(path: &Path) -> Result<BTreeMap<(String, u32), (String, String)>, StudyError> {
+pub fn read_trials(path: &Path) -> Result<Trials, StudyError> {
     let bytes = files::read(path)?;
     let damaged = |line: u64| StudyError::Row {
         path: path.into(),
@@ -141,7 +144,7 @@ pub fn read_trials(path: &Path) -> Result<BTreeMap<(String, u32), (String, Strin
         .into_iter()
         .collect::<Option<Vec<_>>>();
     let at = at.ok_or_else(|| damaged(1))?;
-    let mut trials = BTreeMap::new();
+    let mut trials = Trials::new();
     for (row, line) in table.records().zip(2..) {
         let row = row.map_err(|_| damaged(line))?;
         let [participant, trial, scene, method] = [0, 1, 2, 3].map(|i| row[at[i]].to_owned());

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::StudyError;
+use super::{StudyError, Trials};
 use crate::device::log::{self, Kind};
 use crate::files;
 use crate::telemetry::{LOG_TAG, Rating};
@@ -116,7 +116,7 @@ pub struct Collected {
 impl Collected {
     /// Adds the ratings of a log; lines of other things are passed over. With the trials of a plan (see
     /// [`read_trials`](super::read_trials)), methods get the plan's names.
-    pub fn add(&mut self, name: &str, log: &str, plan: Option<&BTreeMap<(String, u32), (String, String)>>) {
+    pub fn add(&mut self, name: &str, log: &str, plan: Option<&Trials>) {
         for (index, line) in log.lines().enumerate() {
             let found = match log::parse(line) {
                 Kind::Entry(entry) if entry.tag == LOG_TAG && Rating::is_line(entry.message) => entry.message,
@@ -166,10 +166,7 @@ impl Collected {
 }
 
 /// A rating under the plan's names; the error says why it is none of the study's.
-fn planned(
-    rating: Rating,
-    plan: Option<&BTreeMap<(String, u32), (String, String)>>,
-) -> Result<Rating, String> {
+fn planned(rating: Rating, plan: Option<&Trials>) -> Result<Rating, String> {
     let Some(participant) = rating.participant.clone() else {
         return Err("the rating names no participant: set participant in the viewer".into());
     };

@@ -191,9 +191,8 @@ fn answers(report: &DeviceReport) -> Vec<Answer> {
                     let interval =
                         d.interval.map(|BlockInterval { interval: Interval { low, high }, .. }| {
                             let confidence = 100.0 * CONFIDENCE;
-                            format!(
-                                "{confidence:.0} % interval {low:+.decimals$} to {high:+.decimals$} {unit}"
-                            )
+                            let (low, high) = (signed(low, decimals), signed(high, decimals));
+                            format!("{confidence:.0} % interval {low} to {high} {unit}")
                         });
                     AnswerChange {
                         change: change(d),
@@ -274,7 +273,14 @@ fn change_format(difference: &Difference) -> (usize, &'static str) {
 /// `-26.9 %`.
 fn change(difference: &Difference) -> String {
     let (decimals, unit) = change_format(difference);
-    format!("{:+.decimals$} {unit}", difference.change)
+    format!("{} {unit}", signed(difference.change, decimals))
+}
+
+/// With its sign, but for a zero.
+fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:+.decimals$}");
+    let is_zero = !text.bytes().any(|byte| matches!(byte, b'1'..=b'9'));
+    if is_zero { text[1..].to_owned() } else { text }
 }
 
 /// `[-31.0, -22.5]`, marked where it does not rest on repetitions; nothing without an interval.
@@ -284,7 +290,7 @@ fn change_interval(difference: &Difference) -> String {
         None => String::new(),
         Some(BlockInterval { interval: Interval { low, high }, basis }) => {
             let mark = if basis == Basis::Blocks { OVER_BLOCKS } else { "" };
-            format!(" [{low:+.decimals$}, {high:+.decimals$}]{mark}")
+            format!(" [{}, {}]{mark}", signed(low, decimals), signed(high, decimals))
         }
     }
 }
@@ -353,12 +359,18 @@ fn overview_tables(report: &DeviceReport) -> Vec<Table> {
         }
         table.note = format!(
             "In brackets: {:.0} % interval of the change; {} rests on the scatter of scenes or devices instead of \
-             repetitions. The paper (\"You Only Render Once\", MobiSys '25) gives no intervals; its power comes from \
-             battery percent x capacity x {PAPER_VOLTS} V, and its execution time is the inverse of its frame rate \
-             (but for the Quest 3).",
+             repetitions.",
             100.0 * CONFIDENCE,
             OVER_BLOCKS.trim(),
         );
+        if !papers.is_empty() {
+            let _ = write!(
+                table.note,
+                " The paper (\"You Only Render Once\", MobiSys '25) gives no intervals; its power comes from battery \
+                 percent x capacity x {PAPER_VOLTS} V, and its execution time is the inverse of its frame rate (but \
+                 for the Quest 3)."
+            );
+        }
         tables.push(table);
     }
     tables

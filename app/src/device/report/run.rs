@@ -421,7 +421,7 @@ fn by_level(level: &[(f64, f64)], capacity_mah: Option<f64>) -> Option<ByLevel> 
     let (first, last) = (level.first()?, level.last()?);
     let hours = (last.0 - first.0) / 3600.0;
     let percent_milliwatts = capacity_mah? / 100.0 * PAPER_VOLTS / hours;
-    (hours > 0.0).then(|| ByLevel {
+    (hours > 0.0).then_some(ByLevel {
         milliwatts: (first.1 - last.1) * percent_milliwatts,
         step_milliwatts: percent_milliwatts,
     })

@@ -123,7 +123,7 @@ fn gaps_are_not_bridged() {
 #[test]
 fn frame_times_are_means_over_frames() {
     let mut capture = made_up("yoro", "street", 1, |_| 400.0);
-    for sample in capture.samples.iter_mut().filter(|s| s.time_s as u32 % 2 == 0) {
+    for sample in capture.samples.iter_mut().filter(|s| (s.time_s as u32).is_multiple_of(2)) {
         (sample.fps, sample.frame_ms, sample.gpu_ms) = (Some(20.0), Some(50.0), Some(40.0));
     }
     let run = run_of(&capture);
