@@ -37,8 +37,9 @@ static LIBRARY: OnceLock<usize> = OnceLock::new();
 pub unsafe fn install(openxr: &OpenXr) -> Result<()> {
     let program = std::env::current_exe().context("this program does not know where it lies")?;
     let folder = program.parent().context("this program lies in no folder")?;
+    // Cargo renews the one in `deps`; the other may be left from an earlier build.
     let found =
-        [folder.to_owned(), folder.join("deps")].into_iter().find(|folder| folder.join(FILE).is_file());
+        [folder.join("deps"), folder.to_owned()].into_iter().find(|folder| folder.join(FILE).is_file());
     let found = found.with_context(|| {
         format!("{FILE} is not beside {}: build it by `cargo build -p yoro-openxr-stub`", program.display())
     })?;

@@ -382,7 +382,7 @@ fn headset(folder: &std::path::Path, system: bool) -> String {
 }
 
 const IMMERSIVE: &str = r#""launch", { wait-log = { text = "display: headset", frames = 10 } },
-    { wait-log = { text = "triangles", frames = 2000 } }, { frames = 8 }, "pause", { frames = 2 }, "resume", { frames = 4 }, "quit""#;
+    { wait-log = { text = "triangles", frames = 2000 } }, { frames = 8 }, "pause", "resume", { frames = 4 }, "quit""#;
 
 fn assert_immersive(run: &Run, folder: &std::path::Path) -> [RgbImage; 2] {
     run.assert_clean();
