@@ -30,6 +30,7 @@ use crate::gl::Context;
 use crate::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
 use crate::platform::{Backend, Headless, PlatformError};
 use crate::synthesis::{ImBufferSize, PaperOptions, Pipeline, SynthesisOptions};
+use crate::viewer::Settings;
 
 /// Where the GL context comes from.
 #[derive(clap::Args, Clone, Copy, Debug)]
@@ -134,6 +135,29 @@ fn parse_fov(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(value) if (1.0..=170.0).contains(&value) => Ok(value.to_radians()),
         _ => Err("give degrees from 1 to 170".into()),
+    }
+}
+
+/// Settings of the viewer on the command line
+#[derive(clap::Args, Clone, Debug)]
+pub struct SettingsArgs {
+    /// Leave out the HUD
+    #[arg(long)]
+    no_hud: bool,
+    /// Settings of the viewer in a TOML file
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// One setting of the viewer; as often as needed
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
+}
+
+impl SettingsArgs {
+    /// The settings; what has an option of its own, as `key=value`, is stronger than `--set`.
+    pub fn resolve(&self, named: impl IntoIterator<Item = String>) -> anyhow::Result<Settings> {
+        let hud = self.no_hud.then(|| "hud=false".to_owned());
+        let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
+        Ok(Settings::resolve(self.settings.as_deref(), overrides)?)
     }
 }
 

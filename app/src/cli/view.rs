@@ -7,7 +7,7 @@ use anyhow::bail;
 use glam::{EulerRot, Quat};
 
 use crate::cli::synthesize::rgb_image;
-use crate::cli::{GlArgs, progress_bar, stop_if_interrupted};
+use crate::cli::{GlArgs, SettingsArgs, progress_bar, stop_if_interrupted};
 use crate::files;
 use crate::gl::{Destination, Filter, Format, RenderTarget};
 use crate::picture::{self, PictureError};
@@ -50,18 +50,11 @@ pub struct ViewArgs {
     /// Turn to the left, in degrees, between rendering and showing: what timewarp makes up for
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
     late_yaw_degrees: f32,
-    /// Leave out the HUD
-    #[arg(long)]
-    no_hud: bool,
+    #[command(flatten)]
+    settings: SettingsArgs,
     /// Draw what is in view while the scene is being loaded
     #[arg(long)]
     loading: bool,
-    /// Settings of the viewer in a TOML file
-    #[arg(long, value_name = "FILE")]
-    settings: Option<PathBuf>,
-    /// One setting of the viewer; as often as needed
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    overrides: Vec<String>,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -70,9 +63,7 @@ impl ViewArgs {
     fn resolve(&self) -> anyhow::Result<Settings> {
         let named = [("scene", &self.scene), ("viewer", &self.viewer), ("method", &self.method)];
         let named = named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
-        let hud = self.no_hud.then(|| "hud=false".to_owned());
-        let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
-        Ok(Settings::resolve(self.settings.as_deref(), overrides)?)
+        self.settings.resolve(named)
     }
 
     fn head(&self) -> HeldHead {

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use anyhow::{bail, ensure};
 use serde::Serialize;
 
-use crate::cli::{GlArgs, interrupted, progress_bar};
+use crate::cli::{GlArgs, SettingsArgs, interrupted, progress_bar};
 use crate::eyes::{Eye, EyePair};
 use crate::files;
 use crate::gl::Context;
@@ -47,15 +47,8 @@ pub struct XrArgs {
     /// One view in place of two, where the runtime has that
     #[arg(long)]
     mono: bool,
-    /// Leave out the HUD
-    #[arg(long)]
-    no_hud: bool,
-    /// Settings of the viewer in a TOML file
-    #[arg(long, value_name = "FILE")]
-    settings: Option<PathBuf>,
-    /// One setting of the viewer; as often as needed
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    overrides: Vec<String>,
+    #[command(flatten)]
+    settings: SettingsArgs,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -64,9 +57,7 @@ impl XrArgs {
     fn resolve(&self) -> anyhow::Result<Settings> {
         let scene = self.scene.as_ref().map(|scene| format!("scene={scene}"));
         let method = self.methods.first().map(|method| format!("method={}", method.name()));
-        let hud = self.no_hud.then(|| "hud=false".to_owned());
-        let overrides = self.overrides.iter().cloned().chain(scene).chain(method).chain(hud);
-        Ok(Settings::resolve(self.settings.as_deref(), overrides)?)
+        self.settings.resolve(scene.into_iter().chain(method))
     }
 
     fn find_runtime(&self) -> anyhow::Result<Runtime> {

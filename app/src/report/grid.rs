@@ -100,12 +100,17 @@ impl Table {
 
     /// Appends a row.
     pub fn push(&mut self, cells: Vec<Cell>) {
-        self.lines.push(Line { cells, first: false });
+        self.push_grouped(cells, false);
     }
 
     /// Appends a row with a line above.
     pub fn push_first(&mut self, cells: Vec<Cell>) {
-        self.lines.push(Line { cells, first: true });
+        self.push_grouped(cells, true);
+    }
+
+    /// Appends a row; the first one of a group has a line above.
+    pub fn push_grouped(&mut self, cells: Vec<Cell>, first: bool) {
+        self.lines.push(Line { cells, first });
     }
 
     /// Removes the last column.

@@ -159,12 +159,7 @@ fn tables(study: &Study) -> Vec<Table> {
             Cell::paper(None::<String>),
             Cell::paper(None::<String>),
         ];
-        if first {
-            tests.push_first(cells)
-        } else {
-            tests.push(cells)
-        }
-        first = false;
+        tests.push_grouped(cells, std::mem::take(&mut first));
     }
     tests.note = format!(
         "Bounds of equivalence: ±{} on a scale from {} to {}. Participants needed: for a true difference as large as \

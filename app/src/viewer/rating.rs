@@ -110,7 +110,7 @@ impl Questionnaire {
         let (rating, best) = (self.rating(), self.best);
         write!(
             text,
-            "?\n1 (worst) to {best} (best): {rating}\nturn your head, or volume keys\ntap when done"
+            "?\n1 (worst) to {best} (best): {rating}\nturn your head to change it\ntap or trigger when done"
         )
         .expect("a string takes everything");
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, IsTerminal, Write};
+use std::io::{self, BufRead, BufReader, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
@@ -192,7 +192,7 @@ impl Table {
         }
         if line.starts_with(SIMULATED_MARK) && !self.simulated {
             self.simulated = true;
-            print(&format!("SIMULATED: {}", line.trim_matches(['-', ' '])))?;
+            println!("SIMULATED: {}", line.trim_matches(['-', ' ']));
         }
         match self.reading.line(line, passed_s) {
             News::Sample(sample) => {
@@ -200,7 +200,7 @@ impl Table {
             }
             News::Damaged(why) => {
                 let text: String = line.chars().take(60).collect();
-                print(&format!("damaged line ({why}): {text}..."))?;
+                println!("damaged line ({why}): {text}...");
             }
             News::Summary | News::Other => {}
         }
@@ -223,12 +223,12 @@ impl Table {
         let is_other = named != self.named;
         if is_other {
             if let Some((method, scene)) = &named {
-                print(&format!("{method} in {scene}"))?;
+                println!("{method} in {scene}");
             }
             self.named = named;
         }
         if self.rows == 0 || is_other || self.is_terminal && self.rows.is_multiple_of(ROWS) {
-            print(&cells(head.map(str::to_owned)))?;
+            println!("{}", cells(head.map(str::to_owned)));
         }
         self.rows += 1;
         let real =
@@ -239,7 +239,7 @@ impl Table {
             (fps, _) => real(fps, 1),
         };
         let watts = sample.current_ma.zip(sample.voltage_mv).map(|(ma, mv)| -ma * mv / 1e6);
-        print(&cells([
+        let row = cells([
             format!("{:.1}", sample.time_s),
             rate,
             real(sample.stale, 0),
@@ -255,7 +255,9 @@ impl Table {
             real(sample.skin_celsius, 1),
             whole(sample.plugged),
             whole(sample.thermal_status),
-        ]))
+        ]);
+        println!("{row}");
+        Ok(())
     }
 
     fn back(&mut self, seconds: f64, rebooted: bool) -> anyhow::Result<()> {
@@ -279,9 +281,9 @@ impl Table {
         let faults: Vec<Fault> = self.own_faults.iter().cloned().chain(self.reading.faults()).collect();
         for fault in &faults {
             let at = fault.at_s.map_or(String::new(), |at_s| format!(" (from {at_s:.0} s)"));
-            print(&format!("fault: {}{at}", fault.detail))?;
+            println!("fault: {}{at}", fault.detail);
         }
-        print(&format!("{} samples, {} damaged lines", self.reading.samples(), self.reading.damaged()))?;
+        println!("{} samples, {} damaged lines", self.reading.samples(), self.reading.damaged());
         let Some(mut writer) = self.writer.take() else { return Ok(()) };
         let (method, scene) = match self.reading.methods() {
             [] => (UNKNOWN, UNKNOWN),
@@ -296,19 +298,12 @@ impl Table {
         })?;
         let folder = writer.folder().to_path_buf();
         writer.finish(Outcome::Complete)?;
-        print(&format!("capture: {}", folder.display()))
+        println!("capture: {}", folder.display());
+        Ok(())
     }
 }
 
 /// A row of cells that are wide enough for all that is usual.
 fn cells<const N: usize>(cells: [String; N]) -> String {
     cells.iter().map(|cell| format!("{cell:>8}")).collect::<Vec<_>>().join(" ")
-}
-
-/// Prints a line. Whoever reads may have seen enough: that ends the program without a word.
-fn print(line: &str) -> anyhow::Result<()> {
-    match writeln!(io::stdout(), "{line}") {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => std::process::exit(0),
-        written => Ok(written?),
-    }
 }

@@ -423,12 +423,7 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
                 cells.push(Cell::paper(papers.map(|(power, _)| format!("{power:+.1} %"))));
                 cells.push(Cell::paper(papers.map(|(_, fps)| format!("{fps:+.1} %"))));
             }
-            if first {
-                table.push_first(cells)
-            } else {
-                table.push(cells)
-            }
-            first = false;
+            table.push_grouped(cells, std::mem::take(&mut first));
         }
     }
     table.note = format!(
@@ -497,12 +492,7 @@ fn mean_table(report: &DeviceReport, device: &Device, quantities: [Quantity; 5])
                 });
                 cells.push(if *method == report.baseline { Cell::base(text) } else { Cell::ours(text) });
             }
-            if first {
-                table.push_first(cells)
-            } else {
-                table.push(cells)
-            }
-            first = false;
+            table.push_grouped(cells, std::mem::take(&mut first));
         }
     }
     table.note = format!(
@@ -555,11 +545,7 @@ fn power_table(report: &DeviceReport, device: &Device) -> Table {
             Cell::paper(milliwatts(run.by_level.map(|l| l.step_milliwatts))),
             Cell::plain(counts),
         ];
-        if run.scene == scene {
-            table.push(cells)
-        } else {
-            table.push_first(cells)
-        }
+        table.push_grouped(cells, run.scene != scene);
         scene = &run.scene;
     }
     table.note = format!(

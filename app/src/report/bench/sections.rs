@@ -244,12 +244,7 @@ fn time_details(suite: &Suite, title: &str, ratio: impl Fn(&SettingData, &str) -
                 ),
                 Cell::paper(fixed(ratio(setting, &measured.name), 3)),
             ];
-            if first {
-                table.push_first(cells)
-            } else {
-                table.push(cells)
-            }
-            first = false;
+            table.push_grouped(cells, std::mem::take(&mut first));
         }
     }
     push_refusals(&mut table, suite);
@@ -699,12 +694,7 @@ fn metric_table(suite: &Suite, title: &str, contenders: &[&str]) -> Table {
                 let scale = if *metric_name == metric::HOLE_SHARE { 100.0 } else { 1.0 };
                 cells.push(cell(name, fixed(of.mean(metric_name).map(|value| value * scale), *decimals)));
             }
-            if first {
-                table.push_first(cells)
-            } else {
-                table.push(cells)
-            }
-            first = false;
+            table.push_grouped(cells, std::mem::take(&mut first));
         }
     }
     push_refusals(&mut table, suite);
@@ -1198,7 +1188,7 @@ fn bandwidth_section(suite: &Suite) -> Section {
             }
             let best = rate_points(setting, name, [PSNR_LUMA_OTHER; 2]).into_iter().map(|p| p.1);
             cells.push(Cell::ours(fixed(best.reduce(f64::max), 2)));
-            if i == 0 { equal.push_first(cells) } else { equal.push(cells) }
+            equal.push_grouped(cells, i == 0);
         }
     }
     equal.note = "Bjøntegaard's mean difference by the mean quality of both eyes; negative: fewer bits than stereo RGB for \
@@ -1252,7 +1242,7 @@ fn rate_table(suite: &Suite) -> Table {
                 Cell::paper(fixed(paper.map(|p| p.1), 0)),
                 Cell::paper(paper.map(|p| percent(p.1 / p.2 - 1.0))),
             ];
-            if i == 0 { table.push_first(cells) } else { table.push(cells) }
+            table.push_grouped(cells, i == 0);
         }
     }
     push_refusals(&mut table, suite);
