@@ -30,7 +30,7 @@ impl Conventional {
     }
 
     /// Renders one eye to where it is wanted.
-    pub(super) fn render_eye(
+    fn render_eye(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,

@@ -81,10 +81,10 @@ impl Method {
         }
     }
 
-    /// Whether the method moves pixels from one eye to the other, which needs eyes that look in the same direction
+    /// Whether the method shows pixels of one eye to the other, which needs eyes that look in the same direction
     /// ([`EyePair::synthesis`]).
     pub fn needs_aligned_eyes(self) -> bool {
-        matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Yoro)
+        matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Mono | Method::Yoro)
     }
 
     /// Whether a driver can run the method; what a pipeline of [`Method::Yoro`] needs is its own to say.

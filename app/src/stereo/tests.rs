@@ -188,3 +188,36 @@ fn ambient_occlusion_is_right_at_the_rims_of_disocclusions() {
         }
     }
 }
+
+#[test]
+fn mono_shows_each_eye_its_own_part_of_the_view() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let (gl, settings) = (head.gl(), local());
+    let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
+    let mut stage = Stage::new(gl, &settings);
+    let mut conventional = Conventional::new(gl, &settings, &options).unwrap();
+    let mut mono = Mono::new(gl, &settings, &options).unwrap();
+    let plain = pair(Eye::Right, DepthConvention::Standard);
+    let [left, right] = stage.render(&mut mono, &plain);
+    assert!(left == right, "the same image where the frusta are the same");
+    // The right eye's frustum lies 32 pixels further right and 12 higher.
+    let frustum = plain.frusta[0];
+    let [x, y] = [32.0 / SIZE[0] as f32 * frustum.width(), 12.0 / SIZE[1] as f32 * frustum.height()];
+    let shifted = |x: f32, y: f32| Frustum {
+        left: frustum.left + x,
+        right: frustum.right + x,
+        bottom: frustum.bottom + y,
+        top: frustum.top + y,
+    };
+    for dominant in Eye::BOTH {
+        let asymmetric =
+            EyePair { frusta: [shifted(-x / 2.0, 0.0), shifted(x / 2.0, y)], dominant, ..plain.clone() };
+        let here = asymmetric.poses[dominant.index()];
+        let expected = stage.render(&mut conventional, &EyePair { poses: [here; 2], ..asymmetric.clone() });
+        let both = stage.render(&mut mono, &asymmetric);
+        for eye in Eye::BOTH {
+            let equal = equal_share(&both[eye.index()], &expected[eye.index()]);
+            assert!(equal > 0.99, "{dominant:?} dominant, {eye:?}: {equal}");
+        }
+    }
+}
