@@ -41,7 +41,7 @@ impl StereoMethod for Mono {
         pair: &EyePair,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
-        let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..pair.clone() };
+        let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..*pair };
         let views = here.synthesis(GuardBand::None)?;
         renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
         let (color, depth) = (self.targets.color_target(), DepthImage::whole(self.targets.depth()));

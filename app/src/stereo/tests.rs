@@ -210,10 +210,9 @@ fn mono_shows_each_eye_its_own_part_of_the_view() {
         top: frustum.top + y,
     };
     for dominant in Eye::BOTH {
-        let asymmetric =
-            EyePair { frusta: [shifted(-x / 2.0, 0.0), shifted(x / 2.0, y)], dominant, ..plain.clone() };
+        let asymmetric = EyePair { frusta: [shifted(-x / 2.0, 0.0), shifted(x / 2.0, y)], dominant, ..plain };
         let here = asymmetric.poses[dominant.index()];
-        let expected = stage.render(&mut conventional, &EyePair { poses: [here; 2], ..asymmetric.clone() });
+        let expected = stage.render(&mut conventional, &EyePair { poses: [here; 2], ..asymmetric });
         let both = stage.render(&mut mono, &asymmetric);
         for eye in Eye::BOTH {
             let equal = equal_share(&both[eye.index()], &expected[eye.index()]);
