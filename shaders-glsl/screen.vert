@@ -2,6 +2,11 @@
 // One triangle that covers the viewport, without vertex buffers.
 
 void main() {
-    vec2 corner = vec2(float((gl_VertexID << 1) & 2), float(gl_VertexID & 2));
+#ifdef VULKAN
+    int id = gl_VertexIndex;
+#else
+    int id = gl_VertexID;
+#endif
+    vec2 corner = vec2(float((id << 1) & 2), float(id & 2));
     gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
 }

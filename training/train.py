@@ -45,7 +45,7 @@ def load_group(folder, index):
 
 def rough_fill(color, disparity, hole):
     """Each hole takes colour and disparity of the farther of its two ends in the row, the left one when equal.
-    `rough_fill` in app/src/inpaint/neural.rs does the same."""
+    `rough_fill` in app/lab/src/inpaint/neural.rs does the same."""
     height, width = hole.shape
     columns = np.broadcast_to(np.arange(width), hole.shape)
     left = np.maximum.accumulate(np.where(hole, -1, columns), axis=1)

@@ -4,40 +4,46 @@
 //! are. Everywhere else it is a Cardboard-compatible viewer on Android's window. Which one is decided once, when the
 //! activity comes to the front for the first time.
 
-use std::ffi::CString;
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use android_activity::{AndroidApp, MainEvent, PollEvent, WindowManagerFlags};
 use yoro::gl::{Context, Destination};
-use yoro::platform::android::{Window, WindowError};
-use yoro::platform::openxr::{Android, Headset, Options, Step, XrError, runtime};
-use yoro::scene::builtin::BUILTINS;
-use yoro::viewer::{
-    Action, Cardboard, DisplayKind, Event, FrameTiming, Rotation, Screen, Settings, Viewer, ViewerError,
-    list_scenes,
+use yoro_context::android::{Window, WindowError};
+use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
+use yoro_viewer::telemetry::DeviceState;
+use yoro_viewer::{
+    Action, Cardboard, DisplayKind, FrameReport, FrameTiming, MotionSample, Screen, Viewer, ViewerError,
 };
 
+use crate::configuration::Configuration;
 use crate::device::Device;
+use crate::display::{Display, DisplayError};
 use crate::input::Input;
-use crate::java::{Display, Java};
+use crate::java::Java;
+use crate::pace::Refresh;
+use crate::performance::Performance;
 use crate::pulse::Pulse;
-use crate::settings::{self, Sources};
+use crate::screen::ScreenState;
+use crate::system::now_ns;
 
-/// Without a word from the choreographer for so long, a frame is drawn all the same.
+/// When the choreographer has been silent for so long, a frame is drawn all the same.
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Time between attempts to get a lost context or a refused window again.
 const RETRY: Duration = Duration::from_millis(250);
 /// What is assumed of a display that does not say its rate, in Hz.
 const USUAL_HZ: f32 = 60.0;
-/// A frame that is begun at one refresh is seen at the second one after it.
-const REFRESHES_AHEAD: f64 = 2.0;
 /// How often a headset's runtime is asked for events while it wants no frames: in front, and in the background.
 const HEADSET_POLL: Duration = Duration::from_millis(10);
 const HEADSET_BACKGROUND_POLL: Duration = Duration::from_millis(100);
 /// The screen of a device that cannot show anything else, display-referred.
 const FAILURE_COLOR: [f32; 3] = [0.45, 0.05, 0.05];
+
+/// The runtime of OpenXR that was found: its library stays in the process and is initialised once, whatever activities come
+/// and go.
+static RUNTIME: OnceLock<runtime::Runtime> = OnceLock::new();
 
 /// Runs the application until Android destroys the activity or the session is over.
 pub fn run(app: &AndroidApp) {
@@ -56,104 +62,70 @@ pub fn run(app: &AndroidApp) {
 /// Everything that one run of `android_main` holds.
 struct Activity {
     // What lives in the GL context goes before the context.
-    headset: Option<Headset>,
-    /// What the headset shows.
-    immersive: Option<Viewer>,
-    cardboard: Option<Cardboard>,
+    display: Display,
     gl: Option<Rc<Context>>,
     window: Option<Window>,
 
     app: AndroidApp,
     java: Java,
-    sources: Sources,
-    settings: Settings,
-    folders: Vec<PathBuf>,
-    display: Option<Display>,
-    refresh_hz: f32,
-
+    configuration: Configuration,
+    screen: ScreenState,
     pulse: Option<&'static Pulse>,
     device: Option<Device>,
     input: Input,
-    events: Vec<Event>,
-    samples: Vec<(yoro::viewer::Sample, i64)>,
+    performance: Performance,
+    /// GPU time of a frame some frames ago, where it is measured.
+    gpu_time: Duration,
+    /// Room for the samples of a frame.
+    samples: Vec<(MotionSample, i64)>,
 
     /// Whether it is decided on what the eyes are shown.
     is_display_chosen: bool,
     is_resumed: bool,
     is_finishing: bool,
     is_over: bool,
+    /// The scene in view, and whether its session has its summary in the log.
+    scene: String,
     is_summarized: bool,
-    has_input: bool,
-    is_display_stale: bool,
     /// Why this device can show nothing.
     failure: Option<String>,
     retry: Option<Instant>,
     last_frame: Instant,
     last_error: String,
-    /// What was wrong with the settings when they were last read.
-    mistakes: Vec<String>,
 }
 
 impl Activity {
     fn new(app: &AndroidApp) -> Activity {
         let java = Java::new(app);
-        let external = app.external_data_path();
-        let folders: Vec<PathBuf> =
-            external.iter().flat_map(|folder| [folder.join("scenes"), folder.clone()]).collect();
-        if let Some(scenes) = folders.first()
-            && let Err(error) = std::fs::create_dir_all(scenes)
-        {
-            log::warn!(
-                "the folder {} cannot be made ({error}): scenes cannot be pushed there",
-                scenes.display()
-            );
-        }
-        let sources = Sources {
-            file: external.map(|folder| folder.join(settings::FILE_NAME)),
-            extras: java.extras(),
-            properties: settings::properties(property),
-            saved: Vec::new(),
-        };
         Activity {
-            headset: None,
-            immersive: None,
-            cardboard: None,
+            display: Display::None,
             gl: None,
             window: None,
             app: app.clone(),
+            configuration: Configuration::new(app, &java),
             java,
-            sources,
-            settings: Settings::default(),
-            folders,
-            display: None,
-            refresh_hz: 0.0,
+            screen: ScreenState::new(),
             pulse: Pulse::get(),
             device: None,
             input: Input::default(),
-            events: Vec::new(),
+            performance: Performance::new(),
+            gpu_time: Duration::ZERO,
             samples: Vec::new(),
             is_display_chosen: false,
             is_resumed: false,
             is_finishing: false,
             is_over: false,
+            scene: String::new(),
             is_summarized: false,
-            has_input: false,
-            is_display_stale: true,
             failure: None,
             retry: None,
             last_frame: Instant::now(),
             last_error: String::new(),
-            mistakes: Vec::new(),
         }
     }
 
     fn is_ready(&self) -> bool {
-        self.cardboard.as_ref().is_some_and(Cardboard::is_attached)
-    }
-
-    /// The application, on whatever it is shown.
-    fn viewer(&self) -> Option<&Viewer> {
-        self.immersive.as_ref().or(self.cardboard.as_ref().map(Cardboard::viewer))
+        self.display.cardboard().is_some_and(Cardboard::is_attached)
     }
 
     fn is_drawing(&self) -> bool {
@@ -163,7 +135,7 @@ impl Activity {
 
     /// Sleeps until there is something to do, and lets Android's events in.
     fn wait(&mut self) {
-        let mut timeout = if let Some(headset) = &self.headset {
+        let mut timeout = if let Display::Headset(headset) = &self.display {
             Some(match (headset.is_running(), self.is_resumed) {
                 // The runtime sets the pace.
                 (true, _) => Duration::ZERO,
@@ -205,7 +177,7 @@ impl Activity {
             }
             MainEvent::WindowResized { .. }
             | MainEvent::ContentRectChanged { .. }
-            | MainEvent::ConfigChanged { .. } => self.is_display_stale = true,
+            | MainEvent::ConfigChanged { .. } => self.screen.is_stale = true,
             MainEvent::RedrawNeeded { .. } => {
                 if let Some(failure) = self.failure.clone() {
                     self.fail(failure);
@@ -213,18 +185,20 @@ impl Activity {
             }
             MainEvent::GainedFocus => self.java.hide_system_bars(),
             MainEvent::Resume { loader, .. } => {
-                if self.viewer().is_none()
+                if self.display.viewer().is_none()
                     && let Some(saved) = loader.load()
                 {
-                    self.sources.saved = settings::restore(&saved);
+                    self.configuration.restore(&saved);
                 }
                 self.choose_display();
                 self.resume();
             }
             MainEvent::Pause => self.pause(),
-            MainEvent::SaveState { saver, .. } => saver.store(&settings::save(&self.changes())),
+            MainEvent::SaveState { saver, .. } => {
+                saver.store(&self.configuration.save(self.display.viewer()));
+            }
             MainEvent::LowMemory => self.free_memory(),
-            MainEvent::InputAvailable => self.has_input = true,
+            MainEvent::InputAvailable => self.input.is_available = true,
             MainEvent::Destroy => self.is_over = true,
             _ => {}
         }
@@ -232,15 +206,15 @@ impl Activity {
 
     fn resume(&mut self) {
         self.is_resumed = true;
-        self.is_display_stale = true;
+        self.screen.is_stale = true;
         self.last_frame = Instant::now();
         self.device = Some(Device::watch(&self.java));
-        if self.headset.is_none()
+        if !self.display.is_headset()
             && let Some(pulse) = self.pulse
         {
             pulse.resume(self.app.create_waker());
         }
-        if let Some(cardboard) = &mut self.cardboard {
+        if let Some(cardboard) = self.display.cardboard_mut() {
             cardboard.resume();
         }
         self.java.hide_system_bars();
@@ -253,26 +227,16 @@ impl Activity {
         if let Some(pulse) = self.pulse {
             pulse.pause();
         }
-        if let Some(cardboard) = &mut self.cardboard {
+        if let Some(cardboard) = self.display.cardboard_mut() {
             cardboard.pause();
         }
     }
 
-    /// What the user has changed since the settings were read.
-    fn changes(&self) -> Vec<settings::Pair> {
-        let Some(viewer) = self.viewer() else { return self.sources.saved.clone() };
-        let method =
-            (viewer.method() != self.settings.method).then(|| ("method", viewer.method().name().to_owned()));
-        let ipd = viewer.chosen_ipd().filter(|ipd| Some(*ipd) != self.settings.ipd);
-        let ipd = ipd.map(|ipd| ("ipd", ipd.to_string()));
-        [method, ipd].into_iter().flatten().map(|(key, value)| (key.to_owned(), value)).collect()
-    }
-
     /// In the background everything on the GPU can go; it is made again with the next window.
     fn free_memory(&mut self) {
-        if self.headset.is_some() || self.window.as_ref().is_some_and(Window::is_attached) {
+        if self.display.is_headset() || self.window.as_ref().is_some_and(Window::is_attached) {
             log::warn!("Android is short of memory: a smaller render-scale or scene needs less");
-        } else if let Some(cardboard) = &mut self.cardboard {
+        } else if let Some(cardboard) = self.display.cardboard_mut() {
             log::info!("Android is short of memory: what is on the GPU is dropped");
             cardboard.detach();
         }
@@ -283,100 +247,117 @@ impl Activity {
         if std::mem::replace(&mut self.is_display_chosen, true) {
             return;
         }
-        let settings = self.resolve();
+        let settings = self.configuration.resolve();
         if settings.display == DisplayKind::Cardboard {
             log::info!("display: Cardboard-compatible viewer, since the settings say so");
             return;
         }
-        // SAFETY: the process's VM, and a global reference that lives as long as `self.app`.
-        let android = unsafe { Android::new(self.app.vm_as_ptr(), self.app.activity_as_ptr()) };
-        let found = match runtime::find(&runtime::android_places(), &self.java, Some(&android.context())) {
+        let found = match self.find_runtime() {
             Ok(found) => found,
-            // A phone: nothing is wrong.
-            Err(reason) if reason.nothing_installed() && settings.display == DisplayKind::Auto => {
-                log::info!("display: Cardboard-compatible viewer, since {reason}");
-                return;
-            }
             Err(reason) => {
-                log::warn!("display: Cardboard-compatible viewer, since {reason}");
-                return;
+                let is_usual = reason.nothing_installed() && settings.display == DisplayKind::Auto;
+                return self.do_without_headset(&reason.to_string(), is_usual);
             }
         };
         let line = found.found().to_string();
-        match self.open_headset(found, android) {
+        match self.open_headset(found) {
             Ok(()) => log::info!("display: headset, by {line}"),
-            Err(reason) => {
-                self.close_headset();
-                log::warn!("display: Cardboard-compatible viewer, since {reason}");
-            }
+            Err(reason) => self.do_without_headset(&reason.to_string(), false),
         }
     }
 
-    fn open_headset(&mut self, found: runtime::Runtime, android: Android) -> Result<(), HeadsetError> {
+    /// The runtime of this device, looked for once in the process.
+    fn find_runtime(&self) -> Result<runtime::Runtime, runtime::NotFound> {
+        if let Some(found) = RUNTIME.get() {
+            return Ok(found.clone());
+        }
+        let java = self.java.application_context().map(|context| {
+            // SAFETY: the process's VM, and a global reference that is never given back.
+            unsafe { runtime::JavaContext::new(self.app.vm_as_ptr(), context) }
+        });
+        let found = runtime::find(&runtime::android_places(), &self.java, java.as_ref())?;
+        Ok(RUNTIME.get_or_init(|| found).clone())
+    }
+
+    /// There is no headset to show anything on, or no longer: the phone's screen takes its place. Who wears a headset does
+    /// not see that screen but the sign of loading, without end: there the application ends. That a phone is none `is_usual`.
+    fn do_without_headset(&mut self, reason: &str, is_usual: bool) {
+        if self.java.is_headset() {
+            log::error!("display: none, since {reason}; this is a headset, so the application ends");
+            self.finish();
+        } else if is_usual {
+            log::info!("display: Cardboard-compatible viewer, since {reason}");
+        } else {
+            log::warn!("display: Cardboard-compatible viewer, since {reason}");
+        }
+    }
+
+    fn open_headset(&mut self, found: runtime::Runtime) -> Result<(), DisplayError> {
+        // SAFETY: the process's VM, and a global reference that lives as long as `self.app`.
+        let android = unsafe { Android::new(self.app.vm_as_ptr(), self.app.activity_as_ptr()) };
         let window = match self.window.take() {
             Some(window) => window,
             None => Window::open()?,
         };
         let window = self.window.insert(window);
-        if self.gl.is_none() {
-            let gl = window.gl().map_err(ViewerError::Gl)?;
-            log::info!("driver: {}", gl.capabilities().summary());
-            self.gl = Some(gl);
-        }
-        let mut viewer = self.make_viewer(Viewer::new)?;
-        let (Some(gl), Some(window)) = (&self.gl, &self.window) else { return Ok(()) };
+        let gl = context(&mut self.gl, window)?;
+        let mut viewer = self.configuration.make_viewer(Viewer::new)?;
         viewer.attach(gl.clone())?;
         let options = Options { android: Some(android), ..Options::default() };
-        self.headset = Some(Headset::open(found, window, gl, &viewer, options)?);
-        self.immersive = Some(viewer);
+        let headset = Headset::open(found, &*window, gl, viewer, options)?;
+        self.display = Display::Headset(Box::new(headset));
         Ok(())
-    }
-
-    /// Leaves the headset; Android's window is next, if there is one.
-    fn close_headset(&mut self) {
-        self.headset = None;
-        self.immersive = None;
     }
 
     /// One step of the headset: a frame, unless the runtime wants none.
     fn step_headset(&mut self) {
-        let (Some(headset), Some(viewer), Some(window)) =
-            (&mut self.headset, &mut self.immersive, &self.window)
-        else {
-            return;
-        };
-        self.events.drain(..).for_each(|event| headset.event(event));
-        let scene = viewer.scene_name().to_owned();
-        let frame = match headset.step(window, viewer) {
-            Ok(Step::Idle) => return,
-            Ok(Step::Frame(frame)) => frame,
-            Ok(Step::Ended) => return self.finish(),
+        let (Display::Headset(headset), Some(window)) = (&mut self.display, &self.window) else { return };
+        self.input.events.drain(..).for_each(|event| headset.event(event));
+        match headset.step(window) {
+            Ok(Step::Idle) => {}
+            Ok(Step::Frame(frame)) => {
+                if let Some(report) = frame.report {
+                    self.after_frame(&report);
+                }
+            }
+            Ok(Step::Ended) => self.finish(),
             Err(error) => {
-                log::error!("display: Cardboard-compatible viewer from now on, since {error}");
                 self.summarize();
                 self.is_summarized = false;
-                self.close_headset();
+                self.display = Display::None;
+                self.do_without_headset(&error.to_string(), false);
                 self.open_window();
                 if self.is_resumed {
                     self.resume();
                 }
-                return;
             }
-        };
-        if viewer.scene_name() != scene {
-            self.is_summarized = false;
         }
-        let Some(report) = frame.report else { return };
+    }
+
+    /// What follows from a frame on whatever display.
+    fn after_frame(&mut self, report: &FrameReport) {
+        self.note_scene();
         if report.telemetry_due {
             self.every_second();
         }
         if report.session_over {
             self.summarize();
         }
-        if report.exit
-            && let Some(headset) = &mut self.headset
+        if report.exit {
+            match &mut self.display {
+                Display::Headset(headset) => headset.request_exit(),
+                Display::Cardboard(_) | Display::None => self.finish(),
+            }
+        }
+    }
+
+    /// Another scene begins another session, whose summary is still to come.
+    fn note_scene(&mut self) {
+        if let Some(viewer) = self.display.viewer()
+            && viewer.scene_name() != self.scene
         {
-            headset.request_exit();
+            viewer.scene_name().clone_into(&mut self.scene);
+            self.is_summarized = false;
         }
     }
 
@@ -392,7 +373,7 @@ impl Activity {
     /// for it.
     fn open_window(&mut self) {
         self.retry = None;
-        if self.headset.is_some() {
+        if self.display.is_headset() || self.is_finishing {
             return;
         }
         let Some(native) = self.app.native_window() else { return };
@@ -401,83 +382,48 @@ impl Activity {
             Err(error) => return self.fail(error.to_string()),
         };
         match window.attach(native) {
-            Ok(()) => self.is_display_stale = true,
+            Ok(()) => {
+                self.screen.is_stale = true;
+                self.performance.forget_window();
+            }
             Err(error) => return self.on_window_error(&error),
         }
-        if self.gl.is_none() && self.failure.is_none() {
-            match window.gl() {
-                Ok(gl) => {
-                    log::info!("driver: {}", gl.capabilities().summary());
-                    self.gl = Some(gl);
-                }
-                Err(error) => return self.fail(error.to_string()),
-            }
+        if let Some(failure) = self.failure.clone() {
+            return self.fail(failure);
         }
-        match self.failure.clone() {
-            Some(failure) => self.fail(failure),
-            None => self.attach_viewer(),
+        match context(&mut self.gl, window) {
+            Ok(_) => self.attach_viewer(),
+            Err(error) => self.fail(error.to_string()),
         }
     }
 
     fn attach_viewer(&mut self) {
         let Some(screen) = self.screen() else { return };
         let Some(gl) = self.gl.clone() else { return };
-        if self.cardboard.is_none() {
-            match self.make_viewer(|settings, folders| Cardboard::new(settings, screen, folders)) {
-                Ok(cardboard) => self.cardboard = Some(cardboard),
+        if let Display::None = self.display {
+            let new = |settings, folders: &[PathBuf]| Cardboard::new(settings, screen, folders);
+            match self.configuration.make_viewer(new) {
+                Ok(cardboard) => self.display = Display::Cardboard(Box::new(cardboard)),
                 Err(error) => return self.fail(error.to_string()),
             }
         }
-        let Some(cardboard) = &mut self.cardboard else { return };
+        let Some(cardboard) = self.display.cardboard_mut() else { return };
         if !cardboard.is_attached()
             && let Err(error) = cardboard.attach(gl)
         {
-            self.fail(error.to_string());
+            return self.fail(error.to_string());
         }
+        self.ask_performance();
     }
 
-    /// A viewer with the settings from outside; mistakes in them are told, and the defaults take their place.
-    fn make_viewer<T>(
-        &mut self,
-        new: impl Fn(Settings, &[PathBuf]) -> Result<T, ViewerError>,
-    ) -> Result<T, ViewerError> {
-        let settings = self.resolve();
-        self.log_scenes();
-        self.settings = settings.clone();
-        let mut possible = settings;
-        let defaults = Settings::default();
-        loop {
-            let error = match new(possible.clone(), &self.folders) {
-                Ok(viewer) => return Ok(viewer),
-                Err(error) => error,
-            };
-            let (setting, default) = match error {
-                ViewerError::NoScene(_) => (&mut possible.scene, &defaults.scene),
-                ViewerError::Params(_) => (&mut possible.viewer, &defaults.viewer),
-                error => return Err(error),
-            };
-            if setting == default {
-                return Err(error);
-            }
-            log::warn!("{error}; {default} is taken");
-            setting.clone_from(default);
+    /// Asks for the refresh rate and the performance of the settings. A headset's runtime is asked by its own means.
+    fn ask_performance(&mut self) {
+        if let Display::Cardboard(cardboard) = &self.display
+            && let Some(window) = self.app.native_window()
+        {
+            let settings = cardboard.viewer().settings();
+            self.performance.ask(settings, &window, self.screen.refresh_hz, &self.java);
         }
-    }
-
-    /// The settings from outside; each mistake is told once.
-    fn resolve(&mut self) -> Settings {
-        let (settings, mistakes) = self.sources.resolve();
-        mistakes.iter().filter(|m| !self.mistakes.contains(m)).for_each(|mistake| log::warn!("{mistake}"));
-        self.mistakes = mistakes;
-        settings
-    }
-
-    fn log_scenes(&self) {
-        let builtin: Vec<&str> = BUILTINS.iter().map(|scene| scene.name).collect();
-        log::info!("built-in scenes: {}", builtin.join(", "));
-        let mut files = list_scenes(&self.folders);
-        files.dedup();
-        files.iter().for_each(|file| log::info!("scene file: {}", file.display()));
     }
 
     /// Says once, in the log and on the screen, why nothing else can be shown.
@@ -497,7 +443,7 @@ impl Activity {
         self.log_error(error.to_string());
         match error {
             WindowError::ContextLost => {
-                if let Some(cardboard) = &mut self.cardboard {
+                if let Some(cardboard) = self.display.cardboard_mut() {
                     cardboard.detach();
                 }
                 self.gl = None;
@@ -523,28 +469,15 @@ impl Activity {
     /// The screen as it is now; none without window.
     fn screen(&mut self) -> Option<Screen> {
         let size = self.window.as_ref()?.size()?;
-        if std::mem::take(&mut self.is_display_stale) {
-            self.display = self.java.display().or(self.display);
-            if let Some(display) = &self.display {
-                self.refresh_hz = display.refresh_hz;
-            }
-        }
-        let (dpi, rotation) = match &self.display {
-            Some(display) => (display.dpi, rotation(display.rotation)),
-            None => ([0.0; 2], Rotation::default()),
-        };
-        Some(Screen { size, dpi, rotation })
+        Some(self.screen.of_window(size, &self.java))
     }
 
     fn step(&mut self) {
         if self.retry.is_some_and(|time| Instant::now() >= time) {
             self.open_window();
         }
-        if std::mem::take(&mut self.has_input) {
-            let dpi = self.display.map_or(0.0, |display| display.dpi[0]);
-            self.input.collect(&self.app, dpi, &mut self.events);
-        }
-        if self.headset.is_some() {
+        self.input.collect(&self.app, self.screen.dpi());
+        if self.display.is_headset() {
             return self.step_headset();
         }
         // A window may have had no size when it came.
@@ -554,10 +487,10 @@ impl Activity {
         }
         let refresh = self.pulse.and_then(Pulse::take_refresh);
         if !self.is_drawing() {
-            self.events.clear();
+            self.input.events.clear();
             return;
         }
-        self.events.extend(self.input.held(now_ns()));
+        self.input.hold(now_ns());
         let is_paced = self.pulse.is_some_and(Pulse::has_refreshes);
         if refresh.is_none() && is_paced && self.last_frame.elapsed() < PATIENCE {
             return;
@@ -565,108 +498,80 @@ impl Activity {
         self.last_frame = Instant::now();
         match self.frame(refresh) {
             Ok(()) => {}
-            Err(FrameError::Window(error)) => self.on_window_error(&error),
-            Err(FrameError::Viewer(error)) => self.log_error(error.to_string()),
+            Err(DisplayError::Window(error)) => self.on_window_error(&error),
+            Err(error) => self.log_error(error.to_string()),
         }
     }
 
     /// One frame, for the refresh that has just begun.
-    fn frame(&mut self, refresh_ns: Option<i64>) -> Result<(), FrameError> {
+    fn frame(&mut self, refresh: Option<Refresh>) -> Result<(), DisplayError> {
         let Some(screen) = self.screen() else { return Ok(()) };
-        let (Some(viewer), Some(window)) = (&mut self.cardboard, &self.window) else { return Ok(()) };
-        viewer.resize(screen)?;
-        for event in self.events.drain(..) {
-            match viewer.event(event) {
+        let (Display::Cardboard(cardboard), Some(window)) = (&mut self.display, &self.window) else {
+            return Ok(());
+        };
+        cardboard.resize(screen)?;
+        for event in self.input.events.drain(..) {
+            match cardboard.event(event) {
                 Ok(Action::Nothing) => {}
                 Ok(action) => log::info!("{action}"),
                 Err(error) => log::error!("{error}"),
             }
         }
-        let now = now_ns();
-        let hz = if self.refresh_hz > 0.0 { self.refresh_hz } else { USUAL_HZ };
-        let ahead = (REFRESHES_AHEAD / f64::from(hz) * 1e9) as i64;
-        let timing = FrameTiming {
-            now_ns: now,
-            expected_display_ns: refresh_ns.unwrap_or(now) + ahead,
-            refresh_hz: self.refresh_hz,
+        let begin = now_ns();
+        let refresh_hz = self.screen.refresh_hz;
+        let period_ns = (1e9 / f64::from(if refresh_hz > 0.0 { refresh_hz } else { USUAL_HZ })) as i64;
+        let refresh = refresh.unwrap_or(Refresh { begin_ns: begin, timeline: None });
+        let gpu_ns = self.gpu_time.as_nanos() as i64;
+        let timing = |now_ns: i64| FrameTiming {
+            now_ns,
+            expected_display_ns: refresh.display_ns(now_ns + gpu_ns, period_ns),
+            refresh_hz,
         };
-        let mut feed = |viewer: &mut Cardboard| {
+        let mut feed = |cardboard: &mut Cardboard| {
             if let Some(pulse) = self.pulse {
-                pulse.drain(&mut self.samples, |sample, time| viewer.sensor(sample, time));
+                pulse.drain(&mut self.samples, |sample, time| cardboard.sensor(sample, time));
             }
         };
-        feed(viewer);
-        viewer.render(&timing)?;
+        feed(cardboard);
+        cardboard.render(&timing(begin))?;
+        let rendered = now_ns();
+        cardboard.wait();
+        let waited = now_ns();
         // The image is turned to where the head is by now.
-        feed(viewer);
+        feed(cardboard);
         let destination = Destination { framebuffer: None, origin: [0, 0], size: screen.size };
-        let report = viewer.present(&destination, &FrameTiming { now_ns: now_ns(), ..timing })?;
+        let report = cardboard.present(&destination, &timing(waited))?;
+        let worked = (rendered - begin) + (now_ns() - waited);
+        self.performance.worked(Duration::from_nanos(worked.max(0).cast_unsigned()));
+        self.gpu_time = report.gpu_ms.map_or(self.gpu_time, |ms| Duration::from_secs_f32(ms.max(0.0) * 1e-3));
         window.present()?;
         self.last_error.clear();
-        if report.telemetry_due {
-            self.every_second();
-        }
-        if report.session_over {
-            self.summarize();
-        }
-        if report.exit {
-            self.finish();
-        }
+        self.after_frame(&report);
         Ok(())
     }
 
     fn every_second(&mut self) {
         let report = self.device.as_ref().map(Device::report).unwrap_or_default();
-        self.refresh_hz = report.refresh_hz.unwrap_or(self.refresh_hz);
-        let viewer = self.immersive.as_mut().or(self.cardboard.as_mut().map(Cardboard::viewer_mut));
-        let Some(viewer) = viewer else { return };
-        log::info!("{}", viewer.telemetry(viewer.now_ns(), &report.state));
+        self.screen.refresh_hz = report.refresh_hz.unwrap_or(self.screen.refresh_hz);
+        let performance = (!self.display.is_headset()).then(|| self.performance.name());
+        let Some(viewer) = self.display.viewer_mut() else { return };
+        let state = DeviceState { performance, ..report.state };
+        log::info!("{}", viewer.telemetry(viewer.now_ns(), &state));
         if let Some(errors) = self.gl.as_ref().and_then(|gl| gl.take_errors()) {
             log::warn!("GL errors in the last second: {errors}");
         }
-        if self.sources.set_properties(settings::properties(property)) {
-            self.reconfigure();
-        }
-    }
-
-    /// The system properties have changed while the application runs.
-    fn reconfigure(&mut self) {
-        let settings = self.resolve();
-        if settings == self.settings {
-            return;
-        }
-        if (&settings.scene, settings.seed) != (&self.settings.scene, self.settings.seed) {
+        let Some(settings) = self.configuration.poll_properties() else { return };
+        if self.configuration.is_other_scene(&settings) {
             self.summarize();
         }
-        let Some(viewer) = self.viewer() else { return };
-        // What was not to be found at the start is not looked for again with every change.
-        let mut possible = settings.clone();
-        if settings.scene == self.settings.scene {
-            possible.scene.clone_from(&viewer.settings().scene);
-        }
-        if settings.viewer == self.settings.viewer {
-            possible.viewer.clone_from(&viewer.settings().viewer);
-        }
-        // Another scene begins another session.
+        // Other settings may reopen the session.
         self.is_summarized = false;
-        let configured = match (&mut self.immersive, &mut self.cardboard) {
-            (Some(viewer), _) => viewer.configure(possible, &self.folders),
-            (None, Some(cardboard)) => cardboard.configure(possible, &self.folders),
-            (None, None) => Ok(()),
-        };
-        match configured {
-            Ok(()) => {
-                if let Some(viewer) = self.viewer() {
-                    log::info!("settings: {}", viewer.settings());
-                }
-                self.settings = settings;
-            }
-            Err(error) => log::warn!("{error}; the settings stay as they were"),
-        }
+        self.configuration.apply(settings, &mut self.display);
+        self.ask_performance();
     }
 
     fn summarize(&mut self) {
-        if let Some(viewer) = self.viewer()
+        if let Some(viewer) = self.display.viewer()
             && !self.is_summarized
         {
             log::info!("{}", viewer.summary(viewer.now_ns()));
@@ -680,84 +585,14 @@ impl Activity {
     }
 }
 
-/// Why there is a runtime and no headset.
-#[derive(Debug)]
-enum HeadsetError {
-    Window(WindowError),
-    Viewer(ViewerError),
-    Xr(XrError),
-}
-
-impl std::fmt::Display for HeadsetError {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            HeadsetError::Window(error) => error.fmt(f),
-            HeadsetError::Viewer(error) => error.fmt(f),
-            HeadsetError::Xr(error) => error.fmt(f),
+/// The context of a window, which the first call makes.
+fn context<'a>(gl: &'a mut Option<Rc<Context>>, window: &Window) -> Result<&'a Rc<Context>, ViewerError> {
+    match gl {
+        Some(gl) => Ok(gl),
+        none => {
+            let new = window.gl()?;
+            log::info!("driver: {}", new.capabilities().summary());
+            Ok(none.insert(new))
         }
     }
-}
-
-impl From<WindowError> for HeadsetError {
-    fn from(error: WindowError) -> HeadsetError {
-        HeadsetError::Window(error)
-    }
-}
-
-impl From<ViewerError> for HeadsetError {
-    fn from(error: ViewerError) -> HeadsetError {
-        HeadsetError::Viewer(error)
-    }
-}
-
-impl From<XrError> for HeadsetError {
-    fn from(error: XrError) -> HeadsetError {
-        HeadsetError::Xr(error)
-    }
-}
-
-/// Why a frame was not shown.
-enum FrameError {
-    Window(WindowError),
-    Viewer(ViewerError),
-}
-
-impl From<WindowError> for FrameError {
-    fn from(error: WindowError) -> FrameError {
-        FrameError::Window(error)
-    }
-}
-
-impl From<ViewerError> for FrameError {
-    fn from(error: ViewerError) -> FrameError {
-        FrameError::Viewer(error)
-    }
-}
-
-/// `Surface.ROTATION_*` says how far the picture is turned against the device's natural position, that of the sensors'
-/// axes: upright for phones, on the side for many tablets and for headsets.
-fn rotation(surface_rotation: i32) -> Rotation {
-    match surface_rotation {
-        1 => Rotation::LandscapeLeft,
-        3 => Rotation::LandscapeRight,
-        _ => Rotation::Portrait,
-    }
-}
-
-/// The clock of Android's events and refreshes.
-fn now_ns() -> i64 {
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the clock exists on every Linux, and the result has a place.
-    unsafe { libc::clock_gettime(libc::CLOCK_MONOTONIC, &mut time) };
-    time.tv_sec * 1_000_000_000 + time.tv_nsec
-}
-
-/// A system property.
-fn property(name: &str) -> Option<String> {
-    let name = CString::new(name).ok()?;
-    let mut value = [0u8; libc::PROP_VALUE_MAX as usize];
-    // SAFETY: the name ends in zero, and there is room for the longest value.
-    let length = unsafe { libc::__system_property_get(name.as_ptr(), value.as_mut_ptr().cast()) };
-    let value = value.get(..usize::try_from(length).ok()?)?;
-    Some(String::from_utf8_lossy(value).into_owned())
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use yoro::telemetry::{BatteryStatus, DeviceState};
+use yoro_viewer::telemetry::{BatteryStatus, DeviceState};
 
 use crate::java::{BatteryProperty, Java};
 use crate::thermal::Thermal;
@@ -87,7 +87,8 @@ fn ask(java: &Java, thermal: &mut Thermal) -> Report {
         skin_celsius: thermal.skin_celsius(),
         thermal_status: thermal.status(),
         thermal_headroom: thermal.headroom(),
+        performance: None,
     };
-    let refresh_hz = java.display().map(|display| display.refresh_hz).filter(|hz| *hz > 0.0);
+    let refresh_hz = java.display_metrics().map(|display| display.refresh_hz).filter(|hz| *hz > 0.0);
     Report { state, refresh_hz }
 }

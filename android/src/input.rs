@@ -2,7 +2,7 @@
 
 use android_activity::input::{InputEvent, KeyAction, KeyEvent, Keycode, MotionAction, MotionEvent};
 use android_activity::{AndroidApp, InputStatus};
-use yoro::viewer::Event;
+use yoro_viewer::Event;
 
 use crate::press::Press;
 
@@ -11,11 +11,19 @@ use crate::press::Press;
 pub struct Input {
     touch: Press,
     trigger: Press,
+    /// What nobody has taken yet.
+    pub events: Vec<Event>,
+    /// Whether Android has something to read.
+    pub is_available: bool,
 }
 
 impl Input {
-    /// Takes what Android has, and appends what it means. What is not ours, such as the back key, stays Android's.
-    pub fn collect(&mut self, app: &AndroidApp, dpi: f32, events: &mut Vec<Event>) {
+    /// Reads what Android has, if it has anything, and appends what it means to the events. What is not ours, such as
+    /// the back key, stays Android's.
+    pub fn collect(&mut self, app: &AndroidApp, dpi: f32) {
+        if !std::mem::take(&mut self.is_available) {
+            return;
+        }
         let mut iterator = match app.input_events_iter() {
             Ok(iterator) => iterator,
             Err(error) => {
@@ -24,23 +32,23 @@ impl Input {
             }
         };
         while iterator.next(|event| match event {
-            InputEvent::MotionEvent(motion) => self.motion(motion, dpi, events),
-            InputEvent::KeyEvent(key) => self.key(key, events),
+            InputEvent::MotionEvent(motion) => self.motion(motion, dpi),
+            InputEvent::KeyEvent(key) => self.key(key),
             _ => InputStatus::Unhandled,
         }) {}
     }
 
-    /// Presses that have become long; `now_ns` is of the clock of the events, which is the monotonic one.
-    pub fn held(&mut self, now_ns: i64) -> Option<Event> {
-        self.touch.held(now_ns).or_else(|| self.trigger.held(now_ns))
+    /// Appends a press that has become long; `now_ns` is of the clock of the events, which is the monotonic one.
+    pub fn hold(&mut self, now_ns: i64) {
+        self.events.extend(self.touch.held(now_ns).or_else(|| self.trigger.held(now_ns)));
     }
 
     /// Forgets what was begun: the window is gone.
     pub fn cancel(&mut self) {
-        *self = Input::default();
+        (self.touch, self.trigger) = (Press::default(), Press::default());
     }
 
-    fn motion(&mut self, motion: &MotionEvent, dpi: f32, events: &mut Vec<Event>) -> InputStatus {
+    fn motion(&mut self, motion: &MotionEvent, dpi: f32) -> InputStatus {
         if !motion.source().is_pointer_class() || motion.pointer_count() == 0 {
             return InputStatus::Unhandled;
         }
@@ -49,18 +57,18 @@ impl Input {
         match motion.action() {
             MotionAction::Down => self.touch.down(motion.event_time(), position),
             MotionAction::Move => self.touch.moved(position, dpi),
-            MotionAction::Up => events.extend(self.touch.up(motion.event_time())),
+            MotionAction::Up => self.events.extend(self.touch.up(motion.event_time())),
             MotionAction::PointerDown | MotionAction::Cancel => self.touch.cancel(),
             _ => {}
         }
         InputStatus::Handled
     }
 
-    fn key(&mut self, key: &KeyEvent, events: &mut Vec<Event>) -> InputStatus {
+    fn key(&mut self, key: &KeyEvent) -> InputStatus {
         let is_down = key.action() == KeyAction::Down;
         match key.key_code() {
-            Keycode::VolumeUp if is_down => events.push(Event::IpdUp),
-            Keycode::VolumeDown if is_down => events.push(Event::IpdDown),
+            Keycode::VolumeUp if is_down => self.events.push(Event::IpdUp),
+            Keycode::VolumeDown if is_down => self.events.push(Event::IpdDown),
             Keycode::VolumeUp | Keycode::VolumeDown => {}
             // The buttons of headsets, game pads and keyboards.
             Keycode::Enter
@@ -75,12 +83,12 @@ impl Input {
             | Keycode::ButtonR2 => match key.action() {
                 // A key that is held repeats.
                 KeyAction::Down if key.repeat_count() == 0 => self.trigger.down(key.event_time(), [0.0; 2]),
-                KeyAction::Up => events.extend(self.trigger.up(key.event_time())),
+                KeyAction::Up => self.events.extend(self.trigger.up(key.event_time())),
                 _ => {}
             },
-            Keycode::H | Keycode::ButtonX if is_down => events.push(Event::ToggleHud),
-            Keycode::N | Keycode::ButtonY if is_down => events.push(Event::NextViewpoint),
-            Keycode::S if is_down => events.push(Event::NextScene),
+            Keycode::H | Keycode::ButtonX if is_down => self.events.push(Event::ToggleHud),
+            Keycode::N | Keycode::ButtonY if is_down => self.events.push(Event::NextViewpoint),
+            Keycode::S if is_down => self.events.push(Event::NextScene),
             _ => return InputStatus::Unhandled,
         }
         InputStatus::Handled

@@ -1,11 +1,14 @@
 //! Everything that only Java can be asked for.
 
+use std::ffi::c_void;
+use std::sync::OnceLock;
+
 use android_activity::AndroidApp;
 use jni::objects::{JObject, JString};
 use jni::refs::Global;
 use jni::vm::JavaVM;
 use jni::{Env, JValue, jni_sig, jni_str};
-use yoro::platform::openxr::runtime::{Broker, Rows};
+use yoro_viewer::openxr::runtime::{Broker, Rows};
 
 /// `BatteryManager.BATTERY_PROPERTY_*`.
 #[derive(Clone, Copy, Debug)]
@@ -38,12 +41,16 @@ pub struct BatteryIntent {
     pub status: Option<i32>,
 }
 
-/// The display that the activity is on.
+/// What Android says of the display that the activity is on.
 #[derive(Clone, Copy, Debug)]
-pub struct Display {
-    /// Physical pixels per inch along both axes of the picture.
+pub struct DisplayMetrics {
+    /// Pixels per inch along both axes of the picture: of the display's mode.
     pub dpi: [f32; 2],
-    /// Refreshes per second; 0 where the answer makes no sense.
+    /// Width and height of the picture in pixels, which the user may have made others than the mode's.
+    pub size: [i32; 2],
+    /// Width and height of the display's mode in pixels, in the device's natural position.
+    pub mode: [i32; 2],
+    /// Refreshes per second; 0 where the answer is implausible.
     pub refresh_hz: f32,
     /// `Surface.ROTATION_*`: how often the picture is turned by 90 degrees.
     pub rotation: i32,
@@ -86,7 +93,7 @@ impl Java {
     }
 
     /// The display, if Java says anything of it.
-    pub fn display(&self) -> Option<Display> {
+    pub fn display_metrics(&self) -> Option<DisplayMetrics> {
         self.ask("the display", |env, activity| {
             let manager = env
                 .call_method(
@@ -107,27 +114,108 @@ impl Java {
             let refresh_hz =
                 env.call_method(&display, jni_str!("getRefreshRate"), jni_sig!("()F"), &[])?.f()?;
             let rotation = env.call_method(&display, jni_str!("getRotation"), jni_sig!("()I"), &[])?.i()?;
-            let resources = env
-                .call_method(
-                    activity,
-                    jni_str!("getResources"),
-                    jni_sig!("()Landroid/content/res/Resources;"),
-                    &[],
-                )?
-                .l()?;
-            let metrics = env
-                .call_method(
-                    &resources,
-                    jni_str!("getDisplayMetrics"),
-                    jni_sig!("()Landroid/util/DisplayMetrics;"),
-                    &[],
-                )?
-                .l()?;
+            // Of the whole display; those of the resources leave out what the system keeps for itself.
+            let metrics = env.new_object(jni_str!("android/util/DisplayMetrics"), jni_sig!("()V"), &[])?;
+            env.call_method(
+                &display,
+                jni_str!("getRealMetrics"),
+                jni_sig!("(Landroid/util/DisplayMetrics;)V"),
+                &[JValue::Object(&metrics)],
+            )?
+            .v()?;
             let x = env.get_field(&metrics, jni_str!("xdpi"), jni_sig!("F"))?.f()?;
             let y = env.get_field(&metrics, jni_str!("ydpi"), jni_sig!("F"))?.f()?;
+            let width = env.get_field(&metrics, jni_str!("widthPixels"), jni_sig!("I"))?.i()?;
+            let height = env.get_field(&metrics, jni_str!("heightPixels"), jni_sig!("I"))?.i()?;
+            let mode = env
+                .call_method(&display, jni_str!("getMode"), jni_sig!("()Landroid/view/Display$Mode;"), &[])?
+                .l()?;
+            let mode_width =
+                env.call_method(&mode, jni_str!("getPhysicalWidth"), jni_sig!("()I"), &[])?.i()?;
+            let mode_height =
+                env.call_method(&mode, jni_str!("getPhysicalHeight"), jni_sig!("()I"), &[])?.i()?;
             let plausible = (10.0..1000.0).contains(&refresh_hz);
-            Ok(Display { dpi: [x, y], refresh_hz: if plausible { refresh_hz } else { 0.0 }, rotation })
+            let refresh_hz = if plausible { refresh_hz } else { 0.0 };
+            Ok(DisplayMetrics {
+                dpi: [x, y],
+                size: [width, height],
+                mode: [mode_width, mode_height],
+                refresh_hz,
+                rotation,
+            })
         })
+    }
+
+    /// Whether this is a headset: there it is no use to show a window instead. Phones for Daydream have
+    /// `android.hardware.vr.headtracking`, too, but in version 0, of three degrees of freedom.
+    pub fn is_headset(&self) -> bool {
+        const FEATURES: [(&str, i32); 2] =
+            [("android.hardware.vr.headtracking", 1), ("android.software.xr.api.openxr", 0)];
+        let answer = self.ask("the package manager", |env, activity| {
+            let manager = env
+                .call_method(
+                    activity,
+                    jni_str!("getPackageManager"),
+                    jni_sig!("()Landroid/content/pm/PackageManager;"),
+                    &[],
+                )?
+                .l()?;
+            for (name, version) in FEATURES {
+                let name = JString::new(env, name)?;
+                let arguments = [JValue::Object(name.as_ref()), JValue::Int(version)];
+                let signature = jni_sig!("(Ljava/lang/String;I)Z");
+                if env.call_method(&manager, jni_str!("hasSystemFeature"), signature, &arguments)?.z()? {
+                    return Ok(true);
+                }
+            }
+            Ok(false)
+        });
+        answer.unwrap_or_default()
+    }
+
+    /// A global JNI reference to the application's context, which lasts as long as the process: for libraries that keep it
+    /// after the activity is gone. None where Java gives none.
+    pub fn application_context(&self) -> Option<*mut c_void> {
+        static CONTEXT: OnceLock<Option<Global<JObject<'static>>>> = OnceLock::new();
+        let context = CONTEXT.get_or_init(|| {
+            self.ask("the application's context", |env, activity| {
+                let signature = jni_sig!("()Landroid/content/Context;");
+                let context =
+                    env.call_method(activity, jni_str!("getApplicationContext"), signature, &[])?.l()?;
+                env.new_global_ref(context)
+            })
+        });
+        context.as_ref().map(|context| context.as_raw().cast())
+    }
+
+    /// Turns sustained performance mode on or off, where the device has it: clock rates that can be held for long instead of
+    /// high ones that cannot. Whether the device has it.
+    pub fn sustain_performance(&self, is_on: bool) -> bool {
+        let is_offered = self.ask("the power manager", |env, activity| {
+            let name = JString::new(env, "power")?;
+            let manager = env
+                .call_method(
+                    activity,
+                    jni_str!("getSystemService"),
+                    jni_sig!("(Ljava/lang/String;)Ljava/lang/Object;"),
+                    &[JValue::Object(name.as_ref())],
+                )?
+                .l()?;
+            let question = jni_str!("isSustainedPerformanceModeSupported");
+            env.call_method(&manager, question, jni_sig!("()Z"), &[])?.z()
+        });
+        let is_offered = is_offered.unwrap_or_default();
+        if is_offered {
+            self.on_main_thread("sustained performance mode", move |env, activity| {
+                let window = env
+                    .call_method(activity, jni_str!("getWindow"), jni_sig!("()Landroid/view/Window;"), &[])?
+                    .l()?;
+                let arguments = [JValue::Bool(is_on)];
+                let name = jni_str!("setSustainedPerformanceMode");
+                env.call_method(&window, name, jni_sig!("(Z)V"), &arguments)?.v()
+            });
+        }
+        is_offered
     }
 
     /// The extras of the intent that started the activity, as texts.

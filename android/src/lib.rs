@@ -1,9 +1,11 @@
 //! yoro on Android: the library that `NativeActivity` loads.
 //!
-//! The application itself is [`yoro::viewer`]; here is what a phone adds to it: a window, the activity's life,
+//! The application itself is [`yoro_viewer`]; here is what a phone adds to it: a window, the activity's life,
 //! sensors, touch, settings from outside, the state of battery and heat. On other systems only the parts without
 //! Android are built, and those for their tests.
 
+#[cfg(any(target_os = "android", test))]
+mod pace;
 #[cfg(any(target_os = "android", test))]
 mod press;
 #[cfg(any(target_os = "android", test))]
@@ -12,7 +14,11 @@ mod settings;
 #[cfg(target_os = "android")]
 mod activity;
 #[cfg(target_os = "android")]
+mod configuration;
+#[cfg(target_os = "android")]
 mod device;
+#[cfg(target_os = "android")]
+mod display;
 #[cfg(target_os = "android")]
 mod dynamic;
 #[cfg(target_os = "android")]
@@ -20,9 +26,15 @@ mod input;
 #[cfg(target_os = "android")]
 mod java;
 #[cfg(target_os = "android")]
+mod performance;
+#[cfg(target_os = "android")]
 mod pulse;
 #[cfg(target_os = "android")]
+mod screen;
+#[cfg(target_os = "android")]
 mod sensors;
+#[cfg(target_os = "android")]
+mod system;
 #[cfg(target_os = "android")]
 mod thermal;
 
@@ -36,7 +48,7 @@ fn android_main(app: android_activity::AndroidApp) {
     android_logger::init_once(
         android_logger::Config::default()
             .with_max_level(log::LevelFilter::Info)
-            .with_tag(yoro::telemetry::LOG_TAG)
+            .with_tag(yoro_viewer::telemetry::LOG_TAG)
             .format(|writer, record| write!(writer, "{}", record.args())),
     );
     // A panic never unwinds into Android's code: the build aborts, after this.

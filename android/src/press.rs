@@ -1,6 +1,6 @@
 //! Tap or long press: of a finger, or of a viewer's button that touches the screen.
 
-use yoro::viewer::Event;
+use yoro_viewer::Event;
 
 /// A press that lasts longer is a long one, in nanoseconds.
 const LONG_NS: i64 = 600_000_000;
@@ -26,7 +26,7 @@ impl Press {
         self.down = Some(Down { since_ns: now_ns, position });
     }
 
-    /// It moves; a drag is no press.
+    /// It moves; a drag is not a press.
     pub fn moved(&mut self, position: [f32; 2], dpi: f32) {
         let slop = SLOP_INCHES * if dpi > 0.0 { dpi } else { 400.0 };
         let is_drag =

@@ -7,7 +7,7 @@
 use std::cell::Cell;
 use std::ffi::c_void;
 use std::ptr::{self, NonNull};
-use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
@@ -15,10 +15,12 @@ use std::thread;
 use android_activity::AndroidAppWaker;
 use ndk::looper::{ForeignLooper, ThreadLooper};
 use ndk_sys as ffi;
-use yoro::viewer::Sample;
+use yoro_viewer::MotionSample;
 
 use crate::dynamic::Library;
+use crate::pace::{self, Refresh, Timeline};
 use crate::sensors::Sensors;
+use crate::system::{now_ns, slept_ns};
 
 /// Samples that are kept for a main loop that takes none: a tenth of a second and more. Older ones are dropped.
 const MAX_SAMPLES: usize = 256;
@@ -36,11 +38,11 @@ pub struct Pulse {
 struct Shared {
     /// Whether sensors and refreshes are wanted.
     is_on: AtomicBool,
-    /// Time of the newest refresh that the main loop has not seen; 0 for none.
-    refresh_ns: AtomicI64,
+    /// The newest refresh that the main loop has not seen.
+    refresh: Mutex<Option<Refresh>>,
     /// Whether refreshes have ever come.
     has_refreshes: AtomicBool,
-    samples: Mutex<Vec<(Sample, i64)>>,
+    samples: Mutex<Vec<(MotionSample, i64)>>,
     waker: Mutex<Option<AndroidAppWaker>>,
 }
 
@@ -72,12 +74,12 @@ impl Pulse {
     pub fn resume(&self, waker: AndroidAppWaker) {
         lock(&self.shared.samples).clear();
         *lock(&self.shared.waker) = Some(waker);
-        self.shared.refresh_ns.store(0, Ordering::Release);
+        *lock(&self.shared.refresh) = None;
         self.shared.is_on.store(true, Ordering::Release);
         self.looper.wake();
     }
 
-    /// Stops both: nothing uses the battery any more.
+    /// Stops both, so that nothing uses the battery.
     pub fn pause(&self) {
         self.shared.is_on.store(false, Ordering::Release);
         *lock(&self.shared.waker) = None;
@@ -89,49 +91,59 @@ impl Pulse {
         self.shared.has_refreshes.load(Ordering::Acquire)
     }
 
-    /// The time of the newest refresh since the last call, in nanoseconds of the monotonic clock.
-    pub fn take_refresh(&self) -> Option<i64> {
-        Some(self.shared.refresh_ns.swap(0, Ordering::AcqRel)).filter(|time| *time != 0)
+    /// The newest refresh since the last call.
+    pub fn take_refresh(&self) -> Option<Refresh> {
+        lock(&self.shared.refresh).take()
     }
 
-    /// Hands on the samples that have come since the last call, oldest first. `buffer` is only there to be used
+    /// Hands on the samples that have come since the last call, oldest first, with times of the monotonic clock. `buffer` is only there to be used
     /// again.
-    pub fn drain(&self, buffer: &mut Vec<(Sample, i64)>, mut take: impl FnMut(Sample, i64)) {
+    pub fn drain(&self, buffer: &mut Vec<(MotionSample, i64)>, mut take: impl FnMut(MotionSample, i64)) {
         buffer.clear();
         std::mem::swap(&mut *lock(&self.shared.samples), buffer);
         buffer.drain(..).for_each(|(sample, time)| take(sample, time));
     }
 }
 
-/// What a panicking thread has left is still samples.
+/// Locks; samples of a thread that has panicked are still samples.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
     let beat = Beat { shared, choreographer: Choreographer::of_thread(), is_posted: Cell::new(false) };
-    if beat.choreographer.is_none() {
-        log::info!("this device has no choreographer: eglSwapBuffers sets the pace");
+    match &beat.choreographer {
+        None => log::info!("this device has no choreographer: eglSwapBuffers sets the pace"),
+        Some(Choreographer { post: Post::Frame(_), .. }) => {
+            log::info!(
+                "this Android does not say when a frame is seen: at the second refresh after it begins"
+            )
+        }
+        Some(Choreographer { post: Post::Vsync(_), .. }) => log::info!("Android says when a frame is seen"),
     }
-    let (mut sensors, mut was_on) = (None, false);
+    let (mut sensors, mut was_on, mut slept) = (None, false, 0);
     loop {
         let is_on = shared.is_on.load(Ordering::Acquire);
         if is_on != was_on {
             was_on = is_on;
             sensors = if is_on { Sensors::start(looper) } else { None };
             if is_on {
+                // It does not sleep while the activity is in front.
+                slept = slept_ns();
                 beat.post();
             }
         }
         // SAFETY: the looper is this thread's; no results besides the return value are asked for.
         let result = unsafe { ffi::ALooper_pollOnce(-1, ptr::null_mut(), ptr::null_mut(), ptr::null_mut()) };
         if result == ffi::ALOOPER_POLL_ERROR {
-            log::error!("the sensors' looper has failed: the picture does not follow the head any more");
+            log::error!("the sensors' looper has failed: the picture no longer follows the head");
             return;
         }
         if let Some(sensors) = &mut sensors {
             let mut samples = lock(&shared.samples);
+            let now = now_ns();
             sensors.drain(|sample, time| {
+                let time = pace::of_sample(time, now, slept);
                 if samples.len() == MAX_SAMPLES {
                     samples.remove(0);
                 }
@@ -141,14 +153,42 @@ fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
     }
 }
 
-type Callback = unsafe extern "C" fn(frame_time_ns: i64, data: *mut c_void);
+/// `AChoreographerFrameCallbackData`, which only libandroid knows.
+#[repr(C)]
+struct FrameData {
+    _private: [u8; 0],
+}
+
+type FrameCallback = unsafe extern "C" fn(frame_time_ns: i64, data: *mut c_void);
+type VsyncCallback = unsafe extern "C" fn(frame: *const FrameData, data: *mut c_void);
 type GetInstance = unsafe extern "C" fn() -> *mut ffi::AChoreographer;
-type PostFrameCallback = unsafe extern "C" fn(*mut ffi::AChoreographer, Callback, *mut c_void);
+type PostFrameCallback = unsafe extern "C" fn(*mut ffi::AChoreographer, FrameCallback, *mut c_void);
+type PostVsyncCallback = unsafe extern "C" fn(*mut ffi::AChoreographer, VsyncCallback, *mut c_void);
+type GetTime = unsafe extern "C" fn(*const FrameData) -> i64;
+type GetIndex = unsafe extern "C" fn(*const FrameData) -> usize;
+type GetTimeOf = unsafe extern "C" fn(*const FrameData, usize) -> i64;
 
 /// The display's refreshes, for one thread.
 struct Choreographer {
     instance: NonNull<ffi::AChoreographer>,
-    post: PostFrameCallback,
+    post: Post,
+}
+
+/// How refreshes are asked for.
+enum Post {
+    /// With times alone.
+    Frame(PostFrameCallback),
+    /// With the timeline of a frame, from API 33 on.
+    Vsync(Vsync),
+}
+
+/// The functions of `AChoreographer_postVsyncCallback`.
+struct Vsync {
+    post: PostVsyncCallback,
+    begin: GetTime,
+    preferred: GetIndex,
+    deadline: GetTimeOf,
+    display: GetTimeOf,
 }
 
 impl Choreographer {
@@ -157,8 +197,41 @@ impl Choreographer {
         // SAFETY: the types are those of <android/choreographer.h>; the thread has a looper.
         unsafe {
             let get: GetInstance = android.function(c"AChoreographer_getInstance")?;
-            let post = android.function(c"AChoreographer_postFrameCallback64")?;
+            let post = match Vsync::of(&android) {
+                Some(vsync) => Post::Vsync(vsync),
+                None => Post::Frame(android.function(c"AChoreographer_postFrameCallback64")?),
+            };
             Some(Choreographer { instance: NonNull::new(get())?, post })
+        }
+    }
+}
+
+impl Vsync {
+    fn of(android: &Library) -> Option<Vsync> {
+        // SAFETY: the types are those of <android/choreographer.h>.
+        unsafe {
+            Some(Vsync {
+                post: android.function(c"AChoreographer_postVsyncCallback")?,
+                begin: android.function(c"AChoreographerFrameCallbackData_getFrameTimeNanos")?,
+                preferred: android
+                    .function(c"AChoreographerFrameCallbackData_getPreferredFrameTimelineIndex")?,
+                deadline: android
+                    .function(c"AChoreographerFrameCallbackData_getFrameTimelineDeadlineNanos")?,
+                display: android.function(
+                    c"AChoreographerFrameCallbackData_getFrameTimelineExpectedPresentationTimeNanos",
+                )?,
+            })
+        }
+    }
+
+    /// # Safety
+    /// The data are those of a callback that has not returned yet.
+    unsafe fn refresh(&self, data: *const FrameData) -> Refresh {
+        // SAFETY: as the caller says; the preferred timeline is one that there is.
+        unsafe {
+            let index = (self.preferred)(data);
+            let (deadline_ns, display_ns) = ((self.deadline)(data, index), (self.display)(data, index));
+            Refresh { begin_ns: (self.begin)(data), timeline: Some(Timeline { deadline_ns, display_ns }) }
         }
     }
 }
@@ -177,24 +250,42 @@ impl Beat<'_> {
         if self.is_posted.replace(true) {
             return;
         }
-        let data = ptr::from_ref(self).cast_mut().cast();
+        let (instance, data) = (choreographer.instance.as_ptr(), ptr::from_ref(self).cast_mut().cast());
         // SAFETY: this is the instance's thread. The callback runs on it too, while `run` polls and so while its
         // `Beat` is alive.
-        unsafe { (choreographer.post)(choreographer.instance.as_ptr(), on_refresh, data) }
+        unsafe {
+            match &choreographer.post {
+                Post::Frame(post) => post(instance, on_frame, data),
+                Post::Vsync(vsync) => (vsync.post)(instance, on_vsync, data),
+            }
+        }
+    }
+
+    fn on_refresh(&self, refresh: Refresh) {
+        self.is_posted.set(false);
+        let shared = self.shared;
+        if shared.is_on.load(Ordering::Acquire) {
+            *lock(&shared.refresh) = Some(refresh);
+            shared.has_refreshes.store(true, Ordering::Release);
+            if let Some(waker) = &*lock(&shared.waker) {
+                waker.wake();
+            }
+            self.post();
+        }
     }
 }
 
-unsafe extern "C" fn on_refresh(frame_time_ns: i64, data: *mut c_void) {
+unsafe extern "C" fn on_frame(frame_time_ns: i64, data: *mut c_void) {
     // SAFETY: the pointer that `Beat::post` gave.
     let beat = unsafe { &*data.cast::<Beat>() };
-    beat.is_posted.set(false);
-    let shared = beat.shared;
-    if shared.is_on.load(Ordering::Acquire) {
-        shared.refresh_ns.store(frame_time_ns, Ordering::Release);
-        shared.has_refreshes.store(true, Ordering::Release);
-        if let Some(waker) = &*lock(&shared.waker) {
-            waker.wake();
-        }
-        beat.post();
+    beat.on_refresh(Refresh { begin_ns: frame_time_ns, timeline: None });
+}
+
+unsafe extern "C" fn on_vsync(frame: *const FrameData, data: *mut c_void) {
+    // SAFETY: the pointer that `Beat::post` gave.
+    let beat = unsafe { &*data.cast::<Beat>() };
+    if let Some(Choreographer { post: Post::Vsync(vsync), .. }) = &beat.choreographer {
+        // SAFETY: the data of this very callback.
+        beat.on_refresh(unsafe { vsync.refresh(frame) });
     }
 }

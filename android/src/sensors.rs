@@ -5,7 +5,7 @@ use std::ptr::{self, NonNull};
 
 use glam::Vec3;
 use ndk_sys as ffi;
-use yoro::viewer::Sample;
+use yoro_viewer::MotionSample;
 
 const ACCELEROMETER: c_int = 1;
 const GYROSCOPE: c_int = 4;
@@ -76,7 +76,7 @@ impl Sensors {
     }
 
     /// Hands on the samples that have come, with their times in nanoseconds.
-    pub fn drain(&mut self, mut take: impl FnMut(Sample, i64)) {
+    pub fn drain(&mut self, mut take: impl FnMut(MotionSample, i64)) {
         // SAFETY: all zeros is a valid event.
         let mut events: [ffi::ASensorEvent; BATCH] = unsafe { std::mem::zeroed() };
         loop {
@@ -89,10 +89,10 @@ impl Sensors {
                 let data = unsafe { event.__bindgen_anon_1.__bindgen_anon_1.data };
                 let vector = |at: usize| Vec3::new(data[at], data[at + 1], data[at + 2]);
                 let sample = match event.type_ {
-                    ACCELEROMETER => Sample::Accelerometer(vector(0)),
-                    GYROSCOPE => Sample::Gyroscope(vector(0)),
+                    ACCELEROMETER => MotionSample::Accelerometer(vector(0)),
+                    GYROSCOPE => MotionSample::Gyroscope(vector(0)),
                     GYROSCOPE_UNCALIBRATED => {
-                        Sample::GyroscopeUncalibrated { rate: vector(0), bias: vector(3) }
+                        MotionSample::GyroscopeUncalibrated { rate: vector(0), bias: vector(3) }
                     }
                     _ => continue,
                 };

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use yoro::viewer::{KEYS, Settings};
+use yoro_viewer::{KEYS, Settings};
 
 /// System properties that begin so are settings: `adb shell setprop debug.yoro.method mono`.
 pub const PROPERTY_PREFIX: &str = "debug.yoro.";
@@ -109,7 +109,7 @@ pub fn restore(bytes: &[u8]) -> Vec<Pair> {
 mod tests {
     use std::collections::HashMap;
 
-    use yoro::stereo::Method;
+    use yoro_render::stereo::Method;
 
     use super::*;
 

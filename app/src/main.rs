@@ -1,9 +1,11 @@
-//! The desktop program.
+//! The program `yoro`: its command line, one file a subcommand. What a subcommand does is the libraries' work.
+
+mod cli;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use yoro::cli;
+use yoro_lab::interrupt;
 
 /// Render one eye, synthesize the other
 #[derive(Parser)]
@@ -30,6 +32,7 @@ enum Command {
     Study(cli::study::StudyArgs),
     View(cli::view::ViewArgs),
     Xr(cli::xr::XrArgs),
+    Layer(cli::layer::LayerArgs),
     Info(cli::info::InfoArgs),
 }
 
@@ -44,8 +47,8 @@ fn main() -> ExitCode {
         .format_timestamp(None)
         .format_target(false)
         .init();
-    cli::end_with_reader();
-    cli::catch_interrupt();
+    cli::terminal::end_with_reader();
+    cli::terminal::catch_interrupt();
     let result = match &arguments.command {
         Command::Bench(args) => cli::bench::run(args),
         Command::Run(args) => cli::run::run(args),
@@ -59,13 +62,14 @@ fn main() -> ExitCode {
         Command::Study(args) => cli::study::run(args),
         Command::View(args) => cli::view::run(args),
         Command::Xr(args) => cli::xr::run(args),
+        Command::Layer(args) => cli::layer::run(args),
         Command::Info(args) => cli::info::run(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(if cli::interrupted() { 130 } else { 2 })
+            eprintln!("error: {}", cli::message::of(&error));
+            ExitCode::from(if interrupt::requested() { 130 } else { 2 })
         }
     }
 }

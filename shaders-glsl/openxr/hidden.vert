@@ -2,8 +2,8 @@
 
 uniform vec4 frustum;  // left, bottom, width, height of the image in tangents
 
-layout(location = 0) in vec3 position;
+layout(location = 0) in vec2 position;
 
 void main() {
-    gl_Position = vec4(2.0 * (position.xy - frustum.xy) / frustum.zw - 1.0, 0.0, 1.0);
+    gl_Position = vec4(2.0 * (position - frustum.xy) / frustum.zw - 1.0, 0.0, 1.0);
 }

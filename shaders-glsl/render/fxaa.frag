@@ -17,8 +17,7 @@ void main() {
     float low = min(center.a, min(min(nw, ne), min(sw, se)));
     float high = max(center.a, max(max(nw, ne), max(sw, se)));
     vec4 color = center;
-    // A loop, because CPU rasterizers run both sides of an `if` but leave a loop that no pixel needs.
-    for (int edge = high - low > max(0.04, 0.125 * high) ? 1 : 0; edge > 0; --edge) {
+    if (high - low > max(0.04, 0.125 * high)) {
         vec2 along = normalize(vec2((sw + se) - (nw + ne), (nw + sw) - (ne + se)));
         vec2 near = 0.5 * along * texel;
         vec4 a = 0.5 * (textureLod(source, uv - near, 0.0) + textureLod(source, uv + near, 0.0));

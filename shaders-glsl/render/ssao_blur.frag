@@ -32,8 +32,7 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 center = texelFetch(occlusion_map, p, 0);
     out_occlusion = center;
-    // A loop, because CPU rasterizers run both sides of an `if` but leave a loop that no pixel needs.
-    for (int computed = center.w > 0.0 ? 1 : 0; computed > 0; --computed) {
+    if (center.w > 0.0) {
         out_occlusion.x = blur(p, center);
     }
 }

@@ -4,8 +4,8 @@ uniform vec4 frustum;  // left, bottom, width, height of the eye's image in tang
 uniform mat4 turn;     // head as it is now -> head as it was
 uniform vec2 dispersion;  // of red and blue, relative to green
 
-layout(location = 0) in vec3 position;  // clip coordinates of the whole screen
-layout(location = 2) in vec2 uv;        // in the eye's image, for green
+layout(location = 0) in vec2 position;  // clip coordinates of the whole screen
+layout(location = 1) in vec2 uv;        // in the eye's image, for green
 
 out vec2 lens_uv;
 out vec3 green_direction;
@@ -26,5 +26,5 @@ void main() {
     red_direction = direction(tangent * dispersion.x);
     blue_direction = direction(tangent * dispersion.y);
 #endif
-    gl_Position = vec4(position.xy, 0.0, 1.0);
+    gl_Position = vec4(position, 0.0, 1.0);
 }

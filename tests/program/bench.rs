@@ -151,7 +151,7 @@ fn scenes_beyond_the_bounds_are_left_out_with_the_reason() {
     );
     let left_out = of_kind(&records, "unsupported");
     assert!(!left_out.is_empty() && !of_kind(&records, "measurement").is_empty(), "{records:?}");
-    assert!(left_out.iter().all(|r| r["reason"].as_str().unwrap().contains("--max-memory-mib")));
+    assert!(left_out.iter().all(|r| r["reason"].as_str().unwrap().contains("MiB are allowed")));
     assert!(said.contains("not measured: "), "{said}");
 }
 
@@ -171,10 +171,10 @@ fn mistakes_get_a_sentence() {
         ("bench distance --object nowhere.obj", &["nowhere.obj"]),
         ("bench scenes --path nowhere.json", &["nowhere.json does not exist"]),
         ("bench scenes --rounds 0", &["--rounds"]),
-        ("bench scenes --out other.jsonl", &["other.jsonl is no result of yoro bench"]),
+        ("bench scenes --out other.jsonl", &["other.jsonl is not a result of yoro bench"]),
         (
             "bench flicker --scene prototype --size 64x64 --path path.json --out f.jsonl",
-            &["camera path", "--path"],
+            &["camera path", "give another"],
         ),
     ] {
         run(at, line).refuses(naming);

@@ -24,6 +24,10 @@ pub struct Browser {
     session: Option<String>,
     last_id: u64,
     loads: usize,
+    /// The address, beside files, from which pages may load.
+    server: Option<String>,
+    /// What scripts wrote to the console, and warnings.
+    console: Vec<String>,
     /// What scripts threw, and what the page could not load.
     errors: Vec<String>,
     _profile: tempfile::TempDir,
@@ -33,6 +37,11 @@ impl Browser {
     /// Starts the browser of `YORO_TEST_CHROMIUM`, or one found in PATH. Without any it says so and returns nothing:
     /// the test is then to end.
     pub fn start() -> Option<Browser> {
+        Browser::start_with(&["--disable-gpu"])
+    }
+
+    /// As [`Browser::start`], with these options instead of those for pages without graphics.
+    pub fn start_with(options: &[&str]) -> Option<Browser> {
         let Some(program) = find() else {
             eprintln!(
                 "SKIPPED: no Chromium here, so that no page was opened; install it, or set YORO_TEST_CHROMIUM"
@@ -44,13 +53,8 @@ impl Browser {
         let mut child = Command::new("sh")
             .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 1>&2"])
             .arg(program)
-            .args([
-                "--headless=new",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--no-first-run",
-                "--remote-debugging-pipe",
-            ])
+            .args(["--headless=new", "--no-sandbox", "--no-first-run", "--remote-debugging-pipe"])
+            .args(options)
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -78,6 +82,8 @@ impl Browser {
             session: None,
             last_id: 0,
             loads: 0,
+            server: None,
+            console: Vec::new(),
             errors: Vec::new(),
             _profile: profile,
         };
@@ -121,9 +127,12 @@ impl Browser {
             Some("Log.entryAdded") if parameters["entry"]["level"] == "error" => {
                 self.errors.push(parameters["entry"].to_string());
             }
+            Some("Log.entryAdded") => self.console.push(parameters["entry"].to_string()),
+            Some("Runtime.consoleAPICalled") => self.console.push(parameters["args"].to_string()),
             Some("Network.requestWillBeSent") => {
                 let url = parameters["request"]["url"].as_str().unwrap_or_default();
-                let own = ["file://", "data:", "about:"].iter().any(|start| url.starts_with(start));
+                let own = ["file://", "data:", "about:", "blob:"].iter().any(|start| url.starts_with(start))
+                    || self.server.as_ref().is_some_and(|server| url.starts_with(server));
                 if !own {
                     self.errors.push(format!("the page asks for {url}"));
                 }
@@ -135,8 +144,22 @@ impl Browser {
 
     /// Opens a file and waits until everything on it is loaded.
     pub fn open(&mut self, page: &Path) {
+        self.go(&format!("file://{}", page.canonicalize().unwrap().display()));
+    }
+
+    /// Lets pages load from an address, too.
+    pub fn allow(&mut self, server: &str) {
+        self.server = Some(server.to_owned());
+    }
+
+    /// Runs a script in each page before its own.
+    pub fn run_before_pages(&mut self, script: &str) {
+        self.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": script }));
+    }
+
+    /// Opens an address and waits until everything on it is loaded.
+    pub fn go(&mut self, url: &str) {
         let loads = self.loads;
-        let url = format!("file://{}", page.canonicalize().unwrap().display());
         self.call("Page.navigate", json!({ "url": url }));
         while self.loads == loads {
             self.receive();
@@ -146,7 +169,13 @@ impl Browser {
     /// The value of a JavaScript expression.
     #[track_caller]
     pub fn evaluate(&mut self, expression: &str) -> Value {
-        let parameters = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        let parameters = json!({
+            "expression": expression,
+            "returnByValue": true,
+            "awaitPromise": true,
+            // As from a click: some things are only allowed then.
+            "userGesture": true,
+        });
         let result = self.call("Runtime.evaluate", parameters);
         assert!(result.get("exceptionDetails").is_none(), "{expression}: {result}");
         result["result"]["value"].clone()
@@ -172,10 +201,22 @@ impl Browser {
         self.call("Input.dispatchKeyEvent", json!({ "type": "keyUp", "key": key }));
     }
 
+    /// Holds a key down that has a place on the keyboard, such as `KeyW`.
+    pub fn hold(&mut self, code: &str, time: Duration) {
+        self.call("Input.dispatchKeyEvent", json!({ "type": "keyDown", "code": code }));
+        std::thread::sleep(time);
+        self.call("Input.dispatchKeyEvent", json!({ "type": "keyUp", "code": code }));
+    }
+
+    /// Gives the window another size in pixels.
+    pub fn resize(&mut self, width: u32, height: u32) {
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+    }
+
     /// Gives the page a width in pixels and a colour scheme, `light` or `dark`.
     pub fn show(&mut self, width: u32, scheme: &str) {
-        let size = json!({ "width": width, "height": 900, "deviceScaleFactor": 1, "mobile": false });
-        self.call("Emulation.setDeviceMetricsOverride", size);
+        self.resize(width, 900);
         let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
         self.call("Emulation.setEmulatedMedia", json!({ "features": features }));
     }
@@ -186,6 +227,13 @@ impl Browser {
         // Events that are on their way come before the answer.
         self.evaluate("0");
         assert!(self.errors.is_empty(), "{:#?}", self.errors);
+    }
+
+    /// Fails if a script threw, something could not be loaded, or anything is in the console.
+    #[track_caller]
+    pub fn expect_silence(&mut self) {
+        self.expect_no_error();
+        assert!(self.console.is_empty(), "{:#?}", self.console);
     }
 }
 

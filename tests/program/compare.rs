@@ -1,7 +1,7 @@
 //! `yoro compare`.
 
 use image::Rgb;
-use yoro::picture;
+use yoro_lab::picture;
 
 use crate::pair;
 use crate::program::{run, succeed};

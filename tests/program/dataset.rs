@@ -5,15 +5,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use yoro::metrics::{Channels, Psnr, psnr};
-use yoro::picture;
+use yoro_lab::metrics::{Channels, Psnr, psnr};
+use yoro_lab::picture;
 
 use crate::program::{interrupt, run, succeed};
 
 const KINDS: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
 
 fn times(folder: &Path) -> BTreeMap<PathBuf, SystemTime> {
-    let files = yoro::files::find(folder, &["png", "json"]).unwrap();
+    let files = yoro_files::find(folder, &["png", "json"]).unwrap();
     files
         .into_iter()
         .map(|file| (file.clone(), fs::metadata(folder.join(file)).unwrap().modified().unwrap()))
@@ -149,7 +149,7 @@ fn ctrl_c_keeps_finished_groups() {
             image::open(dir.path().join("data/prototype").join(name.as_str().unwrap())).unwrap();
         }
     }
-    assert_eq!(yoro::files::find(&dir.path().join("data"), &["part"]).unwrap(), Vec::<PathBuf>::new());
+    assert_eq!(yoro_files::find(&dir.path().join("data"), &["part"]).unwrap(), Vec::<PathBuf>::new());
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn mistakes() {
     fs::write(dir.path().join("path.json"), "[{\"position\": [0, 1, 2]}]").unwrap();
     refuses("dataset prototype --path path.json", &["path.json is not a camera path"]);
     fs::write(dir.path().join("path.json"), "[]").unwrap();
-    refuses("dataset prototype --path path.json", &["path.json has no viewpoint"]);
+    refuses("dataset prototype --path path.json", &["path.json is not a camera path", "no viewpoint"]);
     fs::write(dir.path().join("noise.onnx"), "noise").unwrap();
     refuses(
         "dataset prototype --groups 1 --size 32 --patcher neural --model noise.onnx",

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
-use yoro::device::capture::{self, Capture, FaultKind, Outcome};
+use yoro_lab::device::capture::{self, Capture, FaultKind, Outcome, Sample};
 
 use crate::program::{finish, interrupt, run, succeed, yoro};
 
@@ -85,6 +85,8 @@ fn nothing_is_lost_and_each_fault_is_named() {
         (fault("unauthorized", "at = 20.0\nseconds = 12.0"), vec![Disconnected], 0),
         (fault("plug", "at = 30.0\nseconds = 10.0"), vec![PluggedIn], 0),
         ("current = \"missing\"\n".into(), vec![NoCurrent], 0),
+        ("current = \"zero\"\n".into(), vec![NoCurrent], 0),
+        ("voltage = \"volts\"\n".into(), vec![VoltageInVolts], 0),
         ("current = \"milliamperes\"\n".into(), vec![CurrentInMilliamperes], 0),
         ("positive = true\n".into(), vec![CurrentSign], 0),
         (jump.clone(), vec![ClockJump], 0),
@@ -119,6 +121,12 @@ fn the_figures_of_odd_devices_are_corrected() {
     let [normal, odd] = ["", "current = \"milliamperes\"\npositive = true\n"].map(minute);
     assert!((current(&normal) - current(&odd)).abs() < 2.0, "{} {}", current(&normal), current(&odd));
     assert_eq!(odd.samples[40].current_raw, Some(-current(&odd) as i64));
+    // In whole volts; the kernel has it exactly, or power is left out.
+    let exact = minute("voltage = \"volts\"\nkernel-battery = true\n");
+    let volts = |capture: &Capture| capture.samples[40].voltage_mv;
+    assert!((volts(&exact).unwrap() - volts(&normal).unwrap()).abs() < 20.0, "{:?}", volts(&exact));
+    assert!(exact.info.faults.iter().any(|fault| fault.detail.contains("is the kernel's")));
+    assert_eq!(volts(&minute("voltage = \"volts\"\n")), None);
     let runtime = minute("vr-api = true\n");
     assert_eq!(runtime.samples[40].other["VrApi.LCnt"], "2(DR72,LM2)");
 }
@@ -171,6 +179,30 @@ fn mistakes_and_conditions_are_one_sentence() {
         (device("installed = false"), "experiment e.toml", ["not installed on SIM1", "yoro device install"]),
         (device("plugged = true"), "run", ["tcpip 5555", "adb connect 192.0.2.7:5555"]),
         (device("plugged = true"), "experiment e.toml", ["tcpip 5555", "--plugged"]),
+        (device("battery-held = true"), "run", ["set by hand", "adb -s SIM1 shell dumpsys battery reset"]),
+        (
+            device("settings = { \"global/low_power\" = \"1\" }"),
+            "run",
+            ["battery saver of SIM1", "low_power 0"],
+        ),
+        (device("secure-lock = true"), "experiment e.toml", ["locked by PIN", "none or swipe"]),
+        (
+            device("serial = \"adb-X (2)._adb-tls-connect._tcp\"\nplugged = true")
+                .replace("serial = \"SIM1\"\n", ""),
+            "run",
+            ["it already is", "charger off"],
+        ),
+        (
+            device("serial = \"adb-X (2)._adb\"\nbattery-held = true").replace("serial = \"SIM1\"\n", ""),
+            "run",
+            ["set by hand", "adb -s 'adb-X (2)._adb' shell"],
+        ),
+        (
+            device(""),
+            "run room --package com.example.game --activity .Main --method one-view",
+            ["com.example.game is not installed on SIM1", "pm list packages"],
+        ),
+        (device(""), "logcat --package com.example.game", ["com.example.game is not installed", "pm list"]),
         (device("storage-full = true"), "install --apk e.toml", ["storage of SIM1 is full", "remove"]),
         (device("colour = 1"), "list", ["s.toml", "colour"]),
         ("speed = 0.0\n".into(), "list", ["s.toml", "speed"]),
@@ -434,11 +466,91 @@ fn what_the_device_does_not_allow_is_told() {
     let at = dir.path();
     write(at, "s.toml", "[[device]]\nserial = \"SIM1\"\nfixed-settings = [\"peak_refresh_rate\"]\n");
     let said = succeed(at, "device run talk --seconds 5 --refresh-hz 60 --replay s.toml --out run");
-    assert!(
-        said.stderr.contains("peak_refresh_rate") && said.stderr.contains("stays as it is"),
-        "{}",
-        said.stderr
+    for words in
+        ["peak_refresh_rate", "SecurityException", "USB debugging (Security settings)", "stays as it is"]
+    {
+        assert!(said.stderr.contains(words) && said.stdout.contains(words), "{words}: {}", said.stderr);
+    }
+    assert_eq!(kinds(&read(&at.join("run"))), [FaultKind::NotPinned]);
+    // What is taken need not do anything.
+    write(at, "s.toml", "[[device]]\nserial = \"SIM1\"\nrefresh-hz = 60\n");
+    let said = succeed(at, "device run talk --seconds 5 --refresh-hz 90 --replay s.toml --out other");
+    assert!(said.stdout.contains("the display runs at 60 Hz, 90 Hz were asked for"), "{}", said.stdout);
+    assert_eq!(kinds(&read(&at.join("other"))), [FaultKind::RefreshRate]);
+}
+
+#[test]
+fn a_plan_longer_than_a_charge_waits_for_the_charger() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    // A run takes 4 % of so small a battery.
+    write(
+        at,
+        "s.toml",
+        "[[device]]\nserial = \"SIM1\"\ncapacity-mah = 120\nlevel-percent = 60\ncharged-below = 39\n",
     );
+    write(at, "e.toml", &SMALL.replace("[cool-down]", "min-level = 40\ncharge-level = 90\n[cool-down]"));
+    let said = succeed(at, "device experiment e.toml --replay s.toml --out out");
+    assert!(said.stdout.contains("8 of 8 runs complete"), "{}", said.stdout);
+    assert!(said.stderr.contains("charge it to 90 %, then take the charger off"), "{}", said.stderr);
+    let runs = capture::read_all(&[at.join("out")]).unwrap();
+    let levels: Vec<f64> = runs.iter().map(|run| run.samples[0].level_percent.unwrap()).collect();
+    assert!(levels.iter().all(|level| *level >= 38.0) && levels[0] < 61.0 && levels[7] > 60.0, "{levels:?}");
+    assert!(runs.iter().all(|run| kinds(run).is_empty()));
+    write(at, "e.toml", &SMALL.replace("[cool-down]", "min-level = 95\n[cool-down]"));
+    run(at, "device experiment e.toml --dry-run")
+        .refuses(&["e.toml", "min-level must be below charge-level"]);
+}
+
+#[test]
+fn other_applications_are_measured_and_compared() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let device = "[[device]]\nserial = \"HEADSET\"\nmanufacturer = \"Oculus\"\nrefresh-hz = 72\nothers = [\"com.example.game\"]\n";
+    let load = "[device.load.yoro]\nframe-ms = 12.0\nmilliwatts = ";
+    for (method, milliwatts) in [("conventional", 5000.0), ("one-view", 4000.0)] {
+        let script = format!("{device}kernel-battery = true\n{load}{milliwatts:?}\n");
+        write(at, "s.toml", &script);
+        for repetition in 1..=2 {
+            let line = format!(
+                "device run room --package com.example.game --activity .Main --method {method} --repetition {repetition} --seconds 30 --replay s.toml --out captures/{method}-{repetition}"
+            );
+            succeed(at, &line);
+        }
+    }
+    let capture = read(&at.join("captures/one-view-2"));
+    let info = &capture.info;
+    assert_eq!((info.method.as_str(), info.scene.as_str(), info.repetition), ("one-view", "room", 2));
+    assert_eq!(info.application.as_deref(), Some("7.1"));
+    assert_eq!((kinds(&capture), info.outcome.clone()), (vec![], Outcome::Complete));
+    // The other process has 1 FPS.
+    assert!(capture.samples.len() > 30 && capture.samples.iter().all(|sample| sample.fps > Some(60.0)));
+    let power = |sample: &Sample| -sample.current_ma.unwrap() * sample.voltage_mv.unwrap() / 1e3;
+    assert!(capture.samples[10..].iter().all(|sample| (power(sample) / 4000.0 - 1.0).abs() < 0.2));
+    succeed(at, "device report captures --out report");
+    let report: serde_json::Value =
+        serde_json::from_slice(&fs::read(at.join("report/report.json")).unwrap()).unwrap();
+    let found = report["differences"].as_array().unwrap().iter();
+    let power = found.clone().find(|d| d["quantity"] == "power" && d["scene"].is_null()).unwrap();
+    assert_eq!((power["pairs"].as_u64(), &power["method"]), (Some(2), &"one-view".into()));
+    assert!((power["change"].as_f64().unwrap() + 20.0).abs() < 4.0, "{power}");
+
+    // The same, already running, and with names for the report.
+    write(at, "s.toml", &format!("{device}foreground = \"com.example.game\"\n"));
+    let names = "--package com.example.game --method one-view --scene room --repetition 3";
+    succeed(at, &format!("device logcat {names} --seconds 20 --out log --replay s.toml"));
+    let log = read(&at.join("log"));
+    assert_eq!(
+        (log.info.method.as_str(), log.info.scene.as_str(), log.info.repetition),
+        ("one-view", "room", 3)
+    );
+    assert!(log.samples.len() > 15 && log.samples.iter().all(|sample| sample.fps > Some(60.0)));
+    assert!(log.samples.iter().all(|sample| sample.level_percent.is_some()));
+    // Without a current, as this headset gives none to the shell.
+    assert_eq!(kinds(&log), [FaultKind::NoCurrent]);
+    // The application says nothing itself.
+    let line = "device run room --package com.example.game --activity .Main --method x --log-process com.example.none --replay s.toml --out none";
+    run(at, line).refuses(&["com.example.none has logged no frame rate", "4002", "2072"]);
 }
 
 #[test]
@@ -448,6 +560,8 @@ fn a_dry_run_is_a_plan() {
         let line = format!("device experiment {EXPERIMENTS}/{name}.toml --dry-run");
         let said = succeed(dir.path(), &line).stdout;
         assert!(said.contains(&format!("{runs} runs on a device: {length}")), "{said}");
+        // Seven hours are more than one charge.
+        assert_eq!(said.contains("waits for somebody who charges it"), name == "paper", "{said}");
         assert_eq!(
             said.lines().filter(|line| line.trim_start().starts_with(|c: char| c.is_ascii_digit())).count(),
             runs + 1
@@ -565,6 +679,7 @@ fi
 shift 2
 echo "$@" >> "$here/asked"
 case "$*" in
+    "install -r "*refused*) cat "$3" >&2; exit 1 ;;
     "install -r"*full*) echo 'Failure [INSTALL_FAILED_INSUFFICIENT_STORAGE: no room]' >&2; exit 1 ;;
     "install -r"*) echo Success ;;
     logcat*) exec tail -n +1 -f "$here/log" ;;
@@ -576,6 +691,8 @@ case "$*" in
     *"dumpsys package"*) printf '    versionName=0.1.0\n' ;;
     *ro.serialno*) echo FAKE1 ;;
     *ro.product.model*) echo "Fake phone" ;;
+    *"settings get system screen_off_timeout"*) echo 30000 ;;
+    *"settings get"*zen_mode*|*"settings get"*low_power*) echo 0 ;;
     *"settings get system screen_brightness_mode"*) echo 0 ;;
     *"settings get system screen_brightness"*) echo 100 ;;
     *"am start"*) run=$(echo "$*" | sed 's/.*--es run \([^ ]*\).*/\1/')
@@ -610,6 +727,22 @@ fn the_program_adb_is_asked_as_it_should_be() {
     run(at, "device run --adb adb --serial FAKE2").refuses(&["FAKE2 does not trust"]);
     write(at, "a.apk", "");
     succeed(at, "device install --adb adb --apk a.apk");
+    // What adb printed for other applications: sndcpy issue 64, HyperSploit 54, InstallWithOptions 22, APK-Installer 25.
+    for (said, words) in [
+        ("Failure [INSTALL_FAILED_USER_RESTRICTED: Install canceled by user]", "Install via USB"),
+        ("Failure [INSTALL_FAILED_VERSION_DOWNGRADE: Downgrade detected]", "a newer yoro is on FAKE1"),
+        ("Failure [INSTALL_FAILED_NO_MATCHING_ABIS: Failed to extract, res=-113]", "processor of FAKE1"),
+        ("Failure [INSTALL_FAILED_UPDATE_INCOMPATIBLE: ignoring!]", "signed with another key"),
+        ("Failure [INSTALL_PARSE_FAILED_NOT_APK: x]", "(INSTALL_PARSE_FAILED_NOT_APK)"),
+    ] {
+        fs::create_dir_all(at.join("offline")).unwrap();
+        write(at, "offline/refused.apk", &format!("adb: failed to install offline/refused.apk: {said}\n"));
+        run(at, "device install --adb adb --apk offline/refused.apk").refuses(&[words]);
+    }
+    let gone = "adb: failed to run abb_exec. Error: cannot connect to daemon at tcp:5037\n";
+    write(at, "refused.apk", gone);
+    run(at, "device install --adb adb --apk refused.apk")
+        .refuses(&["adb's server does not answer", "kill-server"]);
     write(at, "full.apk", "");
     run(at, "device install --adb adb --apk full.apk").refuses(&["storage of FAKE1 is full"]);
     let started = std::time::Instant::now();
@@ -621,6 +754,7 @@ fn the_program_adb_is_asked_as_it_should_be() {
         "shell am start -S -W -n io.github.yoro/android.app.NativeActivity --es scene prototype",
         "--es duration 4.5",
         "settings put system screen_brightness 100",
+        "settings put system screen_off_timeout 86400000",
         "shell am force-stop io.github.yoro",
         "logcat -v threadtime -v epoch -v usec -T 1700000000.000000 YORO:V VrApi:V",
     ] {
@@ -628,10 +762,69 @@ fn the_program_adb_is_asked_as_it_should_be() {
     }
     assert_eq!(
         fs::read_to_string(at.join("put")).unwrap(),
-        "system screen_brightness_mode 0\nsystem screen_brightness 100\n"
+        "system screen_off_timeout 30000\nglobal zen_mode 0\nsystem screen_brightness_mode 0\nsystem screen_brightness 100\n"
     );
     assert_eq!(said.code, Some(0), "{}", said.stderr);
     let capture = read(&at.join("run"));
     assert!(!capture.info.device.simulated && capture.info.device.model == "Fake phone");
     assert_eq!(capture.samples.len(), 4);
+}
+
+/// A fake adb whose devices are a list.
+#[cfg(unix)]
+fn fake_adb(at: &Path, script: &str) {
+    use std::os::unix::fs::PermissionsExt;
+    write(at, "adb", &format!("#!/bin/sh\n[ \"$1\" = start-server ] && exit 0\n{script}"));
+    fs::set_permissions(at.join("adb"), fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn a_server_that_is_down_is_not_a_device_that_is_missing() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    // As flutter issue 125971 quotes it.
+    fake_adb(
+        at,
+        "echo 'List of devices attached'; echo '* daemon still not running' >&2; echo 'error: cannot connect to daemon at tcp:5037: Connection refused' >&2; exit 1\n",
+    );
+    run(at, "device list --adb adb").refuses(&[
+        "adb's server does not answer",
+        "Connection refused",
+        "adb kill-server",
+    ]);
+    fake_adb(at, "echo 'List of devices attached'; echo; echo '* daemon started successfully' >&2\n");
+    run(at, "device list --adb adb").refuses(&["no device is connected"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_phone_by_cable_and_by_wifi_is_one_phone() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let fake = |serials: &[&str], own: &str| {
+        let lines: String = serials.iter().map(|serial| format!("{serial}\\tdevice\\n")).collect();
+        fake_adb(
+            at,
+            &format!(
+                "if [ \"$1\" = devices ]; then printf 'List of devices attached\\n{lines}\\n'; exit; fi\ncase \"$*\" in *ro.serialno*) echo {own} ;; *install*) echo \"$2\" >> installed; echo Success ;; esac\n"
+            ),
+        );
+        let _ = fs::remove_file(at.join("installed"));
+    };
+    write(at, "a.apk", "");
+    let installed = || fs::read_to_string(at.join("installed")).unwrap().lines().count();
+    // scrcpy issue 5967, ws-scrcpy-web pull request 532.
+    let wireless = "adb-5C061JEA327610-bo0E0q (2)._adb-tls-connect._tcp";
+    fake(&["5C061JEA327610", wireless, "192.168.86.190:37571"], "5C061JEA327610");
+    let said = succeed(at, "device install --apk a.apk --all --adb adb");
+    assert_eq!(installed(), 1, "{}", said.stdout);
+    assert!(said.stderr.contains("are the same device: 5C061JEA327610 is used"), "{}", said.stderr);
+    // Nobody has to say which of them.
+    succeed(at, "device install --apk a.apk --adb adb");
+    // marathon issue 223: all emulators of an image have one serial number.
+    fake(&["emulator-5554", "emulator-5556"], "EMULATOR28X0X23X0");
+    succeed(at, "device install --apk a.apk --all --adb adb");
+    assert_eq!(installed(), 2);
+    run(at, "device install --apk a.apk --adb adb").refuses(&["several devices"]);
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 use image::RgbImage;
-use yoro::picture;
+use yoro_lab::picture;
 
 use crate::pair;
 use crate::program::{finish, run, succeed, yoro};
@@ -161,7 +161,7 @@ fn rows_too_long_for_the_rowgroup_pipeline() {
     picture::save_color(&at.join("color.png"), &RgbImage::new(width, 4)).unwrap();
     picture::save_gray(&at.join("depth.png"), &image::GrayImage::new(width, 4)).unwrap();
     let line = "synthesize --gl egl --color color.png --depth depth.png --out out.png --pipeline";
-    run(at, &format!("{line} rowgroup")).refuses(&[&width.to_string(), "shared memory", "--pipeline gather"]);
+    run(at, &format!("{line} rowgroup")).refuses(&[&width.to_string(), "shared memory", "pipeline gather"]);
     assert!(!at.join("out.png").exists());
     succeed(at, &format!("{line} gather"));
 }

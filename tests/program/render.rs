@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use image::{Rgb, RgbImage};
-use yoro::picture;
+use yoro_lab::picture;
 
 use crate::program::succeed;
 
@@ -83,4 +83,32 @@ fn every_output_and_measure() {
     let json =
         succeed(dir.path(), "render prototype --size 96x96 --measure --json --method conventional").json();
     assert_eq!(ssim(&json[0]["quality"]), 1.0, "{json:#}");
+}
+
+/// What a glTF file says and the renderer does not draw is told once for each material.
+#[test]
+fn what_is_left_out_of_a_gltf_file_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    picture::save_color(&dir.path().join("pic.png"), &RgbImage::new(4, 4)).unwrap();
+    let corners = [[0f32, 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+    let (uvs, colors) = ([[0f32, 0.], [2., 0.], [0., 2.]], [[1f32, 0., 0.]; 3]);
+    let floats = corners.iter().flatten().chain(uvs.iter().flatten()).chain(colors.iter().flatten());
+    fs::write(dir.path().join("data.bin"), floats.flat_map(|f| f.to_le_bytes()).collect::<Vec<u8>>())
+        .unwrap();
+    let text = r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "COLOR_0": 2}, "material": 0}]}],
+        "materials": [{"name": "paint", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "samplers": [{"wrapT": 33071}], "textures": [{"source": 0, "sampler": 0}], "images": [{"uri": "pic.png"}],
+        "buffers": [{"byteLength": 96, "uri": "data.bin"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24},
+            {"buffer": 0, "byteOffset": 60, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+            {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC3"}]}"#;
+    fs::write(dir.path().join("a.gltf"), text).unwrap();
+    let told = succeed(dir.path(), "render a.gltf --size 64 --outputs left").stderr;
+    for words in ["clamps or mirrors", "colours of vertices"] {
+        let lines: Vec<_> = told.lines().filter(|line| line.contains(words)).collect();
+        assert!(lines.len() == 1 && lines[0].contains("paint"), "{told}");
+    }
 }

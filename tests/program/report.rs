@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use image::{Rgb, RgbImage};
-use yoro::picture;
+use yoro_lab::picture;
 
 use crate::browser::{Browser, check_page};
 use crate::program::{run, succeed};
@@ -80,8 +80,8 @@ fn files_that_are_no_results() {
     for (line, naming) in [
         ("report nowhere.jsonl", &["nowhere.jsonl does not exist"][..]),
         ("report folder.jsonl", &["folder.jsonl is a folder"]),
-        ("report text.jsonl", &["text.jsonl is no result of yoro bench"]),
-        ("report other.jsonl", &["other.jsonl is no result of yoro bench"]),
+        ("report text.jsonl", &["text.jsonl is not a result of yoro bench"]),
+        ("report other.jsonl", &["other.jsonl is not a result of yoro bench"]),
         ("report good.jsonl damaged.jsonl", &["damaged.jsonl, line 2 is damaged"]),
         ("report begun.jsonl", &["begun.jsonl holds no finished round"]),
         ("report newer.jsonl", &["newer.jsonl has version 99"]),

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::browser::{Browser, check_page};
-use crate::program::succeed;
+use crate::program::{run, succeed};
 
 #[test]
 fn a_report_of_every_method() {
@@ -22,4 +22,40 @@ fn a_report_of_every_method() {
     if let Some(mut browser) = Browser::start() {
         check_page(&mut browser, &dir.path().join("out/report.html"));
     }
+}
+
+/// Two triangles around the origin.
+const SQUARE: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+
+#[test]
+fn scenes_of_one_name_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    for file in ["a/scene.obj", "b/scene.obj", "prototype.obj"] {
+        fs::create_dir_all(dir.path().join(file).parent().unwrap()).unwrap();
+        fs::write(dir.path().join(file), SQUARE).unwrap();
+    }
+    for (scenes, naming) in [
+        ("a/scene.obj b/scene.obj", ["a/scene.obj", "b/scene.obj"]),
+        ("prototype ./prototype.obj", ["pictures of prototype and", "./prototype.obj"]),
+    ] {
+        run(dir.path(), &format!("run {scenes} --size 64 --viewpoints 1")).refuses(&naming);
+    }
+    assert!(!dir.path().join("out").exists());
+}
+
+/// Every method is perfect where there is nothing to see.
+#[test]
+fn a_view_of_nothing_is_not_measured() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("square.obj"), SQUARE).unwrap();
+    let views =
+        r#"[{"position": [0, 0, 5], "target": [0, 0, 0]}, {"position": [0, 0, 5], "target": [0, 0, 9]}]"#;
+    fs::write(dir.path().join("square.camera.json"), views).unwrap();
+    let refused = ["viewpoint 1 of square shows nothing", "square.camera.json"];
+    run(dir.path(), "run square.obj --size 64 --viewpoints 2 --pipelines gather").refuses(&refused);
+    run(dir.path(), "bench scenes --quick --scene square.obj --viewpoints 2 --size 64").refuses(&refused);
+    let rendered = succeed(dir.path(), "render square.obj --size 64 --pose 1 --outputs left");
+    assert!(rendered.stderr.contains("1 of 1 frames of square show nothing"), "{}", rendered.stderr);
+    let rendered = succeed(dir.path(), "render square.obj --size 64 --pose 0 --outputs left");
+    assert_eq!(rendered.stderr, "");
 }

@@ -1,8 +1,8 @@
 //! `yoro scenes` and `yoro info`.
 
-use yoro::metrics::{Channels, SsimWindow, ssim};
-use yoro::picture;
-use yoro::scene::builtin::BUILTINS;
+use yoro_lab::metrics::{Channels, SsimWindow, ssim};
+use yoro_lab::picture;
+use yoro_scenes::BUILTINS;
 
 use crate::program::{run, succeed};
 

@@ -95,7 +95,7 @@ fn mistakes() {
     for (line, naming) in [
         ("study plan --scenes nowhere", &["no scene nowhere", "yoro scenes"][..]),
         ("study plan --methods yoro", &["one method cannot be compared"]),
-        ("study plan --methods yoro,mine", &["mine is no stereo method", "--set mine:method=yoro"]),
+        ("study plan --methods yoro,mine", &["mine is not a stereo method", "--set mine:method=yoro"]),
         ("study plan --methods yoro,yoro", &["the method yoro is named twice"]),
         ("study plan --set yoro:pipeline=none", &["pipeline"]),
         ("study plan --set yoro", &["METHOD:KEY=VALUE"]),
@@ -103,7 +103,7 @@ fn mistakes() {
         ("study plan --participants 0", &["--participants"]),
         ("study collect empty.log", &["no rating in empty.log"]),
         ("study collect nowhere.log", &["nowhere.log does not exist"]),
-        ("study collect empty.log --plan one.csv", &["one.csv, line 1", "no row of a plan"]),
+        ("study collect empty.log --plan one.csv", &["one.csv, line 1", "not a row of a plan"]),
         ("study analyse nowhere.csv", &["nowhere.csv does not exist"]),
         ("study analyse one.csv", &["nobody has rated conventional", "yoro"]),
         ("study analyse one.csv --baseline yoro", &["only yoro was rated"]),

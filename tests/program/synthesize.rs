@@ -5,8 +5,8 @@ use std::path::Path;
 
 use image::RgbImage;
 use yoro::eyes::DepthConvention;
-use yoro::metrics::{Channels, Psnr, psnr};
-use yoro::picture;
+use yoro_lab::metrics::{Channels, Psnr, psnr};
+use yoro_lab::picture;
 
 use crate::pair::{self, FOV_Y_DEGREES, IPD, RANGE};
 use crate::program::{run, succeed};
@@ -142,4 +142,64 @@ fn folders() {
     }
     fs::remove_file(dir.path().join("depth/c.exr")).unwrap();
     run(dir.path(), &line).refuses(&["c.png has no depth image of that name in depth"]);
+}
+
+/// What would silently replace something is refused before anything is written.
+#[test]
+fn every_output_has_its_place() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    for name in ["a.png", "a.jpg"] {
+        picture::save_color(&at.join("color").join(name), &pair::color(0.5)).unwrap();
+    }
+    picture::save_depth(&at.join("depth/a.exr"), &pair::metres(0.5)).unwrap();
+    let synthesize = |options: &str| run(at, &format!("synthesize --depth-encoding metres {options}"));
+    synthesize("--color color --depth depth --out out").refuses(&["color/a.jpg", "color/a.png", "out/a.png"]);
+    fs::remove_file(at.join("color/a.jpg")).unwrap();
+    let before = fs::read(at.join("color/a.png")).unwrap();
+    for (options, naming) in [
+        ("--color color --depth depth --out out --mask-out out", &["mask of color/a.png", "out/a.png"][..]),
+        ("--color color --depth depth --out color", &["color/a.png is read"]),
+        ("--color color --depth depth --out out --disparity-out depth", &["depth/a.exr is read"]),
+        ("--color color --depth depth --out out --disparity-out d --source-out ./d", &["d/a.exr"]),
+        ("--color color/a.png --depth depth/a.exr --out o.png --mask-out new/../o.png", &["o.png"]),
+        ("--color color/a.png --depth depth/a.exr --out ./color/a.png", &["color/a.png is read"]),
+        (
+            "--color color/a.png --depth depth/a.exr --out o.png --mask-out o.png --dominant center",
+            &["o.left.png"],
+        ),
+    ] {
+        fs::create_dir_all(at.join("new")).unwrap();
+        synthesize(options).refuses(naming);
+    }
+    assert_eq!(fs::read(at.join("color/a.png")).unwrap(), before);
+    assert!(!at.join("out").exists() && !at.join("o.png").exists());
+}
+
+#[test]
+fn depth_that_means_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    picture::save_color(&at.join("color.png"), &pair::color(0.5)).unwrap();
+    let mut depth = pair::buffer(0.5, DepthConvention::Reversed, 1.0);
+    picture::save_depth(&at.join("depth.exr"), &depth).unwrap();
+    depth.put_pixel(7, 9, image::Luma([-0.25]));
+    picture::save_depth(&at.join("negative.exr"), &depth).unwrap();
+    let synthesize =
+        |options: &str| run(at, &format!("synthesize --color color.png --out out.png {options}"));
+    for encoding in ["reversed-z", "metres", "disparity"] {
+        synthesize(&format!("--depth negative.exr --depth-encoding {encoding} --depth-gamma 2.2"))
+            .refuses(&["negative.exr has negative values", "--depth-gamma"]);
+    }
+    let disparity = "--depth depth.exr --depth-encoding disparity";
+    for (options, naming) in [
+        ("--disparity-offset nan", &["--disparity-offset", "finite"][..]),
+        ("--disparity-scale inf", &["--disparity-scale", "finite"]),
+        ("--disparity-scale -1", &["--disparity-scale -1 is negative", "invert"]),
+        // Everything is shifted out of the picture.
+        ("--disparity-offset 5000 --patcher telea", &["color.png", "all pixels are holes"]),
+    ] {
+        synthesize(&format!("{disparity} {options}")).refuses(naming);
+    }
+    assert!(!at.join("out.png").exists());
 }

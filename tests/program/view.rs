@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use image::RgbImage;
-use yoro::picture;
+use yoro_lab::picture;
 
 use crate::program::{Run, finish, run, succeed, yoro};
 

@@ -10,19 +10,18 @@ use std::time::{Duration, Instant};
 use image::{Rgb, RgbImage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use yoro::cli::stage::eye_image;
 use yoro::eyes::{Eye, EyePair};
-use yoro::metrics::{Channels, Quality};
-use yoro::picture;
-use yoro::platform::{Backend, Headless};
-use yoro::render::{GpuScene, Renderer};
-use yoro::scene::builtin;
-use yoro::stereo::{self, Method, StereoFrame};
-use yoro::viewer::Settings;
+use yoro_context::{Backend, Headless};
+use yoro_lab::metrics::{Channels, Quality};
+use yoro_lab::picture;
+use yoro_lab::picture::eye_image;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
     At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
 };
+use yoro_render::stereo::{self, Method, StereoFrame};
+use yoro_render::{GpuScene, Renderer};
+use yoro_viewer::Settings;
 
 use crate::program::{Run, finish, yoro};
 
@@ -366,6 +365,46 @@ fn controllers_switch_methods() {
 }
 
 #[test]
+fn controllers_by_pico_have_sticks() {
+    let stick =
+        |frame, value| Input { frame, path: "/user/hand/left/input/thumbstick".into(), value: [value, 0.0] };
+    let script = Script {
+        profile: Some("/interaction_profiles/bytedance/pico4_controller".into()),
+        inputs: vec![stick(10, -1.0), stick(12, 0.0)],
+        events: vec![event(At::Frame(20), What::Exit)],
+        ..Script::default()
+    };
+    let simulated = Simulated::new(&script);
+    let run = simulated.succeed("--json");
+    assert_eq!(run.json()["methods"].as_array().unwrap().len(), 2, "{}", run.stderr);
+}
+
+#[test]
+fn an_odd_pose_costs_its_own_frame_at_most() {
+    let quaternion_lengths = vec![(3, 1.02), (4, 0.0), (5, 0.9)];
+    let simulated = Simulated::new(&Script { quaternion_lengths, ..Script::default() });
+    let run = simulated.succeed("--frames 8 --json");
+    assert_eq!(run.json()["restarts"], 0, "{}", run.stderr);
+    let shown: Vec<u32> = simulated.views().iter().map(|(frame, _)| *frame).collect();
+    assert!(shown.contains(&3) && shown.contains(&5), "of another length it is still a pose: {shown:?}");
+    assert!(!shown.contains(&4), "without a length it is none: {shown:?}");
+}
+
+#[test]
+fn functions_without_instance_are_asked_for_without_one() {
+    let simulated = Simulated::new(&Script { no_globals: true, ..Script::default() });
+    simulated.succeed("--frames 1");
+}
+
+#[test]
+fn depth_is_submitted_unless_the_settings_say_otherwise() {
+    let simulated = Simulated::new(&Script::default());
+    simulated.succeed("--frames 1 --set submit-depth=false");
+    let views = simulated.views();
+    assert!(!views.is_empty() && views.iter().flat_map(|(_, views)| views).all(|view| view.depth.is_none()));
+}
+
+#[test]
 fn what_the_runtime_lacks_is_done_without() {
     let optional = [
         "XR_KHR_composition_layer_depth",
@@ -373,6 +412,7 @@ fn what_the_runtime_lacks_is_done_without() {
         "XR_FB_display_refresh_rate",
         "XR_EXT_performance_settings",
         "XR_EXT_local_floor",
+        "XR_BD_controller_interaction",
     ];
     let missing_extensions = optional.map(str::to_owned).into();
     let simulated = Simulated::new(&Script { missing_extensions, ..Script::default() });
@@ -479,8 +519,8 @@ fn eyes_of_other_kinds() {
 fn desktop(scene: &str, method: Method, pair: &EyePair, settings: &Settings) -> [RgbImage; 2] {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let scene = GpuScene::upload(gl, builtin::build(scene, builtin::DEFAULT_SEED).unwrap()).unwrap();
-    let (render, options) = (settings.render_settings(), settings.stereo_options());
+    let scene = GpuScene::upload(gl, yoro_scenes::build(scene, yoro_scenes::DEFAULT_SEED).unwrap()).unwrap();
+    let (render, options) = (settings.render_settings(), settings.stereo_options(settings.pipeline));
     let mut renderer = Renderer::new(gl, &render, &scene).unwrap();
     let mut method = stereo::create(gl, method, &render, &options).unwrap();
     method.prepare(&mut renderer, &scene).unwrap();
@@ -493,7 +533,7 @@ fn captured(folder: &Path, summary: &Value) -> Vec<(Method, EyePair, [RgbImage; 
     let methods = summary["methods"].as_array().unwrap().iter();
     let load = |m: &Value| {
         let name = m["method"].as_str().unwrap();
-        let method = clap::ValueEnum::from_str(name, false).unwrap();
+        let method = Method::ALL.into_iter().find(|method| method.name() == name).unwrap();
         let pair = serde_json::from_value(m["capture"]["eyes"].clone()).unwrap();
         let eye = |eye: &str| picture::load_color(&folder.join(m["capture"][eye].as_str().unwrap())).unwrap();
         (method, pair, [eye("left"), eye("right")])
@@ -558,7 +598,7 @@ fn asymmetric_eyes_are_synthesized_well() {
 #[ignore = "takes minutes"]
 fn asymmetric_eyes_in_every_scene() {
     println!("{:<12}{:>12}{:>26}{:>26}{:>26}", "SSIM, dB", "", "asymmetric", "its outer tenth", "symmetric");
-    for scene in builtin::BUILTINS {
+    for scene in yoro_scenes::BUILTINS {
         for size in [[1024, 1024], [1680, 1760]] {
             let eyes = asymmetric(size);
             let symmetric = eyes.map(|eye| ScriptEye { fov_degrees: [-47.5, 47.5, 48.5, -48.5], ..eye });

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use image::RgbImage;
-use yoro::metrics::{Channels, SsimWindow, ssim};
-use yoro::picture;
+use yoro_lab::metrics::{Channels, SsimWindow, ssim};
+use yoro_lab::picture;
 
 /// Set to renew the golden images instead of comparing with them.
 pub const BLESS: &str = "YORO_BLESS";

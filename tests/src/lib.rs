@@ -1,13 +1,14 @@
-//! What the tests in `tests/tests` share: contexts, a small scene, golden images.
+//! What the tests in `tests/tests` share: contexts, a small scene, golden images, all shader programs.
 
 pub mod golden;
+pub mod programs;
 pub mod scene;
 
 use std::rc::Rc;
 
 use anyhow::Context as _;
 use yoro::gl::Context;
-use yoro::platform::{Backend, Headless};
+use yoro_context::{Backend, Headless};
 
 /// Set by `cargo xtask test` on systems that have no OSMesa any more (Mesa 25.1 dropped it).
 const WITHOUT_OSMESA: &str = "YORO_TEST_WITHOUT_OSMESA";

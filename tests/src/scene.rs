@@ -1,8 +1,8 @@
 //! A scene that is small to render and uses everything that a material can have.
 
 use glam::{Vec2, Vec3};
-use yoro::scene::Viewpoint;
-use yoro::scene::{Alpha, Material, Model, Part, PointLight, Scene, ShadingStyle, Sky, TextureImage, Vertex};
+use yoro_scene::Viewpoint;
+use yoro_scene::{Alpha, Material, Model, Part, PointLight, Scene, ShadingStyle, Sky, TextureImage, Vertex};
 
 /// Two by two texels.
 fn texture(name: &str, srgb: bool, rgba: [[u8; 4]; 4]) -> TextureImage {

@@ -5,13 +5,28 @@ use std::ffi::OsStr;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::{Context as _, bail};
+
+/// Whoever updates lists or installs holds this. Debian's container images run a hook after every update, even that of
+/// a private state, which removes all packages that wait for installation.
+static TURN: Mutex<()> = Mutex::new(());
+
+/// Waits until no other thread updates lists or installs.
+pub fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// The file that a command's name stands for.
 pub fn find_program(name: impl AsRef<OsStr>) -> Option<PathBuf> {
     let path = env::var_os("PATH")?;
     env::split_paths(&path).map(|folder| folder.join(name.as_ref())).find(|program| program.is_file())
+}
+
+/// Whether [`install`] can do its work without asking anybody for anything.
+pub fn installs_by_itself() -> bool {
+    is_root() && find_program("apt-get").is_some()
 }
 
 /// The packages are to be installed: because `yes` was said beforehand, or is said now.
@@ -48,6 +63,7 @@ pub fn install(groups: &[&[&str]]) -> anyhow::Result<()> {
         (false, Some(_)) => true,
         (false, None) => bail!("not root and no sudo here: have root run `{by_hand}`"),
     };
+    let _turn = turn();
     if let Err(error) = apt_get(sudo, &["update"]) {
         // Old lists are often good enough, and a third party's broken source is no reason to stop.
         eprintln!("warning: {error:#}");

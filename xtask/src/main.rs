@@ -1,21 +1,28 @@
 //! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`,
-//! `monado`.
+//! `monado`, `hello-xr`, `shader-cost`, `spirv`, `package`, `kit`, `web`.
 
 mod android;
 mod apt;
 mod cargo;
+mod folders;
+mod hello_xr;
+mod kit;
+mod lint;
 mod monado;
+mod package;
 mod packages;
 mod setup;
+mod shader_cost;
+mod spirv;
+mod testing;
+mod web;
 
 use std::io::{self, Write as _};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::bail;
 use clap::{Parser, Subcommand};
-
-use cargo::{Equipment, Equipped};
 
 /// Set up, run and test yoro
 #[derive(Parser)]
@@ -37,11 +44,17 @@ enum Task {
     },
     /// Set up, then run all tests
     Test {
-        /// Only tests whose names contain one of these
+        /// Only tests whose names contain one of these; in documentation, if there is no other
         filters: Vec<String>,
+        /// Only tests of these packages, without those in documentation
+        #[arg(long = "package", short, value_name = "NAME")]
+        packages: Vec<String>,
         /// Renew the golden images of tests/golden instead of comparing with them
         #[arg(long)]
         bless: bool,
+        /// Processes of tests at a time [default: one for each processor]
+        #[arg(long, value_name = "N")]
+        jobs: Option<NonZeroUsize>,
     },
     /// Build, sign and check the Android application
     Apk {
@@ -64,7 +77,45 @@ enum Task {
     },
     /// Set up Monado, an OpenXR runtime with a simulated headset, beside the system, and say how to use it
     Monado,
-    /// Formatting, clippy, documentation, and the library without the desktop program
+    /// Set up hello_xr, Khronos's example of an OpenXR application, beside Monado, and say how to use it
+    HelloXr,
+    /// What the shader programs cost on mobile GPUs, by Mesa's compilers: instructions, registers, waves, fetches, spills
+    ShaderCost {
+        /// Only programs whose names contain this
+        filter: Option<String>,
+        /// These GPUs instead of those of docs/shader-cost.csv
+        #[arg(long = "gpu", value_name = "NAME", value_delimiter = ',')]
+        gpus: Vec<shader_cost::Gpu>,
+        /// Renew docs/shader-cost.csv
+        #[arg(long)]
+        bless: bool,
+        /// What shader-programs of tests/ has written, instead of running it
+        #[arg(long, value_name = "FILE", hide = true)]
+        programs: Option<PathBuf>,
+    },
+    /// Make packages of the C library, in target/package: for Linux with pkg-config and CMake files, for Android an AAR
+    Package {
+        /// Only these [default: all]
+        #[arg(long = "target", value_name = "NAME", value_delimiter = ',')]
+        targets: Vec<package::Target>,
+    },
+    /// Write the shader kit to target/kit: synthesis for engines that want no library
+    Kit,
+    /// Set up, then compile the synthesis shaders for Vulkan: app/core/src/vulkan/spirv
+    Spirv,
+    /// The page: every method in a browser's WebGL 2, as files for any static host
+    Web {
+        /// Then serve them on this machine, to browsers here and, by `adb reverse tcp:8080 tcp:8080`, on a phone or headset
+        #[arg(long)]
+        serve: bool,
+        /// As they were built before
+        #[arg(long, requires = "serve")]
+        as_built: bool,
+        /// Where to serve; 0 for any free port
+        #[arg(long, default_value_t = 8080, value_name = "NUMBER")]
+        port: u16,
+    },
+    /// Formatting, clippy, documentation, each library by itself without its default features, and what would be published
     Lint,
 }
 
@@ -83,17 +134,19 @@ fn main() -> ExitCode {
 fn perform(task: Task) -> anyhow::Result<bool> {
     match task {
         Task::Setup => {
-            if setup::ensure()?.complete() {
+            if setup::ensure()?.complete() & setup::vulkan() {
                 println!("everything is there");
             }
         }
         Task::Run { arguments } => {
             setup::ensure()?;
-            cargo::run(&["run", "--release", "--package", "yoro", "--", "run"], &arguments)?;
+            cargo::run(
+                &["run", "--release", "--package", "yoro-app", "--bin", "yoro", "--", "run"],
+                &arguments,
+            )?;
         }
-        Task::Test { filters, bless } => {
-            let equipment = equip(&filters)?;
-            cargo::test(&filters, bless, &equipment)?;
+        Task::Test { filters, packages, bless, jobs } => {
+            testing::test(&testing::Options { filters, packages, bless, jobs })?;
         }
         Task::Apk { release, yes, openxr_loaders } => {
             android::apk(&android::Options { release, yes, openxr_loaders })?;
@@ -109,7 +162,23 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             return Ok(report.passed());
         }
         Task::Monado => show(&monado::usage()?),
-        Task::Lint => lint()?,
+        Task::HelloXr => show(&hello_xr::usage()?),
+        Task::ShaderCost { filter, gpus, bless, programs } => {
+            let options = shader_cost::Options { filter, gpus, programs, bless };
+            let (text, passed) = shader_cost::report(&options)?;
+            show(&text);
+            return Ok(passed);
+        }
+        Task::Package { targets } => drop(package::package(&targets)?),
+        Task::Kit => drop(kit::kit()?),
+        Task::Spirv => spirv::compile()?,
+        Task::Web { serve, as_built, port } => {
+            let folder = if as_built { web::built()? } else { web::build()? };
+            if serve {
+                web::serve(&folder, port)?;
+            }
+        }
+        Task::Lint => lint::lint()?,
     }
     Ok(true)
 }
@@ -117,43 +186,4 @@ fn perform(task: Task) -> anyhow::Result<bool> {
 /// Prints; a reader such as `head` may have gone before the end.
 fn show(text: &str) {
     let _ = io::stdout().write_all(text.as_bytes());
-}
-
-/// Installs and builds what the tests need that have one of the filters in their names.
-fn equip(filters: &[String]) -> anyhow::Result<Equipment> {
-    let osmesa = setup::ensure()?.osmesa;
-    let wants = |part| cargo::wants("yoro-android-host", filters, part);
-    let apk = if wants("") { android::for_tests()? } else { Equipped::NotWanted };
-    // A machine of arm64 runs that library by itself.
-    let foreign = cfg!(target_arch = "x86_64");
-    let arm64 = match apk {
-        Equipped::At(_) if foreign && wants("arm64") => android::host_for_tests()?,
-        _ => Equipped::NotWanted,
-    };
-    // A few chosen tests are not worth the wait for an installation.
-    let all = filters.is_empty();
-    let absent = if all { Equipped::Missing } else { Equipped::NotWanted };
-    let browser = setup::browser(all).map_or(absent, Equipped::At);
-    let monado =
-        if cargo::wants("yoro", filters, "monado") { monado::for_tests() } else { Equipped::NotWanted };
-    Ok(Equipment { osmesa, apk, arm64, browser, monado })
-}
-
-fn lint() -> anyhow::Result<()> {
-    let checks: [&[&str]; 4] = [
-        &["fmt", "--all", "--check"],
-        &["clippy", "--workspace", "--all-targets", "--", "--deny", "warnings"],
-        &["check", "--package", "yoro", "--lib", "--no-default-features"],
-        &["doc", "--workspace", "--no-deps"],
-    ];
-    let failed: Vec<String> = checks
-        .iter()
-        .filter(|check| !cargo::succeeds(check, &[("RUSTDOCFLAGS", "--deny warnings")]))
-        .map(|check| format!("cargo {}", check[0]))
-        .collect();
-    if !failed.is_empty() {
-        bail!("{} found something: see above", failed.join(", "));
-    }
-    println!("lint: nothing to say");
-    Ok(())
 }

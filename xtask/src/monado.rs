@@ -6,13 +6,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use crate::android::target_folder;
-use crate::cargo::Equipped;
-use crate::packages::{PrivateApt, quoted, unpack, write_launcher};
+use crate::folders::target_folder;
+use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
 
 /// Debian's release that has them.
 const RELEASE: &str = "trixie";
@@ -35,18 +33,8 @@ const WITHOUT: [&str; 12] = [
     "./var/*",
     "./etc/*",
 ];
-const MANIFEST: &str = "usr/share/openxr/1/openxr_monado.json";
-
-/// The folder with both programs, for the tests. What it needs is fetched without asking, as for all tests.
-pub fn for_tests() -> Equipped {
-    match make() {
-        Ok(folder) => Equipped::At(folder),
-        Err(error) => {
-            eprintln!("warning: Monado cannot be set up here, so that its tests are left out: {error:#}");
-            Equipped::Missing
-        }
-    }
-}
+/// Where in the root the runtime's manifest is.
+pub const MANIFEST: &str = "usr/share/openxr/1/openxr_monado.json";
 
 /// Sets it up; how it is used.
 ///
@@ -61,8 +49,11 @@ pub fn usage() -> anyhow::Result<String> {
     ))
 }
 
-/// Fetches and unpacks it, unless what is there is complete.
-fn make() -> anyhow::Result<PathBuf> {
+/// The folder with both programs: fetches and unpacks them, unless what is there is complete.
+///
+/// # Errors
+/// When it cannot be had on this machine.
+pub fn make() -> anyhow::Result<PathBuf> {
     if !cfg!(target_arch = "x86_64") {
         bail!("it is fetched for x86_64 only");
     }
@@ -76,7 +67,7 @@ fn make() -> anyhow::Result<PathBuf> {
                 .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
         }
         eprintln!("fetching Monado for the tests: 170 MB, once");
-        let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&sources()?))?;
+        let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
         apt.update()?;
         for package in apt.download(&packages)? {
             unpack(&package, &root, &[], &WITHOUT)?;
@@ -88,43 +79,29 @@ fn make() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// The release at the place that this machine has its own Debian from.
-fn sources() -> anyhow::Result<String> {
-    let targets = Command::new("apt-get")
-        .args(["indextargets", "--format", "$(REPO_URI) $(COMPONENT)", "Created-By: Packages"])
-        .output()
-        .context("apt-get cannot be started")?
-        .stdout;
-    let targets = String::from_utf8_lossy(&targets).into_owned();
-    let place = debian(&targets).context("this machine has no source of Debian's packages")?;
-    Ok(format!("deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] {place} {RELEASE} main\n"))
-}
-
-/// Of `place component` lines, the place of Debian itself: not that of its security updates, nor somebody else's.
-fn debian(targets: &str) -> Option<&str> {
-    let mut places = targets.lines().filter_map(|line| line.split_once(' '));
-    let is_debian = |place: &str| place.trim_end_matches('/').ends_with("/debian");
-    places.find(|(place, component)| *component == "main" && is_debian(place)).map(|(place, _)| place)
-}
-
-fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
+/// What begins the command line of a program that is to have the libraries of this root, after those in the folders `first`.
+pub fn linker(root: &Path, first: &[PathBuf]) -> String {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");
-    let path: Vec<String> = [
+    let own = [
         libraries.clone(),
         libraries.join("lapack"),
         libraries.join("blas"),
         libraries.join("pulseaudio"),
         usr.join("lib"),
-    ]
-    .iter()
-    .map(|folder| folder.display().to_string())
-    .collect();
-    let linker = format!(
+    ];
+    let path: Vec<String> = first.iter().chain(&own).map(|folder| folder.display().to_string()).collect();
+    format!(
         "{} --library-path {}",
         quoted(&libraries.join("ld-linux-x86-64.so.2")),
         quoted(Path::new(&path.join(":")))
-    );
+    )
+}
+
+fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
+    let usr = root.join("usr");
+    let libraries = usr.join("lib/x86_64-linux-gnu");
+    let linker = linker(root, &[]);
     let service = format!(
         "# Monado with a simulated headset, on the CPU and without a display.\n\
          export XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 XRT_NO_STDIN=1 VK_DRIVER_FILES={}\n\
@@ -152,17 +129,4 @@ fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
     }
     write_launcher(&folder.join("monado-service"), &service)?;
     write_launcher(&folder.join("run"), &run)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn debian_itself_is_found_among_the_sources() {
-        let targets = "https://example.org/apt main\nhttp://example.com/debian-security/ main\n\
-                       http://example.com/debian/ contrib\nhttp://example.com/debian/ main\n";
-        assert_eq!(debian(targets), Some("http://example.com/debian/"));
-        assert_eq!(debian("http://example.com/ubuntu/ main\n"), None);
-    }
 }

@@ -5,6 +5,7 @@ use std::io::Write as _;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context as _, bail};
 
@@ -88,6 +89,7 @@ impl PrivateApt {
     /// # Errors
     /// When apt-get fails.
     pub fn update(&self) -> anyhow::Result<()> {
+        let _turn = apt::turn();
         self.get(&["update"])
     }
 
@@ -154,9 +156,47 @@ pub fn unpack(package: &Path, root: &Path, only: &[&str], without: &[&str]) -> a
     Ok(())
 }
 
+/// Releases of Debian at the place that this machine has its own Debian from, as lines of a sources.list.
+///
+/// # Errors
+/// When this machine knows no such place.
+pub fn debian_sources(releases: &[&str]) -> anyhow::Result<String> {
+    let targets = Command::new("apt-get")
+        .args(["indextargets", "--format", "$(REPO_URI) $(COMPONENT)", "Created-By: Packages"])
+        .output()
+        .context("apt-get cannot be started")?
+        .stdout;
+    let targets = String::from_utf8_lossy(&targets).into_owned();
+    let place = debian(&targets).context("this machine has no source of Debian's packages")?;
+    let line = |release: &&str| {
+        format!("deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] {place} {release} main\n")
+    };
+    Ok(releases.iter().map(line).collect())
+}
+
+/// Of `place component` lines, the place of Debian itself: not that of its security updates, nor somebody else's.
+fn debian(targets: &str) -> Option<&str> {
+    let mut places = targets.lines().filter_map(|line| line.split_once(' '));
+    let is_debian = |place: &str| place.trim_end_matches('/').ends_with("/debian");
+    places.find(|(place, component)| *component == "main" && is_debian(place)).map(|(place, _)| place)
+}
+
 /// A path as a word of the shell.
 pub fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
+}
+
+/// Writes a file that nobody ever sees half of, whatever other processes and threads write at the same time.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write(file: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    static WRITTEN: AtomicUsize = AtomicUsize::new(0);
+    let number = WRITTEN.fetch_add(1, Ordering::Relaxed);
+    let unfinished = file.with_added_extension(format!("{}-{number}.tmp", std::process::id()));
+    fs::write(&unfinished, content)
+        .and_then(|()| fs::rename(&unfinished, file))
+        .with_context(|| format!("{} cannot be written", file.display()))
 }
 
 /// Writes a program for the shell.
@@ -170,4 +210,30 @@ pub fn write_launcher(launcher: &Path, text: &str) -> anyhow::Result<()> {
             file.set_permissions(fs::Permissions::from_mode(0o755))
         })
         .with_context(|| format!("{} cannot be written", launcher.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn debian_itself_is_found_among_the_sources() {
+        let targets = "https://example.org/apt main\nhttp://example.com/debian-security/ main\n\
+                       http://example.com/debian/ contrib\nhttp://example.com/debian/ main\n";
+        assert_eq!(debian(targets), Some("http://example.com/debian/"));
+        assert_eq!(debian("http://example.com/ubuntu/ main\n"), None);
+    }
+
+    #[test]
+    fn threads_write_the_same_file_without_a_quarrel() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| (0..200).for_each(|_| write(&file, "whole").unwrap()));
+            }
+        });
+        assert_eq!(fs::read_to_string(&file).unwrap(), "whole");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
 }

@@ -1,4 +1,5 @@
-//! What the program needs of the system: EGL, OpenGL ES, a driver, OSMesa.
+//! What the program needs of the system: EGL, OpenGL ES, a driver, OSMesa; and what the tests of Vulkan need: a driver
+//! without a GPU, Khronos's validation layer, glslang.
 
 use std::collections::BTreeSet;
 use std::env;
@@ -6,7 +7,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 
 use crate::apt;
 
@@ -18,6 +19,12 @@ struct Need {
     any_of: &'static [&'static str],
     /// Debian and Ubuntu.
     apt: &'static [&'static str],
+}
+
+impl Need {
+    fn is_in(&self, folders: &[PathBuf]) -> bool {
+        self.any_of.iter().any(|name| exists(folders, name))
+    }
 }
 
 const EGL: Need = Need { what: "libEGL", any_of: &["libEGL.so.1"], apt: &["libegl1"] };
@@ -36,6 +43,22 @@ const DRIVER: Need = Need {
 };
 const OSMESA: Need =
     Need { what: "OSMesa", any_of: &["libOSMesa.so.8", "libOSMesa.so.6"], apt: &["libosmesa6"] };
+
+/// Who loads Vulkan's drivers and layers.
+const VULKAN: Need = Need { what: "the Vulkan loader", any_of: &["libvulkan.so.1"], apt: &["libvulkan1"] };
+const VULKAN_DRIVER: Need = Need {
+    what: "a Vulkan driver without a GPU",
+    any_of: &["libvulkan_lvp.so"],
+    apt: &["mesa-vulkan-drivers"],
+};
+const VALIDATION: Need = Need {
+    what: "Vulkan's validation layer",
+    any_of: &["libVkLayer_khronos_validation.so"],
+    apt: &["vulkan-validationlayers"],
+};
+const VULKAN_NEEDS: [&Need; 3] = [&VULKAN, &VULKAN_DRIVER, &VALIDATION];
+/// Debian's package of glslangValidator.
+const GLSLANG: &[&str] = &["glslang-tools"];
 
 /// Which of the optional libraries are here after set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,6 +120,37 @@ pub fn browser(install: bool) -> Option<PathBuf> {
     })
 }
 
+/// Installs what tests and shaders of Vulkan need, which no program of the project does; whether the tests can be run.
+pub fn vulkan() -> bool {
+    let missing = || -> Vec<&Need> {
+        let folders = library_folders();
+        VULKAN_NEEDS.into_iter().filter(|need| !need.is_in(&folders)).collect()
+    };
+    let mut absent: Vec<&str> = missing().iter().map(|need| need.what).collect();
+    let mut groups: Vec<&[&str]> = missing().iter().map(|need| need.apt).collect();
+    if glslang().is_none() {
+        absent.push("glslangValidator");
+        groups.push(GLSLANG);
+    }
+    if absent.is_empty() {
+        return true;
+    }
+    eprintln!("missing: {}", absent.join(", "));
+    let installed = match apt::find_program("apt-get") {
+        Some(_) => apt::install(&groups),
+        None => Err(anyhow!("install them with your package manager")),
+    };
+    if let Err(error) = installed {
+        eprintln!("warning: tests of Vulkan need {}; {error:#}", absent.join(", "));
+    }
+    missing().is_empty()
+}
+
+/// The compiler of Vulkan's shaders.
+pub fn glslang() -> Option<PathBuf> {
+    apt::find_program("glslangValidator")
+}
+
 /// What is left is an error unless it is optional.
 fn conclude(missing: &[&Need], remedy: &str) -> anyhow::Result<Libraries> {
     let required: Vec<&str> =
@@ -113,7 +167,7 @@ fn conclude(missing: &[&Need], remedy: &str) -> anyhow::Result<Libraries> {
 
 fn missing(folders: &[PathBuf]) -> Vec<&'static Need> {
     static NEEDS: [Need; 5] = [EGL, VENDOR, GLES, DRIVER, OSMESA];
-    NEEDS.iter().filter(|need| !need.any_of.iter().any(|name| exists(folders, name))).collect()
+    NEEDS.iter().filter(|need| !need.is_in(folders)).collect()
 }
 
 /// Where the dynamic linker looks, as far as that can be told from outside.
@@ -192,6 +246,19 @@ mod tests {
         fs::remove_dir_all(&folder).unwrap();
         let names: Vec<&str> = found.iter().map(|need| need.what).collect();
         assert_eq!(names, [VENDOR.what, GLES.what, OSMESA.what]);
+    }
+
+    #[test]
+    fn vulkan_is_a_loader_a_driver_and_a_layer() {
+        let folder = env::temp_dir().join(format!("xtask-vulkan-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let here = || VULKAN_NEEDS.map(|need| need.is_in(std::slice::from_ref(&folder)));
+        let before = here();
+        fs::write(folder.join("libvulkan.so.1"), "").unwrap();
+        fs::write(folder.join("libvulkan_lvp.so"), "").unwrap();
+        let after = here();
+        fs::remove_dir_all(&folder).unwrap();
+        assert_eq!((before, after), ([false; 3], [true, true, false]));
     }
 
     #[test]

@@ -5,25 +5,26 @@ use std::time::Duration;
 
 use anyhow::{bail, ensure};
 
-use crate::bench::record::{Header, PassClock, VERSION};
-use crate::bench::{
-    self, Bounds, Choices, Contender, Inputs, Interrupted, Job, LazyObject, Object, Runner, Suite, Writer,
-    process,
+use crate::cli::args::{GlArgs, parse_fov, parse_ipd};
+use crate::cli::choices;
+use crate::cli::eyes;
+use crate::cli::machine;
+use crate::cli::terminal::progress_bar;
+use yoro::eyes::{DEFAULT_IPD, Eye, EyeOptions};
+use yoro::gl::Context;
+use yoro_lab::bench::record::{Header, PassClock, VERSION};
+use yoro_lab::bench::{
+    self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, process,
 };
-use crate::cli::dataset::camera_path;
-use crate::cli::stage::{self, EyeArgs};
-use crate::cli::{GlArgs, machine, parse_fov, parse_ipd, progress_bar};
-use crate::eyes::{DepthRange, Eye};
-use crate::gl::Context;
-use crate::inpaint::PatcherOptions;
-use crate::scene::builtin;
-use crate::scene::load::sidecar_file;
+use yoro_lab::inpaint::PatcherOptions;
+use yoro_lab::interrupt::Interrupted;
+use yoro_scene::load::sidecar_file;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
 #[derive(clap::Args, Clone, Debug)]
 pub struct BenchArgs {
     /// Which experiments
-    #[arg(value_enum, required = true, value_name = "SUITE")]
+    #[arg(value_parser = choices::suite(), required = true, value_name = "SUITE")]
     suites: Vec<Suite>,
     /// The short form: smaller images, fewer scenes, points, viewpoints and rounds
     #[arg(long)]
@@ -38,7 +39,7 @@ pub struct BenchArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
     frames: Option<u32>,
     /// Size of each eye's image in pixels [default: 1024x1024; quick: 512x512]
-    #[arg(long, value_name = "WxH", value_parser = stage::parse_size)]
+    #[arg(long, value_name = "WxH", value_parser = eyes::parse_size)]
     size: Option<[u32; 2]>,
     /// Instead of the suite's scenes: a built-in one, or an OBJ, glTF or GLB file; more than once for several
     #[arg(long = "scene", value_name = "NAME|FILE")]
@@ -55,16 +56,16 @@ pub struct BenchArgs {
     #[arg(long, value_name = "FILE.jsonl")]
     out: Option<PathBuf>,
     /// Distance between the eyes in metres
-    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = DEFAULT_IPD, value_parser = parse_ipd, allow_negative_numbers = true)]
     ipd: f32,
     /// Vertical field of view in degrees
     #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
     fov_y: f32,
     /// The eye that is rendered
-    #[arg(long, value_parser = stage::parse_eye, default_value = "right")]
+    #[arg(long, value_parser = eyes::parse_eye, default_value = "right")]
     dominant: Eye,
     /// Seed of the built-in scenes
-    #[arg(long, default_value_t = builtin::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
     seed: u64,
     /// distance, complexity: the object, an OBJ, glTF or GLB file such as the Stanford bunny, instead of the
     /// built-in hare
@@ -89,8 +90,8 @@ pub struct BenchArgs {
 /// Measures, appends to the file of results, and prints a short table.
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let choices = args.choices();
-    stage::check_scenes(&choices.scenes, choices.seed)?;
-    let path = args.path.as_deref().map(camera_path).transpose()?;
+    yoro_scenes::check(&choices.scenes, choices.seed)?;
+    let path = args.path.as_deref().map(yoro_scene::path::read).transpose()?;
     if path.is_none() {
         choices.scenes.iter().for_each(|scene| warn_without_camera(Path::new(scene)));
     }
@@ -138,15 +139,12 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
 impl BenchArgs {
     fn choices(&self) -> Choices {
         let of = |full, quick| if self.quick { quick } else { full };
-        let eyes = EyeArgs {
+        let eyes = EyeOptions {
             size: self.size.unwrap_or(if self.quick { [512; 2] } else { [1024; 2] }),
             fov_y: self.fov_y,
             ipd: self.ipd,
             dominant: self.dominant,
-            near: DepthRange::PAPER.near,
-            far: DepthRange::PAPER.far,
-            reversed_z: false,
-            half_angles_degrees: None,
+            ..EyeOptions::default()
         };
         Choices {
             quick: self.quick,
@@ -204,7 +202,7 @@ fn header(args: &BenchArgs, choices: &Choices, gl: &Context) -> Header {
     let mut parameters = choices.parameters();
     let mut file = |name: &str, path: &Option<PathBuf>| {
         let value = path.as_ref().map_or_else(|| "none".to_owned(), |path| path.display().to_string());
-        parameters.push(crate::report::Parameter { name: name.into(), value });
+        parameters.push(yoro_lab::machine::Parameter { name: name.into(), value });
     };
     file("camera path", &args.path);
     file("model", &args.model);

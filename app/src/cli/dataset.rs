@@ -9,18 +9,21 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cli::stage::{self, EyeArgs, Stage};
-use crate::cli::{GlArgs, PatcherArgs, SynthesisArgs, interrupted, progress_bar};
-use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
-use crate::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
-use crate::files;
-use crate::gl::Context;
-use crate::inpaint::{Patcher, PatcherKind};
-use crate::picture;
-use crate::render::RenderSettings;
-use crate::scene::builtin::{self, BUILTINS};
-use crate::scene::{CameraPath, Scene, ShadingStyle, Viewpoint};
-use crate::synthesis::{ImBufferSize, Pipeline};
+use crate::cli::args::{GlArgs, PatcherArgs, SynthesisArgs};
+use crate::cli::choices;
+use crate::cli::eyes::EyeArgs;
+use crate::cli::terminal::progress_bar;
+use yoro::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
+use yoro::gl::Context;
+use yoro::synthesis::{ImBufferSize, Pipeline};
+use yoro_files as files;
+use yoro_lab::dataset::{GroupOptions, GroupRenderer, ImageGroup};
+use yoro_lab::inpaint::{Patcher, PatcherKind};
+use yoro_lab::interrupt;
+use yoro_lab::picture;
+use yoro_render::{PreparedScene, RenderSettings};
+use yoro_scene::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
+use yoro_scenes::{self, BUILTINS};
 
 /// The pictures of a group; each has a folder of this name.
 const PICTURES: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
@@ -47,10 +50,10 @@ pub struct DatasetArgs {
     #[arg(long)]
     anti_aliasing: bool,
     /// Another shading style than the scene's own
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choices::style())]
     style: Option<ShadingStyle>,
     /// Seed of the built-in scenes
-    #[arg(long, default_value_t = builtin::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
     seed: u64,
     #[command(flatten)]
     eyes: EyeArgs,
@@ -131,7 +134,7 @@ pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
         "--half-angles-degrees cannot be used here: `yoro synthesize` reads the groups and takes symmetric frusta; leave it out"
     );
     args.patcher.check()?;
-    let path = args.path.as_deref().map(camera_path).transpose()?;
+    let path = args.path.as_deref().map(path::read).transpose()?;
     let names: Vec<String> = match args.scenes.as_slice() {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
         given => given.to_vec(),
@@ -170,23 +173,6 @@ fn group_options(args: &DatasetArgs) -> GroupOptions {
     }
 }
 
-/// Reads a camera path in the format of `camera.json`.
-pub(super) fn camera_path(file: &Path) -> anyhow::Result<Vec<Viewpoint>> {
-    let viewpoints: Vec<Viewpoint> = serde_json::from_slice(&files::read(file)?).with_context(|| {
-        format!("{} is not a camera path: give a JSON array of {{position, target}}", file.display())
-    })?;
-    ensure!(!viewpoints.is_empty(), "{} has no viewpoint: give one or more", file.display());
-    for (i, v) in viewpoints.iter().enumerate() {
-        ensure!(
-            v.position.distance(v.target).is_normal(),
-            "{}: viewpoint {} looks at the place where it is: give it another target",
-            file.display(),
-            i + 1
-        );
-    }
-    Ok(viewpoints)
-}
-
 /// The groups of one scene.
 struct Job<'a> {
     name: &'a str,
@@ -199,7 +185,7 @@ impl<'a> Job<'a> {
     fn new(args: &DatasetArgs, name: &'a str, path: Option<&[Viewpoint]>) -> anyhow::Result<Job<'a>> {
         let is_file = !BUILTINS.iter().any(|b| b.name == name);
         if is_file && !Path::new(name).exists() {
-            stage::load_scene(name, args.seed, None)?;
+            yoro_scenes::load(name, args.seed, None)?;
         }
         let stem = Path::new(name).file_stem().unwrap_or_default();
         let folder = args.out.join(if is_file { stem } else { name.as_ref() });
@@ -240,9 +226,9 @@ impl<'a> Job<'a> {
         stop(args)?;
         files::write(&self.folder.join(SETTINGS), format!("{:#}\n", self.settings).as_bytes())?;
         let settings = RenderSettings::default();
-        let scene: Scene = stage::load_scene(self.name, args.seed, args.style)?;
+        let scene: Scene = yoro_scenes::load(self.name, args.seed, args.style)?;
         let path = CameraPath::new(path.unwrap_or(&scene.viewpoints));
-        let Stage { scene, mut renderer } = Stage::new(gl, scene, &settings)?;
+        let PreparedScene { scene, mut renderer } = PreparedScene::new(gl, scene, &settings)?;
         let mut groups = GroupRenderer::new(gl, &settings, &group_options(args))?;
         bar.set_message(self.name.to_owned());
         for &index in &self.missing {
@@ -316,7 +302,7 @@ fn fov_y_degrees(args: &DatasetArgs) -> f64 {
 
 fn stop(args: &DatasetArgs) -> anyhow::Result<()> {
     ensure!(
-        !interrupted(),
+        !interrupt::requested(),
         "interrupted: the groups in {} are complete; the same command makes the rest",
         args.out.display()
     );

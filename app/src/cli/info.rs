@@ -1,7 +1,7 @@
 //! `yoro info`: what this machine offers.
 
-use crate::cli::GlArgs;
-use crate::platform::{Backend, Headless};
+use crate::cli::args::GlArgs;
+use yoro_context::{Backend, Headless};
 
 /// Show the GL drivers of this machine and what they offer
 #[derive(clap::Args, Clone, Debug)]

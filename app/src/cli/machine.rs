@@ -3,8 +3,8 @@
 use std::fs;
 use std::time::{Duration, SystemTime};
 
-use crate::gl::Capabilities;
-use crate::report::Machine;
+use yoro::gl::Capabilities;
+use yoro_lab::machine::Machine;
 
 /// Describes this machine, this moment and this command line.
 pub fn describe(capabilities: &Capabilities) -> Machine {

@@ -1,211 +1,23 @@
 //! The subcommands of the program `yoro`, one file each.
 
+pub mod args;
 pub mod bench;
+pub mod choices;
 pub mod compare;
 pub mod dataset;
 pub mod device;
+pub mod eyes;
 pub mod info;
+pub mod layer;
 pub mod machine;
+pub mod message;
+pub mod outputs;
 pub mod render;
 pub mod report;
 pub mod run;
 pub mod scenes;
-pub mod stage;
 pub mod study;
 pub mod synthesize;
+pub mod terminal;
 pub mod view;
 pub mod xr;
-
-use std::path::PathBuf;
-use std::rc::Rc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
-
-use anyhow::{bail, ensure};
-use clap::builder::RangedU64ValueParser;
-use indicatif::{ProgressBar, ProgressStyle};
-
-use crate::eyes::MAX_IPD;
-use crate::gl::Context;
-use crate::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
-use crate::platform::{Backend, Headless, PlatformError};
-use crate::synthesis::{ImBufferSize, PaperOptions, Pipeline, SynthesisOptions};
-use crate::viewer::Settings;
-
-/// Where the GL context comes from.
-#[derive(clap::Args, Clone, Copy, Debug)]
-pub struct GlArgs {
-    /// Where to take the GL context from
-    #[arg(long = "gl", value_enum, default_value_t, value_name = "BACKEND")]
-    pub backend: Backend,
-}
-
-impl GlArgs {
-    /// Opens the context and says once what it is.
-    pub fn open(&self) -> Result<Headless, PlatformError> {
-        let headless = Headless::open(self.backend)?;
-        log::info!("{}", headless.gl().capabilities().summary());
-        Ok(headless)
-    }
-}
-
-/// The synthesis pipeline and its knobs.
-#[derive(clap::Args, Clone, Debug)]
-pub struct SynthesisArgs {
-    /// How the other eye is synthesized
-    #[arg(long, value_enum, default_value_t)]
-    pub pipeline: Pipeline,
-    /// paper: ImBuffer resolution, as a divisor (1, 2, 4, 8, 16) or a fixed size (512x512)
-    #[arg(long, default_value = "1", value_name = "N|WxH")]
-    pub imbuffer: ImBufferSize,
-    /// paper: do not interpolate between ImBuffer entries
-    #[arg(long)]
-    pub no_linear_interpolation: bool,
-    /// paper: rows of the patcher's kernel
-    #[arg(long, default_value_t = 3, value_parser = RangedU64ValueParser::<u32>::new().range(1..=15), value_name = "ROWS")]
-    pub kernel_height: u32,
-    /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says
-    #[arg(long)]
-    pub strict: bool,
-}
-
-impl SynthesisArgs {
-    /// As the library takes them.
-    pub fn options(&self) -> SynthesisOptions {
-        SynthesisOptions {
-            pipeline: self.pipeline,
-            paper: PaperOptions {
-                imbuffer: self.imbuffer,
-                linear_interpolation: !self.no_linear_interpolation,
-                kernel_height: self.kernel_height,
-                strict: self.strict,
-            },
-        }
-    }
-}
-
-/// The patcher, where it is not the pipeline itself that fills the holes.
-#[derive(clap::Args, Clone, Debug)]
-pub struct PatcherArgs {
-    /// Fill the holes by this patcher instead of the pipeline's own fill
-    #[arg(long, value_enum, value_name = "KIND")]
-    pub patcher: Option<PatcherKind>,
-    /// neural: another ONNX file than the built-in model
-    #[arg(long, value_name = "FILE", requires = "patcher")]
-    pub model: Option<PathBuf>,
-}
-
-impl PatcherArgs {
-    /// Refuses a model without the patcher that runs it.
-    pub fn check(&self) -> anyhow::Result<()> {
-        ensure!(
-            self.model.is_none() || self.patcher == Some(PatcherKind::Neural),
-            "--model goes with --patcher neural only: give that, or leave it out"
-        );
-        Ok(())
-    }
-
-    /// Makes the patcher, if one was asked for.
-    pub fn create(&self, gl: &Rc<Context>) -> Result<Option<Box<dyn Patcher>>, InpaintError> {
-        let options = PatcherOptions { model: self.model.clone() };
-        self.patcher.map(|kind| inpaint::create(gl, kind, &options)).transpose()
-    }
-}
-
-/// Parses an IPD in metres.
-fn parse_ipd(text: &str) -> Result<f32, String> {
-    let ipd: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.0..=MAX_IPD).contains(&ipd) {
-        Ok(ipd)
-    } else {
-        Err(format!("give metres from 0 to {MAX_IPD}: 0.063 is 63 mm"))
-    }
-}
-
-/// Parses a finite number above zero.
-fn parse_positive(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("give a number above 0".into()),
-    }
-}
-
-/// Parses an angle in degrees that a flat image can have, and returns radians.
-fn parse_fov(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if (1.0..=170.0).contains(&value) => Ok(value.to_radians()),
-        _ => Err("give degrees from 1 to 170".into()),
-    }
-}
-
-/// Settings of the viewer on the command line
-#[derive(clap::Args, Clone, Debug)]
-pub struct SettingsArgs {
-    /// Leave out the HUD
-    #[arg(long)]
-    no_hud: bool,
-    /// Settings of the viewer in a TOML file
-    #[arg(long, value_name = "FILE")]
-    settings: Option<PathBuf>,
-    /// One setting of the viewer; as often as needed
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    overrides: Vec<String>,
-}
-
-impl SettingsArgs {
-    /// The settings; what has an option of its own, as `key=value`, is stronger than `--set`.
-    pub fn resolve(&self, named: impl IntoIterator<Item = String>) -> anyhow::Result<Settings> {
-        let hud = self.no_hud.then(|| "hud=false".to_owned());
-        let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
-        Ok(Settings::resolve(self.settings.as_deref(), overrides)?)
-    }
-}
-
-/// Ends the program without a word when nobody reads its standard output any more, as after `| head`: `print!` would
-/// panic.
-pub fn end_with_reader() {
-    let before = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
-        let message = info.payload_as_str().unwrap_or_default();
-        if message.starts_with("failed printing to stdout") && message.contains("Broken pipe") {
-            std::process::exit(0);
-        }
-        before(info);
-    }));
-}
-
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
-/// Makes Ctrl-C and SIGTERM end the program at the next step instead of at once, so that no half-made file
-/// stays; a second one ends it at once.
-pub fn catch_interrupt() {
-    let handler = || {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    };
-    if let Err(error) = ctrlc::set_handler(handler) {
-        log::debug!("Ctrl-C is not caught: {error}");
-    }
-}
-
-/// Whether the user has asked to stop.
-pub fn interrupted() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
-}
-
-/// Ends a long loop when the user has asked for it.
-fn stop_if_interrupted() -> anyhow::Result<()> {
-    if interrupted() {
-        bail!("interrupted: nothing of an unfinished step was written");
-    }
-    Ok(())
-}
-
-/// A progress bar on stderr; hidden when that is not a terminal.
-fn progress_bar(steps: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {wide_msg}");
-    let bar = ProgressBar::new(steps).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.enable_steady_tick(Duration::from_millis(200));
-    bar
-}

@@ -1,6 +1,7 @@
 //! `yoro render`: stereo pictures of a scene.
 
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::time::Instant;
 
 use anyhow::ensure;
@@ -8,14 +9,19 @@ use glam::Vec3;
 use image::RgbImage;
 use serde::Serialize;
 
-use crate::cli::stage::{self, EyeArgs, Stage, StereoArgs};
-use crate::cli::{GlArgs, progress_bar, stop_if_interrupted};
-use crate::eyes::Eye;
-use crate::metrics::{Channels, Quality, error_map};
-use crate::picture;
-use crate::render::RenderSettings;
-use crate::scene::{CameraPath, ShadingStyle, builtin};
-use crate::stereo::{self, Method, StereoFrame};
+use crate::cli::args::GlArgs;
+use crate::cli::choices;
+use crate::cli::eyes::{self, EyeArgs, StereoArgs};
+use crate::cli::terminal::progress_bar;
+use yoro::eyes::{Eye, Pose};
+use yoro::gl::Context;
+use yoro_lab::bench::BlankFinder;
+use yoro_lab::interrupt;
+use yoro_lab::metrics::{Channels, Quality, error_map};
+use yoro_lab::picture;
+use yoro_render::stereo::{self, Method, StereoFrame};
+use yoro_render::{PreparedScene, RenderSettings};
+use yoro_scene::{CameraPath, ShadingStyle};
 
 /// A picture made from the two eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -60,7 +66,7 @@ pub struct RenderArgs {
     /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file
     scene: String,
     /// How the two eyes are made
-    #[arg(long, value_enum, default_value_t = Method::Yoro)]
+    #[arg(long, value_parser = choices::method(), default_value = Method::Yoro.name())]
     method: Method,
     /// Which of the scene's viewpoints, from 0
     #[arg(long, default_value_t = 0, conflicts_with_all = ["frames", "position"], value_name = "N")]
@@ -69,16 +75,16 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", conflicts_with = "position", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: Option<u32>,
     /// Instead: the head's position in metres
-    #[arg(long, value_parser = stage::parse_point, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_parser = eyes::parse_point, value_name = "X,Y,Z", allow_hyphen_values = true)]
     position: Option<Vec3>,
     /// The point that the head looks at
-    #[arg(long, value_parser = stage::parse_point, value_name = "X,Y,Z", requires = "position", allow_hyphen_values = true)]
+    #[arg(long, value_parser = eyes::parse_point, value_name = "X,Y,Z", requires = "position", allow_hyphen_values = true)]
     target: Option<Vec3>,
     /// Another shading style than the scene's own
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choices::style())]
     style: Option<ShadingStyle>,
     /// Seed of a built-in scene
-    #[arg(long, default_value_t = builtin::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
     seed: u64,
     /// Folder for the pictures
     #[arg(long, default_value = "out", value_name = "FOLDER")]
@@ -115,9 +121,9 @@ struct FrameReport {
 /// Renders and writes the pictures.
 pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
-    let scene = stage::load_scene(&args.scene, args.seed, args.style)?;
+    let scene = yoro_scenes::load(&args.scene, args.seed, args.style)?;
     let path = CameraPath::new(&scene.viewpoints);
-    let heads = match (stage::viewpoint(args.position, args.target), args.frames) {
+    let heads = match (eyes::viewpoint(args.position, args.target), args.frames) {
         (Some(viewpoint), _) => vec![viewpoint.pose()],
         (None, Some(n)) => path.poses(n as usize),
         (None, None) => {
@@ -138,7 +144,9 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     let headless = args.gl.open()?;
     let gl = headless.gl();
     let settings = RenderSettings::default();
-    let Stage { scene, mut renderer } = Stage::new(gl, scene, &settings)?;
+    let mut prepared = PreparedScene::new(gl, scene, &settings)?;
+    warn_of_blank(gl, args, &mut prepared, &heads)?;
+    let PreparedScene { scene, mut renderer } = prepared;
     let mut method = stereo::create(gl, args.method, &settings, &options)?;
     let measured = args.measure || args.outputs.iter().any(|o| o.needs_truth());
     let mut truth =
@@ -148,19 +156,19 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     let mut reports = Vec::new();
     let bar = progress_bar(heads.len() as u64);
     for (i, &head) in heads.iter().enumerate() {
-        stop_if_interrupted()?;
+        interrupt::check()?;
         let pair = args.eyes.pair(head);
         let start = Instant::now();
         method.render(&mut renderer, &scene, &pair, &mut frame)?;
         gl.finish();
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
-        let eyes = Eye::BOTH.map(|eye| stage::eye_image(&frame, eye));
+        let eyes = Eye::BOTH.map(|eye| picture::eye_image(&frame, eye));
         let second = pair.dominant.other();
         let mut quality = None;
         let mut truth_image = None;
         if let Some(truth) = &mut truth {
             truth.render(&mut renderer, &scene, &pair, &mut frame)?;
-            let real = stage::eye_image(&frame, second);
+            let real = picture::eye_image(&frame, second);
             quality = Some([
                 Quality::of(&eyes[second.index()], &real, Channels::Rgb)?,
                 Quality::of(&eyes[pair.dominant.index()], &real, Channels::Rgb)?,
@@ -170,7 +178,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
         let stem = if heads.len() > 1 { format!("{}-{i:04}", scene.name) } else { scene.name.clone() };
         let mut pictures = Vec::new();
         for &output in &args.outputs {
-            let path = stage::picture_path(&args.out, &stem, output.name());
+            let path = eyes::picture_path(&args.out, &stem, output.name());
             picture::save_color(&path, &compose(output, &eyes, second, truth_image.as_ref())?)?;
             pictures.push(path);
         }
@@ -180,6 +188,25 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     }
     bar.finish_and_clear();
     print(args, &reports)
+}
+
+/// Says how many pictures will show nothing.
+fn warn_of_blank(
+    gl: &Rc<Context>,
+    args: &RenderArgs,
+    prepared: &mut PreparedScene,
+    heads: &[Pose],
+) -> anyhow::Result<()> {
+    let mut finder = BlankFinder::new(gl, &RenderSettings::default())?;
+    let mut blank = 0;
+    for &head in heads {
+        interrupt::check()?;
+        blank += usize::from(finder.is_blank(prepared, &args.eyes.pair(head))?);
+    }
+    if blank > 0 {
+        log::warn!("{blank} of {} frames of {} show nothing of it", heads.len(), prepared.scene.name);
+    }
+    Ok(())
 }
 
 fn compose(

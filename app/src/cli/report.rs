@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::bench::Results;
-use crate::files;
-use crate::report::bench::BenchReport;
+use yoro_files as files;
+use yoro_lab::bench::Results;
+use yoro_lab::report::bench::BenchReport;
 
 /// Turn results of `yoro bench` into a self-contained page, Markdown tables and figures
 #[derive(clap::Args, Clone, Debug)]

@@ -1,25 +1,25 @@
 //! `yoro run`: the main job on the built-in scenes, with pictures, figures and a report page.
 
-use std::path::PathBuf;
-use std::rc::Rc;
+use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
 use image::RgbImage;
-use indicatif::ProgressBar;
 
-use crate::bench::Entrant;
-use crate::cli::stage::{self, EyeArgs, Stage, StereoArgs};
-use crate::cli::{GlArgs, machine, progress_bar, stop_if_interrupted};
-use crate::eyes::{Eye, EyePair};
-use crate::files;
-use crate::gl::Context;
-use crate::metrics::stats::{Summary, median};
-use crate::picture;
-use crate::render::RenderSettings;
-use crate::report::{Cost, MethodCost, Parameter, PassTime, RunReport, SceneReport, Viewpoint};
-use crate::scene::builtin::{self, BUILTINS};
-use crate::stereo::{Method, StereoFrame};
-use crate::synthesis::Pipeline;
+use crate::cli::args::GlArgs;
+use crate::cli::choices;
+use crate::cli::eyes::{self, EyeArgs, StereoArgs};
+use crate::cli::machine;
+use crate::cli::outputs;
+use crate::cli::terminal::progress_bar;
+use yoro::eyes::Eye;
+use yoro::gl::Context;
+use yoro::synthesis::Pipeline;
+use yoro_files as files;
+use yoro_lab::machine::Parameter;
+use yoro_lab::picture;
+use yoro_lab::report::RunReport;
+use yoro_lab::run::{Candidate, Plan};
+use yoro_render::stereo::Method;
+use yoro_scenes::{self, BUILTINS};
 
 /// Pictures of the report and of the output folder come from this many viewpoints of each scene.
 const PICTURED: usize = 1;
@@ -36,13 +36,13 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]
     rounds: u32,
     /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
-    #[arg(long = "method", value_enum, value_delimiter = ',', default_values_t = [Method::Yoro], value_name = "METHODS")]
+    #[arg(long = "method", value_parser = choices::method(), value_delimiter = ',', default_value = Method::Yoro.name(), value_name = "METHODS")]
     methods: Vec<Method>,
     /// Pipelines to compare
-    #[arg(long, value_enum, value_delimiter = ',', default_values_t = Pipeline::ALL)]
+    #[arg(long, value_parser = choices::pipeline(), value_delimiter = ',', default_values = Pipeline::ALL.map(Pipeline::name))]
     pipelines: Vec<Pipeline>,
     /// Seed of the built-in scenes
-    #[arg(long, default_value_t = builtin::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
     seed: u64,
     /// Folder for the report and the pictures
     #[arg(long, default_value = "out", value_name = "FOLDER")]
@@ -58,15 +58,6 @@ pub struct RunArgs {
     gl: GlArgs,
 }
 
-/// A method under measurement.
-struct Measured {
-    name: &'static str,
-    entrant: Entrant,
-    milliseconds: Vec<f64>,
-    /// Samples of each pass, in the order of the first frame.
-    passes: Vec<(&'static str, Vec<f64>)>,
-}
-
 /// Measures, writes the report and prints its table.
 pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
@@ -74,19 +65,26 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
         given => given.to_vec(),
     };
-    stage::check_scenes(&names, args.seed)?;
+    yoro_scenes::check(&names, args.seed)?;
+    let place = |name: &str| {
+        let is_builtin = BUILTINS.iter().any(|b| b.name == name);
+        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+        let stem = if is_builtin { name } else { &stem };
+        (eyes::picture_path(&args.out, stem, Method::Conventional.name()), format!("pictures of {name}"))
+    };
+    let inputs = names.iter().map(Path::new);
+    outputs::check(inputs, names.iter().map(|name| place(name)))?;
     files::create_folder(&args.out)?;
     let headless = args.gl.open()?;
     let gl = headless.gl();
     for method in &args.methods {
         method.supported(gl.capabilities())?;
     }
-    // Per scene: preparing, a warm-up, the timed rounds, the passes.
-    let steps = names.len() as u64 * (3 + u64::from(args.viewpoints) * u64::from(args.rounds));
-    let bar = progress_bar(steps);
+    let plan = plan(args);
+    let bar = progress_bar(names.len() as u64 * plan.steps());
     let mut scenes = Vec::new();
     for name in &names {
-        scenes.push(measure_scene(args, gl, name, &bar)?);
+        scenes.push(plan.measure(gl, name, &bar)?);
     }
     bar.finish_and_clear();
     let report = RunReport {
@@ -108,143 +106,33 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn measure_scene(
-    args: &RunArgs,
-    gl: &Rc<Context>,
-    name: &str,
-    bar: &ProgressBar,
-) -> anyhow::Result<SceneReport> {
-    bar.set_message(format!("{name}: preparing"));
-    stop_if_interrupted()?;
-    let settings = RenderSettings::default();
-    let scene = stage::load_scene(name, args.seed, None)?;
-    let keys: Vec<usize> = stage::spread(scene.viewpoints.len(), args.viewpoints as usize);
-    let pairs: Vec<EyePair> = keys.iter().map(|&k| args.eyes.pair(scene.viewpoints[k].pose())).collect();
-    let mut stage = Stage::new(gl, scene, &settings)?;
-    let options = |pipeline| args.stereo.options_of(pipeline);
-    let truth_options = options(Pipeline::default());
-    let entrant = |name: &'static str, method, options: &_| -> anyhow::Result<Measured> {
-        Ok(Measured::new(name, Entrant::new(gl, method, &settings, options)?))
-    };
-    let mut entrants = vec![entrant(Method::Conventional.name(), Method::Conventional, &truth_options)?];
+/// The methods to be measured, each once.
+fn plan(args: &RunArgs) -> Plan {
+    let mut candidates = Vec::new();
     for (i, &method) in args.methods.iter().enumerate() {
         match method {
             _ if args.methods[..i].contains(&method) => {}
             // Always there, as the reference.
             Method::Conventional => {}
-            Method::Yoro => {
-                for &pipeline in &args.pipelines {
-                    entrants.push(entrant(pipeline.name(), Method::Yoro, &options(pipeline))?);
-                }
-            }
-            _ => entrants.push(entrant(method.name(), method, &truth_options)?),
-        }
-    }
-    let mut frame = StereoFrame::new(gl, args.eyes.size)?;
-    bar.inc(1);
-
-    bar.set_message(format!("{name}: warming up"));
-    for entrant in &mut entrants {
-        stop_if_interrupted()?;
-        entrant.entrant.render(&mut stage, &pairs[0], &mut frame)?;
-    }
-    bar.inc(1);
-
-    let mut viewpoints = Vec::new();
-    for round in 0..args.rounds {
-        bar.set_message(format!("{name}: round {} of {}", round + 1, args.rounds));
-        for (i, pair) in pairs.iter().enumerate() {
-            let mut images: Vec<(String, [RgbImage; 2])> = Vec::new();
-            for e in 0..entrants.len() {
-                stop_if_interrupted()?;
-                // Every method comes first, second, ... equally often.
-                let turn = (e + i + round as usize) % entrants.len();
-                let entrant = &mut entrants[turn];
-                let time = entrant.entrant.render(&mut stage, pair, &mut frame)?;
-                entrant.milliseconds.push(time.wall.as_secs_f64() * 1e3);
-                if round == 0 {
-                    images.push((entrant.name.into(), Eye::BOTH.map(|eye| stage::eye_image(&frame, eye))));
-                }
-            }
-            if round == 0 {
-                viewpoints.push(measure_viewpoint(
-                    format!("viewpoint {}", keys[i]),
-                    args,
-                    images,
-                    &entrants,
-                )?);
-            }
-            bar.inc(1);
-        }
-    }
-
-    bar.set_message(format!("{name}: timing passes"));
-    for _ in 0..args.rounds {
-        for entrant in &mut entrants {
-            stop_if_interrupted()?;
-            let times = entrant.entrant.pass_times(&mut stage, &pairs[0], &mut frame)?;
-            entrant.add_passes(times);
-        }
-    }
-    bar.inc(1);
-
-    let mut costs = entrants.into_iter().map(Measured::cost).collect::<anyhow::Result<Vec<_>>>()?.into_iter();
-    let conventional = costs.next().context("there is always the conventional method")?.cost;
-    Ok(SceneReport {
-        name: stage.scene.name.clone(),
-        stands_for: BUILTINS.iter().find(|b| b.name == name).map_or("", |b| b.stands_for).into(),
-        triangles: stage.scene.triangle_count() as u64,
-        conventional,
-        methods: costs.collect(),
-        viewpoints,
-    })
-}
-
-impl Measured {
-    fn new(name: &'static str, entrant: Entrant) -> Measured {
-        Measured { name, entrant, milliseconds: Vec::new(), passes: Vec::new() }
-    }
-
-    /// Adds the pass times of one frame.
-    fn add_passes(&mut self, times: Vec<(&'static str, f64)>) {
-        for (name, milliseconds) in times {
-            match self.passes.iter_mut().find(|(n, _)| *n == name) {
-                Some((_, samples)) => samples.push(milliseconds),
-                None => self.passes.push((name, vec![milliseconds])),
+            Method::Yoro => candidates.extend(args.pipelines.iter().map(|&pipeline| Candidate {
+                name: pipeline.name(),
+                method,
+                options: args.stereo.options_of(pipeline),
+            })),
+            _ => {
+                let options = args.stereo.options_of(Pipeline::default());
+                candidates.push(Candidate { name: method.name(), method, options });
             }
         }
     }
-
-    fn cost(self) -> anyhow::Result<MethodCost> {
-        let frame_ms = Summary::of(&self.milliseconds).context("at least one frame was timed")?;
-        let pass = |(name, samples): (&str, Vec<f64>)| PassTime {
-            name: name.into(),
-            ms: median(&samples).unwrap_or(0.0),
-        };
-        let passes = self.passes.into_iter().map(pass).collect();
-        Ok(MethodCost { method: self.name.into(), cost: Cost { frame_ms, passes } })
+    Plan {
+        eyes: args.eyes.options(),
+        conventional: args.stereo.options_of(Pipeline::default()),
+        candidates,
+        viewpoints: args.viewpoints as usize,
+        rounds: args.rounds,
+        seed: args.seed,
     }
-}
-
-/// Puts the images of one viewpoint into the order of the entrants and measures them.
-fn measure_viewpoint(
-    name: String,
-    args: &RunArgs,
-    mut images: Vec<(String, [RgbImage; 2])>,
-    entrants: &[Measured],
-) -> anyhow::Result<Viewpoint> {
-    let other = args.eyes.dominant.other();
-    let position = |name: &str| entrants.iter().position(|e| e.name == name);
-    images.sort_by_key(|(name, _)| position(name));
-    let mut images = images.into_iter();
-    let (_, [left, right]) = images.next().context("the conventional method comes first")?;
-    let (dominant, truth) = match args.eyes.dominant {
-        Eye::Left => (left, right),
-        Eye::Right => (right, left),
-    };
-    let synthesized =
-        images.map(|(name, [left, right])| (name, if other == Eye::Left { left } else { right })).collect();
-    Ok(Viewpoint::measure(name, args.eyes.dominant, dominant, truth, synthesized)?)
 }
 
 fn write_pictures(args: &RunArgs, report: &RunReport) -> anyhow::Result<()> {
@@ -252,7 +140,7 @@ fn write_pictures(args: &RunArgs, report: &RunReport) -> anyhow::Result<()> {
     for scene in &report.scenes {
         for viewpoint in scene.viewpoints.iter().take(PICTURED) {
             let save = |kind: &str, image: &RgbImage| {
-                picture::save_color(&stage::picture_path(&args.out, &scene.name, kind), image)
+                picture::save_color(&eyes::picture_path(&args.out, &scene.name, kind), image)
             };
             let pair = |other: &RgbImage| match dominant {
                 Eye::Left => picture::side_by_side(&viewpoint.dominant, other),

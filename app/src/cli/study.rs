@@ -5,14 +5,13 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
-use clap::ValueEnum as _;
 
-use super::machine;
-use crate::files;
-use crate::scene::builtin::{BUILTINS, DEFAULT_SEED};
-use crate::stereo::Method;
-use crate::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
-use crate::viewer::Settings;
+use crate::cli::machine;
+use yoro_files as files;
+use yoro_lab::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
+use yoro_render::stereo::Method;
+use yoro_scenes::{BUILTINS, DEFAULT_SEED};
+use yoro_viewer::Settings;
 
 /// Plan a user study, collect its ratings, analyse them
 #[derive(clap::Args, Clone, Debug)]
@@ -37,7 +36,7 @@ struct PlanArgs {
     /// Methods to be compared, with commas between
     #[arg(long, value_delimiter = ',', default_value = "conventional,yoro", value_name = "METHOD,...")]
     methods: Vec<String>,
-    /// A setting of the viewer for one of the methods, such as paper:pipeline=paper; a name that is no stereo method
+    /// A setting of the viewer for one of the methods, such as paper:pipeline=paper; a name that is not a stereo method
     /// needs one of method=
     #[arg(long = "set", value_name = "METHOD:KEY=VALUE")]
     settings: Vec<String>,
@@ -184,7 +183,7 @@ fn conditions(names: &[String], settings: &[String]) -> anyhow::Result<Vec<Condi
     for setting in settings {
         let Some((method, pair)) = setting.split_once(':').filter(|(_, pair)| pair.contains('=')) else {
             bail!(
-                "\"{setting}\" is no setting of a method: write METHOD:KEY=VALUE, such as paper:pipeline=paper"
+                "\"{setting}\" is not a setting of a method: write METHOD:KEY=VALUE, such as paper:pipeline=paper"
             );
         };
         ensure!(names.iter().any(|name| name == method), "{setting}: {method} is not among the --methods");
@@ -192,7 +191,7 @@ fn conditions(names: &[String], settings: &[String]) -> anyhow::Result<Vec<Condi
     }
     let condition = |name: &String| {
         let mut settings = BTreeMap::new();
-        if Method::from_str(name, false).is_ok() {
+        if Method::ALL.iter().any(|method| method.name() == name) {
             settings.insert("method".to_owned(), name.clone());
         }
         // What the viewer would refuse is told now.
@@ -205,7 +204,7 @@ fn conditions(names: &[String], settings: &[String]) -> anyhow::Result<Vec<Condi
         }
         ensure!(
             settings.contains_key("method"),
-            "{name} is no stereo method: add --set {name}:method=yoro, or another method and more settings"
+            "{name} is not a stereo method: add --set {name}:method=yoro, or another method and more settings"
         );
         Ok(Condition { name: name.clone(), settings })
     };

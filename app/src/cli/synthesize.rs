@@ -2,20 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, anyhow, bail, ensure};
 use image::{GrayImage, Luma};
 
-use crate::cli::{
-    GlArgs, PatcherArgs, SynthesisArgs, parse_fov, parse_ipd, parse_positive, progress_bar,
-    stop_if_interrupted,
+use crate::cli::args::{
+    GlArgs, PatcherArgs, SynthesisArgs, parse_finite, parse_fov, parse_ipd, parse_positive,
 };
-use crate::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
-use crate::files;
-use crate::inpaint::{Patcher, Reprojected};
-use crate::picture::{self, DepthImage, DepthSamples};
-use crate::synthesis::{Offline, SourceMapEntry, SynthesizedImage};
-
-pub(super) use crate::picture::rgb_image;
+use crate::cli::outputs;
+use crate::cli::terminal::progress_bar;
+use yoro::eyes::{DEFAULT_IPD, DepthConvention, DepthRange, Eye, Warp};
+use yoro::synthesis::{Nearness, Offline, SourceMapEntry, StoredDepth, StoredDepthError, SynthesizedImage};
+use yoro_files as files;
+use yoro_lab::inpaint::{Patcher, Reprojected};
+use yoro_lab::interrupt;
+use yoro_lab::picture::{self, DepthImage, DepthSamples, rgb_image};
 
 /// What the values of a depth image mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -72,16 +72,16 @@ pub struct SynthesizeArgs {
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive, allow_negative_numbers = true)]
     metres_at_white: f32,
     /// disparity: pixels at value 0
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, value_parser = parse_finite, allow_negative_numbers = true)]
     disparity_offset: f32,
     /// disparity: pixels per unit (a PNG's largest value is 1)
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, value_parser = parse_finite, allow_negative_numbers = true)]
     disparity_scale: f32,
     /// Vertical field of view of the images in degrees
     #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
     fov_y: f32,
     /// Distance between the eyes in metres
-    #[arg(long, default_value_t = 0.063, value_parser = parse_ipd, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = DEFAULT_IPD, value_parser = parse_ipd, allow_negative_numbers = true)]
     ipd: f32,
     /// Also write the mask of holes as PNG: black where nothing of the source is seen
     #[arg(long, value_name = "FILE|FOLDER")]
@@ -110,18 +110,62 @@ struct Job {
     source: Option<PathBuf>,
 }
 
+impl SourceEye {
+    /// The eyes to synthesize, and the share of the IPD that each is away.
+    fn targets(self) -> &'static [(Eye, f64)] {
+        match self {
+            SourceEye::Right => &[(Eye::Left, 1.0)],
+            SourceEye::Left => &[(Eye::Right, 1.0)],
+            SourceEye::Center => &[(Eye::Left, 0.5), (Eye::Right, 0.5)],
+        }
+    }
+
+    /// Where what belongs to an eye goes.
+    fn place(self, path: &Path, eye: Eye) -> PathBuf {
+        match self {
+            SourceEye::Center => {
+                let extension = path.extension().unwrap_or_default().to_string_lossy();
+                path.with_extension(format!("{}.{extension}", eye.name()))
+            }
+            _ => path.to_owned(),
+        }
+    }
+}
+
+impl Job {
+    /// All files that will be written, and what they are.
+    fn outputs(&self, dominant: SourceEye) -> Vec<(PathBuf, String)> {
+        let kinds = [
+            ("other eye", Some(&self.out)),
+            ("mask", self.mask.as_ref()),
+            ("disparity", self.disparity.as_ref()),
+            ("source columns", self.source.as_ref()),
+        ];
+        let given = kinds.into_iter().filter_map(|(kind, path)| Some((kind, path?)));
+        let what = |kind: &str| format!("the {kind} of {}", self.color.display());
+        given
+            .flat_map(|(kind, path)| {
+                let eyes = dominant.targets().iter();
+                eyes.map(move |(eye, _)| (dominant.place(path, *eye), what(kind)))
+            })
+            .collect()
+    }
+}
+
 /// Synthesizes one image or a folder of them.
 pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
     ensure!(args.near < args.far, "--near {} must be less than --far {}", args.near, args.far);
     args.patcher.check()?;
     let jobs = jobs(args)?;
+    let inputs = jobs.iter().flat_map(|job| [job.color.as_path(), job.depth.as_path()]);
+    outputs::check(inputs, jobs.iter().flat_map(|job| job.outputs(args.dominant)))?;
     let headless = args.gl.open()?;
     let mut offline = Offline::new(headless.gl(), &args.synthesis.options())?;
     let mut patcher = args.patcher.create(headless.gl())?;
     let bar = progress_bar(jobs.len() as u64);
     let mut written = Vec::new();
     for job in &jobs {
-        stop_if_interrupted()?;
+        interrupt::check()?;
         bar.set_message(job.color.display().to_string());
         written = run_job(args, job, &mut offline, &mut patcher)?;
         bar.inc(1);
@@ -211,40 +255,24 @@ fn run_job(
             job.depth.display()
         );
     }
-    let (nearness, law) = decode_depth(args, &depth.image, depth.samples, &job.depth)?;
+    let nearness = decode_depth(args, &depth.image, depth.samples, &job.depth)?;
     let rgba: Vec<u8> = color.rows().rev().flatten().flat_map(|p| [p[0], p[1], p[2], 255]).collect();
     let size = [color.width(), color.height()];
-    let targets: &[(Eye, f64)] = match args.dominant {
-        SourceEye::Right => &[(Eye::Left, 1.0)],
-        SourceEye::Left => &[(Eye::Right, 1.0)],
-        SourceEye::Center => &[(Eye::Left, 0.5), (Eye::Right, 0.5)],
-    };
     let mut written = Vec::new();
-    for &(eye, share) in targets {
-        let sign = -eye.side() as f64 * share;
-        let warp = Warp {
-            source_size: size,
-            target_size: size,
-            law: DisparityLaw { offset: law.offset * sign, scale: law.scale * sign },
-            row_offset: 0,
-            target_eye: eye,
-            convention: DepthConvention::Reversed,
-        };
-        let result = offline.run(&rgba, &nearness, &warp)?;
-        let named = |path: &Path| match args.dominant {
-            SourceEye::Center => {
-                let extension = path.extension().unwrap_or_default().to_string_lossy();
-                path.with_extension(format!("{}.{extension}", eye.name()))
-            }
-            _ => path.to_owned(),
-        };
+    for &(eye, share) in args.dominant.targets() {
+        let warp = nearness.warp(size, eye, share);
+        let result = offline.run(&rgba, &nearness.values, &warp)?;
+        let named = |path: &Path| args.dominant.place(path, eye);
         let entries = entries(&result, &warp);
         let map = |value: fn(&SourceMapEntry) -> f32| {
             DepthImage::from_fn(size[0], size[1], |x, y| Luma([value(&entries[(y * size[0] + x) as usize])]))
         };
         written.push(named(&job.out));
         let image = match patcher {
-            Some(patcher) => patcher.patch(&Reprojected::from_synthesis(&result, &warp)?)?.image,
+            Some(patcher) => {
+                let patched = Reprojected::from_synthesis(&result, &warp).and_then(|r| patcher.patch(&r));
+                patched.with_context(|| format!("cannot patch {}", job.color.display()))?.image
+            }
             None => rgb_image(&result.rgba, size),
         };
         picture::save_color(&named(&job.out), &image)?;
@@ -270,56 +298,45 @@ fn entries(result: &SynthesizedImage, warp: &Warp) -> Vec<SourceMapEntry> {
     rows.flat_map(|row| (0u32..).zip(row).map(|(x, &entry)| SourceMapEntry::decode(entry, x, warp))).collect()
 }
 
-/// Nearness from 0 (infinitely far, or the law's offset) to 1, rows from the bottom, and the disparity in pixels
-/// that it stands for.
+/// What the values of a depth image stand for, rows from the bottom.
 fn decode_depth(
     args: &SynthesizeArgs,
     image: &DepthImage,
     samples: DepthSamples,
     path: &Path,
-) -> anyhow::Result<(Vec<f32>, DisparityLaw)> {
+) -> anyhow::Result<Nearness> {
     let focal_length = 0.5 * image.height() as f64 / (0.5 * args.fov_y as f64).tan();
     let reach = focal_length * args.ipd as f64;
-    let stored = image.rows().rev().flatten().map(|p| p.0[0].powf(args.depth_gamma));
+    let stored: Vec<f32> = image.rows().rev().flatten().map(|p| p.0[0].powf(args.depth_gamma)).collect();
+    ensure!(
+        !stored.iter().any(|v| v.is_nan()),
+        "{} has negative values, of which no power can be taken: leave --depth-gamma out",
+        path.display()
+    );
     let range = |convention| DepthRange { near: args.near, far: args.far, convention };
-    let (values, law): (Vec<f32>, _) = match args.depth_encoding {
-        DepthEncoding::StandardZ => {
-            let (c, m) = range(DepthConvention::Reversed).inverse_distance_law();
-            (stored.map(|v| 1.0 - v).collect(), DisparityLaw { offset: reach * c, scale: reach * m })
-        }
-        DepthEncoding::ReversedZ => {
-            let (c, m) = range(DepthConvention::Reversed).inverse_distance_law();
-            (stored.collect(), DisparityLaw { offset: reach * c, scale: reach * m })
-        }
-        DepthEncoding::Metres => {
-            let unit = match samples {
+    let encoding = match args.depth_encoding {
+        DepthEncoding::StandardZ => StoredDepth::Window(range(DepthConvention::Standard)),
+        DepthEncoding::ReversedZ => StoredDepth::Window(range(DepthConvention::Reversed)),
+        DepthEncoding::Metres => StoredDepth::Distance {
+            unit: match samples {
                 DepthSamples::Normalized { .. } => args.metres_at_white,
                 DepthSamples::Float => 1.0,
-            };
-            // Zero marks "no depth" in many depth images: infinitely far.
-            let inverse = |v: f32| if v > 0.0 { 1.0 / (v * unit).max(1e-3) } else { 0.0 };
-            (stored.map(inverse).collect(), DisparityLaw { offset: 0.0, scale: reach })
-        }
+            },
+        },
         DepthEncoding::Disparity => {
             let (offset, scale) = (args.disparity_offset as f64, args.disparity_scale as f64);
             ensure!(
                 scale >= 0.0,
                 "--disparity-scale {scale} is negative: larger values must be nearer; invert the depth image"
             );
-            (stored.collect(), DisparityLaw { offset, scale })
+            StoredDepth::Disparity { offset, scale }
         }
     };
-    let largest = values.iter().copied().fold(0.0, f32::max);
-    let smallest = values.iter().copied().fold(0.0, f32::min);
-    if !largest.is_finite() || smallest < 0.0 {
-        bail!(
+    encoding.decode(stored.into_iter(), reach).map_err(|error| match error {
+        StoredDepthError::Range { smallest, largest } => anyhow!(
             "{} has values outside of what its encoding allows ({smallest} to {largest}): check --depth-encoding and --depth-gamma",
             path.display()
-        );
-    }
-    if largest <= 1.0 {
-        return Ok((values, law));
-    }
-    let law = DisparityLaw { offset: law.offset, scale: law.scale * largest as f64 };
-    Ok((values.into_iter().map(|v| v / largest).collect(), law))
+        ),
+        error => anyhow!("{}: {error}: check --depth-encoding and --depth-gamma", path.display()),
+    })
 }

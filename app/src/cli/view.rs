@@ -6,12 +6,13 @@ use std::time::Duration;
 use anyhow::bail;
 use glam::{EulerRot, Quat};
 
-use crate::cli::synthesize::rgb_image;
-use crate::cli::{GlArgs, SettingsArgs, progress_bar, stop_if_interrupted};
-use crate::files;
-use crate::gl::{Destination, Filter, Format, RenderTarget};
-use crate::picture::{self, PictureError};
-use crate::viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
+use crate::cli::args::{self, GlArgs, SettingsArgs};
+use crate::cli::terminal::progress_bar;
+use yoro::gl::{Destination, Filter, Format, RenderTarget};
+use yoro_files as files;
+use yoro_lab::interrupt;
+use yoro_lab::picture::{self, PictureError, rgb_image};
+use yoro_viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
 
 /// The refresh rate of the imagined display.
 const REFRESH_HZ: f32 = 60.0;
@@ -36,7 +37,7 @@ pub struct ViewArgs {
     #[arg(long, default_value = "2340x1080", value_parser = parse_screen, value_name = "WxH")]
     screen: [u32; 2],
     /// The screen's pixels per inch
-    #[arg(long, default_value_t = 420.0, value_parser = super::parse_positive)]
+    #[arg(long, default_value_t = 420.0, value_parser = args::parse_positive)]
     dpi: f32,
     /// The head's turn to the left in degrees
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
@@ -100,7 +101,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     } else {
         let bar = progress_bar(FRAMES as u64);
         while viewer.viewer().scene_state() != SceneState::Ready {
-            stop_if_interrupted()?;
+            interrupt::check()?;
             viewer.viewer_mut().poll_scene();
             if viewer.viewer().scene_state() == SceneState::Failed {
                 bail!(viewer.viewer().failure().unwrap_or_default().to_owned());
@@ -108,7 +109,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
             std::thread::sleep(Duration::from_millis(5));
         }
         for _ in 0..FRAMES {
-            stop_if_interrupted()?;
+            interrupt::check()?;
             frame(&mut viewer)?;
             bar.inc(1);
         }

@@ -7,17 +7,20 @@ use std::time::{Duration, Instant};
 use anyhow::{bail, ensure};
 use serde::Serialize;
 
-use crate::cli::{GlArgs, SettingsArgs, interrupted, progress_bar};
-use crate::eyes::{Eye, EyePair};
-use crate::files;
-use crate::gl::Context;
-use crate::metrics::stats::median;
-use crate::picture;
-use crate::platform::openxr::runtime::{self, NoBroker, Place, Runtime};
-use crate::platform::openxr::{Capture, Description, Frame, HeadlessGraphics, Headset, Options, Step};
-use crate::stereo::Method;
-use crate::telemetry::DeviceState;
-use crate::viewer::{SceneState, Settings, Viewer};
+use crate::cli::args::{GlArgs, SettingsArgs};
+use crate::cli::choices;
+use crate::cli::terminal::progress_bar;
+use yoro::eyes::{Eye, EyePair};
+use yoro_context::HeadlessGraphics;
+use yoro_files as files;
+use yoro_lab::interrupt;
+use yoro_lab::picture;
+use yoro_render::stereo::Method;
+use yoro_viewer::openxr::runtime::{self, NoBroker, Place, Runtime};
+use yoro_viewer::openxr::{Capture, Description, Frame, Headset, Options, Step};
+use yoro_viewer::telemetry::DeviceState;
+use yoro_viewer::telemetry::stats::median;
+use yoro_viewer::{SceneState, Settings, Viewer};
 
 /// The pause before a runtime that wants no frame is asked again.
 const PAUSE: Duration = Duration::from_millis(5);
@@ -36,7 +39,7 @@ pub struct XrArgs {
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "N")]
     frames: Option<u32>,
     /// The stereo methods, one after the other with --frames [default: yoro]
-    #[arg(long = "method", value_enum, value_delimiter = ',', value_name = "METHODS")]
+    #[arg(long = "method", value_parser = choices::method(), value_delimiter = ',', value_name = "METHODS")]
     methods: Vec<Method>,
     /// Write the last frame of each method, as the runtime gets it, to this folder
     #[arg(long, value_name = "FOLDER", requires = "frames")]
@@ -172,20 +175,23 @@ pub fn run(args: &XrArgs) -> anyhow::Result<()> {
     viewer.attach(gl.clone())?;
     let graphics = HeadlessGraphics::new(&headless)?;
     let options = Options { mono: args.mono };
-    let mut headset = Headset::open(runtime, &graphics, gl, &viewer, options)?;
-    let run = show(args, &graphics, gl, &mut headset, &mut viewer);
+    let mut headset = Headset::open(runtime, &graphics, gl, viewer, options)?;
+    let run = show(args, &graphics, &mut headset);
     let summary = run.map(|(methods, empty_frames)| XrSummary {
         found,
         description: headset.description().clone(),
-        scene: viewer.scene_name().to_owned(),
+        scene: headset.viewer().scene_name().to_owned(),
         states: headset.states().to_vec(),
         restarts: headset.restarts(),
         empty_frames,
         methods,
     });
     // What has framebuffers goes while the context is current.
-    drop((headset, viewer));
+    drop(headset);
     let summary = summary?;
+    if let Some(errors) = gl.take_errors() {
+        bail!("the GL driver reports {errors}: please report this as a bug");
+    }
     if args.json {
         println!("{}", serde_json::to_string_pretty(&summary)?);
     } else {
@@ -197,39 +203,33 @@ pub fn run(args: &XrArgs) -> anyhow::Result<()> {
 fn show(
     args: &XrArgs,
     graphics: &HeadlessGraphics,
-    gl: &Context,
     headset: &mut Headset,
-    viewer: &mut Viewer,
 ) -> anyhow::Result<(Vec<MethodSummary>, u32)> {
-    let mut methods = if args.methods.is_empty() { vec![viewer.method()] } else { args.methods.clone() };
+    let mut methods =
+        if args.methods.is_empty() { vec![headset.viewer().method()] } else { args.methods.clone() };
     if args.frames.is_none() {
         methods.truncate(1);
     }
     let mut waiting = methods.clone().into_iter();
-    let mut method = waiting.next().unwrap_or(viewer.method());
+    let mut method = waiting.next().unwrap_or(headset.viewer().method());
     let bar = args.frames.map(|frames| progress_bar(u64::from(frames) * methods.len() as u64));
     let (mut summaries, mut empty_frames) = (Vec::new(), 0);
     let mut collected = Collected::default();
     let (mut is_over, mut last_frame) = (false, Instant::now());
     loop {
-        if (interrupted() || is_over) && !headset.is_exiting() {
+        if (interrupt::requested() || is_over) && !headset.is_exiting() {
             headset.request_exit();
         }
-        let frame = match headset.step(graphics, viewer)? {
+        let frame = match headset.step(graphics)? {
             Step::Ended => break,
             Step::Idle => {
-                if args.frames.is_some() && !is_over && last_frame.elapsed() > PATIENCE {
-                    bail!(
-                        "the OpenXR runtime has wanted no frame for {} s: put the headset on, or look into its log",
-                        PATIENCE.as_secs()
-                    );
-                }
-                std::thread::sleep(PAUSE);
+                pause(last_frame, args.frames.is_some() && !is_over)?;
                 continue;
             }
             Step::Frame(frame) => frame,
         };
         last_frame = Instant::now();
+        let viewer = headset.viewer_mut();
         let Some(report) = frame.report else {
             empty_frames += 1;
             continue;
@@ -268,6 +268,7 @@ fn show(
         match waiting.next() {
             Some(next) => {
                 method = next;
+                let viewer = headset.viewer_mut();
                 viewer.configure(Settings { method, ..viewer.settings().clone() }, &[])?;
             }
             None => is_over = true,
@@ -279,18 +280,31 @@ fn show(
     if collected.frames > 0 {
         summaries.push(collected.summary(method));
     }
-    if let Some(frames) = args.frames
-        && !(summaries.len() == methods.len() && summaries.iter().all(|s| s.frames >= frames))
-    {
-        match interrupted() {
-            true => bail!("interrupted before the last frame"),
-            false => bail!("the OpenXR runtime has ended the session before the last frame"),
-        }
-    }
-    if let Some(errors) = gl.take_errors() {
-        bail!("the GL driver reports {errors}: please report this as a bug");
-    }
+    check_end(args.frames, methods.len(), &summaries)?;
     Ok((summaries, empty_frames))
+}
+
+/// Waits for a runtime that wants no frame; not for ever, if frames are wanted.
+fn pause(last_frame: Instant, wanted: bool) -> anyhow::Result<()> {
+    ensure!(
+        !wanted || last_frame.elapsed() <= PATIENCE,
+        "the OpenXR runtime has wanted no frame for {} s: put the headset on, or look into its log",
+        PATIENCE.as_secs()
+    );
+    std::thread::sleep(PAUSE);
+    Ok(())
+}
+
+/// Refuses a session that has ended before each of `methods` methods had its frames.
+fn check_end(frames: Option<u32>, methods: usize, summaries: &[MethodSummary]) -> anyhow::Result<()> {
+    let Some(frames) = frames else { return Ok(()) };
+    if summaries.len() == methods && summaries.iter().all(|s| s.frames >= frames) {
+        return Ok(());
+    }
+    match interrupt::requested() {
+        true => bail!("interrupted before the last frame"),
+        false => bail!("the OpenXR runtime has ended the session before the last frame"),
+    }
 }
 
 fn write(folder: &Path, method: Method, capture: &Capture) -> anyhow::Result<Captured> {

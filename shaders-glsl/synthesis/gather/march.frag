@@ -2,119 +2,94 @@
 // Gather, pass 3: for each target pixel, walk along the source row from the nearest candidate outwards.
 //
 // The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
-// fetched with linear filtering. A silhouette that crosses the pixel is blended over what lies behind. Where the row jumps over the pixel from a farther to a nearer surface there is a
-// disocclusion: the farthest such jump is remembered and the hole is filled from its background side.
+// fetched with linear filtering. With SHORT_WAY nearly every pixel ends within a few cheap steps here, and only those
+// beside silhouettes go on in include/march.glsl. CPU rasterizers run both sides of an `if` and pay for every fetch in
+// the text: there all pixels take the long way.
 
-#include "include/tiles.glsl"
-#include "include/fill.glsl"
+#include "include/march.glsl"
 
-uniform highp usampler2D span_map;
+TEXTURE(3) uniform highp usampler2D span_map;
 
 layout(location = 0) out vec4 color;
 #ifdef SOURCE_MAP
 layout(location = 1) out uint source_entry;
 #endif
 
+#ifdef SHORT_WAY
+// Steps of the short way: no more than a wave should wait for.
+const float SHORT_STEPS = 8.0;
+#endif
+
+int source_row() {
+    return int(clamp(gl_FragCoord.y - first_row, 0.0, float(source_size.y - 1)));
+}
+
+uint pixel_span() {
+    vec2 place = span_place.xy * gl_FragCoord.xy + span_place.zw;
+    if (PART) {
+        ivec2 last = (ivec2(target_size.x, source_size.y) - 1) / TILE;
+        return texelFetch(span_map, clamp(ivec2(place), ivec2(0), last), 0).r;
+    }
+    return textureLod(span_map, place, 0.0).r;
+}
+
+#ifdef SHORT_WAY
+// Depth at the middle of a whole forward column, which may lie beyond the borders.
+float depth_beyond(float x, int row) {
+    return depth_at(int(clamp(x, 0.0, float(source_size.x - 1))), row);
+}
+#endif
+
 void main() {
-    ivec2 pixel = target_pixel();
-    int row = pixel.y;
-    float target = float(pixel.x);
-    uint packed_span = texelFetch(span_map, pixel / TILE, 0).r;
-    vec2 span = unpack_interval(packed_span);
-
-    int last_column = source_size.x - 1;
-    // A hundredth of a pixel for rounding: a crossing that starts at the interval's end must not be missed.
-    int x = clamp(int(floor(target - span.y - 0.01)), 0, last_column);
-    int last = clamp(int(ceil(target - span.x)) + 1, 0, last_column);
-    if (packed_span == EMPTY_TILE) {
-        // Beyond one of the source's borders: nothing but its outermost column is there to fill from.
-        x = target < 0.5 * float(target_size.x) ? 0 : last_column;
-        last = x;
+    float origin = origins.x * gl_FragCoord.x + origins.y;
+    uint span = pixel_span();
+    float x = floor(origin - farthest - uintBitsToFloat(span));
+    Surface surface;
+#ifdef SHORT_WAY
+    // Where columns x and x + 1 land, relative to the pixel. Columns beyond the borders repeat them. A quarter of a
+    // column past the middle of x, fetches of four texels take x and x + 1, and those of one x; a quarter of a row
+    // past the row's middle, they take its row and the one above.
+    // A part's borders are not those of the texture.
+    vec2 at = vec2(columns.x * (x + 1.25) + columns.y, rows.x * (gl_FragCoord.y + 0.25) + rows.y);
+    vec2 depths;
+    if (PART) {
+        depths = vec2(depth_beyond(x, source_row()), depth_beyond(x + 1.0, source_row()));
+    } else {
+        vec4 quad = textureGather(depth_map, at);
+        depths = mirrored ? quad.zw : quad.wz;
     }
-    float source = -1.0;
-    float depth = 0.0;
-    int edge = -1;
-    float edge_displacement = 1e9;
-    float edge_depth = 0.0;
-    // The nearest silhouette beside the pixel: its column and depth, and how much of the pixel it covers.
-    int rim = 0;
-    float rim_depth = 0.0;
-    float coverage = 0.0;
-
-    float depth_a = depth_at(x, row);
-    float a = float(x) + displacement(depth_a);
-    if (x == 0 && a > target) {
-        // Left of everything: the border of the image is the only background there is.
-        source = a - target <= 0.5 ? 0.0 : -1.0;
-        depth = depth_a;
-        edge = 0;
-        edge_displacement = a;
-        edge_depth = depth_a;
-    }
-    for (++x; x <= last && source < 0.0; ++x) {
-        float depth_b = depth_at(x, row);
-        float b = float(x) + displacement(depth_b);
-        if (a <= target) {
-            float stretch = b - a;
-            if (b > target) {
-                if (stretch < MAX_STRETCH) {
-                    float t = (target - a) / stretch;
-                    source = float(x - 1) + t;
-                    depth = mix(depth_a, depth_b, t);
-                } else {
-                    if (b - target < 1.0 && coverage == 0.0) {
-                        rim = x;
-                        rim_depth = depth_b;
-                        coverage = 1.0 - (b - target);
-                    }
-                    if (target - a < 0.5) {
-                        source = float(x - 1);
-                        depth = depth_a;
-                    } else if (a - float(x - 1) < edge_displacement) {
-                        edge_displacement = a - float(x - 1);
-                        edge = x - 1;
-                        edge_depth = depth_a;
-                    }
-                }
-            } else if (target - a < 1.0 && stretch < 0.0 && coverage == 0.0) {
-                rim = x - 1;
-                rim_depth = depth_a;
-                coverage = 1.0 - (target - a);
-            }
-        }
+    float shift = x - origin;
+    float a = shift + law.y * depths.x;
+    shift += 1.0;
+    float b = shift + law.y * depths.y;
+    // On to the first pair that crosses the pixel, or has a silhouette within a pixel of it.
+    for (float limit = x + SHORT_STEPS; x < limit && b <= 0.0 && max(b, -1.0) >= a; x += 1.0) {
+        shift += 1.0;
+        at.x += columns.x;
+        float next = PART ? depth_beyond(x + 2.0, source_row()) : textureLod(depth_map, at, 0.0).r;
+        depths = vec2(depths.y, next);
         a = b;
-        depth_a = depth_b;
+        b = shift + law.y * depths.y;
     }
-    if (source < 0.0 && edge < 0) {
-        // Right of everything that the interval holds.
-        edge = last;
-        edge_depth = depth_a;
-        if (a <= target && target - a < 0.5) {
-            source = float(last);
-            depth = depth_a;
-        }
+    float stretch = b - a;
+    float t = -a / stretch;
+    surface = Surface(x + t, mix(depths.x, depths.y, t), false);
+    at = vec2(columns.x * (surface.source + 0.5) + columns.y, rows.x * gl_FragCoord.y + rows.y);
+    at.y = PART ? (float(source_origin.y + source_row()) + 0.5) * texel.y : at.y;
+    color = textureLod(color_map, at, 0.0);
+    float middle = 0.5 * float(source_size.x - 1);
+    if (!(a <= 0.0 && b > 0.0 && stretch < MAX_STRETCH && abs(surface.source - middle) <= middle)) {
+        color = march(origin, source_row(), span_steps(span), x, a, depths.x, surface);
     }
-
-    bool hole = source < 0.0;
-    if (hole) {
-        source = float(edge);
-        depth = edge_depth;
-    }
-    color = fill_hole(hole, color_at(source, row), target, edge, displacement(edge_depth), row);
-    // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
-    // it covers on average.
-    for (int i = 0; i < (coverage > 0.0 ? 1 : 0); ++i) {
-        color = mix(color, color_texel(rim, row), coverage);
-    }
-    if (coverage >= 0.5) {
-        source = float(rim);
-        depth = rim_depth;
-        hole = false;
-    }
+#else
+    int row = source_row();
+    float depth = depth_at(int(clamp(x, 0.0, float(source_size.x - 1))), row);
+    color = march(origin, row, span_steps(span), x, x - origin + law.y * depth, depth, surface);
+#endif
 #ifdef WRITE_DEPTH
-    gl_FragDepth = depth;
+    gl_FragDepth = surface.depth;
 #endif
 #ifdef SOURCE_MAP
-    source_entry = uint(source * FIXED + 0.5) | (hole ? HOLE : 0u);
+    source_entry = uint(surface.source * FIXED + 0.5) | (surface.hole ? HOLE : 0u);
 #endif
 }

@@ -1,11 +1,9 @@
 #version 310 es
-// Gather, pass 2: for each target tile, the interval of displacements of the source pixels that can land in it.
+// Gather, pass 2: for each target tile, where to look for the source pixels that land in it.
 
 #include "include/tiles.glsl"
 
-uniform highp usampler2D tile_map;
-// Displacement of the near plane: bounds how far away a source tile can be.
-uniform float near_displacement;
+TEXTURE(2) uniform highp usampler2D tile_map;
 
 layout(location = 0) out uint span;
 
@@ -16,16 +14,28 @@ void main() {
     int tiles = (source_size.x + TILE.x - 1) / TILE.x;
     int from = clamp(int(floor((first - near_displacement - 1.0) / float(TILE.x))) - 1, 0, tiles - 1);
     int to = clamp(int(floor((last - far_displacement + 1.0) / float(TILE.x))), 0, tiles - 1);
-    float low = 1e9;
-    float high = -1e9;
+    // In units of the tiles' intervals: the displacements that take source tile `from` just to the first and just to
+    // the last target column.
+    const int PITCH = TILE.x * int(TILE_UNITS);
+    int least = int(floor((first - 1.0 - far_displacement - float((from + 1) * TILE.x)) * TILE_UNITS));
+    int most = int(ceil((last + 1.0 - far_displacement - float(from * TILE.x)) * TILE_UNITS));
+    int low = 0xffff;
+    int high = 0;
     for (int s = from; s <= to; ++s) {
-        vec2 moved = unpack_interval(texelFetch(tile_map, ivec2(s, tile.y), 0).r);
-        float source_first = float(s * TILE.x);
-        float source_last = source_first + float(TILE.x);
-        if (source_last + moved.y >= first - 1.0 && source_first + moved.x <= last + 1.0) {
-            low = min(low, max(moved.x, first - source_last - 1.0));
-            high = max(high, min(moved.y, last - source_first + 1.0));
+        uint moved = texelFetch(tile_map, ivec2(s, tile.y), 0).r;
+        int lowest = max(int(moved & 0xffffu), least);
+        int highest = min(int(moved >> 16), most);
+        if (lowest <= highest) {
+            low = min(low, lowest);
+            high = max(high, highest);
         }
+        least -= PITCH;
+        most -= PITCH;
     }
-    span = high < low ? EMPTY_TILE : pack_interval(low, high);
+    if (high < low) {
+        // Beyond a border of the source: its outermost column is where to start.
+        low = high = 2 * tile.x * TILE.x < target_size.x ? 0xffff : 0;
+    }
+    // To the last candidate from the first, each rounded away, and one to close the last pair.
+    span = pack_span(float(high) / TILE_UNITS, ceil(float(high - low) / TILE_UNITS) + 2.0);
 }

@@ -7,16 +7,37 @@
 layout(location = 0) out uint tile;
 
 void main() {
-    ivec2 corner = ivec2(gl_FragCoord.xy) * TILE;
-    float low = 1e9;
-    float high = -1e9;
-    for (int j = 0; j < TILE.y; ++j) {
-        int row = min(corner.y + j, source_size.y - 1);
-        for (int i = 0; i <= TILE.x; ++i) {
-            float moved = displacement_at(min(corner.x + i, source_size.x - 1), row);
-            low = min(low, moved);
-            high = max(high, moved);
+    // Forward column and row of the tile's corner.
+    vec2 corner = (gl_FragCoord.xy - 0.5) * vec2(TILE);
+    float least = 1e9;
+    float most = -1e9;
+#ifdef TEXTURE_GATHER
+    // Two by two texels a fetch, two rows a pass; of the pairs of columns the last overlaps the one before.
+    vec4 low = vec4(1e9);
+    vec4 high = vec4(-1e9);
+    // A loop that no compiler unrolls: all the fetches in flight at once would take most of the registers.
+    for (float row = corner.y; row < corner.y + float(TILE.y); row += 2.0) {
+        for (int i = 0; i <= TILE.x; i += 2) {
+            vec4 depths = depth_quad(vec2(corner.x + float(min(i, TILE.x - 1)), row));
+            low = min(low, depths);
+            high = max(high, depths);
         }
     }
-    tile = pack_interval(low, high);
+    low.xy = min(low.xy, low.zw);
+    high.xy = max(high.xy, high.zw);
+    least = min(low.x, low.y);
+    most = max(high.x, high.y);
+#else
+    for (int j = 0; j < TILE.y; ++j) {
+        int row = min(int(corner.y) + j, source_size.y - 1);
+        for (int i = 0; i <= TILE.x; ++i) {
+            float depth = depth_at(min(int(corner.x) + i, source_size.x - 1), row);
+            least = min(least, depth);
+            most = max(most, depth);
+        }
+    }
+#endif
+    float a = displacement(least);
+    float b = displacement(most);
+    tile = pack_interval(min(a, b), max(a, b));
 }

@@ -61,8 +61,7 @@ void main() {
     source = clamp(source, 0.0, last_column);
     color = color_at(source, row);
 
-    // Rare work stands in a loop with a dynamic count; see include/fill.glsl.
-    for (int once = valid ? 1 : 0; once < 1; ++once) {
+    if (!valid) {
         int direction = left >= 0 ? -1 : 1;
         float foreground = 1e9;
         if (left >= 0 && right < imbuffer_target_size.x) {

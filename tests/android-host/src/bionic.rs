@@ -302,10 +302,10 @@ fn timespec(nanoseconds: u64) -> libc::timespec {
 /// The virtual time of a clock; none for those that measure CPU time, which are the machine's.
 fn virtual_time(clock: c_int) -> Option<u64> {
     match clock {
-        libc::CLOCK_MONOTONIC
-        | libc::CLOCK_BOOTTIME
-        | libc::CLOCK_MONOTONIC_RAW
-        | libc::CLOCK_MONOTONIC_COARSE => Some(host().clock.now()),
+        libc::CLOCK_BOOTTIME => Some(host().clock.boottime_of(host().clock.now())),
+        libc::CLOCK_MONOTONIC | libc::CLOCK_MONOTONIC_RAW | libc::CLOCK_MONOTONIC_COARSE => {
+            Some(host().clock.now())
+        }
         libc::CLOCK_REALTIME | libc::CLOCK_REALTIME_COARSE => Some(host().clock.realtime()),
         _ => None,
     }

@@ -12,6 +12,7 @@ use crate::host::{host, lock};
 pub struct Clock {
     now: AtomicU64,
     period: u64,
+    slept: u64,
     realtime_offset: u64,
     waiting: Mutex<BTreeMap<u64, u64>>,
     last_wait: AtomicU64,
@@ -64,23 +65,29 @@ fn nobody_runs() -> bool {
 const BOOTED: u64 = 1_000_000_000_000;
 
 impl Clock {
-    /// A clock whose display refreshes `refresh_hz` times a second.
-    pub fn new(refresh_hz: f64) -> Self {
+    /// A clock of a device whose display refreshes `refresh_hz` times a second, and that has slept for a time.
+    pub fn new(refresh_hz: f64, slept_seconds: f64) -> Self {
         let realtime = std::time::SystemTime::now()
             .duration_since(std::time::UNIX_EPOCH)
             .map_or(BOOTED, |time| time.as_nanos() as u64);
         Self {
             now: AtomicU64::new(BOOTED),
             period: (1e9 / refresh_hz).round() as u64,
+            slept: (slept_seconds * 1e9) as u64,
             realtime_offset: realtime.saturating_sub(BOOTED),
             waiting: Mutex::default(),
             last_wait: AtomicU64::new(0),
         }
     }
 
-    /// Nanoseconds of CLOCK_MONOTONIC and CLOCK_BOOTTIME.
+    /// Nanoseconds of CLOCK_MONOTONIC.
     pub fn now(&self) -> u64 {
         self.now.load(Ordering::Acquire)
+    }
+
+    /// An instant of CLOCK_MONOTONIC as one of CLOCK_BOOTTIME, which goes on while the device sleeps.
+    pub fn boottime_of(&self, instant: u64) -> u64 {
+        instant + self.slept
     }
 
     /// Nanoseconds of CLOCK_REALTIME.
@@ -128,7 +135,7 @@ mod tests {
 
     #[test]
     fn refreshes_are_periodic_and_time_never_goes_back() {
-        let clock = Clock::new(72.0);
+        let clock = Clock::new(72.0, 0.0);
         let first = clock.next_refresh(clock.now());
         assert_eq!(first - BOOTED, 13_888_889);
         assert_eq!(clock.next_refresh(first) - first, clock.period());

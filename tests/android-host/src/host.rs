@@ -62,6 +62,7 @@ pub struct Host {
     /// Kernel's number of the thread that runs `android_main`; 0 before the first.
     pub main_thread: AtomicI32,
     ndk_objects: Mutex<BTreeMap<&'static str, i64>>,
+    requests: Mutex<BTreeMap<String, u64>>,
     violations: Mutex<Vec<String>>,
     report: Mutex<Report>,
     context: Mutex<String>,
@@ -130,7 +131,7 @@ impl Host {
             battery: Mutex::new(device.battery.clone()),
             thermal: Mutex::new(device.thermal.clone()),
             properties: Mutex::new(device.properties.clone()),
-            clock: Clock::new(device.refresh_hz),
+            clock: Clock::new(device.refresh_hz, device.slept_seconds),
             frames: Frames::new(),
             log: Log::new(verbose),
             assets,
@@ -145,6 +146,7 @@ impl Host {
             finish_asked: AtomicBool::new(false),
             main_thread: AtomicI32::new(0),
             ndk_objects: Mutex::new(BTreeMap::new()),
+            requests: Mutex::default(),
             violations: Mutex::new(Vec::new()),
             report: Mutex::new(report),
             context: Mutex::default(),
@@ -186,6 +188,11 @@ impl Host {
     /// What the script is doing, for a failure's text; empty is nothing special.
     pub fn set_context(&self, context: String) {
         *lock(&self.context) = context;
+    }
+
+    /// Notes what the application asks of the device's performance.
+    pub fn request(&self, what: impl Into<String>) {
+        *lock(&self.requests).entry(what.into()).or_default() += 1;
     }
 
     /// What goes into the summary.
@@ -230,8 +237,8 @@ impl Host {
                 .map(|(kind, count)| ((*kind).to_owned(), *count))
                 .collect(),
             jni_references: self.jni.live_references(),
-            file_descriptors: entries("/proc/self/fd"),
-            threads: entries("/proc/self/task"),
+            file_descriptors: held("/proc/self/fd"),
+            threads: held("/proc/self/task"),
             resident_kib: resident_kib(),
         }
     }
@@ -263,6 +270,7 @@ impl Host {
             },
             violations: lock(&self.violations).clone(),
             jni_invented: self.jni.invented(),
+            requests: lock(&self.requests).clone(),
             trapped_symbols: report.trapped_symbols.clone(),
             captures: report.captures.clone(),
             log_counts: log.counts,
@@ -356,8 +364,17 @@ fn threads() -> String {
     format!("threads: {}", list.join(", "))
 }
 
-fn entries(folder: &str) -> u64 {
-    std::fs::read_dir(folder).map_or(0, |entries| entries.count() as u64)
+/// How often what is held is counted, at most: the least of them is held.
+const LOOKS: usize = 8;
+
+/// Entries of a folder that stay: a file that another thread, of the host or of Mesa, has open for a moment is not held.
+fn held(folder: &str) -> u64 {
+    let count = || std::fs::read_dir(folder).map_or(0, |entries| entries.count() as u64);
+    let later = || {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        count()
+    };
+    (0..LOOKS).map(|_| later()).fold(count(), u64::min)
 }
 
 fn resident_kib() -> u64 {

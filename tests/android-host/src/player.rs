@@ -153,9 +153,11 @@ impl Player {
             Step::Tap { x, y } => self.touch(*x, *y, TAP),
             Step::LongPress { x, y, seconds } => self.touch(*x, *y, nanoseconds(*seconds)),
             Step::Key(key) => self.key(*key),
-            Step::Head { yaw, pitch, roll, seconds } => {
+            Step::Head { yaw, pitch, roll, seconds, go_on } => {
                 self.host.sensors.turn(*yaw, *pitch, *roll, self.host.clock.now(), nanoseconds(*seconds));
-                self.seconds(*seconds);
+                if !go_on {
+                    self.seconds(*seconds);
+                }
             }
             Step::Battery(battery) => self.battery(Some(battery.clone())),
             Step::BatteryMissing => self.battery(None),

@@ -62,6 +62,7 @@ pub fn step(generator: &mut impl Rng, stage: Stage, width: i32, height: i32) -> 
             pitch: generator.random_range(-45.0..45.0),
             roll: 0.0,
             seconds: 0.05,
+            go_on: false,
         },
         16 => Step::Battery(Battery {
             level: generator.random_range(0..=100),

@@ -92,6 +92,16 @@ pub struct Device {
     pub ydpi: f32,
     /// Of the display, Hz; virtual time advances by one period per frame.
     pub refresh_hz: f64,
+    /// Pixels of the display's mode, where the user has made the window's another; absent: those of the window.
+    pub mode: Option<[i32; 2]>,
+    /// Refreshes after which the choreographer's timeline says that a frame is seen.
+    pub refreshes_ahead: u32,
+    /// How long the device has slept since its boot: CLOCK_BOOTTIME, of sensors, is ahead of CLOCK_MONOTONIC by it.
+    pub slept_seconds: f64,
+    /// Features that the package manager says are there, with their versions.
+    pub features: BTreeMap<String, i32>,
+    /// Whether sustained performance mode is offered.
+    pub sustained_performance: bool,
     /// API level. Newer functions are not found by `dlsym`.
     pub sdk: i32,
     /// The newest OpenGL ES version that a context can have.
@@ -135,6 +145,11 @@ impl Default for Device {
             xdpi: 74.0,
             ydpi: 74.0,
             refresh_hz: 60.0,
+            mode: None,
+            refreshes_ahead: 2,
+            slept_seconds: 0.0,
+            features: BTreeMap::new(),
+            sustained_performance: true,
             sdk: 34,
             gles: GlesVersion::Es32,
             sensors: vec![
@@ -349,6 +364,9 @@ pub enum Step {
         roll: f32,
         /// Virtual seconds that the movement takes; frames are shown meanwhile.
         seconds: f64,
+        /// The next steps come while the head moves.
+        #[serde(default)]
+        go_on: bool,
     },
     /// The battery answers differently from now on.
     Battery(Battery),

@@ -42,6 +42,8 @@ pub struct Summary {
     pub violations: Vec<String>,
     /// JNI calls that nothing here knows: answered by a new object of the type, zero or false.
     pub jni_invented: BTreeMap<String, u64>,
+    /// What it asked of the device's performance, and how often.
+    pub requests: BTreeMap<String, u64>,
     /// Symbols that the library imports and that are answered by a trap.
     pub trapped_symbols: Vec<String>,
     /// Files written by `capture`.
@@ -78,6 +80,8 @@ pub struct GlFacts {
     pub renderer: String,
     /// Contexts made.
     pub contexts: u64,
+    /// Times that the application waited for a fence.
+    pub waits: u64,
     /// Errors as the driver words them, with the frame; the first fifty.
     pub errors: Vec<String>,
     /// All errors.

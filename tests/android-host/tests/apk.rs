@@ -6,13 +6,14 @@ mod host;
 use glam::{EulerRot, Quat};
 use image::RgbImage;
 use yoro::gl::{Destination, Filter, Format, RenderTarget};
-use yoro::metrics::{Channels, psnr};
-use yoro::platform::{Backend, Headless};
-use yoro::telemetry::Line;
-use yoro::viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
+use yoro_context::{Backend, Headless};
+use yoro_lab::metrics::{Channels, psnr};
+use yoro_viewer::telemetry::Line;
+use yoro_viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
 
+use yoro_android_host::summary::Summary;
 use yoro_openxr_stub::log::{self, Entry, Layer};
-use yoro_openxr_stub::script::{Pictures, Script as Headset};
+use yoro_openxr_stub::script::{Fault, Pictures, Script as Headset};
 
 use host::{Run, device, play, play_arm64};
 
@@ -43,13 +44,14 @@ fn lines(run: &Run) -> Vec<Line> {
 
 /// What the desktop draws with the same settings; `yaw_degrees` holds the head.
 fn desktop(extra: &[(&str, &str)], yaw_degrees: Option<f32>) -> RgbImage {
+    desktops(extra, &[yaw_degrees]).remove(0)
+}
+
+/// As [`desktop`], of several positions of the head.
+fn desktops(extra: &[(&str, &str)], yaws_degrees: &[Option<f32>]) -> Vec<RgbImage> {
     let pairs = SETTINGS.iter().chain(extra).map(|(key, value)| format!("{key}={value}"));
     let screen = Screen { size: SIZE, dpi: [DPI; 2], rotation: Rotation::LandscapeLeft };
     let mut viewer = Cardboard::new(Settings::resolve(None, pairs).unwrap(), screen, &[]).unwrap();
-    if let Some(degrees) = yaw_degrees {
-        let head = Quat::from_euler(EulerRot::YXZ, degrees.to_radians(), 0.0, 0.0);
-        viewer.hold_head(Some(HeldHead { rendered: head, displayed: head }));
-    }
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
     viewer.attach(gl.clone()).unwrap();
@@ -59,16 +61,24 @@ fn desktop(extra: &[(&str, &str)], yaw_degrees: Option<f32>) -> RgbImage {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     assert_eq!(viewer.viewer().scene_state(), SceneState::Ready);
-    for frame in 1..=3 {
-        let now_ns = frame * 16_666_667;
-        let timing = FrameTiming { now_ns, expected_display_ns: now_ns + 33_333_333, refresh_hz: 60.0 };
-        viewer.frame(&Destination::whole(&window), &timing).unwrap();
-    }
-    let pixels = window.read_rgba8(0, [0, 0], SIZE);
-    RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
-        let at = (((SIZE[1] - 1 - y) * SIZE[0] + x) * 4) as usize;
-        image::Rgb([pixels[at], pixels[at + 1], pixels[at + 2]])
-    })
+    let mut now_ns = 0;
+    let mut picture = |yaw_degrees: &Option<f32>| {
+        viewer.hold_head(yaw_degrees.map(|degrees| {
+            let head = Quat::from_euler(EulerRot::YXZ, degrees.to_radians(), 0.0, 0.0);
+            HeldHead { rendered: head, displayed: head }
+        }));
+        for _ in 0..3 {
+            now_ns += 16_666_667;
+            let timing = FrameTiming { now_ns, expected_display_ns: now_ns + 33_333_333, refresh_hz: 60.0 };
+            viewer.frame(&Destination::whole(&window), &timing).unwrap();
+        }
+        let pixels = window.read_rgba8(0, [0, 0], SIZE);
+        RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
+            let at = (((SIZE[1] - 1 - y) * SIZE[0] + x) * 4) as usize;
+            image::Rgb([pixels[at], pixels[at + 1], pixels[at + 2]])
+        })
+    };
+    yaws_degrees.iter().map(&mut picture).collect()
 }
 
 fn decibels(one: &RgbImage, other: &RgbImage) -> f64 {
@@ -92,6 +102,26 @@ fn boots_to_the_first_frame() {
     // A window is magenta again after each swap: what is not drawn shows.
     assert!(!colours.contains(&image::Rgb([255, 0, 255])), "parts of the window are not drawn");
     assert_eq!(run.summary.trapped_symbols, Vec::<String>::new());
+
+    // The GPU is never more than a frame behind, and the device is asked to stay as it is.
+    let Summary { frames, gl, requests, .. } = &run.summary;
+    assert!(gl.waits + 2 >= *frames, "{} waits for the GPU in {frames} frames", gl.waits);
+    let asked = |what: &str| requests.get(what).copied().unwrap_or(0);
+    for once in ["60 Hz", "sustained performance on", "hints for 1 thread, 16.7 ms"] {
+        assert_eq!(asked(once), 1, "{once}: {requests:?}");
+    }
+    assert!(asked("work duration") + 2 >= *frames, "{requests:?} in {frames} frames");
+    assert!(run.summary.log_of("YORO").any(|text| text == "Android says when a frame is seen"));
+}
+
+#[test]
+fn a_lower_resolution_is_the_same_screen() {
+    // 427 x 240 pixels of 74 dpi, of which the user has left 320 x 180.
+    let device = device(&SETTINGS, "mode = [427, 240]");
+    let Some(run) = play("resolution", &device, r#""launch", { frames = 2 }, "quit""#) else { return };
+    run.assert_clean();
+    let line = run.summary.log_of("YORO").find(|text| text.starts_with("viewer: ")).unwrap();
+    assert!(line.ends_with("screen [146.6, 82.4] mm"), "{line}");
 }
 
 #[test]
@@ -134,6 +164,31 @@ fn turning_the_head_turns_the_picture() {
         exact > less + 2.0 && exact > more + 2.0 && exact > other_way + 5.0,
         "20 degrees: {exact:.1} dB, 18: {less:.1}, 22: {more:.1}, -20: {other_way:.1}"
     );
+}
+
+/// The head turns at 45 degrees a second when the picture is taken.
+#[test]
+fn the_picture_is_of_the_time_at_which_it_is_seen() {
+    let steps = format!(
+        r#""launch", {READY}, {{ head = {{ yaw = 60, seconds = 2.0, go_on = true }} }}, {{ seconds = 1.0 }}, {{ capture = "turning.png" }}, "quit""#
+    );
+    // The GPU's time counts, too, and the simulated one's is not that of the simulated clock.
+    let settings: Vec<_> = SETTINGS.into_iter().chain([("profiling", "false")]).collect();
+    let picture = |refreshes: u32| {
+        let keys = format!("refreshes_ahead = {refreshes}\nslept_seconds = 3600");
+        let run = play(&format!("ahead-{refreshes}"), &device(&settings, &keys), &steps)?;
+        run.assert_clean();
+        Some(run.picture("turning.png"))
+    };
+    let (Some(soon), Some(later)) = (picture(2), picture(5)) else { return };
+    let yaws: Vec<f32> = (0..10).map(|i| 29.25 + 0.75 * i as f32).collect();
+    let desktops = desktops(&[], &yaws.iter().copied().map(Some).collect::<Vec<_>>());
+    let [soon, later] = [soon, later].map(|picture| {
+        let likeness = |i: &usize| decibels(&picture, &desktops[*i]);
+        (0..yaws.len()).max_by(|a, b| likeness(a).total_cmp(&likeness(b))).map(|i| yaws[i]).unwrap()
+    });
+    // Three refreshes of a sixtieth of a second are 2.25 degrees.
+    assert!((1.5..=3.0).contains(&(later - soon)), "{soon} and {later} degrees");
 }
 
 #[test]
@@ -199,7 +254,7 @@ fn telemetry_carries_the_batterys_values() {
     assert_eq!((last.charge_uah, last.thermal_status), (Some(2_280_000), Some(1)));
     assert!((last.battery_celsius.unwrap() - 29.8).abs() < 0.01);
     assert!((last.thermal_headroom.unwrap() - 0.61).abs() < 0.01);
-    assert_eq!(last.refresh_hz, Some(60.0));
+    assert_eq!((last.refresh_hz, last.performance.as_deref()), (Some(60.0), Some("sustained/hints")));
     // Every frame takes one refresh of the virtual clock.
     assert!((last.fps.unwrap() - 60.0).abs() < 1.0, "{last}");
     assert_eq!(last.stale, Some(0), "{last}");
@@ -219,6 +274,9 @@ fn without_battery_and_sensors() {
     // Thermal status came with API level 30, headroom with 31.
     assert_eq!((last.thermal_status, last.thermal_headroom), (None, None));
     assert!(run.summary.log_of("YORO").any(|text| text.contains("no gyroscope")));
+    // A refresh rate can be asked for from API level 30 on, hints are taken from 33 on.
+    assert_eq!(run.summary.requests.keys().collect::<Vec<_>>(), ["sustained performance on"]);
+    assert!(run.summary.log_of("YORO").any(|text| text.contains("does not say when a frame is seen")));
 }
 
 #[test]
@@ -328,6 +386,9 @@ fn settings_come_from_file_extras_and_properties() {
         "debug.yoro.ipd" = "0.061"
         "debug.yoro.scene" = "prototype"
         "debug.yoro.shadow-map" = "512"
+        "debug.yoro.refresh-rate" = "30"
+        "debug.yoro.performance" = "boost"
+        "debug.yoro.performance-hints" = "false"
     "#;
     let Some(run) = play(
         "settings",
@@ -344,6 +405,7 @@ fn settings_come_from_file_extras_and_properties() {
             && settings.contains("seed=7"),
         "{settings}"
     );
+    assert_eq!(run.summary.requests.keys().collect::<Vec<_>>(), ["30 Hz", "sustained performance off"]);
 }
 
 #[test]
@@ -388,7 +450,7 @@ fn assert_immersive(run: &Run, folder: &std::path::Path) -> [RgbImage; 2] {
     run.assert_clean();
     let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
     assert!(
-        matches!(display.as_slice(), [line] if line.contains("headset, by OpenXR 1.1.54 runtime")),
+        !display.is_empty() && display.iter().all(|line| line.contains("headset, by OpenXR 1.1.54 runtime")),
         "{display:?}"
     );
     let log = log::read(&folder.join("log.jsonl"));
@@ -396,6 +458,8 @@ fn assert_immersive(run: &Run, folder: &std::path::Path) -> [RgbImage; 2] {
     assert!(violations.is_empty(), "{violations:#?}");
     assert!(log.iter().any(|entry| matches!(entry, Entry::Instance { android: true, .. })));
     assert!(log.iter().any(|entry| matches!(entry, Entry::Session { binding } if binding == "android")));
+    // XR_ANDROID_THREAD_TYPE_RENDERER_MAIN_KHR.
+    assert!(log.contains(&Entry::Request { what: "thread".into(), value: 3.0 }));
     let shown = |entry: &&Entry| matches!(entry, Entry::Frame { layers, .. } if layers.iter().any(|layer| matches!(layer, Layer::Projection { views } if views.len() == 2)));
     assert!(log.iter().filter(shown).count() >= 8);
     let views = [0, 1].map(|view| image::open(folder.join(format!("view-{view}.png"))).unwrap().into_rgb8());
@@ -410,10 +474,50 @@ fn assert_immersive(run: &Run, folder: &std::path::Path) -> [RgbImage; 2] {
 
 #[test]
 fn a_headset_is_found_through_the_broker() {
-    for system in [false, true] {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(run) = play("headset", &headset(folder.path(), true), IMMERSIVE) else { return };
+    assert_immersive(&run, folder.path());
+}
+
+#[test]
+fn a_second_activity_uses_the_runtime_that_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let again = r#""launch", { wait-log = { text = "triangles", frames = 2000 } }, { frames = 4 }, "quit""#;
+    let steps = format!("{IMMERSIVE}, {again}");
+    let Some(run) = play("headset-again", &headset(folder.path(), false), &steps) else { return };
+    // The runtime takes it amiss to be initialised twice.
+    assert_immersive(&run, folder.path());
+    let log = log::read(&folder.path().join("log.jsonl"));
+    assert_eq!(log.iter().filter(|entry| matches!(entry, Entry::Instance { .. })).count(), 2);
+}
+
+#[test]
+fn a_headset_whose_runtime_fails_ends_the_application() {
+    let unusable =
+        Headset { missing_extensions: vec!["XR_KHR_opengl_es_enable".into()], ..Headset::default() };
+    let fault = Fault { call: "xrWaitFrame".into(), nth: 3, and_later: true, result: -2 };
+    let broken = Headset { faults: vec![fault], ..Headset::default() };
+    for (script, reason) in [(unusable, "XR_KHR_opengl_es_enable"), (broken, "xrWaitFrame")] {
         let folder = tempfile::tempdir().unwrap();
-        let Some(run) = play("headset", &headset(folder.path(), system), IMMERSIVE) else { return };
-        assert_immersive(&run, folder.path());
+        let path = folder.path().join("headset.json");
+        std::fs::write(&path, serde_json::to_string(&script).unwrap()).unwrap();
+        let keys = format!(
+            "[device.features]\n\"android.hardware.vr.headtracking\" = 1\n[device.openxr]\nscript = {:?}",
+            path.display().to_string()
+        );
+        let device = format!("{}\n{keys}", device(&SETTINGS, ""));
+        let steps = r#""launch", { wait-finish = { frames = 3000 } }, "quit""#;
+        let Some(run) = play("headset-fails", &device, steps) else { return };
+        assert!(run.summary.is_clean(), "{}", run.summary);
+        let display: Vec<_> =
+            run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
+        assert!(
+            display
+                .last()
+                .is_some_and(|line| line.starts_with("display: none, since") && line.contains(reason))
+                && !display.iter().any(|line| line.contains("Cardboard")),
+            "{display:?}"
+        );
     }
 }
 

@@ -141,12 +141,16 @@ pub unsafe extern "system" fn destroy_action(action: sys::Action) -> sys::Result
     })
 }
 
-/// Profiles that the stub knows.
-const PROFILES: [&str; 3] = [
-    "/interaction_profiles/khr/simple_controller",
-    "/interaction_profiles/oculus/touch_controller",
-    "/interaction_profiles/valve/index_controller",
+/// Profiles that the stub knows, and the extension that each belongs to.
+const PROFILES: [(&str, Option<&str>); 5] = [
+    ("/interaction_profiles/khr/simple_controller", None),
+    ("/interaction_profiles/oculus/touch_controller", None),
+    ("/interaction_profiles/valve/index_controller", None),
+    ("/interaction_profiles/bytedance/pico_neo3_controller", Some("XR_BD_controller_interaction")),
+    ("/interaction_profiles/bytedance/pico4_controller", Some("XR_BD_controller_interaction")),
 ];
+/// Profiles that some runtimes know, and that an application may try.
+const TRIED: [&str; 1] = ["/interaction_profiles/bytedance/pico4s_controller"];
 
 pub unsafe extern "system" fn suggest_bindings(
     instance: sys::Instance,
@@ -157,8 +161,25 @@ pub unsafe extern "system" fn suggest_bindings(
         let suggested = unsafe { &*suggested };
         let known = world.instance(instance)?;
         let profile = known.path(suggested.interaction_profile).unwrap_or_default().to_owned();
-        if !PROFILES.contains(&profile.as_str()) {
-            return Err(forbidden(sys::Result::ERROR_PATH_UNSUPPORTED, format!("{profile:?} is no profile")));
+        let extension = match PROFILES.iter().find(|(name, _)| *name == profile) {
+            Some((_, extension)) => *extension,
+            None if TRIED.contains(&profile.as_str()) => {
+                return Err(sys::Result::ERROR_PATH_UNSUPPORTED.into());
+            }
+            None => {
+                return Err(forbidden(
+                    sys::Result::ERROR_PATH_UNSUPPORTED,
+                    format!("{profile:?} is no profile"),
+                ));
+            }
+        };
+        if let Some(extension) = extension
+            && !known.extensions.iter().any(|enabled| enabled == extension)
+        {
+            return Err(forbidden(
+                sys::Result::ERROR_PATH_UNSUPPORTED,
+                format!("{profile} without {extension}"),
+            ));
         }
         if !known.actions.attached.is_empty() {
             return Err(forbidden(
@@ -212,10 +233,14 @@ fn part_exists(profile: &str, part: &str, left: bool) -> bool {
         ["input/x/click", "input/x/touch", "input/y/click", "input/y/touch", "input/menu/click"];
     const RIGHT: [&str; 5] =
         ["input/a/click", "input/a/touch", "input/b/click", "input/b/touch", "input/system/click"];
+    let touch = TOUCH.contains(&part) || if left { LEFT.contains(&part) } else { RIGHT.contains(&part) };
     match profile {
         "/interaction_profiles/khr/simple_controller" => SIMPLE.contains(&part),
-        "/interaction_profiles/oculus/touch_controller" => {
-            TOUCH.contains(&part) || if left { LEFT.contains(&part) } else { RIGHT.contains(&part) }
+        "/interaction_profiles/oculus/touch_controller" => touch,
+        "/interaction_profiles/bytedance/pico_neo3_controller"
+        | "/interaction_profiles/bytedance/pico4_controller" => {
+            const MORE: [&str; 3] = ["input/trigger/click", "input/squeeze/click", "input/system/click"];
+            MORE.contains(&part) || touch && part != "input/thumbrest/touch"
         }
         // The others' parts are not checked.
         _ => true,

@@ -60,6 +60,28 @@ pub unsafe extern "system" fn set_performance_level(
     })
 }
 
+/// The type of [`set_android_application_thread`], which the bindings have on Android alone.
+pub type SetAndroidApplicationThreadKHR =
+    unsafe extern "system" fn(sys::Session, sys::AndroidThreadTypeKHR, u32) -> sys::Result;
+
+pub unsafe extern "system" fn set_android_application_thread(
+    session: sys::Session,
+    kind: sys::AndroidThreadTypeKHR,
+    thread: u32,
+) -> sys::Result {
+    enter("xrSetAndroidApplicationThreadKHR", |world| {
+        world.session(session)?;
+        if !std::path::Path::new(&format!("/proc/self/task/{thread}")).exists() {
+            return Err(forbidden(
+                sys::Result::ERROR_ANDROID_THREAD_SETTINGS_ID_INVALID_KHR,
+                format!("there is no thread {thread}"),
+            ));
+        }
+        world.log.write(&Entry::Request { what: "thread".into(), value: kind.into_raw().into() });
+        DONE
+    })
+}
+
 /// Triangles that cut off the outer upper corner, in the view's plane at distance 1.
 pub unsafe extern "system" fn get_visibility_mask(
     session: sys::Session,

@@ -128,7 +128,7 @@ pub unsafe extern "system" fn locate_views(
             sys::ViewStateFlags::EMPTY
         };
         let head = compose(inverse(base), world.head());
-        let ipd = world.script.ipd(frame);
+        let (ipd, length) = (world.script.ipd(frame), world.script.quaternion_length(frame));
         let views: Vec<(sys::Posef, sys::Fovf)> = (0..number as usize)
             .map(|i| {
                 let eye = world.script.eyes[i];
@@ -140,7 +140,7 @@ pub unsafe extern "system" fn locate_views(
                 let view = compose(head, (turn, glam::Vec3::new(offset, 0.0, 0.0)));
                 let [left, right, up, down] = eye.fov_degrees.map(f32::to_radians);
                 let fov = sys::Fovf { angle_left: left, angle_right: right, angle_up: up, angle_down: down };
-                (raw_pose(view), fov)
+                (raw_pose((view.0 * length, view.1)), fov)
             })
             .collect();
         // SAFETY: as the caller says.

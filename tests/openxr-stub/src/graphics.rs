@@ -40,6 +40,13 @@ struct AndroidBinding {
     context: *const c_void,
 }
 
+/// A texture of a swapchain: of an array where there are several layers.
+#[derive(Clone, Copy)]
+pub struct Texture {
+    pub raw: glow::Texture,
+    pub layers: u32,
+}
+
 impl Graphics {
     /// The graphics binding in a chain of structures, and its name.
     ///
@@ -139,8 +146,8 @@ impl Graphics {
         })
     }
 
-    /// A texture: of an array where there are several layers.
-    pub fn texture(&mut self, format: u32, [width, height]: [u32; 2], layers: u32) -> Option<glow::Texture> {
+    /// A new texture.
+    pub fn texture(&mut self, format: u32, [width, height]: [u32; 2], layers: u32) -> Option<Texture> {
         let gl = self.gl();
         let (target, binding) = if layers > 1 {
             (glow::TEXTURE_2D_ARRAY, glow::TEXTURE_BINDING_2D_ARRAY)
@@ -159,17 +166,17 @@ impl Graphics {
             }
             let error = gl.get_error();
             gl.bind_texture(target, before);
-            (error == glow::NO_ERROR).then_some(texture)
+            (error == glow::NO_ERROR).then_some(Texture { raw: texture, layers })
         }
     }
 
     /// Deletes textures, where that is possible.
-    pub fn delete(&mut self, textures: &[glow::Texture]) {
+    pub fn delete(&mut self, textures: &[Texture]) {
         if self.is_current() {
             let gl = self.gl();
             for texture in textures {
                 // SAFETY: made in this context.
-                unsafe { gl.delete_texture(*texture) };
+                unsafe { gl.delete_texture(texture.raw) };
             }
         }
     }
@@ -177,7 +184,7 @@ impl Graphics {
     /// Runs with a layer of a texture as the framebuffer's colour; the application's state is put back.
     fn with_layer<T>(
         &mut self,
-        texture: glow::Texture,
+        texture: Texture,
         layer: u32,
         work: impl Fn(&glow::Context) -> T,
     ) -> Option<T> {
@@ -185,17 +192,18 @@ impl Graphics {
             return None;
         }
         let gl = self.gl();
-        // SAFETY: plain GL calls in the context that the texture is of. A texture without layers refuses to be attached
-        // as one of an array.
+        // SAFETY: plain GL calls in the context that the texture is of.
         unsafe {
             let read = gl.get_parameter_framebuffer(glow::READ_FRAMEBUFFER_BINDING);
             let draw = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
             let framebuffer = gl.create_framebuffer().ok()?;
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
             let color = glow::COLOR_ATTACHMENT0;
-            gl.framebuffer_texture_layer(glow::FRAMEBUFFER, color, Some(texture), 0, layer as i32);
-            if gl.get_error() != glow::NO_ERROR {
-                gl.framebuffer_texture_2d(glow::FRAMEBUFFER, color, glow::TEXTURE_2D, Some(texture), 0);
+            let raw = Some(texture.raw);
+            if texture.layers > 1 {
+                gl.framebuffer_texture_layer(glow::FRAMEBUFFER, color, raw, 0, layer as i32);
+            } else {
+                gl.framebuffer_texture_2d(glow::FRAMEBUFFER, color, glow::TEXTURE_2D, raw, 0);
             }
             let complete = gl.check_framebuffer_status(glow::FRAMEBUFFER) == glow::FRAMEBUFFER_COMPLETE;
             let result = complete.then(|| work(gl));
@@ -207,8 +215,8 @@ impl Graphics {
     }
 
     /// Fills every layer with [`POISON`].
-    pub fn poison(&mut self, texture: glow::Texture, layers: u32) {
-        for layer in 0..layers {
+    pub fn poison(&mut self, texture: Texture) {
+        for layer in 0..texture.layers {
             self.with_layer(texture, layer, |gl| {
                 // SAFETY: plain GL calls; the state that restricts a clear is put back.
                 unsafe {
@@ -227,7 +235,7 @@ impl Graphics {
     }
 
     /// The bytes of a rectangle, four a pixel, the lowest row first, as they are stored.
-    pub fn read(&mut self, texture: glow::Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
+    pub fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
         let [x, y, width, height] = rect;
         self.with_layer(texture, layer, |gl| {
             let mut pixels = vec![0; (width * height * 4) as usize];

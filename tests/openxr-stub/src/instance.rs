@@ -17,7 +17,7 @@ pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
 pub const SYSTEM: u64 = 1;
 
 /// Every extension that the stub can offer, with its version.
-pub const EXTENSIONS: [(&str, u32); 9] = [
+pub const EXTENSIONS: [(&str, u32); 11] = [
     ("XR_KHR_opengl_es_enable", 8),
     ("XR_MNDX_egl_enable", 2),
     ("XR_KHR_android_create_instance", 3),
@@ -27,6 +27,8 @@ pub const EXTENSIONS: [(&str, u32); 9] = [
     ("XR_EXT_performance_settings", 4),
     ("XR_EXT_local_floor", 1),
     ("XR_KHR_loader_init", 2),
+    ("XR_KHR_android_thread_settings", 6),
+    ("XR_BD_controller_interaction", 2),
 ];
 
 /// The text of an array of characters.
@@ -467,14 +469,17 @@ fn raw_state(state: State) -> sys::SessionState {
 pub unsafe extern "system" fn initialize_loader(
     info: *const sys::LoaderInitInfoBaseHeaderKHR,
 ) -> sys::Result {
-    enter("xrInitializeLoaderKHR", |_| {
+    enter("xrInitializeLoaderKHR", |world| {
         // SAFETY: as the caller says.
         let ty = unsafe { (*info).ty };
-        let known = ty == sys::StructureType::LOADER_INIT_INFO_ANDROID_KHR;
-        if known {
-            DONE
-        } else {
-            Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, "not Android's structure"))
+        let refuse = |what: &str| Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, what));
+        if ty != sys::StructureType::LOADER_INIT_INFO_ANDROID_KHR {
+            return refuse("not Android's structure");
         }
+        // Some keep the context of the first time, others fail: nobody says what a second time means.
+        if std::mem::replace(&mut world.is_initialized, true) {
+            return refuse("it is initialised already");
+        }
+        DONE
     })
 }

@@ -36,6 +36,10 @@ pub struct Script {
     pub yaw_per_frame_degrees: f32,
     /// Frames in which the head's pose is not known.
     pub untracked: Vec<u32>,
+    /// Frames in which the views' quaternions are not of unit length but of this one, although they are said to be valid.
+    pub quaternion_lengths: Vec<(u32, f32)>,
+    /// Asked with an instance for a function that needs none, `xrGetInstanceProcAddr` succeeds and gives none.
+    pub no_globals: bool,
     /// The first frame that is to be rendered in a session, counted from its first.
     pub should_render_from: u32,
     /// Rates of the display in hertz; the first is the one it begins with.
@@ -195,6 +199,8 @@ impl Default for Script {
             yaw_degrees: 0.0,
             yaw_per_frame_degrees: 0.0,
             untracked: Vec::new(),
+            quaternion_lengths: Vec::new(),
+            no_globals: false,
             should_render_from: 1,
             refresh_rates: vec![72.0, 80.0, 90.0, 120.0],
             events: Vec::new(),
@@ -238,6 +244,11 @@ impl Script {
     pub(crate) fn ipd(&self, frame: u32) -> f32 {
         let past = self.ipd.iter().filter(|(from, _)| *from <= frame);
         past.max_by_key(|(from, _)| *from).map_or(0.063, |(_, ipd)| *ipd)
+    }
+
+    /// The length of the views' quaternions in a frame.
+    pub(crate) fn quaternion_length(&self, frame: u32) -> f32 {
+        self.quaternion_lengths.iter().find(|(odd, _)| *odd == frame).map_or(1.0, |(_, length)| *length)
     }
 
     /// The value of a controller's part in a frame.

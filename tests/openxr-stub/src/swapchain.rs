@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use openxr_sys as sys;
 use sys::Handle;
 
+use crate::graphics::Texture;
 use crate::instance::fill;
 use crate::log::Entry;
 use crate::world::{DONE, Refusal, World, enter, forbidden};
@@ -15,7 +16,7 @@ pub struct Swapchain {
     pub format: i64,
     pub size: [u32; 2],
     pub layers: u32,
-    pub textures: Vec<glow::Texture>,
+    pub textures: Vec<Texture>,
     /// Images in the order in which they were acquired, and whether they were waited for.
     pub acquired: VecDeque<(usize, bool)>,
     /// The image that was released last: the one that is shown.
@@ -29,7 +30,7 @@ impl Swapchain {
     }
 
     /// The texture that is shown.
-    pub fn shown(&self) -> Option<glow::Texture> {
+    pub fn shown(&self) -> Option<Texture> {
         self.released.map(|index| self.textures[index])
     }
 }
@@ -163,7 +164,7 @@ pub unsafe extern "system" fn enumerate_swapchain_images(
             }
         }
         // SAFETY: as the caller says.
-        unsafe { fill(capacity, count, images, &textures, |to, from| to.image = from.0.get()) }
+        unsafe { fill(capacity, count, images, &textures, |to, from| to.image = from.raw.0.get()) }
     })
 }
 
@@ -182,9 +183,9 @@ pub unsafe extern "system" fn acquire_swapchain_image(
         let image = known.next;
         known.next = (known.next + 1) % IMAGES;
         known.acquired.push_back((image, false));
-        let (texture, layers, depth) = (known.textures[image], known.layers, known.is_depth());
+        let (texture, depth) = (known.textures[image], known.is_depth());
         if poison && !depth {
-            world.its_session()?.graphics.poison(texture, layers);
+            world.its_session()?.graphics.poison(texture);
         }
         // SAFETY: as the caller says.
         unsafe { *index = image as u32 };

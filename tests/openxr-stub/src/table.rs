@@ -11,13 +11,16 @@ use crate::{action, extension, frame, instance, session, space, swapchain};
 
 /// A function by its name, and the extension that it needs.
 fn find(name: &str) -> Option<(pfn::VoidFunction, Option<&'static str>)> {
+    use extension::SetAndroidApplicationThreadKHR;
+    use pfn::*;
+
     macro_rules! table {
         ($($name:literal $type:ident $function:path $(, $extension:literal)?;)*) => {
             match name {
                 $($name => {
-                    let function: pfn::$type = $function;
+                    let function: $type = $function;
                     // SAFETY: functions are called by the type that belongs to their name.
-                    let function = unsafe { mem::transmute::<pfn::$type, pfn::VoidFunction>(function) };
+                    let function = unsafe { mem::transmute::<$type, VoidFunction>(function) };
                     #[allow(unused_mut, unused_assignments)]
                     let mut extension = None;
                     $(extension = Some($extension);)?
@@ -100,6 +103,8 @@ fn find(name: &str) -> Option<(pfn::VoidFunction, Option<&'static str>)> {
         "xrPerfSettingsSetPerformanceLevelEXT" PerfSettingsSetPerformanceLevelEXT
             extension::set_performance_level, "XR_EXT_performance_settings";
         "xrGetVisibilityMaskKHR" GetVisibilityMaskKHR extension::get_visibility_mask, "XR_KHR_visibility_mask";
+        "xrSetAndroidApplicationThreadKHR" SetAndroidApplicationThreadKHR
+            extension::set_android_application_thread, "XR_KHR_android_thread_settings";
     }
 }
 
@@ -128,6 +133,9 @@ pub unsafe extern "system" fn get_instance_proc_addr(
         }
         if instance != sys::Instance::NULL {
             world.any_instance(instance)?;
+            if early && world.script.no_globals {
+                return DONE;
+            }
         }
         let (function, extension) = find(&name).ok_or(sys::Result::ERROR_FUNCTION_UNSUPPORTED)?;
         if let Some(extension) = extension

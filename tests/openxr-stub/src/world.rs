@@ -54,6 +54,8 @@ pub struct World {
     pub unavailable: u32,
     pub profile: Option<String>,
     pub refresh_rate: f32,
+    /// `xrInitializeLoaderKHR` was called.
+    pub is_initialized: bool,
     pub instance: Option<Instance>,
 }
 
@@ -129,6 +131,7 @@ impl World {
             unavailable: 0,
             profile: script.profile.clone(),
             refresh_rate: script.refresh_rates.first().copied().unwrap_or(72.0),
+            is_initialized: false,
             instance: None,
             script,
         }

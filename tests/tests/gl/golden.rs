@@ -5,18 +5,17 @@ use std::rc::Rc;
 use image::{Rgb, RgbImage};
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro::gl::Context;
-use yoro::platform::Headless;
-use yoro::render::{GpuScene, RenderSettings, Renderer};
-use yoro::scene::builtin;
-use yoro::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro::synthesis::Pipeline;
+use yoro_context::Headless;
+use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
+use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_tests::{backends, golden};
 
 const SIZE: [u32; 2] = [256, 256];
 
 /// Both eyes, left first, of a built-in scene's first viewpoint; the right one is rendered.
 fn render(gl: &Rc<Context>, name: &str, pipelines: &[Pipeline]) -> anyhow::Result<Vec<[RgbImage; 2]>> {
-    let scene = builtin::build(name, builtin::DEFAULT_SEED)?;
+    let scene = yoro_scenes::build(name, yoro_scenes::DEFAULT_SEED)?;
     let head = scene.viewpoints[0].pose();
     let frustum = Frustum::symmetric(60f32.to_radians(), 1.0);
     let pair = EyePair::parallel(head, frustum, 0.063, DepthRange::PAPER, SIZE, Eye::Right);

@@ -1,7 +1,9 @@
-//! The library on a real GL context: golden images, shader variants, GL objects.
+//! The library on a real GL context: golden images, shader variants and costs, GL objects; scenes on Vulkan.
 
 mod golden;
 mod methods;
 mod objects;
 mod refusals;
+mod shader_cost;
 mod shaders;
+mod vulkan;

@@ -10,48 +10,58 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use super::build::{build_std, root, use_rust};
-use super::target_folder;
+use super::build::{Panic, build_std, use_rust};
 use super::toolchain::{self, Rust, Surroundings};
-use crate::cargo::Equipped;
+use crate::folders::{root, target_folder};
 use crate::packages::{self, PrivateApt, quoted, write_launcher};
 
-const TRIPLE: &str = "aarch64-unknown-linux-gnu";
+pub const TRIPLE: &str = "aarch64-unknown-linux-gnu";
 /// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs; libgcc's package has a number in its name.
 const PACKAGES: [&str; 5] = ["libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri", "libc6-dev"];
 const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 
-/// The launcher of the host for the tests: `launcher APK SCRIPT ...`. What it needs is fetched without asking, as for
-/// all tests.
-///
-/// # Errors
-/// When it does not compile although everything is there.
-pub fn host_for_tests() -> anyhow::Result<Equipped> {
-    let left_out = |error: anyhow::Error| {
-        eprintln!("warning: the arm64 library cannot be run here, so that its tests are left out: {error:#}");
-        Ok(Equipped::Missing)
-    };
-    let surroundings = Surroundings::here();
-    let folder = target_folder()?.join("android/arm64");
-    if let Err(error) = toolchain::ensure_cross(&surroundings, TRIPLE) {
-        return left_out(error);
+/// What the host is made of, besides its source.
+pub struct Host {
+    folder: PathBuf,
+    system: System,
+}
+
+impl Host {
+    /// Installs, without asking, what compiling it needs.
+    ///
+    /// # Errors
+    /// When something cannot be had on this machine.
+    pub fn ready() -> anyhow::Result<()> {
+        toolchain::ensure_cross(&Surroundings::here(), TRIPLE)
     }
-    let system = match System::make(&folder) {
-        Ok(system) => system,
-        Err(error) => return left_out(error),
-    };
-    let program = build(&surroundings, &system, &folder.join("build"))?;
-    let launcher = folder.join("yoro-android-host");
-    // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
-    let text = format!(
-        "# The simulated Android host for arm64, in qemu's user mode.\n\
-         exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
-        quoted(&system.qemu),
-        quoted(&system.root),
-        quoted(&program)
-    );
-    write_launcher(&launcher, &text)?;
-    Ok(Equipped::At(launcher))
+
+    /// Fetches what it runs in.
+    ///
+    /// # Errors
+    /// When it cannot be had on this machine.
+    pub fn fetch() -> anyhow::Result<Self> {
+        let folder = target_folder()?.join("android/arm64");
+        Ok(Self { system: System::make(&folder)?, folder })
+    }
+
+    /// Compiles it; its launcher: `launcher APK SCRIPT ...`.
+    ///
+    /// # Errors
+    /// When it does not compile although everything is there.
+    pub fn build(&self) -> anyhow::Result<PathBuf> {
+        let program = build(&Surroundings::here(), &self.system, &self.folder.join("build"))?;
+        let launcher = self.folder.join("yoro-android-host");
+        // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
+        let text = format!(
+            "# The simulated Android host for arm64, in qemu's user mode.\n\
+             exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
+            quoted(&self.system.qemu),
+            quoted(&self.system.root),
+            quoted(&program)
+        );
+        write_launcher(&launcher, &text)?;
+        Ok(launcher)
+    }
 }
 
 /// A small Debian for arm64 in a folder, and qemu.
@@ -105,24 +115,24 @@ fn newest_libgcc(names: &str) -> Option<String> {
     Some(format!("libgcc-{newest}-dev"))
 }
 
-/// Compiles the host for arm64; the program.
-fn build(surroundings: &Surroundings, system: &System, target: &Path) -> anyhow::Result<PathBuf> {
+/// A cargo that compiles and links for arm64 with `--target` [`TRIPLE`], for which it fetches and installs what is missing.
+/// What it compiles can unwind.
+///
+/// # Errors
+/// When something cannot be had on this machine.
+pub fn cargo() -> anyhow::Result<Command> {
+    Host::ready()?;
+    let system = Host::fetch()?.system;
+    command(&Surroundings::here(), &system, Panic::Unwind)
+}
+
+fn command(surroundings: &Surroundings, system: &System, panic: Panic) -> anyhow::Result<Command> {
     let (rust, with_std) = Rust::for_target(surroundings, TRIPLE)
         .with_context(|| format!("no Rust can compile for {TRIPLE}"))?;
-    let cargo = rust.programs.join("cargo");
-    let mut command = Command::new(cargo);
-    let arguments =
-        ["build", "--package", "yoro-android-host", "--package", "yoro-openxr-stub", "--target", TRIPLE];
-    command
-        .args(arguments)
-        // Little of its time is spent in code of Rust: compiling that well would cost more than it saves.
-        .args(["--config", "profile.dev.package.\"*\".opt-level=1"])
-        .current_dir(root())
-        .env("CARGO_TARGET_DIR", target)
-        .env("CARGO_PROFILE_DEV_PANIC", "abort")
-        .env_remove("RUSTFLAGS");
+    let mut command = Command::new(rust.programs.join("cargo"));
+    command.current_dir(root()).env_remove("RUSTFLAGS");
     if with_std {
-        build_std(&mut command);
+        build_std(&mut command, panic);
     }
     use_rust(&mut command, &rust)?;
     let flags = [
@@ -132,6 +142,15 @@ fn build(surroundings: &Surroundings, system: &System, target: &Path) -> anyhow:
         format!("-Clink-arg=--sysroot={}", system.root.display()),
     ];
     command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
+    Ok(command)
+}
+
+/// Compiles the host for arm64; the program.
+fn build(surroundings: &Surroundings, system: &System, target: &Path) -> anyhow::Result<PathBuf> {
+    let mut command = command(surroundings, system, Panic::Abort)?;
+    let arguments =
+        ["build", "--package", "yoro-android-host", "--package", "yoro-openxr-stub", "--target", TRIPLE];
+    command.args(arguments).env("CARGO_TARGET_DIR", target).env("CARGO_PROFILE_DEV_PANIC", "abort");
     eprintln!("$ cargo {}", arguments.join(" "));
     let status = command.status().context("cargo cannot be started")?;
     if !status.success() {

@@ -1,4 +1,4 @@
-//! Building the APK by cargo-apk.
+//! Building the APK: by cargo-apk, then packed anew with the completed manifest.
 
 use std::env;
 use std::ffi::OsString;
@@ -9,14 +9,16 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
-use super::keystore::{self, Keystore};
+use super::cargo_apk;
+use super::check::check;
+use super::keystore::Keystore;
 use super::loader::Loaders;
+use super::pack::pack;
 use super::stand_in::StandIn;
+use super::target::{PAGE, TARGET_API};
 use super::toolchain::{self, Rust, Surroundings, Toolchain};
-use super::{PAGE, check, target_folder};
-use crate::cargo::Equipped;
+use crate::folders::{root, target_folder};
 
-const CARGO_APK: &str = "0.10.0";
 /// `apk_name` of android/Cargo.toml.
 const NAME: &str = "yoro";
 
@@ -46,7 +48,7 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     }
     toolchain::ensure(&toolchain, &surroundings, options.yes)?;
     let target = target_folder()?;
-    let cargo_apk = cargo_apk(&target.join("tools"))?;
+    let cargo_apk = cargo_apk::ensure()?;
     let keystore = Keystore::choose(options.release)?;
 
     let (profile, name) = if options.release { ("android", "ANDROID") } else { ("dev", "DEV") };
@@ -62,14 +64,14 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
         // Flags for the desktop's processor are of no use here.
         .env_remove("RUSTFLAGS");
     let mut flags = link_flags();
-    let rust = match &toolchain {
-        Toolchain::Google { .. } => surroundings.rust(),
+    let (sdk, rust) = match &toolchain {
+        Toolchain::Google { sdk, .. } => (sdk.clone(), surroundings.rust()),
         Toolchain::StandIn => {
             let stand_in = StandIn::make(&target.join("android/stand-in"))?;
             flags.extend(stand_in.link_arguments().map(|argument| format!("-Clink-arg={argument}")));
             command.env("ANDROID_HOME", &stand_in.sdk).env("ANDROID_NDK_ROOT", &stand_in.ndk);
-            build_std(&mut command);
-            Rust::with_source(&surroundings)
+            build_std(&mut command, Panic::Abort);
+            (stand_in.sdk, Rust::with_source(&surroundings))
         }
     };
     let rust = rust.context("no Rust can be found: put cargo and rustc into PATH")?;
@@ -78,11 +80,13 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     run(&mut command)?;
 
     let folder = if options.release { "android" } else { "debug" };
-    let built = target.join("android/build").join(folder).join("apk").join(format!("{NAME}.apk"));
+    let folder = target.join("android/build").join(folder).join("apk");
+    let android_jar = sdk.join(format!("platforms/android-{TARGET_API}/android.jar"));
+    let built = pack(&folder, NAME, &android_jar, &root().join("android/res"), &keystore)?;
     let apk = target.join("apk").join(format!("{NAME}{}.apk", if options.release { "" } else { "-debug" }));
     publish(&built, &apk)?;
 
-    let report = check::check(&apk)?;
+    let report = check(&apk)?;
     print!("{report}");
     if options.release && keystore.debug {
         println!(
@@ -97,81 +101,32 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     Ok(apk)
 }
 
-/// The release APK for the tests. What it needs is installed without asking, as for all tests.
+/// Installs, without asking, what the building of the APK needs.
 ///
 /// # Errors
-/// When it cannot be built although everything is there.
-pub fn for_tests() -> anyhow::Result<Equipped> {
+/// When something cannot be had on this machine.
+pub fn ready_for_tests() -> anyhow::Result<()> {
     let surroundings = Surroundings::here();
     let (toolchain, _) = Toolchain::choose(&surroundings);
-    if let Err(error) = toolchain::ensure(&toolchain, &surroundings, true) {
-        eprintln!("warning: the APK cannot be built here, so that its tests are left out: {error:#}");
-        return Ok(Equipped::Missing);
-    }
-    Ok(Equipped::At(apk(&Options { release: true, yes: true, openxr_loaders: Vec::new() })?))
-}
-
-/// The workspace's folder.
-pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// cargo-apk of the one version that this works with, in the project's own folder.
-fn cargo_apk(folder: &Path) -> anyhow::Result<PathBuf> {
-    let program = folder.join("bin/cargo-apk");
-    if is_cargo_apk(&program) {
-        return Ok(program);
-    }
-    // It only starts other programs: optimising it would take longer than it saves.
-    let mut install = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    install
-        .args(["install", "cargo-apk", "--version", CARGO_APK, "--locked", "--debug", "--force", "--quiet"])
-        .args(["--no-track", "--root"])
-        .arg(folder)
-        // The target folder of the workspace keeps what only the APK needs out.
-        .env_remove("CARGO_TARGET_DIR");
-    eprintln!("$ cargo install cargo-apk --version {CARGO_APK} --locked --root {}", folder.display());
-    let status = install.status().context("cargo cannot be started")?;
-    if !status.success() {
-        bail!("cargo-apk {CARGO_APK} cannot be installed: see above");
-    }
-    Ok(program)
-}
-
-fn is_cargo_apk(program: &Path) -> bool {
-    let version = Command::new(program).args(["apk", "version"]).output();
-    let wanted = format!("cargo-apk {CARGO_APK}");
-    version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == wanted)
-}
-
-/// What the building brings along by itself, for people: cargo-apk and the key.
-///
-/// # Errors
-/// When the target folder is not known.
-pub fn extras() -> anyhow::Result<[(&'static str, String); 2]> {
-    let program = target_folder()?.join("tools/bin/cargo-apk");
-    let tool = if is_cargo_apk(&program) {
-        program.display().to_string()
-    } else {
-        format!("version {CARGO_APK} will be installed: {}", program.display())
-    };
-    Ok([("cargo-apk", tool), ("release key", keystore::describe())])
+    toolchain::ensure(&toolchain, &surroundings, true)
 }
 
 /// What is asked of the linker with any NDK: pages of 16 KiB, and no name that a public library does not have.
-fn link_flags() -> Vec<String> {
+pub fn link_flags() -> Vec<String> {
     let pages = format!("-Wl,-z,max-page-size={PAGE},-z,common-page-size={PAGE}");
     let mut flags: Vec<String> = [pages.as_str(), "-Wl,-z,defs", "-Wl,--build-id=sha1"]
         .map(|flag| format!("-Clink-arg={flag}"))
         .into();
-    // Panics name source files: the builder's folders are nobody's concern.
+    flags.extend(anonymous_paths());
+    flags
+}
+
+/// Has panics name source files without the builder's folders, which are nobody's concern.
+pub fn anonymous_paths() -> Option<String> {
     let cargo_home = env::var_os("CARGO_HOME")
         .map(PathBuf::from)
         .or_else(|| env::home_dir().map(|home| home.join(".cargo")));
-    if let Some(home) = cargo_home {
-        flags.push(format!("--remap-path-prefix={}=cargo", home.display()));
-    }
-    flags
+    cargo_home.map(|home| format!("--remap-path-prefix={}=cargo", home.display()))
 }
 
 /// Cargo's subcommands take the first cargo in PATH. What the cargo that started this program has set for its own must not
@@ -192,13 +147,25 @@ pub fn use_rust(command: &mut Command, rust: &Rust) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Has cargo compile std from its source.
-pub fn build_std(command: &mut Command) {
+/// What a panic does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Panic {
+    /// It ends the process.
+    Abort,
+    /// It can be caught.
+    Unwind,
+}
+
+/// Has cargo compile std from its source, without backtraces: there are no symbols to show.
+pub fn build_std(command: &mut Command, panic: Panic) {
+    let (crates, features) = match panic {
+        Panic::Abort => ("std,panic_abort", ""),
+        Panic::Unwind => ("std", "panic-unwind"),
+    };
     command
         .env("RUSTC_BOOTSTRAP", "1")
-        .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
-        // Without backtraces: there are no symbols to show.
-        .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", "");
+        .env("CARGO_UNSTABLE_BUILD_STD", crates)
+        .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", features);
 }
 
 /// zipalign lists every file: that is shown only when something fails.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use goblin::elf::{Elf, header};
 
-use super::ARCHITECTURES;
+use super::target::ARCHITECTURES;
 
 /// The name that the application looks for.
 pub const FILE: &str = "libopenxr_loader.so";
@@ -98,21 +98,5 @@ mod tests {
         for architecture in ARCHITECTURES {
             assert_eq!(fs::read_dir(folder.path().join(architecture.abi)).unwrap().count(), 0);
         }
-    }
-
-    #[test]
-    fn a_loader_is_there_until_the_apk_is_built() {
-        let folder = tempfile::tempdir().unwrap();
-        fs::create_dir(folder.path().join("arm64-v8a")).unwrap();
-        let file = folder.path().join("loader.so");
-        fs::write(&file, super::super::check::library::tests::loader()).unwrap();
-        let copy = folder.path().join("arm64-v8a").join(FILE);
-        let placed = Loaders::place(std::slice::from_ref(&file), folder.path()).unwrap();
-        assert!(copy.is_file());
-        drop(placed);
-        assert!(!copy.exists());
-        let twice = [file.clone(), file];
-        assert!(Loaders::place(&twice, folder.path()).is_err());
-        assert!(!copy.exists());
     }
 }

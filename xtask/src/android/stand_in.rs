@@ -13,7 +13,7 @@ use std::process::Command;
 use anyhow::{Context as _, bail};
 
 use super::symbols::{LISTS, listed};
-use super::{ARCHITECTURES, Architecture, MIN_API};
+use super::target::{ARCHITECTURES, Architecture, MIN_API, TARGET_API};
 use crate::apt::find_program;
 
 const CRTBEGIN: &str = include_str!("../../android/crtbegin_so.c");
@@ -25,7 +25,6 @@ pub const FRAMEWORK: &str = "/usr/share/android-framework-res/framework-res.apk"
 const PROPERTIES: &str = "Pkg.Desc = Android NDK stand-in\nPkg.Revision = 0.0.1\n";
 /// cargo-apk takes an empty line for a broken file: there is no newline at the end.
 const PLATFORMS: &str = "NDK_MIN_PLATFORM_LEVEL := 21\nNDK_MAX_PLATFORM_LEVEL := 36";
-const TARGET_API: u32 = 34;
 
 /// Where the two are.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -73,9 +72,16 @@ impl StandIn {
             link(&program(tool)?, &toolchain.join("bin").join(tool))?;
         }
         for architecture in ARCHITECTURES {
-            make_libraries(&toolchain.join("sysroot/usr/lib"), architecture)?;
+            let folder = toolchain.join("sysroot/usr/lib");
+            make_libraries(&folder, architecture, MIN_API)?;
+            make_unwinder(&folder, architecture, UNWIND)?;
         }
         Ok(())
+    }
+
+    /// The compiler and linker.
+    pub fn clang(&self) -> PathBuf {
+        self.ndk.join("toolchains/llvm/prebuilt/linux-x86_64/bin/clang")
     }
 
     /// What rustc has to be told for Debian's clang to link like the NDK's own.
@@ -95,15 +101,18 @@ fn recipe() -> String {
     format!("{:016x}\n", hasher.finish())
 }
 
-fn make_libraries(folder: &Path, architecture: Architecture) -> anyhow::Result<()> {
-    let target = format!("--target={}{MIN_API}", architecture.triple);
-    let common = folder.join(architecture.triple);
-    let level = common.join(MIN_API.to_string());
+/// The libraries of an API level to link with, and what a linker puts first and last.
+///
+/// # Errors
+/// When a tool is missing or fails, or the folder cannot be written.
+pub fn make_libraries(folder: &Path, architecture: Architecture, api: u32) -> anyhow::Result<()> {
+    let target = format!("--target={}{api}", architecture.triple);
+    let level = folder.join(architecture.triple).join(api.to_string());
     fs::create_dir_all(&level).with_context(|| format!("{} cannot be made", level.display()))?;
     let source = level.join("source");
 
     for (library, list) in LISTS {
-        write(&source, &stub(list))?;
+        write(&source, &stub(list, api))?;
         let soname = format!("-Wl,-soname,{library}.so");
         clang(&target, &["-fuse-ld=lld", "-nostdlib", "-shared", &soname], "assembler", &source)
             .arg(level.join(format!("{library}.so")))
@@ -114,10 +123,19 @@ fn make_libraries(folder: &Path, architecture: Architecture) -> anyhow::Result<(
     clang(&target, &compile, "c", &source).arg(level.join("crtbegin_so.o")).finish()?;
     write(&source, "")?;
     clang(&target, &compile, "c", &source).arg(level.join("crtend_so.o")).finish()?;
+    fs::remove_file(&source).with_context(|| format!("{} cannot be removed", source.display()))
+}
 
-    let unwind = level.join("unwind.o");
-    write(&source, UNWIND)?;
-    clang(&target, &compile, "c", &source).arg(&unwind).finish()?;
+/// The library that std has for unwinding, of this source: nothing where libc has it all.
+///
+/// # Errors
+/// As [`make_libraries`].
+pub fn make_unwinder(folder: &Path, architecture: Architecture, content: &str) -> anyhow::Result<()> {
+    let target = format!("--target={}{MIN_API}", architecture.triple);
+    let common = folder.join(architecture.triple);
+    let (source, unwind) = (common.join("source"), common.join("unwind.o"));
+    write(&source, content)?;
+    clang(&target, &["-O2", "-fPIC", "-ffreestanding", "-c"], "c", &source).arg(&unwind).finish()?;
     let mut archive = Command::new("llvm-ar");
     archive.arg("rcs").arg(common.join("libunwind.a")).arg(&unwind).finish()?;
     for temporary in [unwind, source] {
@@ -127,9 +145,9 @@ fn make_libraries(folder: &Path, architecture: Architecture) -> anyhow::Result<(
 }
 
 /// The assembly of a library that has the names and nothing behind them.
-fn stub(list: &str) -> String {
+fn stub(list: &str, api: u32) -> String {
     let mut text = String::new();
-    for symbol in listed(list, MIN_API) {
+    for symbol in listed(list, api) {
         let name = symbol.name;
         let (section, kind, content) =
             if symbol.object { (".data", "object", ".quad 0") } else { (".text", "function", "") };
@@ -186,7 +204,7 @@ mod tests {
     #[test]
     fn a_stub_has_the_names_of_its_level() {
         assert_eq!(
-            stub("# A library.\nopen\nenviron:object\n@30\nlater\n"),
+            stub("# A library.\nopen\nenviron:object\n@30\nlater\n", 29),
             ".text\n.globl open\n.type open, %function\nopen: \n\
              .data\n.globl environ\n.type environ, %object\nenviron: .quad 0\n"
         );

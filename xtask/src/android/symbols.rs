@@ -8,7 +8,7 @@ use anyhow::Context as _;
 use goblin::elf::Elf;
 use goblin::elf::section_header::SHN_UNDEF;
 
-use super::{Architecture, MIN_API};
+use super::target::{Architecture, MIN_API};
 
 /// The lists that the stand-in NDK is made of. They hold all of EGL, GLES and libandroid, and of libc and libm what
 /// Rust's std and this project ask for.
@@ -122,7 +122,8 @@ mod tests {
 
     #[test]
     fn private_libraries_have_no_list() {
-        let symbols = |library| Public::Lists.symbols(library, super::super::ARCHITECTURES[0]).unwrap();
+        let symbols =
+            |library| Public::Lists.symbols(library, super::super::target::ARCHITECTURES[0]).unwrap();
         assert!(symbols("libEGL.so").unwrap().contains("eglSwapBuffers"));
         assert!(symbols("libcutils.so").is_none());
         assert!(symbols("libEGL").is_none());

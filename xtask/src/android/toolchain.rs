@@ -8,12 +8,10 @@ use std::process::Command;
 
 use anyhow::{anyhow, bail};
 
+use super::cargo_apk;
 use super::stand_in::FRAMEWORK;
-use super::{ARCHITECTURES, MIN_API};
+use super::target::{ARCHITECTURES, MIN_API, TARGET_API};
 use crate::apt::{self, find_program};
-
-/// Of android/Cargo.toml.
-const TARGET_API: u32 = 34;
 
 /// What the user has, as far as it decides.
 #[derive(Clone, Debug, Default)]
@@ -339,7 +337,7 @@ pub fn doctor() -> anyhow::Result<(String, bool)> {
             Err(problem) => format!("  MISSING  {:14}{problem}: {}", need.what, need.remedy),
         });
     }
-    for (what, state) in super::build::extras()? {
+    for (what, state) in cargo_apk::extras()? {
         lines.push(format!("  ok       {what:14}{state}"));
     }
     let complete = needs.iter().all(|need| need.found.is_ok());

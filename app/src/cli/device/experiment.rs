@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use super::{WhichArgs, each};
-use crate::device::experiment::{self, Experiment, length, method_name};
+use super::which::{WhichArgs, each};
+use yoro_lab::device::experiment::{self, Experiment, length, method_name};
 
 /// Make the runs of an experiment: methods, scenes and repetitions in a balanced order, with pauses to cool down
 #[derive(clap::Args, Clone, Debug)]
@@ -56,6 +56,27 @@ pub fn run(args: &ExperimentArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// What a phone takes while it renders stereo, in watts: a guess until it is measured, for the plan only.
+const GUESSED_WATTS: f64 = 3.5;
+/// What a phone's battery of 4500 mAh holds, in watt-hours.
+const USUAL_WATT_HOURS: f64 = 17.0;
+
+/// What a plan of so many seconds asks of a battery, where that is more than one charge.
+fn charges(experiment: &Experiment, seconds: f64) -> Option<String> {
+    let watt_hours = GUESSED_WATTS * seconds / 3600.0;
+    let usable = |from: f64| USUAL_WATT_HOURS * (from - experiment.min_level) / 100.0;
+    let missing = watt_hours - usable(100.0);
+    (experiment.power && missing > 0.0).then(|| {
+        let times = (missing / usable(experiment.charge_level)).ceil();
+        format!(
+            "at a guessed {GUESSED_WATTS} W that takes {watt_hours:.0} Wh, and the battery of a phone with 4500 mAh holds \
+             {USUAL_WATT_HOURS:.0} Wh: about {times:.0} time(s), below {:.0} %, the plan waits for somebody who charges it to \
+             {:.0} %",
+            experiment.min_level, experiment.charge_level
+        )
+    })
+}
+
 fn print_plan(experiment: &Experiment, serials: &[String]) {
     let any = [String::new()];
     for serial in if serials.is_empty() { &any } else { serials } {
@@ -84,6 +105,9 @@ fn print_plan(experiment: &Experiment, serials: &[String]) {
             length(shortest),
             length(longest)
         );
+        if let Some(charges) = charges(experiment, shortest) {
+            println!("{charges}");
+        }
     }
     if serials.is_empty() {
         println!("the order is another one on each device: give --serial to see it");

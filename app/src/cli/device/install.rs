@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::ensure;
 
-use super::{WhichArgs, each};
+use super::which::{WhichArgs, each};
 
 /// Where `cargo xtask apk` puts what it makes, the release first.
 const BUILT: [&str; 2] = ["target/apk/yoro.apk", "target/apk/yoro-debug.apk"];

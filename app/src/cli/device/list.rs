@@ -1,8 +1,8 @@
 //! `yoro device list`.
 
-use super::SourceArgs;
-use crate::device::adb::{Device, DeviceError, State};
-use crate::device::phone;
+use super::which::SourceArgs;
+use yoro_lab::device::adb::{Device, DeviceError, State};
+use yoro_lab::device::phone;
 
 /// List the devices, their batteries and the yoro on them
 #[derive(clap::Args, Clone, Debug)]
@@ -38,7 +38,7 @@ pub fn run(args: &ListArgs) -> anyhow::Result<()> {
 fn details(device: &dyn Device) -> Result<String, DeviceError> {
     let info = phone::info(device)?;
     let battery = phone::battery(device)?;
-    let version = phone::version(device)?;
+    let version = phone::version(device, phone::PACKAGE)?;
     let name =
         format!("{} {}{}", info.manufacturer, info.model, if info.simulated { " (simulated)" } else { "" });
     let number = |value: Option<f64>, decimals: usize, unit: &str| {
@@ -49,7 +49,7 @@ fn details(device: &dyn Device) -> Result<String, DeviceError> {
         info.android,
         number(battery.level_percent, 0, "%"),
         number(battery.celsius, 1, "C"),
-        if battery.plugged { "yes" } else { "no" },
+        if battery.plugged() { "yes" } else { "no" },
         version.as_deref().unwrap_or("not installed"),
     ))
 }

@@ -8,15 +8,18 @@ use std::time::{Duration, SystemTime};
 
 use anyhow::{Context, bail, ensure};
 
-use super::WhichArgs;
-use crate::cli::{interrupted, parse_positive};
-use crate::device::adb::{Device, DeviceError};
-use crate::device::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
-use crate::device::follow::{Event, Follower};
-use crate::device::log::SIMULATED_MARK;
-use crate::device::phone;
-use crate::device::reading::{News, Reading};
-use crate::files::FileError;
+use super::which::WhichArgs;
+use crate::cli::args::parse_positive;
+use yoro_files::FileError;
+use yoro_lab::device::adb::{Device, DeviceError};
+use yoro_lab::device::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
+use yoro_lab::device::follow::{Event, Follower};
+use yoro_lab::device::foreign::{Foreign, Subject};
+use yoro_lab::device::log::SIMULATED_MARK;
+use yoro_lab::device::phone;
+use yoro_lab::device::plausible::MeanPower;
+use yoro_lab::device::reading::{News, Reading};
+use yoro_lab::interrupt;
 
 /// On a terminal, the head of the table comes again after so many rows.
 const ROWS: u64 = 24;
@@ -40,6 +43,21 @@ pub struct LogcatArgs {
     /// Begin with what the device has kept of its log
     #[arg(long, conflicts_with = "file")]
     from_oldest: bool,
+    /// Only the lines about this application, on a headset by Meta, with the battery as this computer asks for it
+    #[arg(long, value_name = "PACKAGE", conflicts_with = "file")]
+    package: Option<String>,
+    /// The process that logs its frame rates [default: the package]
+    #[arg(long, value_name = "NAME", requires = "package")]
+    log_process: Option<String>,
+    /// Name of the method in the capture [default: what the log says]
+    #[arg(long, value_name = "NAME")]
+    method: Option<String>,
+    /// Name of the scene in the capture [default: what the log says]
+    #[arg(long, value_name = "NAME")]
+    scene: Option<String>,
+    /// Number of the repetition in the capture: those of the same number, scene and device are compared
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    repetition: u32,
     #[command(flatten)]
     which: WhichArgs,
 }
@@ -72,9 +90,9 @@ fn saved(args: &LogcatArgs, file: &Path) -> anyhow::Result<()> {
     };
     let began = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_secs_f64();
     let device = DeviceInfo { serial: UNKNOWN.into(), ..DeviceInfo::default() };
-    let mut table = Table::new(args.out.as_deref(), device, began, None)?;
+    let mut table = Table::new(args.out.as_deref(), args, device, began, None)?;
     let mut line = Vec::new();
-    while !interrupted() && input.read_until(b'\n', &mut line).map_err(failed)? > 0 {
+    while !interrupt::requested() && input.read_until(b'\n', &mut line).map_err(failed)? > 0 {
         table.line(String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']), None)?;
         line.clear();
     }
@@ -101,9 +119,18 @@ fn live(args: &LogcatArgs) -> anyhow::Result<()> {
         let time = humantime::format_rfc3339_seconds(time).to_string();
         PathBuf::from(format!("out/logcat-{}", time.replace([':', '-', 'Z'], "").replace('T', "-")))
     });
-    let version = phone::version(device)?;
+    let package = args.package.as_deref().unwrap_or(phone::PACKAGE);
+    let version = phone::version(device, package)?;
+    if version.is_none() && args.package.is_some() {
+        return Err(DeviceError::NoPackage { serial: device.serial().into(), package: package.into() }.into());
+    }
     let mut follower = Follower::new(device, args.from_oldest)?;
-    let mut table = Table::new(Some(&out), info, began, version)?;
+    let mut table = Table::new(Some(&out), args, info, began, version)?;
+    if args.package.is_some() {
+        let process = args.log_process.as_deref().unwrap_or(package);
+        let subject = Subject { package: package.into(), process: process.into() };
+        table.foreign = Some(Foreign::new(device, subject)?);
+    }
     let done = follow(args, device, &mut follower, &mut table, began);
     // Whatever has ended it: the capture says what it was.
     table.finish()?;
@@ -114,11 +141,13 @@ fn follow(
     args: &LogcatArgs,
     device: &dyn Device,
     follower: &mut Follower,
-    table: &mut Table,
+    table: &mut Table<'_>,
     began: f64,
 ) -> anyhow::Result<()> {
     let mut last = began;
-    while !interrupted() && args.seconds.is_none_or(|seconds| device.now() - began < f64::from(seconds)) {
+    while !interrupt::requested()
+        && args.seconds.is_none_or(|seconds| device.now() - began < f64::from(seconds))
+    {
         match follower.next(Duration::from_secs(1))? {
             Event::Line(line) => {
                 let now = device.now();
@@ -138,8 +167,11 @@ fn follow(
 }
 
 /// Prints the samples of a log, and writes them if there is a folder.
-struct Table {
+struct Table<'a> {
+    args: &'a LogcatArgs,
     reading: Reading,
+    foreign: Option<Foreign<'a>>,
+    power: MeanPower,
     writer: Option<Writer>,
     own_faults: Vec<Fault>,
     rows: u64,
@@ -148,13 +180,14 @@ struct Table {
     named: Option<(String, String)>,
 }
 
-impl Table {
+impl<'a> Table<'a> {
     fn new(
         out: Option<&Path>,
+        args: &'a LogcatArgs,
         device: DeviceInfo,
         started_unix_s: f64,
         application: Option<String>,
-    ) -> anyhow::Result<Table> {
+    ) -> anyhow::Result<Table<'a>> {
         let simulated = device.simulated;
         let info = RunInfo {
             version: VERSION,
@@ -162,7 +195,7 @@ impl Table {
             experiment: None,
             method: UNKNOWN.into(),
             scene: UNKNOWN.into(),
-            repetition: 1,
+            repetition: args.repetition,
             order: 1,
             settings: BTreeMap::new(),
             started_unix_s,
@@ -176,7 +209,10 @@ impl Table {
         let writer = out.map(|folder| Writer::create(folder, info)).transpose()?;
         let is_terminal = io::stdout().is_terminal();
         Ok(Table {
+            args,
             reading: Reading::new(None),
+            foreign: None,
+            power: MeanPower::default(),
             writer,
             own_faults: Vec::new(),
             rows: 0,
@@ -194,10 +230,10 @@ impl Table {
             self.simulated = true;
             println!("SIMULATED: {}", line.trim_matches(['-', ' ']));
         }
-        match self.reading.line(line, passed_s) {
-            News::Sample(sample) => {
-                self.sample(&sample)?;
-            }
+        let is_its = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.is_its(line))?;
+        let news = if is_its { self.reading.line(line, passed_s) } else { News::Other };
+        match news {
+            News::Sample(sample) => self.sample(*sample)?,
             News::Damaged(why) => {
                 let text: String = line.chars().take(60).collect();
                 println!("damaged line ({why}): {text}...");
@@ -207,11 +243,15 @@ impl Table {
         Ok(())
     }
 
-    fn sample(&mut self, sample: &Sample) -> anyhow::Result<()> {
-        if let Some(writer) = &mut self.writer {
-            writer.sample(sample)?;
+    fn sample(&mut self, mut sample: Sample) -> anyhow::Result<()> {
+        if let Some(foreign) = &mut self.foreign {
+            foreign.complete(&mut sample, &mut self.reading)?;
         }
-        self.row(sample)
+        self.power.add(&sample);
+        if let Some(writer) = &mut self.writer {
+            writer.sample(&sample)?;
+        }
+        self.row(&sample)
     }
 
     fn row(&mut self, sample: &Sample) -> anyhow::Result<()> {
@@ -276,9 +316,13 @@ impl Table {
 
     fn finish(mut self) -> anyhow::Result<()> {
         if let Some(last) = self.reading.end() {
-            self.sample(&last)?;
+            self.sample(last)?;
         }
-        let faults: Vec<Fault> = self.own_faults.iter().cloned().chain(self.reading.faults()).collect();
+        if let (Some(foreign), 0) = (&self.foreign, self.reading.samples()) {
+            println!("{}", foreign.silence());
+        }
+        let own = self.own_faults.iter().cloned();
+        let faults: Vec<Fault> = own.chain(self.reading.faults()).chain(self.power.fault()).collect();
         for fault in &faults {
             let at = fault.at_s.map_or(String::new(), |at_s| format!(" (from {at_s:.0} s)"));
             println!("fault: {}{at}", fault.detail);
@@ -290,6 +334,8 @@ impl Table {
             [(method, scene)] => (method.as_str(), scene.as_str()),
             _ => (SEVERAL, SEVERAL),
         };
+        let method = self.args.method.as_deref().unwrap_or(method);
+        let scene = self.args.scene.as_deref().unwrap_or(scene);
         writer.change(|info| {
             (info.method, info.scene) = (method.into(), scene.into());
             info.device.simulated = self.simulated;

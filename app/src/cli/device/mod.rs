@@ -6,17 +6,7 @@ pub mod list;
 pub mod logcat;
 pub mod report;
 pub mod run;
-
-use std::path::{Path, PathBuf};
-use std::thread;
-
-use anyhow::bail;
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
-
-use crate::cli::interrupted;
-use crate::device::adb::{self, Adb, Device, DeviceError};
-use crate::device::program::AdbProgram;
-use crate::device::replay::Replay;
+mod which;
 
 /// Measure on phones and headsets
 #[derive(clap::Args, Clone, Debug)]
@@ -45,93 +35,4 @@ pub fn run(args: &DeviceArgs) -> anyhow::Result<()> {
         Command::Experiment(args) => experiment::run(args),
         Command::Report(args) => report::run(args),
     }
-}
-
-/// Who answers for devices.
-#[derive(clap::Args, Clone, Debug)]
-pub struct SourceArgs {
-    /// The program adb [default: the one in PATH or below ANDROID_HOME]
-    #[arg(long, value_name = "FILE")]
-    adb: Option<PathBuf>,
-    /// Devices that do not exist: a script, or a folder of captures to play again. What comes from them is simulated
-    #[arg(long, value_name = "SCRIPT.toml|FOLDER", conflicts_with = "adb")]
-    replay: Option<PathBuf>,
-}
-
-impl SourceArgs {
-    /// Whoever it is, ready to be asked.
-    fn open(&self) -> Result<Box<dyn Adb>, DeviceError> {
-        let Some(replay) = &self.replay else { return Ok(Box::new(AdbProgram::find(self.adb.as_deref())?)) };
-        let adb = Replay::read(replay)?;
-        println!("SIMULATED: the devices of {} do not exist, nothing here is measured", replay.display());
-        Ok(Box::new(adb))
-    }
-}
-
-/// Which devices.
-#[derive(clap::Args, Clone, Debug)]
-pub struct WhichArgs {
-    /// The device, as `yoro device list` names it; more than once for several [default: the only one]
-    #[arg(long = "serial", value_name = "SERIAL")]
-    serials: Vec<String>,
-    /// All devices
-    #[arg(long, conflicts_with = "serials")]
-    all: bool,
-    #[command(flatten)]
-    source: SourceArgs,
-}
-
-impl WhichArgs {
-    fn choose(&self) -> Result<Vec<Box<dyn Device>>, DeviceError> {
-        adb::choose(&*self.source.open()?, &self.serials, self.all)
-    }
-}
-
-/// Does something with all devices at the same time, each with a bar of its own, and prints what it returns. What went
-/// wrong with any of them is the error.
-fn each<F>(devices: Vec<Box<dyn Device>>, work: F) -> anyhow::Result<()>
-where
-    F: Fn(&dyn Device, &ProgressBar) -> anyhow::Result<String> + Sync,
-{
-    let bars = MultiProgress::new();
-    let style = ProgressStyle::with_template("{prefix}  {bar:20} {pos}/{len} s  {wide_msg}");
-    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-    let count = devices.len();
-    let mut failures = Vec::new();
-    thread::scope(|scope| {
-        let begin = |device: Box<dyn Device>| {
-            let serial = device.serial().to_owned();
-            let bar = bars.add(ProgressBar::new(0).with_style(style.clone()).with_prefix(serial.clone()));
-            let work = &work;
-            let thread = scope.spawn(move || {
-                let done = work(&*device, &bar);
-                bar.finish_and_clear();
-                done
-            });
-            (serial, thread)
-        };
-        let threads: Vec<_> = devices.into_iter().map(begin).collect();
-        for (serial, thread) in threads {
-            match thread.join() {
-                Ok(Ok(text)) => println!("{serial}: {text}"),
-                Ok(Err(error)) => failures.push((serial, error)),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-    });
-    match (&mut failures[..], count) {
-        ([], _) => Ok(()),
-        (_, 1) => Err(failures.remove(0).1),
-        _ if interrupted() => Err(DeviceError::Interrupted.into()),
-        (failures, count) => {
-            // Most of the sentences name the device.
-            let all: Vec<String> = failures.iter().map(|(_, error)| format!("{error:#}")).collect();
-            bail!("{} of {count} devices: {}", failures.len(), all.join("; "))
-        }
-    }
-}
-
-/// Where something of one of several devices goes.
-fn folder_of(out: &Path, serial: &str, is_only: bool) -> PathBuf {
-    if is_only { out.into() } else { out.join(crate::device::experiment::file_name(serial)) }
 }

@@ -1,11 +1,14 @@
 //! `yoro device report`: captures in, a page and tables out.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use anyhow::ensure;
+
 use crate::cli::machine;
-use crate::device::capture;
-use crate::device::report::DeviceReport;
-use crate::files;
+use yoro_files as files;
+use yoro_lab::device::capture;
+use yoro_lab::device::report::DeviceReport;
 
 /// Figures of captures: power, frame rate, temperature and the rest, each method against the baseline
 #[derive(clap::Args, Clone, Debug)]
@@ -16,6 +19,10 @@ pub struct ReportArgs {
     /// The method that the others are held against
     #[arg(long, default_value = "conventional", value_name = "METHOD")]
     baseline: String,
+    /// Number of cells of a device's battery where its current is that of one of them; power is multiplied by it. As often as
+    /// needed
+    #[arg(long = "cells", value_name = "SERIAL=N", value_parser = parse_cells)]
+    cells: Vec<(String, u32)>,
     /// Folder for report.html, report.md and report.json
     #[arg(long, default_value = "out/device", value_name = "FOLDER")]
     out: PathBuf,
@@ -32,12 +39,26 @@ pub fn run(args: &ReportArgs) -> anyhow::Result<()> {
         }
         sets.push(captures);
     }
+    let cells: BTreeMap<String, u32> = args.cells.iter().cloned().collect();
+    for serial in cells.keys() {
+        let is_known = sets.iter().flatten().any(|(_, capture)| capture.info.device.serial == *serial);
+        ensure!(
+            is_known,
+            "there is no capture of a device {serial}: run.json names each device's serial number"
+        );
+    }
     files::create_folder(&args.out)?;
-    let report = DeviceReport::new(&sets, &args.baseline, machine::made_by());
+    let report = DeviceReport::new(&sets, &args.baseline, &cells, machine::made_by());
     let written = report.write(&args.out)?;
     print!("{}", report.to_text());
     println!("page:   {}", written.page.display());
     println!("tables: {}", written.markdown.display());
     println!("json:   {}", written.json.display());
     Ok(())
+}
+
+fn parse_cells(text: &str) -> Result<(String, u32), String> {
+    let pair =
+        text.rsplit_once('=').and_then(|(serial, cells)| Some((serial.to_owned(), cells.parse().ok()?)));
+    pair.filter(|(_, cells)| (1..=4).contains(cells)).ok_or_else(|| "give SERIAL=N with 1 to 4 cells".into())
 }

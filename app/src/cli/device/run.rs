@@ -4,22 +4,38 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use super::{WhichArgs, each, folder_of};
-use crate::cli::{interrupted, parse_positive};
-use crate::device::adb::{Device, DeviceError};
-use crate::device::capture::Outcome;
-use crate::device::pins::{Pins, Wanted};
-use crate::device::run::{self, Plan};
-use crate::viewer::Settings;
+use super::which::{WhichArgs, each, folder_of};
+use crate::cli::args::parse_positive;
+use yoro_lab::device::adb::{Device, DeviceError};
+use yoro_lab::device::capture::Outcome;
+use yoro_lab::device::foreign::Subject;
+use yoro_lab::device::pins::{Pins, Wanted};
+use yoro_lab::device::run::{self, Other, Plan};
+use yoro_lab::interrupt;
+use yoro_viewer::Settings;
 
 /// Make one run: a method in a scene for a time, captured into a folder
 #[derive(clap::Args, Clone, Debug)]
 pub struct RunArgs {
-    /// A built-in scene, or one that was pushed onto the device [default: prototype]
+    /// A built-in scene, or one that was pushed onto the device [default: prototype]; with --package any name
     scene: Option<String>,
-    /// The stereo method [default: yoro]
+    /// The stereo method [default: yoro]; with --package any name
     #[arg(long)]
     method: Option<String>,
+    /// Another application on a headset by Meta in place of yoro, started with its own settings: the runtime's frame rates
+    /// and the battery, asked from this computer
+    #[arg(long, value_name = "PACKAGE", requires = "activity", requires = "method", requires = "scene",
+        conflicts_with_all = ["settings", "overrides"])]
+    package: Option<String>,
+    /// Its activity, such as .MainActivity
+    #[arg(long, requires = "package")]
+    activity: Option<String>,
+    /// The process that logs the frame rates [default: the package]
+    #[arg(long, value_name = "NAME", requires = "package")]
+    log_process: Option<String>,
+    /// Number of the repetition: runs of the same number, scene and device are compared
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    repetition: u32,
     /// Settings of the viewer in a TOML file
     #[arg(long, value_name = "FILE")]
     settings: Option<PathBuf>,
@@ -53,18 +69,34 @@ pub struct RunArgs {
 
 /// Makes the run on each device.
 pub fn run(args: &RunArgs) -> anyhow::Result<()> {
-    let named = [("scene", &args.scene), ("method", &args.method)];
-    let named = named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
-    let settings = Settings::resolve(args.settings.as_deref(), args.overrides.iter().cloned().chain(named))?;
+    let other = args.package.as_ref().zip(args.activity.as_ref()).map(|(package, activity)| Other {
+        subject: Subject {
+            package: package.clone(),
+            process: args.log_process.as_ref().unwrap_or(package).clone(),
+        },
+        activity: activity.clone(),
+    });
+    let settings = match &other {
+        Some(_) => Settings { scene: args.scene.clone().unwrap_or_default(), ..Settings::default() },
+        None => {
+            let named = [("scene", &args.scene), ("method", &args.method)];
+            let named =
+                named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
+            Settings::resolve(args.settings.as_deref(), args.overrides.iter().cloned().chain(named))?
+        }
+    };
+    let method = args.name.clone().or(args.method.clone().filter(|_| other.is_some()));
     let plan = Plan {
+        other,
         experiment: None,
-        method: args.name.clone().unwrap_or_else(|| settings.method.name().into()),
+        method: method.unwrap_or_else(|| settings.method.name().into()),
         settings,
-        repetition: 1,
+        repetition: args.repetition,
         order: 1,
         duration_s: f64::from(args.seconds),
         warm_up_s: f64::from(args.warm_up_seconds),
         warmest_celsius: None,
+        refresh_hz: args.refresh_hz.map(f64::from),
         power: !args.plugged,
     };
     let wanted = Wanted { brightness: args.brightness, refresh_hz: args.refresh_hz.map(f64::from) };
@@ -84,12 +116,12 @@ fn one(
     folder: &Path,
     bar: &indicatif::ProgressBar,
 ) -> anyhow::Result<String> {
-    let found = run::look(device)?;
+    let found = run::look(device, plan.package())?;
     if plan.power {
         run::refuse_charger(device)?;
     }
-    let pins = Pins::new(device, wanted)?;
-    let made = run::capture(device, &found, plan, folder, bar);
+    let mut pins = Pins::new(device, &found.info, wanted)?;
+    let made = run::capture(device, &found, plan, &mut pins, folder, bar);
     let given_back = pins.give_back(device);
     let info = made?;
     if let Err(error) = given_back {
@@ -98,7 +130,7 @@ fn one(
     let faults: String = info.faults.iter().map(|fault| format!("\n  {}", fault.detail)).collect();
     match info.outcome {
         Outcome::Complete => Ok(format!("complete, captured into {}{faults}", folder.display())),
-        Outcome::Interrupted { .. } if interrupted() => Err(DeviceError::Interrupted.into()),
+        Outcome::Interrupted { .. } if interrupt::requested() => Err(DeviceError::Interrupted.into()),
         Outcome::Interrupted { reason } | Outcome::Failed { reason } => {
             bail!("{reason}; what there was is in {}", folder.display())
         }

@@ -30,7 +30,7 @@ enum Kind {
     RefreshRate(RefreshRateCallback),
 }
 
-/// `AChoreographerFrameCallbackData`: one timeline, shown two refreshes later.
+/// `AChoreographerFrameCallbackData`: one timeline, shown two refreshes later, or as the script says.
 pub struct FrameData {
     time: u64,
     period: u64,
@@ -179,7 +179,7 @@ extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineExpectedPresentati
     data: &FrameData,
     _index: usize,
 ) -> i64 {
-    (data.time + 2 * data.period) as i64
+    (data.time + u64::from(host().device.refreshes_ahead) * data.period) as i64
 }
 
 extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineDeadlineNanos(

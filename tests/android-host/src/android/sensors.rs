@@ -194,7 +194,9 @@ impl Sensors {
                         (now.saturating_sub(schedule.next) / schedule.period).saturating_sub(FIFO as u64);
                     schedule.next += backlog * schedule.period;
                     while schedule.next <= now {
-                        new.push(self.sample(sensor, schedule.next, schedule.period));
+                        let mut event = self.sample(sensor, schedule.next, schedule.period);
+                        event.timestamp = host().clock.boottime_of(schedule.next) as i64;
+                        new.push(event);
                         schedule.next += schedule.period;
                     }
                 }
@@ -283,10 +285,14 @@ unsafe extern "C" fn ASensorManager_destroyEventQueue(
     queue: *mut ASensorEventQueue,
 ) -> c_int {
     let host = host();
-    let mut queues = lock(&host.sensors.queues);
-    let before = queues.len();
-    queues.retain(|known| !std::ptr::eq(*known, queue));
-    if queues.len() == before {
+    let is_known = {
+        // Not held below: a looper that looks for its next event has its own lock when it asks for this one.
+        let mut queues = lock(&host.sensors.queues);
+        let before = queues.len();
+        queues.retain(|known| !std::ptr::eq(*known, queue));
+        queues.len() < before
+    };
+    if !is_known {
         host.violation("ASensorManager_destroyEventQueue of a queue that does not exist");
         return -libc::EINVAL;
     }

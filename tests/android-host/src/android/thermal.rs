@@ -106,6 +106,7 @@ extern "C" fn APerformanceHint_createSession(
         return std::ptr::null_mut();
     }
     host().count("performance hint sessions", 1);
+    host().request(format!("hints for {count} thread, {:.1} ms", target as f64 * 1e-6));
     std::ptr::dangling_mut()
 }
 
@@ -118,6 +119,7 @@ extern "C" fn APerformanceHint_getPreferredUpdateRateNanos(_manager: *mut c_void
 }
 
 extern "C" fn APerformanceHint_reportActualWorkDuration(_session: *mut c_void, nanoseconds: i64) -> c_int {
+    host().request("work duration");
     if nanoseconds > 0 { 0 } else { libc::EINVAL }
 }
 

@@ -139,17 +139,17 @@ extern "C" fn ANativeWindow_getBuffersDataSpace(window: &Window) -> i32 {
     window.data_space.load(Ordering::Relaxed)
 }
 
-extern "C" fn ANativeWindow_setFrameRate(window: &Window, _rate: f32, _compatibility: i8) -> c_int {
+extern "C" fn ANativeWindow_setFrameRate(window: &Window, rate: f32, _compatibility: i8) -> c_int {
     known(window);
+    host().request(format!("{rate} Hz"));
     0
 }
 
 extern "C" fn ANativeWindow_setFrameRateWithChangeStrategy(
     window: &Window,
-    _rate: f32,
-    _compatibility: i8,
+    rate: f32,
+    compatibility: i8,
     _strategy: i8,
 ) -> c_int {
-    known(window);
-    0
+    ANativeWindow_setFrameRate(window, rate, compatibility)
 }

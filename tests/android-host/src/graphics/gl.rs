@@ -311,6 +311,13 @@ extern "C" fn glFenceSync(condition: u32, flags: u32) -> usize {
     sync
 }
 
+unsafe extern "C" fn glClientWaitSync(sync: usize, flags: u32, timeout: u64) -> u32 {
+    mesa! { call as c"glClientWaitSync"(sync: usize, flags: u32, timeout: u64) -> u32; }
+    host().graphics.waited();
+    // SAFETY: same contract as the caller's.
+    unsafe { call(sync, flags, timeout) }
+}
+
 unsafe extern "C" fn glDeleteSync(sync: usize) {
     mesa! { call as c"glDeleteSync"(sync: usize); }
     if sync != 0 {
@@ -360,6 +367,7 @@ pub fn function(name: &str) -> Option<usize> {
         glCreateProgram,
         glDeleteProgram,
         glFenceSync,
+        glClientWaitSync,
         glDeleteSync,
         glDebugMessageCallback,
     ];

@@ -84,6 +84,10 @@ impl Graphics {
         lock(&self.facts).clone()
     }
 
+    fn waited(&self) {
+        lock(&self.facts).waits += 1;
+    }
+
     fn error(&self, text: &str) {
         let frame = host().frames.shown();
         let mut facts = lock(&self.facts);

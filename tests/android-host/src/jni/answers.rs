@@ -62,12 +62,22 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
         | "show"
         | "setSystemBarsBehavior"
         | "setRequestedOrientation"
-        | "setSustainedPerformanceMode"
             if member.signature.ends_with(")V") =>
         {
             Value::Void
         }
 
+        "setSustainedPerformanceMode" => {
+            let is_on = matches!(arguments.first(), Some(Value::Boolean(true)));
+            host.request(format!("sustained performance {}", if is_on { "on" } else { "off" }));
+            Value::Void
+        }
+        "isSustainedPerformanceModeSupported" => Value::Boolean(host.device.sustained_performance),
+        "getPackageManager" => Value::object(Object::new("android/content/pm/PackageManager", Data::None)),
+        "hasSystemFeature" => {
+            let version = host.device.features.get(&text(0)?);
+            Value::Boolean(version.is_some_and(|version| *version >= int(1)))
+        }
         "finish" if member.signature == "()V" => {
             host.finish_asked.store(true, Ordering::Release);
             Value::Void
@@ -188,6 +198,10 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Optio
             Value::object(Object::string(receiver.text()?))
         }
 
+        "getMode" => Value::object(Object::new("android/view/Display$Mode", Data::None)),
+        // In the device's natural position, upright: the other way round than the window.
+        "getPhysicalWidth" => Value::Int(host.device.mode.map_or(host.window.size().1, |mode| mode[1])),
+        "getPhysicalHeight" => Value::Int(host.device.mode.map_or(host.window.size().0, |mode| mode[0])),
         "getRefreshRate" => Value::Float(host.device.refresh_hz as f32),
         "getRotation" => Value::Int(1),
         "getDisplayId" => Value::Int(0),

@@ -6,8 +6,8 @@ use std::io::{Cursor, Read as _};
 use anyhow::Context as _;
 use zip::{CompressionMethod, ZipArchive};
 
-use super::super::{ARCHITECTURES, PAGE};
-use super::{Report, some};
+use super::super::target::{ARCHITECTURES, PAGE};
+use super::report::{Report, some};
 
 /// Mapped out of the APK.
 const RESOURCES: &str = "resources.arsc";

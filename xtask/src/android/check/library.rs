@@ -9,8 +9,8 @@ use goblin::elf::{Elf, Sym, dynamic, header};
 
 use super::super::loader;
 use super::super::symbols::Public;
-use super::super::{ARCHITECTURES, Architecture, MIN_API, PAGE};
-use super::{Report, some};
+use super::super::target::{ARCHITECTURES, Architecture, MIN_API, PAGE};
+use super::report::{Report, some};
 
 /// What NativeActivity looks for.
 const ENTRY: &str = "ANativeActivity_onCreate";
@@ -160,7 +160,7 @@ fn defined<'a>(elf: &'a Elf<'_>) -> impl Iterator<Item = &'a str> {
 }
 
 #[cfg(test)]
-pub mod tests {
+mod tests {
     use super::*;
 
     /// What a small library made here is like.
@@ -194,7 +194,7 @@ pub mod tests {
     }
 
     /// An OpenXR loader for arm64.
-    pub fn loader() -> Vec<u8> {
+    fn loader() -> Vec<u8> {
         Made { exported: vec![loader::ENTRY], ..good() }.bytes()
     }
 
@@ -311,6 +311,22 @@ pub mod tests {
         let mut report = Report::default();
         check(name, &good().bytes(), &Public::Lists, &mut report).unwrap();
         assert_eq!(report.problems(), ["arm64-v8a loader"], "{report}");
+    }
+
+    #[test]
+    fn a_loader_is_there_until_the_apk_is_built() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("arm64-v8a")).unwrap();
+        let file = folder.path().join("loader.so");
+        std::fs::write(&file, loader()).unwrap();
+        let copy = folder.path().join("arm64-v8a").join(loader::FILE);
+        let placed = loader::Loaders::place(std::slice::from_ref(&file), folder.path()).unwrap();
+        assert!(copy.is_file());
+        drop(placed);
+        assert!(!copy.exists());
+        let twice = [file.clone(), file];
+        assert!(loader::Loaders::place(&twice, folder.path()).is_err());
+        assert!(!copy.exists());
     }
 
     #[test]

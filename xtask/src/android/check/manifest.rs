@@ -6,22 +6,36 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use super::super::{ARCHITECTURES, MIN_API, toolchain};
-use super::Report;
+use super::super::manifest::{NATIVE_LIBRARIES, PROPERTIES};
+use super::super::target::{ARCHITECTURES, MIN_API, TARGET_API};
+use super::super::toolchain;
 use super::archive::Archive;
+use super::report::Report;
 
 const PACKAGE: &str = "io.github.yoro";
 const ACTIVITY: &str = "android.app.NativeActivity";
 const LIBRARY: &str = "yoro_android";
-const TARGET_API: u32 = 34;
 /// What the application asks the user or the system for: OpenXR runtimes may want to be asked.
 const PERMISSIONS: [&str; 2] =
     ["org.khronos.openxr.permission.OPENXR", "org.khronos.openxr.permission.OPENXR_SYSTEM"];
 /// Whom it means to talk to: without that Android hides them.
 const AUTHORITIES: &str = "org.khronos.openxr.runtime_broker;org.khronos.openxr.system_runtime_broker";
+const SERVICES: [&str; 2] =
+    ["org.khronos.openxr.OpenXRRuntimeService", "org.khronos.openxr.OpenXRApiLayerService"];
 /// What makes it an immersive application on headsets, besides the launcher's category.
-const IMMERSIVE: [&str; 2] =
-    ["com.oculus.intent.category.VR", "org.khronos.openxr.intent.category.IMMERSIVE_HMD"];
+const IMMERSIVE: [&str; 3] = [
+    "com.oculus.intent.category.VR",
+    "com.htc.intent.category.VRAPP",
+    "org.khronos.openxr.intent.category.IMMERSIVE_HMD",
+];
+/// Facts about the application that headsets ask for, and the values that they take. `true` may be a boolean or a text.
+const META_DATA: [(&str, &[&str]); 3] = [
+    ("com.oculus.vr.focusaware", &["true", "0xffffffff"]),
+    ("pvr.app.type", &["vr"]),
+    ("pvr.sdk.version", &["OpenXR"]),
+];
+/// Headsets by Meta that it has to be made for by name, and all, for those that do not know the later names.
+const DEVICES: [&str; 2] = ["all", "quest3"];
 /// Everything that may change while the activity goes on: locale, touchscreen, keyboard, keyboardHidden, navigation,
 /// orientation, screenLayout, uiMode, screenSize, smallestScreenSize, density, layoutDirection, colorMode, fontScale.
 const CONFIG_CHANGES: u64 = 0x4000_7ffc;
@@ -191,18 +205,7 @@ impl Manifest {
             let data = self.all("meta-data").find(|e| e.text("android:name") == name);
             data.map(|element| element.text("android:value").to_owned()).unwrap_or_default()
         };
-        let absent = IMMERSIVE.iter().find(|category| !has("category", category));
-        let problem = if let Some(category) = absent {
-            Some(format!("no category {category}: headsets would show a flat panel"))
-        } else if self.one("provider").text("android:authorities") != AUTHORITIES {
-            Some("no queries for the runtime brokers: headsets would show a flat panel".to_owned())
-        } else if !["true", "0xffffffff"].contains(&value("com.oculus.vr.focusaware").as_str()) {
-            Some("com.oculus.vr.focusaware should be true: the system's panels would pause it".to_owned())
-        } else {
-            let missing = !value("com.oculus.supportedDevices").split('|').any(|device| device == "quest3");
-            missing.then(|| "com.oculus.supportedDevices should list the headsets".to_owned())
-        };
-        report.row("headsets", "immersive by OpenXR", problem);
+        report.row("headsets", "immersive by OpenXR", self.no_headset(&has, &value));
 
         let landscape = activity.number("android:screenOrientation") == Some(0);
         let themed = !self.one("application").text("android:theme").is_empty();
@@ -212,8 +215,8 @@ impl Manifest {
             Some("orientation should be landscape".to_owned())
         } else if lost != 0 {
             Some(format!("changes {lost:#x} of configChanges would start it anew"))
-        } else if activity.is("android:resizeableActivity") != Some(true) {
-            Some("should be resizeable".to_owned())
+        } else if activity.is("android:resizeableActivity") != Some(false) {
+            Some("should not be resizeable: in a split screen the lenses' centres are wrong".to_owned())
         } else {
             (!themed).then(|| "the theme is missing: a title bar would be in the picture".to_owned())
         };
@@ -232,6 +235,49 @@ impl Manifest {
             (!absent.is_empty()).then(|| format!("{} is not in the APK", absent.join(", ")))
         };
         report.row("its library", name, problem);
+    }
+}
+
+impl Manifest {
+    /// Why headsets would not start it as an immersive application, or not let it find its runtime.
+    fn no_headset(
+        &self,
+        has: &dyn Fn(&'static str, &str) -> bool,
+        value: &dyn Fn(&str) -> String,
+    ) -> Option<String> {
+        if let Some(category) = IMMERSIVE.iter().find(|category| !has("category", category)) {
+            return Some(format!("no category {category}: headsets would show a flat panel"));
+        }
+        if self.one("provider").text("android:authorities") != AUTHORITIES {
+            return Some("no queries for the runtime brokers: headsets would show a flat panel".to_owned());
+        }
+        if let Some(service) = SERVICES.iter().find(|service| !has("action", service)) {
+            return Some(format!("no query for {service}: an installed runtime would not reach its service"));
+        }
+        let optional = |name: &&&str| {
+            let mut libraries = self.all("uses-native-library");
+            libraries.any(|e| e.text("android:name") == **name && e.is("android:required") == Some(false))
+        };
+        if let Some(library) = NATIVE_LIBRARIES.iter().find(|name| !optional(name)) {
+            return Some(format!(
+                "{library} should be an optional uses-native-library: Android would not load it"
+            ));
+        }
+        let property = |(name, value): &&(&str, &str)| {
+            let mut properties = self.all("property");
+            properties.any(|e| e.text("android:name") == *name && e.text("android:value") == *value)
+        };
+        if let Some((name, value)) = PROPERTIES.iter().find(|wanted| !property(wanted)) {
+            return Some(format!(
+                "the property {name} should be {value}: Android XR would show a flat panel"
+            ));
+        }
+        if let Some((name, fit)) = META_DATA.iter().find(|(name, fit)| !fit.contains(&value(name).as_str())) {
+            return Some(format!("the meta-data {name} should be {}", fit[0]));
+        }
+        let devices = value("com.oculus.supportedDevices");
+        let missing = DEVICES.iter().find(|device| !devices.split('|').any(|listed| listed == **device));
+        missing.map(|device| format!("com.oculus.supportedDevices should list {device}"))
     }
 }
 
@@ -298,14 +344,27 @@ mod tests {
         changed_fails("com.oculus.intent.category.VR", "com.oculus.intent.category.2D", "headsets");
         changed_fails("IMMERSIVE_HMD", "PANEL", "headsets");
         changed_fails("org.khronos.openxr.runtime_broker;", "", "headsets");
+        changed_fails("com.htc.intent.category.VRAPP", "com.htc.intent.category.2D", "headsets");
+        changed_fails("org.khronos.openxr.OpenXRRuntimeService", "org.khronos.openxr.Other", "headsets");
         changed_fails("com.oculus.vr.focusaware", "com.oculus.vr.other", "headsets");
+        changed_fails("\"pvr.app.type\"", "\"pvr.app.kind\"", "headsets");
+        changed_fails("\"OpenXR\" (Raw", "\"PXR\" (Raw", "headsets");
         changed_fails("quest3|", "", "headsets");
+        changed_fails("\"all|", "\"", "headsets");
+        changed_fails("libopenxr.google.so", "libopenxr.other.so", "headsets");
+        changed_fails("libopenxr_forwardloader.oculus.so", "libother.so", "headsets");
+        changed_fails("FULL_SPACE_UNMANAGED", "HOME_SPACE", "headsets");
         changed_fails(
             "screenOrientation(0x0101001e)=(type 0x10)0x0",
             "screenOrientation(0x0101001e)=(type 0x10)0x1",
             "screen",
         );
         changed_fails("(type 0x11)0x40007ffc", "(type 0x11)0x4a0", "screen");
+        changed_fails(
+            "resizeableActivity(0x010104f6)=(type 0x12)0x0",
+            "resizeableActivity(0x010104f6)=(type 0x12)0xffffffff",
+            "screen",
+        );
         changed_fails("android:theme", "android:other", "screen");
         changed_fails("\"yoro_android\"", "\"yoro\"", "its library");
         changed_fails("android:label(0x01010001)=\"yoro\"", "android:label(0x01010001)=\"\"", "label");

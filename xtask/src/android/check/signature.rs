@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::Context as _;
 
 use super::super::toolchain;
-use super::Report;
+use super::report::Report;
 
 /// Adds a row for the signature.
 ///

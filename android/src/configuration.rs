@@ -1,0 +1,147 @@
+//! The settings that are in use, and where they come from.
+
+use std::path::PathBuf;
+
+use android_activity::AndroidApp;
+use yoro_scenes::BUILTINS;
+use yoro_viewer::{Settings, Viewer, ViewerError, list_scenes};
+
+use crate::display::Display;
+use crate::java::Java;
+use crate::settings::{self, Pair, Sources};
+use crate::system;
+
+/// Settings from outside, and the folders in which scenes and viewers are looked for.
+pub struct Configuration {
+    sources: Sources,
+    /// What came of the sources last.
+    settings: Settings,
+    folders: Vec<PathBuf>,
+    /// What was wrong with the settings when they were last read.
+    mistakes: Vec<String>,
+}
+
+impl Configuration {
+    /// Asks Android for all sources, and makes the folder that scenes can be pushed to.
+    pub fn new(app: &AndroidApp, java: &Java) -> Configuration {
+        let external = app.external_data_path();
+        let folders: Vec<PathBuf> =
+            external.iter().flat_map(|folder| [folder.join("scenes"), folder.clone()]).collect();
+        if let Some(scenes) = folders.first()
+            && let Err(error) = std::fs::create_dir_all(scenes)
+        {
+            log::warn!(
+                "the folder {} cannot be made ({error}): scenes cannot be pushed there",
+                scenes.display()
+            );
+        }
+        let sources = Sources {
+            file: external.map(|folder| folder.join(settings::FILE_NAME)),
+            extras: java.extras(),
+            properties: settings::properties(system::property),
+            saved: Vec::new(),
+        };
+        Configuration { sources, settings: Settings::default(), folders, mistakes: Vec::new() }
+    }
+
+    /// Takes back what was saved when Android put the activity away.
+    pub fn restore(&mut self, saved: &[u8]) {
+        self.sources.saved = settings::restore(saved);
+    }
+
+    /// What the user has changed since the settings were read, for Android to keep.
+    pub fn save(&self, viewer: Option<&Viewer>) -> Vec<u8> {
+        settings::save(&self.changes(viewer))
+    }
+
+    fn changes(&self, viewer: Option<&Viewer>) -> Vec<Pair> {
+        let Some(viewer) = viewer else { return self.sources.saved.clone() };
+        let method =
+            (viewer.method() != self.settings.method).then(|| ("method", viewer.method().name().to_owned()));
+        let ipd = viewer.chosen_ipd().filter(|ipd| Some(*ipd) != self.settings.ipd);
+        let ipd = ipd.map(|ipd| ("ipd", ipd.to_string()));
+        [method, ipd].into_iter().flatten().map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+
+    /// The settings from outside; each mistake is logged once.
+    pub fn resolve(&mut self) -> Settings {
+        let (settings, mistakes) = self.sources.resolve();
+        mistakes.iter().filter(|m| !self.mistakes.contains(m)).for_each(|mistake| log::warn!("{mistake}"));
+        self.mistakes = mistakes;
+        settings
+    }
+
+    /// A viewer with the settings from outside; mistakes in them are logged, and the
+    /// defaults take their place.
+    ///
+    /// # Errors
+    /// What the defaults do not help against.
+    pub fn make_viewer<T>(
+        &mut self,
+        new: impl Fn(Settings, &[PathBuf]) -> Result<T, ViewerError>,
+    ) -> Result<T, ViewerError> {
+        let settings = self.resolve();
+        self.log_scenes();
+        self.settings = settings.clone();
+        let mut possible = settings;
+        let defaults = Settings::default();
+        loop {
+            let error = match new(possible.clone(), &self.folders) {
+                Ok(viewer) => return Ok(viewer),
+                Err(error) => error,
+            };
+            let (setting, default) = match error {
+                ViewerError::NoScene(_) => (&mut possible.scene, &defaults.scene),
+                ViewerError::Params(_) => (&mut possible.viewer, &defaults.viewer),
+                error => return Err(error),
+            };
+            if setting == default {
+                return Err(error);
+            }
+            log::warn!("{error}; {default} is taken");
+            setting.clone_from(default);
+        }
+    }
+
+    fn log_scenes(&self) {
+        let builtin: Vec<&str> = BUILTINS.iter().map(|scene| scene.name).collect();
+        log::info!("built-in scenes: {}", builtin.join(", "));
+        let mut files = list_scenes(&self.folders);
+        files.dedup();
+        files.iter().for_each(|file| log::info!("scene file: {}", file.display()));
+    }
+
+    /// The settings, if the system properties have made others of them while the application runs.
+    pub fn poll_properties(&mut self) -> Option<Settings> {
+        let have_changed = self.sources.set_properties(settings::properties(system::property));
+        let settings = have_changed.then(|| self.resolve())?;
+        (settings != self.settings).then_some(settings)
+    }
+
+    /// Whether these settings are of another scene than those in use.
+    pub fn is_other_scene(&self, settings: &Settings) -> bool {
+        (&settings.scene, settings.seed) != (&self.settings.scene, self.settings.seed)
+    }
+
+    /// Lets a display take over other settings; where it cannot, those before stay.
+    pub fn apply(&mut self, settings: Settings, display: &mut Display) {
+        let Some(viewer) = display.viewer() else { return };
+        // What was not to be found at the start is not looked for again with every change.
+        let mut possible = settings.clone();
+        if settings.scene == self.settings.scene {
+            possible.scene.clone_from(&viewer.settings().scene);
+        }
+        if settings.viewer == self.settings.viewer {
+            possible.viewer.clone_from(&viewer.settings().viewer);
+        }
+        match display.configure(possible, &self.folders) {
+            Ok(()) => {
+                if let Some(viewer) = display.viewer() {
+                    log::info!("settings: {}", viewer.settings());
+                }
+                self.settings = settings;
+            }
+            Err(error) => log::warn!("{error}; the settings stay as they were"),
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The phone's screen as Android has it now.
+
+use yoro_viewer::{Rotation, Screen};
+
+use crate::java::{DisplayMetrics, Java};
+
+/// What was last heard of the screen.
+pub struct ScreenState {
+    metrics: Option<DisplayMetrics>,
+    /// Refresh rate in Hz; 0 if unknown.
+    pub refresh_hz: f32,
+    /// Android has changed something.
+    pub is_stale: bool,
+}
+
+impl ScreenState {
+    /// Nothing is known yet.
+    pub fn new() -> ScreenState {
+        ScreenState { metrics: None, refresh_hz: 0.0, is_stale: true }
+    }
+
+    /// Pixels per inch along the picture's width; 0 if unknown.
+    pub fn dpi(&self) -> f32 {
+        self.metrics.as_ref().map_or(0.0, |metrics| dpi(metrics)[0])
+    }
+
+    /// The screen of a window of this size.
+    pub fn of_window(&mut self, size: [u32; 2], java: &Java) -> Screen {
+        if std::mem::take(&mut self.is_stale) {
+            self.metrics = java.display_metrics().or(self.metrics);
+            if let Some(metrics) = &self.metrics {
+                self.refresh_hz = metrics.refresh_hz;
+            }
+        }
+        let (dpi, rotation) = match &self.metrics {
+            Some(metrics) => (dpi(metrics), rotation(metrics.rotation)),
+            None => ([0.0; 2], Rotation::default()),
+        };
+        Screen { size, dpi, rotation }
+    }
+}
+
+/// Pixels of the picture per inch. Where the user has chosen a lower resolution, Android goes on to say those of the
+/// display's mode, on which the picture is scaled up.
+fn dpi(metrics: &DisplayMetrics) -> [f32; 2] {
+    let longest = |size: [i32; 2]| size[0].max(size[1]) as f32;
+    let scale = longest(metrics.size) / longest(metrics.mode);
+    if scale.is_finite() && scale > 0.0 { metrics.dpi.map(|dpi| dpi * scale) } else { metrics.dpi }
+}
+
+/// `Surface.ROTATION_*` says how far the picture is turned against the device's natural position, that of the sensors'
+/// axes: upright for phones, on the side for many tablets and for headsets.
+fn rotation(surface_rotation: i32) -> Rotation {
+    match surface_rotation {
+        1 => Rotation::LandscapeLeft,
+        3 => Rotation::LandscapeRight,
+        _ => Rotation::Portrait,
+    }
+}

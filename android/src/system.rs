@@ -1,0 +1,36 @@
+//! What the C library tells.
+
+use std::ffi::CString;
+
+/// The clock of Android's events and refreshes, in nanoseconds.
+pub fn now_ns() -> i64 {
+    time_ns(libc::CLOCK_MONOTONIC)
+}
+
+/// How long the device has slept since its boot, in nanoseconds: how far the clock of the sensors is ahead of [`now_ns`].
+pub fn slept_ns() -> i64 {
+    time_ns(libc::CLOCK_BOOTTIME) - now_ns()
+}
+
+fn time_ns(clock: libc::clockid_t) -> i64 {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: these clocks exist on every Linux, and the result has a place.
+    unsafe { libc::clock_gettime(clock, &mut time) };
+    time.tv_sec * 1_000_000_000 + time.tv_nsec
+}
+
+/// The number of this thread.
+pub fn thread_id() -> i32 {
+    // SAFETY: no arguments.
+    unsafe { libc::gettid() }
+}
+
+/// A system property.
+pub fn property(name: &str) -> Option<String> {
+    let name = CString::new(name).ok()?;
+    let mut value = [0u8; libc::PROP_VALUE_MAX as usize];
+    // SAFETY: the name ends in zero, and there is room for the longest value.
+    let length = unsafe { libc::__system_property_get(name.as_ptr(), value.as_mut_ptr().cast()) };
+    let value = value.get(..usize::try_from(length).ok()?)?;
+    Some(String::from_utf8_lossy(value).into_owned())
+}

@@ -1,0 +1,87 @@
+//! The files of the shader kit: the gather pipeline for engines that bring their own passes.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use yoro::synthesis::Uniforms;
+
+/// File of the kit, and file of `yoro-shaders` that it is made of.
+const SHADERS: [(&str, &str); 4] = [
+    ("screen.vert", "screen.vert"),
+    ("tiles.frag", "synthesis/gather/tiles.frag"),
+    ("spans.frag", "synthesis/gather/spans.frag"),
+    ("march.frag", "synthesis/gather/march.frag"),
+];
+/// Names and values.
+type Macros = &'static [(&'static str, &'static str)];
+
+/// Folder, version and macros: the uniforms' block, and what every driver of the API can.
+const APIS: [(&str, &str, Macros); 2] = [
+    ("gles", "300 es", &[("UNIFORM_BLOCK", "layout(std140)")]),
+    ("vulkan", "310 es", &[("UNIFORM_BLOCK", "layout(push_constant, std140)"), ("TEXTURE_GATHER", "")]),
+];
+
+/// Writes all of them into a folder.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(folder: &Path) -> io::Result<()> {
+    for (api, version, macros) in APIS {
+        fs::create_dir_all(folder.join(api))?;
+        for (name, source) in SHADERS {
+            put(&folder.join(api).join(name), &shader(source, version, macros)?)?;
+        }
+    }
+    put(&folder.join("yoro_kit.h"), include_str!("yoro_kit.h"))?;
+    put(&folder.join("README.md"), &include_str!("README.md").replace("UNIFORMS\n", &table()))
+}
+
+/// A reader never sees half of a file.
+fn put(path: &Path, text: &str) -> io::Result<()> {
+    let unfinished = path.with_added_extension("tmp");
+    fs::write(&unfinished, text)?;
+    fs::rename(unfinished, path)
+}
+
+/// One file without includes.
+fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
+    let macros: Vec<_> = macros.iter().map(|&(name, value)| (name, value.to_owned())).collect();
+    let assembled = yoro_shaders::assemble(source, version, &macros)
+        .map_err(|missing| io::Error::other(format!("shader file {} does not exist", missing.0)))?;
+    let (first, rest) = assembled.text.split_once('\n').unwrap_or_default();
+    let mut own = format!(
+        "{first}\n// yoro, shader kit {}. SPDX-License-Identifier: MIT OR Apache-2.0\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    if source.ends_with("march.frag") {
+        own += "//\n// Settings:\n\
+                // #define WRITE_DEPTH // The other eye's depth, too, to gl_FragDepth: for transparent objects.\n";
+        own += match macros.iter().any(|(name, _)| *name == "TEXTURE_GATHER") {
+            true => "// #define SHORT_WAY // For GPUs: fewer steps, the same picture.\n",
+            false => {
+                "// #define SHORT_WAY // For GPUs, with `#version 310 es` above: fewer steps, the same picture.\n"
+            }
+        };
+    }
+    // Before the precision statements there are extensions, too, of which synthesis needs none.
+    let begins = |line: &&str| line.starts_with("precision ");
+    let macros = rest.lines().take_while(|line| !begins(line)).filter(|line| line.starts_with("#define "));
+    let body = rest.lines().skip_while(|line| !begins(line));
+    for line in macros.chain(body).filter(|line| !line.starts_with("#line ")) {
+        own += line.trim_end();
+        own.push('\n');
+    }
+    Ok(own)
+}
+
+/// The block's members.
+fn table() -> String {
+    let mut table = String::from("| byte | member | type |\n|---:|---|---|\n");
+    for (name, glsl, offset) in Uniforms::LAYOUT {
+        // Writing to a string cannot fail.
+        let _ = writeln!(table, "| {offset} | `{name}` | {glsl} |");
+    }
+    table
+}

@@ -1,0 +1,130 @@
+/*
+ * yoro, shader kit: what to render, and the uniforms of the passes, from two eyes. No other file is needed.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0
+ */
+#ifndef YORO_KIT_H
+#define YORO_KIT_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+/* Tangents of the angles from an eye's axis to the edges of its image; left and down are negative when the image contains
+ * the axis. With OpenXR: tanf of the angles of XrFovf. */
+typedef struct {
+  float left, right, up, down;
+} YoroKitFrustum;
+
+/* Two eyes that look in one direction, at right angles to the line between them. */
+typedef struct {
+  YoroKitFrustum frusta[2]; /* left eye first; of one width, one height and the same rows */
+  float ipd;                /* distance between the eyes in metres, 0 to 0.08 */
+  float near_z, far_z;      /* depth planes in metres, 0 < near_z < far_z; far_z may be INFINITY */
+  int reversed;             /* 0: the depth buffer holds 0 at near_z, 1: it holds 1 there */
+  int rendered;             /* the eye that is rendered: 0 left, 1 right */
+  int width, height;        /* of each eye's image in pixels */
+  float guard_band;         /* metres from which on nothing is missing at the other eye's outer border; 0: no band */
+  int rows_down;            /* 0: row 0 of images is the lowest (OpenGL), 1: the topmost (Vulkan) */
+} YoroKitEyes;
+
+/* The block `Synthesis` of the shaders, in std140: 112 bytes, which fit push constants. */
+typedef struct {
+  int32_t source_size[2], target_size[2];
+  float law[2];
+  uint32_t mirrored;
+  int32_t row_offset;
+  int32_t target_origin[2];
+  float far_displacement, near_displacement;
+  float columns[2], origins[2];
+  float span_place[4];
+  float rows[2];
+  float first_row, farthest;
+  int32_t source_origin[2];
+  float texel[2];
+} YoroKitUniforms;
+
+typedef struct {
+  int width, height;        /* of the image to render */
+  YoroKitFrustum frustum;   /* to render it with, from the rendered eye's place */
+  int crop_x, crop_y;       /* where the rendered eye's own image begins in it, from row 0 */
+  int tile_map[2];          /* size of the target of tiles.frag, format R32UI */
+  int span_map[2];          /* size of the target of spans.frag, format R32UI */
+  YoroKitUniforms uniforms; /* for all three passes */
+} YoroKitViews;
+
+static inline int yoro_kit_ceil(double pixels) { return pixels > 1e-3 ? (int)ceil(pixels - 1e-3) : 0; }
+
+/*
+ * Works out everything for a frame. x and y are the corner of the other eye's image in its target, at row 0's side.
+ * Returns 0 for eyes that cannot be served: give both frusta one width, one height and the same rows, and look at the
+ * ranges above. Eyes that are rotated against each other are not told here: do not give them.
+ */
+static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitViews *views) {
+  YoroKitFrustum s = eyes->frusta[eyes->rendered != 0], t = eyes->frusta[eyes->rendered == 0];
+  if (eyes->rows_down) {
+    /* Rows are counted from the lower edge; from the upper one, everything is upside down. */
+    float up = s.up;
+    s.up = -s.down, s.down = -up;
+    up = t.up, t.up = -t.down, t.down = -up;
+  }
+  memset(views, 0, sizeof *views);
+  if (!(eyes->width > 0 && eyes->height > 0 && s.right > s.left && s.up > s.down && t.right > t.left && t.up > t.down &&
+        eyes->near_z > 0 && eyes->near_z < eyes->far_z && eyes->ipd >= 0 && eyes->ipd <= 0.08f && eyes->guard_band >= 0))
+    return 0;
+  const double width = eyes->width, height = eyes->height;
+  const double dx = (s.right - s.left) / width, dy = (s.up - s.down) / height; /* tangent per pixel */
+  const double row = (s.down - t.down) / dy;
+  if (fabs((t.right - t.left) / width / dx - 1) * width > 0.05 || fabs((t.up - t.down) / height / dy - 1) * height > 0.05 ||
+      fabs(row - round(row)) > 0.05)
+    return 0;
+
+  /* The source: the rendered eye, grown by whole pixels to the union of both frusta and by the guard band, which lies on
+   * the side that the other eye sees more of. */
+  const int to_left = eyes->rendered != 0;
+  const int guard = eyes->guard_band > 0 ? yoro_kit_ceil(eyes->ipd / dx / eyes->guard_band) : 0;
+  const int left = yoro_kit_ceil((s.left - t.left) / dx) + (to_left ? guard : 0);
+  const int right = yoro_kit_ceil((t.right - s.right) / dx) + (to_left ? 0 : guard);
+  const int below = yoro_kit_ceil((s.down - t.down) / dy), above = yoro_kit_ceil((t.up - s.up) / dy);
+  s.left -= (float)(left * dx), s.right += (float)(right * dx);
+  s.down -= (float)(below * dy), s.up += (float)(above * dy);
+  views->width = eyes->width + left + right;
+  views->height = eyes->height + below + above;
+  views->crop_x = left, views->crop_y = below;
+  views->frustum = s;
+  if (eyes->rows_down) views->frustum.up = -s.down, views->frustum.down = -s.up;
+
+  /* x_other = x + offset + scale * depth, since 1 / z is affine in the depth buffer's values. */
+  const double shift = (to_left ? 1.0 : -1.0) * eyes->ipd / dx;
+  const double near_inverse = 1.0 / eyes->near_z, far_inverse = isinf(eyes->far_z) ? 0.0 : 1.0 / eyes->far_z;
+  const double constant = eyes->reversed ? far_inverse : near_inverse;
+  const double slope = eyes->reversed ? near_inverse - far_inverse : far_inverse - near_inverse;
+  double offset = ((double)s.left - t.left) / dx + shift * constant, scale = shift * slope;
+  const int row_offset = (int)lround((s.down - t.down) / dy);
+
+  /* Shaders count columns in the direction in which nearer surfaces lie farther along: from the right for a right eye. */
+  if (!to_left) offset = width - views->width - offset, scale = -scale;
+  const double at_near = offset + (eyes->reversed ? scale : 0.0), at_far = offset + (eyes->reversed ? 0.0 : scale);
+  views->tile_map[0] = (views->width + 15) / 16, views->tile_map[1] = (views->height + 7) / 8;
+  views->span_map[0] = (eyes->width + 15) / 16, views->span_map[1] = views->tile_map[1];
+  const double sense = to_left ? 1.0 : -1.0, first = to_left ? -x - 0.5 : width + x - 0.5, first_row = y + row_offset;
+  const double across = 16.0 * views->span_map[0], up = 8.0 * views->span_map[1];
+  YoroKitUniforms *u = &views->uniforms;
+  u->source_size[0] = views->width, u->source_size[1] = views->height;
+  u->target_size[0] = eyes->width, u->target_size[1] = eyes->height;
+  u->law[0] = (float)offset, u->law[1] = (float)scale;
+  u->mirrored = !to_left;
+  u->row_offset = row_offset;
+  u->target_origin[0] = x, u->target_origin[1] = y;
+  u->far_displacement = (float)at_far, u->near_displacement = (float)at_near;
+  u->columns[0] = (float)(sense / views->width), u->columns[1] = to_left ? 0.0f : 1.0f;
+  u->origins[0] = (float)sense, u->origins[1] = (float)(first - offset);
+  u->span_place[0] = (float)(sense / across), u->span_place[1] = (float)(1.0 / up);
+  u->span_place[2] = (float)((first + 0.5) / across), u->span_place[3] = (float)(-first_row / up);
+  u->rows[0] = (float)(1.0 / views->height), u->rows[1] = (float)(-first_row / views->height);
+  u->first_row = (float)first_row, u->farthest = (float)(at_far - offset + 0.01);
+  u->texel[0] = (float)(1.0 / views->width), u->texel[1] = (float)(1.0 / views->height);
+  return 1;
+}
+
+#endif

@@ -1,0 +1,263 @@
+//! The handle: one pipeline in one context or device, guarded against use by two threads.
+
+use std::cell::UnsafeCell;
+use std::ptr;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use crate::gl::Gl;
+use crate::result::{
+    Failure, YORO_ERROR_BUSY, YORO_ERROR_INTERNAL, YORO_ERROR_NULL, YoroMessages, YoroResult, border,
+};
+use crate::types::YoroPipeline;
+use crate::versioned::{self, Versioned, versioned};
+
+/// One way to synthesize in one GL context or on one Vulkan device: compiled shaders and small buffers.
+///
+/// Every function that takes one may be called from any thread, from one at a time; a second one gets YORO_ERROR_BUSY.
+/// For OpenGL that is the thread on which the GL context is current.
+pub struct YoroContext {
+    state: AtomicU8,
+    messages: YoroMessages,
+    api: UnsafeCell<Api>,
+}
+
+const READY: u8 = 0;
+const BUSY: u8 = 1;
+/// A panic came out of it: nothing is known of what is inside.
+const BROKEN: u8 = 2;
+
+/// What it was made for.
+pub(crate) enum Api {
+    Gl(Gl),
+    #[cfg(feature = "vulkan")]
+    Vulkan(Box<crate::vulkan::Vulkan>),
+}
+
+/// The API that a YoroContext was made for.
+pub type YoroApi = u32;
+/// OpenGL ES.
+pub const YORO_API_OPENGL_ES: YoroApi = 0;
+/// Desktop OpenGL.
+pub const YORO_API_OPENGL: YoroApi = 1;
+/// Vulkan.
+pub const YORO_API_VULKAN: YoroApi = 2;
+
+/// What a YoroContext runs on, and what it takes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroCapabilities {
+    /// sizeof(YoroCapabilities), set by the caller.
+    pub struct_size: u32,
+    /// What it was made for.
+    pub api: YoroApi,
+    /// Version of the API: 3 of 3.1.
+    pub api_major: u32,
+    /// Version of the API: 1 of 3.1.
+    pub api_minor: u32,
+    /// How it synthesizes.
+    pub pipeline: YoroPipeline,
+    /// 1 where compute shaders are there, which all pipelines but YORO_PIPELINE_GATHER need.
+    pub compute: u32,
+    /// 1 where the CPU draws (llvmpipe, SwiftShader).
+    pub software: u32,
+    /// Largest side of an image in pixels.
+    pub max_image_size: u32,
+    /// Bytes of the buffers that it has allocated on the GPU so far.
+    pub buffer_bytes: u64,
+    /// Name of the GPU or its driver, UTF-8, cut off and ended by 0.
+    pub device: [u8; 128],
+}
+
+versioned!(YoroCapabilities);
+
+impl YoroCapabilities {
+    pub(crate) fn set_device(&mut self, name: &str) {
+        let length = name.floor_char_boundary(self.device.len() - 1);
+        self.device[..length].copy_from_slice(&name.as_bytes()[..length]);
+    }
+}
+
+/// Asks what a context runs on and what it takes.
+///
+/// On the thread that may use the context; for OpenGL with the GL context current. Leaves all GL state as it is.
+///
+/// @param context      Whom to ask.
+/// @param capabilities Filled; struct_size is set by the caller.
+/// @pre context is alive.
+/// @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_capabilities(
+    context: *mut YoroContext,
+    capabilities: *mut YoroCapabilities,
+) -> YoroResult {
+    // SAFETY: the header asks the caller for it.
+    unsafe {
+        enter(context, |api| {
+            let value = match api {
+                Api::Gl(gl) => gl.capabilities(),
+                #[cfg(feature = "vulkan")]
+                Api::Vulkan(vulkan) => vulkan.capabilities(),
+            };
+            versioned::write(capabilities, "capabilities", &value)
+        })
+    }
+}
+
+/// Destroys a context and all that it has on the GPU. NULL is allowed, and does nothing.
+///
+/// On the thread that may use the context; for OpenGL with the GL context current, with Vulkan after the device has done
+/// all that was recorded. A YoroContext does not outlive the GL context or device: where that is lost, destroy it before.
+/// Leaves GL state as deleting objects does: what was bound and is deleted is not bound any more.
+///
+/// @param context What to destroy.
+/// @pre context is alive and no other thread uses it.
+/// @return YORO_ERROR_BUSY, and nothing is destroyed, when another thread is inside a function with it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_destroy(context: *mut YoroContext) -> YoroResult {
+    border(|messages| {
+        // SAFETY: the header asks the caller for it.
+        let Some(alive) = (unsafe { context.as_ref() }) else { return Ok(()) };
+        *messages = alive.messages;
+        if alive.state.load(Ordering::Acquire) == BUSY {
+            return Err(busy());
+        }
+        // SAFETY: made by `hand_out`, and nobody else has it.
+        drop(unsafe { Box::from_raw(context) });
+        Ok(())
+    })
+}
+
+fn busy() -> Failure {
+    Failure::new(
+        YORO_ERROR_BUSY,
+        "another thread is inside a function with this YoroContext: call from one thread at a time",
+    )
+}
+
+/// Runs the body of a function that creates a context: `make` makes the API's part of it of `info`, and `messages` says where
+/// the sentences of errors go.
+///
+/// # Safety
+/// `info` is null or leads to as many bytes as it states; `context` is null or can be written.
+pub(crate) unsafe fn create<I: Versioned>(
+    info: *const I,
+    context: *mut *mut YoroContext,
+    messages: impl FnOnce(&I) -> YoroMessages,
+    make: impl FnOnce(&I) -> Result<Api, Failure>,
+) -> YoroResult {
+    border(|told| {
+        if !context.is_null() {
+            // SAFETY: promised by the caller.
+            unsafe { context.write(ptr::null_mut()) };
+        }
+        // SAFETY: promised by the caller.
+        let info = unsafe { versioned::read(info, "info") }?;
+        *told = messages(&info);
+        if context.is_null() {
+            return Err(Failure::new(YORO_ERROR_NULL, "context is NULL: say where the new context goes"));
+        }
+        let api = UnsafeCell::new(make(&info)?);
+        let made = YoroContext { state: AtomicU8::new(READY), messages: *told, api };
+        // SAFETY: promised by the caller.
+        unsafe { context.write(Box::into_raw(Box::new(made))) };
+        Ok(())
+    })
+}
+
+/// Runs the body of a function that takes a context.
+///
+/// # Safety
+/// `context` is null or alive.
+pub(crate) unsafe fn enter(
+    context: *mut YoroContext,
+    body: impl FnOnce(&mut Api) -> Result<(), Failure>,
+) -> YoroResult {
+    /// Leaves the context broken when a panic passes.
+    struct Leave<'a>(&'a AtomicU8);
+
+    impl Drop for Leave<'_> {
+        fn drop(&mut self) {
+            let state = if std::thread::panicking() { BROKEN } else { READY };
+            self.0.store(state, Ordering::Release);
+        }
+    }
+
+    border(|messages| {
+        // SAFETY: promised by the caller.
+        let Some(context) = (unsafe { context.as_ref() }) else {
+            return Err(Failure::new(YORO_ERROR_NULL, "context is NULL: create it first"));
+        };
+        *messages = context.messages;
+        match context.state.compare_exchange(READY, BUSY, Ordering::Acquire, Ordering::Acquire) {
+            Ok(_) => {}
+            Err(BROKEN) => {
+                return Err(Failure::new(
+                    YORO_ERROR_INTERNAL,
+                    "an error of yoro itself happened in this YoroContext before: destroy it",
+                ));
+            }
+            Err(_) => return Err(busy()),
+        }
+        let _leave = Leave(&context.state);
+        // SAFETY: the exchange let nobody else in.
+        body(unsafe { &mut *context.api.get() })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gl::{YORO_GL_STATE_LEAVE, YoroGlInfo};
+    use crate::result::YORO_OK;
+    use std::ffi::{c_char, c_void};
+    use std::ptr::null_mut;
+    use yoro_context::{Backend, Headless};
+
+    unsafe extern "C" fn load(name: *const c_char) -> crate::gl::YoroGlProc {
+        type GetProcAddress = unsafe extern "C" fn(*const c_char) -> crate::gl::YoroGlProc;
+        // SAFETY: libEGL is there, since a context of it is current, and is never unloaded.
+        unsafe {
+            let library = std::mem::ManuallyDrop::new(libloading::Library::new("libEGL.so.1").unwrap());
+            library.get::<GetProcAddress>(b"eglGetProcAddress\0").unwrap()(name)
+        }
+    }
+
+    unsafe extern "C" fn count(user: *mut c_void, _: YoroResult, _: *const c_char) {
+        // SAFETY: the counter below.
+        unsafe { *user.cast::<u32>() += 1 };
+    }
+
+    #[test]
+    fn two_at_once_and_what_comes_after_a_panic_are_refused() {
+        let _headless = Headless::open(Backend::Egl).unwrap();
+        let mut sentences = 0u32;
+        let info = YoroGlInfo {
+            struct_size: size_of::<YoroGlInfo>() as u32,
+            pipeline: 0,
+            outputs: 0,
+            state: YORO_GL_STATE_LEAVE,
+            check: 0,
+            reserved: 0,
+            loader: Some(load),
+            messages: YoroMessages { callback: Some(count), user: (&raw mut sentences).cast() },
+        };
+        let mut context = null_mut();
+        // SAFETY: a context that is alive until the last line.
+        unsafe {
+            assert_eq!(crate::gl::yoro_gl_create(&info, &mut context), YORO_OK);
+            let mut inside = [YORO_OK; 2];
+            let code = enter(context, |_| {
+                inside = [yoro_capabilities(context, null_mut()), yoro_destroy(context)];
+                Ok(())
+            });
+            assert_eq!((code, inside), (YORO_OK, [YORO_ERROR_BUSY; 2]));
+            assert_eq!(
+                enter(context, |_| panic!("a test of panics: this is no failure")),
+                YORO_ERROR_INTERNAL
+            );
+            assert_eq!(yoro_capabilities(context, null_mut()), YORO_ERROR_INTERNAL);
+            assert_eq!(sentences, 4);
+            assert_eq!(yoro_destroy(context), YORO_OK);
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Eyes by poses and angles, as OpenXR locates them.
+
+use yoro::eyes::{DepthRange, EyePair};
+
+use crate::result::{Failure, YORO_ERROR_EYES_CANTED, YoroMessages, YoroResult, border};
+use crate::types::{YoroClip, YoroDepth, YoroEye, YoroFov, YoroPose, YoroRows, clip, depth, eye, rows_down};
+use crate::versioned::{self, versioned};
+use crate::views::{YoroViews, guard_band, images, views};
+
+/// Bits of what may be done to eyes that rows cannot serve as they are.
+pub type YoroEyesFlags = u32;
+/// Gives both eyes frusta of one width and one height over the same rows, each as large as it takes. Show the images with
+/// the angles that come out.
+pub const YORO_EYES_EVEN: YoroEyesFlags = 1;
+/// Gives canted eyes one direction, and frusta that contain their own. Show the images with the poses and angles that
+/// come out: an OpenXR runtime turns them back when they are submitted with these.
+pub const YORO_EYES_PARALLEL: YoroEyesFlags = 2;
+
+/// The two eyes of a frame by poses and angles.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroEyes {
+    /// sizeof(YoroEyes).
+    pub struct_size: u32,
+    /// The eye that is rendered.
+    pub rendered: YoroEye,
+    /// Width of each eye's image in pixels.
+    pub width: u32,
+    /// Height of each eye's image in pixels.
+    pub height: u32,
+    /// Poses, left eye first.
+    pub poses: [YoroPose; 2],
+    /// Angles, left eye first.
+    pub fovs: [YoroFov; 2],
+    /// Distance of the near plane in metres, more than 0.
+    pub near_z: f32,
+    /// Distance of the far plane in metres, more than near_z; may be INFINITY. In reversed depth, too, it is the larger one.
+    pub far_z: f32,
+    /// What the depth buffer holds.
+    pub depth: YoroDepth,
+    /// Order of rows in the images.
+    pub rows: YoroRows,
+    /// The clip volume that the matrices shall lead to.
+    pub clip: YoroClip,
+    /// Metres from which on the other eye finds all of its outer border in the rendered image, 0.05 to 1000; smaller values
+    /// cost more pixels. 0: none is rendered, and the border is filled in.
+    pub guard_band: f32,
+    /// YORO_EYES_ bits.
+    pub flags: YoroEyesFlags,
+    /// Zero.
+    pub reserved: u32,
+    /// Where the sentences of errors go.
+    pub messages: YoroMessages,
+}
+
+versioned!(YoroEyes);
+
+/// Works out what to render, and how its pixels move to the other eye.
+///
+/// Any thread, no context needed. Nothing is allocated or kept.
+///
+/// @param eyes  Where the eyes are.
+/// @param views Filled; struct_size is set by the caller.
+/// @pre Both pointers lead to structures of the size that they state.
+/// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that cannot be, or that rows
+///         cannot serve; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_views_from_eyes(eyes: *const YoroEyes, views: *mut YoroViews) -> YoroResult {
+    border(|messages| {
+        // SAFETY: the header asks the caller for it.
+        let eyes = unsafe { versioned::read(eyes, "eyes") }?;
+        *messages = eyes.messages;
+        // SAFETY: as above.
+        unsafe { versioned::check_output(views, "views") }?;
+        let result = eyes.views()?;
+        // SAFETY: as above.
+        unsafe { versioned::write(views, "views", &result) }
+    })
+}
+
+impl YoroEyes {
+    fn views(&self) -> Result<YoroViews, Failure> {
+        if self.flags & !(YORO_EYES_EVEN | YORO_EYES_PARALLEL) != 0 {
+            return Err(Failure::value(format!("{} has bits that are no YORO_EYES_ flags", self.flags)));
+        }
+        let right_angle = std::f32::consts::FRAC_PI_2;
+        let angles = self.fovs.iter().flat_map(|f| [f.angle_left, f.angle_right, f.angle_up, f.angle_down]);
+        // In this form NaN fails, too.
+        if !angles.into_iter().all(|angle| angle.abs() < right_angle) {
+            return Err(Failure::value(
+                "an angle is no number of radians below a right angle: give signed angles from the axis, as XrFovf",
+            ));
+        }
+        let length = |pose: &YoroPose| pose.orientation.iter().map(|n| n * n).sum::<f32>();
+        let is_pose = |pose: &YoroPose| {
+            pose.position.iter().all(|n| n.is_finite()) && (length(pose) - 1.0).abs() < 1e-2
+        };
+        if !self.poses.iter().all(is_pose) {
+            return Err(Failure::value(
+                "a pose is none: give finite positions, and quaternions x, y, z, w of length 1",
+            ));
+        }
+        let depth = DepthRange { near: self.near_z, far: self.far_z, convention: depth(self.depth)? };
+        let clip = clip(self.clip)?;
+        let mut pair = EyePair {
+            poses: self.poses.each_ref().map(YoroPose::pose),
+            frusta: self.fovs.each_ref().map(YoroFov::frustum),
+            depth,
+            size: [self.width, self.height],
+            dominant: eye(self.rendered)?,
+        };
+        if self.flags & YORO_EYES_PARALLEL != 0 {
+            pair = pair.parallelized().ok_or_else(|| {
+                Failure::new(
+                    YORO_ERROR_EYES_CANTED,
+                    "the eyes see further than 80 degrees from their common direction: render both",
+                )
+            })?;
+        }
+        if self.flags & YORO_EYES_EVEN != 0 {
+            pair = pair.evened();
+        }
+        let mut views = views(pair, guard_band(self.guard_band), rows_down(self.rows)?)?;
+        images(&mut views).into_iter().for_each(|image| image.set_matrices(&depth, &clip));
+        Ok(views)
+    }
+}

@@ -1,0 +1,462 @@
+//! OpenGL and OpenGL ES.
+
+use std::ffi::{CStr, c_char, c_void};
+use std::num::NonZeroU32;
+use std::rc::Rc;
+
+use glow::HasContext;
+use yoro::eyes::Warp;
+use yoro::gl::{Context, Destination, GlApi};
+use yoro::synthesis::{self, GlState, Outputs, Pipeline, Source, Synthesis, SynthesisOptions};
+
+use crate::context::{
+    Api, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, create, enter,
+};
+use crate::result::{
+    Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL,
+    YORO_ERROR_TOO_LARGE, YoroMessages, YoroResult,
+};
+use crate::types::{
+    YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YORO_PIPELINE_GATHER, YORO_PIPELINE_PAPER, YORO_PIPELINE_ROWGROUP,
+    YoroOutputFlags, YoroPipeline,
+};
+use crate::versioned::{self, versioned};
+use crate::views::YoroWarp;
+
+/// An entry point, whatever its own type is.
+pub type YoroGlProc = Option<unsafe extern "C" fn()>;
+/// Gives an entry point by its name, NULL for those that do not exist: eglGetProcAddress, glfwGetProcAddress and others.
+pub type YoroGlLoader = Option<unsafe extern "C" fn(name: *const c_char) -> YoroGlProc>;
+
+/// What becomes of the GL state that a call changes.
+pub type YoroGlState = u32;
+/// Some of it is left changed (docs/library.md has the table): for engines that set what they draw with.
+pub const YORO_GL_STATE_LEAVE: YoroGlState = 0;
+/// All of it is as it was before the call.
+pub const YORO_GL_STATE_PRESERVE: YoroGlState = 1;
+
+/// How to create a context for OpenGL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroGlInfo {
+    /// sizeof(YoroGlInfo).
+    pub struct_size: u32,
+    /// How to synthesize; 0 is YORO_PIPELINE_GATHER.
+    pub pipeline: YoroPipeline,
+    /// YORO_OUTPUT_ bits.
+    pub outputs: YoroOutputFlags,
+    /// What becomes of GL state.
+    pub state: YoroGlState,
+    /// 1: each call looks whether textures and framebuffer are as they must be, and whether GL has errors, which it takes.
+    /// Costs a wait for the driver: for development. 0: such mistakes are undefined, as in GL.
+    pub check: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Entry points.
+    pub loader: YoroGlLoader,
+    /// Where the sentences of errors go, those of later calls, too.
+    pub messages: YoroMessages,
+}
+
+versioned!(YoroGlInfo);
+
+/// Creates a context for OpenGL ES 3.0 (3.1 for other pipelines than YORO_PIPELINE_GATHER) or later, or desktop OpenGL 4.5
+/// or later, and compiles its shaders: at start, not in a frame.
+///
+/// On the thread on which the GL context is current. GL state as YoroGlInfo says, without a change of the error flag.
+///
+/// @param info    How.
+/// @param context Gets the new context, NULL after an error. Destroy it with yoro_destroy.
+/// @pre The GL context is current, and stays alive as long as the YoroContext.
+/// @return YORO_ERROR_NO_CONTEXT, YORO_ERROR_UNSUPPORTED, YORO_ERROR_DRIVER, YORO_ERROR_VALUE, YORO_ERROR_NULL,
+///         YORO_ERROR_STRUCT_SIZE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_gl_create(
+    info: *const YoroGlInfo,
+    context: *mut *mut YoroContext,
+) -> YoroResult {
+    // SAFETY: the header asks the caller for pointers to what they name, and for a current GL context and its loader.
+    unsafe { create(info, context, |info| info.messages, |info| Ok(Api::Gl(Gl::new(info)?))) }
+}
+
+/// Textures and framebuffer of one synthesis.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroGlImages {
+    /// sizeof(YoroGlImages).
+    pub struct_size: u32,
+    /// The rendered eye: name of a GL_TEXTURE_2D of the source's size and any filterable format, without samples. All four
+    /// channels are carried over, in whatever encoding. Filters and sampler objects do not matter.
+    pub color_texture: u32,
+    /// Its depth: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or red float format.
+    pub depth_texture: u32,
+    /// The framebuffer to draw into, 0 for the window's. It has neither of the textures; its first colour attachment is
+    /// written, and with YORO_OUTPUT_DEPTH its depth attachment.
+    pub framebuffer: u32,
+    /// Column of the framebuffer where the synthesized image begins.
+    pub x: u32,
+    /// Row of the framebuffer where it begins, from the lowest.
+    pub y: u32,
+}
+
+versioned!(YoroGlImages);
+
+/// Allocates what images of these sizes take, so that the first yoro_gl_synthesize does not. Costs nothing when the sizes
+/// are as before.
+///
+/// Thread, GL state and results as yoro_gl_synthesize.
+///
+/// @param context The context.
+/// @param warp    Of a frame of these sizes.
+/// @pre The GL context is current.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_gl_prepare(context: *mut YoroContext, warp: *const YoroWarp) -> YoroResult {
+    // SAFETY: the header asks the caller for it.
+    unsafe {
+        enter(context, |api| {
+            let gl = of_gl(api)?;
+            let warp = gl.fitting(warp)?;
+            Ok(gl.synthesis.prepare(&warp)?)
+        })
+    }
+}
+
+/// Synthesizes the other eye into a rectangle of warp's target size, all of which is overwritten. Call it after the opaque
+/// objects of the rendered eye, before transparent objects and effects that are drawn for each eye.
+///
+/// On the thread on which the GL context is current. GL state as YoroGlInfo says. While sizes stay the same nothing is
+/// allocated or compiled, and nothing waits for the GPU. Transform feedback and conditional rendering are not active.
+///
+/// @param context The context.
+/// @param warp    From YoroViews.
+/// @param images  What to read and where to draw.
+/// @pre The GL context is current; the textures and the framebuffer are its own and fit what YoroGlImages says.
+/// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_DRIVER; with `check` YORO_ERROR_FORMAT, too;
+///         YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_gl_synthesize(
+    context: *mut YoroContext,
+    warp: *const YoroWarp,
+    images: *const YoroGlImages,
+) -> YoroResult {
+    // SAFETY: the header asks the caller for it.
+    unsafe {
+        enter(context, |api| {
+            let gl = of_gl(api)?;
+            let warp = gl.fitting(warp)?;
+            gl.synthesize(&warp, &versioned::read(images, "images")?)
+        })
+    }
+}
+
+fn of_gl(api: &mut Api) -> Result<&mut Gl, Failure> {
+    match api {
+        Api::Gl(gl) => Ok(gl),
+        #[cfg(feature = "vulkan")]
+        Api::Vulkan(_) => Err(Failure::new(
+            crate::result::YORO_ERROR_API,
+            "this YoroContext was made for Vulkan: create one with yoro_gl_create",
+        )),
+    }
+}
+
+/// A pipeline in a GL context.
+pub(crate) struct Gl {
+    context: Rc<Context>,
+    synthesis: Box<dyn Synthesis>,
+    pipeline: YoroPipeline,
+    outputs: Outputs,
+    check: bool,
+}
+
+impl Gl {
+    /// # Safety
+    /// A GL context is current, and the loader gives its entry points.
+    unsafe fn new(info: &YoroGlInfo) -> Result<Gl, Failure> {
+        let pipeline = match info.pipeline {
+            YORO_PIPELINE_GATHER => Pipeline::Gather,
+            YORO_PIPELINE_ROWGROUP => Pipeline::Rowgroup,
+            YORO_PIPELINE_PAPER => Pipeline::Paper,
+            other => {
+                return Err(Failure::value(format!(
+                    "{other} is no pipeline: give a YORO_PIPELINE_ constant"
+                )));
+            }
+        };
+        let gl_state = match info.state {
+            YORO_GL_STATE_LEAVE => GlState::Leave,
+            YORO_GL_STATE_PRESERVE => GlState::Preserve,
+            other => {
+                return Err(Failure::value(format!(
+                    "{other} is no GL state: give a YORO_GL_STATE_ constant"
+                )));
+            }
+        };
+        let outputs = outputs(info.outputs)?;
+        if info.check > 1 {
+            return Err(Failure::value(format!("check is {}: give 0 or 1", info.check)));
+        }
+        let Some(loader) = info.loader else {
+            return Err(Failure::new(YORO_ERROR_NULL, "loader is NULL: give eglGetProcAddress or its like"));
+        };
+        // SAFETY: the loader takes a name; a function and a nullable pointer are of one size.
+        let load =
+            |name: &CStr| unsafe { std::mem::transmute::<YoroGlProc, *const c_void>(loader(name.as_ptr())) };
+        // SAFETY: promised by the caller.
+        let context = unsafe {
+            check_current(load)?;
+            Context::with_loader(glow::Context::from_loader_function_cstr(load), load)?
+        };
+        let options = SynthesisOptions { pipeline, gl_state, ..SynthesisOptions::default() };
+        let synthesis = synthesis::create(&context, &options, outputs)?;
+        Ok(Gl { context, synthesis, pipeline: info.pipeline, outputs, check: info.check == 1 })
+    }
+
+    pub(crate) fn capabilities(&self) -> YoroCapabilities {
+        let own = self.context.capabilities();
+        let mut capabilities = YoroCapabilities {
+            struct_size: size_of::<YoroCapabilities>() as u32,
+            api: match own.api {
+                GlApi::Es => YORO_API_OPENGL_ES,
+                GlApi::Desktop => YORO_API_OPENGL,
+            },
+            api_major: own.version.0,
+            api_minor: own.version.1,
+            pipeline: self.pipeline,
+            compute: own.compute.into(),
+            software: own.software.into(),
+            max_image_size: own.max_texture_size,
+            buffer_bytes: self.context.texture_bytes() as u64,
+            device: [0; 128],
+        };
+        capabilities.set_device(&own.renderer);
+        capabilities
+    }
+
+    /// The warp, of sizes that the driver can render.
+    ///
+    /// # Safety
+    /// `warp` is null or leads to one.
+    unsafe fn fitting(&self, warp: *const YoroWarp) -> Result<Warp, Failure> {
+        if warp.is_null() {
+            return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give that of YoroViews"));
+        }
+        // SAFETY: promised by the caller.
+        let warp = unsafe { warp.read_unaligned() }.checked()?;
+        let limit = self.context.capabilities().max_texture_size;
+        let largest = warp.source_size.into_iter().chain(warp.target_size).max().unwrap_or(0);
+        if largest > limit {
+            return Err(Failure::new(
+                YORO_ERROR_TOO_LARGE,
+                format!(
+                    "an image of {largest} pixels on a side is beyond this driver's {limit}: choose a smaller size"
+                ),
+            ));
+        }
+        Ok(warp)
+    }
+
+    fn synthesize(&mut self, warp: &Warp, images: &YoroGlImages) -> Result<(), Failure> {
+        let texture = |name: u32, what: &str| {
+            let name = NonZeroU32::new(name).map(glow::NativeTexture);
+            name.ok_or_else(|| Failure::value(format!("{what} is 0: give the name of a texture")))
+        };
+        let source = Source {
+            color: texture(images.color_texture, "color_texture")?,
+            depth: texture(images.depth_texture, "depth_texture")?,
+        };
+        let limit = self.context.capabilities().max_texture_size;
+        if images.x > limit || images.y > limit {
+            return Err(Failure::value(format!(
+                "x and y are {}, {}: beyond all framebuffers",
+                images.x, images.y
+            )));
+        }
+        let target = Destination {
+            framebuffer: NonZeroU32::new(images.framebuffer).map(glow::NativeFramebuffer),
+            origin: [images.x, images.y],
+            size: warp.target_size,
+        };
+        if self.check {
+            self.check_images(source, warp, &target)?;
+        }
+        self.synthesis.synthesize(source, warp, &target)?;
+        match self.check.then(|| self.context.take_errors()).flatten() {
+            Some(errors) => Err(Failure::new(
+                YORO_ERROR_DRIVER,
+                format!("GL says {errors}: see the preconditions of yoro_gl_synthesize"),
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// Looks whether the images are as they must be. Leaves bindings as they were.
+    fn check_images(&self, source: Source, warp: &Warp, target: &Destination) -> Result<(), Failure> {
+        let gl = self.context.raw();
+        let framebuffer = target.framebuffer;
+        // Of what happened before the call the caller shall know that it did.
+        if let Some(errors) = self.context.take_errors() {
+            return Err(Failure::new(
+                YORO_ERROR_DRIVER,
+                format!("GL already has errors from before the call ({errors}): look for them in the engine"),
+            ));
+        }
+        self.check_texture(source.color, "color_texture", warp.source_size, |kind| {
+            kind.depth == 0 && kind.color_type != glow::INT && kind.color_type != glow::UNSIGNED_INT
+        })?;
+        self.check_texture(source.depth, "depth_texture", warp.source_size, |kind| {
+            kind.depth > 0 || kind.color_type == glow::FLOAT
+        })?;
+        // SAFETY: queries and bindings; an unknown name is refused by GL with an error, which is taken.
+        let (is_known, status, attached) = unsafe {
+            let bound = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, framebuffer);
+            let is_known = self.context.take_errors().is_none();
+            let status = gl.check_framebuffer_status(glow::DRAW_FRAMEBUFFER);
+            let attached = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT].map(|attachment| {
+                let ask = |what| {
+                    gl.get_framebuffer_attachment_parameter_i32(glow::DRAW_FRAMEBUFFER, attachment, what)
+                        as u32
+                };
+                // The window's framebuffer has other attachments, and none that is a texture.
+                let kind =
+                    framebuffer.map_or(glow::RENDERBUFFER, |_| ask(glow::FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE));
+                let is_texture = kind == glow::TEXTURE;
+                let name = if is_texture { ask(glow::FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) } else { 0 };
+                (kind, NonZeroU32::new(name).map(glow::NativeTexture))
+            });
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, bound);
+            (is_known, status, attached)
+        };
+        let [(_, color), (depth_kind, depth)] = attached;
+        let wrong = |sentence: String| Err(Failure::new(YORO_ERROR_FORMAT, sentence));
+        if !is_known {
+            return wrong("framebuffer is no name of a framebuffer of this GL context".into());
+        }
+        if status != glow::FRAMEBUFFER_COMPLETE {
+            return wrong(format!(
+                "the framebuffer is not complete (GL says 0x{status:04x}): see its attachments"
+            ));
+        }
+        if self.outputs.depth && depth_kind == glow::NONE {
+            return wrong("the framebuffer has no depth attachment, which YORO_OUTPUT_DEPTH writes".into());
+        }
+        for (texture, what) in [(source.color, "color_texture"), (source.depth, "depth_texture")] {
+            if [color, depth].contains(&Some(texture)) {
+                return wrong(format!(
+                    "{what} is attached to the framebuffer: nothing can be drawn into what is read, give the \
+                     framebuffer textures of its own"
+                ));
+            }
+        }
+        let end = [0, 1].map(|i| target.origin[i].saturating_add(target.size[i]));
+        let first_level = color.and_then(|texture| self.level(texture));
+        match first_level.map(|level| level.size) {
+            Some([width, height]) if width > 0 && (end[0] > width || end[1] > height) => wrong(format!(
+                "the rectangle ends at column {} and row {}, beyond the framebuffer's {width}x{height} pixels: see x \
+                 and y of YoroGlImages",
+                end[0], end[1]
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// What the first level of a texture is, with nothing in it where that cannot be asked for: since OpenGL ES 3.1. None
+    /// for a texture of another target.
+    fn level(&self, texture: glow::Texture) -> Option<Level> {
+        let gl = self.context.raw();
+        // SAFETY: queries; a texture of another target is refused by GL with an error, which is taken.
+        unsafe {
+            let bound = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D);
+            gl.bind_texture(glow::TEXTURE_2D, Some(texture));
+            let is_plain = self.context.take_errors().is_none();
+            let asked = is_plain && self.context.capabilities().compute;
+            let ask =
+                |name| if asked { gl.get_tex_level_parameter_i32(glow::TEXTURE_2D, 0, name) } else { 0 };
+            let level = Level {
+                asked,
+                size: [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT].map(|name| ask(name) as u32),
+                color_type: ask(glow::TEXTURE_RED_TYPE) as u32,
+                depth: ask(glow::TEXTURE_DEPTH_SIZE),
+            };
+            gl.bind_texture(glow::TEXTURE_2D, bound);
+            is_plain.then_some(level)
+        }
+    }
+
+    fn check_texture(
+        &self,
+        texture: glow::Texture,
+        what: &str,
+        size: [u32; 2],
+        fits: impl FnOnce(Level) -> bool,
+    ) -> Result<(), Failure> {
+        let gl = self.context.raw();
+        let wrong = |sentence: String| Err(Failure::new(YORO_ERROR_FORMAT, sentence));
+        // SAFETY: a query.
+        if !unsafe { gl.is_texture(texture) } {
+            return wrong(format!("{what} is {}, no texture of this GL context", texture.0));
+        }
+        let Some(level) = self.level(texture) else {
+            return wrong(format!("{what} is no GL_TEXTURE_2D: give one layer without samples"));
+        };
+        if level.asked && level.size != size {
+            let ([w, h], [x, y]) = (level.size, size);
+            return wrong(format!(
+                "{what} has {w}x{h} pixels, and the source has {x}x{y}: render YoroViews.source"
+            ));
+        }
+        if level.asked && !fits(level) {
+            return wrong(format!("{what} has a format that cannot be sampled so: see YoroGlImages"));
+        }
+        Ok(())
+    }
+}
+
+/// The first level of a texture.
+struct Level {
+    /// Whether the rest was asked for.
+    asked: bool,
+    /// Width and height in pixels.
+    size: [u32; 2],
+    /// GL_FLOAT and others; 0 for depth.
+    color_type: u32,
+    /// Bits.
+    depth: i32,
+}
+
+pub(crate) fn outputs(bits: YoroOutputFlags) -> Result<Outputs, Failure> {
+    if bits & !(YORO_OUTPUT_DEPTH | YORO_OUTPUT_SRGB) != 0 {
+        return Err(Failure::value(format!("{bits} has bits that are no YORO_OUTPUT_ flags")));
+    }
+    let has = |bit| bits & bit != 0;
+    Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), source_map: false, srgb: has(YORO_OUTPUT_SRGB) })
+}
+
+/// Looks whether a context is current at all, before glow takes it for granted.
+///
+/// # Safety
+/// `load` gives entry points of these names, or null.
+unsafe fn check_current(load: impl Fn(&CStr) -> *const c_void) -> Result<(), Failure> {
+    type GetString = unsafe extern "system" fn(u32) -> *const u8;
+    let get_string = load(c"glGetString");
+    let names = [c"glGetString", c"glGetStringi", c"glGetIntegerv", c"glCreateProgram", c"glDrawArrays"];
+    if let Some(name) = names.into_iter().find(|name| load(name).is_null()) {
+        let name = name.to_string_lossy();
+        return Err(Failure::new(
+            YORO_ERROR_NO_CONTEXT,
+            format!(
+                "the loader does not give {name}: give that of the GL context, such as eglGetProcAddress"
+            ),
+        ));
+    }
+    // SAFETY: the entry point has this signature.
+    let version = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string)(glow::VERSION) };
+    if version.is_null() {
+        return Err(Failure::new(
+            YORO_ERROR_NO_CONTEXT,
+            "no GL context is current on this thread: make it current before yoro_gl_create",
+        ));
+    }
+    Ok(())
+}

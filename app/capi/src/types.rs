@@ -1,0 +1,158 @@
+//! Versions, and the small types that the structures are made of.
+
+use yoro::eyes::{DepthConvention, Eye};
+
+use crate::result::Failure;
+
+/// Version of this header.
+pub const YORO_VERSION_MAJOR: u32 = 0;
+/// Second part of it.
+pub const YORO_VERSION_MINOR: u32 = 1;
+/// Third part of it.
+pub const YORO_VERSION_PATCH: u32 = 0;
+/// All of it as one number that grows: major * 1000000 + minor * 1000 + patch.
+pub const YORO_VERSION: u32 = YORO_VERSION_MAJOR * 1000000 + YORO_VERSION_MINOR * 1000 + YORO_VERSION_PATCH;
+
+/// The version of the library, as YORO_VERSION says that of the header.
+///
+/// Any thread.
+#[unsafe(no_mangle)]
+pub extern "C" fn yoro_version() -> u32 {
+    YORO_VERSION
+}
+
+/// The largest distance between the eyes in metres.
+pub const YORO_MAX_IPD: f32 = 0.08;
+/// A guard band that is complete for whatever is farther than an arm's length, in metres.
+pub const YORO_GUARD_BAND: f32 = 1.0;
+
+/// One of the two eyes, and its index in arrays of two.
+pub type YoroEye = u32;
+/// The left eye.
+pub const YORO_EYE_LEFT: YoroEye = 0;
+/// The right eye.
+pub const YORO_EYE_RIGHT: YoroEye = 1;
+
+/// What the values 0 to 1 in a depth buffer mean, whatever the API's clip volume is.
+pub type YoroDepth = u32;
+/// 0 at the near plane, 1 at the far plane; tested with LESS, cleared to 1.
+pub const YORO_DEPTH_STANDARD: YoroDepth = 0;
+/// 1 at the near plane, 0 at the far plane; tested with GREATER, cleared to 0.
+pub const YORO_DEPTH_REVERSED: YoroDepth = 1;
+
+/// The clip volume that projection matrices lead to. X is to the right in all of them.
+pub type YoroClip = u32;
+/// OpenGL: y up, z from -1 to 1.
+pub const YORO_CLIP_OPENGL: YoroClip = 0;
+/// Vulkan: y down, z from 0 to 1.
+pub const YORO_CLIP_VULKAN: YoroClip = 1;
+/// y up, z from 0 to 1: OpenGL with glClipControl, Vulkan with a viewport of negative height, Direct3D, Metal.
+pub const YORO_CLIP_Y_UP_Z_0_1: YoroClip = 2;
+
+/// In which order the rows of images lie in memory and in texture coordinates.
+pub type YoroRows = u32;
+/// Row 0 is the lowest: OpenGL.
+pub const YORO_ROWS_UP: YoroRows = 0;
+/// Row 0 is the topmost: Vulkan, Direct3D, image files.
+pub const YORO_ROWS_DOWN: YoroRows = 1;
+
+/// Which way the other eye is synthesized.
+pub type YoroPipeline = u32;
+/// Fragment shaders; for every driver, and the one to begin with.
+pub const YORO_PIPELINE_GATHER: YoroPipeline = 0;
+/// Compute shaders: one workgroup a row.
+pub const YORO_PIPELINE_ROWGROUP: YoroPipeline = 1;
+/// Compute shaders: Algorithms 1 to 3 of the paper.
+pub const YORO_PIPELINE_PAPER: YoroPipeline = 2;
+
+/// Bits of what is written besides colour, and how.
+pub type YoroOutputFlags = u32;
+/// Depth of the synthesized eye, encoded as the source's, to the target's depth attachment: for transparent objects.
+pub const YORO_OUTPUT_DEPTH: YoroOutputFlags = 1;
+/// Source and target are both sRGB images, which sampling decodes: what is written is encoded.
+pub const YORO_OUTPUT_SRGB: YoroOutputFlags = 2;
+
+/// Pose of an eye in a right-handed world with Y up, in which the eye looks along its own -Z, X to the right. Laid out as
+/// XrPosef.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct YoroPose {
+    /// Rotation from the eye's axes to the world's: the quaternion x, y, z, w, of length 1.
+    pub orientation: [f32; 4],
+    /// Position in metres.
+    pub position: [f32; 3],
+}
+
+/// Angles in radians from the eye's axis to the edges of its image, of less than a right angle; left and down are
+/// negative when the image contains the axis. Laid out as XrFovf.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct YoroFov {
+    /// Left edge.
+    pub angle_left: f32,
+    /// Right edge.
+    pub angle_right: f32,
+    /// Upper edge.
+    pub angle_up: f32,
+    /// Lower edge.
+    pub angle_down: f32,
+}
+
+/// Which of the eyes a constant stands for.
+pub(crate) fn eye(value: YoroEye) -> Result<Eye, Failure> {
+    match value {
+        YORO_EYE_LEFT => Ok(Eye::Left),
+        YORO_EYE_RIGHT => Ok(Eye::Right),
+        _ => Err(Failure::value(format!("{value} is no eye: give YORO_EYE_LEFT or YORO_EYE_RIGHT"))),
+    }
+}
+
+pub(crate) fn depth(value: YoroDepth) -> Result<DepthConvention, Failure> {
+    match value {
+        YORO_DEPTH_STANDARD => Ok(DepthConvention::Standard),
+        YORO_DEPTH_REVERSED => Ok(DepthConvention::Reversed),
+        _ => Err(Failure::value(format!(
+            "{value} is no depth convention: give YORO_DEPTH_STANDARD or YORO_DEPTH_REVERSED"
+        ))),
+    }
+}
+
+/// A clip volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clip {
+    /// +1 when y points up, -1 when it points down.
+    pub(crate) up: f64,
+    /// z of the clip volume is `scale * depth + offset`, depth from 0 to 1.
+    pub(crate) scale: f64,
+    pub(crate) offset: f64,
+}
+
+pub(crate) fn clip(value: YoroClip) -> Result<Clip, Failure> {
+    match value {
+        YORO_CLIP_OPENGL => Ok(Clip { up: 1.0, scale: 2.0, offset: -1.0 }),
+        YORO_CLIP_VULKAN => Ok(Clip { up: -1.0, scale: 1.0, offset: 0.0 }),
+        YORO_CLIP_Y_UP_Z_0_1 => Ok(Clip { up: 1.0, scale: 1.0, offset: 0.0 }),
+        _ => Err(Failure::value(format!("{value} is no clip volume: give a YORO_CLIP_ constant"))),
+    }
+}
+
+/// Whether rows run from the top.
+pub(crate) fn rows_down(value: YoroRows) -> Result<bool, Failure> {
+    match value {
+        YORO_ROWS_UP => Ok(false),
+        YORO_ROWS_DOWN => Ok(true),
+        _ => Err(Failure::value(format!("{value} is no order of rows: give YORO_ROWS_UP or YORO_ROWS_DOWN"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_header_has_the_crates_version_and_the_cores_limits() {
+        let version = format!("{YORO_VERSION_MAJOR}.{YORO_VERSION_MINOR}.{YORO_VERSION_PATCH}");
+        assert_eq!(version, env!("CARGO_PKG_VERSION"));
+        assert_eq!(YORO_MAX_IPD, yoro::eyes::MAX_IPD);
+    }
+}

@@ -1,0 +1,223 @@
+//! What comes of two eyes: the view to render, and how its pixels move.
+
+use glam::{DMat4, DVec4};
+use yoro::eyes::{DepthRange, DisparityLaw, EyePair, Frustum, GuardBand, Pose, View, Warp};
+
+use crate::result::Failure;
+use crate::types::{
+    Clip, YORO_DEPTH_REVERSED, YORO_DEPTH_STANDARD, YoroDepth, YoroEye, YoroFov, YoroPose, depth, eye,
+};
+use crate::versioned::versioned;
+
+/// One image: where its eye is, what it covers, and the matrices that render it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct YoroView {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Pose of the eye. From matrices of a left-handed world: in the world whose Z axis is negated.
+    pub pose: YoroPose,
+    /// Angles of the image's outer edges.
+    pub fov: YoroFov,
+    /// World to eye, column-major, for column vectors: the translation is in elements 12 to 14.
+    pub view: [f32; 16],
+    /// Eye to clip space, column-major.
+    pub projection: [f32; 16],
+}
+
+/// How pixels of the rendered image move to the other eye's: all that synthesis has to know. yoro_views_from_eyes and
+/// yoro_views_from_matrices fill it; it can be copied and kept.
+///
+/// The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, depth being the
+/// value stored in the depth buffer.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct YoroWarp {
+    /// Width of the rendered colour and depth in pixels.
+    pub source_width: u32,
+    /// Height of both.
+    pub source_height: u32,
+    /// Width of the synthesized image in pixels.
+    pub target_width: u32,
+    /// Height of it.
+    pub target_height: u32,
+    /// Columns at depth 0.
+    pub offset: f64,
+    /// Columns per unit of depth.
+    pub scale: f64,
+    /// Target row minus source row.
+    pub row_offset: i32,
+    /// The eye that is synthesized.
+    pub target_eye: YoroEye,
+    /// Whether smaller or larger values of depth are nearer.
+    pub depth: YoroDepth,
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// What to do in a frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct YoroViews {
+    /// sizeof(YoroViews), set by the caller.
+    pub struct_size: u32,
+    /// Column of the source in which the rendered eye's own image begins.
+    pub crop_x: u32,
+    /// Row of the source in which it begins, counted as YoroRows says.
+    pub crop_y: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// The view to render: that of the rendered eye, wider by the guard band. Render colour and depth of this size.
+    pub source: YoroView,
+    /// The rendered eye's own image: the part of the source that begins at the crop and has this size.
+    pub rendered: YoroView,
+    /// The image that is synthesized.
+    pub synthesized: YoroView,
+    /// How pixels move; goes to synthesis.
+    pub warp: YoroWarp,
+}
+
+versioned!(YoroViews);
+
+impl YoroWarp {
+    fn new(warp: &Warp) -> YoroWarp {
+        YoroWarp {
+            source_width: warp.source_size[0],
+            source_height: warp.source_size[1],
+            target_width: warp.target_size[0],
+            target_height: warp.target_size[1],
+            offset: warp.law.offset,
+            scale: warp.law.scale,
+            row_offset: warp.row_offset,
+            target_eye: warp.target_eye.index() as YoroEye,
+            depth: match warp.convention {
+                yoro::eyes::DepthConvention::Standard => YORO_DEPTH_STANDARD,
+                yoro::eyes::DepthConvention::Reversed => YORO_DEPTH_REVERSED,
+            },
+            reserved: 0,
+        }
+    }
+
+    /// The core's, checked: programs may have made the numbers themselves.
+    pub(crate) fn checked(&self) -> Result<Warp, Failure> {
+        /// Sizes and displacements beyond this are refused: no driver renders them.
+        const MAX_SIDE: u32 = 1 << 16;
+        let sides = [self.source_width, self.source_height, self.target_width, self.target_height];
+        if !sides.iter().all(|side| (1..=MAX_SIDE).contains(side)) {
+            let [w, h, tw, th] = sides;
+            return Err(Failure::value(format!(
+                "a warp from {w}x{h} to {tw}x{th} pixels cannot be: take it from yoro_views_from_eyes"
+            )));
+        }
+        let reach = f64::from(MAX_SIDE);
+        let in_reach = |columns: f64| columns.abs() <= reach;
+        if !in_reach(self.offset) || !in_reach(self.scale) || self.row_offset.unsigned_abs() > MAX_SIDE {
+            return Err(Failure::value(
+                "a warp has a displacement beyond all images: take it from yoro_views_from_eyes",
+            ));
+        }
+        Ok(Warp {
+            source_size: [self.source_width, self.source_height],
+            target_size: [self.target_width, self.target_height],
+            law: DisparityLaw { offset: self.offset, scale: self.scale },
+            row_offset: self.row_offset,
+            target_eye: eye(self.target_eye)?,
+            convention: depth(self.depth)?,
+        })
+    }
+}
+
+/// Metres from which on the band is complete; 0 for none.
+pub(crate) fn guard_band(metres: f32) -> GuardBand {
+    if metres == 0.0 { GuardBand::None } else { GuardBand::Distance(metres) }
+}
+
+/// The core counts rows from the lowest; rows from the topmost are those of eyes that are mirrored vertically.
+fn mirrored(frustum: Frustum) -> Frustum {
+    Frustum { bottom: -frustum.top, top: -frustum.bottom, ..frustum }
+}
+
+/// What comes of a pair, without matrices. `down` is whether rows run from the top.
+pub(crate) fn views(mut pair: EyePair, guard: GuardBand, down: bool) -> Result<YoroViews, Failure> {
+    if down {
+        pair.frusta = pair.frusta.map(mirrored);
+    }
+    let views = pair.synthesis(guard)?;
+    let image = |view: &View| {
+        let frustum = if down { mirrored(view.frustum) } else { view.frustum };
+        YoroView {
+            width: view.size[0],
+            height: view.size[1],
+            pose: pose(&view.pose),
+            fov: fov(&frustum),
+            ..YoroView::default()
+        }
+    };
+    Ok(YoroViews {
+        struct_size: size_of::<YoroViews>() as u32,
+        crop_x: views.dominant_crop[0],
+        crop_y: views.dominant_crop[1],
+        reserved: 0,
+        source: image(&views.source),
+        rendered: image(&pair.view(pair.dominant)),
+        synthesized: image(&views.target),
+        warp: YoroWarp::new(&views.warp),
+    })
+}
+
+fn pose(pose: &Pose) -> YoroPose {
+    YoroPose { orientation: pose.orientation.to_array(), position: pose.position.to_array() }
+}
+
+fn fov(frustum: &Frustum) -> YoroFov {
+    YoroFov {
+        angle_left: frustum.left.atan(),
+        angle_right: frustum.right.atan(),
+        angle_up: frustum.top.atan(),
+        angle_down: frustum.bottom.atan(),
+    }
+}
+
+impl YoroPose {
+    pub(crate) fn pose(&self) -> Pose {
+        Pose { position: self.position.into(), orientation: glam::Quat::from_array(self.orientation) }
+    }
+}
+
+impl YoroFov {
+    pub(crate) fn frustum(&self) -> Frustum {
+        Frustum::from_fov(self.angle_left, self.angle_right, self.angle_up, self.angle_down)
+    }
+}
+
+impl YoroView {
+    /// Rows x and y of the projection, of an eye that looks along -Z.
+    pub(crate) fn projection_xy(&self, clip: &Clip) -> [DVec4; 2] {
+        let [left, right, top, bottom] =
+            [self.fov.angle_left, self.fov.angle_right, self.fov.angle_up, self.fov.angle_down]
+                .map(|angle| f64::from(angle).tan());
+        let (width, height) = (right - left, clip.up * (top - bottom));
+        [
+            DVec4::new(2.0 / width, 0.0, (right + left) / width, 0.0),
+            DVec4::new(0.0, 2.0 / height, clip.up * (top + bottom) / height.abs(), 0.0),
+        ]
+    }
+
+    /// Sets the matrices of an eye that looks along -Z.
+    pub(crate) fn set_matrices(&mut self, range: &DepthRange, clip: &Clip) {
+        let (c, m) = range.inverse_distance_law();
+        // depth = (1 / z - c) / m, z the distance; the clip volume's z = scale * depth + offset, times z.
+        let along = DVec4::new(0.0, 0.0, clip.scale * c / m - clip.offset, clip.scale / m);
+        let [x, y] = self.projection_xy(clip);
+        let projection = DMat4::from_cols(x, y, along, DVec4::new(0.0, 0.0, -1.0, 0.0)).transpose();
+        self.projection = projection.as_mat4().to_cols_array();
+        self.view = self.pose.pose().view_matrix().to_cols_array();
+    }
+}
+
+/// The images of [`YoroViews`].
+pub(crate) fn images(views: &mut YoroViews) -> [&mut YoroView; 3] {
+    [&mut views.source, &mut views.rendered, &mut views.synthesized]
+}

@@ -1,0 +1,515 @@
+//! Vulkan.
+
+use std::ffi::{CStr, c_char};
+
+use yoro::vulkan::ash::{Device, Instance, StaticFn, vk};
+use yoro::vulkan::{
+    Frame, Gather, Host, ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages,
+    VulkanError,
+};
+
+use crate::context::{Api, YORO_API_VULKAN, YoroCapabilities, YoroContext, create, enter};
+use crate::result::{
+    Failure, YORO_ERROR_API, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_MEMORY,
+    YORO_ERROR_NO_CONTEXT, YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE,
+    YORO_ERROR_UNSUPPORTED, YoroMessages, YoroResult,
+};
+use crate::types::YORO_PIPELINE_GATHER;
+use crate::versioned::{self, versioned};
+use crate::views::YoroWarp;
+
+/// vkGetInstanceProcAddr, of the loader or of whoever stands in for it.
+pub type YoroVkLoader = Option<
+    unsafe extern "C" fn(instance: vk::Instance, name: *const c_char) -> Option<unsafe extern "C" fn()>,
+>;
+
+/// How to create a context for Vulkan.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkInfo {
+    /// sizeof(YoroVkInfo).
+    pub struct_size: u32,
+    /// Family of the queue that the command buffers go to; it has graphics.
+    pub queue_family: u32,
+    /// Entry points.
+    pub loader: YoroVkLoader,
+    /// Of version 1.1 or later; no extension is needed.
+    pub instance: vk::Instance,
+    /// The physical device of `device`.
+    pub physical_device: vk::PhysicalDevice,
+    /// Of version 1.1 or later; no extension and no feature is needed.
+    pub device: vk::Device,
+    /// 1 where the feature dynamicRendering is enabled, of Vulkan 1.3 or VK_KHR_dynamic_rendering, which is then used. 0:
+    /// render passes and framebuffers, with the same result.
+    pub dynamic_rendering: u32,
+    /// Format of the targets' colour, any that the device renders to. A source that is sampled as sRGB belongs into an sRGB
+    /// target.
+    pub color_format: vk::Format,
+    /// Format of the targets' depth, which is then written, too, encoded as the source's; VK_FORMAT_UNDEFINED for none.
+    pub depth_format: vk::Format,
+    /// Largest width of a source in pixels.
+    pub max_source_width: u32,
+    /// Largest height of a source.
+    pub max_source_height: u32,
+    /// Largest width of a synthesized image in pixels.
+    pub max_target_width: u32,
+    /// Largest height of a synthesized image.
+    pub max_target_height: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// A cache for pipelines, or VK_NULL_HANDLE.
+    pub pipeline_cache: vk::PipelineCache,
+    /// Where the sentences of errors go, those of later calls, too.
+    pub messages: YoroMessages,
+}
+
+versioned!(YoroVkInfo);
+
+/// What an image was used for, or will be: the one side of a barrier.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkState {
+    /// Its layout.
+    pub layout: vk::ImageLayout,
+    /// The stages that use it.
+    pub stages: vk::PipelineStageFlags,
+    /// How they use it.
+    pub access: vk::AccessFlags,
+}
+
+/// One layer of a 2-D image: mip level 0, without multisampling.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkImage {
+    /// Its usage has VK_IMAGE_USAGE_SAMPLED_BIT for a source, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or
+    /// VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT for a target.
+    pub image: vk::Image,
+    /// The image's format, or of a VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT image a compatible one.
+    pub format: vk::Format,
+    /// Layer of an array, such as that of the eye; 0 where there is one.
+    pub layer: u32,
+    /// What it was used for before yoro_vk_record: the layout that it is in, and what has to be waited for.
+    pub before: YoroVkState,
+    /// What it is left ready for.
+    pub after: YoroVkState,
+}
+
+/// Images to read.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkSource {
+    /// sizeof(YoroVkSource).
+    pub struct_size: u32,
+    /// Width of both images in pixels; what is rendered may be a part of them.
+    pub width: u32,
+    /// Height of both images in pixels.
+    pub height: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Colour of the rendered eye, of any format that can be filtered. All four channels are carried over.
+    pub color: YoroVkImage,
+    /// Its depth: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT.
+    pub depth: YoroVkImage,
+}
+
+versioned!(YoroVkSource);
+
+/// Images to write.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkTarget {
+    /// sizeof(YoroVkTarget).
+    pub struct_size: u32,
+    /// Width of the images in pixels; what is synthesized may be a part of them.
+    pub width: u32,
+    /// Height of the images in pixels.
+    pub height: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Colour, of YoroVkInfo's color_format.
+    pub color: YoroVkImage,
+    /// Depth, of YoroVkInfo's depth_format; not looked at where that is VK_FORMAT_UNDEFINED.
+    pub depth: YoroVkImage,
+}
+
+versioned!(YoroVkTarget);
+
+/// A registered source, never 0.
+pub type YoroVkSourceId = u32;
+/// A registered target, never 0.
+pub type YoroVkTargetId = u32;
+
+/// What to synthesize in one call.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkFrame {
+    /// sizeof(YoroVkFrame).
+    pub struct_size: u32,
+    /// The images to read.
+    pub source: YoroVkSourceId,
+    /// Column of them where what was rendered begins.
+    pub source_x: u32,
+    /// Row of them where it begins; row 0 is the first in memory.
+    pub source_y: u32,
+    /// The images to write.
+    pub target: YoroVkTargetId,
+    /// Column of them where the synthesized image begins.
+    pub target_x: u32,
+    /// Row of them where it begins.
+    pub target_y: u32,
+}
+
+versioned!(YoroVkFrame);
+
+/// Creates a context for Vulkan: pipelines, and buffers for the largest sizes. At start, not in a frame.
+///
+/// Any thread.
+///
+/// @param info    How.
+/// @param context Gets the new context, NULL after an error. Destroy it with yoro_destroy.
+/// @pre The handles are valid, belong together, and stay so until the YoroContext is destroyed.
+/// @return YORO_ERROR_NO_CONTEXT for a loader without Vulkan's commands, YORO_ERROR_UNSUPPORTED, YORO_ERROR_FORMAT,
+///         YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_VALUE,
+///         YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_vk_create(
+    info: *const YoroVkInfo,
+    context: *mut *mut YoroContext,
+) -> YoroResult {
+    // SAFETY: the header asks the caller for pointers to what they name, and for handles that belong together.
+    unsafe {
+        create(info, context, |info| info.messages, |info| Ok(Api::Vulkan(Box::new(Vulkan::new(info)?))))
+    }
+}
+
+/// Makes views and descriptors of images to read: once for each pair of images that is rendered to.
+///
+/// On the thread that may use the context.
+///
+/// @param context The context.
+/// @param source  The images.
+/// @param id      Gets their number.
+/// @pre The images are alive until the number is released or the context destroyed.
+/// @return YORO_ERROR_FORMAT, YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER,
+///         YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_vk_register_source(
+    context: *mut YoroContext,
+    source: *const YoroVkSource,
+    id: *mut YoroVkSourceId,
+) -> YoroResult {
+    // SAFETY: the header asks the caller for it.
+    unsafe {
+        enter(context, |api| {
+            let vulkan = of_vulkan(api)?;
+            let source = versioned::read(source, "source")?;
+            check_id(id)?;
+            let images = SourceImages {
+                color: source.color.checked("color", true)?,
+                depth: source.depth.checked("depth", true)?,
+                size: [source.width, source.height],
+            };
+            id.write(vulkan.gather.register_source(&images)?.to_raw());
+            Ok(())
+        })
+    }
+}
+
+/// Makes views of images to write: once for each image of a swapchain.
+///
+/// Thread, preconditions and results as yoro_vk_register_source.
+///
+/// @param context The context.
+/// @param target  The images.
+/// @param id      Gets their number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_vk_register_target(
+    context: *mut YoroContext,
+    target: *const YoroVkTarget,
+    id: *mut YoroVkTargetId,
+) -> YoroResult {
+    // SAFETY: the header asks the caller for it.
+    unsafe {
+        enter(context, |api| {
+            let vulkan = of_vulkan(api)?;
+            let target = versioned::read(target, "target")?;
+            check_id(id)?;
+            let images = TargetImages {
+                color: target.color.checked("color", false)?,
+                depth: vulkan.writes_depth.then(|| target.depth.checked("depth", false)).transpose()?,
+                size: [target.width, target.height],
+            };
+            id.write(vulkan.gather.register_target(&images)?.to_raw());
+            Ok(())
+        })
+    }
+}
+
+/// Forgets images to read. A number that is not registered is ignored.
+///
+/// On the thread that may use the context.
+///
+/// @param context The context.
+/// @param id      What yoro_vk_register_source gave.
+/// @pre No command that was recorded with it is pending.
+/// @return YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: YoroVkSourceId) -> YoroResult {
+    // SAFETY: the header asks the caller for it.
+    unsafe {
+        enter(context, |api| {
+            of_vulkan(api)?.gather.release_source(SourceId::from_raw(id));
+            Ok(())
+        })
+    }
+}
+
+/// Forgets images to write. As yoro_vk_release_source.
+///
+/// @param context The context.
+/// @param id      What yoro_vk_register_target gave.
+/// @pre No command that was recorded with it is pending.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: YoroVkTargetId) -> YoroResult {
+    // SAFETY: the header asks the caller for it.
+    unsafe {
+        enter(context, |api| {
+            of_vulkan(api)?.gather.release_target(TargetId::from_raw(id));
+            Ok(())
+        })
+    }
+}
+
+/// Records the synthesis of the other eye: barriers and three draws into the target's rectangle of warp's target size, all of
+/// which is overwritten. Record it after the opaque objects of the rendered eye, before transparent objects and effects
+/// that are drawn for each eye. Nothing is allocated, compiled, submitted or waited for.
+///
+/// Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Images go from
+/// their state `before` to their state `after`.
+///
+/// On the thread that may use the context and that records the command buffer.
+///
+/// @param context  The context.
+/// @param commands A command buffer of the device.
+/// @param warp     From YoroViews, with rows as they lie in the images.
+/// @param frame    What to read and where to draw.
+/// @pre The command buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to
+///      the queue family of YoroVkInfo. The images are in the state `before` when it is executed.
+/// @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond their
+///         images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; with
+///         any of these nothing was recorded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_vk_record(
+    context: *mut YoroContext,
+    commands: vk::CommandBuffer,
+    warp: *const YoroWarp,
+    frame: *const YoroVkFrame,
+) -> YoroResult {
+    // SAFETY: the header asks the caller for it.
+    unsafe {
+        enter(context, |api| {
+            let vulkan = of_vulkan(api)?;
+            if warp.is_null() || commands == vk::CommandBuffer::null() {
+                return Err(Failure::new(YORO_ERROR_NULL, "warp or commands is NULL: give both"));
+            }
+            let mut warp = warp.read_unaligned().checked()?;
+            // The core counts these rows from the lowest, and takes row 0 of Vulkan's images for the topmost.
+            warp.row_offset = warp.target_size[1] as i32 - warp.source_size[1] as i32 - warp.row_offset;
+            let frame = versioned::read(frame, "frame")?;
+            let frame = Frame {
+                source: SourceId::from_raw(frame.source),
+                source_origin: [frame.source_x, frame.source_y],
+                target: TargetId::from_raw(frame.target),
+                target_origin: [frame.target_x, frame.target_y],
+            };
+            Ok(vulkan.gather.record(commands, &frame, &warp)?)
+        })
+    }
+}
+
+fn of_vulkan(api: &mut Api) -> Result<&mut Vulkan, Failure> {
+    match api {
+        Api::Vulkan(vulkan) => Ok(vulkan),
+        Api::Gl(_) => Err(Failure::new(
+            YORO_ERROR_API,
+            "this YoroContext was made for OpenGL: create one with yoro_vk_create",
+        )),
+    }
+}
+
+fn check_id(id: *const u32) -> Result<(), Failure> {
+    match id.is_null() {
+        true => Err(Failure::new(YORO_ERROR_NULL, "id is NULL: say where the number goes")),
+        false => Ok(()),
+    }
+}
+
+/// A pipeline on a device.
+pub(crate) struct Vulkan {
+    gather: Gather,
+    writes_depth: bool,
+    instance: Instance,
+    physical_device: vk::PhysicalDevice,
+    buffer_bytes: u64,
+}
+
+impl Vulkan {
+    /// # Safety
+    /// The handles are valid and belong together.
+    unsafe fn new(info: &YoroVkInfo) -> Result<Vulkan, Failure> {
+        let null = |what: &str| Failure::new(YORO_ERROR_NULL, format!("{what} is NULL: give it"));
+        let loader = info.loader.ok_or_else(|| null("loader"))?;
+        let handles = [
+            (info.instance == vk::Instance::null(), "instance"),
+            (info.physical_device == vk::PhysicalDevice::null(), "physical_device"),
+            (info.device == vk::Device::null(), "device"),
+        ];
+        if let Some((_, what)) = handles.into_iter().find(|(is_null, _)| *is_null) {
+            return Err(null(what));
+        }
+        if info.dynamic_rendering > 1 {
+            return Err(Failure::value(format!(
+                "dynamic_rendering is {}: give 0 or 1",
+                info.dynamic_rendering
+            )));
+        }
+        check_format(info.color_format, "color_format")?;
+        let writes_depth = info.depth_format != vk::Format::UNDEFINED;
+        if writes_depth {
+            check_format(info.depth_format, "depth_format")?;
+        }
+        // ash panics in commands that were not found: the ones that lead to the others, of the version that is needed.
+        let has = |name: &CStr| {
+            // SAFETY: a live instance and a name.
+            unsafe { loader(info.instance, name.as_ptr()) }.is_some()
+        };
+        let needed = [
+            c"vkGetDeviceProcAddr",
+            c"vkGetPhysicalDeviceProperties",
+            c"vkGetPhysicalDeviceProperties2",
+            c"vkCreateImage",
+            c"vkCmdDraw",
+        ];
+        if !needed.into_iter().all(has) {
+            return Err(Failure::new(
+                YORO_ERROR_NO_CONTEXT,
+                "the loader does not give the commands of Vulkan 1.1: give vkGetInstanceProcAddr, and an instance of \
+                 version 1.1 or later",
+            ));
+        }
+        // SAFETY: of one signature but for the name of the calling convention, which is C's; the caller promises the rest.
+        let (instance, device) = unsafe {
+            let get_instance_proc_addr = std::mem::transmute::<
+                unsafe extern "C" fn(vk::Instance, *const c_char) -> Option<unsafe extern "C" fn()>,
+                vk::PFN_vkGetInstanceProcAddr,
+            >(loader);
+            let instance = Instance::load(&StaticFn { get_instance_proc_addr }, info.instance);
+            let device = Device::load(instance.fp_v1_0(), info.device);
+            (instance, device)
+        };
+        let host = Host {
+            instance: &instance,
+            physical_device: info.physical_device,
+            device: &device,
+            queue_family: info.queue_family,
+            dynamic_rendering: info.dynamic_rendering == 1,
+        };
+        let options = Options {
+            color_format: info.color_format,
+            depth_format: writes_depth.then_some(info.depth_format),
+            max_source_size: [info.max_source_width, info.max_source_height],
+            max_target_size: [info.max_target_width, info.max_target_height],
+            timed_frames: 0,
+            pipeline_cache: info.pipeline_cache,
+        };
+        // SAFETY: promised by the caller.
+        let gather = unsafe { Gather::new(&host, &options) }?;
+        // Four bytes for each tile of 16 x 8 pixels, of the source and of the target over the source's rows.
+        let columns = info.max_source_width.div_ceil(16) + info.max_target_width.div_ceil(16);
+        let buffer_bytes = 4 * u64::from(columns) * u64::from(info.max_source_height.div_ceil(8));
+        let physical_device = info.physical_device;
+        Ok(Vulkan { gather, writes_depth, instance, physical_device, buffer_bytes })
+    }
+
+    pub(crate) fn capabilities(&self) -> YoroCapabilities {
+        // SAFETY: the caller's instance lives as long as the context.
+        let properties = unsafe { self.instance.get_physical_device_properties(self.physical_device) };
+        let mut capabilities = YoroCapabilities {
+            struct_size: size_of::<YoroCapabilities>() as u32,
+            api: YORO_API_VULKAN,
+            api_major: vk::api_version_major(properties.api_version),
+            api_minor: vk::api_version_minor(properties.api_version),
+            pipeline: YORO_PIPELINE_GATHER,
+            compute: 1,
+            software: (properties.device_type == vk::PhysicalDeviceType::CPU).into(),
+            max_image_size: properties.limits.max_image_dimension2_d,
+            buffer_bytes: self.buffer_bytes,
+            device: [0; 128],
+        };
+        if let Ok(name) = properties.device_name_as_c_str() {
+            capabilities.set_device(&name.to_string_lossy());
+        }
+        capabilities
+    }
+}
+
+/// Drivers look numbers of formats up in tables, and not all of them look whether there is such a number.
+fn check_format(format: vk::Format, what: &str) -> Result<(), Failure> {
+    let last_of_version_1_0 = vk::Format::ASTC_12X12_SRGB_BLOCK.as_raw();
+    if (1..=last_of_version_1_0).contains(&format.as_raw()) {
+        return Ok(());
+    }
+    Err(Failure::new(
+        YORO_ERROR_FORMAT,
+        format!("{what} is {}, which is no format that can be rendered to: see the header", format.as_raw()),
+    ))
+}
+
+impl YoroVkImage {
+    fn checked(&self, what: &str, is_read: bool) -> Result<LayerImage, Failure> {
+        if self.image == vk::Image::null() {
+            return Err(Failure::new(
+                YORO_ERROR_NULL,
+                format!("the {what} image is VK_NULL_HANDLE: give one"),
+            ));
+        }
+        check_format(self.format, what)?;
+        if is_read && self.before.layout == vk::ImageLayout::UNDEFINED {
+            return Err(Failure::value(format!(
+                "the {what} image is read, but its layout before is VK_IMAGE_LAYOUT_UNDEFINED, which discards it"
+            )));
+        }
+        if self.after.layout == vk::ImageLayout::UNDEFINED {
+            return Err(Failure::value(format!(
+                "the {what} image's layout after is VK_IMAGE_LAYOUT_UNDEFINED: give the one that follows"
+            )));
+        }
+        let state = |state: &YoroVkState| ImageState {
+            layout: state.layout,
+            stages: state.stages,
+            access: state.access,
+        };
+        Ok(LayerImage {
+            image: self.image,
+            format: self.format,
+            layer: self.layer,
+            before: state(&self.before),
+            after: state(&self.after),
+        })
+    }
+}
+
+impl From<VulkanError> for Failure {
+    fn from(error: VulkanError) -> Failure {
+        let code = match error {
+            VulkanError::OutOfMemory { .. } => YORO_ERROR_MEMORY,
+            VulkanError::DeviceLost { .. } => YORO_ERROR_DEVICE_LOST,
+            VulkanError::Format { .. } | VulkanError::OtherFormat { .. } => YORO_ERROR_FORMAT,
+            VulkanError::QueueFamily(_) | VulkanError::DynamicRendering => YORO_ERROR_UNSUPPORTED,
+            VulkanError::Size { .. } | VulkanError::Rectangle { .. } => YORO_ERROR_TOO_LARGE,
+            VulkanError::NotRegistered => YORO_ERROR_NOT_REGISTERED,
+            _ => YORO_ERROR_DRIVER,
+        };
+        Failure::new(code, error.to_string())
+    }
+}

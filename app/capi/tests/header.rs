@@ -1,0 +1,70 @@
+//! The header is what cbindgen makes of the source.
+
+use std::path::Path;
+
+/// cbindgen's text, with each constant behind the type that it is of instead of before all functions.
+fn arranged(made: &str) -> String {
+    let mut blocks: Vec<String> = Vec::new();
+    let mut constants = Vec::new();
+    for block in made.split("\n\n") {
+        match block.lines().find_map(|line| line.strip_prefix("#define YORO_")) {
+            // Parentheses, as for everything behind a #define that is more than one word.
+            Some(_) if block.starts_with("/**") => constants.push(negative_in_parentheses(block)),
+            _ => blocks.push(block.to_owned()),
+        }
+    }
+    for block in &mut blocks {
+        let Some(name) = block.lines().find_map(|line| line.strip_prefix("typedef ")?.strip_suffix(';'))
+        else {
+            continue;
+        };
+        let Some(("int32_t" | "uint32_t", name)) = name.split_once(' ') else { continue };
+        let belongs = |constant: &String| prefixes(name).iter().any(|prefix| constant.contains(prefix));
+        let own: Vec<String> = constants.extract_if(.., |constant| belongs(constant)).collect();
+        block.extend(own.iter().map(|constant| format!("\n{constant}")));
+    }
+    // What is of no type of this library, such as versions: before everything else.
+    let first = blocks.iter().position(|block| block.starts_with("/**")).unwrap();
+    blocks.splice(first..first, constants);
+    blocks.join("\n\n")
+}
+
+fn negative_in_parentheses(block: &str) -> String {
+    match block.rsplit_once(" -") {
+        Some((define, number)) if number.bytes().all(|b| b.is_ascii_digit()) => {
+            format!("{define} (-{number})")
+        }
+        _ => block.to_owned(),
+    }
+}
+
+/// How the constants of a type begin: `#define YORO_EYES_` for YoroEyesFlags.
+fn prefixes(name: &str) -> Vec<String> {
+    if name == "YoroResult" {
+        return ["OK ", "ERROR_"].map(|constant| format!("#define YORO_{constant}")).into();
+    }
+    let mut prefix = String::from("#define ");
+    for (i, letter) in name.trim_end_matches("Flags").char_indices() {
+        if i > 0 && letter.is_ascii_uppercase() {
+            prefix.push('_');
+        }
+        prefix.push(letter.to_ascii_uppercase());
+    }
+    vec![prefix + "_"]
+}
+
+#[test]
+fn the_header_is_that_of_the_source() {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let config = cbindgen::Config::from_file(package.join("cbindgen.toml")).unwrap();
+    let bindings = cbindgen::Builder::new().with_crate(package).with_config(config).generate().unwrap();
+    let mut made = Vec::new();
+    bindings.write(&mut made);
+    let made = arranged(&String::from_utf8(made).unwrap());
+    let header = package.join("include/yoro.h");
+    if std::env::var_os("YORO_BLESS").is_some() {
+        std::fs::write(&header, &made).unwrap();
+    }
+    let kept = std::fs::read_to_string(&header).unwrap_or_default();
+    assert!(kept == made, "{} is stale: `cargo xtask test the_header --bless` renews it", header.display());
+}

@@ -1,0 +1,199 @@
+//! The samples, as others compile them: by C and C++ compilers against the header and the built library. And Python, which
+//! stands for every other language.
+
+#[path = "../kit/files.rs"]
+mod kit;
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Compilers with the language that they are given, and the standard of it.
+const COMPILERS: [[&str; 3]; 4] =
+    [["gcc", "c", "c11"], ["clang", "c", "c11"], ["g++", "c++", "c++17"], ["clang++", "c++", "c++17"]];
+const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-pedantic", "-Werror"];
+
+fn package() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The folder of the library that cargo has built for this test, beside which it lies.
+fn library() -> PathBuf {
+    let folder = env::current_exe().unwrap().parent().unwrap().to_owned();
+    assert!(folder.join("libyoro_c.so").is_file(), "{} has no libyoro_c.so", folder.display());
+    folder
+}
+
+fn is_here(program: &str) -> bool {
+    Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success())
+}
+
+/// Runs a command, which must succeed; what it printed.
+fn run(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let text =
+        format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{command:?}\n{text}");
+    text
+}
+
+/// Compiles a sample by every compiler that is here, runs what the first one made, and looks at its figures and picture,
+/// which is the result.
+fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> Option<image::RgbImage> {
+    if !Path::new("/usr/include").join(header).is_file() {
+        println!("SKIPPED: {source} is not compiled: {header} is not here");
+        return None;
+    }
+    let work = tempfile::tempdir().unwrap();
+    let mut compilers = COMPILERS.into_iter().filter(|[compiler, ..]| is_here(compiler)).peekable();
+    if compilers.peek().is_none() {
+        println!("SKIPPED: no compiler for C is here");
+        return None;
+    }
+    let program = work.path().join("program");
+    for (i, [compiler, language, standard]) in compilers.enumerate() {
+        let mut command = Command::new(compiler);
+        command.args(["-x", language, &format!("-std={standard}")]).args(WARNINGS);
+        for folder in includes {
+            command.arg("-I").arg(package().join(folder));
+        }
+        command.arg(package().join(source)).args(["-x", "none"]);
+        match i {
+            // That it links is learnt once.
+            0 => command.arg("-L").arg(library()).args(libraries).arg("-lm").arg("-o").arg(&program),
+            _ => command.arg("-fsyntax-only"),
+        };
+        run(&mut command);
+    }
+    let picture = work.path().join("picture.png");
+    let printed = run(Command::new(&program)
+        .arg(&picture)
+        .env("YORO_KIT", includes[0])
+        .env("LD_LIBRARY_PATH", library()));
+    let decibels = |line: &str| -> f64 {
+        let rest = printed.lines().find_map(|text| text.strip_prefix(line)).unwrap();
+        rest.trim().split(' ').next().unwrap().parse().unwrap()
+    };
+    let (synthesized, same) = (decibels("synthesized:"), decibels("same image:"));
+    println!("{source}: {synthesized} dB, the same image to both eyes {same} dB");
+    assert!(synthesized > 30.0 && synthesized > same + 10.0, "{printed}");
+
+    // The file holds what the figures are of: the left half is near the right one, shifted, and neither is empty.
+    let image = image::open(&picture).unwrap().to_rgb8();
+    assert_eq!(image.dimensions(), (1024, 512));
+    let (bright, dark) = image.pixels().fold((0, 255), |(high, low), p| (p[1].max(high), p[1].min(low)));
+    assert!(bright > 150 && dark < 80, "{bright} {dark}");
+    // Up is up: the room's ceiling is darker than its floor, on which the sun shines.
+    let mean = |rows: std::ops::Range<u32>| {
+        let count = rows.len() as f64 * 1024.0;
+        rows.flat_map(|y| (0..1024).map(move |x| (x, y)))
+            .map(|(x, y)| f64::from(image.get_pixel(x, y)[1]))
+            .sum::<f64>()
+            / count
+    };
+    assert!(mean(0..60) + 10.0 < mean(452..512), "{} {}", mean(0..60), mean(452..512));
+    Some(image)
+}
+
+fn gles() -> Option<image::RgbImage> {
+    sample("examples/gles.c", "GLES3/gl31.h", &["include"], &["-lyoro_c", "-lEGL", "-lGLESv2"])
+}
+
+#[test]
+fn the_sample_for_opengl_es() {
+    gles();
+}
+
+#[test]
+fn the_sample_for_vulkan() {
+    if env::var_os("YORO_TEST_WITHOUT_VULKAN").is_some() {
+        println!("LEFT OUT: the sample for Vulkan");
+    } else if cfg!(feature = "vulkan") {
+        sample("examples/vulkan.c", "vulkan/vulkan.h", &["include"], &["-lyoro_c", "-lvulkan"]);
+    }
+}
+
+/// The shaders of the sample for Vulkan as a header for C: what there is, what it should be, and by which compiler.
+#[test]
+fn the_samples_modules_are_those_of_its_shaders() {
+    const COMPILER: &str = "glslangValidator";
+    let header = package().join("examples/room_spv.h");
+    let kept = std::fs::read_to_string(&header).unwrap_or_default();
+    let output = Command::new(COMPILER).arg("--version").output();
+    let version = output.ok().filter(|output| output.status.success()).map(|output| {
+        String::from_utf8_lossy(&output.stdout).lines().next().unwrap_or_default().trim().to_owned()
+    });
+    let bless = env::var_os("YORO_BLESS").is_some();
+    let Some(version) = version.filter(|version| bless || kept.contains(version)) else {
+        println!(
+            "LEFT OUT: compiling the sample's shaders again: the {COMPILER} that made room_spv.h is not here"
+        );
+        return;
+    };
+    let work = tempfile::tempdir().unwrap();
+    let mut made = format!("/* room.vert and room.frag as SPIR-V: {COMPILER} -V -Os -g0, {version}. */\n");
+    for stage in ["vert", "frag"] {
+        let compiled = work.path().join(stage);
+        let mut command = Command::new(COMPILER);
+        command.args(["-V", "-Os", "-g0", "--vn", &format!("room_{stage}"), "-o"]).arg(&compiled);
+        run(command.arg(package().join("examples").join(format!("room.{stage}"))));
+        let text = std::fs::read_to_string(compiled).unwrap();
+        let array = text.lines().filter(|line| !line.contains("//") && !line.contains("#pragma"));
+        made.extend(array.map(|line| line.replace("const uint32_t", "static const uint32_t") + "\n"));
+    }
+    if bless {
+        std::fs::write(&header, &made).unwrap();
+    }
+    assert!(
+        bless || kept == made,
+        "{} is stale: `cargo xtask test modules --bless` renews it",
+        header.display()
+    );
+}
+
+#[test]
+fn another_language_calls_it() {
+    if !is_here("python3") {
+        println!("SKIPPED: no Python here");
+        return;
+    }
+    let script = package().join("tests/call.py");
+    print!("{}", run(Command::new("python3").arg(script).arg(library().join("libyoro_c.so"))));
+}
+
+/// A program that has the shader kit, and nothing else of this project, draws what the library draws.
+#[test]
+fn the_kit_draws_the_librarys_picture() {
+    let kit = tempfile::tempdir().unwrap();
+    kit::write(kit.path()).unwrap();
+    let folder = kit.path().to_str().unwrap();
+    let Some(drawn) = sample("kit/example.c", "GLES3/gl31.h", &[folder, "examples"], &["-lEGL", "-lGLESv2"])
+    else {
+        return;
+    };
+    let Some(expected) = gles() else { return };
+    let largest = drawn.iter().zip(expected.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+    let different = drawn.iter().zip(expected.iter()).filter(|(a, b)| a != b).count();
+    assert!(largest <= 1 && different * 1000 < drawn.len(), "{largest} {different}");
+}
+
+/// The other half of the kit, in all settings.
+#[test]
+fn the_kits_shaders_for_vulkan_compile() {
+    const COMPILER: &str = "glslangValidator";
+    if !is_here(COMPILER) {
+        println!("SKIPPED: {COMPILER} is not here");
+        return;
+    }
+    let kit = tempfile::tempdir().unwrap();
+    kit::write(kit.path()).unwrap();
+    let settings: [&[&str]; 3] = [&[], &["-DWRITE_DEPTH"], &["-DWRITE_DEPTH", "-DSHORT_WAY"]];
+    for shader in ["screen.vert", "tiles.frag", "spans.frag", "march.frag"] {
+        let settings = if shader == "march.frag" { &settings[..] } else { &settings[..1] };
+        for macros in settings {
+            let mut command = Command::new(COMPILER);
+            command.args(["-V", "-o"]).arg(kit.path().join("compiled")).args(*macros);
+            run(command.arg(kit.path().join("vulkan").join(shader)));
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Wrong arguments on Vulkan give the code that the header promises.
+
+#![cfg(feature = "vulkan")]
+
+use std::ffi::c_char;
+use std::mem::MaybeUninit;
+use std::ptr::{null, null_mut};
+
+use ash::vk;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use yoro_c::*;
+
+/// What is changed in something that is right, and the code that it then has.
+type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
+
+/// All structures of the interface are fine with zeros.
+fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
+    // SAFETY: numbers, handles and nullable pointers.
+    let mut value = unsafe { MaybeUninit::<T>::zeroed().assume_init() };
+    *size(&mut value) = size_of::<T>() as u32;
+    value
+}
+
+/// A device with one image of colour, one of depth, and a command buffer that is being recorded. Goes with the process.
+struct Gpu {
+    entry: ash::Entry,
+    instance: ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    device: ash::Device,
+    commands: vk::CommandBuffer,
+}
+
+impl Gpu {
+    fn open() -> Option<Gpu> {
+        if std::env::var_os("YORO_TEST_WITHOUT_VULKAN").is_some() {
+            println!("LEFT OUT: Vulkan");
+            return None;
+        }
+        // SAFETY: all handles are made here, of valid descriptions, and used while they live.
+        unsafe {
+            let entry = ash::Entry::load().expect("no Vulkan here: set YORO_TEST_WITHOUT_VULKAN=1");
+            let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_1);
+            let info = vk::InstanceCreateInfo::default().application_info(&application);
+            let instance = entry.create_instance(&info, None).unwrap();
+            let physical_device = instance.enumerate_physical_devices().unwrap()[0];
+            let queues = [vk::DeviceQueueCreateInfo::default().queue_priorities(&[1.0])];
+            let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
+            let device = instance.create_device(physical_device, &info, None).unwrap();
+            let pool = device.create_command_pool(&vk::CommandPoolCreateInfo::default(), None).unwrap();
+            let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
+            let commands = device.allocate_command_buffers(&info).unwrap()[0];
+            device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default()).unwrap();
+            Some(Gpu { entry, instance, physical_device, device, commands })
+        }
+    }
+
+    fn image(&self, format: vk::Format, usage: vk::ImageUsageFlags, [width, height]: [u32; 2]) -> vk::Image {
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width, height, depth: 1 })
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .usage(usage | vk::ImageUsageFlags::SAMPLED);
+        // SAFETY: a valid description; memory of the size and of a type that the image takes.
+        unsafe {
+            let image = self.device.create_image(&info, None).unwrap();
+            let needs = self.device.get_image_memory_requirements(image);
+            let info = vk::MemoryAllocateInfo::default()
+                .allocation_size(needs.size)
+                .memory_type_index(needs.memory_type_bits.trailing_zeros());
+            let memory = self.device.allocate_memory(&info, None).unwrap();
+            self.device.bind_image_memory(image, memory, 0).unwrap();
+            image
+        }
+    }
+
+    fn info(&self) -> YoroVkInfo {
+        let mut info: YoroVkInfo = zeroed(|i: &mut YoroVkInfo| &mut i.struct_size);
+        // SAFETY: of one signature but for the name of the calling convention, which is C's.
+        info.loader = unsafe {
+            std::mem::transmute::<vk::PFN_vkGetInstanceProcAddr, YoroVkLoader>(
+                self.entry.static_fn().get_instance_proc_addr,
+            )
+        };
+        (info.instance, info.physical_device) = (self.instance.handle(), self.physical_device);
+        info.device = self.device.handle();
+        (info.color_format, info.depth_format) = (vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT);
+        (info.max_source_width, info.max_source_height) = (256, 128);
+        (info.max_target_width, info.max_target_height) = (160, 120);
+        info
+    }
+}
+
+unsafe extern "C" fn load_nothing(_: vk::Instance, _: *const c_char) -> Option<unsafe extern "C" fn()> {
+    None
+}
+
+fn create(info: &YoroVkInfo) -> Result<*mut YoroContext, YoroResult> {
+    let mut context = null_mut();
+    // SAFETY: a whole structure with live handles, or with what is refused.
+    match unsafe { yoro_vk_create(info, &mut context) } {
+        YORO_OK => Ok(context),
+        code => {
+            assert!(context.is_null());
+            Err(code)
+        }
+    }
+}
+
+const ATTACHMENT: YoroVkState = YoroVkState {
+    layout: vk::ImageLayout::GENERAL,
+    stages: vk::PipelineStageFlags::ALL_COMMANDS,
+    access: vk::AccessFlags::MEMORY_WRITE,
+};
+
+fn plane(image: vk::Image, format: vk::Format) -> YoroVkImage {
+    YoroVkImage { image, format, layer: 0, before: ATTACHMENT, after: ATTACHMENT }
+}
+
+#[test]
+fn what_cannot_be_has_its_code() {
+    let Some(gpu) = Gpu::open() else { return };
+    let info = gpu.info();
+    let table: &Mistakes<YoroVkInfo> = &[
+        (&|i| i.struct_size = 8, YORO_ERROR_STRUCT_SIZE),
+        (&|i| i.loader = None, YORO_ERROR_NULL),
+        (&|i| i.loader = Some(load_nothing), YORO_ERROR_NO_CONTEXT),
+        (&|i| i.instance = vk::Instance::null(), YORO_ERROR_NULL),
+        (&|i| i.physical_device = vk::PhysicalDevice::null(), YORO_ERROR_NULL),
+        (&|i| i.device = vk::Device::null(), YORO_ERROR_NULL),
+        (&|i| i.queue_family = 77, YORO_ERROR_UNSUPPORTED),
+        (&|i| i.dynamic_rendering = 2, YORO_ERROR_VALUE),
+        (&|i| i.color_format = vk::Format::UNDEFINED, YORO_ERROR_FORMAT),
+        (&|i| i.color_format = vk::Format::from_raw(-5), YORO_ERROR_FORMAT),
+        (&|i| i.color_format = vk::Format::from_raw(i32::MAX), YORO_ERROR_FORMAT),
+        (&|i| i.color_format = vk::Format::BC7_SRGB_BLOCK, YORO_ERROR_FORMAT),
+        (&|i| i.depth_format = vk::Format::R8G8B8A8_UNORM, YORO_ERROR_FORMAT),
+        (&|i| i.max_source_width = 0, YORO_ERROR_TOO_LARGE),
+        (&|i| i.max_target_height = u32::MAX, YORO_ERROR_TOO_LARGE),
+    ];
+    for (i, (change, expected)) in table.iter().enumerate() {
+        let mut wrong = info;
+        change(&mut wrong);
+        assert_eq!(create(&wrong), Err(*expected), "row {i}");
+    }
+    // SAFETY: null is what is tested.
+    unsafe {
+        assert_eq!(yoro_vk_create(null(), &mut null_mut()), YORO_ERROR_NULL);
+        assert_eq!(yoro_vk_create(&info, null_mut()), YORO_ERROR_NULL);
+    }
+
+    let context = create(&info).unwrap();
+    let mut capabilities: YoroCapabilities = zeroed(|c: &mut YoroCapabilities| &mut c.struct_size);
+    // SAFETY: alive, and a whole structure.
+    assert_eq!(unsafe { yoro_capabilities(context, &mut capabilities) }, YORO_OK);
+    assert_eq!((capabilities.api, capabilities.buffer_bytes), (YORO_API_VULKAN, 4 * (16 + 10) * 16));
+    assert!(capabilities.device[0] != 0);
+
+    let color = gpu.image(vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::COLOR_ATTACHMENT, [256, 128]);
+    let depth = gpu.image(vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT, [256, 128]);
+    let (color, depth) = (plane(color, vk::Format::R8G8B8A8_UNORM), plane(depth, vk::Format::D32_SFLOAT));
+    let mut source: YoroVkSource = zeroed(|s: &mut YoroVkSource| &mut s.struct_size);
+    (source.width, source.height, source.color, source.depth) = (256, 128, color, depth);
+    let mut target: YoroVkTarget = zeroed(|t: &mut YoroVkTarget| &mut t.struct_size);
+    (target.width, target.height, target.color, target.depth) = (256, 128, color, depth);
+    let mut frame: YoroVkFrame = zeroed(|f: &mut YoroVkFrame| &mut f.struct_size);
+    let discarded = YoroVkState { layout: vk::ImageLayout::UNDEFINED, ..ATTACHMENT };
+    let sources: &Mistakes<YoroVkSource> = &[
+        (&|_| (), YORO_OK),
+        (&|s| s.struct_size = 1, YORO_ERROR_STRUCT_SIZE),
+        (&|s| s.width = 0, YORO_ERROR_TOO_LARGE),
+        (&|s| s.color.image = vk::Image::null(), YORO_ERROR_NULL),
+        (&|s| s.color.format = vk::Format::R8G8B8A8_UINT, YORO_ERROR_FORMAT),
+        (&|s| s.color.format = vk::Format::from_raw(1 << 30), YORO_ERROR_FORMAT),
+        (&|s| s.depth.format = vk::Format::R8G8B8A8_UNORM, YORO_ERROR_FORMAT),
+        (&|s| s.depth.before = discarded, YORO_ERROR_VALUE),
+        (&|s| s.color.after = discarded, YORO_ERROR_VALUE),
+    ];
+    for (i, (change, expected)) in sources.iter().enumerate() {
+        let mut wrong = source;
+        change(&mut wrong);
+        // SAFETY: live images, or what is refused.
+        let code = unsafe { yoro_vk_register_source(context, &wrong, &mut frame.source) };
+        assert_eq!(code, *expected, "row {i}");
+    }
+    // SAFETY: live handles, or what is refused.
+    unsafe {
+        assert_eq!(yoro_vk_register_source(context, &source, null_mut()), YORO_ERROR_NULL);
+        let other =
+            YoroVkTarget { color: YoroVkImage { format: vk::Format::R8G8B8A8_SRGB, ..color }, ..target };
+        assert_eq!(yoro_vk_register_target(context, &other, &mut frame.target), YORO_ERROR_FORMAT);
+        assert_eq!(yoro_vk_register_target(context, &target, &mut frame.target), YORO_OK);
+        assert_eq!(yoro_gl_prepare(context, null()), YORO_ERROR_API);
+    }
+
+    let warp = YoroWarp {
+        source_width: 200,
+        source_height: 120,
+        target_width: 160,
+        target_height: 120,
+        offset: -2.0,
+        scale: 12.0,
+        row_offset: 0,
+        target_eye: YORO_EYE_LEFT,
+        depth: YORO_DEPTH_REVERSED,
+        reserved: 0,
+    };
+    let record = |warp: &YoroWarp, frame: &YoroVkFrame| {
+        // SAFETY: live handles, and a command buffer that is being recorded and is never submitted.
+        unsafe { yoro_vk_record(context, gpu.commands, warp, frame) }
+    };
+    assert_eq!(record(&warp, &frame), YORO_OK);
+    assert_eq!(record(&warp, &YoroVkFrame { source: 99, ..frame }), YORO_ERROR_NOT_REGISTERED);
+    assert_eq!(record(&warp, &YoroVkFrame { target_x: 100, ..frame }), YORO_ERROR_TOO_LARGE);
+    assert_eq!(record(&warp, &YoroVkFrame { source_y: u32::MAX, ..frame }), YORO_ERROR_TOO_LARGE);
+    assert_eq!(record(&YoroWarp { target_width: 161, ..warp }, &frame), YORO_ERROR_TOO_LARGE);
+    assert_eq!(record(&YoroWarp { offset: f64::NAN, ..warp }, &frame), YORO_ERROR_VALUE);
+    assert_eq!(record(&warp, &YoroVkFrame { struct_size: 0, ..frame }), YORO_ERROR_STRUCT_SIZE);
+    // SAFETY: null is what is tested.
+    unsafe {
+        let no_commands = vk::CommandBuffer::null();
+        assert_eq!(yoro_vk_record(context, no_commands, &warp, &frame), YORO_ERROR_NULL);
+        assert_eq!(yoro_vk_record(context, gpu.commands, null(), &frame), YORO_ERROR_NULL);
+        assert_eq!(yoro_vk_record(context, gpu.commands, &warp, null()), YORO_ERROR_NULL);
+        assert_eq!(yoro_vk_record(null_mut(), gpu.commands, &warp, &frame), YORO_ERROR_NULL);
+    }
+
+    // Any numbers for sizes, displacements, and places.
+    let numbers = prop::collection::vec(prop_oneof![0u32..300, any::<u32>(), Just(f32::NAN.to_bits())], 18);
+    let config = Config { cases: 300, failure_persistence: None, ..Config::default() };
+    TestRunner::new(config)
+        .run(&numbers, |n| {
+            let displacement = |i: usize| f64::from_bits(u64::from(n[i]) << 32 | u64::from(n[i + 1]));
+            let any_warp = YoroWarp {
+                source_width: n[0],
+                source_height: n[1],
+                target_width: n[2],
+                target_height: n[3],
+                offset: displacement(4),
+                scale: displacement(6),
+                row_offset: n[8] as i32,
+                target_eye: n[9] % 3,
+                depth: n[10] % 3,
+                reserved: 0,
+            };
+            let any_frame = YoroVkFrame {
+                source: [frame.source, n[11]][n[12] as usize % 2],
+                source_x: n[13],
+                source_y: n[14],
+                target_x: n[15],
+                target_y: n[16],
+                ..frame
+            };
+            let allowed = [YORO_OK, YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_NOT_REGISTERED];
+            for code in [record(&any_warp, &frame), record(&warp, &any_frame), record(&any_warp, &any_frame)]
+            {
+                assert!(allowed.contains(&code), "{code}");
+            }
+            Ok(())
+        })
+        .unwrap();
+    // SAFETY: nothing is pending; alive until the last line.
+    unsafe {
+        assert_eq!(yoro_vk_release_source(context, frame.source), YORO_OK);
+        assert_eq!(yoro_vk_release_source(context, frame.source), YORO_OK);
+        assert_eq!(record(&warp, &frame), YORO_ERROR_NOT_REGISTERED);
+        assert_eq!(yoro_vk_release_target(context, frame.target), YORO_OK);
+        gpu.device.end_command_buffer(gpu.commands).unwrap();
+        gpu.device.device_wait_idle().unwrap();
+        assert_eq!(yoro_destroy(context), YORO_OK);
+    }
+}

@@ -1,0 +1,265 @@
+//! OpenGL ES on the window of an Android activity.
+
+use std::ffi::{CStr, c_void};
+use std::ptr;
+use std::rc::Rc;
+
+use glow::HasContext as _;
+use khronos_egl as egl;
+use ndk::native_window::NativeWindow;
+
+use yoro::gl::{Context, GlError};
+
+use crate::{Binding, Graphics};
+
+// khronos-egl names no library when it does not ask pkg-config.
+#[link(name = "EGL")]
+unsafe extern "C" {}
+
+type Egl = egl::Instance<egl::Static>;
+
+const OPENGL_ES3_BIT: egl::Int = 0x40;
+const CONTEXT_MINOR_VERSION: egl::Int = 0x30FB;
+/// Most configurations that are looked through for one of exactly 8 bits.
+const MAX_CONFIGS: usize = 64;
+
+/// Why there is nothing to draw on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WindowError {
+    /// EGL gives no context.
+    #[error("no OpenGL ES on this device: {0}; yoro needs OpenGL ES 3.0, 3.1 for all of its methods")]
+    Unavailable(String),
+    /// The window cannot be drawn on (any more); another one may come.
+    #[error("the window cannot be drawn on ({0}); the next one will be tried")]
+    Surface(String),
+    /// The driver has lost the context with all that was in it: open another one.
+    #[error("the driver has lost the OpenGL ES context: everything in it is made again")]
+    ContextLost,
+}
+
+/// A display with a current context and, from time to time, a window.
+///
+/// The context is current on the thread that opened it until this is dropped, on a surface of one pixel while there
+/// is no window: what lives in the context can be dropped at any time. All of it must be dropped before.
+pub struct Window {
+    egl: Egl,
+    display: egl::Display,
+    config: egl::Config,
+    context: egl::Context,
+    placeholder: egl::Surface,
+    shown: Option<Shown>,
+}
+
+/// The surface goes before the window that it draws on.
+struct Shown {
+    surface: egl::Surface,
+    window: NativeWindow,
+}
+
+impl Window {
+    /// Opens a context of the newest OpenGL ES that there is, even one that is too old for [`Window::gl`], and makes
+    /// it current on this thread.
+    ///
+    /// # Errors
+    /// [`WindowError::Unavailable`].
+    pub fn open() -> Result<Window, WindowError> {
+        let egl = Egl::new(egl::Static);
+        let unavailable = |what: &str| WindowError::Unavailable(what.into());
+        let failed = |what: &'static str| move |e| WindowError::Unavailable(format!("{what} failed ({e})"));
+        // SAFETY: the default display needs no native handle.
+        let display =
+            unsafe { egl.get_display(egl::DEFAULT_DISPLAY) }.ok_or_else(|| unavailable("no EGL display"))?;
+        egl.initialize(display).map_err(failed("eglInitialize"))?;
+        egl.bind_api(egl::OPENGL_ES_API).map_err(failed("eglBindAPI"))?;
+        let config = choose(&egl, display, OPENGL_ES3_BIT)
+            .or_else(|| choose(&egl, display, egl::OPENGL_ES2_BIT))
+            .ok_or_else(|| unavailable("EGL has no configuration of 8 bits per channel for windows"))?;
+        // EGL 1.4 knows no minor versions.
+        let versions: [&[egl::Int]; 3] = [
+            &[egl::CONTEXT_CLIENT_VERSION, 3, CONTEXT_MINOR_VERSION, 1, egl::NONE],
+            &[egl::CONTEXT_CLIENT_VERSION, 3, egl::NONE],
+            &[egl::CONTEXT_CLIENT_VERSION, 2, egl::NONE],
+        ];
+        let context = versions
+            .into_iter()
+            .find_map(|version| egl.create_context(display, config, None, version).ok())
+            .ok_or_else(|| unavailable("EGL makes no context of OpenGL ES 2 or 3"))?;
+        let size = [egl::WIDTH, 1, egl::HEIGHT, 1, egl::NONE];
+        let placeholder = match egl.create_pbuffer_surface(display, config, &size) {
+            Ok(surface) => surface,
+            Err(e) => {
+                let _ = egl.destroy_context(display, context);
+                return Err(failed("eglCreatePbufferSurface")(e));
+            }
+        };
+        let window = Window { egl, display, config, context, placeholder, shown: None };
+        window.make_current(placeholder).map_err(failed("eglMakeCurrent"))?;
+        Ok(window)
+    }
+
+    /// The GL context. Call it once; drop everything that holds it before this.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] when it is older than OpenGL ES 3.0.
+    pub fn gl(&self) -> Result<Rc<Context>, GlError> {
+        let load = |name: &CStr| name.to_str().map_or(ptr::null(), |name| self.entry_point(name));
+        // SAFETY: the entry points are those of the context, which is current.
+        unsafe { Context::with_loader(self.functions(), load) }
+    }
+
+    fn functions(&self) -> glow::Context {
+        // SAFETY: the context is current, and entry points live as long as the library itself.
+        unsafe { glow::Context::from_loader_function(|name| self.entry_point(name)) }
+    }
+
+    fn entry_point(&self, name: &str) -> *const c_void {
+        self.egl.get_proc_address(name).map_or(ptr::null(), |p| p as *const c_void)
+    }
+
+    /// Draws on a window from now on. Its colours are stored as they are written: what is drawn is
+    /// display-referred sRGB, as everywhere here, and no conversion is wanted.
+    ///
+    /// # Errors
+    /// [`WindowError::Surface`] and [`WindowError::ContextLost`].
+    pub fn attach(&mut self, window: NativeWindow) -> Result<(), WindowError> {
+        self.detach();
+        // SAFETY: the handle is a live ANativeWindow, which `Shown` holds for as long as the surface exists.
+        let surface = unsafe {
+            self.egl.create_window_surface(self.display, self.config, window.ptr().as_ptr().cast(), None)
+        }
+        .map_err(|e| self.error("eglCreateWindowSurface", e))?;
+        self.shown = Some(Shown { surface, window });
+        if let Err(e) = self.make_current(surface) {
+            self.detach();
+            return Err(self.error("eglMakeCurrent", e));
+        }
+        // Frames wait for the display, even where another interval is the driver's default.
+        let _ = self.egl.swap_interval(self.display, 1);
+        Ok(())
+    }
+
+    /// Lets the window go; the context stays current.
+    pub fn detach(&mut self) {
+        if let Some(Shown { surface, window }) = self.shown.take() {
+            // A lost context cannot be made current; it is replaced at the next attempt to draw.
+            if self.make_current(self.placeholder).is_err() {
+                let _ = self.egl.make_current(self.display, None, None, None);
+            }
+            let _ = self.egl.destroy_surface(self.display, surface);
+            drop(window);
+        }
+    }
+
+    /// Whether there is a window to draw on.
+    pub fn is_attached(&self) -> bool {
+        self.shown.is_some()
+    }
+
+    /// The window's size in pixels, of the frame that is drawn now.
+    pub fn size(&self) -> Option<[u32; 2]> {
+        let shown = self.shown.as_ref()?;
+        let side = |attribute| {
+            let length = self.egl.query_surface(self.display, shown.surface, attribute).ok()?;
+            u32::try_from(length).ok().filter(|n| *n > 0)
+        };
+        Some([side(egl::WIDTH)?, side(egl::HEIGHT)?])
+    }
+
+    /// Shows what was drawn. May wait until the display has room for another frame.
+    ///
+    /// # Errors
+    /// [`WindowError::Surface`] and [`WindowError::ContextLost`].
+    pub fn present(&self) -> Result<(), WindowError> {
+        let Some(shown) = &self.shown else { return Ok(()) };
+        self.egl.swap_buffers(self.display, shown.surface).map_err(|e| self.error("eglSwapBuffers", e))
+    }
+
+    /// Shows one colour (RGB, display-referred), with whatever OpenGL ES there is.
+    ///
+    /// # Errors
+    /// As [`Window::present`].
+    pub fn show_color(&self, [r, g, b]: [f32; 3]) -> Result<(), WindowError> {
+        let gl = self.functions();
+        // SAFETY: the context is current; these calls exist in every version.
+        unsafe {
+            gl.clear_color(r, g, b, 1.0);
+            gl.clear(glow::COLOR_BUFFER_BIT);
+        }
+        self.present()
+    }
+
+    fn make_current(&self, surface: egl::Surface) -> Result<(), egl::Error> {
+        self.egl.make_current(self.display, Some(surface), Some(surface), Some(self.context))
+    }
+
+    fn error(&self, what: &str, error: egl::Error) -> WindowError {
+        match error {
+            egl::Error::ContextLost => WindowError::ContextLost,
+            error => WindowError::Surface(format!("{what} failed: {error}")),
+        }
+    }
+}
+
+// SAFETY: the context lives as long as the window object, on the thread that opened it.
+unsafe impl Graphics for Window {
+    fn binding(&self) -> Binding {
+        Binding {
+            display: self.display.as_ptr(),
+            config: self.config.as_ptr(),
+            context: self.context.as_ptr(),
+            get_proc_address: ptr::null(),
+        }
+    }
+
+    fn make_current(&self) -> Result<(), String> {
+        if self.egl.get_current_context() == Some(self.context) {
+            return Ok(());
+        }
+        let surface = self.shown.as_ref().map_or(self.placeholder, |shown| shown.surface);
+        Window::make_current(self, surface).map_err(|e| format!("eglMakeCurrent failed ({e})"))
+    }
+}
+
+impl Drop for Window {
+    fn drop(&mut self) {
+        self.detach();
+        // Nothing can be done about an error here. The display stays initialised: it is the process's, and another
+        // activity may have opened it already.
+        let _ = self.egl.make_current(self.display, None, None, None);
+        let _ = self.egl.destroy_surface(self.display, self.placeholder);
+        let _ = self.egl.destroy_context(self.display, self.context);
+        let _ = self.egl.release_thread();
+    }
+}
+
+/// A configuration of exactly 8 bits per channel: EGL lists those with more bits first, which cost more bandwidth
+/// and show no more of an 8-bit picture. Without alpha, if there is one: nothing shines through the window.
+fn choose(egl: &Egl, display: egl::Display, renderable: egl::Int) -> Option<egl::Config> {
+    let attributes = [
+        egl::SURFACE_TYPE,
+        egl::WINDOW_BIT | egl::PBUFFER_BIT,
+        egl::RENDERABLE_TYPE,
+        renderable,
+        egl::RED_SIZE,
+        8,
+        egl::GREEN_SIZE,
+        8,
+        egl::BLUE_SIZE,
+        8,
+        egl::NONE,
+    ];
+    let mut configs = Vec::with_capacity(MAX_CONFIGS);
+    egl.choose_config(display, &attributes, &mut configs).ok()?;
+    let bits = |config, attribute| egl.get_config_attrib(display, config, attribute).unwrap_or(0);
+    let exact = |config: &&egl::Config| {
+        [egl::RED_SIZE, egl::GREEN_SIZE, egl::BLUE_SIZE].into_iter().all(|c| bits(**config, c) == 8)
+    };
+    let spare = |config: &&egl::Config| {
+        [egl::ALPHA_SIZE, egl::DEPTH_SIZE, egl::STENCIL_SIZE, egl::SAMPLES]
+            .into_iter()
+            .map(|a| bits(**config, a))
+            .sum::<egl::Int>()
+    };
+    configs.iter().filter(exact).min_by_key(spare).copied()
+}

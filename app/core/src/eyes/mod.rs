@@ -1,0 +1,66 @@
+//! Which eye is where: poses, frusta, depth ranges, and the law that moves a pixel from one eye to the other.
+//!
+//! Units are metres and radians; pixels have their centre at +0.5. The world is right-handed with Y up,
+//! and an eye looks along its own -Z with X to the right.
+
+mod depth;
+mod guard_band;
+mod pair;
+mod view;
+mod warp;
+
+pub use depth::{DepthConvention, DepthRange};
+pub use guard_band::{GuardBand, ParseGuardBandError};
+pub use pair::{EyeOptions, EyePair, EyesError, SynthesisViews};
+pub use view::{Frustum, Pose, View};
+pub use warp::{DisparityLaw, Warp, full_overlap_distance, minimum_object_distance};
+
+/// The largest interpupillary distance that is accepted, in metres.
+pub const MAX_IPD: f32 = 0.08;
+/// The distance between the eyes in metres where nobody says otherwise: the paper's.
+pub const DEFAULT_IPD: f32 = 0.063;
+
+/// One of the two eyes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Eye {
+    /// The left eye.
+    Left,
+    /// The right eye.
+    Right,
+}
+
+impl Eye {
+    /// Both eyes, left first.
+    pub const BOTH: [Eye; 2] = [Eye::Left, Eye::Right];
+
+    /// The other eye.
+    pub fn other(self) -> Eye {
+        match self {
+            Eye::Left => Eye::Right,
+            Eye::Right => Eye::Left,
+        }
+    }
+
+    /// 0 for left, 1 for right: the layer of the eye in every two-element array.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// -1 for left, +1 for right: the side of the head along its X axis.
+    pub fn side(self) -> f32 {
+        match self {
+            Eye::Left => -1.0,
+            Eye::Right => 1.0,
+        }
+    }
+
+    /// `left` or `right`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Eye::Left => "left",
+            Eye::Right => "right",
+        }
+    }
+}

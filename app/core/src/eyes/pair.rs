@@ -1,0 +1,582 @@
+//! The two eyes of a frame, and what it takes to synthesize one from the other.
+
+use glam::{Quat, Vec3};
+
+use super::{DEFAULT_IPD, DepthRange, DisparityLaw, Eye, Frustum, GuardBand, MAX_IPD, Pose, View, Warp};
+
+/// Images of more pixels than this on a side are refused: no GL driver renders them.
+const MAX_SIDE: f64 = 65536.0;
+
+/// Why a pair of eyes cannot be synthesized from one.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EyesError {
+    /// The eyes are rotated against each other.
+    #[error(
+        "the eyes are canted by {degrees:.2} degrees against each other; synthesis moves pixels along rows only: render both eyes, or give both the same orientation"
+    )]
+    Canted {
+        /// Angle between the two viewing directions.
+        degrees: f32,
+    },
+    /// The eyes are displaced along more than their X axis.
+    #[error(
+        "the eyes are displaced by {off_axis:.4} m off their common X axis; synthesis moves pixels along rows only: place both eyes on one horizontal line"
+    )]
+    OffAxis {
+        /// Displacement in metres perpendicular to the X axis.
+        off_axis: f32,
+    },
+    /// The left eye is right of the right eye, or the distance is beyond [`MAX_IPD`].
+    #[error(
+        "the interpupillary distance is {ipd:.4} m; it must be between 0 and {max} m, left eye on the left",
+        max = MAX_IPD
+    )]
+    Ipd {
+        /// The distance found, in metres.
+        ipd: f32,
+    },
+    /// The two frusta have different tangents per pixel.
+    #[error(
+        "the eyes have different pixel densities ({left:.6} and {right:.6} tangents per pixel on one axis); give both the same size and frusta of the same width and height"
+    )]
+    Density {
+        /// Tangent per pixel of the left eye.
+        left: f32,
+        /// Tangent per pixel of the right eye.
+        right: f32,
+    },
+    /// The rows of one eye's image lie between those of the other's.
+    #[error(
+        "the rows of the eyes' images are {rows:.2} rows apart, and a row of one must lie on a row of the other; give both frusta the same bottom and top"
+    )]
+    Rows {
+        /// Rows from the left eye's lower edge up to the right eye's.
+        rows: f32,
+    },
+    /// A pose or a frustum with a value that is no finite number, or an orientation that is no rotation.
+    #[error(
+        "an eye has a pose or a frustum that is none: need finite numbers and an orientation of length 1"
+    )]
+    Invalid,
+    /// A frustum or an image without area, or depth planes out of order.
+    #[error(
+        "the frustum is empty or the depth planes are out of order: need left < right, bottom < top and 0 < near < far"
+    )]
+    Empty,
+    /// A guard band outside [`GuardBand::MAX_PIXELS`] or [`GuardBand::DISTANCES`].
+    #[error(
+        "a guard band of {0} is out of range; give none, at most {max}px, or a distance from {near} to {far} m",
+        max = GuardBand::MAX_PIXELS, near = GuardBand::DISTANCES.start(), far = GuardBand::DISTANCES.end()
+    )]
+    GuardBand(GuardBand),
+    /// The union of both frusta and the guard band has more pixels on a side than any driver renders.
+    #[error(
+        "the view to render would have {width:.0}x{height:.0} pixels; give the eyes fewer pixels, or frusta that overlap"
+    )]
+    TooLarge {
+        /// Pixels.
+        width: f64,
+        /// Pixels.
+        height: f64,
+    },
+}
+
+/// Two parallel eyes of equal size, as the paper sets them up: an [`EyePair`] for any pose of the head.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyeOptions {
+    /// Size of each eye's image in pixels.
+    pub size: [u32; 2],
+    /// Vertical field of view in radians.
+    pub fov_y: f32,
+    /// Distance between the eyes in metres, 0 to [`MAX_IPD`].
+    pub ipd: f32,
+    /// The eye that is rendered.
+    pub dominant: Eye,
+    /// Depth planes and encoding.
+    pub depth: DepthRange,
+    /// Outer and inner half-angle in radians, for asymmetric frusta instead of the width that follows from `fov_y`.
+    pub outer_inner: Option<[f32; 2]>,
+}
+
+impl Default for EyeOptions {
+    /// The paper's: 60 degrees, [`DEFAULT_IPD`], the right eye, [`DepthRange::PAPER`].
+    fn default() -> EyeOptions {
+        EyeOptions {
+            size: [1024; 2],
+            fov_y: 60f32.to_radians(),
+            ipd: DEFAULT_IPD,
+            dominant: Eye::Right,
+            depth: DepthRange::PAPER,
+            outer_inner: None,
+        }
+    }
+}
+
+impl EyeOptions {
+    /// The two eyes around a head pose.
+    pub fn pair(&self, head: Pose) -> EyePair {
+        let symmetric = Frustum::symmetric(self.fov_y, self.size[0] as f32 / self.size[1] as f32);
+        let mut pair = EyePair::parallel(head, symmetric, self.ipd, self.depth, self.size, self.dominant);
+        if let Some([outer, inner]) = self.outer_inner.map(|angles| angles.map(f32::tan)) {
+            pair.frusta[0] = Frustum { left: -outer, right: inner, ..symmetric };
+            pair.frusta[1] = Frustum { left: -inner, right: outer, ..symmetric };
+        }
+        pair
+    }
+}
+
+/// The two eyes of one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct EyePair {
+    /// Pose of each eye in the world, indexed by [`Eye::index`].
+    pub poses: [Pose; 2],
+    /// Frustum of each eye.
+    pub frusta: [Frustum; 2],
+    /// Depth planes and encoding, the same for both.
+    pub depth: DepthRange,
+    /// Size in pixels of each eye's image.
+    pub size: [u32; 2],
+    /// The eye that is rendered.
+    pub dominant: Eye,
+}
+
+impl EyePair {
+    /// Parallel eyes around a head pose, with one frustum for both.
+    pub fn parallel(
+        head: Pose,
+        frustum: Frustum,
+        ipd: f32,
+        depth: DepthRange,
+        size: [u32; 2],
+        dominant: Eye,
+    ) -> EyePair {
+        let poses = Eye::BOTH.map(|eye| head.translated_local(Vec3::X * (eye.side() * ipd * 0.5)));
+        EyePair { poses, frusta: [frustum; 2], depth, size, dominant }
+    }
+
+    /// The image of one eye.
+    pub fn view(&self, eye: Eye) -> View {
+        View {
+            pose: self.poses[eye.index()],
+            frustum: self.frusta[eye.index()],
+            depth: self.depth,
+            size: self.size,
+        }
+    }
+
+    /// The point halfway between the eyes.
+    pub fn middle(&self) -> Vec3 {
+        (self.poses[0].position + self.poses[1].position) * 0.5
+    }
+
+    /// Distance between the eyes in metres along their X axis.
+    pub fn ipd(&self) -> f32 {
+        (self.poses[1].position - self.poses[0].position).dot(self.poses[0].right())
+    }
+
+    /// The same eyes with frusta of one width and one height, over the same rows: each grows around its own as far
+    /// as it takes.
+    pub fn evened(&self) -> EyePair {
+        let [l, r] = self.frusta;
+        let width = l.width().max(r.width());
+        let (bottom, top) = (l.bottom.min(r.bottom), l.top.max(r.top));
+        let grown = |f: Frustum| {
+            let more = (width - f.width()) / 2.0;
+            Frustum { left: f.left - more, right: f.right + more, bottom, top }
+        };
+        EyePair { frusta: self.frusta.map(grown), ..*self }
+    }
+
+    /// Eyes at the same places that look in one direction, at right angles to the line between them, with frusta
+    /// that contain those of these eyes. An image that is rendered so holds what a canted eye sees, turned about the
+    /// eye's own centre: whoever shows it can turn it back, exactly. Not for eyes that see further than 80 degrees
+    /// from that direction.
+    pub fn parallelized(&self) -> Option<EyePair> {
+        let between = self.poses[1].position - self.poses[0].position;
+        let x = between.try_normalize().unwrap_or(self.poses[0].right());
+        let ahead = self.poses[0].forward() + self.poses[1].forward();
+        let z = -(ahead - x * ahead.dot(x)).try_normalize()?;
+        let orientation = Quat::from_mat3(&glam::Mat3::from_cols(x, z.cross(x), z));
+        let mut eyes = *self;
+        for (pose, frustum) in eyes.poses.iter_mut().zip(&mut eyes.frusta) {
+            let turn = orientation.inverse() * pose.orientation;
+            let corners = [
+                (frustum.left, frustum.bottom),
+                (frustum.right, frustum.bottom),
+                (frustum.left, frustum.top),
+                (frustum.right, frustum.top),
+            ];
+            let mut seen = Frustum { left: f32::MAX, right: f32::MIN, bottom: f32::MAX, top: f32::MIN };
+            for (x, y) in corners {
+                let direction = (turn * Vec3::new(x, y, -1.0)).normalize();
+                if -direction.z < 80f32.to_radians().cos() {
+                    return None;
+                }
+                let tangent = direction.truncate() / -direction.z;
+                seen.left = seen.left.min(tangent.x);
+                seen.right = seen.right.max(tangent.x);
+                seen.bottom = seen.bottom.min(tangent.y);
+                seen.top = seen.top.max(tangent.y);
+            }
+            (pose.orientation, *frustum) = (orientation, seen);
+        }
+        Some(eyes.evened())
+    }
+
+    /// Focal length in pixels along X: pixels per unit tangent.
+    pub fn focal_length_pixels(&self) -> f32 {
+        self.size[0] as f32 / self.frusta[self.dominant.index()].width()
+    }
+
+    /// What to render, and how its pixels move to the other eye.
+    ///
+    /// The source view is the dominant eye's frustum, widened (by whole pixels, so that the dominant eye's
+    /// own image is a crop of it) to the union of both frusta and by the guard band.
+    ///
+    /// # Errors
+    /// [`EyesError`] for eyes whose pixels do not move along rows only.
+    pub fn synthesis(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
+        let target_eye = self.dominant.other();
+        let (s, t) = (self.view(self.dominant), self.view(target_eye));
+        let range = &self.depth;
+        if !self.poses.iter().all(Pose::is_valid) || !self.frusta.iter().all(Frustum::is_finite) {
+            return Err(EyesError::Invalid);
+        }
+        // In this form NaN fails, too.
+        let ordered = |f: &Frustum| f.width() > 0.0 && f.height() > 0.0;
+        let planes = range.near > 0.0 && range.near < range.far;
+        if !self.frusta.iter().all(ordered) || !planes || self.size.contains(&0) {
+            return Err(EyesError::Empty);
+        }
+        if !guard.is_valid() {
+            return Err(EyesError::GuardBand(guard));
+        }
+        let angle = s.pose.orientation.angle_between(t.pose.orientation);
+        // A tenth of a pixel at 2000 pixels and 90 degrees is 1e-4 rad; f32 acos alone is good to 5e-4.
+        let direction =
+            (s.pose.forward() - t.pose.forward()).length().max((s.pose.right() - t.pose.right()).length());
+        if direction > 1e-4 {
+            return Err(EyesError::Canted { degrees: angle.to_degrees() });
+        }
+        let ipd = self.ipd();
+        let between = self.poses[1].position - self.poses[0].position;
+        let off_axis = (between - s.pose.right() * ipd).length();
+        if off_axis > 1e-4 {
+            return Err(EyesError::OffAxis { off_axis });
+        }
+        if !(-1e-6..=MAX_IPD + 1e-6).contains(&ipd) {
+            return Err(EyesError::Ipd { ipd });
+        }
+        let density = |f: &Frustum| [f.width() / self.size[0] as f32, f.height() / self.size[1] as f32];
+        let (ds, dt) = (density(&s.frustum), density(&t.frustum));
+        for axis in 0..2 {
+            // The error adds up over the image: allow a twentieth of a pixel in all.
+            if ((ds[axis] / dt[axis] - 1.0).abs() * self.size[axis] as f32) > 0.05 {
+                return Err(EyesError::Density {
+                    left: density(&self.frusta[0])[axis],
+                    right: density(&self.frusta[1])[axis],
+                });
+            }
+        }
+        let row = ((s.frustum.bottom - t.frustum.bottom) / ds[1]) as f64;
+        if (row - row.round()).abs() > 0.05 {
+            return Err(EyesError::Rows { rows: (self.frusta[1].bottom - self.frusta[0].bottom) / ds[1] });
+        }
+        let f_px = 1.0 / ds[0];
+        let guard = guard.pixels(f_px, ipd.max(0.0));
+        // In the left eye's image surfaces lie further right than in the right eye's, so its left border shows
+        // what the right eye has beyond its own left border.
+        let (guard_left, guard_right) = match target_eye {
+            Eye::Left => (guard, 0),
+            Eye::Right => (0, guard),
+        };
+        let pixels = |tangents: f32, axis: usize| (tangents / ds[axis] - 1e-3).ceil().max(0.0) as u32;
+        let left = pixels(s.frustum.left - t.frustum.left, 0);
+        let right = pixels(t.frustum.right - s.frustum.right, 0);
+        let bottom = pixels(s.frustum.bottom - t.frustum.bottom, 1);
+        let top = pixels(t.frustum.top - s.frustum.top, 1);
+        let sum = |parts: &[u32]| parts.iter().map(|n| f64::from(*n)).sum::<f64>();
+        let (width, height) = (sum(&[self.size[0], left, right, guard]), sum(&[self.size[1], bottom, top]));
+        if width.max(height) > MAX_SIDE {
+            return Err(EyesError::TooLarge { width, height });
+        }
+        let (left, right) = (left + guard_left, right + guard_right);
+        let frustum = Frustum {
+            left: s.frustum.left - left as f32 * ds[0],
+            right: s.frustum.right + right as f32 * ds[0],
+            bottom: s.frustum.bottom - bottom as f32 * ds[1],
+            top: s.frustum.top + top as f32 * ds[1],
+        };
+        let source = View { frustum, size: [self.size[0] + left + right, self.size[1] + bottom + top], ..s };
+        // x_t = (tan_t - left_t) f, tan_t = tan_s + side * IPD / z, x_s = (tan_s - left_s) f.
+        let (c, m) = range.inverse_distance_law();
+        let shift = (-target_eye.side() * ipd * f_px) as f64;
+        let law = DisparityLaw {
+            offset: (frustum.left as f64 - t.frustum.left as f64) * f_px as f64 + shift * c,
+            scale: shift * m,
+        };
+        let row_offset = ((frustum.bottom - t.frustum.bottom) / ds[1]).round() as i32;
+        let warp = Warp {
+            source_size: source.size,
+            target_size: self.size,
+            law,
+            row_offset,
+            target_eye,
+            convention: range.convention,
+        };
+        Ok(SynthesisViews { source, target: t, dominant_crop: [left, bottom], warp })
+    }
+}
+
+/// Result of [`EyePair::synthesis`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SynthesisViews {
+    /// The view to render: the dominant eye, widened.
+    pub source: View,
+    /// The view that is synthesized.
+    pub target: View,
+    /// Lower left corner, in pixels of the source image, of the dominant eye's own image.
+    pub dominant_crop: [u32; 2],
+    /// How the source's pixels move.
+    pub warp: Warp,
+}
+
+impl SynthesisViews {
+    /// Upper left corner, in pixels of a source image whose row 0 is at the top, of the dominant eye's own image.
+    pub fn dominant_crop_from_top(&self) -> [u32; 2] {
+        let [left, bottom] = self.dominant_crop;
+        [left, self.source.size[1] - self.target.size[1] - bottom]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::DepthConvention;
+    use super::*;
+
+    fn pair(dominant: Eye) -> EyePair {
+        let head = Pose::look_at(Vec3::new(0.3, 1.6, -2.0), Vec3::new(-1.0, 1.2, -9.0));
+        EyePair::parallel(head, Frustum::symmetric(1.2, 1.0), 0.063, DepthRange::PAPER, [512, 512], dominant)
+    }
+
+    /// Projects a world point into a view, in pixels and stored depth.
+    fn project(view: &View, p: Vec3) -> [f64; 3] {
+        let clip = (view.view_projection() * p.extend(1.0)).as_dvec4();
+        let ndc = clip / clip.w;
+        [
+            (ndc.x * 0.5 + 0.5) * view.size[0] as f64,
+            (ndc.y * 0.5 + 0.5) * view.size[1] as f64,
+            ndc.z * 0.5 + 0.5,
+        ]
+    }
+
+    fn law_agrees_with_matrices(pair: &EyePair, guard: GuardBand) {
+        let views = pair.synthesis(guard).unwrap();
+        for (i, z) in [0.5f32, 0.9, 2.0, 7.0, 30.0, 500.0].into_iter().enumerate() {
+            let local = Vec3::new((i as f32 * 0.13 - 0.3) * z, (0.2 - i as f32 * 0.09) * z, -z);
+            let p = pair.poses[0].position + pair.poses[0].orientation * local;
+            let (s, t) = (project(&views.source, p), project(&views.target, p));
+            let x = s[0] + views.warp.law.displacement(s[2]);
+            assert!((x - t[0]).abs() < 0.02, "z {z}: {x} against {}", t[0]);
+            assert!((s[1] + views.warp.row_offset as f64 - t[1]).abs() < 0.02);
+            assert!((s[2] - t[2]).abs() < 1e-5, "depth is the same in both eyes");
+        }
+    }
+
+    #[test]
+    fn the_law_is_what_the_matrices_do() {
+        for dominant in Eye::BOTH {
+            for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+                let mut p = pair(dominant);
+                p.depth.convention = convention;
+                law_agrees_with_matrices(&p, GuardBand::None);
+                law_agrees_with_matrices(&p, GuardBand::Distance(0.5));
+                p.frusta[0] = Frustum::from_fov(-0.9, 0.7, 0.75, -0.8);
+                p.frusta[1] = Frustum::from_fov(-0.7, 0.9, 0.75, -0.8);
+                law_agrees_with_matrices(&p, GuardBand::Distance(0.5));
+            }
+        }
+    }
+
+    #[test]
+    fn the_dominant_image_is_a_crop_and_the_union_covers_both() {
+        let mut p = pair(Eye::Right);
+        p.frusta[0] = Frustum::from_fov(-0.9, 0.7, 0.75, -0.8);
+        p.frusta[1] = Frustum::from_fov(-0.7, 0.9, 0.75, -0.8);
+        let v = p.synthesis(GuardBand::Pixels(10)).unwrap();
+        let d = v.source.frustum.width() / v.source.size[0] as f32;
+        assert!((v.source.frustum.left + v.dominant_crop[0] as f32 * d - p.frusta[1].left).abs() < 1e-5);
+        assert!(v.source.frustum.left + 10.0 * d <= p.frusta[0].left + 1e-5);
+        assert!(v.source.frustum.right >= p.frusta[0].right - 1e-5);
+    }
+
+    #[test]
+    fn the_crop_is_found_from_the_top_as_well() {
+        let mut p = pair(Eye::Right);
+        let rows = p.frusta[1].height() / p.size[1] as f32;
+        p.frusta[0].top += 3.0 * rows;
+        p.frusta[0].bottom += 3.0 * rows;
+        let v = p.synthesis(GuardBand::None).unwrap();
+        assert_eq!((v.source.size[1], v.dominant_crop[1], v.dominant_crop_from_top()[1]), (515, 0, 3));
+    }
+
+    #[test]
+    fn the_guard_band_reaches_its_distance() {
+        for dominant in Eye::BOTH {
+            let p = pair(dominant);
+            let v = p.synthesis(GuardBand::Distance(0.5)).unwrap();
+            let depth = p.depth.depth(0.5) as f64;
+            // The outer column of the target must have its source inside the image.
+            let x = match dominant.other() {
+                Eye::Left => 0.0,
+                Eye::Right => 511.0,
+            };
+            let source = x - v.warp.law.displacement(depth);
+            assert!(source >= -1e-3 && source <= v.source.size[0] as f64 - 1.0 + 1e-3, "{source}");
+        }
+    }
+
+    #[test]
+    fn unsuitable_pairs_are_refused() {
+        let mut p = pair(Eye::Left);
+        p.poses[0].orientation *= Quat::from_rotation_y(0.087);
+        let e = p.synthesis(GuardBand::None).unwrap_err();
+        assert!(matches!(e, EyesError::Canted { degrees } if (degrees - 5.0).abs() < 0.1), "{e}");
+        let mut p = pair(Eye::Left);
+        p.poses[0].position.y += 0.01;
+        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::OffAxis { .. })));
+        let mut p = pair(Eye::Left);
+        p.poses.swap(0, 1);
+        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Ipd { .. })));
+        let mut p = pair(Eye::Left);
+        p.frusta[0] = Frustum::symmetric(1.0, 1.0);
+        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Density { .. })));
+        p.depth.near = 0.0;
+        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Empty)));
+    }
+
+    #[test]
+    fn rows_that_lie_between_rows_are_told_from_other_densities() {
+        let mut p = pair(Eye::Right);
+        let own = p.frusta[0];
+        let row = own.height() / 512.0;
+        let shifted =
+            |rows: f32| Frustum { bottom: own.bottom + rows * row, top: own.top + rows * row, ..own };
+        p.frusta[1] = shifted(3.0);
+        assert_eq!(p.synthesis(GuardBand::None).unwrap().warp.row_offset, 0);
+        p.frusta[1] = shifted(2.4);
+        let error = p.synthesis(GuardBand::None).unwrap_err();
+        assert!(matches!(error, EyesError::Rows { rows } if (rows - 2.4).abs() < 0.01), "{error}");
+        p.evened().synthesis(GuardBand::None).unwrap();
+    }
+
+    /// What [`GuardBand`]'s parser refuses must not come in past it.
+    #[test]
+    fn guard_bands_out_of_range_are_refused() {
+        let bands = [0.0, 1e-30, -1.0, 0.04, 1001.0, f32::NAN, f32::INFINITY].map(GuardBand::Distance);
+        for band in bands.into_iter().chain([GuardBand::Pixels(1025), GuardBand::Pixels(u32::MAX)]) {
+            let error = pair(Eye::Left).synthesis(band).unwrap_err();
+            assert!(matches!(error, EyesError::GuardBand(_)), "{band:?}: {error}");
+        }
+        for band in [GuardBand::Distance(0.05), GuardBand::Distance(1000.0), GuardBand::Pixels(1024)] {
+            pair(Eye::Left).synthesis(band).unwrap();
+        }
+    }
+
+    #[test]
+    fn values_that_are_no_numbers_are_refused() {
+        type Spoil = fn(&mut EyePair);
+        let spoilt: [(Spoil, EyesError); 8] = [
+            (|p| p.depth.near = f32::NAN, EyesError::Empty),
+            (|p| p.depth.far = f32::NAN, EyesError::Empty),
+            (|p| p.depth.near = f32::INFINITY, EyesError::Empty),
+            (|p| p.frusta[0].left = f32::NAN, EyesError::Invalid),
+            (|p| p.frusta[1].top = f32::INFINITY, EyesError::Invalid),
+            (|p| p.poses[0].position.x = f32::NAN, EyesError::Invalid),
+            (|p| p.poses[1].orientation.w = f32::NAN, EyesError::Invalid),
+            (|p| p.poses[1].orientation = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), EyesError::Invalid),
+        ];
+        for (i, (spoil, error)) in spoilt.into_iter().enumerate() {
+            let mut p = pair(Eye::Right);
+            spoil(&mut p);
+            assert_eq!(p.synthesis(GuardBand::None), Err(error), "case {i}");
+        }
+    }
+
+    /// Frusta side by side, one a million pixels from the other, and an eye of as many pixels as the type holds.
+    #[test]
+    fn views_that_no_driver_renders_are_refused() {
+        let mut apart = pair(Eye::Right);
+        apart.frusta = [0.0, -2000.0].map(|left| Frustum { left, right: left + 1.0, bottom: -0.5, top: 0.5 });
+        let huge = EyePair { size: [u32::MAX; 2], ..pair(Eye::Right) };
+        for eyes in [apart, huge] {
+            let error = eyes.synthesis(GuardBand::Distance(0.05)).unwrap_err();
+            assert!(matches!(error, EyesError::TooLarge { .. }), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_largest_ipd_is_told_by_its_constant() {
+        let head = Pose::IDENTITY;
+        let wide = EyePair::parallel(
+            head,
+            Frustum::symmetric(1.0, 1.0),
+            0.09,
+            DepthRange::PAPER,
+            [64; 2],
+            Eye::Left,
+        );
+        let text = wide.synthesis(GuardBand::None).unwrap_err().to_string();
+        assert!(text.contains(&format!("between 0 and {MAX_IPD} m")), "{text}");
+    }
+
+    #[test]
+    fn evened_eyes_contain_the_eyes_and_can_be_synthesized() {
+        let mut eyes = pair(Eye::Right);
+        eyes.frusta = [Frustum::from_fov(-0.9, 0.7, 0.75, -0.8), Frustum::from_fov(-0.5, 0.8, 0.7, -0.81)];
+        assert!(matches!(eyes.synthesis(GuardBand::None), Err(EyesError::Density { .. })));
+        let even = eyes.evened();
+        even.synthesis(GuardBand::None).unwrap();
+        for (grown, own) in even.frusta.iter().zip(&eyes.frusta) {
+            assert!(grown.left <= own.left + 1e-6 && grown.right >= own.right - 1e-6, "{grown:?}");
+            assert!(grown.bottom <= own.bottom && grown.top >= own.top, "{grown:?}");
+        }
+    }
+
+    #[test]
+    fn canted_eyes_see_nothing_beside_their_parallel_ones() {
+        let mut eyes = pair(Eye::Right);
+        eyes.frusta = [Frustum::from_fov(-0.8, 0.7, 0.75, -0.75), Frustum::from_fov(-0.7, 0.8, 0.75, -0.75)];
+        // Outwards by 5 degrees each, and the head askew.
+        let head = Quat::from_euler(glam::EulerRot::YXZ, 0.4, -0.2, 0.1);
+        for (pose, side) in eyes.poses.iter_mut().zip([1.0, -1.0]) {
+            pose.position = head * Vec3::new(-side * 0.032, 0.0, 0.0);
+            pose.orientation = head * Quat::from_rotation_y(side * 5f32.to_radians());
+        }
+        assert!(matches!(eyes.synthesis(GuardBand::None), Err(EyesError::Canted { .. })));
+        let parallel = eyes.parallelized().unwrap();
+        parallel.synthesis(GuardBand::None).unwrap();
+        assert!(
+            (parallel.ipd() - 0.064).abs() < 1e-6 && parallel.poses[0].position == eyes.poses[0].position
+        );
+        for eye in Eye::BOTH {
+            let (own, wide) = (eyes.view(eye), parallel.view(eye));
+            for (x, y) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.5, 0.5)] {
+                let tangent = Vec3::new(
+                    own.frustum.left + x * own.frustum.width(),
+                    own.frustum.bottom + y * own.frustum.height(),
+                    -1.0,
+                );
+                let clip =
+                    wide.view_projection() * (own.pose.position + own.pose.orientation * tangent).extend(1.0);
+                let seen = clip.truncate() / clip.w;
+                assert!(seen.x.abs() < 1.0001 && seen.y.abs() < 1.0001, "{eye:?} {seen}");
+            }
+        }
+        // Nearly back to back.
+        eyes.poses[1].orientation = Quat::from_rotation_y(-2.5);
+        assert_eq!(eyes.parallelized(), None);
+    }
+}

@@ -1,0 +1,166 @@
+//! What the driver offers, asked once.
+
+use glow::HasContext;
+
+use super::GlError;
+
+/// The two families of GL that run the shaders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum GlApi {
+    /// OpenGL ES.
+    Es,
+    /// Desktop OpenGL with GL_ARB_ES3_1_compatibility.
+    Desktop,
+}
+
+/// Driver, version and the optional features in use.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Capabilities {
+    /// ES or desktop.
+    pub api: GlApi,
+    /// Version, such as (3, 1).
+    pub version: (u32, u32),
+    /// GL_VENDOR.
+    pub vendor: String,
+    /// GL_RENDERER.
+    pub renderer: String,
+    /// GL_VERSION.
+    pub version_string: String,
+    /// Compute shaders, image stores: `paper` and `rowgroup` need them, `gather` does not.
+    pub compute: bool,
+    /// Float colour buffers (HDR targets, EXT_color_buffer_float or half_float).
+    pub float_render_targets: bool,
+    /// KHR_debug groups.
+    pub debug_groups: bool,
+    /// Largest anisotropy, 1 without the extension and on a CPU rasterizer.
+    pub max_anisotropy: f32,
+    /// Timer queries that can be trusted: present, with bits to count in, and not a CPU rasterizer.
+    pub timer_queries: bool,
+    /// And while both eyes are drawn at once, too: GL_EXT_multiview_timer_query. Without it GL_OVR_multiview leaves
+    /// their results undefined.
+    pub multiview_timer_queries: bool,
+    /// GL_OVR_multiview2 and its entry point ([`super::Context::with_loader`]).
+    pub multiview: bool,
+    /// gl_ClipDistance: GL_EXT_clip_cull_distance on ES, core on the desktop.
+    pub clip_distances: bool,
+    /// Largest texture edge in pixels.
+    pub max_texture_size: u32,
+    /// Bytes of shared memory of a compute workgroup.
+    pub max_compute_shared_memory: u32,
+    /// Rendered by the CPU (llvmpipe, softpipe, SwiftShader): times are CPU times.
+    pub software: bool,
+}
+
+/// The extension that gives OpenGL ES, or WebGL, timer queries.
+const TIMER_QUERIES: &str = match cfg!(target_arch = "wasm32") {
+    true => "GL_EXT_disjoint_timer_query_webgl2",
+    false => "GL_EXT_disjoint_timer_query",
+};
+
+/// Whether the context has an extension, by its name in the registry of OpenGL. WebGL names it without `GL_`.
+pub(super) fn has_extension(gl: &glow::Context, name: &str) -> bool {
+    let name = if cfg!(target_arch = "wasm32") { name.trim_start_matches("GL_") } else { name };
+    gl.supported_extensions().contains(name)
+}
+
+/// GL_RENDERER. Browsers say something else there, and the driver's answer (WEBGL_debug_renderer_info) elsewhere.
+///
+/// # Safety
+/// The context is current.
+unsafe fn renderer(gl: &glow::Context) -> String {
+    const UNMASKED_RENDERER_WEBGL: u32 = 0x9246;
+    if cfg!(target_arch = "wasm32") && has_extension(gl, "GL_WEBGL_debug_renderer_info") {
+        // SAFETY: the extension has the name.
+        let unmasked = unsafe { gl.get_parameter_string(UNMASKED_RENDERER_WEBGL) };
+        if !unmasked.is_empty() {
+            return unmasked;
+        }
+    }
+    // SAFETY: a valid enum.
+    unsafe { gl.get_parameter_string(glow::RENDERER) }
+}
+
+impl Capabilities {
+    /// `counts_time` is asked only where there are timer queries.
+    pub(super) fn query(
+        gl: &glow::Context,
+        multiview_loaded: bool,
+        counts_time: impl FnOnce() -> bool,
+    ) -> Result<Capabilities, GlError> {
+        // SAFETY: the context is current; every enum is valid where it is asked.
+        unsafe {
+            let version_string = gl.get_parameter_string(glow::VERSION);
+            let version = gl.version();
+            let renderer = renderer(gl);
+            let has = |name: &str| has_extension(gl, name);
+            let api = if version.is_embedded { GlApi::Es } else { GlApi::Desktop };
+            let number = (version.major, version.minor);
+            let too_old = match api {
+                GlApi::Es => number < (3, 0),
+                GlApi::Desktop => number < (4, 3) || !(number >= (4, 5) || has("GL_ARB_ES3_1_compatibility")),
+            };
+            if too_old {
+                return Err(GlError::Unsupported(format!(
+                    "the GL driver ({renderer}, {version_string}) is too old; OpenGL ES 3.0 (3.1 for compute pipelines) or desktop OpenGL 4.5 is needed: update the driver"
+                )));
+            }
+            let compute = api == GlApi::Desktop || number >= (3, 1);
+            let software = ["llvmpipe", "softpipe", "SwiftShader"].iter().any(|n| renderer.contains(n));
+            let timer_queries = !software && (api == GlApi::Desktop || has(TIMER_QUERIES)) && counts_time();
+            let limit = |name| gl.get_parameter_i32(name).max(0) as u32;
+            Ok(Capabilities {
+                api,
+                version: number,
+                vendor: gl.get_parameter_string(glow::VENDOR),
+                compute,
+                float_render_targets: api == GlApi::Desktop
+                    || number >= (3, 2)
+                    || has("GL_EXT_color_buffer_float")
+                    || has("GL_EXT_color_buffer_half_float"),
+                debug_groups: gl.supports_debug(),
+                // llvmpipe walks the whole ellipse under a pixel, which has millions of texels where derivatives
+                // are extrapolated across the horizon: a frame in a few hundred takes minutes or crashes.
+                max_anisotropy: if !software
+                    && (has("GL_EXT_texture_filter_anisotropic") || has("GL_ARB_texture_filter_anisotropic"))
+                {
+                    gl.get_parameter_f32(glow::MAX_TEXTURE_MAX_ANISOTROPY_EXT)
+                } else {
+                    1.0
+                },
+                timer_queries,
+                multiview_timer_queries: timer_queries && has("GL_EXT_multiview_timer_query"),
+                multiview: multiview_loaded && has("GL_OVR_multiview2"),
+                clip_distances: api == GlApi::Desktop || has("GL_EXT_clip_cull_distance"),
+                max_texture_size: limit(glow::MAX_TEXTURE_SIZE),
+                max_compute_shared_memory: if compute {
+                    limit(glow::MAX_COMPUTE_SHARED_MEMORY_SIZE)
+                } else {
+                    0
+                },
+                software,
+                renderer,
+                version_string,
+            })
+        }
+    }
+
+    /// One line for people: driver, version, what is in use.
+    pub fn summary(&self) -> String {
+        let mut features = Vec::new();
+        let mut feature = |on: bool, name: &str| {
+            if on {
+                features.push(name.to_owned());
+            }
+        };
+        feature(self.compute, "compute");
+        feature(self.float_render_targets, "float targets");
+        feature(self.timer_queries, "timer queries");
+        feature(self.multiview, "multiview");
+        feature(self.clip_distances, "clip distances");
+        feature(self.max_anisotropy > 1.0, "anisotropic filtering");
+        format!("{}, {} ({})", self.renderer, self.version_string, features.join(", "))
+    }
+}

@@ -1,0 +1,373 @@
+//! State of a host's renderer: what synthesis must not depend on, and how it is given back.
+//!
+//! The table in the documentation of [`crate::synthesis::Synthesis`] is the contract that this file keeps.
+
+use glow::HasContext;
+
+use super::{Capabilities, Context, GlApi, GlError};
+
+/// Texture units in use, counted from 0.
+const UNITS: usize = 3;
+/// Draw buffers in use: colour and, where it is written, the source map.
+const DRAW_BUFFERS: usize = 2;
+/// EXT_depth_bounds_test.
+const DEPTH_BOUNDS_TEST: u32 = 0x8890;
+
+/// glIsEnabledi: capability, index.
+pub(super) type IsEnabledIndexed = unsafe extern "system" fn(u32, u32) -> u8;
+/// glGetBooleani_v: state, index, values.
+pub(super) type GetBooleanIndexed = unsafe extern "system" fn(u32, u32, *mut u8);
+
+/// Queries of single draw buffers, for which glow has no wrapper.
+#[derive(Clone, Copy)]
+pub(super) struct IndexedQueries {
+    pub(super) is_enabled: IsEnabledIndexed,
+    pub(super) get_boolean: GetBooleanIndexed,
+}
+
+/// What a context has of the state that drawing depends on, and the samplers that synthesis reads through.
+pub(super) struct Host {
+    /// Capabilities (`glEnable`) that are off while a pipeline runs. No more than 32.
+    switches: Vec<u32>,
+    /// Blending and colour masks are per draw buffer and can be set so: OpenGL ES 3.2 and the desktop.
+    indexed: bool,
+    queries: Option<IndexedQueries>,
+    /// Whether drawing encodes for sRGB framebuffers can be switched.
+    encoding: bool,
+    polygon_mode: bool,
+    images: bool,
+    nearest: glow::Sampler,
+    linear: glow::Sampler,
+}
+
+impl Host {
+    pub(super) fn new(
+        gl: &glow::Context,
+        capabilities: &Capabilities,
+        queries: Option<IndexedQueries>,
+    ) -> Result<Host, GlError> {
+        let has = |name: &str| super::capabilities::has_extension(gl, name);
+        let desktop = capabilities.api == GlApi::Desktop;
+        let mut switches = vec![
+            glow::SCISSOR_TEST,
+            glow::STENCIL_TEST,
+            glow::DEPTH_TEST,
+            glow::CULL_FACE,
+            glow::DITHER,
+            glow::POLYGON_OFFSET_FILL,
+            glow::RASTERIZER_DISCARD,
+            glow::SAMPLE_ALPHA_TO_COVERAGE,
+            glow::SAMPLE_COVERAGE,
+        ];
+        // It is always on in WebGL, and no name there.
+        if cfg!(not(target_arch = "wasm32")) {
+            switches.push(glow::PRIMITIVE_RESTART_FIXED_INDEX);
+        }
+        if desktop || capabilities.version >= (3, 1) {
+            switches.push(glow::SAMPLE_MASK);
+        }
+        let encoding = desktop || has("GL_EXT_sRGB_write_control");
+        if encoding {
+            switches.push(glow::FRAMEBUFFER_SRGB);
+        }
+        if has("GL_EXT_depth_bounds_test") {
+            switches.push(DEPTH_BOUNDS_TEST);
+        }
+        if desktop {
+            switches.extend([
+                glow::PRIMITIVE_RESTART,
+                glow::COLOR_LOGIC_OP,
+                glow::POLYGON_SMOOTH,
+                glow::SAMPLE_ALPHA_TO_ONE,
+            ]);
+        }
+        if capabilities.clip_distances {
+            // SAFETY: a valid enum where the capability says so.
+            let count = unsafe { gl.get_parameter_i32(glow::MAX_CLIP_DISTANCES) }.clamp(0, 8) as u32;
+            switches.extend((0..count).map(|i| glow::CLIP_DISTANCE0 + i));
+        }
+        let sampler = |filter: u32| {
+            // SAFETY: a new sampler, and valid parameters.
+            unsafe {
+                let sampler = gl
+                    .create_sampler()
+                    .map_err(|reason| GlError::Object { what: "a sampler".into(), reason })?;
+                for (name, value) in [
+                    (glow::TEXTURE_MIN_FILTER, filter),
+                    (glow::TEXTURE_MAG_FILTER, filter),
+                    (glow::TEXTURE_WRAP_S, glow::CLAMP_TO_EDGE),
+                    (glow::TEXTURE_WRAP_T, glow::CLAMP_TO_EDGE),
+                ] {
+                    gl.sampler_parameter_i32(sampler, name, value as i32);
+                }
+                Ok(sampler)
+            }
+        };
+        debug_assert!(switches.len() <= 32);
+        let indexed = desktop || capabilities.version >= (3, 2);
+        Ok(Host {
+            switches,
+            indexed,
+            queries: queries.filter(|_| indexed),
+            encoding,
+            polygon_mode: desktop,
+            images: capabilities.compute,
+            nearest: sampler(glow::NEAREST)?,
+            linear: sampler(glow::LINEAR)?,
+        })
+    }
+
+    pub(super) fn delete(&self, gl: &glow::Context) {
+        // SAFETY: created in `new`, deleted once.
+        unsafe {
+            gl.delete_sampler(self.nearest);
+            gl.delete_sampler(self.linear);
+        }
+    }
+}
+
+/// The state that synthesis changes, as it was.
+pub(crate) struct HostState {
+    /// Bit `i`: whether switch `i` of [`Host::switches`] was on.
+    switches: u32,
+    /// How many of the following belong to synthesis.
+    draw_buffers: usize,
+    blend: [bool; DRAW_BUFFERS],
+    color_mask: [[bool; 4]; DRAW_BUFFERS],
+    depth_func: u32,
+    depth_mask: bool,
+    depth_range: [f32; 2],
+    /// Front and back.
+    polygon_mode: [u32; 2],
+    viewport: [i32; 4],
+    draw_framebuffer: Option<glow::Framebuffer>,
+    read_framebuffer: Option<glow::Framebuffer>,
+    program: Option<glow::Program>,
+    vertex_array: Option<glow::VertexArray>,
+    active_unit: u32,
+    textures: [Option<glow::Texture>; UNITS],
+    samplers: [Option<glow::Sampler>; UNITS],
+    image: Option<ImageUnit>,
+}
+
+/// What is bound to image unit 0.
+struct ImageUnit {
+    texture: Option<glow::Texture>,
+    level: i32,
+    layered: bool,
+    layer: i32,
+    access: u32,
+    format: u32,
+}
+
+impl Context {
+    /// Sets all state that a pipeline relies on and does not set for each pass: everything in the table of
+    /// [`crate::synthesis::Synthesis`] but program, vertex array, framebuffer, viewport, textures and images.
+    /// `draw_buffers` is the number of colour attachments that the target has, 1 or 2; with `encode` what is written to
+    /// sRGB framebuffers is encoded.
+    pub(crate) fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
+        let (gl, host) = (self.raw(), &self.host);
+        // SAFETY: state calls with enums that `Host::new` found to be valid.
+        unsafe {
+            host.switches.iter().for_each(|switch| gl.disable(*switch));
+            if encode && host.encoding {
+                gl.enable(glow::FRAMEBUFFER_SRGB);
+            }
+            if host.indexed {
+                for buffer in 0..draw_buffers {
+                    gl.disable_draw_buffer(glow::BLEND, buffer);
+                    gl.color_mask_draw_buffer(buffer, true, true, true, true);
+                }
+            } else {
+                gl.disable(glow::BLEND);
+                gl.color_mask(true, true, true, true);
+            }
+            gl.depth_func(glow::ALWAYS);
+            gl.depth_mask(true);
+            gl.depth_range_f32(0.0, 1.0);
+            if host.polygon_mode {
+                gl.polygon_mode(glow::FRONT_AND_BACK, glow::FILL);
+            }
+            for (unit, sampler) in [host.nearest, host.linear, host.nearest].into_iter().enumerate() {
+                gl.bind_sampler(unit as u32, Some(sampler));
+            }
+        }
+    }
+
+    /// Makes texture unit 0 the active one: new buffers are bound to the active unit, which must not be one that is the
+    /// host's alone.
+    pub(crate) fn set_first_unit(&self) {
+        // SAFETY: the unit exists.
+        unsafe { self.raw().active_texture(glow::TEXTURE0) }
+    }
+
+    /// Whether the next draws of a pipeline write depth, untested.
+    pub(crate) fn set_depth_write(&self, on: bool) {
+        // SAFETY: a valid enum.
+        unsafe { if on { self.raw().enable(glow::DEPTH_TEST) } else { self.raw().disable(glow::DEPTH_TEST) } }
+    }
+
+    /// Takes the samplers off again, which would override the filters of whatever is bound next.
+    pub(crate) fn end_synthesis(&self) {
+        for unit in 0..UNITS as u32 {
+            // SAFETY: the unit exists.
+            unsafe { self.raw().bind_sampler(unit, None) }
+        }
+    }
+
+    /// Remembers all state that synthesis into a target with this many colour attachments, 1 or 2, changes. Some 50
+    /// queries; allocates nothing.
+    pub(crate) fn save_state(&self, draw_buffers: u32) -> HostState {
+        let (gl, host) = (self.raw(), &self.host);
+        // SAFETY: queries of state that `Host::new` found to be there, into arrays of the length that GL writes.
+        unsafe {
+            let integer = |name| gl.get_parameter_i32(name);
+            let on = |(i, switch): (usize, &u32)| u32::from(gl.is_enabled(*switch)) << i;
+            let mut state = HostState {
+                switches: host.switches.iter().enumerate().map(on).sum(),
+                draw_buffers: (draw_buffers as usize).min(DRAW_BUFFERS),
+                blend: [gl.is_enabled(glow::BLEND); DRAW_BUFFERS],
+                color_mask: [gl.get_parameter_bool_array(glow::COLOR_WRITEMASK); DRAW_BUFFERS],
+                depth_func: integer(glow::DEPTH_FUNC) as u32,
+                depth_mask: gl.get_parameter_bool(glow::DEPTH_WRITEMASK),
+                depth_range: [0.0; 2],
+                polygon_mode: [glow::FILL; 2],
+                viewport: [0; 4],
+                draw_framebuffer: gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING),
+                read_framebuffer: gl.get_parameter_framebuffer(glow::READ_FRAMEBUFFER_BINDING),
+                program: gl.get_parameter_program(glow::CURRENT_PROGRAM),
+                vertex_array: gl.get_parameter_vertex_array(glow::VERTEX_ARRAY_BINDING),
+                active_unit: integer(glow::ACTIVE_TEXTURE) as u32,
+                textures: [None; UNITS],
+                samplers: [None; UNITS],
+                image: None,
+            };
+            if let Some(queries) = &host.queries {
+                for i in 1..state.draw_buffers {
+                    let mut mask = [0u8; 4];
+                    (queries.get_boolean)(glow::COLOR_WRITEMASK, i as u32, mask.as_mut_ptr());
+                    state.color_mask[i] = mask.map(|m| m != 0);
+                    state.blend[i] = (queries.is_enabled)(glow::BLEND, i as u32) != 0;
+                }
+            }
+            gl.get_parameter_f32_slice(glow::DEPTH_RANGE, &mut state.depth_range);
+            gl.get_parameter_i32_slice(glow::VIEWPORT, &mut state.viewport);
+            if host.polygon_mode {
+                // Core contexts have one mode, and some drivers write no second one.
+                let mut modes = [0; 2];
+                gl.get_parameter_i32_slice(glow::POLYGON_MODE, &mut modes);
+                state.polygon_mode =
+                    [modes[0], if modes[1] == 0 { modes[0] } else { modes[1] }].map(|m| m as u32);
+            }
+            for unit in 0..UNITS {
+                gl.active_texture(glow::TEXTURE0 + unit as u32);
+                state.textures[unit] = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D);
+                state.samplers[unit] = gl.get_parameter_sampler(glow::SAMPLER_BINDING);
+            }
+            gl.active_texture(state.active_unit);
+            state.image = host.images.then(|| {
+                let of_unit = |name| gl.get_parameter_indexed_i32(name, 0);
+                ImageUnit {
+                    texture: texture(of_unit(glow::IMAGE_BINDING_NAME)),
+                    level: of_unit(glow::IMAGE_BINDING_LEVEL),
+                    layered: of_unit(glow::IMAGE_BINDING_LAYERED) != 0,
+                    layer: of_unit(glow::IMAGE_BINDING_LAYER),
+                    access: of_unit(glow::IMAGE_BINDING_ACCESS) as u32,
+                    format: of_unit(glow::IMAGE_BINDING_FORMAT) as u32,
+                }
+            });
+            state
+        }
+    }
+
+    /// Sets the state as it was at [`Context::save_state`].
+    pub(crate) fn restore_state(&self, state: &HostState) {
+        let (gl, host) = (self.raw(), &self.host);
+        // SAFETY: values that the context itself gave for the same state; what was bound is bound still or deleted
+        // by nobody since.
+        unsafe {
+            for (i, switch) in host.switches.iter().enumerate() {
+                if state.switches >> i & 1 != 0 { gl.enable(*switch) } else { gl.disable(*switch) }
+            }
+            for i in 0..state.draw_buffers {
+                let (on, [r, g, b, a]) = (state.blend[i], state.color_mask[i]);
+                match (host.indexed, on) {
+                    (true, true) => gl.enable_draw_buffer(glow::BLEND, i as u32),
+                    (true, false) => gl.disable_draw_buffer(glow::BLEND, i as u32),
+                    (false, true) => gl.enable(glow::BLEND),
+                    (false, false) => gl.disable(glow::BLEND),
+                }
+                match host.indexed {
+                    true => gl.color_mask_draw_buffer(i as u32, r, g, b, a),
+                    false => gl.color_mask(r, g, b, a),
+                }
+            }
+            gl.depth_func(state.depth_func);
+            gl.depth_mask(state.depth_mask);
+            gl.depth_range_f32(state.depth_range[0], state.depth_range[1]);
+            if host.polygon_mode {
+                match state.polygon_mode {
+                    [front, back] if front == back => gl.polygon_mode(glow::FRONT_AND_BACK, front),
+                    [front, back] => {
+                        gl.polygon_mode(glow::FRONT, front);
+                        gl.polygon_mode(glow::BACK, back);
+                    }
+                }
+            }
+            for unit in 0..UNITS {
+                gl.active_texture(glow::TEXTURE0 + unit as u32);
+                gl.bind_texture(glow::TEXTURE_2D, state.textures[unit]);
+                gl.bind_sampler(unit as u32, state.samplers[unit]);
+            }
+            gl.active_texture(state.active_unit);
+            if let Some(image) = &state.image {
+                let ImageUnit { texture, level, layered, layer, access, format } = *image;
+                gl.bind_image_texture(0, texture, level, layered, layer, access, format);
+            }
+            gl.use_program(state.program);
+            gl.bind_vertex_array(state.vertex_array);
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, state.draw_framebuffer);
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, state.read_framebuffer);
+            let [x, y, width, height] = state.viewport;
+            gl.viewport(x, y, width, height);
+        }
+    }
+
+    /// Unsets what redirects or shifts uploads of tightly packed pixels.
+    pub(super) fn set_tight_unpack(&self) {
+        let gl = self.raw();
+        // SAFETY: values that are the defaults, but for the alignment.
+        unsafe {
+            gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
+            gl.pixel_store_i32(glow::UNPACK_ALIGNMENT, 1);
+            for name in [glow::UNPACK_ROW_LENGTH, glow::UNPACK_SKIP_ROWS, glow::UNPACK_SKIP_PIXELS] {
+                gl.pixel_store_i32(name, 0);
+            }
+        }
+    }
+
+    /// As [`Context::set_tight_unpack`], for reading back.
+    pub(super) fn set_tight_pack(&self) {
+        let gl = self.raw();
+        // SAFETY: as there.
+        unsafe {
+            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+            gl.pixel_store_i32(glow::PACK_ALIGNMENT, 1);
+            for name in [glow::PACK_ROW_LENGTH, glow::PACK_SKIP_ROWS, glow::PACK_SKIP_PIXELS] {
+                gl.pixel_store_i32(name, 0);
+            }
+        }
+    }
+}
+
+/// The texture of a GL name, none for 0.
+#[cfg(not(target_arch = "wasm32"))]
+fn texture(name: i32) -> Option<glow::Texture> {
+    std::num::NonZeroU32::new(name as u32).map(glow::NativeTexture)
+}
+
+/// WebGL has objects instead of names, and no image units.
+#[cfg(target_arch = "wasm32")]
+fn texture(_: i32) -> Option<glow::Texture> {
+    None
+}

@@ -1,0 +1,124 @@
+//! Indexed triangles on the GPU.
+
+use std::ops::Range;
+use std::rc::Rc;
+
+use glow::HasContext;
+
+use super::{Context, GlError};
+
+/// A vertex array with one interleaved vertex buffer of floats and 32-bit indices.
+pub struct Mesh {
+    gl: Rc<Context>,
+    array: glow::VertexArray,
+    vertices: glow::Buffer,
+    indices: glow::Buffer,
+    index_count: usize,
+}
+
+impl Mesh {
+    /// Uploads vertices and indices; the slices are not needed afterwards. A vertex consists of `attributes`, numbers
+    /// of floats that lie one after the other, for the shader's locations from 0 on.
+    ///
+    /// # Errors
+    /// [`GlError::Object`] when the driver has no memory.
+    ///
+    /// # Panics
+    /// When the attributes are not all of a vertex.
+    pub fn new<V: bytemuck::Pod>(
+        gl: &Rc<Context>,
+        attributes: &[i32],
+        vertices: &[V],
+        indices: &[u32],
+    ) -> Result<Mesh, GlError> {
+        let stride = attributes.iter().sum::<i32>() * size_of::<f32>() as i32;
+        assert_eq!(stride as usize, size_of::<V>(), "attributes and vertex differ in size");
+        let object = |what: &str, reason| GlError::Object { what: what.into(), reason };
+        let raw = gl.raw();
+        // SAFETY: the attributes lie inside a vertex, as was asserted.
+        unsafe {
+            let array = raw.create_vertex_array().map_err(|e| object("a vertex array", e))?;
+            let vertex_buffer = raw.create_buffer().map_err(|e| object("a vertex buffer", e))?;
+            let index_buffer = raw.create_buffer().map_err(|e| object("an index buffer", e))?;
+            gl.count(3);
+            let mesh = Mesh {
+                gl: gl.clone(),
+                array,
+                vertices: vertex_buffer,
+                indices: index_buffer,
+                index_count: indices.len(),
+            };
+            raw.bind_vertex_array(Some(array));
+            raw.bind_buffer(glow::ARRAY_BUFFER, Some(vertex_buffer));
+            raw.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytemuck::cast_slice(vertices), glow::STATIC_DRAW);
+            raw.bind_buffer(glow::ELEMENT_ARRAY_BUFFER, Some(index_buffer));
+            raw.buffer_data_u8_slice(
+                glow::ELEMENT_ARRAY_BUFFER,
+                bytemuck::cast_slice(indices),
+                glow::STATIC_DRAW,
+            );
+            let mut offset = 0;
+            for (location, &floats) in (0..).zip(attributes) {
+                raw.enable_vertex_attrib_array(location);
+                raw.vertex_attrib_pointer_f32(location, floats, glow::FLOAT, false, stride, offset);
+                offset += floats * size_of::<f32>() as i32;
+            }
+            raw.bind_vertex_array(None);
+            if raw.get_error() == glow::OUT_OF_MEMORY {
+                return Err(object("a mesh", format!("out of memory for {} vertices", vertices.len())));
+            }
+            Ok(mesh)
+        }
+    }
+
+    /// Number of indices.
+    pub fn index_count(&self) -> usize {
+        self.index_count
+    }
+
+    /// Binds the vertex array for the following [`Mesh::draw`] calls.
+    pub fn bind(&self) {
+        // SAFETY: a live vertex array.
+        unsafe { self.gl.raw().bind_vertex_array(Some(self.array)) }
+    }
+
+    /// Draws all indices as one triangle strip. The mesh must be bound.
+    pub fn draw_strip(&self) {
+        let gl = self.gl.raw();
+        // SAFETY: the whole index buffer, whose values the caller of `new` answers for.
+        unsafe { gl.draw_elements(glow::TRIANGLE_STRIP, self.index_count as i32, glow::UNSIGNED_INT, 0) }
+    }
+
+    /// Draws a range of indices as triangles, `instances` times. The mesh must be bound.
+    pub fn draw(&self, range: Range<usize>, instances: usize) {
+        debug_assert!(range.end <= self.index_count);
+        let (count, offset) = (range.len() as i32, (range.start * 4) as i32);
+        // SAFETY: the range lies inside the index buffer, whose values the scene loader has checked.
+        unsafe {
+            if instances == 1 {
+                self.gl.raw().draw_elements(glow::TRIANGLES, count, glow::UNSIGNED_INT, offset);
+            } else {
+                let gl = self.gl.raw();
+                gl.draw_elements_instanced(
+                    glow::TRIANGLES,
+                    count,
+                    glow::UNSIGNED_INT,
+                    offset,
+                    instances as i32,
+                );
+            }
+        }
+    }
+}
+
+impl Drop for Mesh {
+    fn drop(&mut self) {
+        // SAFETY: created in `new`, deleted once.
+        unsafe {
+            self.gl.raw().delete_vertex_array(self.array);
+            self.gl.raw().delete_buffer(self.vertices);
+            self.gl.raw().delete_buffer(self.indices);
+        }
+        self.gl.count(-3);
+    }
+}

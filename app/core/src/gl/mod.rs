@@ -1,0 +1,331 @@
+//! Objects over glow: programs, textures, framebuffers, meshes, timers, capabilities.
+//!
+//! Objects delete themselves when dropped and are counted in their [`Context`], so that leaks show in a test.
+
+mod capabilities;
+mod framebuffer;
+mod host;
+mod mesh;
+mod pixel_buffer;
+mod profiler;
+mod program;
+mod state;
+mod texture;
+
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
+use std::ffi::{CStr, c_void};
+use std::rc::Rc;
+
+use glow::HasContext;
+
+pub use capabilities::{Capabilities, GlApi};
+pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
+pub use mesh::Mesh;
+pub use pixel_buffer::PixelBuffer;
+pub use profiler::{PassTime, Profiling};
+pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};
+pub use state::{Blend, DepthTest, RasterState};
+pub use texture::{Filter, Format, Texture};
+
+/// What can go wrong with GL.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GlError {
+    /// The context is too old or lacks what is needed.
+    #[error("{0}")]
+    Unsupported(String),
+    /// A shader file that is not part of the program, or an include that does not exist.
+    #[error("shader file {0} does not exist")]
+    MissingShader(String),
+    /// A shader did not compile or a program did not link.
+    #[error("{stage} {file} failed: {log}")]
+    Shader {
+        /// Vertex, fragment or compute shader, or program.
+        stage: &'static str,
+        /// Shader file.
+        file: String,
+        /// The driver's log, with file names in place of source string numbers.
+        log: String,
+    },
+    /// The driver refused to create or accept an object.
+    #[error("the GL driver could not create {what}: {reason}")]
+    Object {
+        /// What was to be created.
+        what: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// An image size beyond the driver's limits.
+    #[error(
+        "an image of {width}x{height} pixels is beyond what this GL driver can render ({limit}x{limit}); choose a smaller size"
+    )]
+    TooLarge {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+        /// GL_MAX_TEXTURE_SIZE.
+        limit: u32,
+    },
+}
+
+/// glFramebufferTextureMultiviewOVR: target, attachment, texture, level, first view, number of views.
+type FramebufferTextureMultiview = unsafe extern "system" fn(u32, u32, u32, i32, i32, i32);
+
+/// glGetQueryiv: target, parameter, where the value goes.
+type GetQuery = unsafe extern "system" fn(u32, u32, *mut i32);
+
+/// Entry points that glow has no wrapper for, as far as the driver has them.
+#[derive(Clone, Copy, Default)]
+struct EntryPoints {
+    framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
+    get_query: Option<GetQuery>,
+    indexed: Option<host::IndexedQueries>,
+}
+
+impl EntryPoints {
+    /// Whether the driver's timer queries count at all: it may have them with no bits (QUERY_COUNTER_BITS of 0).
+    /// The context is current and has timer queries.
+    fn counts_time(&self) -> bool {
+        let Some(get_query) = self.get_query else { return true };
+        let mut bits = 1;
+        // SAFETY: a target and a parameter of timer queries, which exist; one integer is written.
+        unsafe { get_query(glow::TIME_ELAPSED, QUERY_COUNTER_BITS, &mut bits) };
+        bits != 0
+    }
+}
+
+/// The name that glow lacks.
+const QUERY_COUNTER_BITS: u32 = 0x8864;
+
+/// A GL context with what is known of it. Shared by everything that lives in it.
+pub struct Context {
+    raw: glow::Context,
+    framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
+    capabilities: Capabilities,
+    host: host::Host,
+    profiler: RefCell<profiler::Profiler>,
+    objects: Cell<usize>,
+    texture_bytes: Cell<usize>,
+    recipes: RefCell<BTreeSet<ProgramRecipe>>,
+    empty_vertex_array: glow::VertexArray,
+}
+
+impl Context {
+    /// Takes a current glow context and checks that it can run the shaders. Leaves the context's state as it is.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] when the context is older than OpenGL ES 3.0, or desktop GL that does not
+    /// compile GLSL ES 3.10.
+    pub fn new(raw: glow::Context) -> Result<Rc<Context>, GlError> {
+        Context::with_entry_points(raw, EntryPoints::default())
+    }
+
+    /// As [`Context::new`], with what glow has no wrapper for: multiview, the bits of timer queries, and queries of the
+    /// state of single draw buffers, without which the second one is given back its state as the first has it
+    /// ([`crate::synthesis::GlState::Preserve`] with [`crate::synthesis::Outputs::source_map`]). `load` gives entry
+    /// points by name, null for those that do not exist.
+    ///
+    /// # Errors
+    /// As [`Context::new`].
+    ///
+    /// # Safety
+    /// The pointers that `load` gives are the context's entry points of these names.
+    pub unsafe fn with_loader(
+        raw: glow::Context,
+        mut load: impl FnMut(&CStr) -> *const c_void,
+    ) -> Result<Rc<Context>, GlError> {
+        // SAFETY: null is `None`; otherwise the caller promises an entry point, which has this signature by
+        // GL_OVR_multiview, OpenGL 3.0 and OpenGL ES 3.0 and 3.2.
+        let entry_points = unsafe {
+            let is_enabled =
+                std::mem::transmute::<*const c_void, Option<host::IsEnabledIndexed>>(load(c"glIsEnabledi"));
+            let get_boolean = std::mem::transmute::<*const c_void, Option<host::GetBooleanIndexed>>(load(
+                c"glGetBooleani_v",
+            ));
+            EntryPoints {
+                framebuffer_texture_multiview: std::mem::transmute::<
+                    *const c_void,
+                    Option<FramebufferTextureMultiview>,
+                >(load(c"glFramebufferTextureMultiviewOVR")),
+                get_query: std::mem::transmute::<*const c_void, Option<GetQuery>>(load(c"glGetQueryiv")),
+                indexed: is_enabled
+                    .zip(get_boolean)
+                    .map(|(is_enabled, get_boolean)| host::IndexedQueries { is_enabled, get_boolean }),
+            }
+        };
+        Context::with_entry_points(raw, entry_points)
+    }
+
+    fn with_entry_points(raw: glow::Context, entry_points: EntryPoints) -> Result<Rc<Context>, GlError> {
+        let framebuffer_texture_multiview = entry_points.framebuffer_texture_multiview;
+        let has_multiview = framebuffer_texture_multiview.is_some();
+        let capabilities = Capabilities::query(&raw, has_multiview, || entry_points.counts_time())?;
+        let host = host::Host::new(&raw, &capabilities, entry_points.indexed)?;
+        // SAFETY: plain creation.
+        let empty_vertex_array = unsafe { raw.create_vertex_array() }
+            .map_err(|reason| GlError::Object { what: "a vertex array".into(), reason })?;
+        let profiler = RefCell::new(profiler::Profiler::new(&capabilities));
+        let recipes = RefCell::default();
+        Ok(Rc::new(Context {
+            raw,
+            framebuffer_texture_multiview,
+            capabilities,
+            host,
+            profiler,
+            objects: Cell::new(0),
+            texture_bytes: Cell::new(0),
+            recipes,
+            empty_vertex_array,
+        }))
+    }
+
+    /// The glow context, for calls that have no wrapper here.
+    pub fn raw(&self) -> &glow::Context {
+        &self.raw
+    }
+
+    /// What the driver offers.
+    pub fn capabilities(&self) -> &Capabilities {
+        &self.capabilities
+    }
+
+    /// Number of live textures, framebuffers, programs, buffers and vertex arrays of this library.
+    pub fn object_count(&self) -> usize {
+        self.objects.get()
+    }
+
+    /// What programs were made of so far, sorted, each once.
+    pub fn program_recipes(&self) -> Vec<ProgramRecipe> {
+        self.recipes.borrow().iter().cloned().collect()
+    }
+
+    fn count(&self, change: isize) {
+        self.objects.set(self.objects.get().wrapping_add_signed(change));
+    }
+
+    /// Bytes of all live textures of this library, render targets among them, by their formats; drivers may pad.
+    pub fn texture_bytes(&self) -> usize {
+        self.texture_bytes.get()
+    }
+
+    fn count_texture_bytes(&self, change: isize) {
+        self.texture_bytes.set(self.texture_bytes.get().wrapping_add_signed(change));
+    }
+
+    /// Runs one pass inside a KHR_debug group and, while profiling, a timer, both called `name`.
+    pub fn pass<R>(&self, name: &'static str, body: impl FnOnce() -> R) -> R {
+        let debug = self.capabilities.debug_groups;
+        // SAFETY: the entry points exist when the capability says so; groups are balanced below.
+        unsafe {
+            if debug {
+                self.raw.push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, name);
+            }
+        }
+        self.profiler.borrow_mut().begin(&self.raw, name);
+        let result = body();
+        self.profiler.borrow_mut().end(&self.raw);
+        // SAFETY: as above.
+        unsafe {
+            if debug {
+                self.raw.pop_debug_group();
+            }
+        }
+        result
+    }
+
+    /// Starts or stops timing passes. Costs a full pipeline drain per pass with [`Profiling::Finish`].
+    pub fn set_profiling(&self, profiling: Profiling) {
+        self.profiler.borrow_mut().set(&self.raw, profiling);
+    }
+
+    /// The pass times since the last call, in the order in which they ran; none if timer queries would be undefined
+    /// for one of them ([`Capabilities::multiview_timer_queries`]). Waits for the GPU.
+    pub fn take_pass_times(&self) -> Vec<PassTime> {
+        self.profiler.borrow_mut().take(&self.raw)
+    }
+
+    /// Ends a frame for those who time every frame without waiting ([`Profiling::Queries`]): adds the pass times of
+    /// one frame, some frames ago, to `times`, and returns the number of frames added, 1 or 0: a frame is left out when
+    /// the clock was disturbed, or when timer queries are undefined for one of its passes.
+    pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> u32 {
+        self.profiler.borrow_mut().end_frame(&self.raw, times)
+    }
+
+    /// Notes that both eyes are drawn at once from here on: where timer queries are undefined for that, the frame has
+    /// no pass times.
+    fn draws_both_eyes(&self) {
+        if !self.capabilities.multiview_timer_queries {
+            self.profiler.borrow_mut().make_undefined();
+        }
+    }
+
+    /// Blocks until the GPU has done everything.
+    pub fn finish(&self) {
+        // SAFETY: no arguments.
+        unsafe { self.raw.finish() }
+    }
+
+    /// Draws one triangle that covers the viewport; shaders make it from gl_VertexID
+    /// (`screen.vert`).
+    pub fn draw_screen(&self) {
+        // SAFETY: an empty vertex array has no attributes to read out of bounds.
+        unsafe {
+            self.raw.bind_vertex_array(Some(self.empty_vertex_array));
+            self.raw.draw_arrays(glow::TRIANGLES, 0, 3);
+        }
+    }
+
+    /// The GL errors since the last call, as one sentence; for tests and debugging.
+    pub fn take_errors(&self) -> Option<String> {
+        let mut names = Vec::new();
+        // A lost context returns errors for ever, hence the bound.
+        while names.len() < 16 {
+            // SAFETY: no arguments.
+            match unsafe { self.raw.get_error() } {
+                glow::NO_ERROR => break,
+                glow::INVALID_ENUM => names.push("INVALID_ENUM"),
+                glow::INVALID_VALUE => names.push("INVALID_VALUE"),
+                glow::INVALID_OPERATION => names.push("INVALID_OPERATION"),
+                glow::OUT_OF_MEMORY => names.push("OUT_OF_MEMORY"),
+                glow::INVALID_FRAMEBUFFER_OPERATION => names.push("INVALID_FRAMEBUFFER_OPERATION"),
+                _ => names.push("unknown error"),
+            }
+        }
+        (!names.is_empty()).then(|| names.join(", "))
+    }
+}
+
+impl Drop for Context {
+    fn drop(&mut self) {
+        self.profiler.borrow_mut().delete(&self.raw);
+        self.host.delete(&self.raw);
+        // SAFETY: created in `new`, deleted once.
+        unsafe { self.raw.delete_vertex_array(self.empty_vertex_array) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    unsafe extern "system" fn no_bits(target: u32, parameter: u32, bits: *mut i32) {
+        assert_eq!((target, parameter), (0x88BF, 0x8864));
+        // SAFETY: one integer, as the signature says.
+        unsafe { *bits = 0 };
+    }
+
+    unsafe extern "system" fn many_bits(_: u32, _: u32, bits: *mut i32) {
+        // SAFETY: as above.
+        unsafe { *bits = 36 };
+    }
+
+    #[test]
+    fn timer_queries_without_bits_tell_no_time() {
+        let with = |get_query| EntryPoints { get_query, ..EntryPoints::default() };
+        assert!(!with(Some(no_bits as GetQuery)).counts_time());
+        assert!(with(Some(many_bits as GetQuery)).counts_time());
+        assert!(with(None).counts_time());
+    }
+}

@@ -1,0 +1,290 @@
+//! Time per pass.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+#[cfg(not(target_arch = "wasm32"))]
+use std::time::Instant;
+
+use glow::HasContext;
+#[cfg(target_arch = "wasm32")]
+use web_time::Instant;
+
+use super::{Capabilities, GlApi};
+
+/// EXT_disjoint_timer_query: whether the clock was disturbed since the last question.
+const GPU_DISJOINT: u32 = 0x8FBB;
+/// Results are asked for this many frames late, when they are there without waiting.
+const FRAMES_LATE: usize = 4;
+
+/// How passes are timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Profiling {
+    /// Not at all.
+    Off,
+    /// Timer queries where they can be trusted, else nothing. Never waits: for programs that show frames.
+    Queries,
+    /// Timer queries where they can be trusted, else [`Profiling::Finish`].
+    Auto,
+    /// glFinish before and after each pass, and a CPU clock. The only right way on a CPU rasterizer, whose
+    /// timer queries cover the last tile alone.
+    Finish,
+}
+
+/// Measured time of one pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassTime {
+    /// Name given to [`super::Context::pass`].
+    pub name: &'static str,
+    /// Time on the GPU or, on a CPU rasterizer, on the wall clock.
+    pub time: Duration,
+}
+
+enum Record {
+    Clock(Duration),
+    Query(glow::Query),
+    /// A query whose result GL leaves undefined.
+    Undefined(glow::Query),
+}
+
+/// Passes do not nest for timer queries: an inner pass of a timed one is part of it.
+pub(super) struct Profiler {
+    mode: Profiling,
+    queries: bool,
+    api: GlApi,
+    depth: usize,
+    started: Option<Instant>,
+    /// The result of the query that is active will be undefined.
+    undefined: bool,
+    records: Vec<(&'static str, Record)>,
+    /// Records of frames whose results are not read yet, oldest first.
+    frames: VecDeque<Vec<(&'static str, Record)>>,
+    /// Frames among those whose results are worthless, since the clock was disturbed.
+    disturbed: usize,
+    pool: Vec<glow::Query>,
+}
+
+impl Profiler {
+    pub(super) fn new(capabilities: &Capabilities) -> Profiler {
+        Profiler {
+            mode: Profiling::Off,
+            queries: capabilities.timer_queries,
+            api: capabilities.api,
+            depth: 0,
+            started: None,
+            undefined: false,
+            records: Vec::with_capacity(64),
+            frames: VecDeque::with_capacity(FRAMES_LATE + 4),
+            disturbed: 0,
+            pool: Vec::new(),
+        }
+    }
+
+    pub(super) fn set(&mut self, gl: &glow::Context, mode: Profiling) {
+        self.mode = mode;
+        self.take(gl);
+    }
+
+    fn is_on(&self) -> bool {
+        match self.mode {
+            Profiling::Off => false,
+            Profiling::Queries => self.queries,
+            Profiling::Auto | Profiling::Finish => true,
+        }
+    }
+
+    pub(super) fn begin(&mut self, gl: &glow::Context, name: &'static str) {
+        self.depth += 1;
+        if !self.is_on() || self.depth > 1 {
+            return;
+        }
+        // SAFETY: one query at a time is active, since inner passes return above.
+        unsafe {
+            if self.queries && self.mode != Profiling::Finish {
+                let query = self.pool.pop().map_or_else(|| gl.create_query(), Ok);
+                if let Ok(query) = query {
+                    gl.begin_query(glow::TIME_ELAPSED, query);
+                    self.records.push((name, Record::Query(query)));
+                }
+            } else {
+                gl.finish();
+                self.started = Some(Instant::now());
+                self.records.push((name, Record::Clock(Duration::ZERO)));
+            }
+        }
+    }
+
+    /// What is drawn in this pass leaves the result of its query undefined.
+    pub(super) fn make_undefined(&mut self) {
+        self.undefined = self.depth > 0;
+    }
+
+    pub(super) fn end(&mut self, gl: &glow::Context) {
+        self.depth -= 1;
+        if !self.is_on() || self.depth > 0 {
+            return;
+        }
+        let undefined = std::mem::take(&mut self.undefined);
+        // SAFETY: ends the query that `begin` started.
+        unsafe {
+            match self.records.last_mut() {
+                Some((_, record @ Record::Query(_))) => {
+                    gl.end_query(glow::TIME_ELAPSED);
+                    if let (Record::Query(query), true) = (&*record, undefined) {
+                        *record = Record::Undefined(*query);
+                    }
+                }
+                Some((_, Record::Clock(time))) => {
+                    gl.finish();
+                    *time = self.started.take().map_or(Duration::ZERO, |t| t.elapsed());
+                }
+                Some((_, Record::Undefined(_))) | None => {}
+            }
+        }
+    }
+
+    pub(super) fn delete(&mut self, gl: &glow::Context) {
+        self.take(gl);
+        // SAFETY: each query was created here and is deleted once.
+        self.pool.drain(..).for_each(|query| unsafe { gl.delete_query(query) });
+    }
+
+    pub(super) fn take(&mut self, gl: &glow::Context) -> Vec<PassTime> {
+        let mut times = Vec::with_capacity(self.records.len());
+        while let Some(mut frame) = self.frames.pop_front() {
+            read(gl, &mut frame, &mut self.pool, &mut times);
+        }
+        read(gl, &mut self.records, &mut self.pool, &mut times);
+        times
+    }
+
+    pub(super) fn end_frame(&mut self, gl: &glow::Context, times: &mut Vec<PassTime>) -> u32 {
+        if self.records.is_empty() {
+            return 0;
+        }
+        let ready = |frame: &Vec<(&'static str, Record)>| match frame.last() {
+            // SAFETY: the query has ended; queries of one kind finish in order.
+            Some((_, Record::Query(query))) => unsafe {
+                gl.get_query_parameter_u32(*query, glow::QUERY_RESULT_AVAILABLE) != 0
+            },
+            _ => true,
+        };
+        let (before, mut count, mut taken) = (times.len(), 0, 0);
+        let mut spare = Vec::new();
+        if self.frames.len() >= FRAMES_LATE && self.frames.front().is_some_and(ready) {
+            spare = self.frames.pop_front().unwrap_or_default();
+            count = u32::from(read(gl, &mut spare, &mut self.pool, times));
+            taken = 1;
+        }
+        // SAFETY: the extension that gives ES its timer queries has this state.
+        if self.queries && self.api == GlApi::Es && unsafe { gl.get_parameter_bool(GPU_DISJOINT) } {
+            self.disturbed = self.frames.len() + taken + 1;
+        }
+        if taken > 0 && self.disturbed > 0 {
+            self.disturbed -= 1;
+            times.truncate(before);
+            count = 0;
+        }
+        self.frames.push_back(std::mem::replace(&mut self.records, spare));
+        count
+    }
+}
+
+/// Reads results, waiting for those that are not there yet, and takes back their queries. False, and nothing read, if
+/// one of them is undefined: times of a part of the passes would be taken for all.
+fn read(
+    gl: &glow::Context,
+    records: &mut Vec<(&'static str, Record)>,
+    pool: &mut Vec<glow::Query>,
+    times: &mut Vec<PassTime>,
+) -> bool {
+    let is_defined = !records.iter().any(|(_, record)| matches!(record, Record::Undefined(_)));
+    for (name, record) in records.drain(..) {
+        let time = match record {
+            Record::Clock(time) => time,
+            Record::Query(query) | Record::Undefined(query) => {
+                pool.push(query);
+                if !is_defined {
+                    continue;
+                }
+                // SAFETY: the query has ended; reading its result waits for it.
+                Duration::from_nanos(unsafe { gl.get_query_parameter_u64(query, glow::QUERY_RESULT) })
+            }
+        };
+        times.push(PassTime { name, time });
+    }
+    is_defined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use yoro_context::{Backend, Headless};
+
+    fn profiler(gl: &glow::Context, timer_queries: bool) -> Profiler {
+        Profiler::new(&Capabilities { timer_queries, ..Capabilities::query(gl, false, || true).unwrap() })
+    }
+
+    /// llvmpipe has timer queries; that their times mean nothing does not matter here.
+    #[test]
+    fn query_results_come_some_frames_late() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let mut profiler = profiler(gl.raw(), true);
+        profiler.set(gl.raw(), Profiling::Queries);
+        let mut times = Vec::new();
+        for frame in 0..10 {
+            for name in ["first", "second"] {
+                profiler.begin(gl.raw(), name);
+                profiler.end(gl.raw());
+            }
+            gl.finish();
+            let read = profiler.end_frame(gl.raw(), &mut times);
+            assert_eq!(read, (frame >= FRAMES_LATE) as u32, "frame {frame}");
+        }
+        let names: Vec<_> = times.iter().map(|t| t.name).collect();
+        assert_eq!(names, ["first", "second"].repeat(10 - FRAMES_LATE));
+        assert_eq!(profiler.take(gl.raw()).len(), 2 * FRAMES_LATE);
+        profiler.delete(gl.raw());
+        assert_eq!(gl.take_errors(), None);
+    }
+
+    #[test]
+    fn a_frame_with_an_undefined_time_has_none() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let mut profiler = profiler(gl.raw(), true);
+        profiler.set(gl.raw(), Profiling::Queries);
+        let mut times = Vec::new();
+        let mut told = 0;
+        for frame in 0..10 {
+            for name in ["first", "second"] {
+                profiler.begin(gl.raw(), name);
+                if frame % 2 == 0 && name == "first" {
+                    profiler.make_undefined();
+                }
+                profiler.end(gl.raw());
+            }
+            // Outside of a pass nothing is timed.
+            profiler.make_undefined();
+            gl.finish();
+            told += profiler.end_frame(gl.raw(), &mut times);
+        }
+        assert_eq!((told, times.len()), (3, 6));
+        profiler.take(gl.raw());
+        assert!(profiler.pool.len() <= 2 * (FRAMES_LATE + 1), "queries are used again");
+        profiler.delete(gl.raw());
+        assert_eq!(gl.take_errors(), None);
+    }
+
+    #[test]
+    fn without_queries_nothing_is_timed_and_nothing_waits() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let mut profiler = profiler(gl.raw(), false);
+        profiler.set(gl.raw(), Profiling::Queries);
+        let mut times = Vec::new();
+        profiler.begin(gl.raw(), "pass");
+        profiler.end(gl.raw());
+        assert_eq!((profiler.end_frame(gl.raw(), &mut times), times.len()), (0, 0));
+    }
+}

@@ -1,0 +1,199 @@
+//! Shader programs from the files of [`yoro_shaders`].
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
+use glow::HasContext;
+use yoro_shaders::{Assembled, MissingFile};
+
+use super::{Context, GlApi, GlError, Texture};
+
+/// Which files and defines make a program.
+#[derive(Clone, Copy, Debug)]
+pub enum ShaderSource<'a> {
+    /// Vertex and fragment shader.
+    Raster {
+        /// Vertex shader file.
+        vertex: &'a str,
+        /// Fragment shader file.
+        fragment: &'a str,
+    },
+    /// `screen.vert` and a fragment shader.
+    Screen(&'a str),
+    /// Compute shader file.
+    Compute(&'a str),
+}
+
+/// What a program was made of.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ProgramRecipe {
+    /// The file of each stage, as [`yoro_shaders::files`] names it: vertex and fragment shader, or a compute shader.
+    pub files: Vec<String>,
+    /// Names and values of the preprocessor's macros, in the order of definition.
+    pub defines: Vec<(String, String)>,
+}
+
+/// A file's text, in the newest GLSL ES that the context compiles and no newer than needed.
+fn assemble(gl: &Context, path: &str, defines: &[(&str, String)]) -> Result<Assembled, GlError> {
+    let version = match gl.capabilities().api {
+        GlApi::Es if !gl.capabilities().compute => "300 es",
+        _ => "310 es",
+    };
+    yoro_shaders::assemble(path, version, defines).map_err(|MissingFile(file)| GlError::MissingShader(file))
+}
+
+/// A linked program with its uniforms.
+pub struct Program {
+    gl: Rc<Context>,
+    raw: glow::Program,
+    uniforms: HashMap<String, glow::UniformLocation>,
+}
+
+impl Program {
+    /// Compiles and links.
+    ///
+    /// # Errors
+    /// [`GlError::Shader`] with file, line and the driver's log; [`GlError::MissingShader`];
+    /// [`GlError::Unsupported`] for a compute shader without OpenGL ES 3.1.
+    pub fn new(
+        gl: &Rc<Context>,
+        source: ShaderSource,
+        defines: &[(&str, String)],
+    ) -> Result<Program, GlError> {
+        let stages: Vec<(u32, &'static str, &str)> = match source {
+            ShaderSource::Raster { vertex, fragment } => vec![
+                (glow::VERTEX_SHADER, "vertex shader", vertex),
+                (glow::FRAGMENT_SHADER, "fragment shader", fragment),
+            ],
+            ShaderSource::Screen(fragment) => vec![
+                (glow::VERTEX_SHADER, "vertex shader", "screen.vert"),
+                (glow::FRAGMENT_SHADER, "fragment shader", fragment),
+            ],
+            ShaderSource::Compute(file) => vec![(glow::COMPUTE_SHADER, "compute shader", file)],
+        };
+        if matches!(source, ShaderSource::Compute(_)) && !gl.capabilities().compute {
+            return Err(GlError::Unsupported(format!(
+                "{} has no compute shaders (OpenGL ES 3.1); choose the pipeline gather",
+                gl.capabilities().renderer
+            )));
+        }
+        let raw_gl = gl.raw();
+        let object = |reason| GlError::Object { what: "a shader".into(), reason };
+        let mut shaders = Vec::new();
+        let mut last_file = "";
+        let recipe = ProgramRecipe {
+            files: stages.iter().map(|(_, _, file)| (*file).to_owned()).collect(),
+            defines: defines.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
+        };
+        // SAFETY: names are created here and used while alive.
+        unsafe {
+            let raw = raw_gl.create_program().map_err(object)?;
+            gl.count(1);
+            let mut program = Program { gl: gl.clone(), raw, uniforms: HashMap::new() };
+            for (kind, stage, file) in stages {
+                last_file = file;
+                let assembled = assemble(gl, file, defines)?;
+                let shader = raw_gl.create_shader(kind).map_err(object)?;
+                raw_gl.shader_source(shader, &assembled.text);
+                raw_gl.compile_shader(shader);
+                raw_gl.attach_shader(raw, shader);
+                shaders.push(shader);
+                if !raw_gl.get_shader_compile_status(shader) {
+                    let log = assembled.name_files(&raw_gl.get_shader_info_log(shader));
+                    shaders.iter().for_each(|&s| raw_gl.delete_shader(s));
+                    return Err(GlError::Shader { stage, file: file.to_owned(), log });
+                }
+            }
+            raw_gl.link_program(raw);
+            shaders.iter().for_each(|&s| raw_gl.delete_shader(s));
+            if !raw_gl.get_program_link_status(raw) {
+                let log = raw_gl.get_program_info_log(raw);
+                return Err(GlError::Shader { stage: "program", file: last_file.to_owned(), log });
+            }
+            gl.recipes.borrow_mut().insert(recipe);
+            for i in 0..raw_gl.get_program_parameter_i32(raw, glow::ACTIVE_UNIFORMS) as u32 {
+                if let Some(uniform) = raw_gl.get_active_uniform(raw, i)
+                    && let Some(location) = raw_gl.get_uniform_location(raw, &uniform.name)
+                {
+                    let name = uniform.name.trim_end_matches("[0]").to_owned();
+                    program.uniforms.insert(name, location);
+                }
+            }
+            Ok(program)
+        }
+    }
+
+    /// Makes the program current.
+    pub fn bind(&self) -> &Program {
+        // SAFETY: a linked program.
+        unsafe { self.gl.raw().use_program(Some(self.raw)) };
+        self
+    }
+
+    /// Sets a uniform of the current program by name. A name that the compiler has removed is ignored, since
+    /// variants of one shader use different uniforms. Arrays go by their name without brackets.
+    pub fn set(&self, name: &str, value: impl UniformValue) -> &Program {
+        if let Some(location) = self.uniforms.get(name) {
+            // SAFETY: the location belongs to this program, which the caller has bound.
+            unsafe { value.set(self.gl.raw(), location) };
+        }
+        self
+    }
+
+    /// Points a sampler at a texture unit and binds a texture there.
+    pub fn texture(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
+        super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D, texture);
+        self.set(name, unit as i32)
+    }
+
+    /// As [`Program::texture`], for a texture of this library: a 2-D one or an array.
+    pub fn texture_of(&self, name: &str, unit: u32, texture: &Texture) -> &Program {
+        texture.bind(unit);
+        self.set(name, unit as i32)
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // SAFETY: created in `new`, deleted once.
+        unsafe { self.gl.raw().delete_program(self.raw) };
+        self.gl.count(-1);
+    }
+}
+
+/// A value that can be given to a uniform.
+pub trait UniformValue {
+    /// Uploads the value.
+    ///
+    /// # Safety
+    /// The location belongs to the current program.
+    unsafe fn set(self, gl: &glow::Context, location: &glow::UniformLocation);
+}
+
+macro_rules! uniform {
+    ($ty:ty, |$gl:ident, $location:ident, $v:ident| $body:expr) => {
+        impl UniformValue for $ty {
+            unsafe fn set(self, $gl: &glow::Context, $location: &glow::UniformLocation) {
+                let $v = self;
+                // SAFETY: promised by the caller.
+                unsafe { $body }
+            }
+        }
+    };
+}
+
+uniform!(f32, |gl, l, v| gl.uniform_1_f32(Some(l), v));
+uniform!(i32, |gl, l, v| gl.uniform_1_i32(Some(l), v));
+uniform!(u32, |gl, l, v| gl.uniform_1_u32(Some(l), v));
+uniform!(bool, |gl, l, v| gl.uniform_1_i32(Some(l), v as i32));
+uniform!(IVec2, |gl, l, v| gl.uniform_2_i32(Some(l), v.x, v.y));
+uniform!(Vec2, |gl, l, v| gl.uniform_2_f32(Some(l), v.x, v.y));
+uniform!(Vec3, |gl, l, v| gl.uniform_3_f32(Some(l), v.x, v.y, v.z));
+uniform!(Vec4, |gl, l, v| gl.uniform_4_f32(Some(l), v.x, v.y, v.z, v.w));
+uniform!(Mat4, |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, v.as_ref()));
+uniform!(&[IVec2], |gl, l, v| gl.uniform_2_i32_slice(Some(l), bytemuck::cast_slice(v)));
+uniform!(&[Vec3], |gl, l, v| gl.uniform_3_f32_slice(Some(l), bytemuck::cast_slice(v)));
+uniform!(&[Vec4], |gl, l, v| gl.uniform_4_f32_slice(Some(l), bytemuck::cast_slice(v)));
+uniform!(&[Mat4], |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, bytemuck::cast_slice(v)));
+uniform!(&[f32], |gl, l, v| gl.uniform_1_f32_slice(Some(l), v));

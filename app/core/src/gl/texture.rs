@@ -1,0 +1,265 @@
+//! 2-D textures and arrays of them with immutable storage.
+
+use std::rc::Rc;
+
+use glow::HasContext;
+
+use super::{Context, GlError};
+
+/// Pixel formats in use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8-bit RGBA, linear or already encoded.
+    Rgba8,
+    /// 8-bit sRGB colour with linear alpha, decoded when sampled.
+    Srgb8Alpha8,
+    /// 8-bit single channel.
+    R8,
+    /// 8-bit, two channels.
+    Rg8,
+    /// 10-bit RGB, 2-bit alpha.
+    Rgb10A2,
+    /// Half float RGBA.
+    Rgba16F,
+    /// Packed float RGB without sign or alpha.
+    R11G11B10F,
+    /// Half float, two channels.
+    Rg16F,
+    /// Float, one channel.
+    R32F,
+    /// Float, two channels.
+    Rg32F,
+    /// Float RGBA.
+    Rgba32F,
+    /// Unsigned 32-bit integer, one channel.
+    R32Ui,
+    /// 24-bit depth.
+    Depth24,
+    /// Float depth.
+    Depth32F,
+    /// 16-bit depth.
+    Depth16,
+}
+
+impl Format {
+    /// (internal format, pixel format, type) as GL names them.
+    pub fn gl(self) -> (u32, u32, u32) {
+        match self {
+            Format::Rgba8 => (glow::RGBA8, glow::RGBA, glow::UNSIGNED_BYTE),
+            Format::Srgb8Alpha8 => (glow::SRGB8_ALPHA8, glow::RGBA, glow::UNSIGNED_BYTE),
+            Format::R8 => (glow::R8, glow::RED, glow::UNSIGNED_BYTE),
+            Format::Rg8 => (glow::RG8, glow::RG, glow::UNSIGNED_BYTE),
+            Format::Rgb10A2 => (glow::RGB10_A2, glow::RGBA, glow::UNSIGNED_INT_2_10_10_10_REV),
+            Format::Rgba16F => (glow::RGBA16F, glow::RGBA, glow::HALF_FLOAT),
+            Format::R11G11B10F => (glow::R11F_G11F_B10F, glow::RGB, glow::UNSIGNED_INT_10F_11F_11F_REV),
+            Format::Rg16F => (glow::RG16F, glow::RG, glow::HALF_FLOAT),
+            Format::R32F => (glow::R32F, glow::RED, glow::FLOAT),
+            Format::Rg32F => (glow::RG32F, glow::RG, glow::FLOAT),
+            Format::Rgba32F => (glow::RGBA32F, glow::RGBA, glow::FLOAT),
+            Format::R32Ui => (glow::R32UI, glow::RED_INTEGER, glow::UNSIGNED_INT),
+            Format::Depth24 => (glow::DEPTH_COMPONENT24, glow::DEPTH_COMPONENT, glow::UNSIGNED_INT),
+            Format::Depth32F => (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT),
+            Format::Depth16 => (glow::DEPTH_COMPONENT16, glow::DEPTH_COMPONENT, glow::UNSIGNED_SHORT),
+        }
+    }
+
+    /// Whether the format holds depth.
+    pub fn is_depth(self) -> bool {
+        matches!(self, Format::Depth24 | Format::Depth32F | Format::Depth16)
+    }
+}
+
+/// How a texture is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// Nearest texel, clamped to the edge: depth, integers, exact copies.
+    Nearest,
+    /// Bilinear, clamped to the edge: render targets.
+    Linear,
+    /// Trilinear, anisotropic, repeating: material maps.
+    Material,
+    /// As [`Filter::Material`], with nearest magnification.
+    MaterialNearest,
+    /// Depth compared with a reference (LEQUAL), 2x2 results averaged: a shadow map behind `sampler2DShadow`.
+    Compare,
+}
+
+/// More taps cost time and show nothing.
+const MAX_ANISOTROPY: f32 = 8.0;
+
+/// A 2-D texture, or an array of them.
+pub struct Texture {
+    gl: Rc<Context>,
+    raw: glow::Texture,
+    /// TEXTURE_2D or TEXTURE_2D_ARRAY.
+    target: u32,
+    size: [u32; 2],
+    format: Format,
+    /// All levels and layers.
+    bytes: usize,
+}
+
+impl Texture {
+    /// Allocates storage; material filters get a full mip chain, the others one level.
+    ///
+    /// # Errors
+    /// [`GlError::TooLarge`] beyond the driver's limit, [`GlError::Object`] when it has no memory.
+    pub fn new(gl: &Rc<Context>, size: [u32; 2], format: Format, filter: Filter) -> Result<Texture, GlError> {
+        Texture::with_layers(gl, size, None, format, filter)
+    }
+
+    /// Allocates an array of `layers` textures, to be rendered to and sampled.
+    ///
+    /// # Errors
+    /// As [`Texture::new`].
+    pub fn array(
+        gl: &Rc<Context>,
+        size: [u32; 2],
+        layers: u32,
+        format: Format,
+        filter: Filter,
+    ) -> Result<Texture, GlError> {
+        Texture::with_layers(gl, size, Some(layers), format, filter)
+    }
+
+    fn with_layers(
+        gl: &Rc<Context>,
+        size: [u32; 2],
+        layers: Option<u32>,
+        format: Format,
+        filter: Filter,
+    ) -> Result<Texture, GlError> {
+        let limit = gl.capabilities().max_texture_size;
+        let [width, height] = size.map(|n| n.max(1));
+        if width > limit || height > limit {
+            return Err(GlError::TooLarge { width, height, limit });
+        }
+        let mipmapped = matches!(filter, Filter::Material | Filter::MaterialNearest);
+        let levels = if mipmapped { 32 - width.max(height).leading_zeros() } else { 1 };
+        let (min, mag, wrap) = match filter {
+            Filter::Nearest => (glow::NEAREST, glow::NEAREST, glow::CLAMP_TO_EDGE),
+            Filter::Linear | Filter::Compare => (glow::LINEAR, glow::LINEAR, glow::CLAMP_TO_EDGE),
+            Filter::Material => (glow::LINEAR_MIPMAP_LINEAR, glow::LINEAR, glow::REPEAT),
+            Filter::MaterialNearest => (glow::LINEAR_MIPMAP_LINEAR, glow::NEAREST, glow::REPEAT),
+        };
+        let target = if layers.is_some() { glow::TEXTURE_2D_ARRAY } else { glow::TEXTURE_2D };
+        let raw_gl = gl.raw();
+        // SAFETY: sizes are inside the limit, enums fit each other, the texture is new.
+        let raw = unsafe {
+            let raw = raw_gl
+                .create_texture()
+                .map_err(|reason| GlError::Object { what: "a texture".into(), reason })?;
+            raw_gl.bind_texture(target, Some(raw));
+            let (levels, internal, w, h) = (levels as i32, format.gl().0, width as i32, height as i32);
+            match layers {
+                Some(layers) => raw_gl.tex_storage_3d(target, levels, internal, w, h, layers as i32),
+                None => raw_gl.tex_storage_2d(target, levels, internal, w, h),
+            }
+            for (name, value) in [
+                (glow::TEXTURE_MIN_FILTER, min),
+                (glow::TEXTURE_MAG_FILTER, mag),
+                (glow::TEXTURE_WRAP_S, wrap),
+                (glow::TEXTURE_WRAP_T, wrap),
+            ] {
+                raw_gl.tex_parameter_i32(target, name, value as i32);
+            }
+            if filter == Filter::Compare {
+                let mode = glow::COMPARE_REF_TO_TEXTURE as i32;
+                raw_gl.tex_parameter_i32(target, glow::TEXTURE_COMPARE_MODE, mode);
+                raw_gl.tex_parameter_i32(target, glow::TEXTURE_COMPARE_FUNC, glow::LEQUAL as i32);
+            }
+            let anisotropy = gl.capabilities().max_anisotropy.min(MAX_ANISOTROPY);
+            if mipmapped && anisotropy > 1.0 {
+                raw_gl.tex_parameter_f32(target, glow::TEXTURE_MAX_ANISOTROPY_EXT, anisotropy);
+            }
+            raw
+        };
+        gl.count(1);
+        let mut texture = Texture { gl: gl.clone(), raw, target, size: [width, height], format, bytes: 0 };
+        // A full mip chain adds a third.
+        let level_0 = texture.byte_len() * layers.unwrap_or(1) as usize;
+        texture.bytes = if mipmapped { level_0 / 3 * 4 } else { level_0 };
+        gl.count_texture_bytes(texture.bytes as isize);
+        // SAFETY: no arguments.
+        if unsafe { raw_gl.get_error() } == glow::OUT_OF_MEMORY {
+            let reason = "out of memory; choose a smaller size".into();
+            return Err(GlError::Object { what: format!("a {width}x{height} texture"), reason });
+        }
+        Ok(texture)
+    }
+
+    /// Uploads the whole of level 0 (rows from the bottom, tightly packed).
+    pub fn upload(&self, bytes: &[u8]) {
+        let (_, format, ty) = self.format.gl();
+        let [w, h] = self.size;
+        assert_eq!(bytes.len(), self.byte_len(), "upload of the wrong size");
+        self.gl.set_tight_unpack();
+        // SAFETY: the slice is as long as GL reads.
+        unsafe {
+            let gl = self.gl.raw();
+            gl.bind_texture(glow::TEXTURE_2D, Some(self.raw));
+            let data = glow::PixelUnpackData::Slice(Some(bytes));
+            gl.tex_sub_image_2d(glow::TEXTURE_2D, 0, 0, 0, w as i32, h as i32, format, ty, data);
+        }
+    }
+
+    /// Fills the mip levels from level 0.
+    pub fn generate_mipmaps(&self) {
+        // SAFETY: a texture of this object.
+        unsafe {
+            self.gl.raw().bind_texture(glow::TEXTURE_2D, Some(self.raw));
+            self.gl.raw().generate_mipmap(glow::TEXTURE_2D);
+        }
+    }
+
+    /// Bytes of level 0 as [`Texture::upload`] takes them.
+    pub fn byte_len(&self) -> usize {
+        let texel = match self.format {
+            Format::R8 => 1,
+            Format::Rg8 | Format::Depth16 => 2,
+            Format::Rgba8 | Format::Srgb8Alpha8 | Format::Rgb10A2 | Format::R11G11B10F | Format::Rg16F => 4,
+            Format::R32F | Format::R32Ui | Format::Depth24 | Format::Depth32F => 4,
+            Format::Rgba16F | Format::Rg32F => 8,
+            Format::Rgba32F => 16,
+        };
+        self.size[0] as usize * self.size[1] as usize * texel
+    }
+
+    /// The GL name, to hand to code that takes foreign textures.
+    pub fn raw(&self) -> glow::Texture {
+        self.raw
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Pixel format.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// Makes the texture available on a texture unit.
+    pub fn bind(&self, unit: u32) {
+        bind_texture(&self.gl, unit, self.target, self.raw);
+    }
+}
+
+/// Binds any texture, own or foreign, to a unit. `target` is that of the texture.
+pub(crate) fn bind_texture(gl: &Context, unit: u32, target: u32, texture: glow::Texture) {
+    // SAFETY: a live texture name of this target.
+    unsafe {
+        gl.raw().active_texture(glow::TEXTURE0 + unit);
+        gl.raw().bind_texture(target, Some(texture));
+    }
+}
+
+impl Drop for Texture {
+    fn drop(&mut self) {
+        // SAFETY: created in `new`, deleted once.
+        unsafe { self.gl.raw().delete_texture(self.raw) };
+        self.gl.count(-1);
+        self.gl.count_texture_bytes(-(self.bytes as isize));
+    }
+}

@@ -1,0 +1,42 @@
+//! Render one eye, synthesize the other: stereo from the colour and depth of a single view.
+//!
+//! [`eyes`] says where the eyes are and how pixels move between them; [`synthesis`] takes two textures of one eye and
+//! draws the other; [`gl`] is what both stand on, objects over [`glow`] in a context that the caller lends. With the
+//! feature `vulkan`, `yoro::vulkan` records the same passes into a command buffer.
+//!
+//! An engine renders [`eyes::SynthesisViews::source`] with its own code, gives colour and depth to
+//! [`synthesis::Synthesis::synthesize`], and has the other eye in its own framebuffer:
+//!
+//! ```no_run
+//! use yoro::eyes::{DepthRange, EyeOptions, GuardBand, Pose, View};
+//! use yoro::gl::{Context, Destination};
+//! use yoro::synthesis::{self, GlState, Outputs, Source, SynthesisOptions};
+//!
+//! # fn render(_: &View) -> Source { unimplemented!() }
+//! # fn example(glow_context: glow::Context, framebuffer: glow::Framebuffer) -> Result<(), Box<dyn std::error::Error>> {
+//! // Once, with the engine's GL context current:
+//! let gl = Context::new(glow_context)?;
+//! let options = SynthesisOptions { gl_state: GlState::Preserve, ..SynthesisOptions::default() };
+//! let mut pipeline = synthesis::create(&gl, &options, Outputs::default())?;
+//!
+//! // Each frame: two eyes around the head, of which the engine renders one, a little wider.
+//! let eyes = EyeOptions { ipd: 0.064, depth: DepthRange::PAPER, ..EyeOptions::default() }.pair(Pose::IDENTITY);
+//! let views = eyes.synthesis(GuardBand::Distance(1.0))?;
+//! let source: Source = render(&views.source);
+//! let target = Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: views.target.size };
+//! pipeline.synthesize(source, &views.warp, &target)?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! With poses and fields of view from OpenXR, [`eyes::Frustum::from_fov`] and [`eyes::EyePair`] take the place of
+//! [`eyes::EyeOptions`]. What a call does to the context's state is in the table of [`synthesis::Synthesis`].
+//! `examples/engine.rs` is a complete host.
+//!
+//! This crate must never know a scene, a renderer, a window, a file or a command line: an engine brings its own.
+
+pub mod eyes;
+pub mod gl;
+pub mod synthesis;
+#[cfg(feature = "vulkan")]
+pub mod vulkan;

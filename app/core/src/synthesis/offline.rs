@@ -1,0 +1,99 @@
+//! Synthesis of images in memory: upload, run, read back.
+
+use std::rc::Rc;
+
+use super::{Outputs, Source, Synthesis, SynthesisOptions, create};
+use crate::eyes::Warp;
+use crate::gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
+
+/// A pipeline with textures of its own. Rows of all arrays run from the bottom, as in GL. Whatever state the context is
+/// in, the result is the same; uploads and readbacks change state that [`SynthesisOptions::gl_state`] does not cover.
+pub struct Offline {
+    gl: Rc<Context>,
+    pipeline: Box<dyn Synthesis>,
+    color: Option<Texture>,
+    depth: Option<Texture>,
+    target: RenderTarget,
+}
+
+/// What [`Offline::run`] gives back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SynthesizedImage {
+    /// RGBA, 8 bits each, of the target's size.
+    pub rgba: Vec<u8>,
+    /// Source map; see [`Outputs::source_map`].
+    pub source_map: Vec<u32>,
+}
+
+impl Offline {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// As [`create`].
+    pub fn new(gl: &Rc<Context>, options: &SynthesisOptions) -> Result<Offline, GlError> {
+        Offline::with_pipeline(gl, create(gl, options, Self::OUTPUTS)?)
+    }
+
+    /// What the pipeline must write.
+    #[doc(hidden)]
+    pub const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
+
+    /// As [`Offline::new`], with a pipeline made for [`Offline::OUTPUTS`]: for tests.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses the target.
+    #[doc(hidden)]
+    pub fn with_pipeline(gl: &Rc<Context>, pipeline: Box<dyn Synthesis>) -> Result<Offline, GlError> {
+        let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
+        Ok(Offline {
+            gl: gl.clone(),
+            pipeline,
+            color: None,
+            depth: None,
+            target: RenderTarget::new(gl, [1, 1], &formats, None)?,
+        })
+    }
+
+    /// Synthesizes one image. `rgba` has 4 bytes and `depth` one value per pixel of
+    /// [`Warp::source_size`].
+    ///
+    /// # Errors
+    /// [`GlError::TooLarge`] for images beyond the driver's limit.
+    pub fn run(&mut self, rgba: &[u8], depth: &[f32], warp: &Warp) -> Result<SynthesizedImage, GlError> {
+        let size = warp.source_size;
+        let source = Source {
+            color: upload(&self.gl, &mut self.color, size, Format::Rgba8, Filter::Linear, rgba)?,
+            depth: upload(
+                &self.gl,
+                &mut self.depth,
+                size,
+                Format::R32F,
+                Filter::Nearest,
+                bytemuck::cast_slice(depth),
+            )?,
+        };
+        self.target.resize(warp.target_size)?;
+        let target = Destination::whole(&self.target);
+        self.pipeline.synthesize(source, warp, &target)?;
+        Ok(SynthesizedImage {
+            rgba: self.target.read_rgba8(0, [0, 0], warp.target_size),
+            source_map: self.target.read_u32(1, [0, 0], warp.target_size),
+        })
+    }
+}
+
+fn upload(
+    gl: &Rc<Context>,
+    slot: &mut Option<Texture>,
+    size: [u32; 2],
+    format: Format,
+    filter: Filter,
+    bytes: &[u8],
+) -> Result<glow::Texture, GlError> {
+    let texture = match slot.take() {
+        Some(texture) if texture.size() == size => texture,
+        _ => Texture::new(gl, size, format, filter)?,
+    };
+    texture.upload(bytes);
+    Ok(slot.insert(texture).raw())
+}

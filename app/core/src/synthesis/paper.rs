@@ -1,0 +1,186 @@
+//! The paper's pipeline: Algorithms 1 to 3 with its knobs, in the corrected reading.
+
+use std::fmt::{self, Display};
+use std::rc::Rc;
+use std::str::FromStr;
+
+use glam::{IVec2, Vec2};
+use glow::HasContext;
+
+use super::{Outputs, Source, Synthesis, Uniforms, draw_target, output_defines, set_source};
+use crate::eyes::Warp;
+use crate::gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
+
+/// Rows per workgroup of Algorithm 2, one invocation each.
+const ROWS: u32 = 64;
+
+/// Resolution of the ImBuffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum ImBufferSize {
+    /// One ImBuffer pixel per this many image pixels, on both axes: 1, 2, 4, 8 or 16 in the paper.
+    Divisor(u32),
+    /// A fixed size in pixels for the target, whatever the image's size.
+    Fixed([u32; 2]),
+}
+
+/// A text that is no [`ImBufferSize`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("give a divisor from 1 to 64, such as 2, or a size, such as 512x512")]
+pub struct ParseImBufferSizeError;
+
+/// A divisor from 1 to 64 (`2`), or a width and a height from 1 to 8192 (`512x512`).
+impl FromStr for ImBufferSize {
+    type Err = ParseImBufferSizeError;
+
+    fn from_str(text: &str) -> Result<ImBufferSize, ParseImBufferSizeError> {
+        let number = |t: &str| t.parse::<u32>().ok().filter(|n| (1..=8192).contains(n));
+        match text.split_once('x') {
+            Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| ImBufferSize::Fixed([w, h])),
+            None => number(text).filter(|n| *n <= 64).map(ImBufferSize::Divisor),
+        }
+        .ok_or(ParseImBufferSizeError)
+    }
+}
+
+/// As [`FromStr`] reads it.
+impl Display for ImBufferSize {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            ImBufferSize::Divisor(n) => write!(f, "{n}"),
+            ImBufferSize::Fixed([w, h]) => write!(f, "{w}x{h}"),
+        }
+    }
+}
+
+/// Knobs of the paper's pipeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields, rename_all = "kebab-case"))]
+pub struct PaperOptions {
+    /// Resolution of the ImBuffer, section "(c) Resolution-Independent Intermediate Buffers".
+    pub imbuffer: ImBufferSize,
+    /// Interpolate the shift between ImBuffer entries, section "(d) Linear Interpolation".
+    pub linear_interpolation: bool,
+    /// Height of the patcher's kernel in rows, `h` of Algorithm 3.
+    pub kernel_height: u32,
+    /// Store whole source columns and sample one depth per ImBuffer pixel, as Algorithm 2 says. Otherwise the
+    /// fractional column is stored, and the nearest depth of the block is taken.
+    pub strict: bool,
+}
+
+impl Default for PaperOptions {
+    fn default() -> PaperOptions {
+        PaperOptions {
+            imbuffer: ImBufferSize::Divisor(1),
+            linear_interpolation: true,
+            kernel_height: 3,
+            strict: false,
+        }
+    }
+}
+
+/// Fragment shader, per-row compute shader, fragment shader. Algorithm 1 reads depth and writes 4 bytes per
+/// ImBuffer pixel; Algorithm 2 reads those and reads and writes 4 bytes per ImBuffer pixel, serially along
+/// each row; Algorithm 3 reads the ImBuffer and colour.
+pub struct Paper {
+    gl: Rc<Context>,
+    outputs: Outputs,
+    options: PaperOptions,
+    reproject: Program,
+    scatter: Program,
+    patch: Program,
+    written_to: RenderTarget,
+    imbuffer: RenderTarget,
+    scale: Vec2,
+}
+
+impl Paper {
+    /// Compiles the passes.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] without OpenGL ES 3.1 or float render targets.
+    pub fn new(gl: &Rc<Context>, outputs: Outputs, options: PaperOptions) -> Result<Paper, GlError> {
+        let strict = if options.strict { vec![("STRICT", String::new())] } else { Vec::new() };
+        let mut scatter = strict.clone();
+        scatter.push(("ROWS", ROWS.to_string()));
+        let mut patch = output_defines(outputs);
+        if options.linear_interpolation && options.imbuffer != ImBufferSize::Divisor(1) {
+            patch.push(("LINEAR", String::new()));
+        }
+        let map = |format| RenderTarget::new(gl, [1, 1], &[(format, Filter::Nearest)], None);
+        Ok(Paper {
+            gl: gl.clone(),
+            outputs,
+            options,
+            scatter: Program::new(gl, ShaderSource::Compute("synthesis/paper/scatter.comp"), &scatter)?,
+            reproject: Program::new(gl, ShaderSource::Screen("synthesis/paper/reproject.frag"), &strict)?,
+            patch: Program::new(gl, ShaderSource::Screen("synthesis/paper/patch.frag"), &patch)?,
+            written_to: map(Format::R32F)?,
+            imbuffer: map(Format::R32Ui)?,
+            scale: Vec2::ONE,
+        })
+    }
+
+    fn set_imbuffer(&self, program: &Program) {
+        let size = |target: &RenderTarget| IVec2::new(target.size()[0] as i32, target.size()[1] as i32);
+        program
+            .set("imbuffer_source_size", size(&self.written_to))
+            .set("imbuffer_target_size", size(&self.imbuffer))
+            .set("imbuffer_scale", self.scale);
+    }
+}
+
+impl Synthesis for Paper {
+    fn prepare(&mut self, warp: &Warp) -> Result<(), GlError> {
+        let [width, height] = warp.target_size.map(|n| n as f32);
+        self.scale = match self.options.imbuffer {
+            ImBufferSize::Divisor(n) => Vec2::splat(n.max(1) as f32),
+            ImBufferSize::Fixed([w, h]) => Vec2::new(width / w.max(1) as f32, height / h.max(1) as f32),
+        };
+        let pixels = |n: u32, scale: f32| ((n as f32 / scale - 1e-3).ceil() as u32).max(1);
+        // Rows are the source's in both buffers.
+        let rows = pixels(warp.source_size[1], self.scale.y);
+        self.written_to.resize([pixels(warp.source_size[0], self.scale.x), rows])?;
+        self.imbuffer.resize([pixels(warp.target_size[0], self.scale.x), rows])
+    }
+
+    fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError> {
+        self.gl.set_first_unit();
+        self.prepare(warp)?;
+        self.gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
+        let gl = &self.gl;
+        let raw = gl.raw();
+        let uniforms = Uniforms::new(warp, target.origin);
+        gl.pass("paper reproject", || {
+            self.written_to.bind();
+            set_source(self.reproject.bind(), source, &uniforms);
+            self.set_imbuffer(&self.reproject);
+            gl.draw_screen();
+        });
+        gl.pass("paper scatter", || {
+            self.imbuffer.bind();
+            let imbuffer = self.imbuffer.color(0).raw();
+            set_source(self.scatter.bind(), source, &uniforms);
+            self.set_imbuffer(&self.scatter);
+            self.scatter.texture("written_to_map", 2, self.written_to.color(0).raw());
+            // SAFETY: the image is an immutable R32UI texture; the shader checks its row.
+            unsafe {
+                raw.clear_buffer_u32_slice(glow::COLOR, 0, &[u32::MAX; 4]);
+                raw.bind_image_texture(0, Some(imbuffer), 0, false, 0, glow::READ_WRITE, glow::R32UI);
+                raw.dispatch_compute(1, self.imbuffer.size()[1].div_ceil(ROWS), 1);
+                raw.memory_barrier(glow::TEXTURE_FETCH_BARRIER_BIT);
+            }
+        });
+        gl.pass("paper patch", || {
+            set_source(self.patch.bind(), source, &uniforms);
+            self.set_imbuffer(&self.patch);
+            self.patch.set("kernel_height", self.options.kernel_height.clamp(1, 15) as i32);
+            self.patch.texture("imbuffer", 2, self.imbuffer.color(0).raw());
+            draw_target(gl, target, self.outputs);
+        });
+        gl.end_synthesis();
+        Ok(())
+    }
+}

@@ -1,0 +1,201 @@
+//! What the passes are given, in OpenGL as uniforms and in Vulkan as one block.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{IVec2, Vec2, Vec4};
+
+use super::ForwardLaw;
+use crate::eyes::Warp;
+use crate::gl::Program;
+
+/// Columns and rows of a tile; `include/tiles.glsl`.
+const TILE: [u32; 2] = [16, 8];
+
+/// Tiles that an image of this size has across and up.
+pub(crate) fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
+    [columns.div_ceil(TILE[0]), rows.div_ceil(TILE[1])]
+}
+
+macro_rules! uniforms {
+    ($($(#[doc = $doc:literal])* $name:ident: $ty:ty = $glsl:literal,)*) => {
+        /// All uniforms of the synthesis passes but textures, with the layout of a std140 block:
+        /// `include/uniforms.glsl` of `yoro-shaders`. "Forward" columns are counted from the left for a synthesized
+        /// left eye and from the right for a right eye; rows from the side on which row 0 is, the bottom in OpenGL and
+        /// the top in Vulkan.
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+        pub struct Uniforms {
+            $($(#[doc = $doc])* pub $name: $ty,)*
+        }
+
+        impl Uniforms {
+            /// Name, GLSL type and offset in bytes of each member.
+            pub const LAYOUT: &[(&str, &str, usize)] =
+                &[$((stringify!($name), $glsl, std::mem::offset_of!(Uniforms, $name)),)*];
+
+            /// Sets those that the program has.
+            pub(super) fn set(&self, program: &Program) {
+                $(program.set(stringify!($name), self.$name);)*
+            }
+        }
+    };
+}
+
+uniforms! {
+    /// Size of the source in pixels.
+    source_size: IVec2 = "ivec2",
+    /// Size of the target in pixels.
+    target_size: IVec2 = "ivec2",
+    /// Displacement in pixels, in forward columns: `law.x + law.y * depth`.
+    law: Vec2 = "vec2",
+    /// 1 where forward columns are counted from the right.
+    mirrored: u32 = "bool",
+    /// Target row minus source row.
+    row_offset: i32 = "int",
+    /// Corner of the target in its framebuffer or image.
+    target_origin: IVec2 = "ivec2",
+    /// Displacement of the far plane in pixels.
+    far_displacement: f32 = "float",
+    /// Displacement of the near plane in pixels.
+    near_displacement: f32 = "float",
+    /// Texture coordinate of the source at forward column x: `columns.x * x + columns.y`.
+    columns: Vec2 = "vec2",
+    /// Source column that the law's offset alone takes to a fragment: `origins.x * gl_FragCoord.x + origins.y`.
+    origins: Vec2 = "vec2",
+    /// Where a fragment's span is in the span map: `span_place.xy * gl_FragCoord.xy + span_place.zw`, as a texture
+    /// coordinate, or in tiles for a part.
+    span_place: Vec4 = "vec4",
+    /// Texture coordinate of a fragment's source row: `rows.x * gl_FragCoord.y + rows.y`.
+    rows: Vec2 = "vec2",
+    /// Middle of a fragment's source row: `gl_FragCoord.y - first_row`.
+    first_row: f32 = "float",
+    /// Displacement in pixels of the far plane beyond the law's offset, and a hundredth of a pixel for rounding.
+    farthest: f32 = "float",
+    /// Corner of the source in its image: for a part.
+    source_origin: IVec2 = "ivec2",
+    /// One pixel of the source's image in texture coordinates: for a part.
+    texel: Vec2 = "vec2",
+}
+
+/// Where source and target lie in their images.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Places {
+    /// Corner of the source in its image.
+    pub source_origin: [u32; 2],
+    /// Size of the source's image in pixels.
+    pub image_size: [u32; 2],
+    /// Corner of the target in its framebuffer or image.
+    pub target_origin: [u32; 2],
+    /// The source is a part of its image, or the maps are larger than [`tiles`] says: `PART` in the shaders.
+    pub part: bool,
+}
+
+impl Uniforms {
+    /// For a source that is all of its textures, and maps that just hold the [`Warp`].
+    pub fn new(warp: &Warp, target_origin: [u32; 2]) -> Uniforms {
+        let places =
+            Places { source_origin: [0, 0], image_size: warp.source_size, target_origin, part: false };
+        Uniforms::of_part(warp, &places)
+    }
+
+    /// What leads from a fragment to its columns and rows is affine in `gl_FragCoord`: it is computed here rather than
+    /// by every fragment, and in f64, since it is the difference of large numbers.
+    pub(crate) fn of_part(warp: &Warp, places: &Places) -> Uniforms {
+        let law = ForwardLaw::new(warp);
+        let size = |s: [u32; 2]| IVec2::from(s.map(|n| n as i32));
+        let pair = |x: f64, y: f64| Vec2::new(x as f32, y as f32);
+        let [image_width, image_height] = places.image_size.map(f64::from);
+        let [source_left, source_row] = places.source_origin.map(f64::from);
+        let [left, row] = places.target_origin.map(f64::from);
+        let source_right = source_left + f64::from(warp.source_size[0]);
+        let columns = match law.mirrored {
+            true => pair(-1.0 / image_width, source_right / image_width),
+            false => pair(1.0 / image_width, source_left / image_width),
+        };
+        // Forward target column: sense * x + first.
+        let (sense, first) = match law.mirrored {
+            true => (-1.0, f64::from(warp.target_size[0]) + left - 0.5),
+            false => (1.0, -left - 0.5),
+        };
+        let first_row = row + f64::from(warp.row_offset);
+        // Tiles are whole: the maps reach beyond the image.
+        let [across, up] = match places.part {
+            true => TILE.map(f64::from),
+            false => {
+                let tiles = tiles([warp.target_size[0], warp.source_size[1]]);
+                [0, 1].map(|i| f64::from(tiles[i] * TILE[i]))
+            }
+        };
+        let span_place = [sense / across, 1.0 / up, (first + 0.5) / across, -first_row / up];
+        Uniforms {
+            source_size: size(warp.source_size),
+            target_size: size(warp.target_size),
+            law: pair(law.offset, law.scale),
+            mirrored: law.mirrored.into(),
+            row_offset: warp.row_offset,
+            target_origin: size(places.target_origin),
+            far_displacement: law.far as f32,
+            near_displacement: law.near as f32,
+            columns,
+            origins: pair(sense, first - law.offset),
+            span_place: Vec4::from(span_place.map(|n| n as f32)),
+            rows: pair(1.0 / image_height, (source_row - first_row) / image_height),
+            first_row: first_row as f32,
+            farthest: (law.far - law.offset + 0.01) as f32,
+            source_origin: size(places.source_origin),
+            texel: pair(1.0 / image_width, 1.0 / image_height),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Alignment and size of a type in std140 (OpenGL ES 3.2, section 7.6.2.2).
+    fn std140(glsl: &str) -> [usize; 2] {
+        match glsl {
+            "bool" | "int" | "float" => [4, 4],
+            "ivec2" | "vec2" => [8, 8],
+            "vec4" => [16, 16],
+            _ => panic!("{glsl} is in no rule here"),
+        }
+    }
+
+    /// The block's members in the shader's text: type and name.
+    fn declared() -> Vec<(String, String)> {
+        let text = yoro_shaders::assemble("include/uniforms.glsl", "310 es", &[]).unwrap().text;
+        let members = text.lines().filter_map(|line| line.strip_prefix("UNIFORM ")?.strip_suffix(';'));
+        members.map(|member| member.split_once(' ').unwrap()).map(|(a, b)| (a.into(), b.into())).collect()
+    }
+
+    #[test]
+    fn the_layout_is_that_of_the_shaders_block() {
+        let mut end: usize = 0;
+        let mut expected = Vec::new();
+        for (glsl, name) in declared() {
+            let [alignment, size] = std140(&glsl);
+            let offset = end.next_multiple_of(alignment);
+            end = offset + size;
+            expected.push((name, glsl, offset));
+        }
+        let layout: Vec<_> =
+            Uniforms::LAYOUT.iter().map(|&(n, t, o)| (n.to_owned(), t.to_owned(), o)).collect();
+        assert_eq!(layout, expected);
+        assert_eq!(size_of::<Uniforms>(), end.next_multiple_of(16));
+        assert!(
+            size_of::<Uniforms>() <= 128,
+            "every Vulkan device has 128 bytes of push constants, some no more"
+        );
+    }
+
+    #[test]
+    fn the_documents_table_is_the_layout() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/library.md");
+        // Not in the published package.
+        let Ok(document) = std::fs::read_to_string(path) else { return };
+        for (name, glsl, offset) in Uniforms::LAYOUT {
+            let row = format!("| {offset} | `{name}` | {glsl} |");
+            assert!(document.contains(&row), "docs/library.md has no row {row}");
+        }
+    }
+}

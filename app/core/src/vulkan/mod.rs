@@ -1,0 +1,356 @@
+//! The gather pipeline on Vulkan: recorded into the caller's command buffer.
+//!
+//! [`Gather`] has the passes of [`crate::synthesis::Gather`], from the same shaders. Everything is allocated and
+//! compiled in [`Gather::new`], [`Gather::register_source`] and [`Gather::register_target`]; [`Gather::record`] only
+//! records: it allocates nothing, submits nothing and waits for nothing.
+//!
+//! Images are in Vulkan's own orientation, row 0 at the top, source and target alike. A
+//! [`Warp`](crate::eyes::Warp) is taken as [`EyePair::synthesis`](crate::eyes::EyePair::synthesis) gives it; its rows,
+//! which are counted from the bottom, are turned inside.
+//! [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in that orientation, and
+//! [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is where the
+//! dominant eye's own image is in it.
+//!
+//! ```no_run
+//! use yoro::eyes::SynthesisViews;
+//! use yoro::vulkan::{Frame, Gather, Host, ImageState, LayerImage, Options, SourceImages, TargetImages, ash::vk};
+//!
+//! # unsafe fn example(
+//! #     host: &Host, views: &SynthesisViews, commands: vk::CommandBuffer, [color, depth, target]: [vk::Image; 3],
+//! # ) -> Result<(), yoro::vulkan::VulkanError> {
+//! // Once: pipelines for the target's format, buffers for the largest sizes.
+//! let mut gather = unsafe {
+//!     Gather::new(host, &Options {
+//!         color_format: vk::Format::R8G8B8A8_SRGB,
+//!         max_source_size: views.source.size,
+//!         max_target_size: views.target.size,
+//!         ..Options::default()
+//!     })?
+//! };
+//! // Once for each pair of images that is rendered to, and for each image of a swapchain: views and descriptors.
+//! let image = |image, format, state| LayerImage { image, format, layer: 0, before: state, after: state };
+//! let source = unsafe {
+//!     gather.register_source(&SourceImages {
+//!         color: image(color, vk::Format::R8G8B8A8_SRGB, ImageState::COLOR_ATTACHMENT),
+//!         depth: image(depth, vk::Format::D32_SFLOAT, ImageState::DEPTH_ATTACHMENT),
+//!         size: views.source.size,
+//!     })?
+//! };
+//! let target = unsafe {
+//!     gather.register_target(&TargetImages {
+//!         color: image(target, vk::Format::R8G8B8A8_SRGB, ImageState::COLOR_ATTACHMENT),
+//!         depth: None,
+//!         size: views.target.size,
+//!     })?
+//! };
+//! // Each frame, outside of render passes:
+//! let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] };
+//! unsafe { gather.record(commands, &frame, &views.warp)? };
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The pipeline `rowgroup` is not here: it needs compute shaders, storage images and shared memory, and writes and
+//! reads four bytes more for each pixel, to gain nothing that gather does not do with fragments alone.
+
+mod gather;
+mod objects;
+mod shaders;
+
+pub use ash;
+use ash::vk;
+
+pub use gather::Gather;
+#[doc(hidden)]
+pub use gather::GatherVariant;
+
+/// Why something cannot be made, registered or recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum VulkanError {
+    /// The host or the device has no memory left.
+    #[error("{call}: {}; free memory, or choose smaller sizes", reason(.result))]
+    OutOfMemory {
+        /// The Vulkan command that failed.
+        call: &'static str,
+        /// ERROR_OUT_OF_HOST_MEMORY, ERROR_OUT_OF_DEVICE_MEMORY or ERROR_OUT_OF_POOL_MEMORY.
+        result: vk::Result,
+    },
+    /// The device is lost: it has to be made again, and all of its objects with it.
+    #[error("{call}: the Vulkan device is lost; make it and all of its objects again")]
+    DeviceLost {
+        /// The Vulkan command that failed.
+        call: &'static str,
+    },
+    /// Any other error of a command.
+    #[error("{call} failed with {result:?}; run with Vulkan's validation layer to learn more")]
+    Call {
+        /// The Vulkan command.
+        call: &'static str,
+        /// What it returned.
+        result: vk::Result,
+    },
+    /// The device cannot use an image of this format so.
+    #[error("the Vulkan device cannot use {format:?} as {role}; choose another format")]
+    Format {
+        /// The format.
+        format: vk::Format,
+        /// What it would have to be.
+        role: &'static str,
+    },
+    /// An image to be registered has another format than [`Options`] says.
+    #[error(
+        "a target of {found:?} does not fit pipelines for {expected:?}; give the same formats in `Options` and `TargetImages`"
+    )]
+    OtherFormat {
+        /// That of [`Options`], UNDEFINED for no depth.
+        expected: vk::Format,
+        /// That of [`TargetImages`], UNDEFINED for no depth.
+        found: vk::Format,
+    },
+    /// The queue family draws nothing.
+    #[error("queue family {0} has no graphics; give the family of the queue that draws")]
+    QueueFamily(u32),
+    /// [`Host::dynamic_rendering`] is set, but the device has no vkCmdBeginRendering.
+    #[error(
+        "the device has no vkCmdBeginRendering; enable the feature dynamicRendering, or unset `dynamic_rendering`"
+    )]
+    DynamicRendering,
+    /// Sizes are none, or beyond those that everything was made for, or beyond what the device can.
+    #[error(
+        "{what} of {}x{} pixels is not between 1x1 and {}x{}; give such a size, or larger ones in `Options`",
+        size[0], size[1], limit[0], limit[1]
+    )]
+    Size {
+        /// Whose size.
+        what: &'static str,
+        /// Width and height.
+        size: [u32; 2],
+        /// The largest.
+        limit: [u32; 2],
+    },
+    /// A rectangle reaches beyond its image.
+    #[error(
+        "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
+        size[0], size[1], origin[0], origin[1], image[0], image[1]
+    )]
+    Rectangle {
+        /// Whose rectangle.
+        what: &'static str,
+        /// Upper left corner.
+        origin: [u32; 2],
+        /// Width and height.
+        size: [u32; 2],
+        /// Width and height of the image.
+        image: [u32; 2],
+    },
+    /// A [`SourceId`] or [`TargetId`] that is not registered (any more).
+    #[error("these images are not registered; register them, and use the id until they are released")]
+    NotRegistered,
+}
+
+fn reason(result: &vk::Result) -> &'static str {
+    match *result {
+        vk::Result::ERROR_OUT_OF_HOST_MEMORY => "out of host memory",
+        vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => "out of device memory",
+        _ => "out of pool memory",
+    }
+}
+
+impl VulkanError {
+    fn new(call: &'static str, result: vk::Result) -> VulkanError {
+        match result {
+            vk::Result::ERROR_OUT_OF_HOST_MEMORY
+            | vk::Result::ERROR_OUT_OF_DEVICE_MEMORY
+            | vk::Result::ERROR_OUT_OF_POOL_MEMORY => VulkanError::OutOfMemory { call, result },
+            vk::Result::ERROR_DEVICE_LOST => VulkanError::DeviceLost { call },
+            _ => VulkanError::Call { call, result },
+        }
+    }
+}
+
+/// What the caller lends: a device of Vulkan 1.1 or later, and what is enabled of it.
+#[derive(Clone, Copy)]
+pub struct Host<'a> {
+    /// The instance, with its entry points.
+    pub instance: &'a ash::Instance,
+    /// The physical device of `device`.
+    pub physical_device: vk::PhysicalDevice,
+    /// The device, with its entry points, of which a copy is kept.
+    pub device: &'a ash::Device,
+    /// Family of the queue to which the command buffers are submitted; it has graphics.
+    pub queue_family: u32,
+    /// The feature `dynamicRendering` is enabled, of Vulkan 1.3 or VK_KHR_dynamic_rendering. Without it there are
+    /// render passes and framebuffers, with the same result.
+    pub dynamic_rendering: bool,
+}
+
+/// For what pipelines and buffers are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Format of the targets' colour: any that the device renders to.
+    pub color_format: vk::Format,
+    /// Format of the targets' depth, which is then written, too, in the source's encoding; None for colour alone.
+    pub depth_format: Option<vk::Format>,
+    /// The largest source that is synthesized from, in pixels; what is smaller needs nothing new.
+    pub max_source_size: [u32; 2],
+    /// The largest target, in pixels.
+    pub max_target_size: [u32; 2],
+    /// After how many frames [`Gather::pass_times`] tells what one took: no fewer than are in flight. 0 for no times.
+    pub timed_frames: u32,
+    /// A cache for the pipelines, or null.
+    pub pipeline_cache: vk::PipelineCache,
+}
+
+impl Default for Options {
+    /// R8G8B8A8_UNORM without depth, 2048 x 2048 pixels, no times, no cache.
+    fn default() -> Options {
+        Options {
+            color_format: vk::Format::R8G8B8A8_UNORM,
+            depth_format: None,
+            max_source_size: [2048; 2],
+            max_target_size: [2048; 2],
+            timed_frames: 0,
+            pipeline_cache: vk::PipelineCache::null(),
+        }
+    }
+}
+
+/// What an image was used for, or will be: what a barrier needs to know of the one side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageState {
+    /// Its layout.
+    pub layout: vk::ImageLayout,
+    /// The stages that use it.
+    pub stages: vk::PipelineStageFlags,
+    /// How they use it.
+    pub access: vk::AccessFlags,
+}
+
+impl ImageState {
+    /// Written as a colour attachment: COLOR_ATTACHMENT_OPTIMAL.
+    pub const COLOR_ATTACHMENT: ImageState = ImageState {
+        layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+        stages: vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
+        access: vk::AccessFlags::from_raw(
+            vk::AccessFlags::COLOR_ATTACHMENT_READ.as_raw()
+                | vk::AccessFlags::COLOR_ATTACHMENT_WRITE.as_raw(),
+        ),
+    };
+    /// Tested and written as a depth attachment: DEPTH_STENCIL_ATTACHMENT_OPTIMAL.
+    pub const DEPTH_ATTACHMENT: ImageState = ImageState {
+        layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+        stages: vk::PipelineStageFlags::from_raw(
+            vk::PipelineStageFlags::EARLY_FRAGMENT_TESTS.as_raw()
+                | vk::PipelineStageFlags::LATE_FRAGMENT_TESTS.as_raw(),
+        ),
+        access: vk::AccessFlags::from_raw(
+            vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ.as_raw()
+                | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
+        ),
+    };
+    /// Sampled by fragment shaders: SHADER_READ_ONLY_OPTIMAL.
+    pub const SAMPLED: ImageState = ImageState {
+        layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+        stages: vk::PipelineStageFlags::FRAGMENT_SHADER,
+        access: vk::AccessFlags::SHADER_READ,
+    };
+    /// Whatever it holds is not needed: UNDEFINED, for a target that is overwritten entirely, and that was drawn to,
+    /// sampled or copied from before.
+    pub const DISCARDED: ImageState = ImageState {
+        layout: vk::ImageLayout::UNDEFINED,
+        stages: vk::PipelineStageFlags::from_raw(
+            vk::PipelineStageFlags::ALL_GRAPHICS.as_raw() | vk::PipelineStageFlags::TRANSFER.as_raw(),
+        ),
+        access: vk::AccessFlags::empty(),
+    };
+}
+
+/// One layer of an image, mip level 0, without multisampling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LayerImage {
+    /// A 2-D image. Its usage includes SAMPLED for a source, COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
+    pub image: vk::Image,
+    /// Format of the view that is made of it: the image's, or a compatible one if it is MUTABLE_FORMAT.
+    pub format: vk::Format,
+    /// The layer of the image's array, 0 where there is one.
+    pub layer: u32,
+    /// What it was used for before [`Gather::record`].
+    pub before: ImageState,
+    /// What it is left ready for.
+    pub after: ImageState,
+}
+
+/// Colour and depth of the rendered eye, and of its guard band.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SourceImages {
+    /// Colour in any format that can be filtered: R8G8B8A8_UNORM or _SRGB, A2B10G10R10_UNORM, R16G16B16A16_SFLOAT and
+    /// so on. All four channels are carried over; what is sampled as sRGB belongs into an sRGB target.
+    pub color: LayerImage,
+    /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, or R32_SFLOAT. The stencil aspect is not
+    /// read.
+    pub depth: LayerImage,
+    /// Width and height of both images in pixels; the source is a rectangle of them.
+    pub size: [u32; 2],
+}
+
+/// Where the other eye is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TargetImages {
+    /// Colour, of [`Options::color_format`].
+    pub color: LayerImage,
+    /// Depth, of [`Options::depth_format`]. A stencil aspect is left as it is.
+    pub depth: Option<LayerImage>,
+    /// Width and height of the images in pixels; the target is a rectangle of them.
+    pub size: [u32; 2],
+}
+
+/// Registered [`SourceImages`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SourceId(u32);
+
+/// Registered [`TargetImages`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TargetId(u32);
+
+macro_rules! raw_ids {
+    ($($id:ident),*) => {$(
+        impl $id {
+            /// The id as a number, which is never 0: for interfaces of other languages.
+            pub fn to_raw(self) -> u32 {
+                self.0
+            }
+
+            /// The id of a number; one that was never given out is [`VulkanError::NotRegistered`] wherever it is used.
+            pub fn from_raw(raw: u32) -> $id {
+                $id(raw)
+            }
+        }
+    )*};
+}
+
+raw_ids!(SourceId, TargetId);
+
+/// What is synthesized in one call of [`Gather::record`]. Sizes are those of the warp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// The images to read.
+    pub source: SourceId,
+    /// Upper left corner in them of the rectangle that was rendered, in pixels.
+    pub source_origin: [u32; 2],
+    /// The images to write.
+    pub target: TargetId,
+    /// Upper left corner in them of the rectangle to write, in pixels. What lies outside of it stays as it is.
+    pub target_origin: [u32; 2],
+}
+
+/// What one frame's passes took on the GPU ([`Gather::pass_times`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PassTimes {
+    /// Bounds of the displacements in each tile.
+    pub tiles: std::time::Duration,
+    /// Where to search for each tile of the target.
+    pub spans: std::time::Duration,
+    /// The search, which writes the target.
+    pub march: std::time::Duration,
+}

@@ -1,0 +1,139 @@
+//! The shaders of the passes as SPIR-V, compiled beforehand from the files of `yoro-shaders`: `cargo xtask spirv`.
+
+use std::io::Cursor;
+
+use ash::vk;
+
+use super::VulkanError;
+use super::gather::GatherVariant;
+use super::objects::{Object, Objects};
+
+pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
+pub(super) const TILES: &[u8] = include_bytes!("spirv/tiles.spv");
+pub(super) const SPANS: &[u8] = include_bytes!("spirv/spans.spv");
+
+/// The last pass.
+pub(super) fn march(variant: GatherVariant, depth: bool) -> &'static [u8] {
+    match (variant, depth) {
+        (GatherVariant::Software, false) => include_bytes!("spirv/march.spv"),
+        (GatherVariant::Software, true) => include_bytes!("spirv/march-depth.spv"),
+        (GatherVariant::ShortWay, false) => include_bytes!("spirv/march-short.spv"),
+        (GatherVariant::ShortWay, true) => include_bytes!("spirv/march-short-depth.spv"),
+    }
+}
+
+impl Objects {
+    pub(super) fn shader(&mut self, spirv: &[u8]) -> Result<vk::ShaderModule, VulkanError> {
+        let words = ash::util::read_spv(&mut Cursor::new(spirv))
+            .map_err(|_| VulkanError::new("vkCreateShaderModule", vk::Result::ERROR_INVALID_SHADER_NV))?;
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: valid SPIR-V, which needs no capability but Shader.
+        let shader = unsafe { self.device().create_shader_module(&info, None) };
+        self.keep("vkCreateShaderModule", shader, Object::Shader)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::{Path, PathBuf};
+    use std::process::Command;
+
+    /// A file in `spirv/` without its ending, the file of `yoro-shaders` that it is made of, and the macros for that.
+    type Module = (&'static str, &'static str, &'static [&'static str]);
+
+    const MARCH: &str = "synthesis/gather/march.frag";
+    const MODULES: [Module; 7] = [
+        ("march", MARCH, &["TEXTURE_GATHER"]),
+        ("march-depth", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH"]),
+        ("march-short", MARCH, &["TEXTURE_GATHER", "SHORT_WAY"]),
+        ("march-short-depth", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH"]),
+        ("screen", "screen.vert", &[]),
+        ("spans", "synthesis/gather/spans.frag", &[]),
+        ("tiles", "synthesis/gather/tiles.frag", &["TEXTURE_GATHER"]),
+    ];
+    const GLSLANG: &str = "glslangValidator";
+    /// Vulkan 1.0's SPIR-V, optimized for size, without names and lines.
+    const ARGUMENTS: [&str; 3] = ["-V", "-Os", "-g0"];
+    const REMEDY: &str = "run `cargo xtask spirv`";
+
+    fn folder() -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv")
+    }
+
+    /// What is compiled.
+    fn text((_, file, macros): &Module) -> String {
+        let mut defines = vec![("UNIFORM_BLOCK", "layout(push_constant, std140)".to_owned())];
+        defines.extend(macros.iter().map(|name| (*name, String::new())));
+        yoro_shaders::assemble(file, "310 es", &defines).unwrap().text
+    }
+
+    /// FNV-1a, which stays what it is in all versions of everything.
+    fn hash(text: &str) -> u64 {
+        text.bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    /// The file `SOURCES`: what has compiled the modules, and the hash of each one's text.
+    fn sources(compiler: &str) -> String {
+        let line = |module: &Module| format!("{:016x} {}\n", hash(&text(module)), module.0);
+        format!("{compiler}\n{}", MODULES.iter().map(line).collect::<String>())
+    }
+
+    /// glslang's version in one line; None where it is not installed.
+    fn glslang() -> Option<String> {
+        let output = Command::new(GLSLANG).arg("--version").output().ok()?;
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let version = text.lines().next()?.trim_start_matches("Glslang Version: ");
+        Some(format!("{GLSLANG} {version} {}", ARGUMENTS.join(" ")))
+    }
+
+    fn compile(module: &Module, work: &Path) -> Vec<u8> {
+        let (name, file, _) = module;
+        let source = work.join(name).with_extension(if file.ends_with(".vert") { "vert" } else { "frag" });
+        let compiled = work.join(name).with_extension("spv");
+        fs::write(&source, text(module)).unwrap();
+        let output =
+            Command::new(GLSLANG).args(ARGUMENTS).arg("-o").arg(&compiled).arg(&source).output().unwrap();
+        assert!(output.status.success(), "{file}: {}", String::from_utf8_lossy(&output.stdout));
+        fs::read(compiled).unwrap()
+    }
+
+    fn write(name: &str, content: &[u8]) {
+        let unfinished = folder().join(format!("{name}.tmp"));
+        fs::write(&unfinished, content).unwrap();
+        fs::rename(unfinished, folder().join(name)).unwrap();
+    }
+
+    #[test]
+    fn the_modules_are_those_of_the_shaders() {
+        let work = std::env::temp_dir().join(format!("yoro-spirv-{}", std::process::id()));
+        fs::create_dir_all(&work).unwrap();
+        let compiler = glslang();
+        if std::env::var_os("YORO_BLESS_SPIRV").is_some() {
+            let compiler = compiler.expect("glslangValidator is needed: `cargo xtask setup`");
+            MODULES.iter().for_each(|module| write(&format!("{}.spv", module.0), &compile(module, &work)));
+            write("SOURCES", sources(&compiler).as_bytes());
+        }
+        let committed = fs::read_to_string(folder().join("SOURCES")).unwrap();
+        let made_by = committed.lines().next().unwrap_or_default();
+        assert!(committed == sources(made_by), "the shaders are not those that were compiled: {REMEDY}");
+        match glslang() {
+            Some(here) if here == made_by => {
+                for module in &MODULES {
+                    let kept = fs::read(folder().join(format!("{}.spv", module.0))).unwrap();
+                    assert!(
+                        kept == compile(module, &work),
+                        "{} is not what {here} makes: {REMEDY}",
+                        module.0
+                    );
+                }
+            }
+            here => println!(
+                "LEFT OUT: compiling the shaders again: {} is here, not {made_by}",
+                here.as_deref().unwrap_or("no glslang")
+            ),
+        }
+        fs::remove_dir_all(&work).unwrap();
+    }
+}

@@ -1,0 +1,534 @@
+//! A Vulkan device without a window, under Khronos's validation layer, and pictures in its images.
+//!
+//! Arrays have their rows from the bottom, as everywhere; images have them from the top, as Vulkan does.
+
+use std::ffi::{CStr, c_char, c_void};
+use std::sync::Mutex;
+
+use yoro::eyes::Warp;
+use yoro::vulkan::ash::{self, vk};
+use yoro::vulkan::{Host, ImageState, LayerImage};
+
+const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+/// How passes begin, and what is enabled of the device for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rendering {
+    /// Vulkan 1.1, nothing enabled.
+    RenderPasses,
+    /// Vulkan 1.1 with VK_KHR_dynamic_rendering.
+    Extension,
+    /// Vulkan 1.3.
+    Core,
+}
+
+impl Rendering {
+    pub const ALL: [Rendering; 3] = [Rendering::RenderPasses, Rendering::Extension, Rendering::Core];
+}
+
+/// A device of its own instance. When it is dropped the validation layer must have said nothing.
+pub struct Gpu {
+    entry: ash::Entry,
+    instance: ash::Instance,
+    messenger: (ash::ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT),
+    messages: Box<Mutex<Vec<String>>>,
+    pub physical_device: vk::PhysicalDevice,
+    pub device: ash::Device,
+    family: u32,
+    queue: vk::Queue,
+    pool: vk::CommandPool,
+    memory: vk::PhysicalDeviceMemoryProperties,
+    rendering: Rendering,
+}
+
+unsafe extern "system" fn note(
+    _: vk::DebugUtilsMessageSeverityFlagsEXT,
+    _: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    messages: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: the layer's data, and the list that `Gpu` owns for longer than the messenger.
+    unsafe {
+        let text = CStr::from_ptr((*data).p_message).to_string_lossy().into_owned();
+        let messages = &*messages.cast::<Mutex<Vec<String>>>();
+        messages.lock().unwrap().push(text);
+    }
+    vk::FALSE
+}
+
+/// Runs a test body on a device, unless tests are to do without.
+pub fn with_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
+    if std::env::var_os("YORO_TEST_WITHOUT_VULKAN").is_some() {
+        return println!("LEFT OUT: Vulkan by {rendering:?}");
+    }
+    match Gpu::open(rendering) {
+        Ok(gpu) => body(&gpu),
+        Err(reason) => panic!("{reason}: `cargo xtask setup`, or set YORO_TEST_WITHOUT_VULKAN=1"),
+    }
+}
+
+impl Gpu {
+    fn open(rendering: Rendering) -> Result<Gpu, String> {
+        // SAFETY: the loader is a library that does nothing when it is loaded; all handles are made here and are used
+        // while they live.
+        unsafe {
+            let entry = ash::Entry::load().map_err(|error| format!("no Vulkan loader is here ({error})"))?;
+            let layers = entry.enumerate_instance_layer_properties().unwrap();
+            if !layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION)) {
+                return Err("Vulkan's validation layer is not here".into());
+            }
+            let messages = Box::new(Mutex::new(Vec::new()));
+            let version =
+                if rendering == Rendering::Core { vk::API_VERSION_1_3 } else { vk::API_VERSION_1_1 };
+            let application = vk::ApplicationInfo::default().api_version(version);
+            let layers: [*const c_char; 1] = [VALIDATION.as_ptr()];
+            let extensions: [*const c_char; 1] = [ash::ext::debug_utils::NAME.as_ptr()];
+            let features = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+            let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&features);
+            let messenger = || {
+                vk::DebugUtilsMessengerCreateInfoEXT::default()
+                    .message_severity(
+                        vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
+                            | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
+                    )
+                    .message_type(
+                        vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
+                            | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
+                    )
+                    .pfn_user_callback(Some(note))
+                    .user_data((&raw const *messages).cast_mut().cast())
+            };
+            // Watches the making and the destruction of the instance itself.
+            let mut early = messenger();
+            let info = vk::InstanceCreateInfo::default()
+                .application_info(&application)
+                .enabled_layer_names(&layers)
+                .enabled_extension_names(&extensions)
+                .push_next(&mut features)
+                .push_next(&mut early);
+            let instance =
+                entry.create_instance(&info, None).map_err(|error| format!("no Vulkan here ({error:?})"))?;
+            let debug = ash::ext::debug_utils::Instance::new(&entry, &instance);
+            let messenger = debug.create_debug_utils_messenger(&messenger(), None).unwrap();
+            let physical_devices = instance.enumerate_physical_devices().unwrap_or_default();
+            // A CPU's pictures are the same everywhere.
+            let is_cpu = |device: &&vk::PhysicalDevice| {
+                instance.get_physical_device_properties(**device).device_type == vk::PhysicalDeviceType::CPU
+            };
+            let chosen = physical_devices.iter().find(is_cpu).or(physical_devices.first());
+            let Some(&physical_device) = chosen else {
+                debug.destroy_debug_utils_messenger(messenger, None);
+                instance.destroy_instance(None);
+                return Err("no Vulkan device is here".into());
+            };
+            let families = instance.get_physical_device_queue_family_properties(physical_device);
+            let draws =
+                |family: &vk::QueueFamilyProperties| family.queue_flags.contains(vk::QueueFlags::GRAPHICS);
+            let family = families.iter().position(draws).unwrap() as u32;
+            let queues =
+                [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
+            let extensions: [*const c_char; 4] = [
+                ash::khr::dynamic_rendering::NAME.as_ptr(),
+                // What that one needs in Vulkan 1.1.
+                ash::khr::depth_stencil_resolve::NAME.as_ptr(),
+                ash::khr::create_renderpass2::NAME.as_ptr(),
+                ash::khr::get_physical_device_properties2::NAME.as_ptr(),
+            ];
+            let extensions = if rendering == Rendering::Extension { &extensions[..3] } else { &[] };
+            let mut dynamic = vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
+            let mut info = vk::DeviceCreateInfo::default()
+                .queue_create_infos(&queues)
+                .enabled_extension_names(extensions);
+            if rendering != Rendering::RenderPasses {
+                info = info.push_next(&mut dynamic);
+            }
+            let device = instance.create_device(physical_device, &info, None).unwrap();
+            let queue = device.get_device_queue(family, 0);
+            let pool = vk::CommandPoolCreateInfo::default().queue_family_index(family);
+            let pool = device.create_command_pool(&pool, None).unwrap();
+            let memory = instance.get_physical_device_memory_properties(physical_device);
+            Ok(Gpu {
+                entry,
+                instance,
+                messenger: (debug, messenger),
+                messages,
+                physical_device,
+                device,
+                family,
+                queue,
+                pool,
+                memory,
+                rendering,
+            })
+        }
+    }
+
+    pub fn host(&self) -> Host<'_> {
+        Host {
+            instance: &self.instance,
+            physical_device: self.physical_device,
+            device: &self.device,
+            queue_family: self.family,
+            dynamic_rendering: self.rendering != Rendering::RenderPasses,
+        }
+    }
+
+    /// The instance with other entry points in place of some.
+    pub fn instance_with(&self, other: impl Fn(&CStr) -> Option<*const c_void>) -> ash::Instance {
+        let handle = self.instance.handle();
+        let load = |name: &CStr| {
+            // SAFETY: a live instance, and a name that ends with 0.
+            let own = unsafe { self.entry.get_instance_proc_addr(handle, name.as_ptr()) };
+            other(name).unwrap_or(own.map_or(std::ptr::null(), |own| own as *const c_void))
+        };
+        // SAFETY: the instance's own entry points, or such as the caller has of the same signatures.
+        unsafe { ash::Instance::load_with(load, handle) }
+    }
+
+    pub fn name(&self) -> String {
+        // SAFETY: a valid device.
+        let properties = unsafe { self.instance.get_physical_device_properties(self.physical_device) };
+        properties.device_name_as_c_str().unwrap().to_string_lossy().into_owned()
+    }
+
+    /// Whether images of this format can be used so.
+    pub fn has(&self, format: vk::Format, features: vk::FormatFeatureFlags) -> bool {
+        // SAFETY: a valid device.
+        let properties =
+            unsafe { self.instance.get_physical_device_format_properties(self.physical_device, format) };
+        properties.optimal_tiling_features.contains(features)
+    }
+
+    /// What the validation layer has said so far.
+    pub fn messages(&self) -> Vec<String> {
+        std::mem::take(&mut *self.messages.lock().unwrap())
+    }
+
+    /// Records, submits and waits.
+    pub fn run<R>(&self, record: impl FnOnce(vk::CommandBuffer) -> R) -> R {
+        // SAFETY: one command buffer, which has been executed when it is freed.
+        unsafe {
+            let info =
+                vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+            let commands = self.device.allocate_command_buffers(&info).unwrap();
+            let begin =
+                vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+            self.device.begin_command_buffer(commands[0], &begin).unwrap();
+            let result = record(commands[0]);
+            self.device.end_command_buffer(commands[0]).unwrap();
+            let submit = [vk::SubmitInfo::default().command_buffers(&commands)];
+            self.device.queue_submit(self.queue, &submit, vk::Fence::null()).unwrap();
+            self.device.queue_wait_idle(self.queue).unwrap();
+            self.device.free_command_buffers(self.pool, &commands);
+            result
+        }
+    }
+
+    fn allocate(
+        &self,
+        needed: vk::MemoryRequirements,
+        properties: vk::MemoryPropertyFlags,
+    ) -> vk::DeviceMemory {
+        let types = &self.memory.memory_types[..self.memory.memory_type_count as usize];
+        let fits = |i: &usize| {
+            needed.memory_type_bits >> i & 1 != 0 && types[*i].property_flags.contains(properties)
+        };
+        let index = (0..types.len()).find(fits).unwrap() as u32;
+        let info = vk::MemoryAllocateInfo::default().allocation_size(needed.size).memory_type_index(index);
+        // SAFETY: a valid description.
+        unsafe { self.device.allocate_memory(&info, None).unwrap() }
+    }
+
+    /// Calls `body` with a buffer of this content, and gives back what it holds then.
+    fn with_buffer(&self, mut bytes: Vec<u8>, body: impl FnOnce(vk::Buffer)) -> Vec<u8> {
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
+        let info = vk::BufferCreateInfo::default().size(bytes.len() as u64).usage(usage);
+        let visible = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
+        // SAFETY: a buffer with memory of its own, as long as `bytes`, which nothing uses after `body`.
+        unsafe {
+            let buffer = self.device.create_buffer(&info, None).unwrap();
+            let memory = self.allocate(self.device.get_buffer_memory_requirements(buffer), visible);
+            self.device.bind_buffer_memory(buffer, memory, 0).unwrap();
+            let mapped =
+                self.device.map_memory(memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty()).unwrap();
+            std::ptr::copy_nonoverlapping(bytes.as_ptr(), mapped.cast(), bytes.len());
+            body(buffer);
+            std::ptr::copy_nonoverlapping(mapped.cast_const().cast(), bytes.as_mut_ptr(), bytes.len());
+            self.device.destroy_buffer(buffer, None);
+            self.device.free_memory(memory, None);
+        }
+        bytes
+    }
+
+    /// An image that can be rendered to, sampled and copied.
+    pub fn image(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Image<'_> {
+        let attachment = match is_depth(format) {
+            true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            false if format == vk::Format::R32_SFLOAT => vk::ImageUsageFlags::empty(),
+            false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+        };
+        let usage = attachment
+            | vk::ImageUsageFlags::SAMPLED
+            | vk::ImageUsageFlags::TRANSFER_SRC
+            | vk::ImageUsageFlags::TRANSFER_DST;
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
+            .mip_levels(1)
+            .array_layers(layers)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .usage(usage);
+        // SAFETY: an image with memory of its own.
+        unsafe {
+            let raw = self.device.create_image(&info, None).unwrap();
+            let needed = self.device.get_image_memory_requirements(raw);
+            let memory = self.allocate(needed, vk::MemoryPropertyFlags::DEVICE_LOCAL);
+            self.device.bind_image_memory(raw, memory, 0).unwrap();
+            Image { gpu: self, raw, memory, format, size }
+        }
+    }
+}
+
+impl Drop for Gpu {
+    fn drop(&mut self) {
+        // SAFETY: everything was executed, and nothing else is left of the device.
+        unsafe {
+            self.device.destroy_command_pool(self.pool, None);
+            self.device.destroy_device(None);
+            self.messenger.0.destroy_debug_utils_messenger(self.messenger.1, None);
+            self.instance.destroy_instance(None);
+        }
+        let messages = self.messages();
+        if !std::thread::panicking() {
+            assert!(messages.is_empty(), "the validation layer says:\n{}", messages.join("\n"));
+        }
+    }
+}
+
+pub fn is_depth(format: vk::Format) -> bool {
+    matches!(
+        format,
+        vk::Format::D16_UNORM
+            | vk::Format::D24_UNORM_S8_UINT
+            | vk::Format::D32_SFLOAT
+            | vk::Format::D32_SFLOAT_S8_UINT
+    )
+}
+
+fn is_rgba8(format: vk::Format) -> bool {
+    matches!(format, vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB)
+}
+
+/// A 2-D image, or an array of them.
+pub struct Image<'a> {
+    gpu: &'a Gpu,
+    pub raw: vk::Image,
+    memory: vk::DeviceMemory,
+    pub format: vk::Format,
+    pub size: [u32; 2],
+}
+
+impl Image<'_> {
+    pub fn pixels(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+
+    /// As the pipeline wants it.
+    pub fn layer(&self, layer: u32, before: ImageState, after: ImageState) -> LayerImage {
+        LayerImage { image: self.raw, format: self.format, layer, before, after }
+    }
+
+    /// All that the format has.
+    fn aspects(&self) -> vk::ImageAspectFlags {
+        let stencil = matches!(self.format, vk::Format::D24_UNORM_S8_UINT | vk::Format::D32_SFLOAT_S8_UINT);
+        match (is_depth(self.format), stencil) {
+            (true, true) => vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL,
+            (true, false) => vk::ImageAspectFlags::DEPTH,
+            _ => vk::ImageAspectFlags::COLOR,
+        }
+    }
+
+    /// What is copied of it: colour, or depth alone.
+    fn copied(&self, layer: u32) -> vk::ImageSubresourceLayers {
+        let aspect_mask = match is_depth(self.format) {
+            true => vk::ImageAspectFlags::DEPTH,
+            false => vk::ImageAspectFlags::COLOR,
+        };
+        vk::ImageSubresourceLayers { aspect_mask, mip_level: 0, base_array_layer: layer, layer_count: 1 }
+    }
+
+    /// All of it, as a copy to or from a buffer.
+    fn whole(&self, layer: u32) -> [vk::BufferImageCopy; 1] {
+        let [width, height] = self.size;
+        let extent = vk::Extent3D { width, height, depth: 1 };
+        [vk::BufferImageCopy::default().image_subresource(self.copied(layer)).image_extent(extent)]
+    }
+
+    /// A barrier between two uses.
+    pub fn barrier(&self, commands: vk::CommandBuffer, layer: u32, from: ImageState, to: ImageState) {
+        let range = vk::ImageSubresourceRange {
+            aspect_mask: self.aspects(),
+            base_mip_level: 0,
+            level_count: 1,
+            base_array_layer: layer,
+            layer_count: 1,
+        };
+        let barrier = [vk::ImageMemoryBarrier::default()
+            .src_access_mask(from.access)
+            .dst_access_mask(to.access)
+            .old_layout(from.layout)
+            .new_layout(to.layout)
+            .image(self.raw)
+            .subresource_range(range)];
+        let (from, to, none) = (from.stages, to.stages, vk::DependencyFlags::empty());
+        // SAFETY: a live image in the state that the caller tells.
+        unsafe { self.gpu.device.cmd_pipeline_barrier(commands, from, to, none, &[], &[], &barrier) };
+    }
+
+    /// Writes all of a layer, in the format's own encoding, and leaves it ready for `after`.
+    pub fn upload(&self, layer: u32, bytes: &[u8], after: ImageState) {
+        self.gpu.with_buffer(bytes.to_vec(), |buffer| {
+            self.gpu.run(|commands| {
+                self.barrier(commands, layer, ImageState::DISCARDED, WRITTEN);
+                let (layout, copy) = (WRITTEN.layout, self.whole(layer));
+                // SAFETY: buffer and image of one size, in the layout that the barrier makes.
+                unsafe {
+                    self.gpu.device.cmd_copy_buffer_to_image(commands, buffer, self.raw, layout, &copy);
+                }
+                self.barrier(commands, layer, WRITTEN, after);
+            });
+        });
+    }
+
+    /// All of a layer in the format's own encoding; leaves it as it is found.
+    pub fn read(&self, layer: u32, state: ImageState, bytes_per_pixel: usize) -> Vec<u8> {
+        self.gpu.with_buffer(vec![0; self.pixels() * bytes_per_pixel], |buffer| {
+            self.gpu.run(|commands| {
+                self.barrier(commands, layer, state, READ);
+                let (layout, copy) = (READ.layout, self.whole(layer));
+                // SAFETY: as in `upload`.
+                unsafe {
+                    self.gpu.device.cmd_copy_image_to_buffer(commands, self.raw, layout, buffer, &copy);
+                }
+                self.barrier(commands, layer, READ, state);
+            });
+        })
+    }
+
+    /// Converts between formats, pixel for pixel.
+    fn blit_from(&self, layer: u32, from: &Image, from_layer: u32, [before, after]: [ImageState; 2]) {
+        self.gpu.run(|commands| {
+            from.barrier(commands, from_layer, before, READ);
+            self.barrier(commands, layer, ImageState::DISCARDED, WRITTEN);
+            let [x, y] = self.size.map(|n| n as i32);
+            let corners = [vk::Offset3D::default(), vk::Offset3D { x, y, z: 1 }];
+            let blit = [vk::ImageBlit {
+                src_subresource: from.copied(from_layer),
+                src_offsets: corners,
+                dst_subresource: self.copied(layer),
+                dst_offsets: corners,
+            }];
+            let (read, written) = (READ.layout, WRITTEN.layout);
+            // SAFETY: live images of one size in these layouts.
+            unsafe {
+                self.gpu.device.cmd_blit_image(
+                    commands,
+                    from.raw,
+                    read,
+                    self.raw,
+                    written,
+                    &blit,
+                    vk::Filter::NEAREST,
+                );
+            }
+            from.barrier(commands, from_layer, READ, before);
+            self.barrier(commands, layer, WRITTEN, after);
+        });
+    }
+
+    /// Fills a layer of colour with bytes of RGBA, rows from the bottom. sRGB takes them as they are.
+    pub fn upload_rgba8(&self, layer: u32, rgba: &[u8], after: ImageState) {
+        let bytes = flipped(rgba, self.size[0] as usize * 4);
+        if is_rgba8(self.format) {
+            return self.upload(layer, &bytes, after);
+        }
+        let plain = self.gpu.image(vk::Format::R8G8B8A8_UNORM, self.size, 1);
+        plain.upload(0, &bytes, READ);
+        self.blit_from(layer, &plain, 0, [READ, after]);
+    }
+
+    /// A layer of colour as bytes of RGBA, rows from the bottom.
+    pub fn read_rgba8(&self, layer: u32, state: ImageState) -> Vec<u8> {
+        if is_rgba8(self.format) {
+            return flipped(&self.read(layer, state, 4), self.size[0] as usize * 4);
+        }
+        let plain = self.gpu.image(vk::Format::R8G8B8A8_UNORM, self.size, 1);
+        plain.blit_from(0, self, layer, [state, READ]);
+        flipped(&plain.read(0, READ, 4), self.size[0] as usize * 4)
+    }
+
+    /// Fills a layer of depth, rows from the bottom.
+    pub fn upload_depth(&self, layer: u32, depth: &[f32], after: ImageState) {
+        let texel = |depth: &f32| -> Vec<u8> {
+            match self.format {
+                vk::Format::D16_UNORM => ((depth * 65535.0).round() as u16).to_ne_bytes().to_vec(),
+                vk::Format::D24_UNORM_S8_UINT => {
+                    ((f64::from(*depth) * 16_777_215.0).round() as u32).to_ne_bytes().to_vec()
+                }
+                _ => depth.to_ne_bytes().to_vec(),
+            }
+        };
+        let bytes: Vec<u8> = depth.iter().flat_map(texel).collect();
+        let bytes_per_pixel = bytes.len() / depth.len();
+        self.upload(layer, &flipped(&bytes, self.size[0] as usize * bytes_per_pixel), after);
+    }
+
+    /// A layer of depth, rows from the bottom.
+    pub fn read_depth(&self, layer: u32, state: ImageState) -> Vec<f32> {
+        let size = if self.format == vk::Format::D16_UNORM { 2 } else { 4 };
+        let bytes = flipped(&self.read(layer, state, size), self.size[0] as usize * size);
+        let value = |texel: &[u8]| match self.format {
+            vk::Format::D16_UNORM => f32::from(u16::from_ne_bytes(texel.try_into().unwrap())) / 65535.0,
+            vk::Format::D24_UNORM_S8_UINT => {
+                (u32::from_ne_bytes(texel.try_into().unwrap()) & 0x00ff_ffff) as f32 / 16_777_215.0
+            }
+            _ => f32::from_ne_bytes(texel.try_into().unwrap()),
+        };
+        bytes.chunks_exact(size).map(value).collect()
+    }
+}
+
+impl Drop for Image<'_> {
+    fn drop(&mut self) {
+        // SAFETY: everything was executed.
+        unsafe {
+            self.gpu.device.destroy_image(self.raw, None);
+            self.gpu.device.free_memory(self.memory, None);
+        }
+    }
+}
+
+pub const WRITTEN: ImageState = ImageState {
+    layout: vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+    stages: vk::PipelineStageFlags::TRANSFER,
+    access: vk::AccessFlags::TRANSFER_WRITE,
+};
+pub const READ: ImageState = ImageState {
+    layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+    stages: vk::PipelineStageFlags::TRANSFER,
+    access: vk::AccessFlags::TRANSFER_READ,
+};
+
+/// The rows in the opposite order.
+pub fn flipped(bytes: &[u8], row: usize) -> Vec<u8> {
+    bytes.chunks_exact(row).rev().flatten().copied().collect()
+}
+
+/// The largest sizes of several warps.
+pub fn largest(warps: &[Warp]) -> [[u32; 2]; 2] {
+    let most = |size: fn(&Warp) -> [u32; 2]| {
+        [0, 1].map(|i| warps.iter().map(|warp| size(warp)[i]).max().unwrap_or(1))
+    };
+    [most(|warp| warp.source_size), most(|warp| warp.target_size)]
+}

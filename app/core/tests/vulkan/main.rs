@@ -1,0 +1,700 @@
+//! The passes on Vulkan give the pictures that they give on OpenGL, under the validation layer.
+
+mod failures;
+mod harness;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+use proptest::test_runner::{Config, TestRunner};
+use rand::{Rng, SeedableRng};
+
+use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
+use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
+use yoro::gl::{self, Context, Destination, Filter, RenderTarget, Texture};
+use yoro::synthesis::{self, GatherVariant as GlVariant, Offline, Outputs, SourceMapEntry, SynthesisOptions};
+use yoro::vulkan::ash::vk;
+use yoro::vulkan::{
+    Frame, Gather, GatherVariant, ImageState, Options, SourceImages, TargetImages, VulkanError,
+};
+use yoro_context::{Backend, Headless};
+
+/// Counts this thread's allocations in Rust.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: the system's allocator does it all.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+fn allocations() -> usize {
+    ALLOCATIONS.get()
+}
+
+const VARIANTS: [(GatherVariant, GlVariant); 2] =
+    [(GatherVariant::Software, GlVariant::Software), (GatherVariant::ShortWay, GlVariant::ShortWay)];
+
+/// A rendered eye, rows from the bottom.
+struct Picture {
+    warp: Warp,
+    rgba: Vec<u8>,
+    depth: Vec<f32>,
+}
+
+/// A slanted wall with boxes and wires before it, in colours that differ from pixel to pixel but smoothly enough for an
+/// error of position to be one of colour in the same measure.
+fn picture(warp: &Warp, range: DepthRange, seed: u64) -> Picture {
+    let [w, h] = warp.source_size.map(|n| n as usize);
+    let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
+    let mut z: Vec<f32> =
+        (0..w * h).map(|i| 4.0 + 3.0 * (i % w) as f32 / w as f32 + 0.01 * (i / w) as f32).collect();
+    let mut paint = vec![0u32; w * h];
+    for number in 1..12 {
+        let (x, y) = (rng.random_range(0..w), rng.random_range(0..h));
+        let wire = rng.random_bool(0.3);
+        let (bw, bh) =
+            if wire { (1, h) } else { (rng.random_range(1..w / 3 + 2), rng.random_range(1..h / 2 + 2)) };
+        let (near, slope) = (rng.random_range(0.5..3.0f32), rng.random_range(-0.01..0.01f32));
+        for j in y..(y + bh).min(h) {
+            for i in x..(x + bw).min(w) {
+                let here = (near + slope * (i - x) as f32).max(0.4);
+                if here < z[j * w + i] {
+                    (z[j * w + i], paint[j * w + i]) = (here, number);
+                }
+            }
+        }
+    }
+    let rgba = (0..w * h).flat_map(|i| {
+        let (x, y, number) = (i % w, i / w, paint[i]);
+        [(x * 5 + number as usize * 40) as u8, (y * 3 + x) as u8, (number * 20) as u8, (200 + number) as u8]
+            .map(|value| if (value / 64) % 2 == 0 { value } else { 255 - value })
+    });
+    Picture { warp: *warp, rgba: rgba.collect(), depth: z.iter().map(|z| range.depth(*z)).collect() }
+}
+
+fn eyes(size: [u32; 2], dominant: Eye, range: DepthRange) -> EyePair {
+    let frustum = Frustum::symmetric(1.2, size[0] as f32 / size[1] as f32);
+    EyePair::parallel(Pose::IDENTITY, frustum, 0.063, range, size, dominant)
+}
+
+/// Standard, reversed, infinite, and told by OpenXR's swapped planes.
+fn ranges() -> [DepthRange; 4] {
+    let standard = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Standard };
+    [
+        standard,
+        DepthRange { convention: DepthConvention::Reversed, ..standard },
+        DepthRange { far: f32::INFINITY, convention: DepthConvention::Reversed, near: 0.1 },
+        DepthRange::from_distances(100.0, 0.3),
+    ]
+}
+
+/// What differs between the calls.
+#[derive(Clone, Copy, Debug)]
+struct Setup {
+    color: vk::Format,
+    depth: vk::Format,
+    /// Formats of the target.
+    target: vk::Format,
+    target_depth: Option<vk::Format>,
+    /// Upper left corners and what lies beyond the lower right ones.
+    source_margins: [[u32; 2]; 2],
+    target_margins: [[u32; 2]; 2],
+    /// Of two.
+    source_layer: u32,
+    target_layer: u32,
+    /// Uses of the source's images around the call.
+    states: [[ImageState; 2]; 2],
+    target_before: ImageState,
+}
+
+impl Setup {
+    const PLAIN: Setup = Setup {
+        color: vk::Format::R8G8B8A8_UNORM,
+        depth: vk::Format::R32_SFLOAT,
+        target: vk::Format::R8G8B8A8_UNORM,
+        target_depth: None,
+        source_margins: [[0; 2]; 2],
+        target_margins: [[0; 2]; 2],
+        source_layer: 0,
+        target_layer: 0,
+        states: [[WRITTEN, ImageState::SAMPLED]; 2],
+        target_before: WRITTEN,
+    };
+
+    fn options(&self, warps: &[Warp]) -> Options {
+        let [max_source_size, max_target_size] = largest(warps);
+        Options {
+            color_format: self.target,
+            depth_format: self.target_depth,
+            max_source_size,
+            max_target_size,
+            ..Options::default()
+        }
+    }
+}
+
+struct Result {
+    rgba: Vec<u8>,
+    depth: Option<Vec<f32>>,
+}
+
+/// The rectangle of an image at a place counted from the top, all rows from the bottom.
+fn cut<T: Copy>(all: &[T], image: [u32; 2], origin: [u32; 2], size: [u32; 2], channels: usize) -> Vec<T> {
+    let [w, h] = image.map(|n| n as usize);
+    let bottom = h - (origin[1] + size[1]) as usize;
+    let row =
+        |y: usize| &all[((bottom + y) * w + origin[0] as usize) * channels..][..size[0] as usize * channels];
+    (0..size[1] as usize).flat_map(row).copied().collect()
+}
+
+/// `all` with a rectangle of it replaced; places as in [`cut`].
+fn pasted<T: Copy>(mut all: Vec<T>, image: [u32; 2], origin: [u32; 2], part: &[T], width: usize) -> Vec<T> {
+    let [w, h] = image.map(|n| n as usize);
+    let channels = all.len() / (w * h);
+    let rows = part.chunks_exact(width * channels);
+    let bottom = h - origin[1] as usize - rows.len();
+    for (y, row) in rows.enumerate() {
+        all[((bottom + y) * w + origin[0] as usize) * channels..][..row.len()].copy_from_slice(row);
+    }
+    all
+}
+
+/// Synthesizes a picture with images around it that hold something else.
+fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) -> Result {
+    let warp = &picture.warp;
+    let sum = |[a, b]: [[u32; 2]; 2], size: [u32; 2]| [0, 1].map(|i| a[i] + size[i] + b[i]);
+    let source_image = sum(setup.source_margins, warp.source_size);
+    let target_image = sum(setup.target_margins, warp.target_size);
+    let pixels = |size: [u32; 2]| size[0] as usize * size[1] as usize;
+    let [source_origin, target_origin] = [setup.source_margins[0], setup.target_margins[0]];
+    let width = warp.source_size[0] as usize;
+
+    let color = gpu.image(setup.color, source_image, 2);
+    let depth = gpu.image(setup.depth, source_image, 2);
+    // Near and far at random, which would show.
+    let mut rng = rand_pcg::Pcg32::seed_from_u64(99);
+    let junk: Vec<u8> = (0..pixels(source_image) * 4).map(|_| rng.random()).collect();
+    let junk_depth: Vec<f32> = (0..pixels(source_image)).map(|_| rng.random_range(0.0..=1.0)).collect();
+    for layer in 0..2 {
+        let here = layer == setup.source_layer;
+        let rgba = match here {
+            true => pasted(junk.clone(), source_image, source_origin, &picture.rgba, width),
+            false => junk.clone(),
+        };
+        color.upload_rgba8(layer, &rgba, setup.states[0][0]);
+        let values = match here {
+            true => pasted(junk_depth.clone(), source_image, source_origin, &picture.depth, width),
+            false => junk_depth.clone(),
+        };
+        depth.upload_depth(layer, &values, setup.states[1][0]);
+    }
+    let target = gpu.image(setup.target, target_image, 2);
+    let before: Vec<u8> = (0..pixels(target_image) * 4).map(|_| rng.random()).collect();
+    (0..2).for_each(|layer| target.upload_rgba8(layer, &before, setup.target_before));
+    // Whatever conversions there are between, what is read back unharmed is this.
+    let before = target.read_rgba8(setup.target_layer, setup.target_before);
+    let target_depth = setup.target_depth.map(|format| gpu.image(format, target_image, 2));
+    let image = |image: &Image, layer, [before, after]: [ImageState; 2]| image.layer(layer, before, after);
+
+    // SAFETY: images that live until everything is executed, in the states that are told.
+    unsafe {
+        let source = gather
+            .register_source(&SourceImages {
+                color: image(&color, setup.source_layer, setup.states[0]),
+                depth: image(&depth, setup.source_layer, setup.states[1]),
+                size: source_image,
+            })
+            .unwrap();
+        let target_id = gather
+            .register_target(&TargetImages {
+                color: image(&target, setup.target_layer, [setup.target_before, READ]),
+                depth: target_depth
+                    .as_ref()
+                    .map(|depth| image(depth, setup.target_layer, [ImageState::DISCARDED, READ])),
+                size: target_image,
+            })
+            .unwrap();
+        let frame = Frame { source, source_origin, target: target_id, target_origin };
+        gpu.run(|commands| gather.record(commands, &frame, warp).unwrap());
+        gather.release_source(source);
+        gather.release_target(target_id);
+    }
+    let after = target.read_rgba8(setup.target_layer, READ);
+    let rgba = cut(&after, target_image, target_origin, warp.target_size, 4);
+    let width = warp.target_size[0] as usize;
+    let outside = pasted(before, target_image, target_origin, &rgba, width);
+    assert!(outside == after, "pixels outside of the target's rectangle have changed: {setup:?}");
+    // The layout is what was asked for: the validation layer looks.
+    for (image, states) in [(&color, setup.states[0]), (&depth, setup.states[1])] {
+        gpu.run(|commands| image.barrier(commands, setup.source_layer, states[1], READ));
+    }
+    let depth = target_depth.map(|depth| {
+        let all = depth.read_depth(setup.target_layer, READ);
+        cut(&all, target_image, target_origin, warp.target_size, 1)
+    });
+    Result { rgba, depth }
+}
+
+/// The same on OpenGL ES.
+struct Gl {
+    headless: Headless,
+    offline: [RefCell<Offline>; 2],
+}
+
+impl Gl {
+    fn new() -> Gl {
+        let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
+        let offline = VARIANTS.map(|(_, variant)| {
+            let gather = synthesis::Gather::with_variant(headless.gl(), Offline::OUTPUTS, variant).unwrap();
+            RefCell::new(Offline::with_pipeline(headless.gl(), Box::new(gather)).unwrap())
+        });
+        Gl { headless, offline }
+    }
+
+    fn run(&self, variant: usize, picture: &Picture) -> synthesis::SynthesizedImage {
+        let Picture { warp, rgba, depth } = picture;
+        self.offline[variant].borrow_mut().run(rgba, depth, warp).unwrap()
+    }
+}
+
+/// Every channel within one of 255, but for a few pixels whose positions lie within rounding of a decision.
+fn assert_equal(got: &[u8], want: &[u8], channels: usize, what: &str) {
+    assert_eq!(got.len(), want.len());
+    let differs = |(a, b): (&[u8], &[u8])| a[..channels].iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
+    let different = got.chunks_exact(4).zip(want.chunks_exact(4)).filter(|&pair| differs(pair)).count();
+    assert!(different * 4000 <= got.len() / 4, "{what}: {different} of {} pixels differ", got.len() / 4);
+}
+
+/// Warps of both eyes, in all depth ranges, with targets that lie higher and lower than their sources, and beyond them.
+fn warps() -> Vec<(Warp, DepthRange)> {
+    let mut warps = Vec::new();
+    for (i, range) in ranges().into_iter().enumerate() {
+        let dominant = Eye::BOTH[i % 2];
+        for eye in [dominant, dominant.other()] {
+            let views = eyes([150, 41], eye, range).synthesis(GuardBand::Pixels(13 * i as u32)).unwrap();
+            warps.push((views.warp, range));
+        }
+        let whole = warps[warps.len() - 1].0;
+        let lower = Warp { target_size: [150, 30], row_offset: -7 - i as i32, ..whole };
+        let higher = Warp { target_size: [150, 48], row_offset: 5, ..whole };
+        warps.extend([(lower, range), (higher, range)]);
+    }
+    warps
+}
+
+#[test]
+fn pictures_are_those_of_opengl() {
+    let gl = Gl::new();
+    for rendering in Rendering::ALL {
+        with_gpu(rendering, |gpu| {
+            for (number, (variant, _)) in VARIANTS.into_iter().enumerate() {
+                for (i, (warp, range)) in warps().into_iter().enumerate() {
+                    let picture = picture(&warp, range, i as u64);
+                    let setup = Setup::PLAIN;
+                    // SAFETY: the device outlives it, and everything is executed.
+                    let mut gather = unsafe {
+                        Gather::with_variant(&gpu.host(), &setup.options(&[warp]), variant).unwrap()
+                    };
+                    let got = synthesize(gpu, &mut gather, &setup, &picture);
+                    let want = gl.run(number, &picture);
+                    assert_equal(&got.rgba, &want.rgba, 4, &format!("{rendering:?}, {variant:?}, {warp:?}"));
+                }
+            }
+        });
+    }
+}
+
+/// Parts of larger images and layers of arrays, one pipeline for several sizes, all layouts.
+#[test]
+fn parts_and_layers_are_found() {
+    let gl = Gl::new();
+    with_gpu(Rendering::RenderPasses, |gpu| {
+        let warps = warps();
+        let [read_only, general] =
+            [vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL, vk::ImageLayout::GENERAL]
+                .map(|layout| ImageState { layout, ..ImageState::SAMPLED });
+        let setup = Setup { depth: vk::Format::D32_SFLOAT, target_layer: 1, ..Setup::PLAIN };
+        let setups = [
+            Setup { source_layer: 1, source_margins: [[5, 3], [2, 7]], ..setup },
+            Setup { target_margins: [[4, 9], [1, 2]], target_before: ImageState::COLOR_ATTACHMENT, ..setup },
+            Setup {
+                source_margins: [[0, 2], [3, 0]],
+                target_margins: [[1, 0], [0, 5]],
+                states: [[ImageState::SAMPLED; 2], [read_only; 2]],
+                ..setup
+            },
+            Setup {
+                source_margins: [[1, 1], [1, 1]],
+                states: [[general, ImageState::COLOR_ATTACHMENT], [general, ImageState::DEPTH_ATTACHMENT]],
+                ..setup
+            },
+        ];
+        for (number, (variant, _)) in VARIANTS.into_iter().enumerate() {
+            let all: Vec<Warp> = warps.iter().map(|(warp, _)| *warp).collect();
+            // SAFETY: the device outlives it, and everything is executed.
+            let mut gather =
+                unsafe { Gather::with_variant(&gpu.host(), &setup.options(&all), variant).unwrap() };
+            for (i, (warp, range)) in warps.iter().enumerate() {
+                let picture = picture(warp, *range, 50 + i as u64);
+                let setup = &setups[i % setups.len()];
+                let got = synthesize(gpu, &mut gather, setup, &picture);
+                let want = gl.run(number, &picture);
+                assert_equal(&got.rgba, &want.rgba, 4, &format!("{variant:?}, {warp:?}, {setup:?}"));
+            }
+        }
+    });
+}
+
+/// What a target's depth must be, by the columns that OpenGL has written.
+fn expected_depth(picture: &Picture, source_map: &[u32]) -> Vec<f32> {
+    let warp = &picture.warp;
+    let [width, height] = warp.source_size.map(|n| n as i32);
+    let entries = source_map.iter().enumerate().map(|(i, entry)| {
+        let (x, y) = (i as u32 % warp.target_size[0], i as u32 / warp.target_size[0]);
+        let column = SourceMapEntry::decode(*entry, x, warp).column;
+        let row = (y as i32 - warp.row_offset).clamp(0, height - 1);
+        let at = |column: f32| picture.depth[(row * width + (column as i32).clamp(0, width - 1)) as usize];
+        let t = column.fract();
+        at(column.floor()) * (1.0 - t) + at(column.floor() + 1.0) * t
+    });
+    entries.collect()
+}
+
+#[test]
+fn every_format_is_taken() {
+    let gl = Gl::new();
+    for rendering in [Rendering::RenderPasses, Rendering::Core] {
+        with_gpu(rendering, |gpu| {
+            let color = [
+                vk::Format::R8G8B8A8_UNORM,
+                vk::Format::A2B10G10R10_UNORM_PACK32,
+                vk::Format::R16G16B16A16_SFLOAT,
+                vk::Format::B8G8R8A8_UNORM,
+            ];
+            let depth = [
+                vk::Format::D16_UNORM,
+                vk::Format::D24_UNORM_S8_UINT,
+                vk::Format::D32_SFLOAT,
+                vk::Format::D32_SFLOAT_S8_UINT,
+            ];
+            let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
+            let warp = eyes([150, 41], Eye::Left, range).synthesis(GuardBand::Pixels(9)).unwrap().warp;
+            for (i, format) in depth.into_iter().enumerate() {
+                if !gpu.has(format, vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT) {
+                    println!("SKIPPED: {} has no {format:?}", gpu.name());
+                    continue;
+                }
+                let mut picture = picture(&warp, range, 70);
+                if format == vk::Format::D16_UNORM {
+                    picture.depth.iter_mut().for_each(|depth| *depth = (*depth * 65535.0).round() / 65535.0);
+                }
+                let setup = Setup {
+                    color: color[i],
+                    depth: format,
+                    target: color[(i + 1) % color.len()],
+                    target_depth: Some(depth[(i + 1) % depth.len()]),
+                    source_margins: [[2, 2], [0, 0]],
+                    target_margins: [[0, 1], [1, 0]],
+                    ..Setup::PLAIN
+                };
+                // SAFETY: the device outlives it, and everything is executed.
+                let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
+                let got = synthesize(gpu, &mut gather, &setup, &picture);
+                let want = gl.run(0, &picture);
+                // Ten bits have two of alpha.
+                assert_equal(&got.rgba, &want.rgba, 3, &format!("{rendering:?}, {setup:?}"));
+                let expected = expected_depth(&picture, &want.source_map);
+                let error =
+                    got.depth.unwrap().iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                assert!(error < 4e-5, "{rendering:?}, {setup:?}: depth differs by {error}");
+            }
+        });
+    }
+}
+
+/// sRGB is decoded, filtered and encoded: by Vulkan as by OpenGL.
+#[test]
+fn srgb_is_filtered_in_linear_light() {
+    let gl = Gl::new();
+    with_gpu(Rendering::Core, |gpu| {
+        let (warp, range) = warps()[2];
+        let picture = picture(&warp, range, 80);
+        let srgb = vk::Format::R8G8B8A8_SRGB;
+        let setup = Setup { color: srgb, target: srgb, ..Setup::PLAIN };
+        // SAFETY: the device outlives it, and everything is executed.
+        let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
+        let got = synthesize(gpu, &mut gather, &setup, &picture);
+        let want = gl_srgb(gl.headless.gl(), &picture);
+        assert_equal(&got.rgba, &want, 4, "sRGB");
+        assert_ne!(want, gl.run(0, &picture).rgba, "linear light makes a difference");
+    });
+}
+
+/// Colour and depth as textures, and a target of the colour's format.
+fn gl_images(gl: &Rc<Context>, picture: &Picture, format: gl::Format) -> ([Texture; 2], RenderTarget) {
+    let Picture { warp, rgba, depth } = picture;
+    let color = Texture::new(gl, warp.source_size, format, Filter::Linear).unwrap();
+    color.upload(rgba);
+    let map = Texture::new(gl, warp.source_size, gl::Format::R32F, Filter::Nearest).unwrap();
+    map.upload(&depth.iter().flat_map(|value| value.to_ne_bytes()).collect::<Vec<_>>());
+    let target = RenderTarget::new(gl, warp.target_size, &[(format, Filter::Nearest)], None).unwrap();
+    ([color, map], target)
+}
+
+fn gl_srgb(gl: &Rc<Context>, picture: &Picture) -> Vec<u8> {
+    let ([color, depth], target) = gl_images(gl, picture, gl::Format::Srgb8Alpha8);
+    let outputs = Outputs { srgb: true, ..Outputs::default() };
+    let mut gather = synthesis::create(gl, &SynthesisOptions::default(), outputs).unwrap();
+    let source = synthesis::Source { color: color.raw(), depth: depth.raw() };
+    gather.synthesize(source, &picture.warp, &Destination::whole(&target)).unwrap();
+    target.read_rgba8(0, [0, 0], picture.warp.target_size)
+}
+
+/// Any sizes, rectangles, eyes and laws.
+#[test]
+fn sizes_and_rectangles_at_random() {
+    let gl = Gl::new();
+    with_gpu(Rendering::Core, |gpu| {
+        let limits = Options { max_source_size: [96, 70], max_target_size: [96, 70], ..Options::default() };
+        let gathers = VARIANTS.map(|(variant, _)| {
+            // SAFETY: the device outlives it, and everything is executed.
+            RefCell::new(unsafe { Gather::with_variant(&gpu.host(), &limits, variant).unwrap() })
+        });
+        let size = || (1..=96u32, 1..=70u32);
+        let margin = || (0..4u32, 0..4u32, 0..4u32, 0..4u32);
+        let strategy = (
+            (size(), size(), -30..30i32, -40.0..40.0f64, -30.0..30.0f64),
+            (margin(), margin(), 0..2u32, 0..2u32, 0..2usize, 0..1000u64),
+        );
+        let config = Config { cases: 60, failure_persistence: None, ..Config::default() };
+        let mut runner = TestRunner::new_with_rng(config, deterministic());
+        let run = runner.run(&strategy, |((source, target, row_offset, offset, scale), rest)| {
+            let (a, b, source_layer, target_layer, number, seed) = rest;
+            // Nearer surfaces lie farther along in forward columns, or there is no law.
+            let target_eye = Eye::BOTH[usize::from(scale < 0.0)];
+            let warp = Warp {
+                source_size: source.into(),
+                target_size: target.into(),
+                law: DisparityLaw { offset, scale },
+                row_offset,
+                target_eye,
+                convention: DepthConvention::Reversed,
+            };
+            let range = DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
+            let picture = picture(&warp, range, seed);
+            let setup = Setup {
+                source_margins: [[a.0, a.1], [a.2, a.3]],
+                target_margins: [[b.0, b.1], [b.2, b.3]],
+                source_layer,
+                target_layer,
+                ..Setup::PLAIN
+            };
+            let got = synthesize(gpu, &mut gathers[number].borrow_mut(), &setup, &picture);
+            let want = gl.run(number, &picture);
+            assert_equal(&got.rgba, &want.rgba, 4, &format!("{number}, {seed}, {warp:?}, {setup:?}"));
+            Ok(())
+        });
+        run.unwrap();
+    });
+}
+
+fn deterministic() -> proptest::test_runner::TestRng {
+    proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha)
+}
+
+/// Frames that are recorded one after the other: what one reads is not overwritten too early, nor is what it writes. The
+/// layer looks after that; and recording allocates nothing.
+#[test]
+fn frames_follow_one_another() {
+    let gl = Gl::new();
+    for rendering in [Rendering::RenderPasses, Rendering::Core] {
+        with_gpu(rendering, |gpu| {
+            let (warp, range) = warps()[2];
+            let pictures = [1, 2].map(|seed| picture(&warp, range, seed));
+            let options = Options { timed_frames: 2, ..Setup::PLAIN.options(&[warp]) };
+            let (sampled, drawn) = (ImageState::SAMPLED, ImageState::COLOR_ATTACHMENT);
+            // SAFETY: images that live until everything is executed, in the states that are told.
+            unsafe {
+                let mut gather = Gather::new(&gpu.host(), &options).unwrap();
+                let images = pictures.each_ref().map(|picture| {
+                    let color = gpu.image(Setup::PLAIN.color, warp.source_size, 1);
+                    let depth = gpu.image(Setup::PLAIN.depth, warp.source_size, 1);
+                    let target = gpu.image(Setup::PLAIN.target, warp.target_size, 1);
+                    color.upload_rgba8(0, &picture.rgba, sampled);
+                    depth.upload_depth(0, &picture.depth, sampled);
+                    target.upload_rgba8(0, &vec![0; target.pixels() * 4], drawn);
+                    (color, depth, target)
+                });
+                let ids = images.each_ref().map(|(color, depth, target)| {
+                    let [color, depth] = [color, depth].map(|image| image.layer(0, sampled, sampled));
+                    let source = SourceImages { color, depth, size: warp.source_size };
+                    let color = target.layer(0, drawn, drawn);
+                    let target = TargetImages { color, depth: None, size: warp.target_size };
+                    (gather.register_source(&source).unwrap(), gather.register_target(&target).unwrap())
+                });
+                gpu.run(|commands| {
+                    let allocated = allocations();
+                    // The second picture over the first, and the first again.
+                    for (source, target) in [(0, 0), (1, 0), (0, 1), (1, 0)] {
+                        let (source, target) = (ids[source].0, ids[target].1);
+                        let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] };
+                        gather.record(commands, &frame, &warp).unwrap();
+                    }
+                    assert_eq!(allocations(), allocated, "recording allocates");
+                });
+                for (target, picture) in [(0, 1), (1, 0)] {
+                    let got = images[target].2.read_rgba8(0, drawn);
+                    assert_equal(&got, &gl.run(0, &pictures[picture]).rgba, 4, "one after the other");
+                }
+            }
+        });
+    }
+}
+
+/// What a caller gets wrong is one sentence, and nothing is recorded.
+#[test]
+fn mistakes_are_refused() {
+    with_gpu(Rendering::RenderPasses, |gpu| {
+        let (warp, _) = warps()[0];
+        let setup = Setup::PLAIN;
+        let options = setup.options(&[warp]);
+        // SAFETY: valid handles; what is made of them is dropped before the device, unused.
+        unsafe {
+            let make = |options: &Options| Gather::new(&gpu.host(), options).err();
+            let none = Options { max_source_size: [0, 4], ..options };
+            assert!(matches!(make(&none), Some(VulkanError::Size { .. })));
+            let much = Options { max_target_size: [1 << 20, 4], ..options };
+            assert!(matches!(make(&much), Some(VulkanError::Size { .. })));
+            for format in [vk::Format::R8G8B8A8_UINT, vk::Format::D32_SFLOAT, vk::Format::UNDEFINED] {
+                let format = Options { color_format: format, ..options };
+                assert!(matches!(make(&format), Some(VulkanError::Format { .. })), "{format:?}");
+            }
+            let color = Options { depth_format: Some(vk::Format::R8G8B8A8_UNORM), ..options };
+            assert!(matches!(make(&color), Some(VulkanError::Format { .. })));
+            let family = Gather::new(&yoro::vulkan::Host { queue_family: 77, ..gpu.host() }, &options);
+            assert_eq!(family.err(), Some(VulkanError::QueueFamily(77)));
+            let dynamic =
+                Gather::new(&yoro::vulkan::Host { dynamic_rendering: true, ..gpu.host() }, &options);
+            assert_eq!(dynamic.err(), Some(VulkanError::DynamicRendering));
+
+            let mut gather = Gather::new(&gpu.host(), &options).unwrap();
+            let [w, h] = warp.source_size;
+            let color = gpu.image(setup.color, warp.source_size, 1);
+            let depth = gpu.image(setup.depth, warp.source_size, 1);
+            let target = gpu.image(setup.target, warp.target_size, 1);
+            let sampled = |image: &Image| image.layer(0, ImageState::SAMPLED, ImageState::SAMPLED);
+            let source =
+                SourceImages { color: sampled(&color), depth: sampled(&depth), size: warp.source_size };
+            let no_depth = SourceImages { depth: sampled(&color), ..source };
+            let refused = gather.register_source(&no_depth).unwrap_err();
+            assert!(
+                refused
+                    .to_string()
+                    .starts_with("the Vulkan device cannot use R8G8B8A8_UNORM as a source's depth")
+            );
+            let target = TargetImages { color: sampled(&target), depth: None, size: warp.target_size };
+            let with_depth = TargetImages { depth: Some(sampled(&depth)), ..target };
+            assert!(matches!(gather.register_target(&with_depth), Err(VulkanError::OtherFormat { .. })));
+
+            let source = gather.register_source(&source).unwrap();
+            let target = gather.register_target(&target).unwrap();
+            let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] };
+            gpu.run(|commands| {
+                let mut record = |frame, warp: Warp| gather.record(commands, &frame, &warp).unwrap_err();
+                let wide = Warp { source_size: [w + 1, h], ..warp };
+                assert!(matches!(record(frame, wide), VulkanError::Size { .. }));
+                let none = Warp { target_size: [0, h], ..warp };
+                assert!(matches!(record(frame, none), VulkanError::Size { .. }));
+                for origin in [[1, 0], [0, 1], [u32::MAX, 0]] {
+                    let error = record(Frame { source_origin: origin, ..frame }, warp);
+                    assert!(matches!(error, VulkanError::Rectangle { .. }), "{error}");
+                    let error = record(Frame { target_origin: origin, ..frame }, warp);
+                    assert!(matches!(error, VulkanError::Rectangle { .. }), "{error}");
+                }
+                gather.release_source(source);
+                assert_eq!(gather.record(commands, &frame, &warp), Err(VulkanError::NotRegistered));
+            });
+        }
+    });
+}
+
+/// As many frames later as was said.
+#[test]
+fn passes_are_timed() {
+    with_gpu(Rendering::Core, |gpu| {
+        let (warp, range) = warps()[0];
+        let picture = picture(&warp, range, 90);
+        for timed_frames in [0, 1, 3] {
+            let options = Options { timed_frames, ..Setup::PLAIN.options(&[warp]) };
+            // SAFETY: the device outlives it, and everything is executed.
+            unsafe {
+                let mut gather = Gather::new(&gpu.host(), &options).unwrap();
+                for frame in 0..7 {
+                    let times = gather.pass_times().unwrap();
+                    assert_eq!(times.is_some(), timed_frames > 0 && frame >= timed_frames, "frame {frame}");
+                    assert!(times.is_none_or(|times| !times.march.is_zero()), "{times:?}");
+                    synthesize(gpu, &mut gather, &Setup::PLAIN, &picture);
+                }
+            }
+        }
+    });
+}
+
+/// What the passes cost here; docs/library.md has the figures.
+#[test]
+#[ignore = "measures: cargo test -p yoro --test vulkan -- --ignored --nocapture cost"]
+fn cost_of_the_passes() {
+    let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
+    let context = headless.gl();
+    context.set_profiling(gl::Profiling::Finish);
+    with_gpu(Rendering::Core, |gpu| {
+        let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
+        let warp = eyes([1024; 2], Eye::Right, range).synthesis(GuardBand::Distance(1.0)).unwrap().warp;
+        let picture = picture(&warp, range, 1);
+        let options = Options { timed_frames: 1, ..Setup::PLAIN.options(&[warp]) };
+        let mut times: [Vec<[f64; 3]>; 2] = Default::default();
+        // SAFETY: the device outlives it, and everything is executed.
+        let mut gather = unsafe { Gather::new(&gpu.host(), &options).unwrap() };
+        let (source, target) = gl_images(context, &picture, gl::Format::Rgba8);
+        let textures = synthesis::Source { color: source[0].raw(), depth: source[1].raw() };
+        let mut on_gl = synthesis::create(context, &SynthesisOptions::default(), Outputs::default()).unwrap();
+        for _ in 0..21 {
+            context.take_pass_times();
+            on_gl.synthesize(textures, &warp, &Destination::whole(&target)).unwrap();
+            let passes = context.take_pass_times();
+            times[0].push(std::array::from_fn(|i| passes[i].time.as_secs_f64() * 1e3));
+            drop(synthesize(gpu, &mut gather, &Setup::PLAIN, &picture));
+            // SAFETY: it was submitted.
+            let passes = unsafe { gather.pass_times() }.unwrap().expect("finished");
+            times[1].push([passes.tiles, passes.spans, passes.march].map(|time| time.as_secs_f64() * 1e3));
+        }
+        for (name, times) in [&context.capabilities().summary(), &gpu.name()].into_iter().zip(&times) {
+            let medians: [f64; 3] = std::array::from_fn(|pass| {
+                let mut all: Vec<f64> = times.iter().map(|times| times[pass]).collect();
+                all.sort_by(f64::total_cmp);
+                all[all.len() / 2]
+            });
+            println!(
+                "{name}: tiles {:.2} ms, spans {:.2} ms, march {:.2} ms",
+                medians[0], medians[1], medians[2]
+            );
+        }
+    });
+}

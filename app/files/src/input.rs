@@ -1,0 +1,196 @@
+//! Where the files that are read come from: the file system, or in a browser, which has none, those that were
+//! [provided](provide).
+
+#[cfg(not(target_arch = "wasm32"))]
+mod source {
+    use std::ffi::OsString;
+    use std::fs;
+    use std::io;
+    use std::path::Path;
+
+    /// A file that can be read.
+    pub type Input = fs::File;
+
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// The operating system's.
+    pub fn open(path: &Path) -> io::Result<Input> {
+        fs::File::open(path)
+    }
+
+    /// The size of a file in bytes; none for what is there and no file.
+    ///
+    /// # Errors
+    /// The operating system's.
+    pub fn size(path: &Path) -> io::Result<Option<u64>> {
+        let meta = fs::metadata(path)?;
+        Ok(meta.is_file().then_some(meta.len()))
+    }
+
+    /// The names in a folder, in no order; `.` for an empty path.
+    ///
+    /// # Errors
+    /// The operating system's.
+    pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect()
+    }
+
+    /// Whether a file or folder is there.
+    pub fn exists(path: &Path) -> bool {
+        path.exists()
+    }
+}
+
+/// Files in memory, by their paths.
+#[cfg(any(test, target_arch = "wasm32"))]
+mod memory {
+    use std::collections::BTreeMap;
+    use std::ffi::OsString;
+    use std::io::{self, Cursor};
+    use std::path::{Path, PathBuf};
+    use std::sync::Arc;
+
+    /// A file that can be read.
+    pub type Input = Cursor<Arc<[u8]>>;
+
+    #[derive(Default)]
+    pub struct Files(BTreeMap<PathBuf, Arc<[u8]>>);
+
+    impl Files {
+        pub const fn new() -> Files {
+            Files(BTreeMap::new())
+        }
+
+        pub fn set(&mut self, files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) {
+            self.0 = files.into_iter().map(|(path, bytes)| (plain(&path), bytes.into())).collect();
+        }
+
+        pub fn open(&self, path: &Path) -> io::Result<Input> {
+            let bytes = self.0.get(&plain(path)).ok_or(io::ErrorKind::NotFound)?;
+            Ok(Cursor::new(bytes.clone()))
+        }
+
+        pub fn size(&self, path: &Path) -> io::Result<Option<u64>> {
+            match self.0.get(&plain(path)) {
+                Some(bytes) => Ok(Some(bytes.len() as u64)),
+                None if self.exists(path) => Ok(None),
+                None => Err(io::ErrorKind::NotFound.into()),
+            }
+        }
+
+        pub fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
+            let folder = plain(folder);
+            let below = self.0.keys().filter_map(|path| path.strip_prefix(&folder).ok());
+            let mut names: Vec<_> =
+                below.filter_map(|path| Some(path.components().next()?.as_os_str().to_owned())).collect();
+            names.dedup();
+            Ok(names)
+        }
+
+        pub fn exists(&self, path: &Path) -> bool {
+            let path = plain(path);
+            self.0.keys().any(|known| known.starts_with(&path))
+        }
+    }
+
+    /// Without `.` and `..`.
+    fn plain(path: &Path) -> PathBuf {
+        use std::path::Component;
+        let mut out = PathBuf::new();
+        for component in path.components() {
+            match component {
+                Component::ParentDir => drop(out.pop()),
+                Component::Normal(name) => out.push(name),
+                _ => {}
+            }
+        }
+        out
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+mod source {
+    use std::ffi::OsString;
+    use std::io;
+    use std::path::{Path, PathBuf};
+    use std::sync::{PoisonError, RwLock};
+
+    use super::memory::Files;
+    pub use super::memory::Input;
+
+    static FILES: RwLock<Files> = RwLock::new(Files::new());
+
+    /// Says which files there are, instead of those that there were.
+    pub fn provide(files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) {
+        FILES.write().unwrap_or_else(PoisonError::into_inner).set(files);
+    }
+
+    fn files() -> std::sync::RwLockReadGuard<'static, Files> {
+        FILES.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// `NotFound` for one that was not provided.
+    pub fn open(path: &Path) -> io::Result<Input> {
+        files().open(path)
+    }
+
+    /// The size of a file in bytes; none for what is there and no file.
+    ///
+    /// # Errors
+    /// As [`open`].
+    pub fn size(path: &Path) -> io::Result<Option<u64>> {
+        files().size(path)
+    }
+
+    /// The names in a folder.
+    ///
+    /// # Errors
+    /// None.
+    pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
+        files().names(folder)
+    }
+
+    /// Whether a file or folder is there.
+    pub fn exists(path: &Path) -> bool {
+        files().exists(path)
+    }
+}
+
+pub use source::*;
+
+use std::path::Path;
+
+/// Whether `path` is a file.
+pub fn is_file(path: &Path) -> bool {
+    matches!(size(path), Ok(Some(_)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Read as _;
+
+    #[test]
+    fn files_in_memory_are_found_as_in_folders() {
+        let mut files = memory::Files::new();
+        files.set([
+            ("model.obj".into(), b"v".to_vec()),
+            ("textures/a.png".into(), b"png".to_vec()),
+            ("./textures/b.png".into(), Vec::new()),
+        ]);
+        let mut text = String::new();
+        files.open(Path::new("textures/../textures/a.png")).unwrap().read_to_string(&mut text).unwrap();
+        assert_eq!(text, "png");
+        assert_eq!(files.size(Path::new("textures/b.png")).unwrap(), Some(0));
+        assert_eq!(files.size(Path::new("textures")).unwrap(), None);
+        assert_eq!(files.size(Path::new("tex")).unwrap_err().kind(), std::io::ErrorKind::NotFound);
+        assert_eq!(files.names(Path::new("")).unwrap(), ["model.obj", "textures"]);
+        assert_eq!(files.names(Path::new("textures")).unwrap(), ["a.png", "b.png"]);
+        assert!(files.exists(Path::new("textures")) && !files.exists(Path::new("textures/c.png")));
+    }
+}

@@ -1,0 +1,240 @@
+//! Files in and out: an output is complete or absent, and an error says which file and what to do.
+//!
+//! [`read`] and [`write()`] take whole files; [`write_with`] lets the caller fill one that appears under its name only
+//! when it is complete; [`find`] lists the files below a folder. Loaders that read piece by piece [`open`] their files:
+//! in a browser those are files in memory.
+//!
+//! This crate must never know what is in the files.
+
+mod input;
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+pub use input::*;
+
+/// Why a file could not be read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileError {
+    /// Nothing is there.
+    #[error("{} does not exist: check the path", path.display())]
+    Missing {
+        /// The file or folder asked for.
+        path: PathBuf,
+    },
+    /// A folder stands where a file is needed.
+    #[error("{} is a folder: name a file", path.display())]
+    IsFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file stands where a folder is needed.
+    #[error("{} is not a folder: name a folder, or remove the file", path.display())]
+    NotFolder {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The operating system refused to read.
+    #[error("cannot read {}: {}", path.display(), remedy(source))]
+    Read {
+        /// The file asked for.
+        path: PathBuf,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// The operating system refused to write.
+    #[error("cannot write {}: {}", path.display(), remedy(source))]
+    Write {
+        /// The file or folder to be written.
+        path: PathBuf,
+        /// The system's answer.
+        source: io::Error,
+    },
+}
+
+fn remedy(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::PermissionDenied => "no permission; change its rights or choose another place".into(),
+        io::ErrorKind::StorageFull => "the disk is full; free some space or choose another place".into(),
+        io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only; choose another place".into(),
+        _ => error.to_string(),
+    }
+}
+
+/// The whole content of the file `path`.
+pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    if path.is_dir() {
+        return Err(FileError::IsFolder { path: path.into() });
+    }
+    fs::read(path).map_err(|source| match source.kind() {
+        io::ErrorKind::NotFound => FileError::Missing { path: path.into() },
+        _ => FileError::Read { path: path.into(), source },
+    })
+}
+
+/// Makes the folder `path` and its parents where they do not exist yet.
+pub fn create_folder(path: &Path) -> Result<(), FileError> {
+    if path.as_os_str().is_empty() || path.is_dir() {
+        return Ok(());
+    }
+    if path.exists() {
+        return Err(FileError::NotFolder { path: path.into() });
+    }
+    fs::create_dir_all(path).map_err(|source| FileError::Write { path: path.into(), source })
+}
+
+/// Writes `bytes` to `path`, as [`write_with`] does.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    write_with(path, |out| out.write_all(bytes))
+}
+
+/// Lets `fill` write a file that appears under `path` only when it is complete: it is written under a
+/// temporary name in the same folder and renamed. A crash, a full disk or Ctrl-C leaves what was there before.
+/// Missing parent folders are made. A device or pipe (`/dev/stdout`) is written in place.
+pub fn write_with(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
+) -> Result<(), FileError> {
+    let failed = |source| FileError::Write { path: path.into(), source };
+    if path.is_dir() {
+        return Err(FileError::IsFolder { path: path.into() });
+    }
+    // The target of a link is replaced, not the link.
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    if target.exists() && !target.is_file() {
+        let mut file = fs::OpenOptions::new().write(true).open(&target).map_err(failed)?;
+        return fill_and_flush(&mut file, fill).map_err(failed);
+    }
+    let folder = match target.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    create_folder(folder)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".yoro-").suffix(".part");
+    #[cfg(unix)]
+    {
+        // The crate's default is 0600: an output should have the rights that any new file gets.
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut part = builder.tempfile_in(folder).map_err(failed)?;
+    fill_and_flush(part.as_file_mut(), fill).map_err(failed)?;
+    part.persist(&target).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+fn fill_and_flush(
+    file: &mut fs::File,
+    fill: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut out = BufWriter::new(file);
+    fill(&mut out)?;
+    out.flush()
+}
+
+/// All files below `folder` whose extension is in `extensions` (lower case, no dot), as sorted paths relative to
+/// it. Links to folders are not followed, hidden files and folders are left out.
+pub fn find(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, FileError> {
+    if !folder.exists() {
+        return Err(FileError::Missing { path: folder.into() });
+    }
+    if !folder.is_dir() {
+        return Err(FileError::NotFolder { path: folder.into() });
+    }
+    let mut found = Vec::new();
+    let mut waiting = vec![PathBuf::new()];
+    while let Some(relative) = waiting.pop() {
+        let here = folder.join(&relative);
+        let failed = |source| FileError::Read { path: here.clone(), source };
+        for entry in fs::read_dir(&here).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let name = entry.file_name();
+            if name.to_string_lossy().starts_with('.') {
+                continue;
+            }
+            let path = relative.join(&name);
+            if entry.file_type().map_err(failed)?.is_dir() {
+                waiting.push(path);
+            } else if has_extension(&path, extensions) && entry.path().is_file() {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Whether the extension of `path`, in any case, is one of `extensions` (lower case, no dot).
+pub fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    extension.is_some_and(|e| extensions.contains(&e.as_str()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_no_litter() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("new/out.txt");
+        write(&path, b"first").unwrap();
+        let error = write_with(&path, |out| {
+            out.write_all(b"half")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        })
+        .unwrap_err();
+        assert!(
+            error.to_string().contains("out.txt") && error.to_string().contains("disk is full"),
+            "{error}"
+        );
+        assert_eq!(read(&path).unwrap(), b"first");
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn folders_and_missing_files_are_named() {
+        let dir = tempfile::tempdir().unwrap();
+        assert!(matches!(read(dir.path()), Err(FileError::IsFolder { .. })));
+        assert!(matches!(write(dir.path(), b""), Err(FileError::IsFolder { .. })));
+        let missing = dir.path().join("nothing.png");
+        assert_eq!(
+            read(&missing).unwrap_err().to_string(),
+            format!("{} does not exist: check the path", missing.display())
+        );
+        let file = dir.path().join("file");
+        write(&file, b"x").unwrap();
+        assert!(matches!(create_folder(&file), Err(FileError::NotFolder { .. })));
+        assert!(matches!(write(&file.join("below"), b""), Err(FileError::NotFolder { .. })));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_devices_and_rights() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let dir = tempfile::tempdir().unwrap();
+        let (file, link) = (dir.path().join("file"), dir.path().join("link"));
+        write(&file, b"1").unwrap();
+        assert_ne!(fs::metadata(&file).unwrap().permissions().mode() & 0o077, 0, "others may read");
+        symlink(&file, &link).unwrap();
+        write(&link, b"2").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(read(&file).unwrap(), b"2");
+        write(Path::new("/dev/null"), b"gone").unwrap();
+        assert!(!Path::new("/dev/null").is_file());
+    }
+
+    #[test]
+    fn finds_by_extension_below_a_folder() {
+        let dir = tempfile::tempdir().unwrap();
+        for name in ["b.PNG", "a/c.png", "a/d.txt", ".hidden.png"] {
+            write(&dir.path().join(name), b"").unwrap();
+        }
+        let found = find(dir.path(), &["png"]).unwrap();
+        assert_eq!(found, [PathBuf::from("a/c.png"), PathBuf::from("b.PNG")]);
+        assert!(matches!(find(&dir.path().join("none"), &["png"]), Err(FileError::Missing { .. })));
+    }
+}

@@ -1,0 +1,372 @@
+//! The suite `bandwidth`: what it takes to send two eyes, as H.264.
+//!
+//! The paper sends "a four-channel buffer (one RGB image plus depth)" instead of six channels ("Immersive Content
+//! Streaming") and compares bit rates alone. Here the receiver's eyes are measured too, so that rates can be held
+//! against each other at equal quality:
+//!
+//! | stream | what is coded | the other eye |
+//! |---|---|---|
+//! | [`STEREO_RGB`] | both eyes side by side | as decoded |
+//! | [`RGB_DEPTH`] | the dominant eye with its guard band, and its depth as the luma of a second stream | synthesized from both, as decoded |
+//! | [`RGB_DEPTH_PACKED`] | the same with depth beside the colour in one picture | likewise |
+//! | [`MONO_RGB`] | the dominant eye alone | the same image: the baseline |
+//!
+//! Colour is 4:2:0, BT.601 in full range. Depth is 8 bits, uniform in 1/z between the nearest and the farthest that
+//! the sequence shows (two numbers beside the stream), so that a step is the same disparity everywhere. Pictures are
+//! finished when they are coded: anti-aliased, transparent objects drawn.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use anyhow::Context as _;
+use image::{GrayImage, Luma, Rgb, RgbImage};
+
+use super::coder::Coder;
+use super::yuv::Planes;
+use crate::dataset::{GroupOptions, GroupRenderer};
+use crate::metrics::{Channels, MetricsError, SsimWindow, psnr, ssim};
+use crate::picture::{self, DepthImage};
+use yoro::eyes::{DepthConvention, EyePair, SynthesisViews};
+use yoro::gl::Context;
+use yoro::synthesis::Offline;
+use yoro_render::stereo::StereoOptions;
+use yoro_render::{PreparedScene, RenderSettings};
+
+/// Both eyes, side by side.
+pub const STEREO_RGB: &str = "stereo-rgb";
+/// The dominant eye and its depth, in two streams.
+pub const RGB_DEPTH: &str = "rgb-depth";
+/// The dominant eye and its depth, side by side.
+pub const RGB_DEPTH_PACKED: &str = "rgb-depth-packed";
+/// The dominant eye, for both.
+pub const MONO_RGB: &str = "mono-rgb";
+
+/// Names of the metrics. Each has one value for each quantizer: the mean over the frames.
+pub mod metric {
+    /// The quantizer (QP of H.264) of colour.
+    pub const QP: &str = "qp";
+    /// Bit rate in kbit/s (1000 bits) at [`super::FRAME_RATE`], the first, intra-coded frame included.
+    pub const KBIT_S: &str = "kbit_s";
+    /// Of it depth, where depth is a stream of its own.
+    pub const KBIT_S_DEPTH: &str = "kbit_s_depth";
+    /// PSNR (RGB) of the dominant eye after decoding, in dB. Where colours are saturated and details fine, 4:2:0
+    /// bounds it, whatever the quantizer.
+    pub const PSNR_DOMINANT: &str = "psnr_dominant";
+    /// PSNR (RGB) of the other eye after decoding and, where that is so, synthesis, in dB.
+    pub const PSNR_OTHER: &str = "psnr_other";
+    /// PSNR of luma of the dominant eye, in dB: video coding's usual measure.
+    pub const PSNR_LUMA_DOMINANT: &str = "psnr_luma_dominant";
+    /// PSNR of luma of the other eye, in dB.
+    pub const PSNR_LUMA_OTHER: &str = "psnr_luma_other";
+    /// SSIM (gaussian, RGB) of the dominant eye, over every [`super::SSIM_EVERY`]th frame.
+    pub const SSIM_DOMINANT: &str = "ssim_dominant";
+    /// SSIM (gaussian, RGB) of the other eye, likewise.
+    pub const SSIM_OTHER: &str = "ssim_other";
+}
+
+/// Frames a second.
+pub const FRAME_RATE: f32 = 30.0;
+/// SSIM takes ten times as long as PSNR.
+pub const SSIM_EVERY: usize = 6;
+
+/// What is coded how often.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BandwidthOptions {
+    /// Quantizers of colour, 12 to 51; four or more for a rate-distortion curve.
+    pub quantizers: Vec<u8>,
+    /// Quantizer of the depth stream less that of colour.
+    pub depth_offset: i8,
+}
+
+impl Default for BandwidthOptions {
+    fn default() -> BandwidthOptions {
+        // Depth as fine as colour, as it is where both are one picture.
+        BandwidthOptions { quantizers: vec![20, 26, 32, 38, 44], depth_offset: 0 }
+    }
+}
+
+/// Values by metric, as in a [measurement](super::Measurement).
+pub type Values = BTreeMap<String, Vec<Option<f64>>>;
+
+/// Renders a sequence, codes and decodes it by every stream at every quantizer, and measures both eyes. `pairs` are
+/// the eyes of consecutive frames. `step` is called after each frame of work; an error from it ends the run. The
+/// names are those of the streams.
+///
+/// # Errors
+/// One sentence when the eyes cannot be synthesized, GL refuses, or the encoder does.
+pub fn run(
+    gl: &Rc<Context>,
+    prepared: &mut PreparedScene,
+    settings: &RenderSettings,
+    pairs: &[EyePair],
+    options: &BandwidthOptions,
+    step: &mut dyn FnMut() -> anyhow::Result<()>,
+) -> anyhow::Result<Vec<(&'static str, Values)>> {
+    let sequence = Sequence::render(gl, prepared, settings, pairs, step)?;
+    let mut receiver = Offline::new(gl, &StereoOptions::default().synthesis)?;
+    let mut streams: Vec<(&'static str, Values)> =
+        [STEREO_RGB, RGB_DEPTH, RGB_DEPTH_PACKED, MONO_RGB].map(|name| (name, Values::new())).to_vec();
+    for &quantizer in &options.quantizers {
+        for layout in [Layout::Stereo, Layout::TwoStreams, Layout::Packed] {
+            let tallies = sequence.code(layout, quantizer, options.depth_offset, &mut receiver, step)?;
+            for (name, tally) in tallies {
+                let stream = streams.iter_mut().find(|(stream, _)| *stream == name);
+                tally.push_into(&mut stream.context("every stream has its values")?.1, quantizer);
+            }
+        }
+    }
+    Ok(streams)
+}
+
+/// Steps that [`run`] takes for a number of frames.
+pub fn steps(frames: usize, options: &BandwidthOptions) -> u64 {
+    (frames * (1 + 3 * options.quantizers.len())) as u64
+}
+
+/// How pictures go into streams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Layout {
+    Stereo,
+    TwoStreams,
+    Packed,
+}
+
+/// A rendered sequence, as it goes into the coder.
+struct Sequence {
+    frames: Vec<Frame>,
+    /// Nearness (0 far plane, 1 near plane) that the smallest and the largest depth sample stand for.
+    range: [f32; 2],
+}
+
+struct Frame {
+    views: SynthesisViews,
+    /// The dominant eye with its guard band.
+    color: RgbImage,
+    depth: GrayImage,
+    /// Dominant and other eye, uncompressed.
+    eyes: [RgbImage; 2],
+}
+
+impl Sequence {
+    fn render(
+        gl: &Rc<Context>,
+        prepared: &mut PreparedScene,
+        settings: &RenderSettings,
+        pairs: &[EyePair],
+        step: &mut dyn FnMut() -> anyhow::Result<()>,
+    ) -> anyhow::Result<Sequence> {
+        let defaults = StereoOptions::default();
+        let options = GroupOptions {
+            synthesis: defaults.synthesis,
+            guard_band: defaults.guard_band,
+            anti_aliasing: true,
+        };
+        let mut renderer = GroupRenderer::new(gl, settings, &options)?;
+        let mut rendered = Vec::new();
+        for pair in pairs {
+            let group = renderer.render(&mut prepared.renderer, &prepared.scene, pair)?;
+            let views = group.views;
+            let dominant = crop(&group.color, views.dominant_crop, pair.size);
+            let nearness = nearness(&group.depth, views.warp.convention);
+            rendered.push((views, group.color, nearness, [dominant, group.truth]));
+            step()?;
+        }
+        let all = rendered.iter().flat_map(|(_, _, nearness, _)| nearness.iter().copied());
+        let range = all.fold([f32::INFINITY, f32::NEG_INFINITY], |[l, h], n| [l.min(n), h.max(n)]);
+        let frame =
+            |(views, color, nearness, eyes): (SynthesisViews, RgbImage, DepthImage, [RgbImage; 2])| {
+                let depth = GrayImage::from_fn(nearness.width(), nearness.height(), |x, y| {
+                    Luma([quantize(nearness.get_pixel(x, y).0[0], range)])
+                });
+                Frame { views, color, depth, eyes }
+            };
+        Ok(Sequence { frames: rendered.into_iter().map(frame).collect(), range })
+    }
+
+    /// Codes and decodes all frames and measures both eyes of each stream that comes of it.
+    fn code(
+        &self,
+        layout: Layout,
+        quantizer: u8,
+        depth_offset: i8,
+        receiver: &mut Offline,
+        step: &mut dyn FnMut() -> anyhow::Result<()>,
+    ) -> anyhow::Result<Vec<(&'static str, Tally)>> {
+        let depth_quantizer = quantizer.saturating_add_signed(depth_offset).min(51);
+        let mut main = Coder::new(quantizer, FRAME_RATE)?;
+        let mut second = Coder::new(depth_quantizer, FRAME_RATE)?;
+        let names: &[&'static str] = match layout {
+            Layout::Stereo => &[STEREO_RGB],
+            Layout::TwoStreams => &[RGB_DEPTH, MONO_RGB],
+            Layout::Packed => &[RGB_DEPTH_PACKED],
+        };
+        let mut tallies: Vec<(&'static str, Tally)> =
+            names.iter().map(|name| (*name, Tally::default())).collect();
+        for (i, frame) in self.frames.iter().enumerate() {
+            let ([width, height], crop_origin) = (frame.views.target.size, frame.views.dominant_crop);
+            let color_size = frame.color.dimensions();
+            let mut eyes = Vec::new();
+            match layout {
+                Layout::Stereo => {
+                    let [left, right] = &frame.eyes;
+                    let decoded = main.code(&Planes::of_rgb(left).beside(&Planes::of_rgb(right)))?;
+                    let [left, right] = decoded.halves();
+                    eyes.push([left.rgb((width, height)), right.rgb((width, height))]);
+                }
+                Layout::TwoStreams => {
+                    let color = main.code(&Planes::of_rgb(&frame.color))?.rgb(color_size);
+                    let depth = second.code(&Planes::of_gray(&frame.depth))?.gray(color_size);
+                    let synthesized = self.synthesize(&frame.views, &color, &depth, receiver)?;
+                    let dominant = crop(&color, crop_origin, [width, height]);
+                    eyes.push([dominant.clone(), synthesized]);
+                    eyes.push([dominant.clone(), dominant]);
+                }
+                Layout::Packed => {
+                    let planes = Planes::of_rgb(&frame.color).beside(&Planes::of_gray(&frame.depth));
+                    let [color, depth] = main.code(&planes)?.halves();
+                    let (color, depth) = (color.rgb(color_size), depth.gray(color_size));
+                    let synthesized = self.synthesize(&frame.views, &color, &depth, receiver)?;
+                    eyes.push([crop(&color, crop_origin, [width, height]), synthesized]);
+                }
+            }
+            for ((_, tally), eyes) in tallies.iter_mut().zip(&eyes) {
+                tally.measure(i, eyes, &frame.eyes)?;
+            }
+            step()?;
+        }
+        for (name, tally) in &mut tallies {
+            tally.bytes = main.bytes;
+            if *name == RGB_DEPTH {
+                tally.bytes += second.bytes;
+                tally.depth_bytes = Some(second.bytes);
+            }
+        }
+        Ok(tallies)
+    }
+
+    /// What the receiver makes of a decoded picture: the other eye.
+    fn synthesize(
+        &self,
+        views: &SynthesisViews,
+        color: &RgbImage,
+        depth: &GrayImage,
+        receiver: &mut Offline,
+    ) -> anyhow::Result<RgbImage> {
+        let width = color.width() as usize;
+        let from_bottom = |y: u32| color.height() - 1 - y;
+        let mut rgba = Vec::with_capacity(width * color.height() as usize * 4);
+        let mut values = Vec::with_capacity(width * color.height() as usize);
+        for y in (0..color.height()).map(from_bottom) {
+            for x in 0..color.width() {
+                let Rgb([r, g, b]) = *color.get_pixel(x, y);
+                rgba.extend([r, g, b, 255]);
+                let nearness = dequantize(depth.get_pixel(x, y).0[0], self.range);
+                values.push(match views.warp.convention {
+                    DepthConvention::Standard => 1.0 - nearness,
+                    DepthConvention::Reversed => nearness,
+                });
+            }
+        }
+        let result = receiver.run(&rgba, &values, &views.warp)?;
+        Ok(picture::rgb_image(&result.rgba, views.target.size))
+    }
+}
+
+/// The part of a source image that is the dominant eye's own. `origin` counts rows from the bottom.
+fn crop(image: &RgbImage, origin: [u32; 2], [width, height]: [u32; 2]) -> RgbImage {
+    let top = image.height() - origin[1] - height;
+    image::imageops::crop_imm(image, origin[0], top, width, height).to_image()
+}
+
+/// 0 at the far plane, 1 at the near plane; affine in 1/z, and so in disparity.
+fn nearness(depth: &DepthImage, convention: DepthConvention) -> DepthImage {
+    DepthImage::from_fn(depth.width(), depth.height(), |x, y| {
+        let value = depth.get_pixel(x, y).0[0];
+        Luma([match convention {
+            DepthConvention::Standard => 1.0 - value,
+            DepthConvention::Reversed => value,
+        }])
+    })
+}
+
+fn quantize(nearness: f32, [low, high]: [f32; 2]) -> u8 {
+    let share = if high > low { (nearness - low) / (high - low) } else { 0.0 };
+    (share * 255.0).round().clamp(0.0, 255.0) as u8
+}
+
+fn dequantize(sample: u8, [low, high]: [f32; 2]) -> f32 {
+    low + (high - low) * f32::from(sample) / 255.0
+}
+
+/// Sums over the frames of a stream.
+#[derive(Clone, Debug, Default)]
+struct Tally {
+    bytes: usize,
+    depth_bytes: Option<usize>,
+    frames: usize,
+    /// Dominant and other eye, one value for each frame that is not identical to its reference.
+    psnr: [Vec<f64>; 2],
+    psnr_luma: [Vec<f64>; 2],
+    ssim: [Vec<f64>; 2],
+}
+
+impl Tally {
+    fn measure(
+        &mut self,
+        index: usize,
+        eyes: &[RgbImage; 2],
+        references: &[RgbImage; 2],
+    ) -> anyhow::Result<()> {
+        self.frames += 1;
+        for (eye, (image, reference)) in eyes.iter().zip(references).enumerate() {
+            let finite = |channels| {
+                Ok::<_, MetricsError>(Some(psnr(image, reference, channels)?.0).filter(|v| v.is_finite()))
+            };
+            self.psnr[eye].extend(finite(Channels::Rgb)?);
+            self.psnr_luma[eye].extend(finite(Channels::Luma)?);
+            if index.is_multiple_of(SSIM_EVERY) {
+                self.ssim[eye].push(ssim(image, reference, SsimWindow::Gaussian11, Channels::Rgb)?);
+            }
+        }
+        Ok(())
+    }
+
+    fn push_into(&self, values: &mut Values, quantizer: u8) {
+        let mean = |samples: &[f64]| {
+            (!samples.is_empty()).then(|| samples.iter().sum::<f64>() / samples.len() as f64)
+        };
+        let kbit_s = |bytes: usize| {
+            Some(bytes as f64 * 8e-3 * f64::from(FRAME_RATE) / self.frames as f64)
+                .filter(|rate| rate.is_finite())
+        };
+        let mut push =
+            |name: &str, value: Option<f64>| values.entry(name.to_owned()).or_default().push(value);
+        push(metric::QP, Some(f64::from(quantizer)));
+        push(metric::KBIT_S, kbit_s(self.bytes));
+        if let Some(bytes) = self.depth_bytes {
+            push(metric::KBIT_S_DEPTH, kbit_s(bytes));
+        }
+        push(metric::PSNR_DOMINANT, mean(&self.psnr[0]));
+        push(metric::PSNR_OTHER, mean(&self.psnr[1]));
+        push(metric::PSNR_LUMA_DOMINANT, mean(&self.psnr_luma[0]));
+        push(metric::PSNR_LUMA_OTHER, mean(&self.psnr_luma[1]));
+        push(metric::SSIM_DOMINANT, mean(&self.ssim[0]));
+        push(metric::SSIM_OTHER, mean(&self.ssim[1]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_steps_are_even_and_the_range_is_exact() {
+        let range = [0.01, 0.9];
+        assert_eq!([0.01, 0.9].map(|n| quantize(n, range)), [0, 255]);
+        for sample in 0..=255 {
+            assert_eq!(quantize(dequantize(sample, range), range), sample);
+        }
+        assert_eq!(quantize(0.5, [0.5, 0.5]), 0);
+        assert_eq!(dequantize(0, [0.5, 0.5]), 0.5);
+    }
+}

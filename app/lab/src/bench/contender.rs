@@ -1,0 +1,120 @@
+//! Who takes part.
+
+use std::fmt;
+
+use crate::inpaint::PatcherKind;
+use yoro::synthesis::Pipeline;
+use yoro_render::stereo::{Method, StereoOptions};
+
+/// What is measured against what: a stereo method, for synthesis with its pipeline; or a patcher.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contender {
+    /// A method without synthesis pipelines.
+    Method(Method),
+    /// The dominant eye rendered, the other synthesized by this pipeline.
+    Yoro(Pipeline),
+    /// The paper's pipeline without interpolation between ImBuffer entries.
+    PaperNearest,
+    /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as its text says.
+    PaperStrict,
+    /// A patcher on the reprojected image that all patchers get.
+    Patcher(PatcherKind),
+}
+
+impl Contender {
+    /// The ground truth of quality and the baseline of cost.
+    pub const CONVENTIONAL: Contender = Contender::Method(Method::Conventional);
+    /// The baseline of quality: the same image to both eyes.
+    pub const MONO: Contender = Contender::Method(Method::Mono);
+
+    /// Every contender, in the order of tables.
+    pub fn all() -> Vec<Contender> {
+        let variants = [Contender::PaperNearest, Contender::PaperStrict];
+        Contender::methods().into_iter().chain(variants).chain(Contender::patchers()).collect()
+    }
+
+    /// The stereo methods, synthesis with each of its pipelines.
+    pub fn methods() -> Vec<Contender> {
+        let others = Method::ALL.into_iter().filter(|method| *method != Method::Yoro);
+        others.map(Contender::Method).chain(Contender::pipelines()).collect()
+    }
+
+    /// Synthesis with each of its pipelines.
+    pub fn pipelines() -> Vec<Contender> {
+        Pipeline::ALL.map(Contender::Yoro).to_vec()
+    }
+
+    /// The patchers.
+    pub fn patchers() -> Vec<Contender> {
+        PatcherKind::ALL.map(Contender::Patcher).to_vec()
+    }
+
+    /// Its name in files and on the command line, which stays: `conventional`, `yoro-gather`,
+    /// `yoro-paper-nearest`, `patcher-telea`.
+    pub fn name(self) -> String {
+        match self {
+            Contender::Method(method) => method.name().into(),
+            Contender::Yoro(pipeline) => format!("yoro-{}", pipeline.name()),
+            Contender::PaperNearest => "yoro-paper-nearest".into(),
+            Contender::PaperStrict => "yoro-paper-strict".into(),
+            Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
+        }
+    }
+
+    /// The contender of this name.
+    pub fn find(name: &str) -> Option<Contender> {
+        Contender::all().into_iter().find(|contender| contender.name() == name)
+    }
+
+    /// The stereo method and its options: the pipeline's own defaults, without the switch to two renders of near
+    /// frames, so that what is measured is what the name says. `None` for a patcher.
+    pub fn method(self) -> Option<(Method, StereoOptions)> {
+        let (method, pipeline) = match self {
+            Contender::Method(method) => (method, Pipeline::default()),
+            Contender::Yoro(pipeline) => (Method::Yoro, pipeline),
+            Contender::PaperNearest | Contender::PaperStrict => (Method::Yoro, Pipeline::Paper),
+            Contender::Patcher(_) => return None,
+        };
+        let mut options = StereoOptions::of_pipeline(pipeline);
+        options.policy = None;
+        let paper = &mut options.synthesis.paper;
+        paper.linear_interpolation &= self != Contender::PaperNearest;
+        paper.strict |= self == Contender::PaperStrict;
+        Some((method, options))
+    }
+}
+
+/// Its [name](Contender::name).
+impl fmt::Display for Contender {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_again_and_stay() {
+        for contender in Contender::all() {
+            assert_eq!(Contender::find(&contender.name()), Some(contender));
+        }
+        for name in
+            ["conventional", "mono", "yoro-gather", "yoro-paper", "yoro-paper-strict", "patcher-telea"]
+        {
+            assert!(Contender::find(name).is_some(), "{name}");
+        }
+        assert_eq!(Contender::find("yoro"), None);
+    }
+
+    #[test]
+    fn variants_differ_in_their_options_only() {
+        let options = |contender: Contender| contender.method().unwrap().1;
+        let paper = options(Contender::Yoro(Pipeline::Paper));
+        assert!(paper.synthesis.paper.linear_interpolation && paper.policy.is_none());
+        assert!(!options(Contender::PaperNearest).synthesis.paper.linear_interpolation);
+        assert!(options(Contender::PaperStrict).synthesis.paper.strict);
+        assert_eq!(Contender::Patcher(PatcherKind::Telea).method(), None);
+    }
+}

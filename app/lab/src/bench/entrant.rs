@@ -1,0 +1,84 @@
+//! A contender that is ready to render.
+
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use super::process;
+use yoro::eyes::EyePair;
+use yoro::gl::{Context, GlError, Profiling};
+use yoro_render::stereo::{self, Method, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use yoro_render::{PreparedScene, RenderSettings};
+
+/// A stereo method with its programs and targets, to be measured.
+pub struct Entrant {
+    gl: Rc<Context>,
+    method: Box<dyn StereoMethod>,
+}
+
+/// What one frame took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameTime {
+    /// By the wall clock, up to glFinish.
+    pub wall: Duration,
+    /// Of all threads of the process.
+    pub cpu: Duration,
+}
+
+impl Entrant {
+    /// Compiles the method.
+    ///
+    /// # Errors
+    /// As [`stereo::create`].
+    pub fn new(
+        gl: &Rc<Context>,
+        method: Method,
+        settings: &RenderSettings,
+        options: &StereoOptions,
+    ) -> Result<Entrant, GlError> {
+        Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)? })
+    }
+
+    /// Renders a frame and waits for it.
+    ///
+    /// # Errors
+    /// As [`StereoMethod::render`].
+    pub fn render(
+        &mut self,
+        prepared: &mut PreparedScene,
+        pair: &EyePair,
+        frame: &mut StereoFrame,
+    ) -> Result<FrameTime, StereoError> {
+        let (start, cpu) = (Instant::now(), process::cpu_time());
+        self.method.render(&mut prepared.renderer, &prepared.scene, pair, frame)?;
+        self.gl.finish();
+        Ok(FrameTime { wall: start.elapsed(), cpu: process::cpu_time().saturating_sub(cpu) })
+    }
+
+    /// Renders a frame with a timer around each pass: names in the order in which they first ran, and
+    /// milliseconds; a pass that runs more than once in a frame counts as one. Empty where the driver cannot tell
+    /// ([`Context::take_pass_times`]).
+    ///
+    /// # Errors
+    /// As [`StereoMethod::render`].
+    pub fn pass_times(
+        &mut self,
+        prepared: &mut PreparedScene,
+        pair: &EyePair,
+        frame: &mut StereoFrame,
+    ) -> Result<Vec<(&'static str, f64)>, StereoError> {
+        self.gl.set_profiling(Profiling::Auto);
+        let rendered = self.method.render(&mut prepared.renderer, &prepared.scene, pair, frame);
+        let passes = self.gl.take_pass_times();
+        self.gl.set_profiling(Profiling::Off);
+        rendered?;
+        let mut times: Vec<(&'static str, f64)> = Vec::new();
+        for pass in passes {
+            let milliseconds = pass.time.as_secs_f64() * 1e3;
+            match times.iter_mut().find(|(name, _)| *name == pass.name) {
+                Some((_, time)) => *time += milliseconds,
+                None => times.push((pass.name, milliseconds)),
+            }
+        }
+        Ok(times)
+    }
+}

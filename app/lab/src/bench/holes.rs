@@ -1,0 +1,49 @@
+//! Which pixels of the other eye the dominant eye does not show.
+
+use std::rc::Rc;
+
+use yoro::eyes::{DepthConvention, EyePair, GuardBand};
+use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro::synthesis::{self, Outputs, SOURCE_MAP_HOLE, Source, Synthesis, SynthesisOptions};
+use yoro_render::PreparedScene;
+use yoro_render::stereo::StereoError;
+use yoro_render::{RenderSettings, Selection, ViewTargets};
+
+/// Finds holes from the depth of the dominant eye's own image, without a guard band: one mask for all contenders,
+/// whatever they do about holes. The outer border is part of it.
+pub struct HoleFinder {
+    targets: ViewTargets,
+    synthesis: Box<dyn Synthesis>,
+    map: RenderTarget,
+}
+
+impl HoleFinder {
+    /// Compiles the default synthesis, whose source map marks holes.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses a program or a target.
+    pub fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<HoleFinder, GlError> {
+        let outputs = Outputs { source_map: true, ..Outputs::default() };
+        let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
+        Ok(HoleFinder {
+            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
+            synthesis: synthesis::create(gl, &SynthesisOptions::default(), outputs)?,
+            map: RenderTarget::new(gl, [1, 1], &formats, None)?,
+        })
+    }
+
+    /// The holes of the eye that is not dominant, row by row from the top.
+    ///
+    /// # Errors
+    /// [`StereoError`] for eyes that cannot be synthesized, or when GL refuses.
+    pub fn find(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> Result<Vec<bool>, StereoError> {
+        let views = pair.synthesis(GuardBand::None)?;
+        prepared.renderer.render(&mut self.targets, &prepared.scene, &views.source, Selection::All)?;
+        self.map.resize(pair.size)?;
+        let source = Source { color: self.targets.color().raw(), depth: self.targets.depth().raw() };
+        self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.map))?;
+        let entries = self.map.read_u32(1, [0, 0], pair.size);
+        let rows = entries.chunks_exact(pair.size[0] as usize).rev();
+        Ok(rows.flatten().map(|entry| entry & SOURCE_MAP_HOLE != 0).collect())
+    }
+}

@@ -1,0 +1,39 @@
+//! `yoro bench`: every method, patcher and knob of the paper, measured side by side.
+//!
+//! A [`Suite`] is a list of [jobs](Job): a scene, and where something is swept, one point of the sweep. In each round
+//! of a job every [`Contender`] takes its turn, and the round is appended to a file of [records](record) when it
+//! is over. Quality is always held against the same eye really rendered, with "the same image to both eyes"
+//! ([`Contender::MONO`]) beside it; cost against two full renders ([`Contender::CONVENTIONAL`]).
+
+pub mod bandwidth;
+mod blank;
+#[cfg(feature = "h264")]
+mod coder;
+#[cfg(not(feature = "h264"))]
+#[path = "no_coder.rs"]
+mod coder;
+mod contender;
+mod entrant;
+mod holes;
+mod measured;
+mod pictures;
+pub mod process;
+pub mod record;
+mod runner;
+mod scenes;
+mod suite;
+mod summary;
+mod views;
+mod yuv;
+
+pub use blank::BlankFinder;
+pub use contender::Contender;
+pub use entrant::{Entrant, FrameTime};
+pub use holes::HoleFinder;
+pub use pictures::picture_folder;
+pub use record::{Measurement, Record, RecordError, Results, Setting, Writer, metric};
+pub use runner::{Bounds, Inputs, Runner};
+pub use scenes::{LazyObject, Object};
+pub use suite::{Choices, Job, Measure, Source, Suite};
+pub use summary::text;
+pub use views::spread;

@@ -1,0 +1,19 @@
+//! Where a run saves its pictures.
+
+use std::path::{Path, PathBuf};
+
+use super::record::Setting;
+use crate::text::slug;
+
+/// Where a run with results in `results` saves the pictures of a setting: `RUN.pictures/SUITE/SCENE` with `.LABEL` or
+/// `.POINT`, and in there `dominant.png`, `truth.png` and `CONTENDER.png`.
+pub fn picture_folder(results: &Path, setting: &Setting) -> PathBuf {
+    let mut name = slug(&setting.scene);
+    if let Some(label) = &setting.label {
+        name += &format!(".{}", slug(label));
+    }
+    if let Some(point) = setting.point {
+        name += &format!(".{point}");
+    }
+    results.with_extension("pictures").join(slug(&setting.suite)).join(name)
+}

@@ -1,0 +1,408 @@
+//! The experiments, as lists of settings to be measured.
+
+use std::path::PathBuf;
+
+use anyhow::ensure;
+
+use super::bandwidth::{self, BandwidthOptions};
+use super::contender::Contender;
+use super::record::Setting;
+use super::scenes::LazyObject;
+use crate::machine::Parameter;
+use yoro::eyes::EyeOptions;
+use yoro::synthesis::Pipeline;
+use yoro_render::RenderSettings;
+use yoro_scene::ShadingStyle;
+use yoro_scenes::BUILTINS;
+
+/// An experiment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Suite {
+    /// Frame time and quality of every method on eight scenes
+    Scenes,
+    /// Frame time of every method as the number of triangles grows
+    Complexity,
+    /// Quality in each shading style
+    Styles,
+    /// Quality as the distance between the eyes grows from 50 to 75 mm
+    Ipd,
+    /// Quality as an object, equally large on the screen, moves from 0.5 to 3 m
+    Distance,
+    /// Quality and time of the patchers on the same reprojected images
+    Patchers,
+    /// Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation
+    Imbuffer,
+    /// Frame time of every method with four lights: the paper's setting for single-pass instancing
+    Lights,
+    /// Frame time and quality of every method from 512 to 2048 pixels per eye
+    Resolution,
+    /// Flicker of the synthesized eye from frame to frame along a camera path
+    Flicker,
+    /// Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path
+    Bandwidth,
+    /// All of them, one after the other
+    All,
+}
+
+impl Suite {
+    /// All suites, in the order of the paper.
+    pub const ALL: [Suite; 11] = [
+        Suite::Scenes,
+        Suite::Complexity,
+        Suite::Styles,
+        Suite::Ipd,
+        Suite::Distance,
+        Suite::Patchers,
+        Suite::Imbuffer,
+        Suite::Lights,
+        Suite::Resolution,
+        Suite::Flicker,
+        Suite::Bandwidth,
+    ];
+
+    /// Its name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Suite::Scenes => "scenes",
+            Suite::Complexity => "complexity",
+            Suite::Styles => "styles",
+            Suite::Ipd => "ipd",
+            Suite::Distance => "distance",
+            Suite::Patchers => "patchers",
+            Suite::Imbuffer => "imbuffer",
+            Suite::Lights => "lights",
+            Suite::Resolution => "resolution",
+            Suite::Flicker => "flicker",
+            Suite::Bandwidth => "bandwidth",
+            Suite::All => "all",
+        }
+    }
+}
+
+/// What is taken of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Frames at viewpoints.
+    Frames {
+        /// Frame times, pass times, CPU time, memory.
+        cost: bool,
+        /// Likeness to the ground truth.
+        quality: bool,
+    },
+    /// Flicker along a piece of the camera path.
+    Flicker,
+    /// Patchers on reprojected images.
+    Patchers,
+    /// Coded sequences along a piece of the camera path.
+    Bandwidth,
+}
+
+/// Where a scene comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// A built-in scene or a file.
+    Named(String),
+    /// [`super::Object::swarm`].
+    Swarm {
+        /// Number of objects.
+        copies: usize,
+        /// Number of the largest swarm of the suite.
+        places: usize,
+    },
+    /// [`super::Object::at_distance`], in metres.
+    Object(f32),
+}
+
+/// One setting: all that is needed to measure it.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// What it is called in the results.
+    pub setting: Setting,
+    /// Its scene.
+    pub source: Source,
+    /// Another style than the scene's own.
+    pub style: Option<ShadingStyle>,
+    /// Renderer's settings.
+    pub render: RenderSettings,
+    /// The eyes.
+    pub eyes: EyeOptions,
+    /// Divisor of the ImBuffer's resolution.
+    pub imbuffer: u32,
+    /// Quantizers of coded sequences.
+    pub bandwidth: BandwidthOptions,
+    /// What is taken.
+    pub measure: Measure,
+    /// Who takes part; the conventional method first where frames are measured.
+    pub contenders: Vec<Contender>,
+    /// Number of rounds.
+    pub rounds: u32,
+    /// Number of frames: viewpoints spread over the camera path, or frames along it.
+    pub frames: usize,
+}
+
+impl Job {
+    /// Steps of progress: each contender's frames in each round, and getting ready.
+    pub fn steps(&self) -> u64 {
+        if self.measure == Measure::Bandwidth {
+            return bandwidth::steps(self.frames, &self.bandwidth);
+        }
+        (u64::from(self.rounds) * self.frames as u64 + 1) * self.contenders.len() as u64
+    }
+}
+
+/// What the user chose for all suites.
+#[derive(Clone, Debug)]
+pub struct Choices {
+    /// The short form.
+    pub quick: bool,
+    /// The eyes, as the suites do not vary them.
+    pub eyes: EyeOptions,
+    /// Timed rounds.
+    pub rounds: u32,
+    /// Viewpoints per scene.
+    pub viewpoints: usize,
+    /// Frames of the sequences of `bandwidth`.
+    pub sequence: usize,
+    /// Scenes instead of the suites' own.
+    pub scenes: Vec<String>,
+    /// Contenders instead of the suites' own.
+    pub contenders: Vec<Contender>,
+    /// Seed of the built-in scenes.
+    pub seed: u64,
+    /// File of the object of `distance` and `complexity`; the built-in one if none.
+    pub object: Option<PathBuf>,
+    /// Largest scene of `complexity`.
+    pub max_triangles: usize,
+}
+
+/// Scenes of the suites that vary something else: one of each shading style.
+const VARIED_SCENES: [&str; 5] = ["atrium", "voxel", "prototype", "talk", "stage"];
+/// The one scene of such a suite in the short form.
+const QUICK_SCENES: [&str; 1] = ["prototype"];
+/// Number of sizes of the complexity suite, as in the paper, and in the short form.
+const SIZES: [usize; 2] = [9, 5];
+/// Lights of the suite `lights`: the paper has fewer than five.
+const FEW_LIGHTS: usize = 4;
+/// Frames of the suite `flicker`.
+const FLICKER_FRAMES: [usize; 2] = [12, 4];
+
+impl Choices {
+    /// The settings of a suite, in the order in which they are measured: those that share a scene follow each
+    /// other. `object` is the object of `distance` and `complexity`.
+    ///
+    /// # Errors
+    /// One sentence when the choices leave nothing to measure.
+    pub fn jobs(&self, suite: Suite, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
+        let time = Measure::Frames { cost: true, quality: false };
+        let quality = Measure::Frames { cost: false, quality: true };
+        let both = Measure::Frames { cost: true, quality: true };
+        let all = Contender::methods();
+        let synthesis = || [vec![Contender::MONO], Contender::pipelines()].concat();
+        let every: Vec<&str> = BUILTINS.iter().map(|b| b.name).collect();
+        let plan = |measure, contenders: Vec<Contender>| Plan { choices: self, suite, measure, contenders };
+        match suite {
+            Suite::Scenes => plan(both, all).over(self.scenes(&every), [()], |_, ()| {}),
+            Suite::Complexity => self.complexity(plan(time, all), object),
+            Suite::Styles => {
+                plan(quality, synthesis()).over(self.varied(), ShadingStyle::ALL, |job, style| {
+                    job.style = Some(style);
+                    job.setting.label = Some(style.name().to_owned());
+                })
+            }
+            Suite::Ipd => self.ipd(plan(quality, synthesis())),
+            Suite::Distance => self.distance(plan(quality, synthesis()), object),
+            Suite::Patchers => {
+                let patchers = [vec![Contender::MONO], Contender::patchers()].concat();
+                plan(Measure::Patchers, patchers).over(self.varied(), [()], |_, ()| {})
+            }
+            Suite::Imbuffer => {
+                let contenders = vec![
+                    Contender::CONVENTIONAL,
+                    Contender::MONO,
+                    Contender::Yoro(Pipeline::Paper),
+                    Contender::PaperNearest,
+                    Contender::PaperStrict,
+                ];
+                plan(both, contenders).over(self.varied(), [1, 2, 4, 8, 16], |job, divisor| {
+                    job.imbuffer = divisor;
+                    job.setting.point = Some(f64::from(divisor));
+                })
+            }
+            Suite::Lights => plan(time, all).over(self.scenes(&every), [FEW_LIGHTS], |job, lights| {
+                job.render.point_lights = lights;
+                job.setting.point = Some(lights as f64);
+            }),
+            Suite::Resolution => self.resolution(plan(both, all)),
+            Suite::Flicker => plan(Measure::Flicker, synthesis()).over(self.varied(), [()], |job, ()| {
+                job.frames = FLICKER_FRAMES[usize::from(self.quick)];
+            }),
+            Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
+            Suite::All => {
+                let each = Suite::ALL.map(|suite| self.jobs(suite, object));
+                Ok(each.into_iter().collect::<anyhow::Result<Vec<_>>>()?.concat())
+            }
+        }
+    }
+
+    fn complexity(&self, plan: Plan, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
+        // Sizes grow in even steps, the first being one step: a slope is seen only where all else is equal.
+        let sizes = SIZES[usize::from(self.quick)];
+        let step = (self.max_triangles / sizes / object.triangles()).max(1);
+        let places = step * sizes;
+        let copies: Vec<usize> = (1..=sizes).map(|i| i * step).collect();
+        plan.over(vec!["swarm".into()], copies, |job, copies| {
+            job.source = Source::Swarm { copies, places };
+            job.setting.point = Some(object.swarm_triangles(copies) as f64);
+            job.frames = 1;
+        })
+    }
+
+    fn ipd(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+        let millimetres: &[u32] = if self.quick { &[50, 63, 75] } else { &[50, 55, 60, 65, 70, 75] };
+        plan.over(self.varied(), millimetres.iter().copied(), |job, mm| {
+            job.eyes.ipd = mm as f32 * 1e-3;
+            job.setting.point = Some(f64::from(mm));
+        })
+    }
+
+    fn distance(&self, plan: Plan, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
+        let metres: &[f32] = if self.quick { &[0.5, 1.0, 3.0] } else { &[0.5, 1.0, 1.5, 2.0, 2.5, 3.0] };
+        plan.over(vec![object.name.clone()], metres.iter().copied(), |job, metres| {
+            job.source = Source::Object(metres);
+            job.setting.point = Some(f64::from(metres));
+        })
+    }
+
+    fn resolution(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+        let pixels: &[u32] = if self.quick { &[256, 512] } else { &[512, 1024, 1536, 2048] };
+        plan.over(self.varied(), pixels.iter().copied(), |job, pixels| {
+            job.eyes.size = [pixels; 2];
+            job.setting.point = Some(f64::from(pixels));
+            job.frames = 1;
+        })
+    }
+
+    fn bandwidth(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
+        plan.over(self.scenes(scenes), [()], |job, ()| {
+            // Streams take part, not methods.
+            job.contenders.clear();
+            job.frames = self.sequence;
+            if self.quick {
+                job.bandwidth.quantizers = vec![22, 28, 34, 40];
+            }
+        })
+    }
+
+    fn scenes(&self, own: &[&str]) -> Vec<String> {
+        if self.scenes.is_empty() {
+            own.iter().map(|name| (*name).to_owned()).collect()
+        } else {
+            self.scenes.clone()
+        }
+    }
+
+    fn varied(&self) -> Vec<String> {
+        self.scenes(if self.quick { &QUICK_SCENES } else { &VARIED_SCENES })
+    }
+
+    /// Everything that has an influence on the figures, to be printed and compared.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let eyes = &self.eyes;
+        let list = |names: Vec<String>| {
+            if names.is_empty() { "those of the suite".to_owned() } else { names.join(", ") }
+        };
+        let object =
+            self.object.as_ref().map_or_else(|| "built-in".into(), |path| path.display().to_string());
+        [
+            ("size of each eye, pixels", format!("{} x {}", eyes.size[0], eyes.size[1])),
+            ("vertical field of view, degrees", format!("{:.0}", eyes.fov_y.to_degrees())),
+            ("IPD, metres", eyes.ipd.to_string()),
+            ("near and far plane, metres", format!("{} and {}", eyes.depth.near, eyes.depth.far)),
+            ("dominant eye", eyes.dominant.name().into()),
+            ("rounds", self.rounds.to_string()),
+            ("viewpoints per scene", self.viewpoints.to_string()),
+            ("frames of coded sequences", self.sequence.to_string()),
+            ("seed", self.seed.to_string()),
+            ("scenes", list(self.scenes.clone())),
+            ("contenders", list(self.contenders.iter().map(|c| c.name()).collect())),
+            ("object", object),
+            ("largest scene, triangles", self.max_triangles.to_string()),
+        ]
+        .map(|(name, value)| Parameter { name: name.into(), value })
+        .to_vec()
+    }
+}
+
+/// A suite about to be unfolded into its settings.
+struct Plan<'a> {
+    choices: &'a Choices,
+    suite: Suite,
+    measure: Measure,
+    contenders: Vec<Contender>,
+}
+
+impl Plan<'_> {
+    /// One job for each scene and point of the sweep; `vary` makes it the point's.
+    fn over<P: Clone>(
+        self,
+        scenes: Vec<String>,
+        points: impl IntoIterator<Item = P>,
+        vary: impl Fn(&mut Job, P),
+    ) -> anyhow::Result<Vec<Job>> {
+        let choices = self.choices;
+        let mut contenders = self.contenders;
+        if !choices.contenders.is_empty() {
+            contenders.retain(|c| choices.contenders.contains(c));
+            ensure!(
+                !contenders.is_empty(),
+                "none of the contenders given takes part in the suite {}: choose others, or another suite",
+                self.suite.name()
+            );
+        }
+        // Every figure stands beside its baseline, whoever was chosen.
+        let quality = !matches!(self.measure, Measure::Frames { quality: false, .. });
+        if quality && !contenders.contains(&Contender::MONO) {
+            contenders.insert(0, Contender::MONO);
+        }
+        if self.measure != Measure::Patchers {
+            contenders.retain(|c| *c != Contender::CONVENTIONAL);
+            contenders.insert(0, Contender::CONVENTIONAL);
+        }
+        let rounds = match self.measure {
+            Measure::Frames { cost: true, .. } | Measure::Patchers => choices.rounds,
+            _ => 1,
+        };
+        let points: Vec<P> = points.into_iter().collect();
+        let mut jobs = Vec::new();
+        for scene in scenes {
+            for point in &points {
+                let suite = self.suite.name().to_owned();
+                let mut job = Job {
+                    setting: Setting { suite, scene: scene_name(&scene), label: None, point: None },
+                    source: Source::Named(scene.clone()),
+                    style: None,
+                    render: RenderSettings::default(),
+                    eyes: choices.eyes,
+                    imbuffer: 1,
+                    bandwidth: BandwidthOptions::default(),
+                    measure: self.measure,
+                    contenders: contenders.clone(),
+                    rounds,
+                    frames: choices.viewpoints,
+                };
+                vary(&mut job, point.clone());
+                jobs.push(job);
+            }
+        }
+        Ok(jobs)
+    }
+}
+
+/// A built-in scene's name, or a file's stem.
+fn scene_name(scene: &str) -> String {
+    if BUILTINS.iter().any(|b| b.name == scene) {
+        return scene.to_owned();
+    }
+    let stem = std::path::Path::new(scene).file_stem();
+    stem.map_or_else(|| scene.to_owned(), |stem| stem.to_string_lossy().into_owned())
+}

@@ -1,0 +1,86 @@
+//! What a file of results says, in a short table for the terminal.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use super::bandwidth;
+use super::contender::Contender;
+use super::record::{Measurement, Results, Setting, metric};
+use yoro_viewer::telemetry::stats::median;
+
+/// A column: heading, metric, decimals, how its values become one.
+type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
+
+const COLUMNS: [Column; 11] = [
+    ("frame ms", metric::FRAME_MS, 1, median),
+    ("CPU ms", metric::CPU_MS, 1, median),
+    ("GPU ms", metric::GPU_MS, 2, median),
+    ("patch ms", metric::PATCH_MS, 2, median),
+    ("PSNR", metric::PSNR, 2, mean),
+    ("SSIM", metric::SSIM, 4, mean),
+    ("FLIP", metric::FLIP, 4, mean),
+    ("flicker", metric::FLICKER, 2, mean),
+    ("kbit/s", bandwidth::metric::KBIT_S, 0, mean),
+    ("dominant", bandwidth::metric::PSNR_DOMINANT, 2, mean),
+    ("other dB", bandwidth::metric::PSNR_OTHER, 2, mean),
+];
+
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// One block for each setting, one line for each contender; then who could not take part.
+pub fn text(results: &Results) -> String {
+    let mut out = String::new();
+    for facts in results.scenes() {
+        let _ = writeln!(out, "{} ({} triangles)", facts.setting, facts.triangles);
+        out += &block(results, &facts.setting);
+    }
+    let mut reasons = BTreeSet::new();
+    for unsupported in results.unsupported() {
+        if reasons.insert((&unsupported.contender, &unsupported.reason)) {
+            let _ = writeln!(
+                out,
+                "not measured: {} in {}: {}",
+                unsupported.contender, unsupported.setting, unsupported.reason
+            );
+        }
+    }
+    out
+}
+
+fn block(results: &Results, setting: &Setting) -> String {
+    let measured: Vec<&Measurement> = results.measurements().filter(|m| m.setting == *setting).collect();
+    let values = |contender: &str, metric: &str| -> Vec<f64> {
+        let of_contender = measured.iter().filter(|m| m.contender == contender);
+        of_contender.flat_map(|m| m.finite(metric)).collect()
+    };
+    let mut contenders: Vec<&str> = Vec::new();
+    for measurement in &measured {
+        if !contenders.contains(&measurement.contender.as_str()) {
+            contenders.push(&measurement.contender);
+        }
+    }
+    let columns: Vec<&Column> =
+        COLUMNS.iter().filter(|c| measured.iter().any(|m| m.values.contains_key(c.1))).collect();
+    let width = contenders.iter().map(|name| name.len()).max().unwrap_or(0);
+    let baseline = median(&values(&Contender::CONVENTIONAL.name(), metric::FRAME_MS));
+    let mut out = format!("  {:width$}", "");
+    for (heading, ..) in &columns {
+        let _ = write!(out, "  {heading:>9}");
+    }
+    out += if baseline.is_some() { "      ratio\n" } else { "\n" };
+    for contender in contenders {
+        let _ = write!(out, "  {contender:width$}");
+        for (_, metric, digits, one) in &columns {
+            let text =
+                one(&values(contender, metric)).map_or_else(|| "–".into(), |v| format!("{v:.digits$}"));
+            let _ = write!(out, "  {text:>9}");
+        }
+        if let (Some(baseline), Some(own)) = (baseline, median(&values(contender, metric::FRAME_MS))) {
+            let _ = write!(out, "  {:>9.3}", own / baseline);
+        }
+        out += "\n";
+    }
+    out
+}

@@ -1,0 +1,78 @@
+//! Where the frames of a setting are seen from.
+
+use anyhow::{bail, ensure};
+
+use super::record::SceneFacts;
+use super::suite::{Job, Source};
+use yoro::eyes::{EyePair, Pose};
+use yoro_render::PreparedScene;
+use yoro_scene::CameraPath;
+use yoro_scenes::BUILTINS;
+
+/// Distance in metres between the frames of a sequence: walking pace, 30 frames a second.
+const STEP: f32 = 0.045;
+
+/// `wanted` of `count` indices, evenly spread from the first.
+pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
+    let wanted = wanted.min(count);
+    (0..wanted).map(|i| i * count / wanted).collect()
+}
+
+/// The frames of a setting.
+pub(super) struct Views {
+    pub names: Vec<String>,
+    pub pairs: Vec<EyePair>,
+}
+
+impl Views {
+    /// Viewpoints of the scene, evenly spread from the first.
+    pub fn spread(job: &Job, prepared: &PreparedScene) -> anyhow::Result<Views> {
+        let viewpoints = &prepared.scene.viewpoints;
+        let keys = spread(viewpoints.len(), job.frames);
+        Views::new(job, keys.into_iter().map(|k| (format!("viewpoint {k}"), viewpoints[k].pose())).collect())
+    }
+
+    /// Frames at walking pace from the middle of the camera path on.
+    pub fn along_path(job: &Job, prepared: &PreparedScene) -> anyhow::Result<Views> {
+        let path = CameraPath::new(&prepared.scene.viewpoints);
+        if path.keys().len() < 2 {
+            bail!(
+                "{} has no camera path: write two or more viewpoints into {}.camera.json beside the model, or give another camera path",
+                prepared.scene.name,
+                prepared.scene.name
+            );
+        }
+        let length: f32 = path.poses(500).windows(2).map(|w| w[0].position.distance(w[1].position)).sum();
+        // A path that only turns takes twenty seconds.
+        let step = if length > STEP { STEP / length } else { 1.0 / 600.0 };
+        let pose = |i: usize| (format!("frame {i}"), path.pose(0.5 + i as f32 * step));
+        Views::new(job, (0..job.frames).map(pose).collect())
+    }
+
+    fn new(job: &Job, heads: Vec<(String, Pose)>) -> anyhow::Result<Views> {
+        ensure!(!heads.is_empty(), "{} has no viewpoint: give it one or more", job.setting.scene);
+        let (names, poses): (Vec<_>, Vec<_>) = heads.into_iter().unzip();
+        Ok(Views { names, pairs: poses.into_iter().map(|pose| job.eyes.pair(pose)).collect() })
+    }
+
+    /// The first frame alone.
+    pub fn first(mut self) -> Views {
+        self.names.truncate(1);
+        self.pairs.truncate(1);
+        self
+    }
+
+    /// What the results say of the scene and these frames.
+    pub fn facts(&self, job: &Job, prepared: &PreparedScene) -> SceneFacts {
+        let scene = &prepared.scene;
+        let builtin = BUILTINS.iter().find(|b| matches!(&job.source, Source::Named(name) if name == b.name));
+        SceneFacts {
+            setting: job.setting.clone(),
+            stands_for: builtin.map_or("", |b| b.stands_for).to_owned(),
+            style: scene.style,
+            triangles: scene.triangle_count() as u64,
+            lights: scene.lights.len().min(job.render.point_lights) as u64,
+            frames: self.names.clone(),
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Pictures as video coders take them.
+
+use image::{GrayImage, Luma, Rgb, RgbImage};
+
+/// A picture in 4:2:0: luma and both colour differences, rows from the top. Sizes are even.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Planes {
+    pub size: [usize; 2],
+    pub planes: [Vec<u8>; 3],
+}
+
+impl Planes {
+    /// BT.601, full range, as in JPEG; colour differences are the mean of 2x2 pixels. An odd last column or row is
+    /// repeated.
+    pub fn of_rgb(image: &RgbImage) -> Planes {
+        let size = even(image.dimensions());
+        let at = |x: usize, y: usize| {
+            let (x, y) = ((x as u32).min(image.width() - 1), (y as u32).min(image.height() - 1));
+            image.get_pixel(x, y).0.map(f32::from)
+        };
+        let byte = |value: f32| value.round().clamp(0.0, 255.0) as u8;
+        let luma = |[r, g, b]: [f32; 3]| 0.299 * r + 0.587 * g + 0.114 * b;
+        let [w, h] = size;
+        let mut planes =
+            [Vec::with_capacity(w * h), Vec::with_capacity(w * h / 4), Vec::with_capacity(w * h / 4)];
+        for y in 0..h {
+            planes[0].extend((0..w).map(|x| byte(luma(at(x, y)))));
+        }
+        for y in (0..h).step_by(2) {
+            for x in (0..w).step_by(2) {
+                let four = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
+                let [r, g, b] = std::array::from_fn(|c| four.iter().map(|pixel| pixel[c]).sum::<f32>() / 4.0);
+                let y = luma([r, g, b]);
+                planes[1].push(byte(128.0 + (b - y) / 1.772));
+                planes[2].push(byte(128.0 + (r - y) / 1.402));
+            }
+        }
+        Planes { size, planes }
+    }
+
+    /// Samples as luma, without colour.
+    pub fn of_gray(image: &GrayImage) -> Planes {
+        let [w, h] = even(image.dimensions());
+        let at = |x: usize, y: usize| {
+            image.get_pixel((x as u32).min(image.width() - 1), (y as u32).min(image.height() - 1)).0[0]
+        };
+        let luma = (0..h).flat_map(|y| (0..w).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect();
+        Planes { size: [w, h], planes: [luma, vec![128; w * h / 4], vec![128; w * h / 4]] }
+    }
+
+    /// Both in one picture; of one size.
+    pub fn beside(&self, right: &Planes) -> Planes {
+        let [w, h] = self.size;
+        let planes = std::array::from_fn(|i| {
+            let row = if i == 0 { w } else { w / 2 };
+            let rows = self.planes[i].chunks(row).zip(right.planes[i].chunks(row));
+            rows.flat_map(|(left, right)| left.iter().chain(right)).copied().collect()
+        });
+        Planes { size: [2 * w, h], planes }
+    }
+
+    /// The two pictures that [`Planes::beside`] put together.
+    pub fn halves(&self) -> [Planes; 2] {
+        let [w, h] = self.size;
+        [0, 1].map(|side| {
+            let planes = std::array::from_fn(|i| {
+                let row = if i == 0 { w } else { w / 2 };
+                let half = side * row / 2..(side + 1) * row / 2;
+                self.planes[i].chunks(row).flat_map(|line| &line[half.clone()]).copied().collect()
+            });
+            Planes { size: [w / 2, h], planes }
+        })
+    }
+
+    /// As red, green and blue, without what made the size even.
+    pub fn rgb(&self, (width, height): (u32, u32)) -> RgbImage {
+        let [w, _] = self.size;
+        let byte = |value: f32| value.round().clamp(0.0, 255.0) as u8;
+        RgbImage::from_fn(width, height, |x, y| {
+            let (x, y) = (x as usize, y as usize);
+            let chroma = y / 2 * (w / 2) + x / 2;
+            let luma = f32::from(self.planes[0][y * w + x]);
+            let blue = f32::from(self.planes[1][chroma]) - 128.0;
+            let red = f32::from(self.planes[2][chroma]) - 128.0;
+            Rgb([
+                byte(luma + 1.402 * red),
+                byte(luma - 0.344_136 * blue - 0.714_136 * red),
+                byte(luma + 1.772 * blue),
+            ])
+        })
+    }
+
+    /// Luma alone, likewise.
+    pub fn gray(&self, (width, height): (u32, u32)) -> GrayImage {
+        GrayImage::from_fn(width, height, |x, y| {
+            Luma([self.planes[0][y as usize * self.size[0] + x as usize]])
+        })
+    }
+}
+
+fn even((width, height): (u32, u32)) -> [usize; 2] {
+    [width, height].map(|n| (n as usize).next_multiple_of(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::tests::image;
+
+    fn near(a: &RgbImage, b: &RgbImage, within: u8) -> bool {
+        a.iter().zip(b.iter()).all(|(a, b)| a.abs_diff(*b) <= within)
+    }
+
+    #[test]
+    fn colours_survive_420_where_four_pixels_are_one() {
+        let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255], [0, 0, 0], [200, 120, 40]];
+        let picture = RgbImage::from_fn(13, 7, |x, y| Rgb(colors[(x / 2 + y / 2 * 5) as usize % 6]));
+        let planes = Planes::of_rgb(&picture);
+        assert_eq!((planes.size, planes.planes[0].len(), planes.planes[1].len()), ([14, 8], 112, 28));
+        assert!(near(&planes.rgb((13, 7)), &picture, 2));
+    }
+
+    #[test]
+    fn halves_are_what_was_put_beside() {
+        let (a, b) = (image(20, 12, 1), image(20, 12, 2));
+        let (a, b) = (Planes::of_rgb(&a), Planes::of_rgb(&b));
+        assert_eq!(a.beside(&b).halves(), [a, b]);
+    }
+}

@@ -1,0 +1,358 @@
+//! `yoro compare`: how alike two images, or the images of two folders, are.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use crate::interrupt::{self, Interrupted};
+use crate::metrics::{Comparison, MetricsError, PartQuality, Psnr, Quality, error_map, holes_of_mask};
+use crate::picture::{self, PictureError};
+use yoro_files::{self as files, FileError};
+
+/// Why nothing could be compared.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A file or folder cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A picture cannot be read or written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// A file stands against a folder.
+    #[error("{} is a folder and {} is a file: give two files or two folders", folder.display(), file.display())]
+    FileAndFolder {
+        /// The folder.
+        folder: PathBuf,
+        /// The file.
+        file: PathBuf,
+    },
+    /// No file of one folder has a partner in the other.
+    #[error(
+        "{} and {} have no images of the same name: pairs are files of the same relative path",
+        a.display(), b.display()
+    )]
+    NoPairs {
+        /// The folder of the images to judge.
+        a: PathBuf,
+        /// The folder of the references.
+        b: PathBuf,
+    },
+    /// Two images cannot be compared.
+    #[error("cannot compare {} with {}: {what}", a.display(), b.display())]
+    Pair {
+        /// The image to judge.
+        a: PathBuf,
+        /// The reference.
+        b: PathBuf,
+        /// What is wrong.
+        what: MetricsError,
+    },
+    /// The user has asked for the end.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
+}
+
+/// What is compared with what.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Inputs {
+    /// The image to judge, or a folder of them.
+    pub a: PathBuf,
+    /// The reference, or a folder of references; pairs are files of the same relative path.
+    pub b: PathBuf,
+    /// A grey image that marks holes, or a folder of them; one image may serve a whole folder.
+    pub mask: Option<PathBuf>,
+    /// The mask is bright, not dark, where there is a hole.
+    pub bright_holes: bool,
+    /// Where the error map goes, as PNG; a folder when folders are compared.
+    pub map: Option<PathBuf>,
+}
+
+/// How the figures are made, for readers of the JSON.
+const SETTINGS: Settings = Settings {
+    psnr: "dB, data range 255; null where both images are identical; rgb: the error over all three channels",
+    ssim_gaussian: "gaussian window 11x11, sigma 1.5, population covariance (Wang et al. 2004), mean without a border of 5 pixels; rgb: mean of three channels",
+    ssim_uniform: "uniform window 7x7, sample covariance (scikit-image's default), mean without a border of 3 pixels; rgb: mean of three channels",
+    flip: "LDR-FLIP (Andersson et al. 2020) at 67.02 pixels per degree, mean over the image, 0 (equal) to 1",
+    luma: "ITU-R BT.601, not rounded",
+    mean: "mean over the pairs; identical pairs are left out of the mean PSNR",
+};
+
+#[derive(Debug, Serialize)]
+struct Settings {
+    psnr: &'static str,
+    ssim_gaussian: &'static str,
+    ssim_uniform: &'static str,
+    flip: &'static str,
+    luma: &'static str,
+    mean: &'static str,
+}
+
+/// What was measured.
+#[derive(Debug, Serialize)]
+pub struct CompareReport {
+    settings: &'static Settings,
+    /// Each pair, sorted by name.
+    pub pairs: Vec<Pair>,
+    /// Means over the pairs.
+    pub mean: Mean,
+    /// Files of one folder that the other lacks.
+    pub unmatched: Vec<PathBuf>,
+}
+
+/// Two images and their likeness.
+#[derive(Debug, Serialize)]
+pub struct Pair {
+    /// The path inside the folders, or the first image.
+    pub name: PathBuf,
+    /// The figures.
+    #[serde(flatten)]
+    pub comparison: Comparison,
+}
+
+/// Means over all pairs.
+#[derive(Debug, Serialize)]
+pub struct Mean {
+    /// Of red, green and blue.
+    pub rgb: Quality,
+    /// Of luma.
+    pub luma: Quality,
+    /// LDR-FLIP.
+    pub flip: f64,
+    /// Pairs without any difference: in the mean SSIM, not in the mean PSNR.
+    pub identical_pairs: usize,
+}
+
+impl CompareReport {
+    /// Compares two images, or each pair of two folders; error maps are written where they are wanted.
+    ///
+    /// # Errors
+    /// [`CompareError`].
+    pub fn of(inputs: &Inputs) -> Result<CompareReport, CompareError> {
+        let Inputs { a, b, .. } = inputs;
+        for path in [a, b] {
+            if !path.exists() {
+                return Err(FileError::Missing { path: path.clone() }.into());
+            }
+        }
+        let (pairs, unmatched) = match (a.is_dir(), b.is_dir()) {
+            (false, false) => (vec![compare_pair(inputs, None)?], Vec::new()),
+            (true, true) => compare_folders(inputs)?,
+            (true, false) => return Err(CompareError::FileAndFolder { folder: a.clone(), file: b.clone() }),
+            (false, true) => return Err(CompareError::FileAndFolder { folder: b.clone(), file: a.clone() }),
+        };
+        let mean_of = |which: fn(&Comparison) -> &Quality| {
+            Quality::mean(pairs.iter().map(|pair| which(&pair.comparison))).expect("there is a pair")
+        };
+        let mean = Mean {
+            rgb: mean_of(|comparison| &comparison.rgb),
+            luma: mean_of(|comparison| &comparison.luma),
+            flip: pairs.iter().map(|pair| pair.comparison.flip).sum::<f64>() / pairs.len() as f64,
+            identical_pairs: pairs.iter().filter(|pair| pair.comparison.identical).count(),
+        };
+        Ok(CompareReport { settings: &SETTINGS, pairs, mean, unmatched })
+    }
+
+    /// A table for a terminal.
+    pub fn to_text(&self) -> String {
+        let names: Vec<String> = self.pairs.iter().map(|pair| pair.name.display().to_string()).collect();
+        let mean_name = format!("mean of {}", self.pairs.len());
+        let width = names.iter().chain([&mean_name]).map(|name| name.chars().count()).max().unwrap_or(0);
+        let mut out = format!(
+            "{:width$}   PSNR, dB        SSIM gaussian 11x11   SSIM uniform 7x7   FLIP\n{:width$}   RGB    luma     RGB      luma         RGB\n",
+            "", ""
+        );
+        let mut row = |name: &str, rgb: &Quality, luma: &Quality, flip: f64| {
+            let _ = writeln!(
+                out,
+                "{name:width$}   {:<6} {:<8} {:<8.5} {:<12.5} {:<18.5} {flip:.5}",
+                rgb.psnr, luma.psnr, rgb.ssim_gaussian, luma.ssim_gaussian, rgb.ssim_uniform
+            );
+        };
+        for (name, pair) in names.iter().zip(&self.pairs) {
+            row(name, &pair.comparison.rgb, &pair.comparison.luma, pair.comparison.flip);
+        }
+        if self.pairs.len() > 1 {
+            row(&mean_name, &self.mean.rgb, &self.mean.luma, self.mean.flip);
+        }
+        for (what, part) in [
+            ("in holes", (|c| c.holes) as fn(&Comparison) -> Option<PartQuality>),
+            ("elsewhere", |c| c.elsewhere),
+        ] {
+            let parts: Vec<PartQuality> =
+                self.pairs.iter().filter_map(|pair| part(&pair.comparison)).collect();
+            if !parts.is_empty() {
+                out += &part_line(what, &parts);
+            }
+        }
+        match self.mean.identical_pairs {
+            0 => {}
+            1 if self.pairs.len() == 1 => out += "The images are identical.\n",
+            n => {
+                let _ = writeln!(
+                    out,
+                    "{n} of {} pairs are identical and not in the mean PSNR.",
+                    self.pairs.len()
+                );
+            }
+        }
+        out
+    }
+}
+
+fn compare_folders(inputs: &Inputs) -> Result<(Vec<Pair>, Vec<PathBuf>), CompareError> {
+    let a = files::find(&inputs.a, &picture::EXTENSIONS)?;
+    let b = files::find(&inputs.b, &picture::EXTENSIONS)?;
+    let (names, only_a): (Vec<_>, Vec<_>) = a.into_iter().partition(|name| b.binary_search(name).is_ok());
+    if names.is_empty() {
+        return Err(CompareError::NoPairs { a: inputs.a.clone(), b: inputs.b.clone() });
+    }
+    let only_b = b.into_iter().filter(|name| names.binary_search(name).is_err());
+    let unmatched = only_a.into_iter().map(|name| inputs.a.join(name));
+    let unmatched = unmatched.chain(only_b.map(|name| inputs.b.join(name))).collect();
+    let bar = ProgressBar::new(names.len() as u64);
+    let mut pairs = Vec::with_capacity(names.len());
+    for name in names {
+        interrupt::check()?;
+        pairs.push(compare_pair(inputs, Some(&name))?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok((pairs, unmatched))
+}
+
+/// Compares the two files, or those called `name` in the two folders.
+fn compare_pair(inputs: &Inputs, name: Option<&Path>) -> Result<Pair, CompareError> {
+    let of_pair = |path: &Path| match name {
+        Some(name) => path.join(name),
+        None => path.to_path_buf(),
+    };
+    let (path_a, path_b) = (of_pair(&inputs.a), of_pair(&inputs.b));
+    let both = |what| CompareError::Pair { a: path_a.clone(), b: path_b.clone(), what };
+    let (a, b) = (picture::load_color(&path_a)?, picture::load_color(&path_b)?);
+    let holes = match &inputs.mask {
+        // One mask may serve a whole folder.
+        Some(mask) => {
+            let path = if mask.is_dir() { of_pair(mask) } else { mask.clone() };
+            Some(holes_of_mask(&picture::load_mask(&path)?, !inputs.bright_holes))
+        }
+        None => None,
+    };
+    let comparison = Comparison::of(&a, &b, holes.as_deref()).map_err(both)?;
+    if let Some(map) = &inputs.map {
+        let path = if name.is_some() { of_pair(map).with_extension("png") } else { map.clone() };
+        picture::save_color(&path, &error_map(&a, &b).map_err(both)?)?;
+    }
+    Ok(Pair { name: name.map_or(path_a, Path::to_path_buf), comparison })
+}
+
+/// The mean over the pairs that have such pixels.
+fn part_line(what: &str, parts: &[PartQuality]) -> String {
+    let share = 100.0 * parts.iter().map(|part| part.share).sum::<f64>() / parts.len() as f64;
+    let psnr: Vec<Psnr> = parts.iter().filter_map(|part| part.psnr).collect();
+    let ssim: Vec<f64> = parts.iter().filter_map(|part| part.ssim_gaussian).collect();
+    let mut line = format!("{what} ({share:.2} % of the pixels): ");
+    if psnr.is_empty() {
+        line += "none";
+    } else {
+        let _ = write!(line, "PSNR RGB {}", Psnr::mean(psnr));
+    }
+    if !ssim.is_empty() {
+        let _ = write!(line, ", SSIM gaussian RGB {:.5}", ssim.iter().sum::<f64>() / ssim.len() as f64);
+    }
+    line + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A picture that no other seed gives.
+    fn image(width: u32, height: u32, seed: u32) -> image::RgbImage {
+        image::RgbImage::from_fn(width, height, |x, y| {
+            image::Rgb([x * 5 + y, y * 7 + x * y / 3, x * y + 90 * seed].map(|value| value as u8))
+        })
+    }
+
+    fn inputs(a: &Path, b: &Path) -> Inputs {
+        Inputs { a: a.into(), b: b.into(), mask: None, bright_holes: false, map: None }
+    }
+
+    /// Two folders: `same.png` and `sub/other.png` in both, one file more in each.
+    fn folders() -> (tempfile::TempDir, PathBuf, PathBuf) {
+        let dir = tempfile::tempdir().unwrap();
+        let (a, b) = (dir.path().join("a"), dir.path().join("b"));
+        for (path, seed) in [
+            (a.join("same.png"), 1),
+            (b.join("same.png"), 1),
+            (a.join("sub/other.png"), 1),
+            (b.join("sub/other.png"), 2),
+            (a.join("only-a.png"), 1),
+            (b.join("sub/only-b.png"), 1),
+        ] {
+            picture::save_color(&path, &image(32, 24, seed)).unwrap();
+        }
+        (dir, a, b)
+    }
+
+    #[test]
+    fn folders_are_paired_by_relative_path() {
+        let (dir, a, b) = folders();
+        let maps = dir.path().join("maps");
+        let report = CompareReport::of(&Inputs { map: Some(maps.clone()), ..inputs(&a, &b) }).unwrap();
+        assert_eq!(report.unmatched, [a.join("only-a.png"), b.join("sub/only-b.png")]);
+        assert_eq!(report.pairs.len(), 2);
+        assert!(report.pairs[0].comparison.identical && !report.pairs[1].comparison.identical);
+        assert_eq!(report.mean.identical_pairs, 1);
+        assert_eq!(report.mean.rgb.psnr, report.pairs[1].comparison.rgb.psnr);
+        assert_eq!(report.mean.rgb.ssim_gaussian, (1.0 + report.pairs[1].comparison.rgb.ssim_gaussian) / 2.0);
+        assert_eq!(picture::load_color(&maps.join("sub/other.png")).unwrap().dimensions(), (32, 24));
+
+        let text = report.to_text();
+        assert!(
+            text.contains("mean of 2") && text.contains("sub/other.png") && text.contains("inf"),
+            "{text}"
+        );
+        let json: serde_json::Value = serde_json::to_value(&report).unwrap();
+        assert!(json["pairs"][0]["rgb"]["psnr"].is_null() && json["pairs"][0]["identical"] == true);
+        assert!(json["mean"]["rgb"]["psnr"].is_f64());
+    }
+
+    #[test]
+    fn two_files_with_a_mask() {
+        let (dir, a, b) = folders();
+        let mask = dir.path().join("mask.png");
+        picture::save_gray(
+            &mask,
+            &image::GrayImage::from_fn(32, 24, |x, _| image::Luma([if x < 8 { 0 } else { 255 }])),
+        )
+        .unwrap();
+        let (a, b) = (a.join("sub/other.png"), b.join("sub/other.png"));
+        let masked = Inputs { mask: Some(mask), ..inputs(&a, &b) };
+        let report = CompareReport::of(&masked).unwrap();
+        assert_eq!(report.pairs[0].comparison.holes.unwrap().share, 0.25);
+        assert!(report.to_text().contains("in holes (25.00 % of the pixels): PSNR RGB"));
+        let swapped = CompareReport::of(&Inputs { bright_holes: true, ..masked }).unwrap();
+        assert_eq!(swapped.pairs[0].comparison.elsewhere, report.pairs[0].comparison.holes);
+    }
+
+    #[test]
+    fn mistakes_get_a_sentence() {
+        let (dir, a, b) = folders();
+        let says = |a: &Path, b: &Path| CompareReport::of(&inputs(a, b)).unwrap_err().to_string();
+        assert!(says(&a, &b.join("same.png")).contains("give two files or two folders"));
+        assert!(says(&a, &dir.path().join("none")).contains("none does not exist"));
+        let empty = dir.path().join("empty");
+        files::create_folder(&empty).unwrap();
+        assert!(says(&a, &empty).contains("no images of the same name"));
+        let other = dir.path().join("other.png");
+        picture::save_color(&other, &image(33, 24, 1)).unwrap();
+        let error = says(&other, &a.join("same.png"));
+        assert!(error.contains("other.png with") && error.contains("33x24 and 32x24"), "{error}");
+        let tiny = dir.path().join("tiny.png");
+        picture::save_color(&tiny, &image(5, 5, 1)).unwrap();
+        assert!(says(&tiny, &tiny).contains("at least 11x11"));
+    }
+}

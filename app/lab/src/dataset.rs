@@ -1,0 +1,186 @@
+//! Image groups: one view of a scene as rendered, as reprojected, and as the other eye really sees it.
+//!
+//! [`GroupRenderer`] makes one group in memory; the program's command `dataset` writes them to files.
+
+use std::rc::Rc;
+
+use image::{Luma, RgbImage};
+
+use crate::inpaint::{InpaintError, Reprojected};
+use crate::picture::{self, DepthImage};
+use yoro::eyes::{DepthConvention, EyePair, EyesError, GuardBand, SynthesisViews, View};
+use yoro::gl::{
+    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+};
+use yoro::synthesis::{Offline, SynthesisOptions};
+use yoro_render::{self as render, Fxaa, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+
+/// Why an image group could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GroupError {
+    /// The pair of eyes cannot be synthesized from one.
+    #[error(transparent)]
+    Eyes(#[from] EyesError),
+    /// GL refused.
+    #[error(transparent)]
+    Gl(#[from] GlError),
+    /// Nothing of the rendered eye is seen by the other.
+    #[error(transparent)]
+    Inpaint(#[from] InpaintError),
+}
+
+/// How groups are made.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct GroupOptions {
+    /// The pipeline that reprojects.
+    pub synthesis: SynthesisOptions,
+    /// How much wider the dominant eye is rendered.
+    pub guard_band: GuardBand,
+    /// FXAA on both rendered images. The reprojected image then moves blended edge pixels with one of their surfaces,
+    /// as in the paper.
+    pub anti_aliasing: bool,
+}
+
+impl Default for GroupOptions {
+    /// Without guard band and anti-aliasing: every pixel is one surface's.
+    fn default() -> GroupOptions {
+        GroupOptions {
+            synthesis: SynthesisOptions::default(),
+            guard_band: GuardBand::None,
+            anti_aliasing: false,
+        }
+    }
+}
+
+/// One view of a scene. All images have row 0 at the top; colour is display-referred sRGB.
+#[derive(Clone, Debug)]
+pub struct ImageGroup {
+    /// The two eyes.
+    pub pair: EyePair,
+    /// The rendered view, the synthesized one, and how pixels move between them.
+    pub views: SynthesisViews,
+    /// The dominant eye as rendered, transparent objects included; of the source view's size.
+    pub color: RgbImage,
+    /// Its depth buffer, 0 to 1, in the convention of the pair's depth range; transparent objects are not in it.
+    pub depth: DepthImage,
+    /// The other eye as really rendered.
+    pub truth: RgbImage,
+    /// The other eye as reprojected, with its holes.
+    pub reprojected: Reprojected,
+    /// The other eye as the pipeline itself makes it: equal to the reprojected image but for the holes.
+    pub synthesized: RgbImage,
+}
+
+impl ImageGroup {
+    /// Depth of the reprojected image in the pair's convention, the far plane's value in holes.
+    pub fn reprojected_depth(&self) -> DepthImage {
+        let (disparity, law) = (self.reprojected.disparity(), self.views.warp.law);
+        let scale = law.scale.abs().max(f64::MIN_POSITIVE) as f32;
+        DepthImage::from_fn(disparity.width(), disparity.height(), |x, y| {
+            let nearness = (disparity.get_pixel(x, y).0[0] / scale).clamp(0.0, 1.0);
+            Luma([match self.pair.depth.convention {
+                DepthConvention::Standard => 1.0 - nearness,
+                DepthConvention::Reversed => nearness,
+            }])
+        })
+    }
+}
+
+/// Makes image groups of scenes; everything is compiled once.
+pub struct GroupRenderer {
+    options: GroupOptions,
+    targets: ViewTargets,
+    fxaa: Option<Fxaa>,
+    smooth: RenderTarget,
+    depth_copy: Program,
+    depth: RenderTarget,
+    offline: Offline,
+    gl: Rc<Context>,
+}
+
+impl GroupRenderer {
+    /// Compiles the pipeline and makes the targets. `settings` are the renderer's.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver cannot run the pipeline.
+    pub fn new(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        options: &GroupOptions,
+    ) -> Result<GroupRenderer, GlError> {
+        let target = |format, filter| RenderTarget::new(gl, [1, 1], &[(format, filter)], None);
+        Ok(GroupRenderer {
+            options: *options,
+            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
+            fxaa: options.anti_aliasing.then(|| Fxaa::new(gl)).transpose()?,
+            smooth: target(Format::Rgba8, Filter::Linear)?,
+            depth_copy: Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?,
+            depth: target(Format::R32F, Filter::Nearest)?,
+            offline: Offline::new(gl, &options.synthesis)?,
+            gl: gl.clone(),
+        })
+    }
+
+    /// Renders both eyes and synthesizes the one that is not dominant.
+    ///
+    /// # Errors
+    /// [`GroupError::Eyes`] for a pair that synthesis refuses, [`GroupError::Gl`] beyond the driver's limits, and
+    /// [`GroupError::Inpaint`] when the synthesized eye sees nothing of what the other one does.
+    pub fn render(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+    ) -> Result<ImageGroup, GroupError> {
+        let views = pair.synthesis(self.options.guard_band)?;
+        let truth = self.render_view(renderer, scene, &views.target)?;
+        let source = self.render_view(renderer, scene, &views.source)?;
+        let depth = self.read_depth()?;
+        let result = self.offline.run(&source, &depth, &views.warp)?;
+        let [width, height] = views.source.size;
+        let flipped = depth.chunks_exact(width as usize).rev().flatten().copied().collect();
+        Ok(ImageGroup {
+            pair: *pair,
+            color: picture::rgb_image(&source, views.source.size),
+            depth: DepthImage::from_raw(width, height, flipped).expect("one value for each pixel"),
+            truth: picture::rgb_image(&truth, views.target.size),
+            reprojected: Reprojected::from_synthesis(&result, &views.warp)?,
+            synthesized: picture::rgb_image(&result.rgba, views.target.size),
+            views,
+        })
+    }
+
+    /// RGBA of one view, rows from the bottom; its depth stays in the targets.
+    fn render_view(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        view: &View,
+    ) -> Result<Vec<u8>, GlError> {
+        renderer.render(&mut self.targets, scene, view, Selection::All)?;
+        let mut color = self.targets.color_target();
+        if scene.has_transparent() {
+            let depth = render::DepthImage::whole(self.targets.depth());
+            renderer.draw_transparent(&Destination::whole(color), depth, scene, view)?;
+        }
+        if let Some(fxaa) = &self.fxaa {
+            self.smooth.resize(view.size)?;
+            fxaa.run(color.color(0), [0, 0], &Destination::whole(&self.smooth));
+            color = &self.smooth;
+        }
+        Ok(color.read_rgba8(0, [0, 0], view.size))
+    }
+
+    /// The depth of the view that was rendered last, rows from the bottom.
+    fn read_depth(&mut self) -> Result<Vec<f32>, GlError> {
+        let size = self.targets.size();
+        self.depth.resize(size)?;
+        self.depth.bind();
+        self.gl.set_raster_state(&RasterState::SCREEN);
+        self.depth_copy.bind().texture("source", 0, self.targets.depth().raw());
+        self.gl.draw_screen();
+        Ok(self.depth.read_rgba32f(0, [0, 0], size).into_iter().map(|texel| texel[0]).collect())
+    }
+}

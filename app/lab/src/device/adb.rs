@@ -1,0 +1,499 @@
+//! What is asked of a device, whoever answers: the program adb, or a replay.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::capture::CaptureError;
+use yoro_files::FileError;
+
+/// How adb sees a device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Ready.
+    Ready,
+    /// The device waits for its user to accept this computer.
+    Unauthorized,
+    /// Connected, but it does not answer.
+    Offline,
+    /// The operating system does not let adb open the device.
+    NoPermission,
+    /// Anything else, in adb's words: a boot loader, a recovery.
+    Other(String),
+}
+
+impl State {
+    /// From the second word of `adb devices`.
+    pub fn from_adb(word: &str) -> State {
+        match word {
+            "device" => State::Ready,
+            "unauthorized" | "authorizing" => State::Unauthorized,
+            "offline" | "connecting" => State::Offline,
+            "no" => State::NoPermission,
+            other => State::Other(other.into()),
+        }
+    }
+
+    /// For tables.
+    pub fn name(&self) -> &str {
+        match self {
+            State::Ready => "ready",
+            State::Unauthorized => "unauthorized",
+            State::Offline => "offline",
+            State::NoPermission => "no permission",
+            State::Other(word) => word,
+        }
+    }
+}
+
+/// A device in adb's list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Listed {
+    /// What adb calls it.
+    pub serial: String,
+    /// Whether it can be used.
+    pub state: State,
+}
+
+/// Why a device cannot be measured on: one sentence with the remedy.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DeviceError {
+    /// The server of adb, which every command goes through, does not answer.
+    #[error(
+        "adb's server does not answer ({reason}): restart it by adb kill-server and adb start-server, and use one version of adb only"
+    )]
+    Server {
+        /// In adb's words.
+        reason: String,
+    },
+    /// The program adb is nowhere.
+    #[error(
+        "adb was not found in {looked}: install Android's platform tools (Debian and Ubuntu: apt install adb), or name its file"
+    )]
+    NoAdb {
+        /// Where it was looked for.
+        looked: String,
+    },
+    /// It is there, but does not start.
+    #[error("{} does not start ({reason}): name another one", program.display())]
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// The system's reason.
+        reason: String,
+    },
+    /// No device at all.
+    #[error(
+        "no device is connected: turn on USB debugging in its developer options, use a data cable, and look with yoro device list"
+    )]
+    NoDevice,
+    /// Not clear which.
+    #[error("several devices are connected ({}): name one or some of them, or ask for all", serials.join(", "))]
+    Several {
+        /// What adb calls them.
+        serials: Vec<String>,
+    },
+    /// A serial that is not connected.
+    #[error("{serial} is not connected: yoro device list shows which devices are")]
+    Unknown {
+        /// What was asked for.
+        serial: String,
+    },
+    /// See [`State::Unauthorized`].
+    #[error("{serial} does not trust this computer yet: unlock it and accept the key that it shows")]
+    Unauthorized {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// See [`State::Offline`].
+    #[error(
+        "{serial} is offline: plug it in again, or connect anew (adb reconnect offline, over Wi-Fi adb connect {})",
+        quoted(serial)
+    )]
+    Offline {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// See [`State::NoPermission`].
+    #[error(
+        "this user may not open {serial}: install the udev rules for Android (Debian and Ubuntu: apt install android-sdk-platform-tools-common), then plug it in again"
+    )]
+    NoPermission {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// See [`State::Other`].
+    #[error("{serial} is in the state \"{state}\": start Android on it")]
+    NotReady {
+        /// What adb calls it.
+        serial: String,
+        /// In adb's words.
+        state: String,
+    },
+    /// It was there, and is gone.
+    #[error("{serial} was lost: connect it again and give the same command")]
+    Lost {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// The application is not there.
+    #[error("yoro is not installed on {serial}: yoro device install does it")]
+    NotInstalled {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// Another application is not there.
+    #[error(
+        "{package} is not installed on {serial}: adb -s {} shell pm list packages prints what is",
+        quoted(serial)
+    )]
+    NoPackage {
+        /// What adb calls it.
+        serial: String,
+        /// Its name.
+        package: String,
+    },
+    /// Installing failed for lack of storage.
+    #[error("the storage of {serial} is full: remove something from it, then install again")]
+    StorageFull {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// Another key signed what is installed.
+    #[error(
+        "the yoro on {serial} is signed with another key: adb -s {} uninstall io.github.yoro, then install again",
+        quoted(serial)
+    )]
+    OtherKey {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// The device, or its user, does not let a computer install anything.
+    #[error(
+        "{serial} does not let this computer install anything: confirm the installation on its screen; on phones by Xiaomi turn on \"Install via USB\" in the developer options first"
+    )]
+    InstallRestricted {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// A newer version is there.
+    #[error(
+        "a newer yoro is on {serial}: adb -s {} uninstall io.github.yoro, then install again",
+        quoted(serial)
+    )]
+    Downgrade {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// The APK has no code for the device's processor.
+    #[error(
+        "{} has no code for the processor of {serial}: make it for all processors by cargo xtask apk --release",
+        apk.display()
+    )]
+    NoAbi {
+        /// What adb calls it.
+        serial: String,
+        /// The file.
+        apk: PathBuf,
+    },
+    /// Installing failed otherwise.
+    #[error("{} cannot be installed on {serial} ({reason}): make it anew by cargo xtask apk --release", apk.display())]
+    Install {
+        /// What adb calls it.
+        serial: String,
+        /// The file.
+        apk: PathBuf,
+        /// Android's word for it.
+        reason: String,
+    },
+    /// Power cannot be measured.
+    #[error(
+        "{serial} is plugged in, and a charging battery says nothing of the device's power: measure over Wi-Fi ({}), or allow a plugged-in device for everything but power",
+        wifi(serial, address)
+    )]
+    PluggedIn {
+        /// What adb calls it.
+        serial: String,
+        /// Its address in the wireless network, if it has one.
+        address: Option<String>,
+    },
+    /// The state of the battery is not the battery's.
+    #[error(
+        "what {serial} says of its battery was set by hand (dumpsys battery set or unplug): adb -s {} shell dumpsys battery reset",
+        quoted(serial)
+    )]
+    BatteryHeld {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// Battery saver.
+    #[error(
+        "the battery saver of {serial} is on, which slows it down: turn it off (adb -s {} shell settings put global low_power 0)",
+        quoted(serial)
+    )]
+    BatterySaver {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// A screen lock that nobody opens while nobody is there.
+    #[error(
+        "{serial} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its screen lock to none or swipe for the time of the measurement"
+    )]
+    Locked {
+        /// What adb calls it.
+        serial: String,
+    },
+    /// It does not cool down.
+    #[error(
+        "{serial} has {celsius:.1} C and does not cool down to {wanted:.1} C: let it rest in a cooler place, then give the same command"
+    )]
+    TooWarm {
+        /// What adb calls it.
+        serial: String,
+        /// What it has.
+        celsius: f64,
+        /// What was wanted.
+        wanted: f64,
+    },
+    /// A command on the device failed.
+    #[error("{serial} refuses \"{command}\" ({reason}): {}", after_refusal(serial, reason))]
+    Refused {
+        /// What adb calls it.
+        serial: String,
+        /// What was to be done.
+        command: String,
+        /// What it said.
+        reason: String,
+    },
+    /// A command did not end.
+    #[error("{serial} has not answered \"{command}\" for {seconds} s: plug it in again, or restart it")]
+    Silent {
+        /// What adb calls it.
+        serial: String,
+        /// What was to be done.
+        command: String,
+        /// How long.
+        seconds: u64,
+    },
+    /// The replay has nothing to play.
+    #[error("{}: {reason}", path.display())]
+    Replay {
+        /// Script or folder.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        reason: String,
+    },
+    /// The user has asked to stop.
+    #[error("interrupted: what was captured is kept, and the same command goes on")]
+    Interrupted,
+    /// A capture cannot be written.
+    #[error(transparent)]
+    Capture(#[from] CaptureError),
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+impl DeviceError {
+    /// Whether the device may come back by itself.
+    pub fn is_lost(&self) -> bool {
+        use DeviceError::{Lost, Offline, Server, Silent, Unauthorized, Unknown};
+        matches!(
+            self,
+            Lost { .. }
+                | Offline { .. }
+                | Unauthorized { .. }
+                | Unknown { .. }
+                | Silent { .. }
+                | Server { .. }
+        )
+    }
+}
+
+/// The commands that bring a device from the cable to the wireless network.
+fn wifi(serial: &str, address: &Option<String>) -> String {
+    if is_wireless(serial) {
+        return "it already is: take the charger off".into();
+    }
+    let address = address.as_deref().unwrap_or("ADDRESS");
+    format!(
+        "adb -s {} tcpip 5555; unplug it; adb connect {address}:5555; the device is {address}:5555 then",
+        quoted(serial)
+    )
+}
+
+/// What tells a device apart, whatever connection it has: its serial number. All emulators of one image have the same
+/// (`EMULATOR34X1X19X0`); what adb calls them tells them apart.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn serial_number(device: &dyn Device) -> Result<String, DeviceError> {
+    let own = device.shell(&["getprop", "ro.serialno"])?.trim().to_owned();
+    let is_shared = own.is_empty() || own.starts_with("EMULATOR") || device.serial().starts_with("emulator-");
+    Ok(if is_shared { device.serial().to_owned() } else { own })
+}
+
+/// Whether adb reaches the device over the network: by address and port, or by a name found in it (mDNS), such as
+/// `adb-SERIAL-x7Fw2a._adb-tls-connect._tcp`.
+pub fn is_wireless(serial: &str) -> bool {
+    serial.contains(':') || serial.contains("._adb")
+}
+
+/// A word as a shell takes it, this computer's or the device's.
+pub fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-._/:=,%+@".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.into()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+/// What helps against a refusal.
+fn after_refusal(serial: &str, reason: &str) -> String {
+    if reason.contains("SecurityException") {
+        return "on phones by Xiaomi turn on \"USB debugging (Security settings)\" in the developer options and restart \
+                the phone"
+            .into();
+    }
+    format!("try it by adb -s {} shell", quoted(serial))
+}
+
+/// What comes out of a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LogEvent {
+    /// A line without its end.
+    Line(String),
+    /// Nothing for as long as was waited.
+    Quiet,
+    /// The log has ended: the device is gone, or its log service was restarted.
+    Ended,
+}
+
+/// A log that is being followed.
+pub trait LogStream {
+    /// The next line, for which is waited so long.
+    fn next(&mut self, wait: Duration) -> LogEvent;
+}
+
+/// One device.
+pub trait Device: Send {
+    /// What adb calls it.
+    fn serial(&self) -> &str;
+
+    /// Whether it is a replay: said wherever results of it appear.
+    fn is_simulated(&self) -> bool;
+
+    /// Runs a command on the device, given as words, and returns what it prints.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    fn shell(&self, words: &[&str]) -> Result<String, DeviceError>;
+
+    /// Writes a small file on the device.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    fn put(&self, path: &str, text: &str) -> Result<(), DeviceError>;
+
+    /// Installs an APK over the one that may be there.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    fn install(&self, apk: &Path) -> Result<(), DeviceError>;
+
+    /// Follows the log of the tags that [`super::log`] reads, with times in seconds since 1970; from the first line of
+    /// that time on, or all that the device still has.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError>;
+
+    /// Tries to get a lost device back; whether that has worked, the next command tells.
+    fn reconnect(&self);
+
+    /// Seconds since 1970 by this computer's clock, without jumps.
+    fn now(&self) -> f64;
+
+    /// Waits, or less if the user asks to stop.
+    fn sleep(&self, time: Duration);
+}
+
+/// All devices.
+pub trait Adb {
+    /// Who is connected, in adb's order.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    fn devices(&self) -> Result<Vec<Listed>, DeviceError>;
+
+    /// A device by the name that adb has for it. Whether it is there, its answers tell.
+    fn open(&self, serial: &str) -> Box<dyn Device>;
+}
+
+/// Which of the devices are meant: those of the serials, or all, or the only one. A device that is connected twice, by
+/// cable and by Wi-Fi, is one device: the connection that adb lists first is used.
+///
+/// # Errors
+/// [`DeviceError`]: none, several, unknown, or one that is not ready.
+pub fn choose(adb: &dyn Adb, serials: &[String], all: bool) -> Result<Vec<Box<dyn Device>>, DeviceError> {
+    let listed = adb.devices()?;
+    let find = |serial: &String| {
+        let found = listed.iter().find(|device| device.serial == *serial);
+        found.ok_or_else(|| DeviceError::Unknown { serial: serial.clone() })
+    };
+    let open = |chosen: &[&Listed]| {
+        let opened = chosen.iter().map(|device| ready(device).map(|()| adb.open(&device.serial)));
+        once_each(opened.collect::<Result<_, _>>()?)
+    };
+    match (serials, &listed[..]) {
+        ([], []) => Err(DeviceError::NoDevice),
+        ([], [one]) => open(&[one]),
+        ([], several) if all => open(&several.iter().collect::<Vec<_>>()),
+        ([], several) => {
+            // What cannot be used leaves no doubt about who is meant.
+            let ready: Vec<&Listed> = several.iter().filter(|device| device.state == State::Ready).collect();
+            match open(&ready)? {
+                one if one.len() == 1 => Ok(one),
+                _ => {
+                    let serials = several.iter().map(|device| device.serial.clone()).collect();
+                    Err(DeviceError::Several { serials })
+                }
+            }
+        }
+        (serials, _) => open(&serials.iter().map(find).collect::<Result<Vec<_>, _>>()?),
+    }
+}
+
+/// Each device once, whatever number of connections it has.
+fn once_each(devices: Vec<Box<dyn Device>>) -> Result<Vec<Box<dyn Device>>, DeviceError> {
+    if devices.len() < 2 {
+        return Ok(devices);
+    }
+    let mut chosen: Vec<(String, Box<dyn Device>)> = Vec::new();
+    for device in devices {
+        let own = serial_number(&*device)?;
+        match chosen.iter().find(|(known, _)| *known == own) {
+            Some((_, known)) if known.serial() == device.serial() => {}
+            Some((_, known)) => ::log::warn!(
+                "{} and {} are the same device: {} is used",
+                known.serial(),
+                device.serial(),
+                known.serial()
+            ),
+            None => chosen.push((own, device)),
+        }
+    }
+    Ok(chosen.into_iter().map(|(_, device)| device).collect())
+}
+
+fn ready(device: &Listed) -> Result<(), DeviceError> {
+    let serial = device.serial.clone();
+    match &device.state {
+        State::Ready => Ok(()),
+        State::Unauthorized => Err(DeviceError::Unauthorized { serial }),
+        State::Offline => Err(DeviceError::Offline { serial }),
+        State::NoPermission => Err(DeviceError::NoPermission { serial }),
+        State::Other(state) => Err(DeviceError::NotReady { serial, state: state.clone() }),
+    }
+}

@@ -1,0 +1,148 @@
+//! Other applications than this project's on headsets by Meta: the runtime logs their frame rates, and the battery is asked
+//! from this computer, since nobody on the device writes it down.
+
+use std::collections::BTreeSet;
+
+use super::adb::{Device, DeviceError};
+use super::capture::Sample;
+use super::log::{self, Kind, VRAPI_TAG};
+use super::phone::{self, Battery};
+use super::reading::Reading;
+use yoro_viewer::telemetry::{CurrentNormalizer, Line};
+
+/// How often the battery is asked, in seconds: each question costs the device something, too.
+const BATTERY_PERIOD_S: f64 = 2.0;
+/// How often it is looked which processes the application has while others say something, in seconds.
+const PROCESSES_PERIOD_S: f64 = 2.0;
+
+/// Whose lines of the log are read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// The application's package.
+    pub package: String,
+    /// The process that logs for it: mostly of the same name.
+    pub process: String,
+}
+
+/// Finds the lines about another application, and puts the battery to them.
+pub struct Foreign<'a> {
+    device: &'a dyn Device,
+    subject: Subject,
+    processes: Vec<u32>,
+    /// When they were asked for.
+    processes_s: f64,
+    /// Processes whose lines were left out.
+    strangers: BTreeSet<u32>,
+    battery: Battery,
+    battery_s: f64,
+    kernel_is_open: Option<bool>,
+    normalizer: CurrentNormalizer,
+}
+
+impl<'a> Foreign<'a> {
+    /// Begins to follow an application.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn new(device: &'a dyn Device, subject: Subject) -> Result<Foreign<'a>, DeviceError> {
+        let mut kernel_is_open = None;
+        Ok(Foreign {
+            device,
+            subject,
+            processes: Vec::new(),
+            processes_s: f64::NEG_INFINITY,
+            strangers: BTreeSet::new(),
+            battery: phone::battery_now(device, &mut kernel_is_open)?,
+            battery_s: device.now(),
+            kernel_is_open,
+            normalizer: CurrentNormalizer::default(),
+        })
+    }
+
+    /// Whether a line is for [`Reading`]: the runtime's about this application, or one that is damaged.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn is_its(&mut self, line: &str) -> Result<bool, DeviceError> {
+        let entry = match log::parse(line) {
+            Kind::Entry(entry) => entry,
+            Kind::Mark | Kind::Damaged => return Ok(true),
+        };
+        let Some(pid) = entry.pid.filter(|_| entry.tag == VRAPI_TAG) else { return Ok(false) };
+        let now = self.device.now();
+        if !self.processes.contains(&pid) && now - self.processes_s >= PROCESSES_PERIOD_S {
+            self.processes_s = now;
+            // Of a device that is gone, lines may still come.
+            self.processes = unless_lost(phone::processes(self.device, &self.subject.process))?
+                .unwrap_or(std::mem::take(&mut self.processes));
+        }
+        let is_its = self.processes.contains(&pid);
+        if !is_its {
+            self.strangers.insert(pid);
+        }
+        Ok(is_its)
+    }
+
+    /// Puts the battery to a second, and what is wrong with it to the reading.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn complete(&mut self, sample: &mut Sample, reading: &mut Reading) -> Result<(), DeviceError> {
+        let battery = self.battery;
+        let plugged = if battery.plugged() { battery.sources.max(1) } else { 0 };
+        let current_ma =
+            battery.current_raw.and_then(|raw| self.normalizer.add(raw, battery.status, Some(plugged)));
+        let line = Line {
+            current_raw: battery.current_raw,
+            current_ma,
+            voltage_mv: battery.voltage_mv.map(|voltage| voltage as i32),
+            plugged: Some(plugged),
+            status: battery.status,
+            ..Line::default()
+        };
+        reading.judge(&line, sample.time_s);
+        sample.current_raw = battery.current_raw;
+        sample.current_ma = current_ma;
+        sample.voltage_mv = battery.voltage_mv.filter(|voltage| *voltage >= phone::LEAST_MILLIVOLTS);
+        sample.level_percent = battery.level_percent;
+        sample.charge_uah = battery.charge_uah;
+        sample.plugged = Some(plugged);
+        sample.battery_celsius = battery.celsius.or(sample.battery_celsius);
+        let now = self.device.now();
+        if now - self.battery_s >= BATTERY_PERIOD_S {
+            self.battery_s = now;
+            let asked = phone::battery_now(self.device, &mut self.kernel_is_open);
+            self.battery = unless_lost(asked)?.unwrap_or(battery);
+        }
+        Ok(())
+    }
+
+    /// Why nothing may have been read: one sentence, for people.
+    pub fn silence(&self) -> String {
+        let Subject { package, process } = &self.subject;
+        if self.strangers.is_empty() {
+            return format!(
+                "Meta's runtime has logged no frame rate (tag {VRAPI_TAG}) since {package} was started"
+            );
+        }
+        let name = |pid: &u32| {
+            let name = self.device.shell(&["cat", &format!("/proc/{pid}/cmdline")]).unwrap_or_default();
+            format!("{pid} {}", name.trim_matches(['\0', '\n', ' ']))
+        };
+        let names: Vec<String> = self.strangers.iter().map(|pid| name(pid).trim().to_owned()).collect();
+        format!(
+            "the process {process} has logged no frame rate (tag {VRAPI_TAG}), only others have ({}): where one of them \
+             is the runtime, name that process",
+            names.join(", ")
+        )
+    }
+}
+
+/// None where the device is gone, which its log tells, too.
+fn unless_lost<T>(said: Result<T, DeviceError>) -> Result<Option<T>, DeviceError> {
+    match said {
+        Ok(value) => Ok(Some(value)),
+        Err(error) if error.is_lost() => Ok(None),
+        Err(error) => Err(error),
+    }
+}

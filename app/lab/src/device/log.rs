@@ -1,0 +1,204 @@
+//! Lines of logcat: who says what, and when.
+
+use yoro_viewer::telemetry::{LOG_TAG, Rating};
+
+/// Tag of the line that Meta's runtime logs once a second.
+pub const VRAPI_TAG: &str = "VrApi";
+/// What logcat is asked for: telemetry, what Meta's runtime says of clock levels, and the last words of an application that
+/// crashes.
+pub const FILTER: [&str; 6] =
+    ["YORO:V", "VrApi:V", "XrPerformanceManager:V", "AndroidRuntime:E", "DEBUG:F", "*:S"];
+
+/// How a log begins that no device has written.
+pub const SIMULATED_MARK: &str = "--------- simulated";
+
+/// One line of logcat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry<'a> {
+    /// When, in seconds; since 1970 if the log was written so, and only good for differences otherwise. None if the log
+    /// has no times.
+    pub time_s: Option<f64>,
+    /// Who.
+    pub pid: Option<u32>,
+    /// About what.
+    pub tag: &'a str,
+    /// What.
+    pub message: &'a str,
+}
+
+/// What a line is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind<'a> {
+    /// Somebody says something.
+    Entry(Entry<'a>),
+    /// Logcat's own mark, or nothing: `--------- beginning of main`.
+    Mark,
+    /// No line of logcat.
+    Damaged,
+}
+
+/// Reads a line in logcat's formats `threadtime` (with the time as seconds since 1970, as a date, or as a date with its
+/// year), `time`, `brief` and `raw`.
+pub fn parse(line: &str) -> Kind<'_> {
+    let line = line.trim_end();
+    if line.is_empty() || line.starts_with("--------- ") {
+        return Kind::Mark;
+    }
+    if let Some(tag) = raw_tag(line) {
+        return Kind::Entry(Entry { time_s: None, pid: None, tag, message: line });
+    }
+    let (time_s, rest) = match time(line) {
+        Some((time, rest)) => (Some(time), rest.trim_start()),
+        None => (None, line),
+    };
+    brief(rest, time_s).or_else(|| thread_time(rest, time_s)).map_or(Kind::Damaged, Kind::Entry)
+}
+
+/// Whose line this is if there is nothing before it.
+fn raw_tag(line: &str) -> Option<&'static str> {
+    if line.starts_with("v=") || Rating::is_line(line) {
+        Some(LOG_TAG)
+    } else if line.starts_with("FPS=") {
+        Some(VRAPI_TAG)
+    } else {
+        None
+    }
+}
+
+/// `I/YORO    ( 1234): ...`
+fn brief(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
+    let (priority, rest) = text.split_once('/')?;
+    let (head, message) = rest.split_once("): ").or_else(|| Some((rest.strip_suffix("):")?, "")))?;
+    let (tag, pid) = head.rsplit_once('(')?;
+    is_priority(priority).then(|| Entry { time_s, pid: pid.trim().parse().ok(), tag: tag.trim(), message })
+}
+
+/// ` 1234  1250 I YORO    : ...`, after the time.
+fn thread_time(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
+    time_s?;
+    let (pid, rest) = word(text)?;
+    let (thread, rest) = word(rest)?;
+    let (priority, rest) = word(rest)?;
+    thread.parse::<u32>().ok()?;
+    let (tag, message) = rest.split_once(": ").or_else(|| Some((rest.strip_suffix(':')?, "")))?;
+    is_priority(priority).then_some(())?;
+    Some(Entry { time_s, pid: Some(pid.parse().ok()?), tag: tag.trim(), message })
+}
+
+fn is_priority(text: &str) -> bool {
+    matches!(text, "V" | "D" | "I" | "W" | "E" | "F" | "S")
+}
+
+/// The first word, and what comes after it.
+fn word(text: &str) -> Option<(&str, &str)> {
+    text.trim_start().split_once(' ').filter(|(word, _)| !word.is_empty())
+}
+
+/// The time at the begin of a line in seconds, and what comes after it.
+fn time(line: &str) -> Option<(f64, &str)> {
+    let (first, rest) = word(line)?;
+    if let Ok(seconds) = first.parse::<f64>() {
+        return (first.contains('.') && seconds.is_finite()).then_some((seconds, rest));
+    }
+    let (clock, mut rest) = word(rest)?;
+    let mut date = first.split('-').map(str::parse::<u32>);
+    let date = (date.next()?.ok()?, date.next()?.ok()?, date.next());
+    let (year, month, day) = match date {
+        (year, month, Some(day)) => (year, month, day.ok()?),
+        // Any leap year will do where only differences count.
+        (month, day, None) => (2000, month, day),
+    };
+    // Of the format `time`, older programs print a colon behind it.
+    let (clock, fraction) = clock.trim_end_matches(':').split_once('.')?;
+    if fraction.is_empty() || !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let text = format!("{year:04}-{month:02}-{day:02}T{clock}.{}Z", &fraction[..fraction.len().min(9)]);
+    let seconds = humantime::parse_rfc3339(&text).ok()?;
+    // The zone of `-v zone` says nothing about differences.
+    if let Some((zone, after)) = word(rest)
+        && zone.starts_with(['+', '-'])
+    {
+        rest = after;
+    }
+    Some((seconds.duration_since(std::time::UNIX_EPOCH).ok()?.as_secs_f64(), rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn entry(line: &str) -> Entry<'_> {
+        match parse(line) {
+            Kind::Entry(entry) => entry,
+            kind => panic!("{kind:?}: {line}"),
+        }
+    }
+
+    #[test]
+    fn logcats_formats() {
+        let of = |line| {
+            let e = entry(line);
+            (e.pid, e.tag, e.message)
+        };
+        let expected = (Some(4242), "YORO", "v=1,t=1.0s");
+        for line in [
+            "1700000000.123456  4242  4260 I YORO    : v=1,t=1.0s",
+            "1700000000.123  4242  4260 I YORO: v=1,t=1.0s",
+            "11-14 22:13:20.123  4242  4260 I YORO    : v=1,t=1.0s",
+            "2023-11-14 22:13:20.123456 +0100  4242  4260 I YORO    : v=1,t=1.0s\r",
+            "11-14 22:13:20.123 I/YORO    ( 4242): v=1,t=1.0s",
+            "I/YORO    ( 4242): v=1,t=1.0s",
+            "11-14 22:13:20.123: I/YORO(4242): v=1,t=1.0s",
+            "         1700000000.123  4242  4260 I YORO    : v=1,t=1.0s",
+        ] {
+            assert_eq!(of(line), expected, "{line}");
+        }
+        assert_eq!(of("v=1,t=1.0s"), (None, "YORO", "v=1,t=1.0s"));
+        assert_eq!(of("FPS=72/72,Prd=38ms").1, "VrApi");
+        assert_eq!(of("11-14 22:13:20.123  1  2 E AndroidRuntime: FATAL: a (b): c").2, "FATAL: a (b): c");
+        assert_eq!(of("11-14 22:13:20.123  1  2 E libc:").2, "");
+    }
+
+    #[test]
+    fn times_differ_as_they_should() {
+        let at = |line| entry(line).time_s.unwrap();
+        assert_eq!(at("1700000000.250000 1 2 I A: b"), 1_700_000_000.25);
+        assert_eq!(at("2023-11-14 22:13:20.250 1 2 I A: b"), 1_700_000_000.25);
+        let over_midnight = at("03-01 00:00:01.000 1 2 I A: b") - at("02-29 23:59:59.000 1 2 I A: b");
+        assert_eq!(over_midnight, 2.0);
+    }
+
+    #[test]
+    fn what_is_no_line() {
+        assert_eq!(parse("--------- beginning of main"), Kind::Mark);
+        assert_eq!(parse(""), Kind::Mark);
+        for line in [
+            "1700000000.1234",
+            "1700000000.123456  42",
+            "hello",
+            "11-14 22:13:20.123  1  2 I YORO",
+            "13-45 22:13:20.1 1 2 I A: b",
+        ] {
+            assert_eq!(parse(line), Kind::Damaged, "{line}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn anything_can_be_read(line in ".{0,80}") {
+            let _ = parse(&line);
+        }
+
+        #[test]
+        fn a_line_cut_anywhere_is_damaged_or_shorter(cut in 0usize..200, message in "[ -~]{0,60}") {
+            let line = format!("1700000000.123456  4242  4260 I YORO    : {message}");
+            let cut = cut.min(line.len());
+            if let Kind::Entry(entry) = parse(&line[..cut]) {
+                prop_assert!(message.starts_with(entry.message.trim_end()) || cut < 20);
+            }
+        }
+    }
+}

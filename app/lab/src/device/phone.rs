@@ -1,0 +1,414 @@
+//! What is asked of Android on a device, and told to it.
+
+use super::adb::{Device, DeviceError, serial_number};
+use super::capture::DeviceInfo;
+use yoro_viewer::Settings;
+use yoro_viewer::telemetry::BatteryStatus;
+
+/// The application.
+pub const PACKAGE: &str = "io.github.yoro";
+/// Its activity.
+const ACTIVITY: &str = "io.github.yoro/android.app.NativeActivity";
+/// System properties that begin so are settings of the application.
+pub const PROPERTY_PREFIX: &str = "debug.yoro.";
+/// Size that the log's buffer is set to, so that it outlasts a lost connection. Android takes it back when it restarts.
+const LOG_BUFFER: &str = "8M";
+
+/// What the kernel says of the battery, where the shell may read it.
+pub(super) const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
+/// A smaller voltage is no number of millivolts: some phones give it in whole volts, which is too coarse for power.
+pub const LEAST_MILLIVOLTS: f64 = 100.0;
+
+/// The battery as Android sees it (`dumpsys battery`).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Battery {
+    /// Level in percent.
+    pub level_percent: Option<f64>,
+    /// Temperature in degrees Celsius.
+    pub celsius: Option<f64>,
+    /// What it is plugged into, as Android's `EXTRA_PLUGGED`: 1 for AC, 2 for USB, 4 for wireless, 8 for a dock, added up.
+    pub sources: i32,
+    /// Whether it charges.
+    pub status: Option<BatteryStatus>,
+    /// Whether these values were set by hand and the battery is not asked any more (`UPDATES STOPPED`).
+    pub held: bool,
+    /// Voltage in millivolts.
+    pub voltage_mv: Option<f64>,
+    /// Current as the device gives it; few print it here.
+    pub current_raw: Option<i64>,
+    /// Remaining charge in microampere-hours.
+    pub charge_uah: Option<f64>,
+}
+
+impl Battery {
+    /// Whether the current is not the device's alone: there is a charger, or the battery says that it does not discharge.
+    /// Phones that have switched charging off name no source, but are "not charging".
+    pub fn plugged(&self) -> bool {
+        self.sources != 0 || matches!(self.status, Some(BatteryStatus::Charging | BatteryStatus::NotCharging))
+    }
+}
+
+/// What the device is.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn info(device: &dyn Device) -> Result<DeviceInfo, DeviceError> {
+    let property = |name| Ok::<_, DeviceError>(device.shell(&["getprop", name])?.trim().to_owned());
+    Ok(DeviceInfo {
+        // The same device has another address with each wireless network.
+        serial: serial_number(device)?,
+        manufacturer: property("ro.product.manufacturer")?,
+        model: property("ro.product.model")?,
+        android: property("ro.build.version.release")?,
+        // Some devices refuse: the capacity is for a figure beside the others only.
+        capacity_mah: device.shell(&["dumpsys", "batterystats"]).ok().and_then(|text| capacity(&text)),
+        simulated: device.is_simulated(),
+    })
+}
+
+/// The capacity in what `dumpsys batterystats` prints, in mAh.
+fn capacity(text: &str) -> Option<f64> {
+    let of = |line: &str| {
+        let line = line.trim();
+        let rest =
+            line.strip_prefix("Estimated battery capacity:").or_else(|| line.strip_prefix("Capacity:"))?;
+        let end = rest
+            .trim_start()
+            .find(|c: char| !c.is_ascii_digit() && c != '.')
+            .unwrap_or(rest.trim_start().len());
+        rest.trim_start()[..end].parse().ok().filter(|capacity| *capacity > 0.0)
+    };
+    text.lines().find_map(of)
+}
+
+/// The state of the battery.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn battery(device: &dyn Device) -> Result<Battery, DeviceError> {
+    Ok(read_battery(&device.shell(&["dumpsys", "battery"])?))
+}
+
+fn read_battery(text: &str) -> Battery {
+    let mut battery = Battery { held: text.contains("UPDATES STOPPED"), ..Battery::default() };
+    for line in text.lines() {
+        let Some((key, value)) = line.trim().split_once(": ") else { continue };
+        let value = value.trim();
+        let positive = || value.parse::<f64>().ok().filter(|value| *value > 0.0);
+        let mut source = |bit: i32| battery.sources |= if value == "true" { bit } else { 0 };
+        match key {
+            "AC powered" => source(1),
+            "USB powered" => source(2),
+            "Wireless powered" => source(4),
+            "Dock powered" => source(8),
+            "status" => battery.status = value.parse().ok().and_then(BatteryStatus::from_android),
+            "level" => battery.level_percent = value.parse().ok(),
+            "temperature" => battery.celsius = value.parse::<f64>().ok().map(|tenths| tenths / 10.0),
+            "voltage" => battery.voltage_mv = positive(),
+            "Charge counter" => battery.charge_uah = positive(),
+            "current now" => battery.current_raw = value.parse().ok(),
+            _ => {}
+        }
+    }
+    battery
+}
+
+/// The battery with what the kernel says more exactly: current and voltage. `Some` in `is_open` is whether it may be read.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Battery, DeviceError> {
+    let mut battery = battery(device)?;
+    if *is_open != Some(false) {
+        let kernel = kernel_battery(device)?;
+        *is_open = Some(kernel.voltage_mv.is_some() || kernel.current_raw.is_some());
+        battery.voltage_mv = kernel.voltage_mv.or(battery.voltage_mv);
+        battery.current_raw = kernel.current_raw.or(battery.current_raw);
+    }
+    if battery.current_raw.is_none() {
+        // From Android 15 on.
+        let said = unless_refused(device.shell(&["cmd", "battery", "get", "-f", "current_now"]))?;
+        battery.current_raw = said.trim().parse().ok();
+    }
+    Ok(battery)
+}
+
+/// Current and voltage as the kernel has them; nothing where the shell may not read it.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn kernel_battery(device: &dyn Device) -> Result<Battery, DeviceError> {
+    Ok(read_kernel_battery(&unless_refused(device.shell(&["cat", KERNEL_BATTERY]))?))
+}
+
+fn read_kernel_battery(text: &str) -> Battery {
+    let value = |key: &str| {
+        let mut pairs =
+            text.lines().filter_map(|line| line.trim().strip_prefix("POWER_SUPPLY_")?.split_once('='));
+        pairs.find(|(name, _)| *name == key).map(|(_, value)| value)
+    };
+    let microvolts = value("VOLTAGE_NOW").and_then(|value| value.parse::<f64>().ok());
+    Battery {
+        // Some drivers give millivolts.
+        voltage_mv: microvolts
+            .map(|v| if v < 100e3 { v } else { v / 1e3 })
+            .filter(|v| *v >= LEAST_MILLIVOLTS),
+        current_raw: value("CURRENT_NOW").and_then(|value| value.parse().ok()),
+        ..Battery::default()
+    }
+}
+
+/// Nothing in place of a refusal.
+fn unless_refused(said: Result<String, DeviceError>) -> Result<String, DeviceError> {
+    match said {
+        Err(DeviceError::Refused { .. }) => Ok(String::new()),
+        said => said,
+    }
+}
+
+/// Whether the battery saver is on.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn saves_battery(device: &dyn Device) -> Result<bool, DeviceError> {
+    Ok(unless_refused(device.shell(&["settings", "get", "global", "low_power"]))?.trim() == "1")
+}
+
+/// The screen lock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Keyguard {
+    /// It asks for a PIN, a pattern or a password.
+    pub secure: bool,
+    /// It is in front now.
+    pub showing: bool,
+}
+
+/// The screen lock; where Android says nothing of it, there is none.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn keyguard(device: &dyn Device) -> Result<Keyguard, DeviceError> {
+    Ok(read_keyguard(&unless_refused(device.shell(&["dumpsys", "window", "policy"]))?))
+}
+
+fn read_keyguard(text: &str) -> Keyguard {
+    // Other parts of what is printed have keys of the same names.
+    let own = text.split_once("KeyguardServiceDelegate").map_or("", |(_, own)| own);
+    let value = |key: &str| own.split_whitespace().find_map(|word| word.strip_prefix(key)) == Some("true");
+    Keyguard { secure: value("secure="), showing: value("showing=") }
+}
+
+/// What changes with each start of the device.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn boot_id(device: &dyn Device) -> Result<String, DeviceError> {
+    Ok(device.shell(&["cat", "/proc/sys/kernel/random/boot_id"])?.trim().to_owned())
+}
+
+/// The device's clock as logcat takes it: seconds since 1970 with decimals.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn clock(device: &dyn Device) -> Result<String, DeviceError> {
+    let text = device.shell(&["date", "+%s.%N"])?;
+    let seconds = text.trim().parse::<f64>().ok().filter(|seconds| seconds.is_finite());
+    let refused = || DeviceError::Refused {
+        serial: device.serial().into(),
+        command: "date".into(),
+        reason: format!("it says \"{}\"", text.trim()),
+    };
+    seconds.map(|seconds| format!("{seconds:.6}")).ok_or_else(refused)
+}
+
+/// Version of an application on the device; none if it is not there.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn version(device: &dyn Device, package: &str) -> Result<Option<String>, DeviceError> {
+    let text = device.shell(&["dumpsys", "package", package])?;
+    let version = text.lines().find_map(|line| line.trim().strip_prefix("versionName="));
+    Ok(version.map(|version| version.trim().to_owned()))
+}
+
+/// The device's address in the wireless network.
+pub fn wifi_address(device: &dyn Device) -> Option<String> {
+    let routes = device.shell(&["ip", "route"]).ok()?;
+    routes.lines().filter(|line| line.contains("wlan")).find_map(|line| {
+        let mut words = line.split_whitespace().skip_while(|word| *word != "src");
+        words.nth(1).map(str::to_owned)
+    })
+}
+
+/// Settings that the application's system properties hold, stronger than those that it is started with.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceError> {
+    let property = |line: &str| {
+        let (name, value) = line.trim().strip_prefix('[')?.strip_suffix(']')?.split_once("]: [")?;
+        (name.starts_with(PROPERTY_PREFIX) && !value.is_empty()).then(|| (name.to_owned(), value.to_owned()))
+    };
+    Ok(device.shell(&["getprop"])?.lines().filter_map(property).collect())
+}
+
+/// Sets a system property; empty is as good as none.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn set_property(device: &dyn Device, name: &str, value: &str) -> Result<(), DeviceError> {
+    device.shell(&["setprop", name, value]).map(drop)
+}
+
+/// Wakes the device up and lets its log keep more. Both help, and neither is needed.
+pub fn wake(device: &dyn Device) {
+    let commands: [&[&str]; 3] = [
+        &["input", "keyevent", "KEYCODE_WAKEUP"],
+        &["wm", "dismiss-keyguard"],
+        &["logcat", "-G", LOG_BUFFER],
+    ];
+    for words in commands {
+        if let Err(error) = device.shell(words) {
+            ::log::debug!("{error}");
+        }
+    }
+}
+
+/// Starts the application anew with exactly these settings, whatever file lies on the device.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError> {
+    let pairs = pairs(settings);
+    let mut words = vec!["am", "start", "-S", "-W", "-n", ACTIVITY];
+    for (key, value) in &pairs {
+        words.extend(["--es", key, value]);
+    }
+    start_by(device, &words, ACTIVITY)
+}
+
+/// Starts another application anew; `activity` with or without its package.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn start_other(device: &dyn Device, package: &str, activity: &str) -> Result<(), DeviceError> {
+    let component = if activity.contains('/') { activity.into() } else { format!("{package}/{activity}") };
+    start_by(device, &["am", "start", "-S", "-W", "-n", &component], &component)
+}
+
+fn start_by(device: &dyn Device, words: &[&str], component: &str) -> Result<(), DeviceError> {
+    let said = device.shell(words)?;
+    if said.contains("does not exist") && component == ACTIVITY {
+        return Err(DeviceError::NotInstalled { serial: device.serial().into() });
+    }
+    match said.lines().rfind(|line| line.starts_with("Error")) {
+        Some(reason) => Err(DeviceError::Refused {
+            serial: device.serial().into(),
+            command: format!("am start -n {component}"),
+            reason: reason.trim().into(),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Each setting as key and value, as the application reads them.
+pub fn pairs(settings: &Settings) -> Vec<(String, String)> {
+    use toml::Value;
+    let Ok(table) = toml::Table::try_from(settings) else { return Vec::new() };
+    let text = |value: &Value| match value {
+        Value::String(text) => text.clone(),
+        Value::Float(number) => (*number as f32).to_string(),
+        Value::Array(list) => list.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(","),
+        other => other.to_string(),
+    };
+    let value = |key: &str| table.get(key).map_or_else(|| "auto".into(), text);
+    yoro_viewer::KEYS.iter().map(|key| ((*key).to_owned(), value(key))).collect()
+}
+
+/// Ends an application.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn stop(device: &dyn Device, package: &str) -> Result<(), DeviceError> {
+    device.shell(&["am", "force-stop", package]).map(drop)
+}
+
+/// The processes of an application; none while it does not run.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn processes(device: &dyn Device, package: &str) -> Result<Vec<u32>, DeviceError> {
+    // It ends with 1 where there is no process.
+    let pids = unless_refused(device.shell(&["pidof", package]))?;
+    Ok(pids.split_whitespace().filter_map(|pid| pid.parse().ok()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_android_prints() {
+        let text = "Current Battery Service state:\n  AC powered: false\n  USB powered: true\n  Wireless powered: false\n  Max charging current: 500000\n  status: 2\n  level: 87\n  scale: 100\n  voltage: 4312\n  temperature: 285\n";
+        let battery = read_battery(text);
+        assert_eq!(
+            (battery.level_percent, battery.celsius, battery.voltage_mv),
+            (Some(87.0), Some(28.5), Some(4312.0))
+        );
+        assert!(battery.plugged() && battery.sources == 2);
+        assert!(!read_battery(&text.replace("true", "false").replace("status: 2", "status: 3")).plugged());
+        assert_eq!(read_battery(""), Battery::default());
+        assert_eq!(capacity("x\n  Estimated battery capacity: 4410 mAh\n"), Some(4410.0));
+        assert_eq!(capacity("  Capacity: 5000, Computed drain: 12.3, actual drain: 50\n"), Some(5000.0));
+        assert_eq!(capacity("  Capacity: unknown\n"), None);
+    }
+
+    /// As a phone prints it whose charging was switched off with the charger in (VR-25/acc issue 112), and after
+    /// `dumpsys battery unplug`.
+    #[test]
+    fn what_is_not_discharging_is_plugged_in() {
+        let text = "Current Battery Service state:\n  AC powered: false\n  USB powered: false\n  Wireless powered: false\n  Charge counter: 3124799\n  status: 4\n  level: 89\n  voltage: 4218\n  temperature: 324\n";
+        assert!(read_battery(text).plugged() && !read_battery(text).held);
+        assert!(!read_battery(&text.replace("status: 4", "status: 3")).plugged());
+        // Full, and just taken off.
+        assert!(!read_battery(&text.replace("status: 4", "status: 5")).plugged());
+        let held = text.replace("state:\n", "state:\n  (UPDATES STOPPED -- use 'reset' to restart)\n");
+        assert!(read_battery(&held).held);
+    }
+
+    #[test]
+    fn the_kernels_battery() {
+        let text = "POWER_SUPPLY_NAME=battery\nPOWER_SUPPLY_STATUS=Discharging\nPOWER_SUPPLY_VOLTAGE_NOW=3987654\nPOWER_SUPPLY_CURRENT_NOW=-512000\n";
+        let battery = read_kernel_battery(text);
+        assert_eq!((battery.voltage_mv, battery.current_raw), (Some(3987.654), Some(-512_000)));
+        assert_eq!(read_kernel_battery(&text.replace("3987654", "3987")).voltage_mv, Some(3987.0));
+        assert_eq!(read_kernel_battery("cat: Permission denied"), Battery::default());
+    }
+
+    #[test]
+    fn the_screen_lock() {
+        let text = "WINDOW MANAGER POLICY STATE\n  showing=true\n  KeyguardServiceDelegate\n    showing=false\n    inputRestricted=false\n    secure=true\n    dreaming=false\n";
+        assert_eq!(read_keyguard(text), Keyguard { secure: true, showing: false });
+        assert_eq!(read_keyguard("Can't find service: window"), Keyguard::default());
+    }
+
+    #[test]
+    fn settings_arrive_as_they_left() {
+        let mut settings = Settings::default();
+        for pair in [
+            "scene=talk",
+            "method=conventional",
+            "render-scale=0.8",
+            "guard-band=40px",
+            "run=7",
+            "duration=61.5",
+        ] {
+            settings.apply(pair).unwrap();
+        }
+        let mut read = Settings { seed: 99, methods: Vec::new(), hud: false, ..Settings::default() };
+        for (key, value) in pairs(&settings) {
+            read.apply(&format!("{key}={value}")).unwrap();
+        }
+        assert_eq!(read, settings);
+    }
+}

@@ -1,0 +1,348 @@
+//! What is held fixed on a device while it is measured, and given back afterwards.
+//!
+//! What there was before is written into a file on the device first: after a crash, or when the cable was pulled,
+//! whoever measures on the device next gives it back.
+
+use super::adb::{Device, DeviceError};
+use super::capture::DeviceInfo;
+use super::phone::{self, set_property};
+
+/// Where the device keeps what is to be given back.
+const FILE: &str = "/data/local/tmp/yoro-restore.txt";
+/// What Android prints for a setting that was never made.
+const UNSET: &str = "null";
+/// Refresh rate of Meta's headsets.
+const QUEST_RATE: &str = "debug.oculus.refreshRate";
+/// Lets applications on Meta's headsets go on outside of the boundary.
+const QUEST_BOUNDARY: &str = "debug.oculus.guardian_pause";
+/// Time without a touch until the screen goes off, in milliseconds: a day. While a phone cools, no application holds the
+/// screen on, and with the screen some phones switch adb over Wi-Fi off.
+const SCREEN_TIMEOUT_MS: &str = "86400000";
+/// Do not disturb, but for alarms (`Global.ZEN_MODE_ALARMS`).
+const ALARMS_ONLY: &str = "3";
+/// Displays above this many Hz have a mode of their own on phones by Samsung.
+const SAMSUNG_STANDARD_HZ: f64 = 60.0;
+
+/// What is to be held fixed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wanted {
+    /// Brightness of the screen, 0 to 255.
+    pub brightness: Option<u8>,
+    /// Refresh rate of the display in Hz.
+    pub refresh_hz: Option<f64>,
+}
+
+/// A table of Android's settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Table {
+    System,
+    Secure,
+    Global,
+}
+
+impl Table {
+    const ALL: [Table; 3] = [Table::System, Table::Secure, Table::Global];
+
+    fn name(self) -> &'static str {
+        match self {
+            Table::System => "system",
+            Table::Secure => "secure",
+            Table::Global => "global",
+        }
+    }
+}
+
+/// Where a value is kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Place {
+    /// `settings get TABLE KEY`.
+    Setting(Table, String),
+    /// `getprop KEY`.
+    Property(String),
+    /// Whether one of Meta's headsets is told that somebody wears it; it does not tell what it was told.
+    Worn,
+}
+
+/// A value at its place; none where there was none.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Pin {
+    place: Place,
+    value: Option<String>,
+}
+
+impl Pin {
+    fn new(place: Place, value: &str) -> Pin {
+        let value = value.trim();
+        Pin { place, value: Some(value.to_owned()).filter(|value| !value.is_empty() && value != UNSET) }
+    }
+
+    /// The value at the place now.
+    fn now(device: &dyn Device, place: &Place) -> Result<Pin, DeviceError> {
+        let value = match place {
+            Place::Setting(table, key) => device.shell(&["settings", "get", table.name(), key])?,
+            Place::Property(name) => device.shell(&["getprop", name])?,
+            Place::Worn => String::new(),
+        };
+        Ok(Pin::new(place.clone(), &value))
+    }
+
+    fn set(&self, device: &dyn Device) -> Result<(), DeviceError> {
+        match (&self.place, &self.value) {
+            (Place::Setting(table, key), Some(value)) => {
+                device.shell(&["settings", "put", table.name(), key, value]).map(drop)
+            }
+            (Place::Setting(table, key), None) => {
+                device.shell(&["settings", "delete", table.name(), key]).map(drop)
+            }
+            (Place::Property(name), value) => set_property(device, name, value.as_deref().unwrap_or("")),
+            (Place::Worn, value) => {
+                let word = if value.is_some() { "prox_close" } else { "automation_disable" };
+                let action = format!("com.oculus.vrpowermanager.{word}");
+                device.shell(&["am", "broadcast", "-a", &action]).map(drop)
+            }
+        }
+    }
+
+    fn line(&self) -> String {
+        let value = self.value.as_deref().unwrap_or(UNSET);
+        match &self.place {
+            Place::Setting(table, key) => format!("{} {key} {value}\n", table.name()),
+            Place::Property(name) => format!("property {name} {value}\n"),
+            Place::Worn => format!("headset worn {value}\n"),
+        }
+    }
+
+    fn read(line: &str) -> Option<Pin> {
+        let mut words = line.splitn(3, ' ');
+        let (kind, key, value) = (words.next()?, words.next()?.to_owned(), words.next()?);
+        let place = match kind {
+            "property" => Place::Property(key),
+            "headset" => Place::Worn,
+            kind => Place::Setting(Table::ALL.into_iter().find(|table| table.name() == kind)?, key),
+        };
+        Some(Pin::new(place, value))
+    }
+}
+
+/// Holds values fixed. [`Pins::give_back`] must be called; if that cannot be, the next [`Pins::new`] does it.
+#[must_use]
+#[derive(Debug)]
+pub struct Pins {
+    wanted: Vec<Pin>,
+    before: Vec<Pin>,
+    refused: Vec<String>,
+    /// The start of the device that they were set in.
+    boot: String,
+}
+
+impl Pins {
+    /// Gives back what an earlier run has left, then fixes what is wanted, keeps the screen on and others silent, and takes
+    /// the application's own properties away: they would be stronger than the settings of a run. A headset by Meta is told
+    /// that it is worn. What the device does not let anybody change is told, and stays.
+    ///
+    /// # Errors
+    /// [`DeviceError`]; nothing is changed then that the next call does not give back.
+    pub fn new(device: &dyn Device, info: &DeviceInfo, wanted: &Wanted) -> Result<Pins, DeviceError> {
+        give_back_leftovers(device)?;
+        let mut pins = pins(info, wanted);
+        for (name, value) in phone::properties(device)? {
+            ::log::warn!(
+                "{}: {name} is {value}; it is taken away for the time of the measurement",
+                device.serial()
+            );
+            pins.push(Pin { place: Place::Property(name), value: None });
+        }
+        let before = pins.iter().map(|pin| Pin::now(device, &pin.place)).collect::<Result<Vec<_>, _>>()?;
+        device.put(FILE, &before.iter().map(Pin::line).collect::<String>())?;
+        let boot = phone::boot_id(device)?;
+        let mut held = Pins { wanted: pins, before, refused: Vec::new(), boot };
+        held.hold(device)?;
+        for refused in &held.refused {
+            ::log::warn!("{refused}");
+        }
+        Ok(held)
+    }
+
+    /// Fixes everything again if the device was started anew: system properties do not outlast that, nor what a headset
+    /// was told.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn renew(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
+        let boot = phone::boot_id(device)?;
+        if boot == self.boot {
+            return Ok(());
+        }
+        self.boot = boot;
+        self.hold(device)
+    }
+
+    /// What the device did not let anybody change: a sentence each.
+    pub fn refused(&self) -> &[String] {
+        &self.refused
+    }
+
+    fn hold(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
+        self.refused.clear();
+        for pin in &self.wanted {
+            match hold(device, pin) {
+                Err(error) if error.is_lost() => return Err(error),
+                Err(error) => self.refused.push(format!("{error}; it stays as it is")),
+                Ok(()) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives everything back. A device that is gone gets it from the next measurement.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn give_back(self, device: &dyn Device) -> Result<(), DeviceError> {
+        give_back(device, &self.before)
+    }
+}
+
+fn pins(info: &DeviceInfo, wanted: &Wanted) -> Vec<Pin> {
+    let setting = |table: Table, key: &str, value: &str| Pin::new(Place::Setting(table, key.into()), value);
+    let property = |name: &str, value: &str| Pin::new(Place::Property(name.into()), value);
+    let is_by = |maker: &str| info.manufacturer.eq_ignore_ascii_case(maker);
+    let mut pins = vec![
+        setting(Table::System, "screen_off_timeout", SCREEN_TIMEOUT_MS),
+        setting(Table::Global, "zen_mode", ALARMS_ONLY),
+    ];
+    if let Some(brightness) = wanted.brightness {
+        pins.push(setting(Table::System, "screen_brightness_mode", "0"));
+        pins.push(setting(Table::System, "screen_brightness", &brightness.to_string()));
+    }
+    if let Some(hz) = wanted.refresh_hz {
+        if is_by("samsung") {
+            // Peak and least rate alone do nothing there: 0 is the standard rate, 2 the high one.
+            let mode = if hz > SAMSUNG_STANDARD_HZ { "2" } else { "0" };
+            pins.push(setting(Table::Secure, "refresh_rate_mode", mode));
+        }
+        pins.push(setting(Table::System, "peak_refresh_rate", &hz.to_string()));
+        pins.push(setting(Table::System, "min_refresh_rate", &hz.to_string()));
+        // A phone need not know the property of headsets, but takes any.
+        pins.push(property(QUEST_RATE, &hz.to_string()));
+    }
+    if is_by("oculus") || is_by("meta") {
+        pins.push(property(QUEST_BOUNDARY, "1"));
+        pins.push(Pin::new(Place::Worn, "yes"));
+    }
+    pins
+}
+
+/// Sets a value and looks whether it has stayed.
+fn hold(device: &dyn Device, pin: &Pin) -> Result<(), DeviceError> {
+    pin.set(device)?;
+    if pin.place == Place::Worn {
+        return Ok(());
+    }
+    let now = Pin::now(device, &pin.place)?;
+    let number = |pin: &Pin| pin.value.as_ref().and_then(|value| value.parse::<f64>().ok());
+    if now.value == pin.value || number(&now).is_some() && number(&now) == number(pin) {
+        return Ok(());
+    }
+    let value = now.value.as_deref().unwrap_or(UNSET);
+    let reason = format!("it is still {value}");
+    Err(DeviceError::Refused { serial: device.serial().into(), command: pin.line().trim().into(), reason })
+}
+
+fn give_back(device: &dyn Device, before: &[Pin]) -> Result<(), DeviceError> {
+    for pin in before {
+        match pin.set(device) {
+            Err(error) if error.is_lost() => return Err(error),
+            Err(error) => ::log::warn!("{error}; it stays as it is"),
+            Ok(()) => {}
+        }
+    }
+    if before.is_empty() { Ok(()) } else { device.shell(&["rm", "-f", FILE]).map(drop) }
+}
+
+/// Gives back what a measurement that was killed has left on the device.
+///
+/// # Errors
+/// [`DeviceError`].
+pub fn give_back_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
+    let text = match device.shell(&["cat", FILE]) {
+        Ok(text) => text,
+        Err(DeviceError::Refused { .. }) => return Ok(()),
+        Err(error) => return Err(error),
+    };
+    let pins: Vec<Pin> = text.lines().filter_map(Pin::read).collect();
+    if !pins.is_empty() {
+        ::log::warn!("{}: what an earlier measurement had left changed is given back", device.serial());
+    }
+    give_back(device, &pins)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::adb::Adb;
+    use crate::device::replay::{Fault, FaultKind, Phone, Replay, Script};
+    use std::path::Path;
+    use std::time::Duration;
+
+    #[test]
+    fn a_headset_counts_as_worn_and_is_taken_off_again() {
+        let reboot = Fault { kind: FaultKind::Reboot, start: 1, at: 1.0, seconds: Some(2.0), by: 0.0 };
+        let headset = Phone {
+            manufacturer: "Oculus".into(),
+            serial: "HEADSET".into(),
+            fault: vec![reboot],
+            ..Phone::default()
+        };
+        let replay = Replay::new(Path::new(""), Script { device: vec![headset], ..Script::default() });
+        let device = &*replay.open("HEADSET");
+        let told =
+            || ["simulated.worn", QUEST_BOUNDARY].map(|name| device.shell(&["getprop", name]).unwrap());
+        let info = phone::info(device).unwrap();
+        let mut pins = Pins::new(device, &info, &Wanted::default()).unwrap();
+        assert_eq!((told(), pins.refused()), (["yes\n".into(), "1\n".into()], &[][..]));
+        // Neither outlasts a restart of the headset.
+        phone::start(device, &Default::default()).unwrap();
+        device.sleep(Duration::from_secs(30));
+        assert_eq!(told(), ["\n", "\n"]);
+        pins.renew(device).unwrap();
+        assert_eq!(told(), ["yes\n", "1\n"]);
+        pins.give_back(device).unwrap();
+        assert_eq!(told(), ["\n", "\n"]);
+    }
+
+    #[test]
+    fn what_is_to_be_given_back_is_read_again() {
+        let pins = [
+            Pin::new(Place::Setting(Table::System, "screen_brightness".into()), "120\n"),
+            Pin::new(Place::Setting(Table::Secure, "refresh_rate_mode".into()), "null"),
+            Pin::new(Place::Property("debug.yoro.methods".into()), "yoro, mono"),
+            Pin::new(Place::Worn, "null"),
+        ];
+        let text: String = pins.iter().map(Pin::line).collect();
+        assert_eq!(
+            text,
+            "system screen_brightness 120\nsecure refresh_rate_mode null\nproperty debug.yoro.methods yoro, mono\nheadset worn null\n"
+        );
+        assert_eq!(text.lines().filter_map(Pin::read).collect::<Vec<_>>(), pins);
+        assert_eq!(Pin::read("nonsense"), None);
+    }
+
+    #[test]
+    fn each_maker_needs_its_own() {
+        let lines = |manufacturer: &str, hz: f64| -> Vec<String> {
+            let info = DeviceInfo { manufacturer: manufacturer.into(), ..DeviceInfo::default() };
+            let wanted = Wanted { brightness: None, refresh_hz: Some(hz) };
+            pins(&info, &wanted).iter().map(|pin| pin.line().trim().to_owned()).collect()
+        };
+        let has = |lines: &[String], line: &str| lines.iter().any(|found| found == line);
+        assert!(has(&lines("Google", 60.0), "system screen_off_timeout 86400000"));
+        assert!(!lines("Google", 60.0).iter().any(|line| line.contains("refresh_rate_mode")));
+        assert!(has(&lines("samsung", 120.0), "secure refresh_rate_mode 2"));
+        assert!(has(&lines("samsung", 60.0), "secure refresh_rate_mode 0"));
+        for line in ["property debug.oculus.guardian_pause 1", "headset worn yes"] {
+            assert!(has(&lines("Oculus", 72.0), line) && has(&lines("Meta", 72.0), line), "{line}");
+            assert!(!has(&lines("Google", 72.0), line));
+        }
+    }
+}

@@ -1,0 +1,532 @@
+//! The program adb.
+
+use std::env;
+use std::ffi::OsStr;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use super::adb::{Adb, Device, DeviceError, Listed, LogEvent, LogStream, State, is_wireless, quoted};
+use super::log;
+use crate::interrupt;
+
+/// How long a command may take.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// How long an installation may take.
+const INSTALL_PATIENCE: Duration = Duration::from_secs(600);
+/// How often a wait looks whether the user has asked to stop.
+const GLANCE: Duration = Duration::from_millis(50);
+/// Lines that wait to be taken; more than that, and adb waits.
+const QUEUE: usize = 4096;
+
+/// How long adb's server may take, which has nothing to ask of a device.
+const SERVER_PATIENCE: Duration = Duration::from_secs(20);
+
+/// Devices by the program adb.
+#[derive(Clone, Debug)]
+pub struct AdbProgram {
+    program: PathBuf,
+    server_patience: Duration,
+}
+
+impl AdbProgram {
+    /// Finds the program (the one given, in `PATH`, or in `ANDROID_HOME`) and starts its server.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn find(given: Option<&Path>) -> Result<AdbProgram, DeviceError> {
+        let name = format!("adb{}", env::consts::EXE_SUFFIX);
+        let program = match given {
+            Some(given) => Some(given).filter(|path| path.is_file()).map(Path::to_path_buf),
+            None => {
+                let homes = ["ANDROID_HOME", "ANDROID_SDK_ROOT"].iter().filter_map(env::var_os);
+                let homes = homes.map(|home| Path::new(&home).join("platform-tools"));
+                let path = env::var_os("PATH").unwrap_or_default();
+                let mut folders = env::split_paths(&path).chain(homes);
+                folders.find_map(|folder| Some(folder.join(&name)).filter(|path| path.is_file()))
+            }
+        };
+        // Without its folder, a program is looked for in PATH.
+        let program = program.map(|path| std::path::absolute(&path).unwrap_or(path));
+        let looked = given.map_or("PATH and ANDROID_HOME".into(), |path| path.display().to_string());
+        let program = program.ok_or(DeviceError::NoAdb { looked })?;
+        let adb = AdbProgram { program, server_patience: SERVER_PATIENCE };
+        adb.start_server()?;
+        Ok(adb)
+    }
+
+    /// Starts the server where there is none. One that a later command starts would keep that command's pipes open.
+    fn start_server(&self) -> Result<(), DeviceError> {
+        let mut start = Command::new(&self.program);
+        start.arg("start-server").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        self.run(start, None, self.server_patience)?.map(drop).ok_or_else(|| self.silent("start-server"))
+    }
+
+    /// Runs adb to its end; none if it does not come in time. What it says is there where its pipes are.
+    fn run(
+        &self,
+        mut command: Command,
+        input: Option<&str>,
+        patience: Duration,
+    ) -> Result<Option<Said>, DeviceError> {
+        let mut child = command.spawn().map_err(|error| self.does_not_start(&error))?;
+        if let (Some(input), Some(mut stdin)) = (input, child.stdin.take()) {
+            // A command that does not take it says why by itself.
+            let _ = stdin.write_all(input.as_bytes());
+        }
+        let stdout = read_all(child.stdout.take());
+        let stderr = read_all(child.stderr.take());
+        let begin = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().map_err(|error| self.does_not_start(&error))? {
+                break status;
+            }
+            if begin.elapsed() > patience {
+                end(&mut child);
+                return Ok(None);
+            }
+            thread::sleep(Duration::from_millis(2).max(begin.elapsed() / 16).min(GLANCE));
+        };
+        let text = |channel: Receiver<String>| channel.recv_timeout(GLANCE * 20).unwrap_or_default();
+        Ok(Some(Said { success: status.success(), stdout: text(stdout), stderr: text(stderr) }))
+    }
+
+    fn silent(&self, command: &str) -> DeviceError {
+        let seconds = self.server_patience.as_secs();
+        DeviceError::Server { reason: format!("adb {command} has not ended for {seconds} s") }
+    }
+
+    /// What adb says by itself in a line, without the names that it puts before it (`adb: `, `adb.exe: `, `error: `); none
+    /// where the words are those of a command on the device.
+    fn own_words<'a>(&self, line: &'a str) -> Option<&'a str> {
+        let name = self.program.file_name().unwrap_or_default().to_string_lossy();
+        let is_name = |word: &str| [&*name, "adb", "adb.exe", "error"].contains(&word);
+        let mut words = line.trim();
+        let mut is_own = ["adb server ", "* "].iter().any(|start| words.starts_with(start));
+        while let Some((first, rest)) = words.split_once(": ")
+            && is_name(first)
+        {
+            (words, is_own) = (rest.trim_start(), true);
+        }
+        is_own.then_some(words)
+    }
+
+    /// Why adb does not reach a device, if that is what it says. Its words come one sentence inside another
+    /// (`failed to get feature set: device offline`); file names in them mean nothing.
+    fn unreached(&self, stderr: &str, serial: &str) -> Option<DeviceError> {
+        stderr.lines().filter_map(|line| self.own_words(line)).find_map(|words| {
+            words.split(": ").map(str::trim).find_map(Unreached::of).map(|why| {
+                let serial = serial.to_owned();
+                match why {
+                    Unreached::Unauthorized => DeviceError::Unauthorized { serial },
+                    Unreached::Offline => DeviceError::Offline { serial },
+                    Unreached::NoPermission => DeviceError::NoPermission { serial },
+                    Unreached::Lost => DeviceError::Lost { serial },
+                    Unreached::Server => DeviceError::Server { reason: words.trim().into() },
+                }
+            })
+        })
+    }
+
+    fn does_not_start(&self, error: &std::io::Error) -> DeviceError {
+        DeviceError::Start { program: self.program.clone(), reason: error.to_string() }
+    }
+}
+
+impl Adb for AdbProgram {
+    fn devices(&self) -> Result<Vec<Listed>, DeviceError> {
+        let mut command = Command::new(&self.program);
+        command.arg("devices").stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let said = self.run(command, None, self.server_patience)?;
+        let said = said.ok_or_else(|| self.silent("devices"))?;
+        if !said.success {
+            return Err(DeviceError::Server { reason: said.reason() });
+        }
+        Ok(listed(&said.stdout))
+    }
+
+    fn open(&self, serial: &str) -> Box<dyn Device> {
+        Box::new(ProgramDevice { adb: self.clone(), serial: serial.into() })
+    }
+}
+
+/// The devices in what `adb devices` prints.
+fn listed(text: &str) -> Vec<Listed> {
+    let device = |line: &str| {
+        let (serial, state) = line.split_once('\t')?;
+        let state = State::from_adb(state.split_whitespace().next()?);
+        Some(Listed { serial: serial.trim().into(), state })
+    };
+    text.lines().filter_map(device).collect()
+}
+
+/// Why adb does not reach a device.
+#[derive(Clone, Copy)]
+enum Unreached {
+    Unauthorized,
+    Offline,
+    NoPermission,
+    Lost,
+    Server,
+}
+
+impl Unreached {
+    /// By how adb's sentences begin, and whole words where they do not (`device 'X' not found`).
+    const SENTENCES: [(&str, Unreached); 18] = [
+        ("device unauthorized", Unreached::Unauthorized),
+        ("device still authorizing", Unreached::Unauthorized),
+        ("device offline", Unreached::Offline),
+        ("device still connecting", Unreached::Offline),
+        ("insufficient permissions", Unreached::NoPermission),
+        ("no permissions", Unreached::NoPermission),
+        ("device not found", Unreached::Lost),
+        ("no devices", Unreached::Lost),
+        ("no emulators", Unreached::Lost),
+        ("closed", Unreached::Lost),
+        ("protocol fault", Unreached::Lost),
+        ("connection reset", Unreached::Lost),
+        ("couldn't read from device", Unreached::Lost),
+        ("cannot connect to daemon", Unreached::Server),
+        ("failed to check server version", Unreached::Server),
+        ("failed to start daemon", Unreached::Server),
+        ("daemon still not running", Unreached::Server),
+        ("adb server ", Unreached::Server),
+    ];
+
+    fn of(said: &str) -> Option<Unreached> {
+        let lower = said.trim_start_matches("* ").to_lowercase();
+        if lower.starts_with("device '") && lower.trim_end_matches('.').ends_with("' not found") {
+            return Some(Unreached::Lost);
+        }
+        Self::SENTENCES.iter().find(|(begin, _)| lower.starts_with(begin)).map(|(_, why)| *why)
+    }
+}
+
+struct ProgramDevice {
+    adb: AdbProgram,
+    serial: String,
+}
+
+/// What a command of adb has said.
+struct Said {
+    success: bool,
+    stdout: String,
+    stderr: String,
+}
+
+impl Said {
+    /// The exception that Java threw, without the calls that led there; or the last words, those of the error first.
+    fn reason(&self) -> String {
+        let exception = |text: &str| {
+            let thrown = |line: &&str| {
+                line.split_once(": ")
+                    .is_some_and(|(name, _)| name.ends_with("Exception") && !name.contains(' '))
+            };
+            text.lines().map(str::trim).find(thrown).map(str::to_owned)
+        };
+        let last = |text: &str| text.lines().map(str::trim).rfind(|line| !line.is_empty()).map(str::to_owned);
+        let [stderr, stdout] = [&self.stderr, &self.stdout];
+        let found =
+            exception(stderr).or_else(|| exception(stdout)).or_else(|| last(stderr)).or_else(|| last(stdout));
+        found.unwrap_or_else(|| "it does not say why".into())
+    }
+}
+
+impl ProgramDevice {
+    fn command<A: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = A>) -> Command {
+        let mut command = Command::new(&self.adb.program);
+        command.arg("-s").arg(&self.serial).args(arguments);
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // Ctrl-C in the terminal is for this program, which ends adb when it has cleaned up.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        command
+    }
+
+    /// Runs adb to its end; `what` is for the error.
+    fn finish(
+        &self,
+        mut command: Command,
+        input: Option<&str>,
+        what: &str,
+        patience: Duration,
+    ) -> Result<Said, DeviceError> {
+        if input.is_some() {
+            command.stdin(Stdio::piped());
+        }
+        let said = self.adb.run(command, input, patience)?.ok_or_else(|| DeviceError::Silent {
+            serial: self.serial.clone(),
+            command: what.into(),
+            seconds: patience.as_secs(),
+        })?;
+        match self.adb.unreached(&said.stderr, &self.serial) {
+            Some(error) if !said.success => Err(error),
+            _ => Ok(said),
+        }
+    }
+
+    fn refused(&self, command: &str, said: &Said) -> DeviceError {
+        DeviceError::Refused { serial: self.serial.clone(), command: command.into(), reason: said.reason() }
+    }
+}
+
+impl Device for ProgramDevice {
+    fn serial(&self) -> &str {
+        &self.serial
+    }
+
+    fn is_simulated(&self) -> bool {
+        false
+    }
+
+    fn shell(&self, words: &[&str]) -> Result<String, DeviceError> {
+        let line = words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
+        let said = self.finish(self.command(["shell", &line]), None, &line, PATIENCE)?;
+        if said.success { Ok(said.stdout) } else { Err(self.refused(&line, &said)) }
+    }
+
+    fn put(&self, path: &str, text: &str) -> Result<(), DeviceError> {
+        let line = format!("cat > {}", quoted(path));
+        let said = self.finish(self.command(["shell", &line]), Some(text), &line, PATIENCE)?;
+        if said.success { Ok(()) } else { Err(self.refused(&line, &said)) }
+    }
+
+    fn install(&self, apk: &Path) -> Result<(), DeviceError> {
+        let arguments = [OsStr::new("install"), OsStr::new("-r"), apk.as_os_str()];
+        let said = self.finish(self.command(arguments), None, "install", INSTALL_PATIENCE)?;
+        if said.success && !said.stdout.contains("Failure") {
+            return Ok(());
+        }
+        let serial = self.serial.clone();
+        let all = format!("{}\n{}", said.stdout, said.stderr);
+        // `Failure [INSTALL_FAILED_VERSION_DOWNGRADE: in detail]`.
+        let word =
+            all.split_once("Failure [").and_then(|(_, word)| word.split([':', ']']).next()).map(str::trim);
+        Err(match word.unwrap_or_default() {
+            "INSTALL_FAILED_INSUFFICIENT_STORAGE" => DeviceError::StorageFull { serial },
+            "INSTALL_FAILED_UPDATE_INCOMPATIBLE" => DeviceError::OtherKey { serial },
+            "INSTALL_FAILED_USER_RESTRICTED" => DeviceError::InstallRestricted { serial },
+            "INSTALL_FAILED_VERSION_DOWNGRADE" => DeviceError::Downgrade { serial },
+            "INSTALL_FAILED_NO_MATCHING_ABIS" => DeviceError::NoAbi { serial, apk: apk.into() },
+            _ if all.contains("No space left on device") => DeviceError::StorageFull { serial },
+            "" => DeviceError::Install { serial, apk: apk.into(), reason: said.reason() },
+            word => DeviceError::Install { serial, apk: apk.into(), reason: word.into() },
+        })
+    }
+
+    fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError> {
+        let mut arguments = vec!["logcat", "-v", "threadtime", "-v", "epoch", "-v", "usec"];
+        arguments.extend(since.iter().flat_map(|since| ["-T", since]));
+        arguments.extend(log::FILTER);
+        let mut command = self.command(arguments);
+        let mut child =
+            command.stderr(Stdio::null()).spawn().map_err(|error| self.adb.does_not_start(&error))?;
+        let (sender, lines) = mpsc::sync_channel(QUEUE);
+        if let Some(stdout) = child.stdout.take() {
+            thread::spawn(move || {
+                let mut reader = BufReader::new(stdout);
+                let mut line = Vec::new();
+                // What a driver logs need not be text.
+                while reader.read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
+                    let text = String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']).to_owned();
+                    if sender.send(text).is_err() {
+                        break;
+                    }
+                    line.clear();
+                }
+            });
+        }
+        Ok(Box::new(ProgramLog { child, lines }))
+    }
+
+    fn reconnect(&self) {
+        // Whatever is wrong with the server, the next command says.
+        let _ = self.adb.start_server();
+        let mut command = if is_wireless(&self.serial) {
+            let mut command = Command::new(&self.adb.program);
+            command.args(["connect", &self.serial]);
+            command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+            command
+        } else {
+            self.command(["reconnect", "offline"])
+        };
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        let _ = self.finish(command, None, "reconnect", PATIENCE / 4);
+    }
+
+    fn now(&self) -> f64 {
+        static BEGIN: OnceLock<(Instant, f64)> = OnceLock::new();
+        let (begin, unix) = BEGIN.get_or_init(|| {
+            let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+            (Instant::now(), unix.as_secs_f64())
+        });
+        unix + begin.elapsed().as_secs_f64()
+    }
+
+    fn sleep(&self, time: Duration) {
+        let begin = Instant::now();
+        while !interrupt::requested() && begin.elapsed() < time {
+            thread::sleep(GLANCE.min(time.saturating_sub(begin.elapsed())));
+        }
+    }
+}
+
+/// `adb logcat`, ended with this.
+struct ProgramLog {
+    child: Child,
+    lines: Receiver<String>,
+}
+
+impl LogStream for ProgramLog {
+    fn next(&mut self, wait: Duration) -> LogEvent {
+        let begin = Instant::now();
+        loop {
+            match self.lines.recv_timeout(GLANCE.min(wait)) {
+                Ok(line) => return LogEvent::Line(line),
+                Err(RecvTimeoutError::Disconnected) => return LogEvent::Ended,
+                Err(RecvTimeoutError::Timeout) if interrupt::requested() || begin.elapsed() >= wait => {
+                    return LogEvent::Quiet;
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+}
+
+impl Drop for ProgramLog {
+    fn drop(&mut self) {
+        end(&mut self.child);
+    }
+}
+
+/// Ends a process that need not have ended.
+fn end(child: &mut Child) {
+    // It may have ended by itself meanwhile, which is as good.
+    let _ = child.kill();
+    let _ = child.wait();
+}
+
+/// Reads a pipe to its end, beside everything else: a full one would stop the command.
+fn read_all(pipe: Option<impl Read + Send + 'static>) -> Receiver<String> {
+    let (sender, text) = mpsc::channel();
+    if let Some(mut pipe) = pipe {
+        thread::spawn(move || {
+            let mut bytes = Vec::new();
+            let _ = pipe.read_to_end(&mut bytes);
+            let _ = sender.send(String::from_utf8_lossy(&bytes).into_owned());
+        });
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn adb() -> AdbProgram {
+        AdbProgram { program: "/usr/bin/adb-31".into(), server_patience: SERVER_PATIENCE }
+    }
+
+    fn unreached(stderr: &str) -> Option<DeviceError> {
+        adb().unreached(stderr, "X")
+    }
+
+    /// Texts of adb on Linux and Windows, as issues of scrcpy (1714, 3042), flutter (27456, 125971) and APK-Installer (25)
+    /// quote them.
+    #[test]
+    fn what_adb_says_of_a_device_that_may_come_back() {
+        for said in [
+            "error: device offline",
+            "adb.exe: device offline",
+            "adb-31: device offline",
+            "error: device still authorizing\nTry 'adb kill-server' if that seems wrong.",
+            "error: device still connecting",
+            "adb: error: failed to get feature set: device unauthorized.\nThis adb server's $ADB_VENDOR_KEYS is not set",
+            "adb.exe: error: failed to get feature set: no devices/emulators found",
+            "adb: device 'X' not found",
+            "adb.exe: device 'X' not found\r",
+            "error: closed",
+            "error: protocol fault (couldn't read status): Connection reset by peer",
+            "error: cannot connect to daemon at tcp:5037: Connection refused",
+            "adb server version (41) doesn't match this client (39); killing...\n* failed to start daemon",
+            "adb: failed to run abb_exec. Error: cannot connect to daemon at tcp:5037: cannot connect to 127.0.0.1:5037",
+            "* daemon still not running\nerror: cannot connect to daemon",
+        ] {
+            assert!(unreached(said).is_some_and(|error| error.is_lost()), "{said}");
+        }
+        let server = unreached("adb.exe: error: cannot connect to daemon").unwrap().to_string();
+        assert!(server.contains("adb kill-server"), "{server}");
+        assert!(matches!(
+            unreached("adb: insufficient permissions for device: user in plugdev group"),
+            Some(DeviceError::NoPermission { .. })
+        ));
+    }
+
+    #[test]
+    fn what_others_say_is_no_lost_device() {
+        for said in [
+            "adb: failed to install /home/u/offline/yoro.apk: Failure [INSTALL_FAILED_USER_RESTRICTED: no]",
+            "adb: failed to install /srv/device offline/closed.apk: Failure [INSTALL_FAILED_INVALID_APK]",
+            "/system/bin/sh: nothing: not found",
+            "cat: /sys/x: device offline",
+            "Error: device not found",
+            "* daemon not running; starting now at tcp:5037\n* daemon started successfully",
+            "",
+        ] {
+            assert!(unreached(said).is_none(), "{said}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_server_that_hangs_is_not_waited_for() {
+        use std::os::unix::fs::PermissionsExt as _;
+
+        let folder = tempfile::tempdir().unwrap();
+        let program = folder.path().join("adb");
+        std::fs::write(&program, "#!/bin/sh\nexec sleep 60\n").unwrap();
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let adb = AdbProgram { program, server_patience: Duration::from_millis(300) };
+        let begin = Instant::now();
+        for (result, command) in [(adb.devices().map(drop), "devices"), (adb.start_server(), "start-server")]
+        {
+            let error = result.unwrap_err();
+            assert!(error.is_lost() && error.to_string().contains(command), "{error}");
+        }
+        assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
+    }
+
+    /// The list of states as adb prints them (dadb issue 55, flutter 27456, android-udev-rules 308).
+    #[test]
+    fn what_adb_lists() {
+        let text = "* daemon started successfully\nList of devices attached\nRF8M33XXXXX\tdevice\n3949\tauthorizing\n1WMH\tno permissions; see [http://developer.android.com/tools/device.html]\nadb-13e75597-Upleco (2)._adb-tls-connect._tcp\tdevice\n192.168.1.7:5555\tconnecting\nUYT5\trecovery\n\n";
+        let found = listed(text);
+        let states: Vec<&str> = found.iter().map(|device| device.state.name()).collect();
+        assert_eq!(states, ["ready", "unauthorized", "no permission", "ready", "offline", "recovery"]);
+        assert_eq!(found[3].serial, "adb-13e75597-Upleco (2)._adb-tls-connect._tcp");
+    }
+
+    /// A phone by Xiaomi on `settings put` (auto_set_proxy issue 1, shortened).
+    #[test]
+    fn an_exception_is_its_own_line() {
+        let stderr = "\nException occurred while executing 'put':\njava.lang.SecurityException: Permission denial: writing to settings requires:android.permission.WRITE_SECURE_SETTINGS\n\tat com.android.providers.settings.SettingsProvider.call(SettingsProvider.java:398)\n\tat android.os.Binder.execTransact(Binder.java:1129)\n";
+        let said = Said { success: false, stdout: String::new(), stderr: stderr.into() };
+        assert!(
+            said.reason().starts_with("java.lang.SecurityException: Permission denial"),
+            "{}",
+            said.reason()
+        );
+        let refused = DeviceError::Refused {
+            serial: "X".into(),
+            command: "settings put".into(),
+            reason: said.reason(),
+        };
+        assert!(refused.to_string().contains("USB debugging (Security settings)"), "{refused}");
+        let plain = Said { success: false, stdout: "a\n".into(), stderr: "first\nlast: word\n\n".into() };
+        assert_eq!(plain.reason(), "last: word");
+    }
+}

@@ -1,0 +1,137 @@
+//! Devices that do not exist, for tests and for people without a phone: scripted, in virtual time, so that ten minutes
+//! go by in a moment. What comes from them is simulated, and says so.
+//!
+//! A device plays recorded logs, or generates its own from a seed and made-up figures; its script says what can go wrong.
+
+mod script;
+mod world;
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+pub use script::{Current, Fault, FaultKind, Load, Phone, Script, Voltage};
+use world::World;
+
+use super::adb::{Adb, Device, DeviceError, Listed, LogEvent, LogStream};
+use super::log::SIMULATED_MARK;
+
+type Shared = Arc<Mutex<World>>;
+
+fn lock(world: &Shared) -> MutexGuard<'_, World> {
+    world.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The devices of a script.
+pub struct Replay {
+    path: PathBuf,
+    devices: Vec<(String, Shared)>,
+}
+
+impl Replay {
+    /// Reads a script, or a folder of captures to play again.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn read(path: &Path) -> Result<Replay, DeviceError> {
+        Ok(Replay::new(path, Script::read(path)?))
+    }
+
+    /// Plays a script that comes from `path`.
+    pub fn new(path: &Path, script: Script) -> Replay {
+        let (seed, speed) = (script.seed, script.speed);
+        let device = |phone: Phone| {
+            let kept = script.state.as_ref().map(|folder| folder.join(format!("{}.json", phone.serial)));
+            (phone.serial.clone(), Arc::new(Mutex::new(World::new(phone, seed, speed, kept))))
+        };
+        Replay { path: path.into(), devices: script.device.into_iter().map(device).collect() }
+    }
+}
+
+impl Adb for Replay {
+    fn devices(&self) -> Result<Vec<Listed>, DeviceError> {
+        let listed = |(serial, world): &(String, Shared)| {
+            Some(Listed { serial: serial.clone(), state: lock(world).state()? })
+        };
+        Ok(self.devices.iter().filter_map(listed).collect())
+    }
+
+    fn open(&self, serial: &str) -> Box<dyn Device> {
+        let known = self.devices.iter().find(|(known, _)| known == serial);
+        let world = known.map_or_else(
+            || {
+                ::log::debug!("{} has no device {serial}", self.path.display());
+                let phone = Phone { serial: serial.into(), state: "offline".into(), ..Phone::default() };
+                Arc::new(Mutex::new(World::new(phone, 0, None, None)))
+            },
+            |(_, world)| world.clone(),
+        );
+        Box::new(ReplayDevice { serial: serial.into(), world })
+    }
+}
+
+struct ReplayDevice {
+    serial: String,
+    world: Shared,
+}
+
+impl Device for ReplayDevice {
+    fn serial(&self) -> &str {
+        &self.serial
+    }
+
+    fn is_simulated(&self) -> bool {
+        true
+    }
+
+    fn shell(&self, words: &[&str]) -> Result<String, DeviceError> {
+        lock(&self.world).shell(words)
+    }
+
+    fn put(&self, path: &str, text: &str) -> Result<(), DeviceError> {
+        lock(&self.world).put(path, text)
+    }
+
+    fn install(&self, _apk: &Path) -> Result<(), DeviceError> {
+        lock(&self.world).install()
+    }
+
+    fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError> {
+        let mut world = lock(&self.world);
+        world.reach()?;
+        let (at, generation) = world.reader(since);
+        Ok(Box::new(ReplayLog { world: self.world.clone(), at, generation, is_new: true }))
+    }
+
+    fn reconnect(&self) {}
+
+    fn now(&self) -> f64 {
+        lock(&self.world).now()
+    }
+
+    fn sleep(&self, time: Duration) {
+        let mut world = lock(&self.world);
+        let to = world.now() + time.as_secs_f64();
+        world.advance(to);
+    }
+}
+
+struct ReplayLog {
+    world: Shared,
+    at: usize,
+    generation: u32,
+    is_new: bool,
+}
+
+impl LogStream for ReplayLog {
+    fn next(&mut self, wait: Duration) -> LogEvent {
+        if std::mem::take(&mut self.is_new) {
+            return LogEvent::Line(format!("{SIMULATED_MARK} by a replay of yoro"));
+        }
+        match lock(&self.world).read_log(&mut self.at, self.generation, wait.as_secs_f64()) {
+            Ok(Some(line)) => LogEvent::Line(line),
+            Ok(None) => LogEvent::Quiet,
+            Err(()) => LogEvent::Ended,
+        }
+    }
+}

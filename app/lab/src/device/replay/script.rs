@@ -1,0 +1,309 @@
+//! What a replay plays, as TOML. Unknown keys are refused.
+//!
+//! ```toml
+//! seed = 1
+//!
+//! [[device]]
+//! serial = "SIM1"
+//!
+//! [device.load.yoro]
+//! frame-ms = 9.0
+//! milliwatts = 3100.0
+//!
+//! [[device.fault]]
+//! kind = "disconnect"
+//! at = 30.0
+//! seconds = 20.0
+//! ```
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::device::adb::DeviceError;
+use crate::device::capture;
+use yoro_files as files;
+
+/// Devices, and what happens to them.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Script {
+    /// Seed of everything that is generated.
+    #[serde(default)]
+    pub seed: u64,
+    /// Seconds of the replay in a real second; as fast as it goes if there is none.
+    pub speed: Option<f64>,
+    /// A folder, relative to the script, in which the devices keep settings, properties and files from one replay to the
+    /// next; each replay is the first if there is none.
+    pub state: Option<PathBuf>,
+    /// The devices.
+    #[serde(default)]
+    pub device: Vec<Phone>,
+}
+
+/// A device that does not exist.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Phone {
+    /// Serial number.
+    pub serial: String,
+    /// Manufacturer.
+    pub manufacturer: String,
+    /// Model.
+    pub model: String,
+    /// Android's version.
+    pub android: String,
+    /// State in adb's word: `device`, `unauthorized`, `offline`.
+    pub state: String,
+    /// Whether the application is there from the beginning.
+    pub installed: bool,
+    /// The application runs from the beginning, with these settings.
+    pub running: Option<BTreeMap<String, String>>,
+    /// Whether there is no room to install anything.
+    pub storage_full: bool,
+    /// Capacity of the battery in mAh.
+    pub capacity_mah: f64,
+    /// Level of the battery in percent.
+    pub level_percent: f64,
+    /// Its temperature in degrees Celsius.
+    pub celsius: f64,
+    /// Temperature around it in degrees Celsius.
+    pub ambient_celsius: f64,
+    /// Whether there is a charger from the beginning.
+    pub plugged: bool,
+    /// How it gives the battery's current.
+    pub current: Current,
+    /// Whether its current is positive while the battery discharges.
+    pub positive: bool,
+    /// How it gives the battery's voltage.
+    pub voltage: Voltage,
+    /// Whether the shell may read the kernel's current and voltage.
+    pub kernel_battery: bool,
+    /// Whether the values of `dumpsys battery` were set by hand.
+    pub battery_held: bool,
+    /// Somebody plugs a charger in where no application runs and the level is below this percentage, and takes it off at
+    /// 95 %.
+    pub charged_below: Option<f64>,
+    /// Whether the screen lock asks for a PIN.
+    pub secure_lock: bool,
+    /// Refresh rate of the display in Hz.
+    pub refresh_hz: f64,
+    /// Whether it logs a line of Meta's runtime each second, too.
+    pub vr_api: bool,
+    /// Other applications on it, by package. While one runs, Meta's runtime logs a line each second for it, and one for
+    /// another process.
+    pub others: Vec<String>,
+    /// The one of them that runs from the beginning.
+    pub foreground: Option<String>,
+    /// Android's settings, by name; those of other tables than `system` as `global/low_power`.
+    pub settings: BTreeMap<String, String>,
+    /// Those of them that nobody can change.
+    pub fixed_settings: Vec<String>,
+    /// System properties.
+    pub properties: BTreeMap<String, String>,
+    /// Files on it.
+    pub files: BTreeMap<String, String>,
+    /// Recorded logs, relative to the script. With them nothing of a log is generated: a method and scene that none of
+    /// them has does not start.
+    pub logs: Vec<PathBuf>,
+    /// What methods cost, by name, where the log is generated: made-up figures.
+    pub load: BTreeMap<String, Load>,
+    /// What goes wrong.
+    pub fault: Vec<Fault>,
+}
+
+impl Default for Phone {
+    fn default() -> Phone {
+        Phone {
+            serial: "SIMULATED".into(),
+            manufacturer: "Simulated".into(),
+            model: "phone".into(),
+            android: "14".into(),
+            state: "device".into(),
+            installed: true,
+            running: None,
+            storage_full: false,
+            capacity_mah: 4500.0,
+            level_percent: 90.0,
+            celsius: 27.0,
+            ambient_celsius: 23.0,
+            plugged: false,
+            current: Current::Microamperes,
+            positive: false,
+            voltage: Voltage::Millivolts,
+            kernel_battery: false,
+            battery_held: false,
+            charged_below: None,
+            secure_lock: false,
+            refresh_hz: 60.0,
+            vr_api: false,
+            others: Vec::new(),
+            foreground: None,
+            settings: BTreeMap::from([
+                ("screen_brightness".into(), "102".into()),
+                ("screen_brightness_mode".into(), "1".into()),
+            ]),
+            fixed_settings: Vec::new(),
+            properties: BTreeMap::new(),
+            files: BTreeMap::new(),
+            logs: Vec::new(),
+            load: BTreeMap::new(),
+            fault: Vec::new(),
+        }
+    }
+}
+
+/// How a device gives the battery's current.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Current {
+    /// As specified.
+    Microamperes,
+    /// As some do.
+    Milliamperes,
+    /// Always 0.
+    Zero,
+    /// Not at all.
+    Missing,
+}
+
+/// How a device gives the battery's voltage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Voltage {
+    /// As specified.
+    Millivolts,
+    /// In whole volts, as some do.
+    Volts,
+}
+
+/// What a method costs.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Load {
+    /// GPU time per frame in milliseconds.
+    pub frame_ms: f64,
+    /// Power of the whole device in milliwatts.
+    pub milliwatts: f64,
+}
+
+impl Default for Load {
+    fn default() -> Load {
+        Load { frame_ms: 10.0, milliwatts: 3000.0 }
+    }
+}
+
+/// What goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultKind {
+    /// The connection is lost.
+    Disconnect,
+    /// The connection is lost, and when it is back the device must be told again to trust this computer.
+    Unauthorized,
+    /// The device starts anew.
+    Reboot,
+    /// The application crashes.
+    Crash,
+    /// Only adb's reader of the log ends.
+    LogEnds,
+    /// The charger is plugged in.
+    Plug,
+    /// The clock jumps by so many seconds.
+    ClockJump,
+    /// The next line of the log is cut.
+    Truncate,
+    /// Lines of the log are not written.
+    Silence,
+    /// The log forgets all that it has.
+    Rotate,
+    /// The device throttles.
+    Throttle,
+    /// Somebody taps: the next method is shown.
+    Tap,
+}
+
+/// When what goes wrong.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Fault {
+    /// What.
+    pub kind: FaultKind,
+    /// In which start of the application, from 1.
+    #[serde(default = "first")]
+    pub start: u32,
+    /// Seconds after its first frame.
+    pub at: f64,
+    /// For how many seconds; for ever if there are none.
+    pub seconds: Option<f64>,
+    /// By how many seconds.
+    #[serde(default)]
+    pub by: f64,
+}
+
+fn first() -> u32 {
+    1
+}
+
+impl Script {
+    /// Reads a script; or makes one of the captures in a folder, whose logs are played again.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn read(path: &Path) -> Result<Script, DeviceError> {
+        let script = if path.is_dir() { Script::of_captures(path)? } else { Script::of_file(path)? };
+        let refuse = |reason: &str| Err(DeviceError::Replay { path: path.into(), reason: reason.into() });
+        if script.speed.is_some_and(|speed| !(speed > 0.0 && speed.is_finite())) {
+            return refuse("speed must be above 0");
+        }
+        let mut serials: Vec<&str> = script.device.iter().map(|phone| phone.serial.as_str()).collect();
+        serials.sort_unstable();
+        serials.dedup();
+        if serials.len() < script.device.len() {
+            return refuse("two devices have the same serial: give each its own");
+        }
+        Ok(script)
+    }
+
+    fn of_file(path: &Path) -> Result<Script, DeviceError> {
+        let bytes = files::read(path)?;
+        let refused =
+            |what: String| DeviceError::Replay { path: path.into(), reason: what.trim().replace('\n', " ") };
+        let text =
+            String::from_utf8(bytes).map_err(|_| refused("this is no text: give a TOML file".into()))?;
+        let mut script: Script = toml::from_str(&text).map_err(|error| {
+            let line =
+                error.span().map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
+            refused(format!("line {line}: {}", error.message()))
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        script.state = script.state.map(|state| folder.join(state));
+        for log in script.device.iter_mut().flat_map(|phone| &mut phone.logs) {
+            *log = folder.join(&*log);
+        }
+        Ok(script)
+    }
+
+    fn of_captures(folder: &Path) -> Result<Script, DeviceError> {
+        let mut script = Script::default();
+        for run in capture::find(&[folder.into()])? {
+            let info = capture::read_info(&run)?.device;
+            let log = run.join(capture::LOG_FILE);
+            if let Some(phone) = script.device.iter_mut().find(|phone| phone.serial == info.serial) {
+                phone.logs.push(log);
+                continue;
+            }
+            script.device.push(Phone {
+                serial: info.serial,
+                manufacturer: info.manufacturer,
+                model: info.model,
+                android: info.android,
+                capacity_mah: info.capacity_mah.unwrap_or(0.0),
+                logs: vec![log],
+                ..Phone::default()
+            });
+        }
+        Ok(script)
+    }
+}

@@ -1,0 +1,707 @@
+//! A device that does not exist: its time, its battery, its log, and the application on it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use serde::{Deserialize, Serialize};
+
+use super::script::{Current, Fault, FaultKind, Load, Phone, Voltage};
+use crate::device::adb::{DeviceError, State};
+use crate::device::{log, phone};
+use crate::interrupt;
+use yoro_files as files;
+use yoro_render::stereo::Method;
+use yoro_viewer::Settings;
+use yoro_viewer::telemetry::{BatteryStatus, CurrentNormalizer, Line};
+
+/// When every replay begins, in seconds since 1970: results do not depend on the day.
+const BEGIN: f64 = 1_750_000_000.0;
+/// What a command takes, in seconds.
+const COMMAND_S: f64 = 0.02;
+/// From its start to its first frame, the application takes so many seconds.
+const LOADING_S: f64 = 1.5;
+/// Power in milliwatts while no application runs.
+const IDLE_MILLIWATTS: f64 = 300.0;
+/// Degrees that a watt warms the device by, in the end.
+const CELSIUS_PER_WATT: f64 = 5.0;
+/// Seconds after which a difference of temperature has fallen to a third.
+const WARMING_S: f64 = 400.0;
+/// By how much the same run differs from time to time, as a share.
+const LUCK: f64 = 0.02;
+/// Time that a start of Android takes after the device is connected again, in seconds.
+const BOOT_S: f64 = 10.0;
+
+/// From this level on, in percent, whoever plugged the charger in takes it off.
+const CHARGED_PERCENT: f64 = 95.0;
+/// The process of Meta's runtime that is no application.
+const RUNTIME_PID: u32 = 2072;
+/// Where a headset keeps, for those who look at what is left of the replay, that it was told that it is worn.
+const WORN: &str = "simulated.worn";
+
+/// One line in the log.
+struct Logged {
+    clock: f64,
+    text: String,
+}
+
+/// The application while it runs.
+struct Application {
+    pid: u32,
+    /// The package of another application than this project's: only Meta's runtime says something of it.
+    other: Option<String>,
+    settings: Settings,
+    method: String,
+    first_frame: f64,
+    /// Lines of a recorded log, repeated; none if they are generated.
+    recorded: Option<Vec<Line>>,
+    lines: u32,
+    /// What this start costs more or less than others of its kind, as a factor.
+    luck: f64,
+    normalizer: CurrentNormalizer,
+    faults: Vec<Fault>,
+}
+
+impl Application {
+    /// When the next line is due.
+    fn next_line(&self) -> f64 {
+        self.first_frame + f64::from(self.lines + 1)
+    }
+
+    /// When the next thing goes wrong.
+    fn next_fault(&self) -> f64 {
+        self.faults.first().map_or(f64::INFINITY, |fault| self.first_frame + fault.at)
+    }
+}
+
+/// What a device keeps when it is off.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Kept {
+    settings: BTreeMap<String, String>,
+    properties: BTreeMap<String, String>,
+    files: BTreeMap<String, String>,
+}
+
+/// A device that does not exist.
+pub struct World {
+    script: Phone,
+    speed: Option<f64>,
+    /// This computer's clock.
+    now: f64,
+    /// The device's clock less this computer's.
+    clock_offset: f64,
+    /// Until when it is gone, and what it is then.
+    gone_until: f64,
+    gone_as: State,
+    boots: u32,
+    booted_at: f64,
+    starts: u32,
+    installed: bool,
+    application: Option<Application>,
+    log: Vec<Logged>,
+    /// Lines before the first in the log.
+    forgotten: usize,
+    /// Changes whenever readers of the log are cut off.
+    generation: u32,
+    kept: Kept,
+    /// Where that lies between replays.
+    kept_in: Option<PathBuf>,
+    charge_mah: f64,
+    celsius: f64,
+    plugged_until: f64,
+    throttled_until: f64,
+    silent_until: f64,
+    truncate: bool,
+    random: Pcg64Mcg,
+}
+
+impl World {
+    /// The device of a script, in its initial state but for what an earlier replay has kept in a file.
+    pub fn new(script: Phone, seed: u64, speed: Option<f64>, kept_in: Option<PathBuf>) -> World {
+        let first = || Kept {
+            settings: script.settings.clone(),
+            properties: script.properties.clone(),
+            files: script.files.clone(),
+        };
+        let earlier = kept_in.as_ref().and_then(|path| serde_json::from_slice(&files::read(path).ok()?).ok());
+        // Devices of one script differ.
+        let own = script
+            .serial
+            .bytes()
+            .fold(seed, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
+        let activity =
+            script.foreground.as_ref().map(|package| format!("{package}/.Main")).unwrap_or_default();
+        let running = script.running.clone().or(script.foreground.as_ref().map(|_| BTreeMap::new()));
+        let mut world = World {
+            speed,
+            now: BEGIN,
+            clock_offset: 0.25,
+            gone_until: f64::NEG_INFINITY,
+            gone_as: State::Offline,
+            boots: 1,
+            booted_at: BEGIN - 5000.0,
+            starts: 0,
+            installed: script.installed,
+            application: None,
+            log: Vec::new(),
+            forgotten: 0,
+            generation: 0,
+            kept: earlier.unwrap_or_else(first),
+            kept_in,
+            charge_mah: script.capacity_mah * script.level_percent / 100.0,
+            celsius: script.celsius,
+            plugged_until: if script.plugged { f64::INFINITY } else { f64::NEG_INFINITY },
+            throttled_until: f64::NEG_INFINITY,
+            silent_until: f64::NEG_INFINITY,
+            truncate: false,
+            random: Pcg64Mcg::seed_from_u64(own),
+            script,
+        };
+        if let Some(settings) = running {
+            let words: Vec<String> =
+                settings.iter().flat_map(|(k, v)| ["--es".into(), k.clone(), v.clone()]).collect();
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            match world.start(&activity, &words) {
+                Ok(said) if !said.starts_with("Error") => {}
+                Ok(said) => ::log::warn!("the replay starts nothing: {}", said.trim()),
+                Err(error) => ::log::warn!("the replay starts nothing: {error}"),
+            }
+        }
+        world
+    }
+
+    /// This computer's clock in seconds since 1970.
+    pub fn now(&self) -> f64 {
+        self.now
+    }
+
+    /// How adb sees the device; none if it does not.
+    pub fn state(&self) -> Option<State> {
+        let state = State::from_adb(&self.script.state);
+        if state != State::Ready {
+            return Some(state);
+        }
+        if self.now >= self.gone_until {
+            return Some(State::Ready);
+        }
+        (self.gone_as == State::Unauthorized).then_some(State::Unauthorized)
+    }
+
+    /// An error if the device does not answer.
+    pub fn reach(&mut self) -> Result<(), DeviceError> {
+        let serial = self.script.serial.clone();
+        self.advance(self.now + COMMAND_S);
+        match self.state() {
+            Some(State::Ready) => Ok(()),
+            Some(State::Unauthorized) => Err(DeviceError::Unauthorized { serial }),
+            Some(_) => Err(DeviceError::Offline { serial }),
+            None => Err(DeviceError::Lost { serial }),
+        }
+    }
+
+    /// Lets time pass, or less if the user asks to stop.
+    pub fn advance(&mut self, to: f64) {
+        while self.now < to && !(self.speed.is_some() && interrupt::requested()) {
+            self.step(to);
+        }
+    }
+
+    /// Lets time pass until something happens, at most until `limit`.
+    fn step(&mut self, limit: f64) {
+        let next = |a: &Application| a.next_line().min(a.next_fault());
+        // With a pace, small steps: somebody may want to stop.
+        let glance = self.speed.map_or(f64::INFINITY, |speed| self.now + 0.05 * speed);
+        let to = self.application.as_ref().map_or(f64::INFINITY, next).min(limit).min(glance).max(self.now);
+        let passed = to - self.now;
+        if let Some(speed) = self.speed {
+            std::thread::sleep(Duration::from_secs_f64(passed / speed));
+        }
+        self.now = to;
+        self.discharge(passed);
+        let is_due = |time: fn(&Application) -> f64| self.application.as_ref().is_some_and(|a| time(a) <= to);
+        if is_due(Application::next_fault) {
+            self.go_wrong();
+        } else if is_due(Application::next_line) {
+            self.log_second();
+        }
+    }
+
+    /// What the application costs now.
+    fn load(&self, application: &Application) -> Load {
+        let load = self.script.load.get(&application.method).copied().unwrap_or_default();
+        // A scene costs what its name makes of it, the same for all methods.
+        let name: u32 = application.settings.scene.bytes().map(u32::from).sum();
+        let weight = (0.85 + 0.3 * f64::from(name % 100) / 100.0) * application.luck;
+        Load { frame_ms: load.frame_ms * weight, milliwatts: load.milliwatts * weight }
+    }
+
+    fn level_percent(&self) -> f64 {
+        100.0 * self.charge_mah / self.script.capacity_mah.max(1.0)
+    }
+
+    /// Voltage as the device gives it.
+    fn voltage(&self) -> f64 {
+        match self.script.voltage {
+            Voltage::Millivolts => self.volts() * 1e3,
+            Voltage::Volts => self.volts().floor(),
+        }
+    }
+
+    /// Current in milliamperes, negative while discharging.
+    fn milliamperes(&self) -> f64 {
+        if self.now < self.plugged_until {
+            return 1500.0;
+        }
+        -self.application.as_ref().map_or(IDLE_MILLIWATTS, |a| self.load(a).milliwatts) / self.volts()
+    }
+
+    fn volts(&self) -> f64 {
+        3.5 + 0.7 * self.charge_mah / self.script.capacity_mah.max(1.0)
+    }
+
+    fn discharge(&mut self, seconds: f64) {
+        let milliwatts = self.application.as_ref().map_or(IDLE_MILLIWATTS, |a| self.load(a).milliwatts);
+        let watts = milliwatts / 1e3;
+        let hours = seconds / 3600.0;
+        if self.now < self.plugged_until {
+            self.charge_mah = (self.charge_mah + 1500.0 * hours).min(self.script.capacity_mah);
+        } else {
+            self.charge_mah = (self.charge_mah - watts / self.volts() * 1e3 * hours).max(0.0);
+        }
+        if let Some(percent) = self.script.charged_below {
+            if self.level_percent() >= CHARGED_PERCENT {
+                self.plugged_until = f64::NEG_INFINITY;
+            } else if self.application.is_none() && self.level_percent() < percent {
+                self.plugged_until = f64::INFINITY;
+            }
+        }
+        let end = self.script.ambient_celsius + CELSIUS_PER_WATT * watts;
+        self.celsius = end + (self.celsius - end) * (-seconds / WARMING_S).exp();
+    }
+
+    fn go_wrong(&mut self) {
+        let Some(application) = &mut self.application else { return };
+        let fault = application.faults.remove(0);
+        let until = fault.seconds.map_or(f64::INFINITY, |seconds| self.now + seconds);
+        match fault.kind {
+            FaultKind::Disconnect | FaultKind::Unauthorized => {
+                self.gone_until = until;
+                self.gone_as =
+                    if fault.kind == FaultKind::Unauthorized { State::Unauthorized } else { State::Offline };
+                self.generation += 1;
+            }
+            FaultKind::Reboot => {
+                self.gone_until = until;
+                self.gone_as = State::Offline;
+                self.generation += 1;
+                self.boots += 1;
+                self.booted_at = until;
+                self.forgotten += self.log.len();
+                self.log.clear();
+                self.kept.properties.retain(|name, _| !name.starts_with("debug.") && name != WORN);
+                self.application = None;
+            }
+            FaultKind::Crash => {
+                let pid = application.pid;
+                self.write_log(pid, "E", "AndroidRuntime", "FATAL EXCEPTION: main");
+                self.application = None;
+            }
+            FaultKind::LogEnds => self.generation += 1,
+            FaultKind::Plug => self.plugged_until = until,
+            FaultKind::ClockJump => self.clock_offset += fault.by,
+            FaultKind::Truncate => self.truncate = true,
+            FaultKind::Silence => self.silent_until = until,
+            FaultKind::Rotate => {
+                self.forgotten += self.log.len();
+                self.log.clear();
+            }
+            FaultKind::Throttle => self.throttled_until = until,
+            FaultKind::Tap => {
+                let methods = &application.settings.methods;
+                let at = methods.iter().position(|method| method.name() == application.method);
+                application.method = methods[at.map_or(0, |at| at + 1) % methods.len()].name().into();
+            }
+        }
+    }
+
+    fn write_log(&mut self, pid: u32, priority: &str, tag: &str, message: &str) {
+        let clock = self.now + self.clock_offset;
+        let text = format!("{clock:17.6} {pid:5} {:5} {priority} {tag:<8}: {message}", pid + 16);
+        self.log.push(Logged { clock, text: text.trim_start().into() });
+    }
+
+    /// The application's line of this second, and its end when its time has come.
+    fn log_second(&mut self) {
+        let Some(mut application) = self.application.take() else { return };
+        application.lines += 1;
+        let time_s = f64::from(application.lines);
+        let mut line = match &application.recorded {
+            Some(recorded) => recorded[(application.lines as usize - 1) % recorded.len()].clone(),
+            None => self.generate(&mut application),
+        };
+        line.time_s = time_s;
+        line.run.clone_from(&application.settings.run);
+        let pid = application.pid;
+        let other = application.other.clone();
+        let over = application.settings.duration.is_some_and(|seconds| time_s >= f64::from(seconds));
+        let is_logged = self.now >= self.silent_until;
+        let refresh = self.script.refresh_hz;
+        if !(over && application.settings.auto_exit) {
+            self.application = Some(application);
+        }
+        if is_logged {
+            if other.is_some() {
+                let text = format!("FPS=1/{refresh:.0},Stale=71,Temp=20.0C/0.0C,App=0.10ms,LCnt=1");
+                self.write_log(RUNTIME_PID, "I", log::VRAPI_TAG, &text);
+            }
+            if self.script.vr_api || other.is_some() {
+                let fps = line.fps.unwrap_or(0.0);
+                let text = format!(
+                    "FPS={fps:.0}/{refresh:.0},Prd=38ms,Tear=0,Early=0,Stale={},CPU4/GPU=2/2,1171/441MHz,Temp={:.1}C/0.0C,App={:.2}ms,LCnt=2(DR72,LM2)",
+                    line.stale.unwrap_or(0),
+                    self.celsius,
+                    line.gpu_ms.unwrap_or(0.0),
+                );
+                self.write_log(pid, "I", log::VRAPI_TAG, &text);
+            }
+        }
+        if is_logged && other.is_none() {
+            let mut text = line.to_string();
+            if std::mem::take(&mut self.truncate) {
+                text.truncate(text.len() * 2 / 3);
+            }
+            self.write_log(pid, "I", yoro_viewer::telemetry::LOG_TAG, &text);
+        }
+        if over {
+            let text = format!("v=1,summary=1,t={time_s:.1}s,frames={:.0}", time_s * line.fps.unwrap_or(0.0));
+            self.write_log(pid, "I", yoro_viewer::telemetry::LOG_TAG, &text);
+        }
+    }
+
+    /// A second of made-up figures.
+    fn generate(&mut self, application: &mut Application) -> Line {
+        let load = self.load(application);
+        let volts = self.volts();
+        let mut noise = |share: f64| 1.0 + share * self.random.random_range(-1.0..1.0);
+        let refresh_hz = self.script.refresh_hz;
+        let gpu_ms = load.frame_ms * noise(0.03);
+        let fps = (1e3 / gpu_ms).min(refresh_hz);
+        let milliwatts = load.milliwatts * noise(0.04);
+        let (cpu_percent, rss_mb) = (45.0 * noise(0.1), 300.0 * noise(0.01));
+        let plugged = self.now < self.plugged_until;
+        let (current_ma, status) = if plugged {
+            (1500.0, BatteryStatus::Charging)
+        } else {
+            (-milliwatts / volts, BatteryStatus::Discharging)
+        };
+        let sign = if self.script.positive { -1.0 } else { 1.0 };
+        let current_raw = match self.script.current {
+            Current::Microamperes => Some((sign * current_ma * 1e3) as i64),
+            Current::Milliamperes => Some((sign * current_ma) as i64),
+            Current::Zero => Some(0),
+            Current::Missing => None,
+        };
+        let plugged = Some(i32::from(plugged) * 2);
+        let current_ma = current_raw.and_then(|raw| application.normalizer.add(raw, Some(status), plugged));
+        let settings = &application.settings;
+        let is_yoro = settings.method == Method::Yoro && application.method == Method::Yoro.name();
+        Line {
+            time_s: 0.0,
+            method: application.method.clone(),
+            pipeline: is_yoro.then(|| settings.pipeline.name().to_owned()),
+            scene: settings.scene.clone(),
+            fps: Some(fps),
+            refresh_hz: Some(refresh_hz),
+            stale: Some((refresh_hz - fps).round() as u32),
+            frame_ms: Some(1e3 / fps),
+            p99_ms: Some(1e3 / fps * 1.1),
+            gpu_ms: Some(gpu_ms),
+            stages: Vec::new(),
+            cpu_percent: Some(cpu_percent),
+            rss_mb: Some(rss_mb),
+            current_raw,
+            current_ma,
+            voltage_mv: Some(self.voltage() as i32),
+            level_percent: Some(self.level_percent().round() as i32),
+            charge_uah: Some((self.charge_mah * 1e3) as i64),
+            plugged,
+            battery_celsius: Some(self.celsius),
+            skin_celsius: None,
+            thermal_status: Some(if self.now < self.throttled_until { 3 } else { 0 }),
+            thermal_headroom: None,
+            render_scale: f64::from(settings.render_scale),
+            imbuffer: None,
+            frames: Some(fps as u32),
+            status: Some(status),
+            run: None,
+            performance: None,
+        }
+    }
+
+    /// Where a new reader of the log begins: behind all, at the last so many lines, or at the first of a time.
+    pub fn reader(&self, since: Option<&str>) -> (usize, u32) {
+        let end = self.forgotten + self.log.len();
+        let begin = match since {
+            None => self.forgotten,
+            Some(since) => match since.parse::<usize>() {
+                Ok(lines) => end.saturating_sub(lines).max(self.forgotten),
+                Err(_) => {
+                    let since: f64 = since.parse().unwrap_or(f64::INFINITY);
+                    let at = self.log.iter().position(|logged| logged.clock >= since);
+                    at.map_or(end, |at| self.forgotten + at)
+                }
+            },
+        };
+        (begin, self.generation)
+    }
+
+    /// The line that a reader comes to, for which time passes, at most so many seconds; an error where the reader is
+    /// cut off.
+    pub fn read_log(&mut self, at: &mut usize, generation: u32, wait: f64) -> Result<Option<String>, ()> {
+        let limit = self.now + wait;
+        loop {
+            if generation != self.generation || self.state() != Some(State::Ready) {
+                return Err(());
+            }
+            *at = (*at).max(self.forgotten);
+            if let Some(logged) = self.log.get(*at - self.forgotten) {
+                *at += 1;
+                return Ok(Some(logged.text.clone()));
+            }
+            if self.now >= limit || (self.speed.is_some() && interrupt::requested()) {
+                return Ok(None);
+            }
+            self.step(limit);
+        }
+    }
+
+    /// Installs the application.
+    pub fn install(&mut self) -> Result<(), DeviceError> {
+        self.reach()?;
+        if self.script.storage_full {
+            return Err(DeviceError::StorageFull { serial: self.script.serial.clone() });
+        }
+        self.installed = true;
+        Ok(())
+    }
+
+    /// Writes a file.
+    pub fn put(&mut self, path: &str, text: &str) -> Result<(), DeviceError> {
+        self.reach()?;
+        if self.script.storage_full {
+            return Err(self.refused(&["cat", ">", path], "No space left on device"));
+        }
+        self.kept.files.insert(path.into(), text.into());
+        self.keep()
+    }
+
+    fn keep(&self) -> Result<(), DeviceError> {
+        let Some(path) = &self.kept_in else { return Ok(()) };
+        Ok(files::write_with(path, |out| Ok(serde_json::to_writer(out, &self.kept)?))?)
+    }
+
+    fn refused(&self, words: &[&str], reason: &str) -> DeviceError {
+        let serial = self.script.serial.clone();
+        DeviceError::Refused { serial, command: words.join(" "), reason: reason.into() }
+    }
+
+    /// Answers a command as Android's shell does. Only what the program asks is known.
+    pub fn shell(&mut self, words: &[&str]) -> Result<String, DeviceError> {
+        self.reach()?;
+        match words {
+            ["getprop"] => Ok(self.kept.properties.iter().map(|(k, v)| format!("[{k}]: [{v}]\n")).collect()),
+            ["getprop", name] => Ok(self.property(name) + "\n"),
+            ["setprop", name, value] => {
+                self.kept.properties.insert((*name).into(), (*value).into());
+                self.keep().map(|()| String::new())
+            }
+            ["settings", verb, table, key, value @ ..] => {
+                let name = if *table == "system" { (*key).to_owned() } else { format!("{table}/{key}") };
+                self.setting(words, verb, name, value.first().copied())
+            }
+            ["cat", "/proc/sys/kernel/random/boot_id"] => Ok(format!("{:08}-simulated\n", self.boots)),
+            ["cat", path] if *path == phone::KERNEL_BATTERY => self.kernel_battery(words),
+            ["cat", path] => self
+                .kept
+                .files
+                .get(*path)
+                .cloned()
+                .ok_or_else(|| self.refused(words, "No such file or directory")),
+            ["rm", "-f", path] => {
+                self.kept.files.remove(*path);
+                self.keep().map(|()| String::new())
+            }
+            ["date", "+%s.%N"] => Ok(format!("{:.9}\n", self.now + self.clock_offset)),
+            ["dumpsys", "battery"] => Ok(self.battery()),
+            ["dumpsys", "batterystats"] => {
+                Ok(format!("  Estimated battery capacity: {:.0} mAh\n", self.script.capacity_mah))
+            }
+            ["dumpsys", "window", "policy"] => Ok(format!(
+                "    KeyguardServiceDelegate\n      showing=false\n      secure={}\n",
+                self.script.secure_lock
+            )),
+            ["am", "broadcast", "-a", "com.oculus.vrpowermanager.prox_close"] => {
+                self.kept.properties.insert(WORN.into(), "yes".into());
+                self.keep().map(|()| String::new())
+            }
+            ["am", "broadcast", "-a", "com.oculus.vrpowermanager.automation_disable"] => {
+                self.kept.properties.remove(WORN);
+                self.keep().map(|()| String::new())
+            }
+            ["dumpsys", "package", name] if self.script.others.iter().any(|other| other == name) => {
+                Ok("Packages:\n    versionName=7.1\n".into())
+            }
+            ["dumpsys", "package", name] if self.installed && *name == phone::PACKAGE => {
+                Ok(format!("Packages:\n    versionName={}\n", env!("CARGO_PKG_VERSION")))
+            }
+            ["dumpsys", "package", name] => Ok(format!("Unable to find package: {name}\n")),
+            ["ip", "route"] => Ok("192.0.2.0/24 dev wlan0 proto kernel scope link src 192.0.2.7\n".into()),
+            ["pidof", name] => match &self.application {
+                Some(application) if application.other.as_deref().unwrap_or(phone::PACKAGE) == *name => {
+                    Ok(format!("{}\n", application.pid))
+                }
+                _ => Err(self.refused(words, "it does not say why")),
+            },
+            ["am", "force-stop", _] => {
+                self.application = None;
+                Ok(String::new())
+            }
+            ["am", "start", "-S", "-W", "-n", activity, extras @ ..] => self.start(activity, extras),
+            ["input", ..] | ["wm", ..] | ["logcat", "-G", _] => Ok(String::new()),
+            _ => Err(self.refused(words, "a replay does not know it")),
+        }
+    }
+
+    fn property(&self, name: &str) -> String {
+        let own = match name {
+            "ro.serialno" => Some(self.script.serial.clone()),
+            "ro.product.manufacturer" => Some(self.script.manufacturer.clone()),
+            "ro.product.model" => Some(self.script.model.clone()),
+            "ro.build.version.release" => Some(self.script.android.clone()),
+            "sys.boot_completed" if self.now >= self.booted_at + BOOT_S => Some("1".into()),
+            _ => None,
+        };
+        own.or_else(|| self.kept.properties.get(name).cloned()).unwrap_or_default()
+    }
+
+    fn setting(
+        &mut self,
+        words: &[&str],
+        verb: &str,
+        name: String,
+        value: Option<&str>,
+    ) -> Result<String, DeviceError> {
+        if verb == "get" {
+            return Ok(self.kept.settings.get(&name).cloned().unwrap_or_else(|| "null".into()) + "\n");
+        }
+        if self.script.fixed_settings.contains(&name) {
+            return Err(self.refused(words, "java.lang.SecurityException: you cannot change it"));
+        }
+        match value {
+            Some(value) => self.kept.settings.insert(name, value.into()),
+            None => self.kept.settings.remove(&name),
+        };
+        self.keep().map(|()| String::new())
+    }
+
+    fn battery(&self) -> String {
+        let plugged = self.now < self.plugged_until;
+        let held =
+            if self.script.battery_held { "  (UPDATES STOPPED -- use 'reset' to restart)\n" } else { "" };
+        format!(
+            "Current Battery Service state:\n{held}  AC powered: false\n  USB powered: {plugged}\n  Wireless powered: false\n  status: {}\n  level: {:.0}\n  scale: 100\n  voltage: {:.0}\n  temperature: {:.0}\n",
+            if plugged { 2 } else { 3 },
+            self.level_percent(),
+            self.voltage(),
+            self.celsius * 10.0,
+        )
+    }
+
+    fn kernel_battery(&self, words: &[&str]) -> Result<String, DeviceError> {
+        if !self.script.kernel_battery {
+            return Err(self.refused(words, "Permission denied"));
+        }
+        Ok(format!(
+            "POWER_SUPPLY_NAME=battery\nPOWER_SUPPLY_VOLTAGE_NOW={:.0}\nPOWER_SUPPLY_CURRENT_NOW={:.0}\n",
+            self.volts() * 1e6,
+            self.milliamperes() * 1e3,
+        ))
+    }
+
+    /// Starts the application, as its settings say: extras, and properties over them.
+    fn start(&mut self, activity: &str, extras: &[&str]) -> Result<String, DeviceError> {
+        let package = activity.split('/').next().unwrap_or_default();
+        let other = self.script.others.iter().find(|other| *other == package).cloned();
+        if !self.installed && other.is_none() {
+            return Ok(format!("Error type 3\nError: Activity class {{{activity}}} does not exist.\n"));
+        }
+        let pairs = extras.chunks_exact(3).map(|words| (words[1].to_owned(), words[2].to_owned()));
+        let properties = self.kept.properties.iter().filter_map(|(name, value)| {
+            Some((name.strip_prefix(phone::PROPERTY_PREFIX)?.to_owned(), value.clone()))
+        });
+        let mut settings = Settings::default();
+        for (key, value) in pairs.chain(properties.collect::<Vec<_>>()) {
+            if let Err(error) = settings.apply(&format!("{key}={value}")) {
+                return Ok(format!("Error: {error}\n"));
+            }
+        }
+        let recorded = if self.script.logs.is_empty() { None } else { Some(self.recorded(&settings)?) };
+        self.starts += 1;
+        let pid = 4000 + self.starts;
+        let mut faults: Vec<Fault> =
+            self.script.fault.iter().filter(|fault| fault.start == self.starts).copied().collect();
+        faults.sort_by(|a, b| a.at.total_cmp(&b.at));
+        self.write_log(
+            pid,
+            "I",
+            yoro_viewer::telemetry::LOG_TAG,
+            &format!("yoro {} starts", env!("CARGO_PKG_VERSION")),
+        );
+        self.application = Some(Application {
+            pid,
+            other,
+            method: settings.method.name().into(),
+            settings,
+            first_frame: self.now + LOADING_S,
+            recorded,
+            lines: 0,
+            luck: 1.0 + LUCK * self.random.random_range(-1.0..1.0),
+            normalizer: CurrentNormalizer::default(),
+            faults,
+        });
+        Ok("Starting: Intent { cmp=io.github.yoro/android.app.NativeActivity (has extras) }\nStatus: ok\n"
+            .into())
+    }
+
+    /// The lines of the recorded log of a method, pipeline and scene.
+    fn recorded(&self, settings: &Settings) -> Result<Vec<Line>, DeviceError> {
+        let is_wanted = |line: &Line| {
+            let pipeline =
+                line.pipeline.as_deref().is_none_or(|pipeline| pipeline == settings.pipeline.name());
+            line.method == settings.method.name() && line.scene == settings.scene && pipeline
+        };
+        for path in &self.script.logs {
+            let lines: Vec<Line> = read_recording(path)?.into_iter().filter(is_wanted).collect();
+            if !lines.is_empty() {
+                return Ok(lines);
+            }
+        }
+        Err(self.refused(
+            &["am", "start"],
+            &format!("the replay has no recorded log of {} in {}", settings.method.name(), settings.scene),
+        ))
+    }
+}
+
+/// The telemetry in a log.
+fn read_recording(path: &Path) -> Result<Vec<Line>, DeviceError> {
+    let bytes = files::read(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let line = |line: &str| match log::parse(line) {
+        log::Kind::Entry(entry) if entry.tag == yoro_viewer::telemetry::LOG_TAG => entry.message.parse().ok(),
+        _ => None,
+    };
+    Ok(text.lines().filter_map(line).collect())
+}

@@ -1,0 +1,383 @@
+//! From captures to figures: power, frame rate, temperature and the rest, per method and scene, against the baseline.
+//!
+//! The seconds of a run depend on each other, so intervals rest on repetitions: a run is one value. Two methods are
+//! compared by pairs of runs of the same device, scene and repetition; a change in percent is the geometric mean of
+//! the pairs' ratios and its interval Student's t of their logarithms. Over scenes, scenes are fixed blocks and the
+//! scatter of the repetitions around them is pooled; where every scene was measured once, the interval rests on the
+//! scatter of the scenes, and is marked. A single pair has no interval.
+
+mod compare;
+mod page;
+mod run;
+#[cfg(test)]
+mod tests;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::capture::{Capture, FaultKind};
+use super::plausible::implausible;
+use crate::report::ReportError;
+pub use compare::{Difference, Mean};
+pub use run::{ByLevel, Counted, Exclusion, Integrated, Quantity, Run};
+use yoro_files as files;
+use yoro_scenes::BUILTINS;
+
+/// Confidence of all intervals.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// A device that was measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Device {
+    /// In tables; ends in `(simulated)` where it is one.
+    pub name: String,
+    /// Version of Android.
+    pub android: String,
+    /// Capacity of its battery in milliampere-hours.
+    pub capacity_mah: Option<f64>,
+    /// Cells of the battery of which it gives the current of one.
+    pub cells: u32,
+    /// Replayed, not measured.
+    pub simulated: bool,
+    /// Versions of the application that ran.
+    pub applications: BTreeSet<String>,
+    /// Scenes, in the order of tables.
+    pub scenes: Vec<String>,
+    /// Methods, in the order of tables: the baseline first, then what this project is about.
+    pub methods: Vec<String>,
+}
+
+/// Something that the reader of the figures must know.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Note {
+    /// A short name.
+    pub name: &'static str,
+    /// The run, or what it concerns.
+    pub of: String,
+    /// One sentence.
+    pub detail: String,
+}
+
+/// The figures of a number of captures.
+#[derive(Clone, Debug, Serialize)]
+pub struct DeviceReport {
+    /// Some of it was replayed, not measured.
+    pub simulated: bool,
+    /// The method that the others are held against.
+    pub baseline: String,
+    /// Of the intervals.
+    pub confidence: f64,
+    /// How it was made: program, version, command.
+    pub made_by: String,
+    /// All devices.
+    pub devices: Vec<Device>,
+    /// Each method against the baseline.
+    pub differences: Vec<Difference>,
+    /// Each method on each scene.
+    pub means: Vec<Mean>,
+    /// What of the runs does not count, and why.
+    pub left_out: Vec<Note>,
+    /// What went wrong without making a run worthless.
+    pub faults: Vec<Note>,
+    /// Run by run.
+    pub runs: Vec<Run>,
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The page.
+    pub page: PathBuf,
+    /// The tables as Markdown.
+    pub markdown: PathBuf,
+    /// All figures.
+    pub json: PathBuf,
+}
+
+impl DeviceReport {
+    /// Puts the runs of several folders together, each with its path. The same run given twice counts once; the same
+    /// repetition in another folder counts as another one. `cells` names the devices, by serial number, that give the
+    /// current of one of so many cells.
+    pub fn new(
+        sets: &[Vec<(PathBuf, Capture)>],
+        baseline: &str,
+        cells: &BTreeMap<String, u32>,
+        made_by: String,
+    ) -> DeviceReport {
+        let cells_of = |capture: &Capture| cells.get(&capture.info.device.serial).copied().unwrap_or(1);
+        let names = device_names(sets.iter().flatten().map(|(_, capture)| capture));
+        let name = |capture: &Capture| names[&device_key(capture)].clone();
+        let mut seen = BTreeSet::new();
+        let mut runs: Vec<Run> = Vec::new();
+        let mut settings: BTreeMap<(String, String), BTreeSet<String>> = BTreeMap::new();
+        for (set, captures) in sets.iter().enumerate() {
+            for (folder, capture) in captures {
+                let info = &capture.info;
+                let what = (info.method.clone(), info.scene.clone(), info.repetition);
+                let identity = (device_key(capture), info.started_unix_s.to_bits(), what);
+                if !seen.insert(identity) {
+                    continue;
+                }
+                let device = name(capture);
+                let other = info.settings.iter().filter(|(key, _)| *key != "scene");
+                let text = other.map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ");
+                settings.entry((device.clone(), info.method.clone())).or_default().insert(text);
+                runs.push(Run::of(capture, folder.display().to_string(), set, device, cells_of(capture)));
+            }
+        }
+        leave_out_repeated(&mut runs);
+        let captures = sets.iter().flatten().map(|(_, capture)| capture);
+        let devices = devices(captures, name, cells_of, baseline);
+
+        let means = devices.iter().flat_map(|device| compare::means(&runs, device)).collect();
+        let mut differences: Vec<Difference> =
+            devices.iter().flat_map(|device| compare::differences(&runs, device, baseline)).collect();
+        // What was replayed is never averaged with what was measured.
+        for simulated in [false, true] {
+            let alike: Vec<&Device> = devices.iter().filter(|d| d.simulated == simulated).collect();
+            differences.extend(compare::over_devices(&differences, &alike));
+        }
+        let mut report = DeviceReport {
+            simulated: devices.iter().any(|device| device.simulated),
+            baseline: baseline.into(),
+            confidence: CONFIDENCE,
+            made_by,
+            left_out: left_out(&runs, &devices, baseline),
+            faults: faults(&runs),
+            devices,
+            differences,
+            means,
+            runs,
+        };
+        for ((device, method), texts) in settings.iter().filter(|(_, texts)| texts.len() > 1) {
+            let texts: Vec<&str> = texts.iter().map(|t| if t.is_empty() { "defaults" } else { t }).collect();
+            report.faults.push(Note {
+                name: "settings differ",
+                of: format!("{device}, {method}"),
+                detail: format!("runs under one name had different settings: {}", texts.join("; ")),
+            });
+        }
+        report
+    }
+
+    /// The self-contained page.
+    ///
+    /// # Errors
+    /// [`ReportError`] when a figure cannot be drawn.
+    pub fn to_html(&self) -> Result<String, ReportError> {
+        page::html(self)
+    }
+
+    /// What matters, and all tables.
+    pub fn to_markdown(&self) -> String {
+        page::markdown(self)
+    }
+
+    /// All figures.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`].
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+
+    /// What matters, for a terminal.
+    pub fn to_text(&self) -> String {
+        page::text(self)
+    }
+
+    /// Writes `report.html`, `report.md` and `report.json` into `folder`.
+    ///
+    /// # Errors
+    /// [`ReportError`]; everything is made before anything is written.
+    pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
+        let written = Written {
+            page: folder.join("report.html"),
+            markdown: folder.join("report.md"),
+            json: folder.join("report.json"),
+        };
+        let (page, markdown, json) = (self.to_html()?, self.to_markdown(), self.to_json()?);
+        files::write(&written.json, json.as_bytes())?;
+        files::write(&written.markdown, markdown.as_bytes())?;
+        files::write(&written.page, page.as_bytes())?;
+        Ok(written)
+    }
+}
+
+/// What tells devices apart.
+fn device_key(capture: &Capture) -> (String, bool) {
+    (capture.info.device.serial.clone(), capture.info.device.simulated)
+}
+
+/// Manufacturer and model; with the serial number where two have the same.
+fn device_names<'a>(captures: impl Iterator<Item = &'a Capture>) -> BTreeMap<(String, bool), String> {
+    let mut names: BTreeMap<(String, bool), String> = BTreeMap::new();
+    for capture in captures {
+        let device = &capture.info.device;
+        let (maker, model) = (device.manufacturer.trim(), device.model.trim());
+        let name = match model.to_lowercase().starts_with(&maker.to_lowercase()) {
+            true => model.to_owned(),
+            false => format!("{maker} {model}").trim().to_owned(),
+        };
+        let name = if name.is_empty() { device.serial.clone() } else { name };
+        names.entry(device_key(capture)).or_insert(name);
+    }
+    let all: Vec<String> = names.values().cloned().collect();
+    for ((serial, simulated), name) in &mut names {
+        if all.iter().filter(|other| *other == name).count() > 1 {
+            *name = format!("{name} {serial}");
+        }
+        if *simulated {
+            name.push_str(" (simulated)");
+        }
+    }
+    names
+}
+
+fn devices<'a>(
+    captures: impl Iterator<Item = &'a Capture>,
+    name: impl Fn(&Capture) -> String,
+    cells: impl Fn(&Capture) -> u32,
+    baseline: &str,
+) -> Vec<Device> {
+    let mut devices: Vec<Device> = Vec::new();
+    for capture in captures {
+        let (info, name) = (&capture.info, name(capture));
+        let at = devices.iter().position(|device| device.name == name).unwrap_or_else(|| {
+            devices.push(Device {
+                name,
+                android: info.device.android.clone(),
+                capacity_mah: info.device.capacity_mah,
+                cells: cells(capture),
+                simulated: info.device.simulated,
+                applications: BTreeSet::new(),
+                scenes: Vec::new(),
+                methods: Vec::new(),
+            });
+            devices.len() - 1
+        });
+        let device = &mut devices[at];
+        device.applications.extend(info.application.clone());
+        if !device.scenes.contains(&info.scene) {
+            device.scenes.push(info.scene.clone());
+        }
+        if !device.methods.contains(&info.method) {
+            device.methods.push(info.method.clone());
+        }
+    }
+    for device in &mut devices {
+        let place =
+            |scene: &str| BUILTINS.iter().position(|builtin| builtin.name == scene).unwrap_or(BUILTINS.len());
+        device.scenes.sort_by_key(|scene| (place(scene), scene.clone()));
+        let rank = |method: &str| (method != baseline, !method.starts_with("yoro"));
+        device.methods.sort_by_key(|method| (rank(method), method.clone()));
+    }
+    devices.sort_by(|a, b| (a.simulated, &a.name).cmp(&(b.simulated, &b.name)));
+    devices
+}
+
+/// Of a repetition that was measured again, the last one counts.
+fn leave_out_repeated(runs: &mut [Run]) {
+    let key = |run: &Run| {
+        let place = (run.set, run.experiment.clone(), run.scene.clone(), run.method.clone(), run.repetition);
+        (run.device.clone(), place)
+    };
+    let mut last: BTreeMap<_, f64> = BTreeMap::new();
+    for run in runs.iter().filter(|run| run.counts(Quantity::Fps)) {
+        let started = last.entry(key(run)).or_insert(run.started_unix_s);
+        *started = started.max(run.started_unix_s);
+    }
+    for run in runs.iter_mut().filter(|run| run.counts(Quantity::Fps)) {
+        if last.get(&key(run)).is_some_and(|started| run.started_unix_s < *started) {
+            run.leave_out("measured again", "a later run of the same repetition counts".into());
+        }
+    }
+}
+
+fn left_out(runs: &[Run], devices: &[Device], baseline: &str) -> Vec<Note> {
+    let mut notes = Vec::new();
+    for run in runs {
+        for exclusion in &run.exclusions {
+            let what =
+                if exclusion.power_only { "its power does not count" } else { "the run does not count" };
+            let detail = format!("{what}: {}", exclusion.reason);
+            notes.push(Note { name: exclusion.name, of: run.name(), detail });
+        }
+    }
+    for device in devices {
+        for run in compare::without_partner(runs, device, baseline) {
+            let detail =
+                format!("no run of {baseline} that counts is there to compare it with; its own means count");
+            notes.push(Note { name: "no partner", of: run.name(), detail });
+        }
+    }
+    notes
+}
+
+fn faults(runs: &[Run]) -> Vec<Note> {
+    let mut notes = Vec::new();
+    for run in runs {
+        for fault in &run.faults {
+            let at = fault.at_s.map(|at| format!(" (at {at:.0} s)")).unwrap_or_default();
+            let detail = format!("{}{at}", fault.detail);
+            notes.push(Note { name: fault_name(fault.kind), of: run.name(), detail });
+        }
+        if run.gaps > 0 {
+            let gaps = page::count(run.gaps, "gap");
+            let detail = format!("{gaps} in the samples, not bridged: {:.0} s count", run.covered_s);
+            notes.push(Note { name: "gaps", of: run.name(), detail });
+        }
+        let mut note = |name, detail| notes.push(Note { name, of: run.name(), detail });
+        let is_told = run.faults.iter().any(|fault| fault.kind == FaultKind::ImplausiblePower);
+        if let Some(detail) =
+            run.integrated.filter(|_| !is_told).and_then(|found| implausible(found.milliwatts))
+        {
+            note(fault_name(FaultKind::ImplausiblePower), detail);
+        }
+        let counted = run.counted.filter(|_| run.counts(Quantity::Power));
+        if counted.is_some_and(|counted| counted.scale >= run::MILLI) {
+            note("counter in mAh", "the charge counter is in mAh in place of uAh; corrected".into());
+        }
+        if let Some(by) = run.twice_by().filter(|_| run.counts(Quantity::Power)) {
+            let detail = format!(
+                "{by} says about twice what current x voltage says: if the battery has two cells and the device gives \
+                 the current of one, give the report their number"
+            );
+            note("two cells?", detail);
+        } else if let Some(counted) = counted.filter(|c| c.disagreement().abs() > run::COUNTER_TOLERANCE) {
+            let detail = format!(
+                "over {:.0} s the charge counter says {:.0} mW, current x voltage {:.0} mW ({:+.0} %): one of the \
+                 device's gauges is wrong",
+                counted.seconds,
+                counted.milliwatts,
+                counted.integrated_milliwatts,
+                100.0 * counted.disagreement()
+            );
+            note("counter disagrees", detail);
+        }
+    }
+    notes
+}
+
+/// In tables.
+fn fault_name(kind: FaultKind) -> &'static str {
+    match kind {
+        FaultKind::Disconnected => "disconnected",
+        FaultKind::PluggedIn => "plugged in",
+        FaultKind::NoCurrent => "no current",
+        FaultKind::CurrentInMilliamperes => "current in mA",
+        FaultKind::CurrentSign => "sign of the current",
+        FaultKind::ClockJump => "clock jump",
+        FaultKind::DamagedLines => "damaged lines",
+        FaultKind::MissingLines => "missing lines",
+        FaultKind::Rebooted => "rebooted",
+        FaultKind::Restarted => "application restarted",
+        FaultKind::TooWarm => "too warm",
+        FaultKind::VoltageInVolts => "voltage in V",
+        FaultKind::ImplausiblePower => "implausible power",
+        FaultKind::NotPinned => "not pinned",
+        FaultKind::RefreshRate => "refresh rate",
+    }
+}

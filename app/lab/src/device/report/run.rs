@@ -1,0 +1,515 @@
+//! The figures of one run, and what speaks against them.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::device::capture::{Capture, Fault, FaultKind, Outcome, Sample};
+use crate::device::phone::LEAST_MILLIVOLTS;
+use yoro_viewer::telemetry::stats::median;
+
+/// Voltage by which the paper turns battery percent into energy.
+pub const PAPER_VOLTS: f64 = 3.7;
+/// Of its planned time a run must have been measured for this share.
+pub const LEAST_COVERED: f64 = 0.8;
+/// Current x voltage and charge counter may differ by this share before it is named.
+pub const COUNTER_TOLERANCE: f64 = 0.1;
+/// From milliampere-hours to microampere-hours.
+pub(super) const MILLI: f64 = 1e3;
+/// A full battery has more than this many microampere-hours: where the counter says less, it counts milliampere-hours.
+const LEAST_FULL_UAH: f64 = 100_000.0;
+/// A counter of one cell of several says the battery's capacity divided by their number, within this share.
+const CELL_TOLERANCE: f64 = 0.25;
+/// Another measure of the power is this many times as large where the current is that of one of two cells.
+const TWICE: std::ops::Range<f64> = 1.6..2.6;
+/// Between two samples there may be this many times the usual distance; else there is a gap, which is not bridged.
+const GAP: f64 = 2.5;
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// Mean power taken from the battery.
+    Power,
+    /// Frames per second.
+    Fps,
+    /// Mean time between frames.
+    FrameTime,
+    /// 99 % of the times between frames are below, mean over the seconds.
+    FrameTimeP99,
+    /// GPU time per frame.
+    GpuTime,
+    /// Refreshes that showed an old frame again.
+    Stale,
+    /// Battery temperature.
+    Temperature,
+    /// By how much the battery's temperature rose.
+    Rise,
+    /// CPU load of the process.
+    Cpu,
+    /// Resident memory.
+    Memory,
+}
+
+impl Quantity {
+    /// All, in the order of tables.
+    pub const ALL: [Quantity; 10] = [
+        Quantity::Power,
+        Quantity::Fps,
+        Quantity::FrameTime,
+        Quantity::FrameTimeP99,
+        Quantity::GpuTime,
+        Quantity::Stale,
+        Quantity::Temperature,
+        Quantity::Rise,
+        Quantity::Cpu,
+        Quantity::Memory,
+    ];
+
+    /// In tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Power => "power",
+            Quantity::Fps => "frame rate",
+            Quantity::FrameTime => "frame time",
+            Quantity::FrameTimeP99 => "frame time p99",
+            Quantity::GpuTime => "GPU time",
+            Quantity::Stale => "stale frames",
+            Quantity::Temperature => "temperature",
+            Quantity::Rise => "temperature rise",
+            Quantity::Cpu => "CPU",
+            Quantity::Memory => "memory",
+        }
+    }
+
+    /// In tables.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Quantity::Power => "mW",
+            Quantity::Fps => "FPS",
+            Quantity::FrameTime | Quantity::FrameTimeP99 | Quantity::GpuTime => "ms",
+            Quantity::Stale => "1/s",
+            Quantity::Temperature => "°C",
+            Quantity::Rise => "K",
+            Quantity::Cpu => "% of a core",
+            Quantity::Memory => "MB",
+        }
+    }
+
+    /// Digits after the point.
+    pub fn decimals(self) -> usize {
+        match self {
+            Quantity::Power => 0,
+            Quantity::FrameTime | Quantity::FrameTimeP99 | Quantity::GpuTime | Quantity::Stale => 2,
+            _ => 1,
+        }
+    }
+
+    /// Compared as a ratio. Temperatures have no zero to divide by, and stale frames may be none: they are compared
+    /// as differences.
+    pub fn is_ratio(self) -> bool {
+        !matches!(self, Quantity::Stale | Quantity::Temperature | Quantity::Rise)
+    }
+}
+
+/// Energy by current times voltage.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Integrated {
+    /// Mean power in milliwatts.
+    pub milliwatts: f64,
+    /// Seconds over which it was integrated.
+    pub seconds: f64,
+}
+
+/// Power by the battery's charge counter.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Counted {
+    /// Change of charge x mean voltage / time, between the counter's first and last step, in milliwatts.
+    pub milliwatts: f64,
+    /// Current x voltage over the same time, in milliwatts.
+    pub integrated_milliwatts: f64,
+    /// Between the counter's first and last step, in seconds.
+    pub seconds: f64,
+    /// How often it changed.
+    pub steps: usize,
+    /// What its values were multiplied by for microampere-hours of the whole battery.
+    pub scale: f64,
+}
+
+impl Counted {
+    /// By how much the counter says more than current x voltage; 0.1 is 10 %.
+    pub fn disagreement(&self) -> f64 {
+        self.milliwatts / self.integrated_milliwatts - 1.0
+    }
+}
+
+/// Power by the paper's method: battery percent x capacity x 3.7 V.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ByLevel {
+    /// In milliwatts.
+    pub milliwatts: f64,
+    /// What one percent makes in this time, in milliwatts: the method cannot tell less apart.
+    pub step_milliwatts: f64,
+}
+
+/// What does not count, and why.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Exclusion {
+    /// Only its power; all of it otherwise.
+    pub power_only: bool,
+    /// A short name.
+    pub name: &'static str,
+    /// One sentence.
+    pub reason: String,
+}
+
+/// Values over time, for plots.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Traces {
+    /// Seconds and milliwatts.
+    pub power: Vec<(f64, f64)>,
+    /// Seconds and frames per second.
+    pub fps: Vec<(f64, f64)>,
+    /// Seconds and degrees Celsius.
+    pub temperature: Vec<(f64, f64)>,
+}
+
+/// One run in figures.
+#[derive(Clone, Debug, Serialize)]
+pub struct Run {
+    /// Where it lies.
+    pub folder: String,
+    /// Which of the folders given it was found in, from 0: the same repetition in another is another one.
+    pub set: usize,
+    /// The device's name in tables.
+    pub device: String,
+    /// Replayed, not measured.
+    pub simulated: bool,
+    /// Experiment.
+    pub experiment: Option<String>,
+    /// Method.
+    pub method: String,
+    /// Scene.
+    pub scene: String,
+    /// Repetition, from 1.
+    pub repetition: u32,
+    /// When it began, in seconds since 1970.
+    pub started_unix_s: f64,
+    /// Cells of the battery of which the device gives the current of one: current x voltage is multiplied by them.
+    pub cells: u32,
+    /// Seconds that it should last, and that were measured.
+    pub planned_s: f64,
+    /// Seconds with samples close enough to each other.
+    pub covered_s: f64,
+    /// Gaps between samples that were not bridged.
+    pub gaps: usize,
+    /// Means over the run.
+    pub values: BTreeMap<Quantity, f64>,
+    /// Standard deviation over the seconds of the run, where a quantity has a value each second. Seconds are not
+    /// independent of each other: no interval is made of it.
+    pub std_over_seconds: BTreeMap<Quantity, f64>,
+    /// Current x voltage.
+    pub integrated: Option<Integrated>,
+    /// By the charge counter.
+    pub counted: Option<Counted>,
+    /// As the paper did.
+    pub by_level: Option<ByLevel>,
+    /// What went wrong on the way.
+    pub faults: Vec<Fault>,
+    /// What of it does not count.
+    pub exclusions: Vec<Exclusion>,
+    #[serde(skip)]
+    pub(super) traces: Traces,
+}
+
+impl Run {
+    /// Reads the figures off a capture; `cells` is 1 where the device gives the current of its whole battery.
+    pub fn of(capture: &Capture, folder: String, set: usize, device: String, cells: u32) -> Run {
+        let info = &capture.info;
+        let window = info.warm_up_s..=info.warm_up_s + info.duration_s;
+        let samples: Vec<&Sample> = capture.samples.iter().filter(|s| window.contains(&s.time_s)).collect();
+        let longest_step = GAP * usual_step(&samples).unwrap_or(1.0);
+        let series = |value: fn(&Sample) -> Option<f64>| -> Vec<(f64, f64)> {
+            samples.iter().filter_map(|sample| Some((sample.time_s, value(sample)?))).collect()
+        };
+        let mut power = series(milliwatts);
+        power.iter_mut().for_each(|(_, milliwatts)| *milliwatts *= f64::from(cells));
+        let mut charge = series(|s| s.charge_uah);
+        let scale = counter_scale(&samples, info.device.capacity_mah, cells);
+        charge.iter_mut().for_each(|(_, charge)| *charge *= scale);
+        let fps = series(|s| s.fps);
+        let temperature = series(|s| s.battery_celsius);
+        // Where the application drew nothing for a while, other values may have gone on.
+        let (covered_s, gaps) = coverage(&fps, longest_step);
+        let integrated = integrate(&power, longest_step);
+
+        let mut run = Run {
+            folder,
+            set,
+            device,
+            simulated: info.device.simulated,
+            experiment: info.experiment.clone(),
+            method: info.method.clone(),
+            scene: info.scene.clone(),
+            repetition: info.repetition,
+            started_unix_s: info.started_unix_s,
+            cells,
+            planned_s: info.duration_s,
+            covered_s,
+            gaps,
+            values: BTreeMap::new(),
+            std_over_seconds: BTreeMap::new(),
+            integrated,
+            counted: count(&charge, &series(voltage), &power, longest_step)
+                .map(|counted| Counted { scale, ..counted }),
+            by_level: by_level(&series(|s| s.level_percent), info.device.capacity_mah),
+            faults: info.faults.clone(),
+            exclusions: Vec::new(),
+            traces: Traces {
+                power: thinned(&power, longest_step),
+                fps: thinned(&fps, longest_step),
+                temperature: thinned(&temperature, longest_step),
+            },
+        };
+        if let Some((name, reason)) = run.worthless(capture) {
+            run.leave_out(name, reason);
+        } else if let Some((name, reason)) = run.without_power(capture, &samples) {
+            run.exclusions.push(Exclusion { power_only: true, name, reason });
+        }
+        if run.counts(Quantity::Power) {
+            run.set(Quantity::Power, &power, integrated.map(|i| i.milliwatts));
+        }
+        if !run.counts(Quantity::Fps) {
+            return run;
+        }
+        run.set(Quantity::Fps, &fps, mean(&fps));
+        // Means over frames: a second of slow frames has fewer of them.
+        for (quantity, value) in [
+            (Quantity::FrameTime, (|s: &Sample| s.frame_ms) as fn(&Sample) -> Option<f64>),
+            (Quantity::GpuTime, |s| s.gpu_ms),
+        ] {
+            run.set(quantity, &series(value), mean_over_frames(&samples, value));
+        }
+        for (quantity, values) in [
+            (Quantity::FrameTimeP99, series(|s| s.p99_ms)),
+            (Quantity::Stale, series(|s| s.stale)),
+            (Quantity::Temperature, temperature.clone()),
+            (Quantity::Cpu, series(|s| s.cpu_percent)),
+            (Quantity::Memory, series(|s| s.rss_mb)),
+        ] {
+            run.set(quantity, &values, mean(&values));
+        }
+        if let (Some(first), Some(last)) = (temperature.first(), temperature.last()) {
+            run.values.insert(Quantity::Rise, last.1 - first.1);
+        }
+        run
+    }
+
+    /// Whether its value of a quantity counts.
+    pub fn counts(&self, quantity: Quantity) -> bool {
+        self.exclusions.iter().all(|exclusion| exclusion.power_only && quantity != Quantity::Power)
+    }
+
+    /// A name in sentences.
+    pub fn name(&self) -> String {
+        format!("{}, {}, {}, repetition {}", self.device, self.scene, self.method, self.repetition)
+    }
+
+    /// Another measure that says twice what current x voltage says, as where the current is that of one of two cells.
+    pub(super) fn twice_by(&self) -> Option<&'static str> {
+        let integrated = self.integrated?.milliwatts;
+        let counted = self.counted.map(|c| c.milliwatts / c.integrated_milliwatts);
+        if counted.is_some_and(|ratio| TWICE.contains(&ratio)) {
+            return Some("the charge counter");
+        }
+        // A level in whole percents may be wrong by one of them.
+        let by_level = self.by_level?;
+        let step = by_level.step_milliwatts;
+        let is_sure = (by_level.milliwatts - step) / integrated > TWICE.start / 1.1;
+        let is_close = TWICE.contains(&(by_level.milliwatts / integrated));
+        (is_sure && is_close).then_some("the battery's level")
+    }
+
+    pub(super) fn leave_out(&mut self, name: &'static str, reason: String) {
+        self.exclusions.push(Exclusion { power_only: false, name, reason });
+        self.values.clear();
+        self.std_over_seconds.clear();
+    }
+
+    fn set(&mut self, quantity: Quantity, seconds: &[(f64, f64)], value: Option<f64>) {
+        let Some(value) = value else { return };
+        self.values.insert(quantity, value);
+        let values: Vec<f64> = seconds.iter().map(|(_, value)| *value).collect();
+        let std = yoro_viewer::telemetry::stats::Summary::of(&values).map(|summary| summary.std);
+        self.std_over_seconds.extend(std.map(|std| (quantity, std)));
+    }
+
+    fn find(&self, kind: FaultKind) -> Option<&Fault> {
+        self.faults.iter().find(|fault| fault.kind == kind)
+    }
+
+    /// Why nothing of it counts: the first reason, from which others would follow.
+    fn worthless(&self, capture: &Capture) -> Option<(&'static str, String)> {
+        match &capture.info.outcome {
+            Outcome::Complete => {}
+            Outcome::Interrupted { reason } => return Some(("interrupted", reason.clone())),
+            Outcome::Failed { reason } => return Some(("failed", reason.clone())),
+        }
+        if let Some(fault) = self.find(FaultKind::Rebooted) {
+            return Some(("rebooted", fault.detail.clone()));
+        }
+        // What happens in the warm-up is over when it counts.
+        let late = |fault: &&Fault| fault.at_s.is_none_or(|at| at >= capture.info.warm_up_s);
+        if let Some(fault) = self.find(FaultKind::Restarted).filter(late) {
+            return Some(("application restarted", fault.detail.clone()));
+        }
+        let (covered, planned) = (self.covered_s, self.planned_s);
+        (covered < LEAST_COVERED * planned)
+            .then(|| ("too short", format!("{covered:.0} s of {planned:.0} s have frame rates")))
+    }
+
+    /// Why its power does not count.
+    fn without_power(&self, capture: &Capture, samples: &[&Sample]) -> Option<(&'static str, String)> {
+        let plugged =
+            capture.samples.iter().filter(|s| s.plugged.is_some_and(|plugged| plugged != 0)).count();
+        if let Some(fault) = self.find(FaultKind::PluggedIn) {
+            return Some(("plugged in", fault.detail.clone()));
+        }
+        if plugged > 0 {
+            return Some(("plugged in", format!("a charger was plugged in for {plugged} samples")));
+        }
+        let Some(integrated) = self.integrated else {
+            let none = samples.iter().all(|s| s.current_ma.is_none());
+            let what = if none { "the battery's current" } else { "current and voltage together" };
+            if let Some(fault) = self.find(FaultKind::VoltageInVolts).filter(|_| !none) {
+                return Some(("voltage in V", fault.detail.clone()));
+            }
+            return Some(("no current", format!("the device does not give {what}")));
+        };
+        let (seconds, planned) = (integrated.seconds, self.planned_s);
+        if seconds < LEAST_COVERED * planned {
+            return Some((
+                "current missing",
+                format!("{seconds:.0} s of {planned:.0} s have current and voltage"),
+            ));
+        }
+        let charging = integrated.milliwatts <= 0.0;
+        charging.then(|| ("charging", "on the mean, the battery was charged".into()))
+    }
+}
+
+/// Power taken from the battery.
+fn milliwatts(sample: &Sample) -> Option<f64> {
+    Some(-sample.current_ma? * voltage(sample)? / 1e3)
+}
+
+/// In millivolts; whole volts are too coarse.
+fn voltage(sample: &Sample) -> Option<f64> {
+    sample.voltage_mv.filter(|voltage| *voltage >= LEAST_MILLIVOLTS)
+}
+
+/// By what the charge counter is to be multiplied for microampere-hours of the whole battery. Divided by the level it says
+/// how much a full battery has, which tells milliampere-hours, and one cell of several.
+fn counter_scale(samples: &[&Sample], capacity_mah: Option<f64>, cells: u32) -> f64 {
+    let full = |s: &&Sample| Some(s.charge_uah? / (s.level_percent.filter(|level| *level > 0.0)? / 100.0));
+    let full: Vec<f64> = samples.iter().filter_map(full).collect();
+    let Some(full) = median(&full) else { return 1.0 };
+    let unit = if full < LEAST_FULL_UAH { MILLI } else { 1.0 };
+    let one_cell = capacity_mah.map(|capacity| capacity * 1e3 / f64::from(cells));
+    let is_one_cell = one_cell.is_some_and(|one| (full * unit / one - 1.0).abs() < CELL_TOLERANCE);
+    if cells > 1 && is_one_cell { unit * f64::from(cells) } else { unit }
+}
+
+fn usual_step(samples: &[&Sample]) -> Option<f64> {
+    let steps: Vec<f64> = samples.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect();
+    median(&steps).filter(|step| *step > 0.0)
+}
+
+/// Pairs of neighbours without a gap between them.
+fn steps(series: &[(f64, f64)], longest: f64) -> impl Iterator<Item = ((f64, f64), (f64, f64))> + Clone + '_ {
+    let pairs = series.windows(2).map(|pair| (pair[0], pair[1]));
+    pairs.filter(move |(a, b)| b.0 > a.0 && b.0 - a.0 <= longest)
+}
+
+/// Seconds without gaps, and the number of gaps.
+fn coverage(series: &[(f64, f64)], longest: f64) -> (f64, usize) {
+    let covered = steps(series, longest).map(|(a, b)| b.0 - a.0).sum();
+    let gaps = series.windows(2).filter(|pair| pair[1].0 - pair[0].0 > longest).count();
+    (covered, gaps)
+}
+
+/// By trapezoids over the times as they are.
+fn integrate(power: &[(f64, f64)], longest: f64) -> Option<Integrated> {
+    let steps = steps(power, longest);
+    let seconds: f64 = steps.clone().map(|(a, b)| b.0 - a.0).sum();
+    let millijoules: f64 = steps.map(|(a, b)| (a.1 + b.1) / 2.0 * (b.0 - a.0)).sum();
+    (seconds > 0.0).then(|| Integrated { milliwatts: millijoules / seconds, seconds })
+}
+
+/// Between the counter's first and last step, where its value is exact. Steps inside a gap have no known time.
+fn count(
+    charge: &[(f64, f64)],
+    voltage: &[(f64, f64)],
+    power: &[(f64, f64)],
+    longest: f64,
+) -> Option<Counted> {
+    let changes: Vec<(f64, f64)> =
+        steps(charge, longest).filter(|(a, b)| a.1 != b.1).map(|(_, b)| b).collect();
+    let (first, last) = (*changes.first()?, *changes.last()?);
+    let between = |series: &[(f64, f64)]| -> Vec<(f64, f64)> {
+        series.iter().copied().filter(|(time, _)| (first.0..=last.0).contains(time)).collect()
+    };
+    let seconds = last.0 - first.0;
+    let volts = mean(&between(voltage))? / 1e3;
+    let milliampere_hours = (first.1 - last.1) / 1e3;
+    (seconds > 0.0).then_some(())?;
+    Some(Counted {
+        milliwatts: milliampere_hours * volts * 3600.0 / seconds,
+        integrated_milliwatts: integrate(&between(power), longest)?.milliwatts,
+        seconds,
+        steps: changes.len(),
+        scale: 1.0,
+    })
+}
+
+fn by_level(level: &[(f64, f64)], capacity_mah: Option<f64>) -> Option<ByLevel> {
+    let (first, last) = (level.first()?, level.last()?);
+    let hours = (last.0 - first.0) / 3600.0;
+    let percent_milliwatts = capacity_mah? / 100.0 * PAPER_VOLTS / hours;
+    (hours > 0.0).then_some(ByLevel {
+        milliwatts: (first.1 - last.1) * percent_milliwatts,
+        step_milliwatts: percent_milliwatts,
+    })
+}
+
+fn mean(series: &[(f64, f64)]) -> Option<f64> {
+    let sum: f64 = series.iter().map(|(_, value)| value).sum();
+    (!series.is_empty()).then(|| sum / series.len() as f64)
+}
+
+/// Seconds weigh by their frames.
+fn mean_over_frames(samples: &[&Sample], value: fn(&Sample) -> Option<f64>) -> Option<f64> {
+    let pairs = samples.iter().filter_map(|sample| Some((sample.fps?, value(sample)?)));
+    let (frames, sum) = pairs.fold((0.0, 0.0), |(frames, sum), (fps, v)| (frames + fps, sum + fps * v));
+    (frames > 0.0).then(|| sum / frames)
+}
+
+/// At most this many points a curve: more than a figure can show.
+const TRACE_POINTS: usize = 240;
+
+/// Means of neighbours, with a point that is not finite at each gap.
+fn thinned(series: &[(f64, f64)], longest: f64) -> Vec<(f64, f64)> {
+    let width = series.len().div_ceil(TRACE_POINTS).max(1);
+    let mut points = Vec::new();
+    for piece in series.chunk_by(|a, b| b.0 - a.0 <= longest) {
+        if !points.is_empty() {
+            points.push((f64::NAN, f64::NAN));
+        }
+        for chunk in piece.chunks(width) {
+            let n = chunk.len() as f64;
+            let sum = chunk.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
+            points.push((sum.0 / n, sum.1 / n));
+        }
+    }
+    points
+}

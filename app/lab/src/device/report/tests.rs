@@ -1,0 +1,516 @@
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::Deserialize;
+
+use super::*;
+use crate::device::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION};
+use crate::metrics::inference::{Basis, BlockInterval};
+
+const WARM_UP: u32 = 10;
+const DURATION: u32 = 100;
+const MILLIVOLTS: f64 = 4000.0;
+
+/// A run made up second by second; power in milliwatts as a function of the time.
+fn made_up(method: &str, scene: &str, repetition: u32, power: impl Fn(f64) -> f64) -> Capture {
+    let info = RunInfo {
+        version: VERSION,
+        device: DeviceInfo {
+            serial: "MADEUP1".into(),
+            manufacturer: "Maker".into(),
+            model: "Model 1".into(),
+            android: "14".into(),
+            capacity_mah: Some(4000.0),
+            simulated: true,
+        },
+        experiment: Some("made up".into()),
+        method: method.into(),
+        scene: scene.into(),
+        repetition,
+        order: 1,
+        settings: BTreeMap::new(),
+        // Tells the runs apart.
+        started_unix_s: (1_000 * repetition as usize + 10 * scene.len() + method.len()) as f64,
+        duration_s: f64::from(DURATION),
+        warm_up_s: f64::from(WARM_UP),
+        start_celsius: Some(30.0),
+        application: Some("0.1.0".into()),
+        outcome: Outcome::Complete,
+        faults: Vec::new(),
+    };
+    let mut milliampere_hours = 0.0;
+    let samples = (0..=WARM_UP + DURATION).map(|second| {
+        let time_s = f64::from(second);
+        let milliamperes = power(time_s) / MILLIVOLTS * 1e3;
+        milliampere_hours += milliamperes / 3600.0;
+        Sample {
+            time_s,
+            fps: Some(60.0),
+            stale: Some(0.0),
+            frame_ms: Some(1e3 / 60.0),
+            current_ma: Some(-milliamperes),
+            voltage_mv: Some(MILLIVOLTS),
+            charge_uah: Some((3e6 - milliampere_hours * 1e3).round()),
+            level_percent: Some((75.0 - milliampere_hours / 40.0).ceil()),
+            plugged: Some(0),
+            battery_celsius: Some(30.0 + time_s / 100.0),
+            cpu_percent: Some(50.0),
+            rss_mb: Some(200.0),
+            ..Sample::default()
+        }
+    });
+    Capture { samples: samples.collect(), info }
+}
+
+fn run_of(capture: &Capture) -> Run {
+    Run::of(capture, "folder".into(), 0, "device".into(), 1)
+}
+
+fn report(captures: Vec<Capture>) -> DeviceReport {
+    let set =
+        captures.into_iter().enumerate().map(|(i, capture)| (PathBuf::from(format!("run-{i}")), capture));
+    DeviceReport::new(&[set.collect()], "conventional", &BTreeMap::new(), "a test".into())
+}
+
+fn difference<'a>(report: &'a DeviceReport, scene: Option<&str>, quantity: Quantity) -> &'a Difference {
+    let found = report.differences.iter().find(|d| d.scene.as_deref() == scene && d.quantity == quantity);
+    found.unwrap_or_else(|| panic!("no {quantity:?} of {scene:?}"))
+}
+
+#[track_caller]
+fn near(ours: f64, expected: f64, within: f64) {
+    assert!((ours - expected).abs() <= within, "{ours} is not {expected}");
+}
+
+#[test]
+fn power_is_integrated_over_the_times_without_warm_up() {
+    // Rising by 2 mW a second from 110 mW at the end of warm-up: trapezoids are exact.
+    let run = run_of(&made_up("yoro", "street", 1, |t| if t < 10.0 { 9000.0 } else { 90.0 + 2.0 * t }));
+    let integrated = run.integrated.unwrap();
+    near(integrated.seconds, 100.0, 1e-9);
+    near(integrated.milliwatts, 90.0 + 2.0 * 60.0, 1e-9);
+    near(run.values[&Quantity::Power], 210.0, 1e-9);
+    near(run.values[&Quantity::Fps], 60.0, 1e-9);
+    near(run.values[&Quantity::Temperature], 30.6, 1e-9);
+    near(run.values[&Quantity::Rise], 1.0, 1e-9);
+    assert_eq!(run.exclusions, []);
+    // Uneven times: a second sample of the same power half a second later changes nothing.
+    let mut uneven = made_up("yoro", "street", 1, |_| 400.0);
+    let mut extra = uneven.samples[50].clone();
+    extra.time_s += 0.5;
+    extra.current_ma = Some(-300.0);
+    uneven.samples.insert(51, extra);
+    // 400 mW but for a triangle of 800 mW over one second.
+    near(run_of(&uneven).integrated.unwrap().milliwatts, 404.0, 1e-9);
+}
+
+#[test]
+fn gaps_are_not_bridged() {
+    let mut capture = made_up("yoro", "street", 1, |_| 400.0);
+    // The sample after the gap would count half of it, were it bridged.
+    capture.samples.retain(|s| !(30.5..45.5).contains(&s.time_s));
+    capture.samples.iter_mut().filter(|s| s.time_s == 46.0).for_each(|s| s.current_ma = Some(-1000.0));
+    let run = run_of(&capture);
+    let integrated = run.integrated.unwrap();
+    near(integrated.seconds, 84.0, 1e-9);
+    near(integrated.milliwatts, 400.0 + (4000.0 - 400.0) / 2.0 / 84.0, 1e-9);
+    assert_eq!((run.gaps, run.covered_s), (1, 84.0));
+    assert!(run.traces.power.iter().any(|(_, value)| value.is_nan()), "the curve breaks");
+    let report = report(vec![capture]);
+    assert!(report.faults.iter().any(|note| note.name == "gaps" && note.detail.contains("84 s")));
+}
+
+#[test]
+fn frame_times_are_means_over_frames() {
+    let mut capture = made_up("yoro", "street", 1, |_| 400.0);
+    for sample in capture.samples.iter_mut().filter(|s| (s.time_s as u32).is_multiple_of(2)) {
+        (sample.fps, sample.frame_ms, sample.gpu_ms) = (Some(20.0), Some(50.0), Some(40.0));
+    }
+    let run = run_of(&capture);
+    // 51 even seconds with 20 frames, 50 odd ones with 60.
+    let frames = 51.0 * 20.0 + 50.0 * 60.0;
+    near(run.values[&Quantity::Fps], frames / 101.0, 1e-9);
+    near(run.values[&Quantity::FrameTime], 101e3 / frames, 1e-9);
+    near(run.values[&Quantity::GpuTime], 40.0, 1e-9);
+}
+
+#[test]
+fn the_charge_counter_agrees_or_is_named() {
+    // A counter that moves in steps of 1 mAh: 72 seconds at 50 mA.
+    let coarse = |factor: f64| {
+        let mut capture = made_up("yoro", "street", 1, |_| 2000.0);
+        for sample in &mut capture.samples {
+            let used = factor * 500.0 / 3600.0 * sample.time_s;
+            sample.charge_uah = Some(1e3 * (3000.0 - used).floor());
+        }
+        capture
+    };
+    let counted = run_of(&coarse(1.0)).counted.unwrap();
+    near(counted.disagreement(), 0.0, 0.02);
+    assert!(counted.steps > 10);
+    let wrong = coarse(1.3);
+    near(run_of(&wrong).counted.unwrap().disagreement(), 0.3, 0.03);
+    let notes = report(vec![wrong]).faults;
+    assert_eq!(notes.iter().filter(|note| note.name == "counter disagrees").count(), 1, "{notes:?}");
+    assert!(report(vec![coarse(1.0)]).faults.is_empty());
+    // One step has no duration.
+    let mut still = coarse(1.0);
+    still.samples.iter_mut().for_each(|s| s.charge_uah = Some(if s.time_s < 50.0 { 2e6 } else { 1.999e6 }));
+    assert_eq!(run_of(&still).counted, None);
+}
+
+/// Counters of phones by HONOR and Xiaomi are in milliampere-hours (amply pull request 80).
+#[test]
+fn a_counter_in_milliampere_hours_is_told_by_the_level() {
+    let mut capture = made_up("yoro", "street", 1, |_| 20_000.0);
+    capture.samples.iter_mut().for_each(|s| s.charge_uah = s.charge_uah.map(|charge| (charge / 1e3).round()));
+    let counted = run_of(&capture).counted.unwrap();
+    assert_eq!(counted.scale, 1e3);
+    near(counted.disagreement(), 0.0, 0.02);
+    let names: Vec<&str> = report(vec![capture]).faults.iter().map(|note| note.name).collect();
+    assert_eq!(names, ["counter in mAh"]);
+}
+
+#[test]
+fn one_of_two_cells_is_half_the_power() {
+    let serial = || BTreeMap::from([("MADEUP1".to_owned(), 2)]);
+    let report_of = |capture: &Capture, cells: &BTreeMap<String, u32>| {
+        let set = vec![(PathBuf::from("run"), capture.clone())];
+        DeviceReport::new(&[set], "conventional", cells, String::new())
+    };
+    let names = |report: &DeviceReport| report.faults.iter().map(|note| note.name).collect::<Vec<_>>();
+    // The counter is the whole battery's.
+    let mut half = made_up("yoro", "street", 1, |_| 4000.0);
+    half.samples.iter_mut().for_each(|s| s.current_ma = s.current_ma.map(|current| current / 2.0));
+    assert_eq!(names(&report_of(&half, &BTreeMap::new())), ["two cells?"]);
+    let whole = report_of(&half, &serial());
+    near(whole.runs[0].values[&Quantity::Power], 4000.0, 1e-9);
+    assert!(
+        whole.faults.is_empty() && whole.to_markdown().contains("current x 2 cells"),
+        "{:?}",
+        whole.faults
+    );
+    // The counter is one cell's, too: the level tells.
+    let mut cell = made_up("yoro", "street", 1, |_| 40_000.0);
+    for sample in &mut cell.samples {
+        sample.current_ma = sample.current_ma.map(|current| current / 2.0);
+        sample.charge_uah = sample.charge_uah.map(|charge| charge / 2.0);
+    }
+    assert_eq!(names(&report_of(&cell, &BTreeMap::new())), ["two cells?"]);
+    let whole = report_of(&cell, &serial());
+    assert_eq!(whole.runs[0].counted.unwrap().scale, 2.0);
+    near(whole.runs[0].counted.unwrap().disagreement(), 0.0, 0.02);
+}
+
+#[test]
+fn implausible_figures_of_power() {
+    // What a voltage of 4 made of 3 W, and a current 1000 times too large.
+    let mut volts = made_up("yoro", "street", 1, |_| 3000.0);
+    volts.samples.iter_mut().for_each(|s| s.voltage_mv = Some(4.0));
+    volts.info.faults.push(Fault {
+        kind: FaultKind::VoltageInVolts,
+        at_s: None,
+        detail: "whole volts".into(),
+    });
+    let run = run_of(&volts);
+    assert!(run.integrated.is_none() && run.exclusions[0].name == "voltage in V", "{:?}", run.exclusions);
+    for milliwatts in [3.0, 300_000.0] {
+        let notes = report(vec![made_up("yoro", "street", 1, |_| milliwatts)]).faults;
+        assert!(notes.iter().any(|note| note.name == "implausible power"), "{milliwatts}: {notes:?}");
+    }
+}
+
+#[test]
+fn two_equal_pairs_have_no_scatter() {
+    let pairs = |factor: f64| {
+        [1, 2].map(|repetition| {
+            let noise = 1.0 + factor * f64::from(repetition);
+            [
+                made_up("conventional", "street", repetition, |_| 500.0),
+                made_up("yoro", "street", repetition, move |_| 400.0 * noise),
+            ]
+        })
+    };
+    let same = report(pairs(0.0).concat());
+    assert!(same.to_text().contains("no scatter was seen"), "{}", same.to_text());
+    assert!(!same.to_markdown().contains("[-20.0, -20.0]"), "{}", same.to_markdown());
+    let text = report(pairs(0.01).concat()).to_text();
+    assert!(text.contains("power -18.8 % (406 mW instead of 500 mW, 95 % interval"), "{text}");
+}
+
+#[test]
+fn the_papers_estimate_is_as_coarse_as_a_percent() {
+    let mut capture = made_up("yoro", "street", 1, |_| 2000.0);
+    for sample in &mut capture.samples {
+        sample.level_percent = Some(if sample.time_s < 60.0 { 80.0 } else { 79.0 });
+    }
+    // One percent of 4000 mAh at 3.7 V in 100 s.
+    let by_level = run_of(&capture).by_level.unwrap();
+    near(by_level.step_milliwatts, 40.0 * 3.7 * 36.0, 1e-9);
+    near(by_level.milliwatts, by_level.step_milliwatts, 1e-9);
+    capture.info.device.capacity_mah = None;
+    assert_eq!(run_of(&capture).by_level, None);
+}
+
+#[test]
+fn what_makes_a_run_worthless() {
+    let whole = || made_up("yoro", "street", 1, |_| 400.0);
+    let fault = |kind: FaultKind| Fault { kind, at_s: Some(40.0), detail: "it was so".into() };
+    type Change = Box<dyn Fn(&mut Capture)>;
+    let with = |kind: FaultKind| -> Change { Box::new(move |c| c.info.faults.push(fault(kind))) };
+    let cases: Vec<(&str, bool, Change)> = vec![
+        (
+            "interrupted",
+            false,
+            Box::new(|c| c.info.outcome = Outcome::Interrupted { reason: "Ctrl-C".into() }),
+        ),
+        ("failed", false, Box::new(|c| c.info.outcome = Outcome::Failed { reason: "no start".into() })),
+        ("rebooted", false, with(FaultKind::Rebooted)),
+        ("application restarted", false, with(FaultKind::Restarted)),
+        ("too short", false, Box::new(|c| c.samples.truncate(60))),
+        ("plugged in", true, with(FaultKind::PluggedIn)),
+        ("plugged in", true, Box::new(|c| c.samples[50].plugged = Some(2))),
+        ("no current", true, Box::new(|c| c.samples.iter_mut().for_each(|s| s.current_ma = None))),
+        ("current missing", true, Box::new(|c| c.samples[..60].iter_mut().for_each(|s| s.current_ma = None))),
+        ("charging", true, Box::new(|c| c.samples.iter_mut().for_each(|s| s.current_ma = Some(100.0)))),
+    ];
+    for (name, power_only, change) in cases {
+        let mut capture = whole();
+        change(&mut capture);
+        let run = run_of(&capture);
+        assert!(
+            run.exclusions.iter().any(|e| e.name == name && e.power_only == power_only),
+            "{name}: {:?}",
+            run.exclusions
+        );
+        assert!(!run.values.contains_key(&Quantity::Power), "{name}");
+        assert_eq!(run.values.contains_key(&Quantity::Fps), power_only, "{name}");
+        let report = report(vec![capture]);
+        assert!(report.left_out.iter().any(|note| note.name == name), "{name}");
+    }
+    for kind in [
+        FaultKind::Disconnected,
+        FaultKind::CurrentInMilliamperes,
+        FaultKind::CurrentSign,
+        FaultKind::ClockJump,
+        FaultKind::DamagedLines,
+        FaultKind::MissingLines,
+        FaultKind::TooWarm,
+        FaultKind::NoCurrent,
+        FaultKind::VoltageInVolts,
+        FaultKind::ImplausiblePower,
+        FaultKind::NotPinned,
+        FaultKind::RefreshRate,
+    ] {
+        let mut capture = whole();
+        capture.info.faults.push(fault(kind));
+        assert_eq!(run_of(&capture).exclusions, [], "{kind:?}");
+        let report = report(vec![capture]);
+        let named =
+            report.faults.iter().any(|note| note.name == fault_name(kind) && note.detail.contains("at 40 s"));
+        assert!(named, "{kind:?}: {:?}", report.faults);
+    }
+}
+
+/// Five pairs of runs with the powers of `tests/vectors/inference.json`: SciPy's interval of the ratio comes out.
+#[test]
+fn changes_agree_with_scipy() {
+    #[derive(Deserialize)]
+    struct Vectors {
+        ratio: Vec<Ratio>,
+        blocks: Vec<BlocksVector>,
+    }
+    #[derive(Deserialize)]
+    struct Ratio {
+        a: Vec<f64>,
+        b: Vec<f64>,
+        ratio: f64,
+        interval: [f64; 2],
+    }
+    #[derive(Deserialize)]
+    struct BlocksVector {
+        groups: Vec<Vec<f64>>,
+        mean: f64,
+        interval: [f64; 2],
+    }
+    let vectors: Vectors =
+        serde_json::from_str(include_str!("../../metrics/vectors/inference.json")).unwrap();
+    for v in vectors.ratio {
+        let mut captures = Vec::new();
+        for (i, (a, b)) in v.a.iter().zip(&v.b).enumerate() {
+            captures.push(made_up("yoro", "street", i as u32 + 1, |_| *a));
+            captures.push(made_up("conventional", "street", i as u32 + 1, |_| *b));
+        }
+        let report = report(captures);
+        for scene in [Some("street"), None] {
+            let power = difference(&report, scene, Quantity::Power);
+            near(power.change, 100.0 * (v.ratio - 1.0), 1e-6);
+            let BlockInterval { interval, basis } = power.interval.unwrap();
+            assert_eq!((basis, power.pairs), (Basis::Repetitions, v.a.len()));
+            near(interval.low, 100.0 * (v.interval[0] - 1.0), 1e-6);
+            near(interval.high, 100.0 * (v.interval[1] - 1.0), 1e-6);
+        }
+        let same = difference(&report, None, Quantity::Fps);
+        assert_eq!((same.change, same.ours), (0.0, 60.0));
+    }
+    // Scenes as fixed blocks, as statsmodels has them; the third vector's numbers are logarithms of ratios here.
+    for v in vectors.blocks {
+        let mut captures = Vec::new();
+        for (scene, logs) in ["street", "atrium", "conference"].iter().zip(&v.groups) {
+            for (i, log) in logs.iter().enumerate() {
+                captures.push(made_up("yoro", scene, i as u32 + 1, |_| 500.0 * log.exp()));
+                captures.push(made_up("conventional", scene, i as u32 + 1, |_| 500.0));
+            }
+        }
+        let report = report(captures);
+        let power = difference(&report, None, Quantity::Power);
+        near(power.change, 100.0 * v.mean.exp_m1(), 1e-6);
+        let BlockInterval { interval, basis } = power.interval.unwrap();
+        assert_eq!(basis, Basis::Repetitions);
+        near(interval.low, 100.0 * v.interval[0].exp_m1(), 1e-6);
+        near(interval.high, 100.0 * v.interval[1].exp_m1(), 1e-6);
+    }
+}
+
+#[test]
+fn without_repetitions_there_is_no_interval() {
+    let pair = |scene: &str, power: f64| {
+        [made_up("conventional", scene, 1, |_| 500.0), made_up("yoro", scene, 1, move |_| power)]
+    };
+    let one = report(pair("street", 400.0).to_vec());
+    let power = difference(&one, None, Quantity::Power);
+    near(power.change, -20.0, 1e-9);
+    assert_eq!(power.interval, None);
+    assert!(one.to_text().contains("nothing was repeated, so there is no interval"), "{}", one.to_text());
+    assert!(one.means.iter().all(|mean| mean.interval.is_none()));
+
+    let scenes = report([pair("street", 400.0), pair("atrium", 350.0), pair("talk", 380.0)].concat());
+    assert_eq!(difference(&scenes, Some("street"), Quantity::Power).interval, None);
+    let BlockInterval { interval, basis } = difference(&scenes, None, Quantity::Power).interval.unwrap();
+    assert_eq!(basis, Basis::Blocks);
+    assert!(interval.low < -24.7 && interval.high > -24.7, "{interval:?}");
+    assert!(scenes.to_text().contains("intervals rest on the scenes"));
+    assert!(scenes.to_markdown().contains("†"));
+}
+
+#[test]
+fn pairs_need_a_partner_and_the_last_repetition_counts() {
+    let mut again = made_up("yoro", "street", 1, |_| 300.0);
+    again.info.started_unix_s += 500.0;
+    let captures = vec![
+        made_up("conventional", "street", 1, |_| 500.0),
+        made_up("yoro", "street", 1, |_| 450.0),
+        again,
+        made_up("yoro", "street", 2, |_| 400.0),
+    ];
+    let report = report(captures.clone());
+    let power = difference(&report, None, Quantity::Power);
+    assert_eq!(power.pairs, 1);
+    near(power.change, -40.0, 1e-9);
+    let names: Vec<&str> = report.left_out.iter().map(|note| note.name).collect();
+    assert_eq!(names, ["measured again", "no partner"]);
+    // The mean has the run without a partner, too.
+    let mean = report.means.iter().find(|m| m.method == "yoro" && m.quantity == Quantity::Power).unwrap();
+    assert_eq!((mean.sample.n, mean.sample.mean), (2, 350.0));
+
+    // The same folder twice adds nothing; another one with the same numbers is another repetition.
+    let set =
+        |captures: &[Capture]| captures.iter().cloned().map(|c| (PathBuf::new(), c)).collect::<Vec<_>>();
+    let pair = &captures[..2];
+    let twice = DeviceReport::new(&[set(pair), set(pair)], "conventional", &BTreeMap::new(), String::new());
+    assert_eq!(difference(&twice, None, Quantity::Power).pairs, 1);
+    let mut later = pair.to_vec();
+    later.iter_mut().for_each(|capture| capture.info.started_unix_s += 86_400.0);
+    let both = DeviceReport::new(&[set(pair), set(&later)], "conventional", &BTreeMap::new(), String::new());
+    assert_eq!(difference(&both, None, Quantity::Power).pairs, 2);
+}
+
+#[test]
+fn devices_are_averaged_but_never_with_simulated_ones() {
+    let on = |serial: &str, simulated: bool, ratio: f64| {
+        let change = |mut capture: Capture| {
+            capture.info.device.serial = serial.into();
+            capture.info.device.simulated = simulated;
+            capture
+        };
+        [
+            change(made_up("conventional", "street", 1, |_| 500.0)),
+            change(made_up("yoro", "street", 1, move |_| 500.0 * ratio)),
+        ]
+    };
+    let report = report([on("A", false, 0.5), on("B", false, 2.0), on("C", true, 0.1)].concat());
+    let names: Vec<&str> = report.devices.iter().map(|device| device.name.as_str()).collect();
+    assert_eq!(names, ["Maker Model 1 A", "Maker Model 1 B", "Maker Model 1 C (simulated)"]);
+    let over: Vec<&Difference> = report.differences.iter().filter(|d| d.device.is_none()).collect();
+    let power: Vec<&&Difference> = over.iter().filter(|d| d.quantity == Quantity::Power).collect();
+    assert_eq!(power.len(), 1, "one simulated device has no mean");
+    // Half and double cancel out.
+    near(power[0].change, 0.0, 1e-9);
+    assert!(report.to_html().unwrap().contains("partly simulated"));
+}
+
+#[test]
+fn whatever_was_replayed_says_so() {
+    let captures = ["street", "atrium"].map(|scene| {
+        [made_up("conventional", scene, 1, |_| 500.0), made_up("yoro", scene, 1, |t| 400.0 + t)]
+    });
+    let report = report(captures.concat());
+    let html = report.to_html().unwrap();
+    for (start, end) in
+        [("<caption>", "</caption>"), ("<figure ", "<svg"), ("<h1>", "</h1>"), ("<title>", "</title>")]
+    {
+        let parts: Vec<&str> =
+            html.split(start).skip(1).map(|part| part.split(end).next().unwrap()).collect();
+        assert!(!parts.is_empty(), "{start}");
+        for part in parts {
+            assert!(part.contains("simulated"), "{start}{part}");
+        }
+    }
+    // Each figure says so itself, too: it may be cut out.
+    let figures: Vec<&str> =
+        html.split("<svg").skip(1).map(|part| part.split("</svg>").next().unwrap()).collect();
+    assert!(figures.len() >= 6 && figures.iter().all(|svg| svg.contains("simulated")), "{}", figures.len());
+    let markdown = report.to_markdown();
+    for title in markdown.lines().filter(|line| line.starts_with("**") || line.starts_with('#')) {
+        assert!(title.to_lowercase().contains("simulated") || title == "## How to read this", "{title}");
+    }
+    assert!(report.to_text().contains("replayed logs"));
+    for foreign in ["http://", "https://", "<link", "url(", " src=\""] {
+        assert!(!html.contains(foreign), "{foreign}");
+    }
+}
+
+#[test]
+fn settings_under_one_name_must_be_the_same() {
+    let mut other = made_up("yoro", "street", 2, |_| 400.0);
+    other.info.settings.insert("render-scale".into(), "0.5".into());
+    let report = report(vec![made_up("yoro", "street", 1, |_| 400.0), other]);
+    let note = report.faults.iter().find(|note| note.name == "settings differ").unwrap();
+    assert!(note.detail.contains("defaults; render-scale=0.5"), "{note:?}");
+    assert!(report.to_text().contains("no run of conventional"), "{}", report.to_text());
+}
+
+#[test]
+fn markdown_rows_have_as_many_cells_as_columns() {
+    let captures = ["street", "talk"].map(|scene| {
+        let runs = |repetition: u32| {
+            let noise = f64::from(repetition);
+            [
+                made_up("conventional", scene, repetition, move |_| 500.0 + noise),
+                made_up("yoro-paper", scene, repetition, move |_| 400.0 - noise),
+                made_up("hybrid", scene, repetition, move |_| 450.0 + 2.0 * noise),
+            ]
+        };
+        [runs(1), runs(2)].concat()
+    });
+    let markdown = report(captures.concat()).to_markdown();
+    let mut cells = 0;
+    for line in markdown.lines() {
+        let bars = line.replace("\\|", "").matches('|').count();
+        assert!(bars == 0 || cells == 0 || bars == cells, "{line}");
+        cells = bars;
+    }
+    // The paper's power on Bistro, which the street stands for, and its mean over the scenes.
+    assert!(markdown.contains("*-26.7 %*") && markdown.contains("*-26.9 %*"), "{markdown}");
+    assert!(markdown.contains("*+149.6 %*") && markdown.contains("Meta Quest 3, the paper's"));
+}

@@ -1,0 +1,560 @@
+//! One run on a device: started, captured to its end over whatever happens, and stopped.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Duration;
+
+use indicatif::ProgressBar;
+
+use super::adb::{Device, DeviceError};
+use super::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
+use super::follow::{Event, Follower};
+use super::foreign::{Foreign, Subject};
+use super::phone::{self, PACKAGE};
+use super::pins::Pins;
+use super::plausible::MeanPower;
+use super::reading::{News, Reading};
+use crate::interrupt;
+use yoro_render::stereo::Method;
+use yoro_scenes::BUILTINS;
+use yoro_viewer::Settings;
+
+/// How long the application may take to load a scene and show it, in seconds.
+const START_PATIENCE_S: f64 = 180.0;
+/// After so many seconds without a line, one looks whether the application still runs.
+const SILENCE_S: f64 = 15.0;
+/// How long a lost device may stay away, in seconds.
+const LOST_PATIENCE_S: f64 = 300.0;
+/// How long Android may take to start, in seconds.
+const BOOT_PATIENCE_S: f64 = 180.0;
+/// How often the application is started again in one run.
+const RESTARTS: u32 = 3;
+/// The application runs on for so many seconds, so that the last second has its line.
+const MARGIN_S: f64 = 1.5;
+/// How often the kernel is asked for the voltage where the application has it in whole volts only, in seconds.
+const VOLTAGE_PERIOD_S: f64 = 5.0;
+/// The display's refresh rate may differ from the one that it is held at by this many Hz: 59.94 is 60.
+const REFRESH_TOLERANCE_HZ: f64 = 1.0;
+/// How often waits look around.
+const GLANCE: Duration = Duration::from_secs(1);
+
+/// Another application than this project's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Other {
+    /// Its package and process.
+    pub subject: Subject,
+    /// Its activity.
+    pub activity: String,
+}
+
+/// What a run shall be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// What runs in place of this project's application; of the settings only the scene's name counts then.
+    pub other: Option<Other>,
+    /// The experiment that it is part of.
+    pub experiment: Option<String>,
+    /// Name of the method in tables.
+    pub method: String,
+    /// Settings of the viewer, method and scene included.
+    pub settings: Settings,
+    /// From 1.
+    pub repetition: u32,
+    /// Place in the experiment, from 1.
+    pub order: u32,
+    /// Seconds without warm-up.
+    pub duration_s: f64,
+    /// Seconds at the begin that count for nothing.
+    pub warm_up_s: f64,
+    /// Warmest that the battery should be at the start, in degrees Celsius.
+    pub warmest_celsius: Option<f64>,
+    /// Refresh rate that the display is held at, in Hz.
+    pub refresh_hz: Option<f64>,
+    /// Whether to refuse a device that is plugged in.
+    pub power: bool,
+}
+
+impl Plan {
+    /// The package of the application.
+    pub fn package(&self) -> &str {
+        self.other.as_ref().map_or(PACKAGE, |other| &other.subject.package)
+    }
+
+    /// Seconds from the first frame to the end.
+    pub fn seconds(&self) -> f64 {
+        self.warm_up_s + self.duration_s
+    }
+
+    /// The settings other than the defaults, without those that each run has.
+    pub fn own_settings(&self) -> BTreeMap<String, String> {
+        if let Some(other) = &self.other {
+            return BTreeMap::from([("package".into(), other.subject.package.clone())]);
+        }
+        let defaults = phone::pairs(&Settings::default());
+        let of_each = ["scene", "method", "duration", "auto-exit", "run"];
+        let pairs = phone::pairs(&self.settings).into_iter();
+        pairs.filter(|pair| !defaults.contains(pair) && !of_each.contains(&pair.0.as_str())).collect()
+    }
+
+    /// What a capture of the run says, before anything has happened.
+    pub fn info(&self, found: &Found, started_unix_s: f64, start_celsius: Option<f64>) -> RunInfo {
+        RunInfo {
+            version: VERSION,
+            device: found.info.clone(),
+            experiment: self.experiment.clone(),
+            method: self.method.clone(),
+            scene: self.settings.scene.clone(),
+            repetition: self.repetition,
+            order: self.order,
+            settings: self.own_settings(),
+            started_unix_s,
+            duration_s: self.duration_s,
+            warm_up_s: self.warm_up_s,
+            start_celsius,
+            application: Some(found.application.clone()),
+            outcome: Outcome::Complete,
+            faults: Vec::new(),
+        }
+    }
+}
+
+/// The device that runs are made on, as it was found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// What it is.
+    pub info: DeviceInfo,
+    /// Version of the application on it.
+    pub application: String,
+}
+
+/// Looks whether runs of an application can be made on a device.
+///
+/// # Errors
+/// [`DeviceError`]: also where the application is not there, the battery saver is on, or the screen is locked so that
+/// only its owner can unlock it.
+pub fn look(device: &dyn Device, package: &str) -> Result<Found, DeviceError> {
+    let serial = || device.serial().to_owned();
+    let application = phone::version(device, package)?.ok_or_else(|| match package {
+        PACKAGE => DeviceError::NotInstalled { serial: serial() },
+        package => DeviceError::NoPackage { serial: serial(), package: package.into() },
+    })?;
+    if phone::saves_battery(device)? {
+        return Err(DeviceError::BatterySaver { serial: serial() });
+    }
+    let keyguard = phone::keyguard(device)?;
+    if keyguard.secure && keyguard.showing {
+        return Err(DeviceError::Locked { serial: serial() });
+    }
+    Ok(Found { info: phone::info(device)?, application })
+}
+
+/// Refuses a device whose battery does not say what the device takes: it is plugged in, or its values were set by hand.
+///
+/// # Errors
+/// [`DeviceError::PluggedIn`] and [`DeviceError::BatteryHeld`] with the way out.
+pub fn refuse_charger(device: &dyn Device) -> Result<(), DeviceError> {
+    let battery = phone::battery(device)?;
+    let serial = device.serial().to_owned();
+    if battery.held {
+        return Err(DeviceError::BatteryHeld { serial });
+    }
+    if battery.plugged() {
+        return Err(DeviceError::PluggedIn { serial, address: phone::wifi_address(device) });
+    }
+    Ok(())
+}
+
+/// Makes a run and captures it into a folder. The bar's position is set to the seconds of the run, its message to what
+/// happens. A run that fails is a capture, too: its outcome says so.
+///
+/// # Errors
+/// [`DeviceError`], where there is no capture, or no use in going on.
+pub fn capture(
+    device: &dyn Device,
+    found: &Found,
+    plan: &Plan,
+    pins: &mut Pins,
+    folder: &Path,
+    bar: &ProgressBar,
+) -> Result<RunInfo, DeviceError> {
+    phone::wake(device);
+    let battery = phone::battery(device)?;
+    if plan.power && (battery.plugged() || battery.held) {
+        refuse_charger(device)?;
+    }
+    pins.renew(device)?;
+    let started_unix_s = device.now();
+    let info = plan.info(found, started_unix_s, battery.celsius);
+    let subject = plan.other.as_ref().map(|other| other.subject.clone());
+    let label = format!("r{}-{:x}", plan.order, (started_unix_s * 1e3) as u64);
+    let mut session = Session {
+        device,
+        plan,
+        bar,
+        follower: Follower::new(device, false)?,
+        reading: Reading::new(subject.is_none().then(|| label.clone())),
+        foreign: subject.map(|subject| Foreign::new(device, subject)).transpose()?,
+        label,
+        writer: Writer::create(folder, info)?,
+        own_faults: Vec::new(),
+        restarts: 0,
+        heard_s: started_unix_s,
+        silent_since_s: started_unix_s,
+        others_since_s: None,
+        delay_s: 0.0,
+        has_ended: false,
+        kernel: KernelVoltage::default(),
+        power: MeanPower::default(),
+        refresh_is_told: false,
+    };
+    for refused in pins.refused() {
+        session.own_faults.push(Fault { kind: FaultKind::NotPinned, at_s: None, detail: refused.clone() });
+    }
+    session.renew_faults()?;
+    let (warmest, celsius) = (plan.warmest_celsius, battery.celsius);
+    if let (Some(warmest), Some(celsius)) = (warmest, celsius)
+        && celsius > warmest
+    {
+        let detail =
+            format!("the battery had {celsius:.1} C at the start, {warmest:.1} C were wanted at most");
+        session.fault(FaultKind::TooWarm, 0.0, detail)?;
+    }
+    let outcome = match session.start() {
+        // Its log ends, too, and when it is back the application is started again.
+        Err(error) if !error.is_lost() => Err(error),
+        _ => session.follow(),
+    };
+    let stopped = phone::stop(device, plan.package());
+    session.own_faults.extend(session.power.fault());
+    match outcome {
+        Ok(outcome) => {
+            session.renew_faults()?;
+            let info = session.writer.finish(outcome)?;
+            // A device that has gone at the end has nothing that could run on.
+            if let Err(error) = stopped {
+                log::debug!("{error}");
+            }
+            Ok(info)
+        }
+        Err(error) => {
+            let outcome = match &error {
+                DeviceError::Refused { .. } | DeviceError::NotInstalled { .. } => {
+                    Outcome::Failed { reason: error.to_string() }
+                }
+                _ => Outcome::Interrupted { reason: error.to_string() },
+            };
+            // Where the disk is full, that is what counts, not that it still is.
+            let noted = session.renew_faults().and_then(|()| Ok(session.writer.finish(outcome)?));
+            if let Err(again) = noted {
+                log::debug!("{again}");
+            }
+            Err(error)
+        }
+    }
+}
+
+/// A run that is being captured.
+struct Session<'a> {
+    device: &'a dyn Device,
+    plan: &'a Plan,
+    bar: &'a ProgressBar,
+    follower: Follower<'a>,
+    reading: Reading,
+    /// Of another application.
+    foreign: Option<Foreign<'a>>,
+    label: String,
+    writer: Writer,
+    /// What went wrong between this computer and the device; the rest is in the log.
+    own_faults: Vec<Fault>,
+    restarts: u32,
+    /// When the last second came.
+    heard_s: f64,
+    /// Since when nothing has come, after the last second or the last start.
+    silent_since_s: f64,
+    /// Since when all lines were those of other processes than the application's.
+    others_since_s: Option<f64>,
+    /// How late lines come that the device has kept while it was gone.
+    delay_s: f64,
+    /// Whether the application has logged its summary.
+    has_ended: bool,
+    kernel: KernelVoltage,
+    power: MeanPower,
+    refresh_is_told: bool,
+}
+
+/// The voltage as the kernel has it, for a device that gives it in whole volts.
+#[derive(Clone, Copy, Debug)]
+struct KernelVoltage {
+    millivolts: Option<f64>,
+    /// When it was asked for.
+    asked_s: f64,
+    is_told: bool,
+}
+
+impl Default for KernelVoltage {
+    fn default() -> KernelVoltage {
+        KernelVoltage { millivolts: None, asked_s: f64::NEG_INFINITY, is_told: false }
+    }
+}
+
+impl Session<'_> {
+    /// Starts the application for what is left of the run.
+    fn start(&mut self) -> Result<(), DeviceError> {
+        // Time goes on while the application does not run.
+        let passed_s = match self.reading.samples() {
+            0 => 0.0,
+            _ => self.reading.time_s() + self.device.now() - self.heard_s,
+        };
+        self.others_since_s = None;
+        if let Some(other) = &self.plan.other {
+            self.bar.set_message("starting");
+            self.silent_since_s = self.device.now();
+            return phone::start_other(self.device, &other.subject.package, &other.activity);
+        }
+        let left_s = self.plan.seconds() - passed_s + MARGIN_S;
+        let settings = Settings {
+            duration: Some(left_s.max(MARGIN_S) as f32),
+            auto_exit: true,
+            run: Some(self.label.clone()),
+            ..self.plan.settings.clone()
+        };
+        self.bar.set_message("starting");
+        self.has_ended = false;
+        self.silent_since_s = self.device.now();
+        phone::start(self.device, &settings)
+    }
+
+    fn follow(&mut self) -> Result<Outcome, DeviceError> {
+        loop {
+            if interrupt::requested() {
+                return Ok(Outcome::Interrupted { reason: "the user has stopped it".into() });
+            }
+            match self.follower.next(GLANCE)? {
+                Event::Line(line) => {
+                    if let Some(outcome) = self.line(&line)? {
+                        return Ok(outcome);
+                    }
+                    // Where others go on to log, it never is quiet.
+                    let alone =
+                        self.others_since_s.is_some_and(|since| self.device.now() - since >= SILENCE_S);
+                    if alone && let Some(outcome) = self.quiet()? {
+                        return Ok(outcome);
+                    }
+                }
+                Event::Lost => {
+                    self.bar.set_message("lost: connect it again");
+                    self.bar.suspend(|| log::warn!("{} is lost; waiting for it", self.device.serial()));
+                }
+                Event::Back { seconds, rebooted } => self.back(seconds, rebooted)?,
+                Event::Quiet => {
+                    self.delay_s = 0.0;
+                    if let Some(outcome) = self.quiet()? {
+                        return Ok(outcome);
+                    }
+                }
+            }
+        }
+    }
+
+    fn line(&mut self, line: &str) -> Result<Option<Outcome>, DeviceError> {
+        self.writer.log(line)?;
+        let now = self.device.now();
+        let passed_s = now - self.heard_s + self.delay_s;
+        let damaged = self.reading.damaged();
+        let is_its = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.is_its(line))?;
+        let news = if is_its { self.reading.line(line, Some(passed_s)) } else { News::Other };
+        self.others_since_s = if is_its { None } else { self.others_since_s.or(Some(now)) };
+        let outcome = match news {
+            News::Sample(mut sample) => {
+                (self.heard_s, self.silent_since_s) = (now, now);
+                match &mut self.foreign {
+                    Some(foreign) => foreign.complete(&mut sample, &mut self.reading)?,
+                    None => self.complete(&mut sample)?,
+                }
+                self.power.add(&sample);
+                self.compare_refresh(&sample)?;
+                self.writer.sample(&sample)?;
+                self.show(&sample);
+                self.stranger(&sample)
+            }
+            News::Summary => {
+                self.has_ended = self.reading.samples() > 0;
+                None
+            }
+            News::Damaged(why) => {
+                self.bar.suspend(|| log::warn!("{}: a line is left out: {why}", self.device.serial()));
+                None
+            }
+            News::Other => None,
+        };
+        if damaged != self.reading.damaged() || self.reading.faults().len() != self.reading_faults() {
+            self.renew_faults()?;
+        }
+        let is_over = self.reading.time_s() >= self.plan.seconds() - MARGIN_S;
+        let has_ended = self.has_ended || self.foreign.is_some();
+        Ok(outcome.or_else(|| (is_over && has_ended).then_some(Outcome::Complete)))
+    }
+
+    /// Takes the kernel's voltage in place of one in whole volts.
+    fn complete(&mut self, sample: &mut Sample) -> Result<(), DeviceError> {
+        if sample.voltage_mv.is_some() || !self.reading.has_whole_volts() {
+            return Ok(());
+        }
+        let now = self.device.now();
+        if now - self.kernel.asked_s >= VOLTAGE_PERIOD_S {
+            self.kernel.asked_s = now;
+            match phone::kernel_battery(self.device) {
+                Ok(battery) => self.kernel.millivolts = battery.voltage_mv,
+                // The log says so, too.
+                Err(error) if error.is_lost() => {}
+                Err(error) => return Err(error),
+            }
+            if !std::mem::replace(&mut self.kernel.is_told, true) {
+                let detail = match self.kernel.millivolts {
+                    Some(_) => format!("the voltage is the kernel's, asked every {VOLTAGE_PERIOD_S:.0} s"),
+                    None => "the kernel's voltage may not be read either: power is left out".into(),
+                };
+                self.fault(FaultKind::VoltageInVolts, sample.time_s, detail)?;
+            }
+        }
+        sample.voltage_mv = self.kernel.millivolts;
+        Ok(())
+    }
+
+    /// What the display does, against what it is held at: settings that are taken need not have an effect.
+    fn compare_refresh(&mut self, sample: &Sample) -> Result<(), DeviceError> {
+        let (Some(wanted), Some(hz)) = (self.plan.refresh_hz, sample.refresh_hz) else { return Ok(()) };
+        let is_wrong = (hz - wanted).abs() > REFRESH_TOLERANCE_HZ && sample.time_s >= self.plan.warm_up_s;
+        if !is_wrong || std::mem::replace(&mut self.refresh_is_told, true) {
+            return Ok(());
+        }
+        let detail = format!("the display runs at {hz:.0} Hz, {wanted} Hz were asked for");
+        self.fault(FaultKind::RefreshRate, sample.time_s, detail)
+    }
+
+    /// What the device shows is not what was asked for: by a tap, or because it cannot.
+    fn stranger(&self, sample: &Sample) -> Option<Outcome> {
+        let settings = &self.plan.settings;
+        let (method, scene) = self.reading.methods().last()?;
+        let failed = |what: &str, shown: &str, wanted: &str| {
+            let reason =
+                format!("the device showed the {what} {shown} in place of {wanted}: its log says why");
+            Some(Outcome::Failed { reason })
+        };
+        if method != settings.method.name() {
+            return failed("method", method, settings.method.name());
+        }
+        if BUILTINS.iter().any(|known| known.name == settings.scene) && *scene != settings.scene {
+            return failed("scene", scene, &settings.scene);
+        }
+        let wanted = settings.pipeline.name();
+        match sample.other.get("pipeline") {
+            Some(pipeline) if settings.method == Method::Yoro && pipeline != wanted => {
+                failed("pipeline", pipeline, wanted)
+            }
+            _ => None,
+        }
+    }
+
+    fn show(&self, sample: &Sample) {
+        let number =
+            |value: Option<f64>, unit: &str| value.map_or(String::new(), |v| format!(" {v:.1} {unit}"));
+        self.bar.set_position((sample.time_s as u64).min(self.plan.seconds() as u64));
+        self.bar.set_message(format!(
+            "{}, {}:{}{}{}",
+            self.plan.method,
+            self.plan.settings.scene,
+            number(sample.fps, "FPS"),
+            number(sample.current_ma, "mA"),
+            number(sample.battery_celsius, "C"),
+        ));
+    }
+
+    fn back(&mut self, seconds: f64, rebooted: bool) -> Result<(), DeviceError> {
+        let at_s = self.reading.time_s();
+        (self.delay_s, self.others_since_s) = (seconds, None);
+        self.fault(FaultKind::Disconnected, at_s, format!("lost for {seconds:.0} s"))?;
+        if rebooted {
+            self.fault(FaultKind::Rebooted, at_s, "the device was started anew, and its log with it".into())?;
+        }
+        Ok(())
+    }
+
+    /// Nothing has come for a while.
+    fn quiet(&mut self) -> Result<Option<Outcome>, DeviceError> {
+        if let Some(seconds) = self.follower.lost_for() {
+            let reason =
+                format!("{} was lost and did not come back within {seconds:.0} s", self.device.serial());
+            return Ok((seconds > LOST_PATIENCE_S).then_some(Outcome::Interrupted { reason }));
+        }
+        let silent_s = self.device.now() - self.silent_since_s;
+        if silent_s < SILENCE_S {
+            return Ok(None);
+        }
+        let running = match phone::processes(self.device, self.plan.package()) {
+            // Mostly the log ends, too; but adb may wait for the device without a word.
+            Err(error) if error.is_lost() => {
+                let outcome = Outcome::Interrupted { reason: error.to_string() };
+                return Ok((silent_s > LOST_PATIENCE_S).then_some(outcome));
+            }
+            answer => !answer?.is_empty(),
+        };
+        if running {
+            let reason = match &self.foreign {
+                Some(foreign) if silent_s > START_PATIENCE_S => foreign.silence(),
+                _ => format!(
+                    "the application has said nothing for {silent_s:.0} s: the screen may be off, or something else in \
+                     front"
+                ),
+            };
+            return Ok((silent_s > START_PATIENCE_S).then_some(Outcome::Failed { reason }));
+        }
+        // The application is gone, and with it what it might have said.
+        if self.reading.time_s() >= self.plan.seconds() - MARGIN_S {
+            return Ok(Some(Outcome::Complete));
+        }
+        self.restarts += 1;
+        if self.foreign.is_some() {
+            let detail = "the application had ended and was started anew".into();
+            self.fault(FaultKind::Restarted, self.reading.time_s(), detail)?;
+        }
+        if self.restarts > RESTARTS {
+            let reason = format!(
+                "the application ended {RESTARTS} times before its time: its last words are in the log"
+            );
+            return Ok(Some(Outcome::Failed { reason }));
+        }
+        match self.await_boot().and_then(|()| self.start()) {
+            Err(error) if error.is_lost() => Ok(None),
+            done => done.map(|()| None),
+        }
+    }
+
+    /// Waits until Android has started.
+    fn await_boot(&self) -> Result<(), DeviceError> {
+        let begin = self.device.now();
+        while self.device.now() - begin < BOOT_PATIENCE_S && !interrupt::requested() {
+            if self.device.shell(&["getprop", "sys.boot_completed"])?.trim() == "1" {
+                break;
+            }
+            self.device.sleep(GLANCE);
+        }
+        phone::wake(self.device);
+        Ok(())
+    }
+
+    fn fault(&mut self, kind: FaultKind, at_s: f64, detail: String) -> Result<(), DeviceError> {
+        self.own_faults.push(Fault { kind, at_s: Some(at_s), detail });
+        self.renew_faults()
+    }
+
+    /// How many faults of the log stand in the capture.
+    fn reading_faults(&self) -> usize {
+        self.writer.info().faults.len() - self.own_faults.len()
+    }
+
+    fn renew_faults(&mut self) -> Result<(), DeviceError> {
+        let faults = self.own_faults.iter().cloned().chain(self.reading.faults()).collect();
+        Ok(self.writer.change(|info| info.faults = faults)?)
+    }
+}

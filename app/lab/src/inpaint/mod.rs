@@ -1,0 +1,60 @@
+//! Patchers: what fills the holes of a reprojected image, side by side.
+//!
+//! A synthesis pipeline fills its own holes; these fill any reprojected image, so that they can be compared on the
+//! same one. A patcher fills every hole and changes no other pixel.
+//!
+//! | patcher | after | runs on |
+//! |---|---|---|
+//! | [`PatcherKind::Paper`] | Algorithm 3 as corrected | GPU |
+//! | [`PatcherKind::Gather`] | the fill of [`yoro::synthesis::Gather`] | GPU |
+//! | [`PatcherKind::Median`] | Noori et al.: median of the valid ones of 5x5 neighbours | GPU |
+//! | [`PatcherKind::Xiao`] | Xiao et al. 2022: background filter of 29x29 pixels | GPU |
+//! | [`PatcherKind::Telea`] | Telea 2004: fast marching | CPU, holes in parallel |
+//! | [`PatcherKind::NavierStokes`] | Bertalmio et al. 2001, in fast marching order | CPU, holes in parallel |
+//! | [`PatcherKind::Neural`] | a small pix2pix-style generator from an ONNX file | CPU, rten's threads |
+
+mod march;
+#[cfg(feature = "neural")]
+mod neural;
+mod patcher;
+#[cfg(test)]
+mod reference;
+mod screen;
+#[cfg(test)]
+mod tests;
+
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use yoro::gl::Context;
+
+pub use patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID};
+
+/// Settings of all patchers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PatcherOptions {
+    /// ONNX file of the neural patcher; the built-in model without one.
+    pub model: Option<PathBuf>,
+}
+
+/// Makes a patcher: compiles its shaders or loads its model.
+///
+/// # Errors
+/// [`InpaintError`] when the driver refuses a shader or the model does not fit.
+pub fn create(
+    gl: &Rc<Context>,
+    kind: PatcherKind,
+    #[cfg_attr(not(feature = "neural"), expect(unused_variables))] options: &PatcherOptions,
+) -> Result<Box<dyn Patcher>, InpaintError> {
+    Ok(match kind {
+        PatcherKind::Paper | PatcherKind::Gather | PatcherKind::Median | PatcherKind::Xiao => {
+            Box::new(screen::Screen::new(gl, kind)?)
+        }
+        PatcherKind::Telea => Box::new(march::March::new(march::Rule::Telea)),
+        PatcherKind::NavierStokes => Box::new(march::March::new(march::Rule::NavierStokes)),
+        #[cfg(feature = "neural")]
+        PatcherKind::Neural => Box::new(neural::Neural::new(options.model.as_deref())?),
+        #[cfg(not(feature = "neural"))]
+        PatcherKind::Neural => return Err(InpaintError::NotBuilt),
+    })
+}

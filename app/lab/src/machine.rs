@@ -1,0 +1,33 @@
+//! What a measurement says of itself: machine, program, settings.
+
+use serde::{Deserialize, Serialize};
+
+/// Where and how a run took place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Model name of the processor.
+    pub cpu: String,
+    /// Logical processors in use.
+    pub cores: usize,
+    /// Operating system.
+    pub os: String,
+    /// `GL_RENDERER`.
+    pub gl_renderer: String,
+    /// `GL_VERSION`.
+    pub gl_version: String,
+    /// Version of yoro, with the commit if known.
+    pub yoro: String,
+    /// Date and time, ISO 8601.
+    pub date: String,
+    /// The command that repeats the run.
+    pub command: String,
+}
+
+/// One setting of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    /// Its name, with the unit.
+    pub name: String,
+    /// Its value.
+    pub value: String,
+}

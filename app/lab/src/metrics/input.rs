@@ -1,0 +1,71 @@
+//! What is compared, and what cannot be.
+
+use image::RgbImage;
+
+/// Why two images could not be compared.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MetricsError {
+    /// The sizes differ.
+    #[error("the two images differ in size ({}x{} and {}x{}): compare images of one size", a.0, a.1, b.0, b.1)]
+    SizesDiffer {
+        /// Size of the first in pixels.
+        a: (u32, u32),
+        /// Size of the second in pixels.
+        b: (u32, u32),
+    },
+    /// There is less image than the window of SSIM needs.
+    #[error("an image of {width}x{height} pixels is too small: SSIM needs at least {window}x{window}")]
+    TooSmall {
+        /// In pixels.
+        width: u32,
+        /// In pixels.
+        height: u32,
+        /// Width of the window in pixels.
+        window: u32,
+    },
+    /// The mask belongs to another image.
+    #[error("the mask has {mask} pixels and the images have {image}: give the mask of these images")]
+    MaskSize {
+        /// Pixels of the mask.
+        mask: usize,
+        /// Pixels of an image.
+        image: usize,
+    },
+}
+
+/// What of an image is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channels {
+    /// Red, green and blue: PSNR of the error over all three, SSIM as the mean of three.
+    Rgb,
+    /// Luma of ITU-R BT.601, not rounded: .299 R + .587 G + .114 B.
+    Luma,
+}
+
+impl Channels {
+    /// Each plane as weights of red, green and blue.
+    pub(super) fn planes(self) -> &'static [[f64; 3]] {
+        match self {
+            Channels::Rgb => &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            Channels::Luma => &[[0.299, 0.587, 0.114]],
+        }
+    }
+}
+
+/// Whether two images can be compared at all.
+pub(super) fn check_sizes(a: &RgbImage, b: &RgbImage) -> Result<(), MetricsError> {
+    if a.dimensions() != b.dimensions() {
+        return Err(MetricsError::SizesDiffer { a: a.dimensions(), b: b.dimensions() });
+    }
+    Ok(())
+}
+
+/// Whether a mask belongs to an image.
+pub(super) fn check_mask(image: &RgbImage, mask: &[bool]) -> Result<(), MetricsError> {
+    let pixels = image.width() as usize * image.height() as usize;
+    if mask.len() != pixels {
+        return Err(MetricsError::MaskSize { mask: mask.len(), image: pixels });
+    }
+    Ok(())
+}

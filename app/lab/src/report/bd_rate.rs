@@ -1,0 +1,160 @@
+//! Bjøntegaard's measures of the distance between two rate-distortion curves.
+//!
+//! Source: G. Bjøntegaard, "Calculation of average PSNR differences between RD-curves", VCEG-M33, 2001. A cubic
+//! through the points (least squares for more than four) of the logarithm of the rate over the quality is
+//! integrated over the qualities that both curves reach.
+
+/// The mean difference of rates at equal quality.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BdRate {
+    /// Rate of the tested curve less that of the anchor, as a share of the anchor's: -0.2 is 20 % less.
+    pub share: f64,
+    /// The qualities over which it is the mean.
+    pub quality: [f64; 2],
+    /// How much of the range of the anchor's qualities that is, 0 to 1.
+    pub overlap: f64,
+}
+
+/// Mean difference of the rate of `test` against `anchor`. Points are (rate, quality), rate above 0, in any order.
+/// `None` with fewer than four points, or when the curves have no quality in common: then there is no rate at which
+/// they would be equal.
+pub fn bd_rate(anchor: &[(f64, f64)], test: &[(f64, f64)]) -> Option<BdRate> {
+    let (a, b) = (Curve::fit(anchor)?, Curve::fit(test)?);
+    let (low, high) = (a.low.max(b.low), a.high.min(b.high));
+    if high - low <= 1e-9 {
+        return None;
+    }
+    let mean = (b.integral(low, high) - a.integral(low, high)) / (high - low);
+    Some(BdRate {
+        share: 10f64.powf(mean) - 1.0,
+        quality: [low, high],
+        overlap: (high - low) / (a.high - a.low),
+    })
+}
+
+/// Logarithm of the rate as a cubic of the quality.
+struct Curve {
+    /// Coefficients of 1, t, t², t³ with t = quality - low.
+    coefficients: [f64; 4],
+    low: f64,
+    high: f64,
+}
+
+impl Curve {
+    fn fit(points: &[(f64, f64)]) -> Option<Curve> {
+        let usable = |p: &&(f64, f64)| p.0 > 0.0 && p.0.is_finite() && p.1.is_finite();
+        let points: Vec<(f64, f64)> = points.iter().filter(usable).map(|p| (p.1, p.0.log10())).collect();
+        let low = points.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
+        let high = points.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
+        if points.len() < 4 || high <= low {
+            return None;
+        }
+        // Normal equations; counted from the lowest quality and in its range they are well conditioned.
+        let range = high - low;
+        let mut system = [[0.0; 5]; 4];
+        for (quality, rate) in points {
+            let t = (quality - low) / range;
+            let powers = [1.0, t, t * t, t * t * t];
+            for (row, power) in system.iter_mut().zip(powers) {
+                for (entry, other) in row.iter_mut().zip(powers) {
+                    *entry += power * other;
+                }
+                row[4] += power * rate;
+            }
+        }
+        let mut coefficients = solve(system)?;
+        for (power, coefficient) in coefficients.iter_mut().enumerate() {
+            *coefficient /= range.powi(power as i32);
+        }
+        Some(Curve { coefficients, low, high })
+    }
+
+    fn integral(&self, from: f64, to: f64) -> f64 {
+        let primitive = |quality: f64| -> f64 {
+            let t = quality - self.low;
+            let terms = self.coefficients.iter().enumerate();
+            terms.map(|(power, c)| c * t.powi(power as i32 + 1) / (power + 1) as f64).sum()
+        };
+        primitive(to) - primitive(from)
+    }
+}
+
+/// Gaussian elimination with partial pivoting; the last column is the right-hand side. `None` when singular.
+fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
+    for column in 0..4 {
+        let pivot = (column..4).max_by(|a, b| m[*a][column].abs().total_cmp(&m[*b][column].abs()))?;
+        m.swap(column, pivot);
+        if m[column][column].abs() < 1e-12 {
+            return None;
+        }
+        for row in 0..4 {
+            if row != column {
+                let pivot = m[column];
+                let factor = m[row][column] / pivot[column];
+                for (entry, above) in m[row].iter_mut().zip(pivot) {
+                    *entry -= factor * above;
+                }
+            }
+        }
+    }
+    Some(std::array::from_fn(|i| m[i][4] / m[i][i]))
+}
+
+/// Offset and slope of the straight line of least squares; `None` with fewer than two different x.
+pub fn line_through(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let n = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
+    let (xx, xy) = points
+        .iter()
+        .fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - x) * (p.0 - x), xy + (p.0 - x) * (p.1 - y)));
+    (xx > 0.0).then(|| (y - xy / xx * x, xy / xx))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The points by which implementations of the measure are commonly checked, and NumPy's polyfit and polyint on
+    /// them.
+    #[test]
+    fn agrees_with_known_values() {
+        let anchor = [(686.76, 40.28), (309.58, 37.18), (157.11, 34.24), (85.95, 31.42)];
+        let test = [(893.34, 40.39), (407.8, 37.21), (204.93, 34.17), (112.75, 31.24)];
+        let result = bd_rate(&anchor, &test).unwrap();
+        assert!((result.share - 0.3139737405491).abs() < 1e-9, "{result:?}");
+        assert_eq!(result.quality, [31.42, 40.28]);
+        let anchor =
+            [(9487.76, 40.037), (4593.60, 38.615), (2486.44, 36.845), (1358.24, 34.851), (700.1, 32.5)];
+        let test =
+            [(9787.80, 40.121), (4469.00, 38.651), (2451.52, 36.970), (1356.24, 34.987), (650.4, 32.3)];
+        let result = bd_rate(&anchor, &test).unwrap();
+        assert!((result.share + 0.0375163067734).abs() < 1e-9, "least squares of five points: {result:?}");
+    }
+
+    #[test]
+    fn a_constant_share_of_the_rate_comes_out_as_it_is() {
+        let anchor = [(100.0, 30.0), (210.0, 33.0), (450.0, 36.5), (1000.0, 39.0)];
+        let test = anchor.map(|(rate, quality)| (rate * 0.604, quality));
+        let result = bd_rate(&anchor, &test).unwrap();
+        assert!((result.share + 0.396).abs() < 1e-9 && (result.overlap - 1.0).abs() < 1e-9);
+        let shuffled = [anchor[2], anchor[0], anchor[3], anchor[1]];
+        assert!(bd_rate(&shuffled, &anchor).unwrap().share.abs() < 1e-9);
+    }
+
+    #[test]
+    fn curves_without_a_common_quality_have_none() {
+        let anchor = [(100.0, 30.0), (200.0, 33.0), (400.0, 36.0), (800.0, 39.0)];
+        let worse = anchor.map(|(rate, quality)| (rate, quality - 9.5));
+        assert_eq!(bd_rate(&anchor, &worse), None);
+        assert_eq!(bd_rate(&anchor[..3], &anchor), None);
+        assert_eq!(bd_rate(&[(100.0, 30.0); 4], &anchor), None);
+    }
+
+    #[test]
+    fn a_line_is_found_again() {
+        let points = [(1.0, 5.0), (2.0, 7.0), (4.0, 11.0)];
+        let (offset, slope) = line_through(&points).unwrap();
+        assert!((offset - 3.0).abs() < 1e-12 && (slope - 2.0).abs() < 1e-12);
+        assert_eq!(line_through(&points[..1]), None);
+    }
+}

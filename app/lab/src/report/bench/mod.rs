@@ -1,0 +1,273 @@
+//! The report of `yoro bench`: result files as one self-contained page, and as Markdown.
+
+mod data;
+mod sections;
+#[cfg(test)]
+mod tests;
+
+use std::fmt::Write as _;
+use std::path::{Component, Path, PathBuf};
+
+use minijinja::context;
+
+use crate::bench::{Results, picture_folder};
+use crate::picture;
+use crate::report::error::ReportError;
+use crate::report::page::{self, PICTURE_BUDGET, Pictures};
+use crate::report::run::{QUALITY_METHOD, Viewpoint};
+use data::Suite;
+use sections::Section;
+use yoro::eyes::Eye;
+use yoro_files as files;
+
+/// Heading of the page.
+const TITLE: &str = "yoro: every method side by side";
+
+/// Result files, put together.
+pub struct BenchReport {
+    files: Vec<Results>,
+    suites: Vec<Suite>,
+    pictures: Vec<Pictured>,
+}
+
+/// The pictures that a run saved of a setting.
+struct Pictured {
+    name: String,
+    note: String,
+    viewpoint: Viewpoint,
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The page.
+    pub page: PathBuf,
+    /// All tables, in the page's order.
+    pub results: PathBuf,
+    /// The first table of each experiment, for a README.
+    pub summary: PathBuf,
+    /// The figures, as SVG.
+    pub figures: Vec<PathBuf>,
+}
+
+impl BenchReport {
+    /// Puts files together and loads the pictures beside them.
+    ///
+    /// # Errors
+    /// [`ReportError::Empty`] for a file without a finished round; [`ReportError::PictureFile`] for a damaged
+    /// picture.
+    pub fn new(files: Vec<Results>) -> Result<BenchReport, ReportError> {
+        if let Some(empty) = files.iter().find(|file| file.measurements().next().is_none()) {
+            return Err(ReportError::Empty { path: empty.path.clone() });
+        }
+        let suites = data::suites(&files);
+        let mut pictures = Vec::new();
+        for file in &files {
+            pictures.extend(load_pictures(file)?);
+        }
+        Ok(BenchReport { files, suites, pictures })
+    }
+
+    /// The self-contained page.
+    ///
+    /// # Errors
+    /// [`ReportError`] when a figure or a picture cannot be made.
+    pub fn to_html(&self) -> Result<String, ReportError> {
+        let viewpoints: Vec<&[Viewpoint]> =
+            self.pictures.iter().map(|pictured| std::slice::from_ref(&pictured.viewpoint)).collect();
+        let pictures = Pictures::encode(&viewpoints, PICTURE_BUDGET)?;
+        let sections = sections::sections(&self.suites);
+        let section = |(suite, section): &(&Suite, Section)| -> Result<minijinja::Value, ReportError> {
+            Ok(context! {
+                id => &section.id,
+                title => &section.title,
+                where => self.place(suite),
+                intro => &section.intro,
+                figures => page::figures(&section.figures)?,
+                tables => &section.tables,
+                command => &suite.header.machine.command,
+                date => &suite.header.machine.date,
+            })
+        };
+        let page = context! {
+            sections => sections.iter().map(section).collect::<Result<Vec<_>, _>>()?,
+            quality_method => QUALITY_METHOD,
+            picture_note => pictures.note,
+            scenes => self
+                .pictures
+                .iter()
+                .zip(pictures.scenes)
+                .map(|(pictured, viewpoints)| context! {
+                    name => &pictured.name,
+                    note => &pictured.note,
+                    viewpoints => viewpoints,
+                })
+                .collect::<Vec<_>>(),
+            runs => self
+                .files
+                .iter()
+                .map(|file| context! {
+                    file => file_name(&file.path),
+                    machine => &file.header.machine,
+                    parameters => &file.header.parameters,
+                })
+                .collect::<Vec<_>>(),
+        };
+        page::fill("bench.html.j2", TITLE, page)
+    }
+
+    /// All tables, with `figures` (if given) as the folder from which pictures are linked.
+    pub fn to_markdown(&self, figures: Option<&str>) -> String {
+        let mut out = String::from(
+            "What is *in italics*, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): its own \
+             scenes, six phones and a Quest 2.\n",
+        );
+        for (suite, section) in sections::sections(&self.suites) {
+            self.heading(&mut out, suite, &section);
+            if let Some(folder) = figures {
+                for figure in &section.figures {
+                    let _ = writeln!(out, "![{}]({folder}/{}.svg)", figure.title, figure.id);
+                    let _ = writeln!(out, "\n*{}. {}*\n", figure.title, figure.caption);
+                }
+            }
+            for table in &section.tables {
+                let _ = writeln!(out, "{}", table.markdown());
+            }
+            self.source(&mut out, suite);
+        }
+        out
+    }
+
+    /// The first table of each experiment.
+    pub fn to_summary(&self) -> String {
+        let mut out = String::new();
+        for (suite, section) in sections::sections(&self.suites) {
+            if let Some(table) = section.tables.first() {
+                self.heading(&mut out, suite, &section);
+                let _ = writeln!(out, "{}", table.markdown());
+                self.source(&mut out, suite);
+            }
+        }
+        out
+    }
+
+    fn heading(&self, out: &mut String, suite: &Suite, section: &Section) {
+        let place = self.place(suite).map(|place| format!(" ({place})")).unwrap_or_default();
+        let _ = writeln!(out, "\n## {}{place}\n\n{}\n", section.title, section.intro);
+    }
+
+    fn source(&self, out: &mut String, suite: &Suite) {
+        let machine = &suite.header.machine;
+        let _ = writeln!(
+            out,
+            "`{}` on {}, {} cores, {}, {}.",
+            machine.command, machine.cpu, machine.cores, machine.gl_renderer, machine.date
+        );
+    }
+
+    /// The GL renderer, where another one measured the same suite; with its version, where only that differs.
+    fn place(&self, suite: &Suite) -> Option<String> {
+        let (renderer, version) = gl(suite);
+        let same_suite = |other: &&Suite| other.name == suite.name;
+        let others: Vec<_> = self.suites.iter().filter(same_suite).map(gl).collect();
+        let another_version = others.iter().any(|(r, v)| *r == renderer && *v != version);
+        match (others.len() > 1, another_version) {
+            (false, _) => None,
+            (true, false) => Some(renderer.to_owned()),
+            (true, true) => Some(format!("{renderer}, {version}")),
+        }
+    }
+
+    /// Writes `report.html`, `results.md` and `summary.md` into `folder`, and the figures as SVG files into another
+    /// folder if one is given.
+    ///
+    /// # Errors
+    /// [`ReportError`]; files that were there before stay then.
+    pub fn write(&self, folder: &Path, figures: Option<&Path>) -> Result<Written, ReportError> {
+        let written = Written {
+            page: folder.join("report.html"),
+            results: folder.join("results.md"),
+            summary: folder.join("summary.md"),
+            figures: Vec::new(),
+        };
+        // Everything is made before anything is written.
+        let page = self.to_html()?;
+        let link = figures.map(|figures| link_from(folder, figures));
+        let results = self.to_markdown(link.as_deref());
+        let mut drawn = Vec::new();
+        if let Some(to) = figures {
+            for (_, section) in sections::sections(&self.suites) {
+                for figure in &section.figures {
+                    drawn.push((to.join(format!("{}.svg", figure.id)), figure.svg()?));
+                }
+            }
+        }
+        for (path, svg) in &drawn {
+            files::write(path, svg.as_bytes())?;
+        }
+        files::write(&written.results, results.as_bytes())?;
+        files::write(&written.summary, self.to_summary().as_bytes())?;
+        files::write(&written.page, page.as_bytes())?;
+        Ok(Written { figures: drawn.into_iter().map(|(path, _)| path).collect(), ..written })
+    }
+}
+
+/// Renderer and version of GL that a suite was measured with.
+fn gl(suite: &Suite) -> (&str, &str) {
+    let machine = &suite.header.machine;
+    (&machine.gl_renderer, &machine.gl_version)
+}
+
+/// How a file in `folder` refers to `target`, with slashes.
+fn link_from(folder: &Path, target: &Path) -> String {
+    let normal = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    let (folder, target) = (normal(folder), normal(target));
+    let (from, to): (Vec<Component>, Vec<Component>) =
+        (folder.components().collect(), target.components().collect());
+    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    let up = from[common..].iter().map(|_| "..".to_owned());
+    let down = to[common..].iter().map(|part| part.as_os_str().to_string_lossy().into_owned());
+    let parts: Vec<String> = up.chain(down).collect();
+    if parts.is_empty() { ".".into() } else { parts.join("/") }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The pictures that lie beside a file, in the order of its settings.
+fn load_pictures(file: &Results) -> Result<Vec<Pictured>, ReportError> {
+    let mut pictures = Vec::new();
+    let dominant_eye = file.header.parameters.iter().find(|parameter| parameter.name == "dominant eye");
+    let dominant_eye = match dominant_eye {
+        Some(parameter) if parameter.value == Eye::Left.name() => Eye::Left,
+        _ => Eye::Right,
+    };
+    for facts in file.scenes() {
+        let folder = picture_folder(&file.path, &facts.setting);
+        if !folder.join("truth.png").is_file() {
+            continue;
+        }
+        let load = |name: &str| picture::load_color(&folder.join(format!("{name}.png")));
+        let names = file.measurements().filter(|m| m.setting == facts.setting && m.round == 0);
+        let names = names.map(|measurement| measurement.contender.as_str());
+        let mut views = Vec::new();
+        for name in names.filter(|name| !["conventional", "mono"].contains(name)) {
+            if folder.join(format!("{name}.png")).is_file() {
+                views.push((name.to_owned(), load(name)?));
+            }
+        }
+        let frame = facts.frames.first().cloned().unwrap_or_else(|| "first frame".into());
+        let (dominant, truth) = (load("dominant")?, load("truth")?);
+        let viewpoint = Viewpoint::measure(frame, dominant_eye, dominant, truth, views)
+            .map_err(|source| ReportError::Sizes { path: folder.clone(), source })?;
+        let setting = &facts.setting;
+        let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
+        let note = match point {
+            Some(point) => format!("{}, {point}", setting.suite),
+            None => setting.suite.clone(),
+        };
+        pictures.push(Pictured { name: setting.scene.clone(), note, viewpoint });
+    }
+    Ok(pictures)
+}

@@ -1,0 +1,44 @@
+//! Figures as text, and cells of tables.
+
+use crate::bench::record::metric;
+use crate::paper;
+use crate::report::bench::data::{Measured, SettingData};
+use crate::report::grid::Cell;
+use crate::text::fixed;
+
+/// Name of the contender that everything costs in proportion to: two full renders.
+pub const CONVENTIONAL: &str = "conventional";
+/// Name of the baseline of quality: the same image to both eyes.
+const MONO: &str = "mono";
+/// What labels of the paper's curves begin with.
+pub const PAPERS: &str = "the paper's ";
+
+/// `530` or `12.3`: four digits say enough of a time.
+pub fn milliseconds(value: f64) -> String {
+    // No minus before a zero.
+    let value = if value.abs() < 0.005 { 0.0 } else { value };
+    if value >= 100.0 { format!("{value:.0}") } else { format!("{value:.2}") }
+}
+
+/// A share as a signed difference in percent.
+pub fn percent(share: f64) -> String {
+    format!("{:+.1} %", 100.0 * share)
+}
+
+/// Both figures of a contender, as in the paper's tables; none where SSIM was not measured.
+pub fn psnr_ssim(measured: &Measured) -> Option<String> {
+    let ssim = measured.mean(metric::SSIM)?;
+    // Identical images have no finite PSNR.
+    let psnr = fixed(measured.mean(metric::PSNR), 2).unwrap_or_else(|| "∞".into());
+    Some(format!("{psnr} / {ssim:.4}"))
+}
+
+/// A cell of ours, or of the baseline's if the contender is one.
+pub fn cell(contender: &str, text: Option<String>) -> Cell {
+    if [CONVENTIONAL, MONO].contains(&contender) { Cell::base(text) } else { Cell::ours(text) }
+}
+
+/// The scene of the paper that a setting's scene stands for.
+pub fn paper_scene(setting: &SettingData) -> Option<&'static paper::PaperScene> {
+    paper::find(setting.stands_for())
+}

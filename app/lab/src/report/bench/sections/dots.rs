@@ -1,0 +1,31 @@
+//! Dot plots with a line for each setting.
+
+use super::cells::PAPERS;
+use crate::paper;
+use crate::report::bench::data::{SettingData, Suite};
+use crate::report::plot::{Axis, DotRow, Mark, Panel};
+
+/// The paper's figure of the system that a method here stands for.
+pub fn papers_mark(method: &str, value: f64) -> Mark {
+    Mark::papers(method, format!("{PAPERS}{}", paper::system(method)), value)
+}
+
+/// A dot plot with a line for each setting.
+pub fn scene_dots(
+    suite: &Suite,
+    axis: Axis,
+    contenders: &[&str],
+    value: impl Fn(&SettingData, &str) -> Option<f64>,
+    papers: impl Fn(&SettingData) -> Vec<(&'static str, f64)>,
+) -> Panel {
+    let rows = suite.settings.iter().map(|setting| {
+        let paper = papers(setting).into_iter().map(|(method, value)| papers_mark(method, value));
+        // Of equal figures the first contender stays on top.
+        let ours = contenders.iter().rev().filter_map(|name| {
+            let value = value(setting, name)?;
+            Some(Mark::new(*name, *name, value))
+        });
+        DotRow { label: setting.label(), marks: paper.chain(ours).collect() }
+    });
+    Panel::Dots { value: axis, rows: rows.collect() }
+}

@@ -1,0 +1,73 @@
+//! Flicker from frame to frame.
+
+use super::cells::CONVENTIONAL;
+use super::dots::scene_dots;
+use super::section::Section;
+use super::tables::{means_table, scene_table};
+use crate::bench::record::metric;
+use crate::report::bench::data::{SettingData, Suite, mean};
+use crate::report::grid::Cell;
+use crate::report::plot::Axis;
+use crate::text::fixed;
+
+/// The section of the suite `flicker`.
+pub fn section(suite: &Suite) -> Section {
+    let mut section = Section::new(
+        "flicker",
+        "Flicker",
+        "Change of the synthesized eye from frame to frame, along a piece of the camera path at walking pace, that \
+         the really rendered eye does not have. The paper has none.",
+    );
+    for (id, title, name) in [
+        ("all", "Flicker of all pixels", metric::FLICKER),
+        ("holes", "Flicker in holes", metric::FLICKER_HOLES),
+        ("edges", "Flicker at edges", metric::FLICKER_EDGES),
+    ] {
+        let panel = scene_dots(
+            suite,
+            Axis::new("flicker, of 255").from_zero(),
+            &suite.measured(name),
+            |setting, contender| setting.find(contender)?.mean(name),
+            |_| Vec::new(),
+        );
+        section.figure(id, title, "Less is better.", panel);
+    }
+    let columns = [
+        ("all", metric::FLICKER, 3),
+        ("in holes", metric::FLICKER_HOLES, 3),
+        ("at edges", metric::FLICKER_EDGES, 3),
+        ("elsewhere", metric::FLICKER_REST, 3),
+    ];
+    let mut table = means_table(
+        suite,
+        "Flicker, of 255, means over the scenes",
+        &suite.measured(metric::FLICKER),
+        &columns,
+    );
+    let changes = [metric::CHANGE, metric::CHANGE_HOLES, metric::CHANGE_EDGES, metric::CHANGE_REST];
+    let changes = changes.map(|name| mean(suite.values(CONVENTIONAL, |measured| measured.mean(name))));
+    if changes.iter().any(Option::is_some) {
+        let mut cells = vec![Cell::plain("the scene's own change")];
+        cells.extend(changes.map(|change| Cell::base(fixed(change, 3))));
+        cells.truncate(table.columns.len());
+        table.push_first(cells);
+    }
+    section.table(table);
+    let of_scenes = ("", |_: &SettingData| None, None);
+    let contenders = suite.measured(metric::FLICKER);
+    let mut table = scene_table(
+        suite,
+        "Flicker of all pixels / in holes",
+        &contenders,
+        |setting, name| {
+            let measured = setting.find(name)?;
+            let holes = fixed(measured.mean(metric::FLICKER_HOLES), 2).unwrap_or_else(|| "–".into());
+            Some(format!("{:.2} / {holes}", measured.mean(metric::FLICKER)?))
+        },
+        |name| fixed(mean(suite.values(name, |measured| measured.mean(metric::FLICKER))), 2),
+        of_scenes,
+    );
+    table.drop_last_column();
+    section.table(table);
+    section
+}

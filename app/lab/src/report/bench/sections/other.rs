@@ -1,0 +1,34 @@
+//! A suite that has no section of its own.
+
+use super::cells::cell;
+use super::section::Section;
+use super::tables::push_refusals;
+use crate::report::bench::data::Suite;
+use crate::report::grid::{Cell, Table};
+use crate::text::{fixed, slug};
+
+/// Every metric of a suite that has no section of its own.
+pub fn section(suite: &Suite) -> Section {
+    let mut section = Section::new(&slug(&suite.name), &format!("Suite {}", suite.name), "");
+    let mut metrics: Vec<&str> = Vec::new();
+    for measured in suite.settings.iter().flat_map(|setting| &setting.contenders) {
+        for name in measured.metrics() {
+            if !metrics.contains(&name) {
+                metrics.push(name);
+            }
+        }
+    }
+    let mut columns = vec!["<setting", "<method"];
+    columns.extend(&metrics);
+    let mut table = Table::new("Means", &columns);
+    for setting in &suite.settings {
+        for measured in &setting.contenders {
+            let mut cells = vec![Cell::plain(setting.label()), Cell::plain(&measured.name)];
+            cells.extend(metrics.iter().map(|name| cell(&measured.name, fixed(measured.mean(name), 4))));
+            table.push(cells);
+        }
+    }
+    push_refusals(&mut table, suite);
+    section.table(table);
+    section
+}

@@ -1,0 +1,112 @@
+//! CPU time and memory.
+
+use super::cells::{CONVENTIONAL, cell};
+use super::dots::scene_dots;
+use super::section::Section;
+use super::tables::means_table;
+use crate::bench::record::PassClock;
+use crate::bench::record::metric;
+use crate::paper;
+use crate::report::bench::data::{SettingData, Suite, mean};
+use crate::report::grid::{Cell, Table};
+use crate::report::plot::Axis;
+use crate::text::fixed;
+
+/// The section on CPU time and memory of the suite `scenes`.
+pub fn section(suite: &Suite) -> Section {
+    let mut section = Section::new(
+        "overhead",
+        "Overhead",
+        "CPU time and memory of a stereo frame. The paper gives the load of the CPU in percent and the memory of \
+         its applications; power and temperature are a phone's matter.",
+    );
+    let contenders = suite.measured(metric::CPU_MS);
+    let others: Vec<&str> = contenders.iter().copied().filter(|name| *name != CONVENTIONAL).collect();
+    let papers = |value: fn(&paper::Overhead) -> [f64; 3]| {
+        move |setting: &SettingData| -> Vec<(&'static str, f64)> {
+            let scene = paper::SCENES.iter().position(|scene| scene.name == setting.stands_for());
+            let Some(scene) = scene else { return Vec::new() };
+            let values = value(&paper::OVERHEAD[scene]);
+            let ratios = paper::OVERHEAD_METHODS.iter().zip(values).map(|(name, v)| (*name, v / values[1]));
+            ratios.filter(|(name, _)| *name != CONVENTIONAL).collect()
+        }
+    };
+    section.figure(
+        "cpu",
+        "CPU time over two full renders",
+        "CPU time of a stereo frame, all threads together; where the CPU also rasterizes, that is in it. The \
+         paper's: CPU load over conventional rendering's.",
+        scene_dots(
+            suite,
+            Axis::new("CPU time / conventional").baseline(1.0),
+            &others,
+            |setting, name| Some(setting.find(name)?.ratio(setting.conventional()?, metric::CPU_MS)?.median),
+            papers(|o| o.cpu),
+        ),
+    );
+    section.figure(
+        "memory",
+        "Memory over two full renders",
+        "Of the process with the scene and the textures of one method. The paper's: memory of its applications over conventional rendering's.",
+        scene_dots(
+            suite,
+            Axis::new("memory / conventional"),
+            &others,
+            |setting, name| {
+                let base = setting.conventional()?.mean(metric::MEMORY_MIB)?;
+                Some(setting.find(name)?.mean(metric::MEMORY_MIB)? / base)
+            },
+            papers(|o| o.memory),
+        ),
+    );
+    let columns = [
+        ("CPU time, ms", metric::CPU_MS, 1),
+        ("memory, MiB", metric::MEMORY_MIB, 1),
+        ("textures of the method, MiB", metric::TEXTURE_MIB, 1),
+        ("GPU time, ms", metric::GPU_MS, 3),
+    ];
+    section.table(means_table(suite, "Means over the scenes", &contenders, &columns));
+    section.table(pass_table(suite));
+    section
+}
+
+/// Times of passes, medians over the scenes' medians.
+fn pass_table(suite: &Suite) -> Table {
+    let mut passes: Vec<String> = Vec::new();
+    for measured in suite.settings.iter().flat_map(|setting| &setting.contenders) {
+        for name in measured.metrics() {
+            let pass = name.strip_prefix(metric::PASS_MS);
+            passes.extend(pass.map(str::to_owned).filter(|pass| !passes.contains(pass)));
+        }
+    }
+    let mut columns = vec!["<pass, ms".to_owned()];
+    let contenders: Vec<&str> = suite
+        .contenders()
+        .into_iter()
+        .filter(|name| {
+            passes.iter().any(|pass| !suite.values(name, |m| m.median(&pass_metric(pass))).is_empty())
+        })
+        .collect();
+    columns.extend(contenders.iter().map(|name| name.to_string()));
+    let mut table = Table::new("Time of each pass, means over the scenes of the medians", &columns);
+    for pass in &passes {
+        let mut cells = vec![Cell::plain(pass)];
+        for name in &contenders {
+            cells.push(cell(name, fixed(mean(suite.values(name, |m| m.median(&pass_metric(pass)))), 2)));
+        }
+        table.push(cells);
+    }
+    table.note = match suite.header.pass_clock {
+        PassClock::TimerQueries => "GPU time by timer queries.".into(),
+        PassClock::Finish => {
+            "Wall clock with glFinish around each pass, on frames of their own: a CPU rasterizer's timer queries \
+             are unusable."
+                .into()
+        }
+    };
+    table
+}
+
+fn pass_metric(pass: &str) -> String {
+    format!("{}{pass}", metric::PASS_MS)
+}

@@ -1,0 +1,110 @@
+//! Image quality.
+
+use super::cells::{CONVENTIONAL, paper_scene, psnr_ssim};
+use super::dots::scene_dots;
+use super::section::Section;
+use super::sweeps::QUALITY_FIGURES;
+use super::tables::{means_table, metric_table, scene_table};
+use crate::bench::record::metric;
+use crate::paper;
+use crate::report::bench::data::{Suite, mean};
+use crate::report::grid::Table;
+use crate::report::plot::Axis;
+use crate::text::fixed;
+
+fn paper_quality(scene: &paper::PaperScene, name: &str) -> Option<f64> {
+    match name {
+        metric::PSNR => Some(scene.psnr),
+        metric::SSIM => Some(scene.ssim),
+        _ => None,
+    }
+}
+
+/// The section on quality of the suite `scenes`.
+pub fn section(suite: &Suite) -> Section {
+    let mut section = Section::new(
+        "quality",
+        "Image quality",
+        "The eye that is not dominant, against the same eye really rendered. “mono” shows the dominant eye's image to both: the baseline of doing nothing, \
+         without which no figure says much.",
+    );
+    quality_figures(&mut section, suite);
+    // The ground truth has no likeness to itself worth a column.
+    let contenders: Vec<&str> =
+        suite.measured(metric::SSIM).into_iter().filter(|name| *name != CONVENTIONAL).collect();
+    let mean_of = |name: &str| {
+        let ssim = mean(suite.values(name, |measured| measured.mean(metric::SSIM)))?;
+        let psnr = fixed(mean(suite.values(name, |measured| measured.mean(metric::PSNR))), 2);
+        Some(format!("{} / {ssim:.4}", psnr.unwrap_or_else(|| "∞".into())))
+    };
+    let average = paper::AVERAGE;
+    let mut table = scene_table(
+        suite,
+        "PSNR in dB / SSIM",
+        &contenders,
+        |setting, name| psnr_ssim(setting.find(name)?),
+        mean_of,
+        (
+            "the paper's YORO",
+            |setting| {
+                let scene = paper_scene(setting)?;
+                Some(format!("{}: {:.2} / {:.4}", scene.name, scene.psnr, scene.ssim))
+            },
+            Some(format!("{:.2} / {:.4}", average.psnr, average.ssim)),
+        ),
+    );
+    table.note = "RGB; SSIM with a gaussian window 11x11. ∞: identical images.".into();
+    section.table(table);
+    section.table(parts_table(suite, &contenders));
+    section.table(metric_table(suite, "Every scene and method in full", &contenders));
+    section
+}
+
+fn quality_figures(section: &mut Section, suite: &Suite) {
+    for (name, axis, caption) in QUALITY_FIGURES {
+        let contenders: Vec<&str> =
+            suite.measured(name).into_iter().filter(|name| *name != CONVENTIONAL).collect();
+        let panel = scene_dots(
+            suite,
+            Axis::new(axis),
+            &contenders,
+            |setting, contender| setting.find(contender)?.mean(name),
+            |setting| {
+                let value = paper_scene(setting).and_then(|scene| paper_quality(scene, name));
+                value.map(|value| ("yoro-paper", value)).into_iter().collect()
+            },
+        );
+        section.figure(name, axis, caption, panel);
+    }
+}
+
+/// Quality in holes and elsewhere, means over the scenes.
+fn parts_table(suite: &Suite, contenders: &[&str]) -> Table {
+    let columns = [
+        ("PSNR, dB", metric::PSNR, 2),
+        ("SSIM", metric::SSIM, 4),
+        ("SSIM 7x7", metric::SSIM_UNIFORM, 4),
+        ("PSNR of luma, dB", metric::PSNR_LUMA, 2),
+        ("SSIM of luma", metric::SSIM_LUMA, 4),
+        ("FLIP", metric::FLIP, 4),
+        ("holes: PSNR, dB", metric::HOLE_PSNR, 2),
+        ("holes: SSIM", metric::HOLE_SSIM, 4),
+        ("holes: FLIP", metric::HOLE_FLIP, 4),
+        ("elsewhere: PSNR, dB", metric::VISIBLE_PSNR, 2),
+        ("elsewhere: SSIM", metric::VISIBLE_SSIM, 4),
+        ("elsewhere: FLIP", metric::VISIBLE_FLIP, 4),
+    ];
+    let mut table = means_table(suite, "Holes and the rest, means over the scenes", contenders, &columns);
+    let shares: Vec<f64> = suite
+        .contenders()
+        .iter()
+        .flat_map(|name| suite.values(name, |m| m.mean(metric::HOLE_SHARE)))
+        .collect();
+    if let Some(share) = mean(shares) {
+        table.note = format!(
+            "Holes: what the dominant eye's own image does not show, {:.2} % of the pixels. FLIP: less is better.",
+            100.0 * share
+        );
+    }
+    table
+}

@@ -1,0 +1,45 @@
+//! An experiment on the page.
+
+use crate::report::grid::Table;
+use crate::report::plot::{Figure, Panel};
+
+/// An experiment on the page.
+#[derive(Debug)]
+pub struct Section {
+    /// Anchor, and beginning of the figures' names.
+    pub id: String,
+    /// Heading.
+    pub title: String,
+    /// What was done, and how the paper did it.
+    pub intro: String,
+    /// In the order to be shown.
+    pub figures: Vec<Figure>,
+    /// In the order to be shown.
+    pub tables: Vec<Table>,
+}
+
+impl Section {
+    pub fn new(id: &str, title: &str, intro: &str) -> Section {
+        Section {
+            id: id.into(),
+            title: title.into(),
+            intro: intro.into(),
+            figures: Vec::new(),
+            tables: Vec::new(),
+        }
+    }
+
+    pub fn figure(&mut self, id: &str, title: &str, caption: &str, panel: Panel) {
+        let (id, title, caption) = (format!("{}-{id}", self.id), title.into(), caption.into());
+        let figure = Figure { id, title, caption, panel };
+        if !figure.is_empty() {
+            self.figures.push(figure);
+        }
+    }
+
+    pub fn table(&mut self, table: Table) {
+        if !table.lines.is_empty() {
+            self.tables.push(table);
+        }
+    }
+}

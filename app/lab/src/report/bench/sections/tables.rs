@@ -1,0 +1,207 @@
+//! Tables that several experiments have.
+
+use super::cells::{cell, milliseconds};
+use crate::bench::record::metric;
+use crate::report::bench::data::{SettingData, Suite, mean};
+use crate::report::grid::{Cell, Table};
+use crate::text::{fixed, short_count};
+use yoro_viewer::telemetry::stats::percentile;
+
+/// A table with a row for each setting and a column for each contender; then the mean, and those that were not
+/// measured.
+pub fn scene_table(
+    suite: &Suite,
+    title: &str,
+    contenders: &[&str],
+    text: impl Fn(&SettingData, &str) -> Option<String>,
+    mean: impl Fn(&str) -> Option<String>,
+    paper: (&str, impl Fn(&SettingData) -> Option<String>, Option<String>),
+) -> Table {
+    let mut columns = vec!["<scene".to_owned(), "triangles".to_owned()];
+    columns.extend(contenders.iter().map(|name| name.to_string()));
+    columns.push(paper.0.to_owned());
+    let mut table = Table::new(title, &columns);
+    for setting in &suite.settings {
+        let mut cells = vec![Cell::plain(setting.label()), Cell::plain(triangles(setting))];
+        for name in contenders {
+            let refused = setting.unsupported.iter().any(|(other, _)| other == name);
+            let text = text(setting, name).or_else(|| refused.then(|| "not measured".to_owned()));
+            cells.push(cell(name, text));
+        }
+        cells.push(Cell::paper(paper.1(setting)));
+        table.push(cells);
+    }
+    let mut cells = vec![Cell::plain(format!("mean of {}", suite.settings.len())), Cell::plain("")];
+    cells.extend(contenders.iter().map(|name| cell(name, mean(name))));
+    cells.push(Cell::paper(paper.2));
+    table.push_first(cells);
+    push_refusals(&mut table, suite);
+    table
+}
+
+fn triangles(setting: &SettingData) -> String {
+    setting.facts.as_ref().map_or_else(String::new, |facts| short_count(facts.triangles))
+}
+
+/// A row with the reason for each contender that could not take part, in the whole suite or in some settings.
+pub fn push_refusals(table: &mut Table, suite: &Suite) {
+    for name in suite.contenders() {
+        if let Some(reason) = suite.reason(name) {
+            table.push_reason(vec![Cell::plain(name)], reason);
+            continue;
+        }
+        for setting in &suite.settings {
+            for (_, reason) in setting.unsupported.iter().filter(|(other, _)| other == name) {
+                table.push_reason(vec![Cell::plain(name)], &format!("{}: {reason}", setting.label()));
+            }
+        }
+    }
+}
+
+/// Frame times of each contender in each setting, in full.
+pub fn time_details(suite: &Suite, title: &str, ratio: impl Fn(&SettingData, &str) -> Option<f64>) -> Table {
+    let columns = [
+        "<scene",
+        "<method",
+        "frames",
+        "median, ms",
+        "quartiles, ms",
+        "std, ms",
+        "p95, ms",
+        "p99, ms",
+        "ratio",
+        "quartiles of the ratio",
+        "the paper's ratio",
+    ];
+    let mut table = Table::new(title, &columns);
+    for setting in &suite.settings {
+        let mut first = true;
+        for measured in &setting.contenders {
+            let Some(times) = measured.summary(metric::FRAME_MS) else { continue };
+            let samples = measured.samples(metric::FRAME_MS);
+            let quartile = |percent| percentile(&samples, percent).unwrap_or(f64::NAN);
+            let cost = setting.cost(&measured.name);
+            let cells = vec![
+                Cell::plain(setting.label()),
+                Cell::plain(&measured.name),
+                Cell::plain(times.count.to_string()),
+                cell(&measured.name, Some(milliseconds(times.median))),
+                Cell::plain(format!("{} – {}", milliseconds(quartile(25.0)), milliseconds(quartile(75.0)))),
+                Cell::plain(milliseconds(times.std)),
+                Cell::plain(milliseconds(times.p95)),
+                Cell::plain(milliseconds(times.p99)),
+                cell(&measured.name, cost.map(|c| format!("{:.3}", c.median))),
+                Cell::plain(
+                    cost.map(|c| format!("{:.3} – {:.3}", c.quartiles[0], c.quartiles[1]))
+                        .unwrap_or_default(),
+                ),
+                Cell::paper(fixed(ratio(setting, &measured.name), 3)),
+            ];
+            table.push_grouped(cells, std::mem::take(&mut first));
+        }
+    }
+    push_refusals(&mut table, suite);
+    table.note =
+        "Ratio: frame time over that of conventional rendering, frame by frame within each interleaved \
+                  round; its median and quartiles."
+            .into();
+    table
+}
+
+/// A table with a row for each point of a sweep and a column for each contender, means over the scenes; medians
+/// of times.
+pub fn sweep_table(
+    suite: &Suite,
+    title: &str,
+    metric_name: &str,
+    quantity: &str,
+    label: impl Fn(f64) -> String,
+) -> Table {
+    let contenders = suite.measured(metric_name);
+    let mut columns = vec![quantity.to_owned()];
+    columns.extend(contenders.iter().map(|name| name.to_string()));
+    let mut table = Table::new(title, &columns);
+    let times = metric_name.ends_with("_ms");
+    for point in suite.points() {
+        let mut cells = vec![Cell::plain(label(point))];
+        for name in &contenders {
+            let here = suite.settings.iter().filter(|setting| setting.setting.point == Some(point));
+            let value = |setting: &SettingData| {
+                let measured = setting.find(name)?;
+                if times { measured.median(metric_name) } else { measured.mean(metric_name) }
+            };
+            let value = mean(here.filter_map(value).collect());
+            let decimals = if metric_name.contains("ssim") { 4 } else { 2 };
+            let text = if times { value.map(milliseconds) } else { fixed(value, decimals) };
+            cells.push(cell(name, text));
+        }
+        table.push(cells);
+    }
+    push_refusals(&mut table, suite);
+    table
+}
+
+/// A row for each contender and a column for each metric that was measured, means over the settings.
+pub fn means_table(
+    suite: &Suite,
+    title: &str,
+    contenders: &[&str],
+    metrics: &[(&str, &str, usize)],
+) -> Table {
+    let measured: Vec<_> =
+        metrics.iter().filter(|(_, name, _)| !suite.measured(name).is_empty()).copied().collect();
+    let mut columns = vec!["<method"];
+    columns.extend(measured.iter().map(|(column, _, _)| *column));
+    let mut table = Table::new(title, &columns);
+    if measured.is_empty() {
+        return table;
+    }
+    for name in contenders {
+        let mut cells = vec![Cell::plain(*name)];
+        for (_, metric_name, decimals) in &measured {
+            cells.push(cell(name, fixed(mean(suite.values(name, |m| m.mean(metric_name))), *decimals)));
+        }
+        table.push(cells);
+    }
+    for name in suite.contenders() {
+        if let Some(reason) = suite.reason(name) {
+            table.push_reason(vec![Cell::plain(name)], reason);
+        }
+    }
+    table
+}
+
+/// A row for each setting and contender, a column for each metric: the long form, so that no figure is lost.
+pub fn metric_table(suite: &Suite, title: &str, contenders: &[&str]) -> Table {
+    let metrics = [
+        ("PSNR, dB", metric::PSNR, 2),
+        ("SSIM", metric::SSIM, 4),
+        ("SSIM 7x7", metric::SSIM_UNIFORM, 4),
+        ("FLIP", metric::FLIP, 4),
+        ("holes: share, %", metric::HOLE_SHARE, 2),
+        ("holes: PSNR, dB", metric::HOLE_PSNR, 2),
+        ("holes: SSIM", metric::HOLE_SSIM, 4),
+        ("elsewhere: PSNR, dB", metric::VISIBLE_PSNR, 2),
+        ("elsewhere: SSIM", metric::VISIBLE_SSIM, 4),
+        ("flicker", metric::FLICKER, 3),
+        ("flicker in holes", metric::FLICKER_HOLES, 3),
+    ];
+    let measured: Vec<_> = metrics.iter().filter(|(_, name, _)| !suite.measured(name).is_empty()).collect();
+    let mut columns = vec!["<scene", "<method"];
+    columns.extend(measured.iter().map(|(column, _, _)| *column));
+    let mut table = Table::new(title, &columns);
+    for setting in &suite.settings {
+        let mut first = true;
+        for name in contenders {
+            let Some(of) = setting.find(name) else { continue };
+            let mut cells = vec![Cell::plain(setting.label()), Cell::plain(*name)];
+            for (_, metric_name, decimals) in &measured {
+                let scale = if *metric_name == metric::HOLE_SHARE { 100.0 } else { 1.0 };
+                cells.push(cell(name, fixed(of.mean(metric_name).map(|value| value * scale), *decimals)));
+            }
+            table.push_grouped(cells, std::mem::take(&mut first));
+        }
+    }
+    push_refusals(&mut table, suite);
+    table
+}

@@ -1,0 +1,419 @@
+//! Results with known figures, through tables, figures and page.
+
+use std::path::Path;
+
+use image::{Rgb, RgbImage};
+
+use super::*;
+use crate::bench::record::{Header, PassClock, RoundEnd, SceneFacts, Unsupported, VERSION};
+use crate::bench::{Measurement, Record, Setting, Writer, bandwidth, metric};
+use crate::machine::{Machine, Parameter};
+use yoro_scene::ShadingStyle;
+
+fn header(renderer: &str) -> Header {
+    Header {
+        yoro_bench: VERSION,
+        suites: vec!["all".into()],
+        quick: false,
+        machine: Machine {
+            cpu: "Example & Sons CPU".into(),
+            cores: 2,
+            os: "Linux".into(),
+            gl_renderer: renderer.into(),
+            gl_version: "OpenGL ES 3.2 Mesa".into(),
+            yoro: "0.1.0".into(),
+            date: "2026-01-01T12:00:00Z".into(),
+            command: "yoro bench all --out 'a <b>.jsonl'".into(),
+        },
+        pass_clock: PassClock::Finish,
+        parameters: vec![
+            Parameter { name: "rounds".into(), value: "3".into() },
+            Parameter { name: "dominant eye".into(), value: "right".into() },
+        ],
+    }
+}
+
+fn setting(suite: &str, scene: &str, label: Option<&str>, point: Option<f64>) -> Setting {
+    Setting { suite: suite.into(), scene: scene.into(), label: label.map(str::to_owned), point }
+}
+
+/// Values of a contender in a round: `(contender, [(metric, values)])`.
+type Figures<'a> = (&'a str, Vec<(&'a str, Vec<f64>)>);
+
+/// Appends rounds of a setting; multiview is never supported.
+fn append<'a>(
+    writer: &mut Writer,
+    setting: &Setting,
+    stands_for: &str,
+    triangles: u64,
+    rounds: u32,
+    figures: impl Fn(u32) -> Vec<Figures<'a>>,
+) {
+    for round in 0..rounds {
+        let mut records = Vec::new();
+        if round == 0 {
+            records.push(Record::Scene(SceneFacts {
+                setting: setting.clone(),
+                stands_for: stands_for.into(),
+                style: ShadingStyle::Realistic,
+                triangles,
+                lights: 3,
+                frames: vec!["viewpoint 0".into(), "viewpoint 1".into()],
+            }));
+            records.push(Record::Unsupported(Unsupported {
+                setting: setting.clone(),
+                contender: "multiview".into(),
+                reason: "this driver has no GL_OVR_multiview2".into(),
+            }));
+        }
+        for (contender, values) in figures(round) {
+            let mut measurement = Measurement {
+                setting: setting.clone(),
+                contender: contender.into(),
+                round,
+                values: Default::default(),
+            };
+            for (name, samples) in values {
+                samples.into_iter().for_each(|sample| measurement.push(name, sample));
+            }
+            records.push(Record::Measurement(measurement));
+        }
+        writer.append(records, RoundEnd { setting: setting.clone(), round }).unwrap();
+    }
+}
+
+const METHODS: [(&str, f64); 5] =
+    [("conventional", 1.0), ("mono", 0.5), ("hybrid", 0.8), ("yoro-gather", 0.55), ("yoro-paper", 0.6)];
+
+fn times(ms: f64, round: u32) -> Vec<Figures<'static>> {
+    // The machine gets slower from round to round: ratios of pairs do not notice.
+    let slow = ms * 2f64.powi(round as i32);
+    let of = |share: f64| vec![(metric::FRAME_MS, vec![slow * share, slow * share * 1.5])];
+    METHODS.iter().map(|(name, share)| (*name, of(*share))).collect()
+}
+
+fn qualities(psnr: f64) -> Vec<Figures<'static>> {
+    let of = |psnr: f64| {
+        vec![
+            (metric::PSNR, vec![psnr, psnr + 2.0]),
+            (metric::SSIM, vec![1.0 - 1.0 / psnr; 2]),
+            (metric::FLIP, vec![1.0 / psnr; 2]),
+            (metric::HOLE_SHARE, vec![0.02; 2]),
+            (metric::HOLE_PSNR, vec![psnr - 10.0, f64::NAN]),
+            (metric::VISIBLE_PSNR, vec![psnr + 3.0; 2]),
+        ]
+    };
+    let methods = METHODS.iter().filter(|(name, _)| *name != "conventional");
+    methods.map(|(name, share)| (*name, of(psnr * (1.5 - share)))).collect()
+}
+
+fn both(ms: f64, psnr: f64, round: u32) -> Vec<Figures<'static>> {
+    let mut figures = times(ms, round);
+    for (name, values) in qualities(psnr) {
+        if let Some((_, found)) = figures.iter_mut().find(|(other, _)| *other == name) {
+            found.extend(if round == 0 { values } else { Vec::new() });
+        }
+    }
+    let extra = [("cpu_ms", 7.5), ("memory_mib", 300.0), ("pass_ms/lighting", 1.25)];
+    for (_, values) in &mut figures {
+        values.extend(extra.map(|(name, value)| (name, vec![value])));
+    }
+    figures
+}
+
+/// Streams of the suite `bandwidth` at five quantizers.
+fn streams() -> Vec<Figures<'static>> {
+    use bandwidth::metric::*;
+    let rates = [8000.0, 4000.0, 2000.0, 1000.0, 500.0];
+    let quality = [40.0, 37.0, 34.0, 31.0, 28.0];
+    let of = |rate: f64, loss: f64, cap: f64| {
+        vec![
+            (QP, vec![20.0, 26.0, 32.0, 38.0, 44.0]),
+            (KBIT_S, rates.map(|r| r * rate).to_vec()),
+            (PSNR_DOMINANT, quality.to_vec()),
+            (PSNR_OTHER, quality.map(|q: f64| (q - loss).min(cap)).to_vec()),
+            (PSNR_LUMA_DOMINANT, quality.map(|q| q + 1.0).to_vec()),
+            (PSNR_LUMA_OTHER, quality.map(|q: f64| (q - loss).min(cap) + 1.0).to_vec()),
+            (SSIM_DOMINANT, quality.map(|q| q / 50.0).to_vec()),
+            (SSIM_OTHER, quality.map(|q| (q - loss) / 50.0).to_vec()),
+        ]
+    };
+    vec![
+        (bandwidth::STEREO_RGB, of(1.0, 0.0, 99.0)),
+        (bandwidth::RGB_DEPTH, of(0.6, 0.0, 99.0)),
+        (bandwidth::MONO_RGB, of(0.5, 60.0, 99.0)),
+    ]
+}
+
+/// Every suite, on a few settings each.
+fn write_results(path: &Path, header: &Header) {
+    let (mut writer, _) = Writer::open(path, header).unwrap();
+    let w = &mut writer;
+    let scenes = [("street <b>&\"café\"</b>", "Bistro", 1_240_000), ("atrium | columns", "Sponza", 365_000)];
+    for (i, (scene, stands_for, triangles)) in scenes.iter().enumerate() {
+        let ms = 100.0 * (i + 1) as f64;
+        append(w, &setting("scenes", scene, None, None), stands_for, *triangles, 3, |round| {
+            both(ms, 30.0 + i as f64, round)
+        });
+        append(w, &setting("lights", scene, None, Some(4.0)), stands_for, *triangles, 1, |round| {
+            times(ms, round)
+        });
+        append(w, &setting("flicker", scene, None, None), stands_for, *triangles, 1, |_| {
+            vec![
+                ("conventional", vec![(metric::CHANGE, vec![9.0]), (metric::CHANGE_HOLES, vec![12.0])]),
+                ("mono", vec![(metric::FLICKER, vec![3.0]), (metric::FLICKER_HOLES, vec![5.0])]),
+                ("yoro-gather", vec![(metric::FLICKER, vec![1.0]), (metric::FLICKER_HOLES, vec![2.0])]),
+            ]
+        });
+        append(w, &setting("bandwidth", scene, None, None), stands_for, *triangles, 1, |_| streams());
+    }
+    for i in 1..=5 {
+        let triangles = 1e6 * f64::from(i);
+        append(w, &setting("complexity", "swarm", None, Some(triangles)), "", triangles as u64, 1, |round| {
+            times(40.0 * f64::from(i) / 1.25, round)
+        });
+    }
+    for (style, psnr) in [("realistic", 33.0), ("cartoon", 35.0), ("anime", 31.0)] {
+        append(w, &setting("styles", "talk", Some(style), None), "Chat", 117_000, 1, |_| qualities(psnr));
+    }
+    for point in [50.0, 55.0, 60.0, 65.0, 70.0, 75.0] {
+        append(w, &setting("ipd", "talk", None, Some(point)), "Chat", 117_000, 1, |_| {
+            qualities(40.0 - point / 10.0)
+        });
+    }
+    for point in [0.5, 1.0, 2.0, 3.0] {
+        append(w, &setting("distance", "hare", None, Some(point)), "", 70_000, 1, |_| {
+            qualities(30.0 + point)
+        });
+    }
+    append(w, &setting("patchers", "talk", None, None), "Chat", 117_000, 1, |_| {
+        let of = |psnr: f64, ms: f64| {
+            vec![(metric::PSNR, vec![psnr]), (metric::SSIM, vec![psnr / 40.0]), (metric::PATCH_MS, vec![ms])]
+        };
+        vec![
+            ("mono", vec![(metric::PSNR, vec![20.0]), (metric::SSIM, vec![0.5])]),
+            ("patcher-paper", of(33.0, 12.0)),
+            ("patcher-telea", of(32.0, 95.0)),
+            ("patcher-neural", of(31.0, 2500.0)),
+        ]
+    });
+    for point in [1.0, 2.0, 4.0, 8.0, 16.0] {
+        append(w, &setting("imbuffer", "talk", None, Some(point)), "Chat", 117_000, 1, |round| {
+            both(50.0, 34.0 - point / 4.0, round)
+        });
+    }
+    for point in [512.0, 1024.0, 2048.0] {
+        append(w, &setting("resolution", "talk", None, Some(point)), "Chat", 117_000, 1, |round| {
+            both(point / 4.0, 30.0, round)
+        });
+    }
+    append(w, &setting("new suite", "talk", None, None), "", 117_000, 1, |_| {
+        vec![("x", vec![("apples", vec![3.0])])]
+    });
+}
+
+fn report(dir: &Path) -> BenchReport {
+    let path = dir.join("run.jsonl");
+    write_results(&path, &header("llvmpipe"));
+    let picture = |shift: u32| {
+        RgbImage::from_fn(48, 32, |x, y| {
+            Rgb([((x + shift) * 5) as u8, (y * 7) as u8, ((x + shift) * y) as u8])
+        })
+    };
+    let folder = picture_folder(&path, &setting("scenes", "atrium | columns", None, None));
+    for (name, shift) in [("dominant", 4), ("truth", 0), ("yoro-gather", 1)] {
+        picture::save_color(&folder.join(format!("{name}.png")), &picture(shift)).unwrap();
+    }
+    BenchReport::new(vec![Results::read(&path).unwrap()]).unwrap()
+}
+
+/// The cells of the first row of a Markdown table below a heading that starts with `row`.
+fn row(markdown: &str, table: &str, row: &str) -> Vec<String> {
+    let start = markdown.find(table).unwrap_or_else(|| panic!("no table {table} in {markdown}"));
+    let mut lines = markdown[start..].lines().map(|line| line.replace("\\|", "/"));
+    let line = lines.find(|line| line.starts_with(&format!("| {row} ")));
+    let line = line.unwrap_or_else(|| panic!("no row {row} below {table}: {}", &markdown[start..]));
+    line.split('|').map(|cell| cell.trim().to_owned()).filter(|cell| !cell.is_empty()).collect()
+}
+
+#[test]
+fn ratios_pair_frames_of_the_same_round() {
+    let dir = tempfile::tempdir().unwrap();
+    let markdown = report(dir.path()).to_markdown(None);
+    let cells = row(&markdown, "**Frame time over two full renders**", "atrium / columns");
+    assert_eq!(cells[1..7], ["365 k", "500 ms", "0.50", "0.80", "0.55", "0.60"], "{cells:?}");
+    assert_eq!(cells[7], "*Sponza: 0.46*");
+    let start = markdown.find("**Frame times in full**").unwrap();
+    let line = markdown[start..].lines().find(|l| l.contains("| yoro-gather |")).unwrap();
+    assert!(line.contains("| 0.550 | 0.550 – 0.550 | – |"), "{line}");
+}
+
+#[test]
+fn slopes_are_least_squares_and_the_papers_stand_beside() {
+    let dir = tempfile::tempdir().unwrap();
+    let markdown = report(dir.path()).to_markdown(None);
+    let cells = row(&markdown, "**Slope and ratio**", "yoro-paper");
+    assert_eq!(cells[..5], ["yoro-paper", "24.00", "0.00", "0.600", "0.600"], "{cells:?}");
+    // NumPy: polyfit of the paper's nine points.
+    assert_eq!(cells[5..], ["*8.26*", "*0.490*", "*0.540*"], "{cells:?}");
+    assert!(row(&markdown, "**Slope and ratio**", "multiview")[1].contains("no GL_OVR_multiview2"));
+}
+
+#[test]
+fn quality_stands_beside_the_same_image_and_the_papers() {
+    let dir = tempfile::tempdir().unwrap();
+    let markdown = report(dir.path()).to_markdown(None);
+    let cells = row(&markdown, "**PSNR in dB / SSIM**", "street &lt;b>&\"café\"&lt;/b>");
+    // 30 dB times 1.5 - share, and 1 dB more in the mean of two frames.
+    assert_eq!(
+        cells[2..6],
+        ["31.00 / 0.9667", "22.00 / 0.9524", "29.50 / 0.9649", "28.00 / 0.9630"],
+        "{cells:?}"
+    );
+    assert_eq!(cells.last().unwrap(), "*Bistro: 31.99 / 0.9505*");
+    let cells = row(&markdown, "**Holes and the rest", "yoro-gather");
+    let holes: f64 = cells[4].parse().unwrap();
+    assert!((holes - 18.975).abs() < 0.006, "the PSNR in holes of frames that have some: {cells:?}");
+    let cells = row(&markdown, "**Means over the scenes**", "patcher-telea");
+    assert_eq!(cells[1..3], ["32.00", "0.8000"]);
+    assert_eq!(cells[6..], ["95.00", "*32.25*", "*0.9542*", "*48.80*"], "{cells:?}");
+    let cells = row(&markdown, "## Distance between the eyes", "55");
+    assert_eq!(cells.last().unwrap(), "*34.16*", "{cells:?}");
+}
+
+#[test]
+fn rates_are_compared_at_equal_quality() {
+    let dir = tempfile::tempdir().unwrap();
+    let markdown = report(dir.path()).to_markdown(None);
+    let table = "**Bit rate at equal quality against stereo RGB (BD-rate)**";
+    let cells = row(&markdown, table, "atrium / columns");
+    let expected = [
+        "rgb-depth",
+        "-40.0 %",
+        "29.0 – 41.0",
+        "-40.0 %",
+        "28.0 – 40.0",
+        "-40.0 %",
+        "0.560 – 0.800",
+        "41.00",
+    ];
+    assert_eq!(cells[1..], expected, "{cells:?}");
+    let start = markdown.find(table).unwrap();
+    let mono = markdown[start..].lines().find(|line| line.contains("mono-rgb")).unwrap();
+    assert!(mono.contains("no quality in common"), "{mono}");
+    let cells = row(&markdown, "**Bit rate at one quantizer**", "atrium / columns");
+    assert_eq!(cells[1..5], ["20", "8000", "4800", "-40.0 %"], "{cells:?}");
+    assert_eq!(cells.last().unwrap(), "*-35.6 %*");
+}
+
+#[test]
+fn every_section_has_its_place_and_no_row_is_silently_empty() {
+    let dir = tempfile::tempdir().unwrap();
+    let report = report(dir.path());
+    let sections = sections::sections(&report.suites);
+    let ids: Vec<&str> = sections.iter().map(|(_, section)| section.id.as_str()).collect();
+    let expected = [
+        "frame-time",
+        "complexity",
+        "quality",
+        "overhead",
+        "few-lights",
+        "styles",
+        "ipd",
+        "distance",
+        "patchers",
+        "imbuffer",
+        "resolution",
+        "flicker",
+        "bandwidth",
+        "new-suite",
+    ];
+    assert_eq!(ids, expected);
+    for (_, section) in &sections {
+        for table in &section.tables {
+            for line in &table.lines {
+                let cells: usize = line.cells.iter().map(|cell| cell.span).sum();
+                assert_eq!(cells, table.columns.len(), "{}: {line:?}", table.title);
+            }
+            let named =
+                table.lines.iter().any(|line| line.cells[0].text == "multiview" && line.cells[1].span > 0);
+            let with_reasons =
+                !["Time of each pass", "Bit rate at equal"].iter().any(|t| table.title.starts_with(t));
+            assert!(named || !with_reasons, "{} says nothing of multiview", table.title);
+        }
+        for figure in &section.figures {
+            assert!(figure.svg().unwrap().contains("<text"), "{}", figure.id);
+        }
+    }
+    let figures: Vec<&str> =
+        sections.iter().flat_map(|(_, s)| s.figures.iter().map(|f| f.id.as_str())).collect();
+    for figure in
+        ["frame-time-ratio", "complexity-paper-ms", "ipd-ssim", "patchers-ms", "styles-psnr", "quality-flip"]
+    {
+        assert!(figures.contains(&figure), "{figure}: {figures:?}");
+    }
+}
+
+#[test]
+fn the_page_is_escaped_self_contained_and_has_its_pictures() {
+    let dir = tempfile::tempdir().unwrap();
+    let html = report(dir.path()).to_html().unwrap();
+    for foreign in ["http://", "https://", "<link", "url(", "@import", "src=\"/", "<script src", "<b>&\"café"]
+    {
+        assert!(!html.contains(foreign), "{foreign}");
+    }
+    assert!(html.contains("street &lt;b&gt;&amp;&quot;café&quot;"));
+    // Truth, the method, the same image, two error maps.
+    assert_eq!(html.matches("src=\"data:image/jpeg;base64,").count(), 5);
+    assert!(html.matches("<svg viewBox").count() > 20);
+}
+
+#[test]
+fn two_machines_stand_side_by_side_and_one_machines_files_go_together() {
+    let dir = tempfile::tempdir().unwrap();
+    let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| dir.path().join(format!("{name}.jsonl")));
+    write_results(&a, &header("llvmpipe"));
+    write_results(&b, &header("a GPU"));
+    write_results(&c, &header("llvmpipe"));
+    let mut newer = header("llvmpipe");
+    newer.machine.gl_version = "OpenGL ES 3.2 Mesa 25".into();
+    write_results(&d, &newer);
+    let read = |paths: &[&PathBuf]| {
+        BenchReport::new(paths.iter().map(|path| Results::read(path).unwrap()).collect()).unwrap()
+    };
+    let html = read(&[&a, &b]).to_html().unwrap();
+    assert!(html.contains("id=\"complexity\"") && html.contains("id=\"complexity-2\""));
+    assert!(html.contains("id=\"complexity-2-ms\"") && html.contains("· a GPU"));
+    let markdown = read(&[&a, &d]).to_markdown(None);
+    assert!(markdown.contains("(llvmpipe, OpenGL ES 3.2 Mesa)\n"));
+    assert!(markdown.contains("(llvmpipe, OpenGL ES 3.2 Mesa 25)\n"));
+    let markdown = read(&[&a, &c]).to_markdown(None);
+    assert_eq!(markdown.matches("## Complexity").count(), 1);
+    let start = markdown.find("**Frame times in full**").unwrap();
+    let line = markdown[start..].lines().find(|l| l.contains("| yoro-gather |")).unwrap();
+    assert!(line.contains("| yoro-gather | 12 |"), "three rounds of two frames, twice: {line}");
+}
+
+#[test]
+fn files_are_written_and_linked() {
+    let dir = tempfile::tempdir().unwrap();
+    let report = report(dir.path());
+    let docs = dir.path().join("docs");
+    let written = report.write(&docs, Some(&dir.path().join("docs/figures"))).unwrap();
+    let results = std::fs::read_to_string(&written.results).unwrap();
+    assert!(results.contains("![Frame time over two full renders](figures/frame-time-ratio.svg)"));
+    for figure in &written.figures {
+        assert!(figure.is_file());
+    }
+    assert!(written.page.is_file() && written.summary.is_file());
+    assert_eq!(link_from(Path::new("/a/out"), Path::new("/a/docs/f")), "../docs/f");
+}
+
+#[test]
+fn a_file_without_a_finished_round_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("begun.jsonl");
+    Writer::open(&path, &header("llvmpipe")).unwrap();
+    let error = BenchReport::new(vec![Results::read(&path).unwrap()]).err().unwrap().to_string();
+    assert!(error.contains("begun.jsonl holds no finished round"), "{error}");
+}

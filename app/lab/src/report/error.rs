@@ -1,0 +1,46 @@
+//! Why a report could not be made.
+
+use std::path::PathBuf;
+
+use super::plot;
+use crate::metrics::MetricsError;
+use crate::picture::PictureError;
+use yoro_files::FileError;
+
+/// Why a report could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// A file could not be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A picture could not be encoded.
+    #[error("cannot encode a picture of the report: {0}")]
+    Picture(#[from] image::ImageError),
+    /// The template and the data do not fit.
+    #[error("cannot fill in the report's template: {0}")]
+    Template(#[from] minijinja::Error),
+    /// A figure could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] plot::PlotError),
+    /// A file of results has nothing to report.
+    #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A picture that a run saved cannot be used.
+    #[error(transparent)]
+    PictureFile(#[from] PictureError),
+    /// The pictures of a setting do not go together.
+    #[error("the pictures in {} do not go together ({source}): measure again, or remove the folder", path.display())]
+    Sizes {
+        /// The folder.
+        path: PathBuf,
+        /// What is wrong.
+        source: MetricsError,
+    },
+    /// The figures cannot be written as JSON.
+    #[error("cannot write the report as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}

@@ -1,0 +1,239 @@
+//! What `yoro run` found, as data.
+
+use image::RgbImage;
+use serde::Serialize;
+
+use crate::machine::{Machine, Parameter};
+use crate::metrics::{Channels, MetricsError, Quality, error_map};
+use crate::paper::{self, PaperScene};
+use yoro::eyes::Eye;
+use yoro_viewer::telemetry::stats::Summary;
+
+/// How the quality figures are made; printed wherever they are.
+pub const QUALITY_METHOD: &str = "PSNR in dB over red, green and blue, data range 255. SSIM as the mean of red, \
+green and blue: gaussian window 11x11, sigma 1.5 (Wang et al. 2004), and uniform window 7x7 (scikit-image's \
+default). The reference is the same eye, really rendered. Error maps show 1 - SSIM (gaussian) from 0, black, to \
+1, pale yellow.";
+
+/// All that one run measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunReport {
+    /// Heading of the page.
+    pub title: String,
+    /// Where and how it ran.
+    pub machine: Machine,
+    /// The resolved configuration, in the order to be printed.
+    pub parameters: Vec<Parameter>,
+    /// How frame times were taken: rounds, warm-up, interleaving, what a frame includes.
+    pub timing_method: String,
+    /// In the order to be printed.
+    pub scenes: Vec<SceneReport>,
+}
+
+/// One scene: pictures and figures.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneReport {
+    /// The scene's name.
+    pub name: String,
+    /// The scene of the paper that it stands for, by the paper's name; empty if for none.
+    pub stands_for: String,
+    /// Triangles in the whole scene.
+    pub triangles: u64,
+    /// Two full renders.
+    pub conventional: Cost,
+    /// The methods that synthesize an eye.
+    pub methods: Vec<MethodCost>,
+    /// At least one; each with one view for each method.
+    pub viewpoints: Vec<Viewpoint>,
+}
+
+/// What a stereo frame costs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cost {
+    /// Time of a whole stereo frame in milliseconds.
+    pub frame_ms: Summary,
+    /// Its passes in order.
+    pub passes: Vec<PassTime>,
+}
+
+/// Time of one pass.
+#[derive(Clone, Debug, Serialize)]
+pub struct PassTime {
+    /// The pass's name, as in the timers.
+    pub name: String,
+    /// Median in milliseconds.
+    pub ms: f64,
+}
+
+/// What a stereo frame costs by a method.
+#[derive(Clone, Debug, Serialize)]
+pub struct MethodCost {
+    /// The method's name.
+    pub method: String,
+    /// Its cost.
+    #[serde(flatten)]
+    pub cost: Cost,
+}
+
+/// One camera pose: the pictures and their quality. Pictures are not part of the JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct Viewpoint {
+    /// A short name, such as `pose 3`.
+    pub name: String,
+    /// Which eye was rendered for the synthesis.
+    pub dominant_eye: Eye,
+    /// That eye.
+    #[serde(skip)]
+    pub dominant: RgbImage,
+    /// The other eye, really rendered.
+    #[serde(skip)]
+    pub ground_truth: RgbImage,
+    /// Likeness of the dominant eye's image to the ground truth: what showing it to both eyes would score.
+    pub same_image: Quality,
+    /// Error map of the same.
+    #[serde(skip)]
+    pub same_image_error: RgbImage,
+    /// The other eye as each method makes it.
+    pub views: Vec<MethodView>,
+}
+
+/// An eye made by a method.
+#[derive(Clone, Debug, Serialize)]
+pub struct MethodView {
+    /// The method's name, as in [`MethodCost`].
+    pub method: String,
+    /// The synthesized eye.
+    #[serde(skip)]
+    pub eye: RgbImage,
+    /// Its error map.
+    #[serde(skip)]
+    pub error: RgbImage,
+    /// Its likeness to the ground truth.
+    pub quality: Quality,
+}
+
+impl Viewpoint {
+    /// Measures the images of one pose. All have one size and row 0 at the top; `synthesized` is the other eye as
+    /// each method (by name) makes it.
+    pub fn measure(
+        name: impl Into<String>,
+        dominant_eye: Eye,
+        dominant: RgbImage,
+        ground_truth: RgbImage,
+        synthesized: Vec<(String, RgbImage)>,
+    ) -> Result<Viewpoint, MetricsError> {
+        let views = synthesized.into_iter().map(|(method, eye)| {
+            let quality = Quality::of(&eye, &ground_truth, Channels::Rgb)?;
+            let error = error_map(&eye, &ground_truth)?;
+            Ok(MethodView { method, eye, error, quality })
+        });
+        let views = views.collect::<Result<Vec<_>, MetricsError>>()?;
+        Ok(Viewpoint {
+            name: name.into(),
+            dominant_eye,
+            same_image: Quality::of(&dominant, &ground_truth, Channels::Rgb)?,
+            same_image_error: error_map(&dominant, &ground_truth)?,
+            dominant,
+            ground_truth,
+            views,
+        })
+    }
+}
+
+/// The figures of one method on one scene, means over its viewpoints, with their baselines.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// The scene's name.
+    pub scene: String,
+    /// Its triangles.
+    pub triangles: u64,
+    /// The method's name.
+    pub method: String,
+    /// Quality of the synthesized eye.
+    pub quality: Quality,
+    /// Baseline of the quality: the same image to both eyes.
+    pub same_image: Quality,
+    /// Median time of a stereo frame in milliseconds.
+    pub frame_ms: f64,
+    /// Baseline of the cost: median time of two full renders in milliseconds.
+    pub conventional_ms: f64,
+    /// `frame_ms / conventional_ms`.
+    pub cost_ratio: f64,
+    /// The paper's figures of the scene that this one stands for.
+    pub paper: Option<PaperScene>,
+}
+
+/// The figures of one method over all scenes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MethodMean {
+    /// The method's name.
+    pub method: String,
+    /// Scenes that it ran on.
+    pub scenes: usize,
+    /// Mean over the scenes.
+    pub quality: Quality,
+    /// Baseline: the same image to both eyes, mean over the same scenes.
+    pub same_image: Quality,
+    /// Geometric mean over the scenes of the frame time over two full renders.
+    pub cost_ratio: f64,
+}
+
+impl RunReport {
+    /// One row for each method on each scene, in the report's order. A method without any view of a scene has no
+    /// row there.
+    pub fn rows(&self) -> Vec<Row> {
+        self.scenes.iter().flat_map(SceneReport::rows).collect()
+    }
+
+    /// The means of the rows, in the order in which the methods first occur.
+    pub fn means(&self) -> Vec<MethodMean> {
+        let rows = self.rows();
+        let mut methods: Vec<&str> = Vec::new();
+        for row in &rows {
+            if !methods.contains(&row.method.as_str()) {
+                methods.push(&row.method);
+            }
+        }
+        let mean = |method: &str| {
+            let rows: Vec<&Row> = rows.iter().filter(|row| row.method == method).collect();
+            let logs: f64 = rows.iter().map(|row| row.cost_ratio.ln()).sum();
+            Some(MethodMean {
+                method: method.to_string(),
+                scenes: rows.len(),
+                quality: Quality::mean(rows.iter().map(|row| &row.quality))?,
+                same_image: Quality::mean(rows.iter().map(|row| &row.same_image))?,
+                cost_ratio: (logs / rows.len() as f64).exp(),
+            })
+        };
+        methods.into_iter().filter_map(mean).collect()
+    }
+}
+
+impl SceneReport {
+    /// One row for each method that made a view of this scene.
+    pub(super) fn rows(&self) -> Vec<Row> {
+        let row = |method: &MethodCost| {
+            let of_method = |viewpoint| view_of(viewpoint, &method.method);
+            let (frame_ms, conventional_ms) =
+                (method.cost.frame_ms.median, self.conventional.frame_ms.median);
+            Some(Row {
+                scene: self.name.clone(),
+                triangles: self.triangles,
+                method: method.method.clone(),
+                quality: Quality::mean(
+                    self.viewpoints.iter().filter_map(of_method).map(|view| &view.quality),
+                )?,
+                same_image: Quality::mean(self.viewpoints.iter().map(|viewpoint| &viewpoint.same_image))?,
+                frame_ms,
+                conventional_ms,
+                cost_ratio: frame_ms / conventional_ms,
+                paper: paper::find(&self.stands_for).copied(),
+            })
+        };
+        self.methods.iter().filter_map(row).collect()
+    }
+}
+
+pub(super) fn view_of<'a>(viewpoint: &'a Viewpoint, method: &str) -> Option<&'a MethodView> {
+    viewpoint.views.iter().find(|view| view.method == method)
+}

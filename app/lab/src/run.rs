@@ -1,0 +1,234 @@
+//! The measurement of `yoro run`: methods against rendering both eyes, on one scene.
+
+use std::rc::Rc;
+
+use anyhow::{Context as _, ensure};
+use image::RgbImage;
+use indicatif::ProgressBar;
+
+use crate::bench::{BlankFinder, Entrant, spread};
+use crate::interrupt;
+use crate::picture;
+use crate::report::{Cost, MethodCost, PassTime, SceneReport, Viewpoint};
+use yoro::eyes::{Eye, EyeOptions, EyePair};
+use yoro::gl::Context;
+use yoro_render::stereo::{Method, StereoFrame, StereoOptions};
+use yoro_render::{PreparedScene, RenderSettings};
+use yoro_scenes::BUILTINS;
+use yoro_viewer::telemetry::stats::{Summary, median};
+
+/// What is measured on each scene.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The eyes.
+    pub eyes: EyeOptions,
+    /// Options of the conventional method, which the others are held against.
+    pub conventional: StereoOptions,
+    /// The others.
+    pub candidates: Vec<Candidate>,
+    /// Viewpoints, spread over the camera path.
+    pub viewpoints: usize,
+    /// Timed rounds; in each, every method renders one frame at each viewpoint.
+    pub rounds: u32,
+    /// Seed of the built-in scenes.
+    pub seed: u64,
+}
+
+/// A method that is held against the conventional one.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    /// Its name in the report, unlike that of any other.
+    pub name: &'static str,
+    /// How it makes two eyes.
+    pub method: Method,
+    /// Its options.
+    pub options: StereoOptions,
+}
+
+impl Plan {
+    /// Steps of progress for each scene: preparing, a warm-up, each round's viewpoints, the passes.
+    pub fn steps(&self) -> u64 {
+        3 + self.viewpoints as u64 * u64::from(self.rounds)
+    }
+
+    /// Measures a scene: a built-in one by name, or a file.
+    ///
+    /// # Errors
+    /// [`interrupt::Interrupted`], and one sentence when the scene cannot be loaded or GL refuses.
+    pub fn measure(&self, gl: &Rc<Context>, scene: &str, bar: &ProgressBar) -> anyhow::Result<SceneReport> {
+        let mut field = Field::new(self, gl, scene, bar)?;
+        field.warm_up()?;
+        let mut viewpoints = Vec::new();
+        for round in 0..self.rounds {
+            viewpoints.extend(field.round(round)?);
+        }
+        field.time_passes()?;
+        field.report(viewpoints)
+    }
+}
+
+/// A method under measurement.
+struct Timed {
+    name: &'static str,
+    entrant: Entrant,
+    milliseconds: Vec<f64>,
+    /// Samples of each pass, in the order of the first frame.
+    passes: Vec<(&'static str, Vec<f64>)>,
+}
+
+impl Timed {
+    /// Adds the pass times of one frame.
+    fn add_passes(&mut self, times: Vec<(&'static str, f64)>) {
+        for (name, milliseconds) in times {
+            match self.passes.iter_mut().find(|(n, _)| *n == name) {
+                Some((_, samples)) => samples.push(milliseconds),
+                None => self.passes.push((name, vec![milliseconds])),
+            }
+        }
+    }
+
+    fn cost(self) -> anyhow::Result<MethodCost> {
+        let frame_ms = Summary::of(&self.milliseconds).context("at least one frame was timed")?;
+        let pass = |(name, samples): (&str, Vec<f64>)| PassTime {
+            name: name.into(),
+            ms: median(&samples).unwrap_or(0.0),
+        };
+        let passes = self.passes.into_iter().map(pass).collect();
+        Ok(MethodCost { method: self.name.into(), cost: Cost { frame_ms, passes } })
+    }
+}
+
+/// A scene with everyone who renders it, the conventional method first.
+struct Field<'a> {
+    plan: &'a Plan,
+    scene: &'a str,
+    bar: &'a ProgressBar,
+    prepared: PreparedScene,
+    /// Indices of the viewpoints.
+    keys: Vec<usize>,
+    pairs: Vec<EyePair>,
+    entrants: Vec<Timed>,
+    frame: StereoFrame,
+}
+
+impl<'a> Field<'a> {
+    fn new(
+        plan: &'a Plan,
+        gl: &Rc<Context>,
+        scene: &'a str,
+        bar: &'a ProgressBar,
+    ) -> anyhow::Result<Field<'a>> {
+        bar.set_message(format!("{scene}: preparing"));
+        interrupt::check()?;
+        let settings = RenderSettings::default();
+        let loaded = yoro_scenes::load(scene, plan.seed, None)?;
+        let keys = spread(loaded.viewpoints.len(), plan.viewpoints);
+        let pairs: Vec<EyePair> = keys.iter().map(|&k| plan.eyes.pair(loaded.viewpoints[k].pose())).collect();
+        let mut prepared = PreparedScene::new(gl, loaded, &settings)?;
+        let mut finder = BlankFinder::new(gl, &settings)?;
+        for (key, pair) in keys.iter().zip(&pairs) {
+            ensure!(
+                !finder.is_blank(&mut prepared, pair)?,
+                "viewpoint {key} of {0} shows nothing, so there is nothing to measure: write viewpoints that show the model into {0}.camera.json beside it",
+                prepared.scene.name
+            );
+        }
+        drop(finder);
+        let conventional = Candidate {
+            name: Method::Conventional.name(),
+            method: Method::Conventional,
+            options: plan.conventional,
+        };
+        let mut entrants = Vec::new();
+        for candidate in [conventional].iter().chain(&plan.candidates) {
+            let entrant = Entrant::new(gl, candidate.method, &settings, &candidate.options)?;
+            entrants.push(Timed {
+                name: candidate.name,
+                entrant,
+                milliseconds: Vec::new(),
+                passes: Vec::new(),
+            });
+        }
+        let frame = StereoFrame::new(gl, plan.eyes.size)?;
+        bar.inc(1);
+        Ok(Field { plan, scene, bar, prepared, keys, pairs, entrants, frame })
+    }
+
+    fn warm_up(&mut self) -> anyhow::Result<()> {
+        self.bar.set_message(format!("{}: warming up", self.scene));
+        for timed in &mut self.entrants {
+            interrupt::check()?;
+            timed.entrant.render(&mut self.prepared, &self.pairs[0], &mut self.frame)?;
+        }
+        self.bar.inc(1);
+        Ok(())
+    }
+
+    /// Times a frame of every method at every viewpoint, the order rotated so that each comes first, second, ...
+    /// equally often. The first round measures the images, too.
+    fn round(&mut self, round: u32) -> anyhow::Result<Vec<Viewpoint>> {
+        self.bar.set_message(format!("{}: round {} of {}", self.scene, round + 1, self.plan.rounds));
+        let count = self.entrants.len();
+        let mut viewpoints = Vec::new();
+        for (i, pair) in self.pairs.iter().enumerate() {
+            let mut images = vec![<[RgbImage; 2]>::default(); count];
+            for turn in 0..count {
+                interrupt::check()?;
+                let at = (turn + i + round as usize) % count;
+                let timed = &mut self.entrants[at];
+                let time = timed.entrant.render(&mut self.prepared, pair, &mut self.frame)?;
+                timed.milliseconds.push(time.wall.as_secs_f64() * 1e3);
+                if round == 0 {
+                    images[at] = Eye::BOTH.map(|eye| picture::eye_image(&self.frame, eye));
+                }
+            }
+            if round == 0 {
+                viewpoints.push(self.viewpoint(self.keys[i], images)?);
+            }
+            self.bar.inc(1);
+        }
+        Ok(viewpoints)
+    }
+
+    /// Measures the images of one viewpoint, which are in the order of the entrants.
+    fn viewpoint(&self, key: usize, images: Vec<[RgbImage; 2]>) -> anyhow::Result<Viewpoint> {
+        let dominant = self.plan.eyes.dominant;
+        let in_order = |[left, right]: [RgbImage; 2]| match dominant {
+            Eye::Left => [left, right],
+            Eye::Right => [right, left],
+        };
+        let mut images = images.into_iter().map(in_order);
+        let [rendered, truth] = images.next().context("the conventional method comes first")?;
+        let names = self.entrants.iter().skip(1).map(|timed| timed.name.to_owned());
+        let others = names.zip(images.map(|[_, other]| other)).collect();
+        Ok(Viewpoint::measure(format!("viewpoint {key}"), dominant, rendered, truth, others)?)
+    }
+
+    fn time_passes(&mut self) -> anyhow::Result<()> {
+        self.bar.set_message(format!("{}: timing passes", self.scene));
+        for _ in 0..self.plan.rounds {
+            for timed in &mut self.entrants {
+                interrupt::check()?;
+                let times = timed.entrant.pass_times(&mut self.prepared, &self.pairs[0], &mut self.frame)?;
+                timed.add_passes(times);
+            }
+        }
+        self.bar.inc(1);
+        Ok(())
+    }
+
+    fn report(self, viewpoints: Vec<Viewpoint>) -> anyhow::Result<SceneReport> {
+        let costs: Vec<MethodCost> = self.entrants.into_iter().map(Timed::cost).collect::<Result<_, _>>()?;
+        let mut costs = costs.into_iter();
+        let conventional = costs.next().context("the conventional method comes first")?.cost;
+        let scene = &self.prepared.scene;
+        Ok(SceneReport {
+            name: scene.name.clone(),
+            stands_for: BUILTINS.iter().find(|b| b.name == self.scene).map_or("", |b| b.stands_for).into(),
+            triangles: scene.triangle_count() as u64,
+            conventional,
+            methods: costs.collect(),
+            viewpoints,
+        })
+    }
+}

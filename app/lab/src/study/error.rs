@@ -1,0 +1,45 @@
+//! Why a study cannot be planned or analysed.
+
+use std::path::PathBuf;
+
+use yoro_files::FileError;
+
+/// Why a study cannot be planned or analysed: one sentence.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A table lacks a column.
+    #[error("{} has no column \"{column}\": it needs participant, method, scene, question and rating", path.display())]
+    Column {
+        /// The file.
+        path: PathBuf,
+        /// The column.
+        column: &'static str,
+    },
+    /// A row of a table is damaged.
+    #[error("{}, line {line}: {what}", path.display())]
+    Row {
+        /// The file.
+        path: PathBuf,
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong, and the remedy.
+        what: String,
+    },
+    /// There is nothing to analyse.
+    #[error("{}: {what}", path.display())]
+    Nothing {
+        /// The file.
+        path: PathBuf,
+        /// What is missing, and the remedy.
+        what: String,
+    },
+    /// No line of the logs is a rating.
+    #[error(
+        "there is no rating in {0}: ratings are lines of the viewer's log that begin with rating,v=1, and name a participant"
+    )]
+    NoRating(String),
+}

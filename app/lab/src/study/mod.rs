@@ -1,0 +1,69 @@
+//! The user study: who sees what in which order, what they answered, and what that says.
+//!
+//! ```text
+//! plan (orders from a seed) ──> the viewer, or paper ──> ratings (CSV, or lines of the log) ──> analysis
+//! ```
+
+mod analysis;
+mod error;
+mod page;
+mod plan;
+mod ratings;
+
+use std::path::{Path, PathBuf};
+
+use crate::report::ReportError;
+use yoro_files as files;
+
+pub use analysis::{Excluded, Options, Question, Scale, Study, Verdict};
+pub use error::StudyError;
+pub use plan::{Condition, Plan, Trial, Trials, read_trials};
+pub use ratings::{Collected, Ratings, Row};
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The page.
+    pub page: PathBuf,
+    /// The tables as Markdown.
+    pub markdown: PathBuf,
+    /// All figures.
+    pub json: PathBuf,
+}
+
+impl Study {
+    /// The self-contained page.
+    ///
+    /// # Errors
+    /// [`ReportError`] when a figure cannot be drawn.
+    pub fn to_html(&self) -> Result<String, ReportError> {
+        page::html(self)
+    }
+
+    /// Verdicts and tables.
+    pub fn to_markdown(&self) -> String {
+        page::markdown(self)
+    }
+
+    /// Verdicts, for a terminal.
+    pub fn to_text(&self) -> String {
+        page::text(self)
+    }
+
+    /// Writes `study.html`, `study.md` and `study.json` into `folder`.
+    ///
+    /// # Errors
+    /// [`ReportError`]; everything is made before anything is written.
+    pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
+        let written = Written {
+            page: folder.join("study.html"),
+            markdown: folder.join("study.md"),
+            json: folder.join("study.json"),
+        };
+        let (page, json) = (self.to_html()?, serde_json::to_string_pretty(self)?);
+        files::write(&written.json, json.as_bytes())?;
+        files::write(&written.markdown, self.to_markdown().as_bytes())?;
+        files::write(&written.page, page.as_bytes())?;
+        Ok(written)
+    }
+}

@@ -1,0 +1,280 @@
+//! Who sees what in which order.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use rand::SeedableRng as _;
+use rand::seq::SliceRandom as _;
+use rand_pcg::Pcg32;
+use serde::Serialize;
+
+use super::error::StudyError;
+use yoro_files as files;
+
+/// A method as the study calls it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Condition {
+    /// Its name.
+    pub name: String,
+    /// Settings of the viewer that make it, `scene` left out.
+    pub settings: BTreeMap<String, String>,
+}
+
+/// One thing that a participant looks at and rates.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Trial {
+    /// `P01` and so on.
+    pub participant: String,
+    /// Place in the participant's order, from 1.
+    pub trial: u32,
+    /// Scene.
+    pub scene: String,
+    /// Method.
+    pub method: String,
+    /// Settings of the viewer.
+    pub settings: BTreeMap<String, String>,
+}
+
+/// The orders of all participants.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Plan {
+    /// Seed: the same one gives the same plan.
+    pub seed: u64,
+    /// By participant, then in order.
+    pub trials: Vec<Trial>,
+    /// Every scene follows every other equally often, and every method is equally often at each place, when the number
+    /// of participants is a multiple of this.
+    pub balanced_at: usize,
+}
+
+impl Plan {
+    /// Plans a study in which each participant sees each scene by each method, all methods of a scene one after the
+    /// other: what is compared lies close together in time.
+    ///
+    /// Scenes are in the order of a balanced Latin square (Williams 1949), and so are the methods inside a scene; which
+    /// scene, method and participant gets which row is drawn from the seed. The rows of the methods shift from scene to
+    /// scene, so that no participant has one method first all the time.
+    ///
+    /// The settings of a trial name participant and trial for the log, hide the HUD, which shows the method, and have
+    /// the viewer ask the `questions`, if there are any.
+    pub fn new(
+        participants: usize,
+        scenes: &[String],
+        methods: &[Condition],
+        questions: &[String],
+        seed: u64,
+    ) -> Plan {
+        let mut random = Pcg32::seed_from_u64(seed);
+        let mut shuffled = |n: usize| {
+            let mut order: Vec<usize> = (0..n).collect();
+            order.shuffle(&mut random);
+            order
+        };
+        let (scene_square, method_square) = (balanced_square(scenes.len()), balanced_square(methods.len()));
+        let (scene_names, method_names) = (shuffled(scenes.len()), shuffled(methods.len()));
+        // Drawn apart from each other, or a scene's place would decide which of its methods comes first.
+        let (scene_rows, method_rows) = (shuffled(participants), shuffled(participants));
+        let shifts = shuffled(scenes.len());
+
+        let width = participants.to_string().len().max(2);
+        let mut trials = Vec::new();
+        for (participant, (scene_row, method_row)) in scene_rows.into_iter().zip(method_rows).enumerate() {
+            let (mut trial, participant) = (0, format!("P{:0width$}", participant + 1));
+            for &place in &scene_square[scene_row % scene_square.len()] {
+                let scene = scene_names[place];
+                for &place in &method_square[(method_row + shifts[scene]) % method_square.len()] {
+                    let method = &methods[method_names[place]];
+                    trial += 1;
+                    let mut settings = method.settings.clone();
+                    settings.insert("scene".into(), scenes[scene].clone());
+                    settings.insert("participant".into(), participant.clone());
+                    settings.insert("trial".into(), trial.to_string());
+                    settings.insert("hud".into(), "false".into());
+                    if !questions.is_empty() {
+                        settings.insert("questions".into(), questions.join(","));
+                    }
+                    trials.push(Trial {
+                        participant: participant.clone(),
+                        trial,
+                        scene: scenes[scene].clone(),
+                        method: method.name.clone(),
+                        settings,
+                    });
+                }
+            }
+        }
+        let balanced_at = least_common_multiple(scene_square.len(), method_square.len());
+        Plan { seed, trials, balanced_at }
+    }
+
+    /// As a table: `participant,trial,scene,method,settings`, the settings as `key=value` with spaces between.
+    pub fn to_csv(&self) -> String {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let mut write = |cells: [&str; 5]| table.write_record(cells).expect("memory takes it");
+        write(["participant", "trial", "scene", "method", "settings"]);
+        for trial in &self.trials {
+            let settings: Vec<String> =
+                trial.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
+            let number = trial.trial.to_string();
+            write([&trial.participant, &number, &trial.scene, &trial.method, &settings.join(" ")]);
+        }
+        String::from_utf8(table.into_inner().expect("memory takes it")).expect("all cells are text")
+    }
+}
+
+/// Scene and method by participant and number of the trial.
+pub type Trials = BTreeMap<(String, u32), (String, String)>;
+
+/// The trials of a plan that lies there as a table.
+///
+/// # Errors
+/// [`StudyError`]: also for a column that is not there, and a row that is damaged.
+pub fn read_trials(path: &Path) -> Result<Trials, StudyError> {
+    let bytes = files::read(path)?;
+    let damaged = |line: u64| StudyError::Row {
+        path: path.into(),
+        line,
+        what: "this is not a row of a plan: draw the plan again".into(),
+    };
+    let mut table = csv::Reader::from_reader(&bytes[..]);
+    let header = table.headers().map_err(|_| damaged(1))?.clone();
+    let names = ["participant", "trial", "scene", "method"];
+    let at = names
+        .map(|name| header.iter().position(|column| column == name))
+        .into_iter()
+        .collect::<Option<Vec<_>>>();
+    let at = at.ok_or_else(|| damaged(1))?;
+    let mut trials = Trials::new();
+    for (row, line) in table.records().zip(2..) {
+        let row = row.map_err(|_| damaged(line))?;
+        let [participant, trial, scene, method] = [0, 1, 2, 3].map(|i| row[at[i]].to_owned());
+        let trial = trial.parse().map_err(|_| damaged(line))?;
+        trials.insert((participant, trial), (scene, method));
+    }
+    Ok(trials)
+}
+
+/// Rows in each of which every number below `n` is once; taken together each is equally often at each place, and
+/// equally often right after each other one. `n` rows, or twice as many where `n` is odd (but for 1).
+fn balanced_square(n: usize) -> Vec<Vec<usize>> {
+    // 0, 1, n - 1, 2, n - 2, ...: the differences of neighbours are all different.
+    let first: Vec<usize> =
+        (0..n).map(|i| if i % 2 == 1 { i.div_ceil(2) } else { (n - i / 2) % n }).collect();
+    let mut rows: Vec<Vec<usize>> =
+        (0..n).map(|row| first.iter().map(|number| (number + row) % n).collect()).collect();
+    if n % 2 == 1 && n > 1 {
+        rows.extend(rows.clone().into_iter().map(|row| row.into_iter().rev().collect()));
+    }
+    rows
+}
+
+fn least_common_multiple(a: usize, b: usize) -> usize {
+    let (mut x, mut y) = (a, b);
+    while y > 0 {
+        (x, y) = (y, x % y);
+    }
+    a / x.max(1) * b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(prefix: &str, n: usize) -> Vec<String> {
+        (0..n).map(|i| format!("{prefix}{i}")).collect()
+    }
+
+    fn conditions(n: usize) -> Vec<Condition> {
+        let condition = |name: String| Condition { settings: [("method".into(), name.clone())].into(), name };
+        names("m", n).into_iter().map(condition).collect()
+    }
+
+    /// How often each key occurs.
+    fn counts<K: Ord>(keys: impl Iterator<Item = K>) -> BTreeMap<K, usize> {
+        let mut counts = BTreeMap::new();
+        for key in keys {
+            *counts.entry(key).or_insert(0) += 1;
+        }
+        counts
+    }
+
+    fn all_equal(counts: &BTreeMap<impl Ord, usize>, keys: usize) -> bool {
+        counts.len() == keys && counts.values().all(|count| Some(count) == counts.values().next())
+    }
+
+    #[test]
+    fn squares_are_balanced() {
+        for n in 1..=9 {
+            let square = balanced_square(n);
+            assert_eq!(square.len(), if n % 2 == 1 && n > 1 { 2 * n } else { n });
+            let places =
+                square.iter().flat_map(|row| row.iter().enumerate().map(|(place, number)| (place, *number)));
+            assert!(all_equal(&counts(places), n * n), "{n}: {square:?}");
+            let neighbours = square.iter().flat_map(|row| row.windows(2).map(|pair| (pair[0], pair[1])));
+            assert!(n == 1 || all_equal(&counts(neighbours), n * (n - 1)), "{n}: {square:?}");
+        }
+    }
+
+    #[test]
+    fn every_participant_sees_everything_once() {
+        let plan = Plan::new(14, &names("s", 8), &conditions(2), &[], 7);
+        assert_eq!((plan.trials.len(), plan.balanced_at), (14 * 16, 8));
+        for trials in plan.trials.chunk_by(|a, b| a.participant == b.participant) {
+            assert!(trials.iter().map(|t| t.trial).eq(1..=16));
+            assert!(all_equal(&counts(trials.iter().map(|t| (&t.scene, &t.method))), 16));
+            for pair in trials.chunks(2) {
+                assert_eq!(pair[0].scene, pair[1].scene, "the methods of a scene follow each other");
+            }
+            let first = counts(trials.iter().step_by(2).map(|t| &t.method));
+            assert!(all_equal(&first, 2), "each method is first on half of the scenes: {first:?}");
+            for trial in trials {
+                assert_eq!(trial.settings["scene"], trial.scene);
+                assert_eq!(trial.settings["method"], trial.method);
+            }
+        }
+        // On every scene, each method is first for half of the participants.
+        let first = counts(plan.trials.iter().step_by(2).map(|t| (&t.scene, &t.method)));
+        assert!(all_equal(&first, 16), "{first:?}");
+        assert_eq!(plan.trials.last().unwrap().participant, "P14");
+    }
+
+    #[test]
+    fn sixteen_participants_balance_eight_scenes() {
+        let plan = Plan::new(16, &names("s", 8), &conditions(2), &[], 3);
+        let scenes: Vec<Vec<&String>> = plan
+            .trials
+            .chunk_by(|a, b| a.participant == b.participant)
+            .map(|trials| trials.iter().step_by(2).map(|t| &t.scene).collect())
+            .collect();
+        let neighbours = scenes.iter().flat_map(|order| order.windows(2).map(|pair| (pair[0], pair[1])));
+        assert!(all_equal(&counts(neighbours), 56));
+        let places = scenes.iter().flat_map(|order| order.iter().enumerate());
+        assert!(all_equal(&counts(places), 64));
+        // The place of a scene does not decide which method comes first.
+        let first = counts(plan.trials.iter().step_by(2).map(|t| (t.trial, &t.method)));
+        assert_eq!(first.len(), 16, "{first:?}");
+    }
+
+    #[test]
+    fn the_seed_decides() {
+        let plan = |seed| Plan::new(5, &names("s", 3), &conditions(3), &names("q", 2), seed);
+        assert_eq!(plan(1), plan(1));
+        assert_ne!(plan(1).trials, plan(2).trials);
+        let csv = plan(1).to_csv();
+        assert_eq!(csv.lines().count(), 1 + 5 * 9);
+        assert!(csv.starts_with("participant,trial,scene,method,settings\nP01,1,"), "{csv}");
+        let first = csv.lines().nth(1).unwrap();
+        for needed in ["method=m", "participant=P01", "trial=1", "hud=false", "questions=q0,q1"] {
+            assert!(first.contains(needed), "{needed}: {first}");
+        }
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("plan.csv");
+        std::fs::write(&path, csv).unwrap();
+        let read = read_trials(&path).unwrap();
+        for trial in plan(1).trials {
+            assert_eq!(read[&(trial.participant, trial.trial)], (trial.scene, trial.method));
+        }
+        std::fs::write(&path, "participant,trial,scene,method\nP01,x,s,m\n").unwrap();
+        assert!(read_trials(&path).unwrap_err().to_string().contains("plan.csv, line 2"));
+    }
+}

@@ -1,0 +1,520 @@
+//! xrEndFrame: a projection layer of one view becomes one of two.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use ash::vk;
+use openxr_sys as sys;
+use sys::Handle as _;
+use yoro::eyes::Eye;
+
+use crate::dispatch::check;
+use crate::geometry::{Rectangle, Submitted, SubmittedDepth, frustum, pose, split, xr_fov, xr_pose};
+use crate::reason::Reason;
+use crate::session::Session;
+use crate::swapchain::{Content, Swapchain};
+use crate::vulkan::{Image, Job, PATIENCE, Synthesizer};
+use crate::{capture, lock, say};
+
+/// The two views of a layer.
+type Views = [sys::CompositionLayerProjectionView; 2];
+
+/// What xrEndFrame keeps from frame to frame.
+#[derive(Default)]
+pub struct Frames {
+    layers: Vec<*const sys::CompositionLayerBaseHeader>,
+    projections: Vec<sys::CompositionLayerProjection>,
+    views: Vec<Views>,
+    synthesizer: Option<Synthesizer>,
+    target: Option<Target>,
+    /// [`Reason::bit`] of those that the log has.
+    told: u32,
+    counts: Counts,
+    /// What `counts` was at the last line of the log.
+    last: Option<(Instant, Counts)>,
+}
+
+// SAFETY: the pointers in the lists are to the application's structures and to one another, are used only during the call
+// of xrEndFrame that has filled them, and cleared before the next use.
+unsafe impl Send for Frames {}
+
+/// How the frames of a session went.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+struct Counts {
+    /// Frames that were submitted, whatever is in them.
+    frames: u64,
+    /// Layers of one view that became two by synthesis.
+    synthesized: u64,
+    /// Layers of one view that were shown to both eyes as they are.
+    fallbacks: u64,
+    /// What the synthesis of `timed` frames took on the GPU.
+    gpu: Duration,
+    timed: u64,
+}
+
+/// The swapchain of the other eye.
+struct Target {
+    handle: sys::Swapchain,
+    content: Content,
+    /// Acquired, but the runtime did not get ready.
+    acquired: Option<u32>,
+}
+
+/// xrEndFrame.
+///
+/// # Safety
+/// As the specification says.
+pub unsafe fn end_frame(session: &Session, info: &sys::FrameEndInfo) -> sys::Result {
+    let next = session.instance.next.end_frame;
+    let frames = &mut *lock(&session.frames);
+    frames.counts.frames += 1;
+    let pointers = match info.layers.is_null() {
+        true => &[],
+        // SAFETY: promised by the caller: as many as the structure says.
+        false => unsafe { std::slice::from_raw_parts(info.layers, info.layer_count as usize) },
+    };
+    let before = frames.counts.synthesized;
+    if session.is_mono() {
+        // SAFETY: promised by the caller.
+        unsafe { frames.rewrite(session, pointers, true) };
+    } else if session.reads_images() && frames.counts.frames == capture::FRAME {
+        // SAFETY: promised by the caller.
+        unsafe { frames.capture_stereo(session, pointers) };
+    }
+    for swapchain in lock(&session.swapchains).iter() {
+        swapchain.pass_on_release();
+    }
+    if !session.is_mono() {
+        // SAFETY: the application's own.
+        return unsafe { next(session.handle, info) };
+    }
+    let rewritten = sys::FrameEndInfo { layers: frames.layers.as_ptr(), ..*info };
+    // SAFETY: the application's layers, or ones like them, which live until the end of this function.
+    let mut result = unsafe { next(session.handle, &rewritten) };
+    if frames.counts.synthesized > before && is_about_layers(result) {
+        frames.counts.synthesized = before;
+        frames.fall_back(session, Reason::Runtime("xrEndFrame", result));
+        // SAFETY: as above.
+        unsafe {
+            frames.rewrite(session, pointers, false);
+            let rewritten = sys::FrameEndInfo { layers: frames.layers.as_ptr(), ..*info };
+            result = next(session.handle, &rewritten);
+        }
+    }
+    frames.log(session);
+    result
+}
+
+/// Errors of xrEndFrame that come before anything has happened, so that it can be called again.
+fn is_about_layers(result: sys::Result) -> bool {
+    [
+        sys::Result::ERROR_LAYER_INVALID,
+        sys::Result::ERROR_POSE_INVALID,
+        sys::Result::ERROR_SWAPCHAIN_RECT_INVALID,
+        sys::Result::ERROR_VALIDATION_FAILURE,
+    ]
+    .contains(&result)
+}
+
+/// A projection layer, if it is one of that many views.
+///
+/// # Safety
+/// The pointer is null or to a layer.
+unsafe fn projection<'a>(
+    pointer: *const sys::CompositionLayerBaseHeader,
+    views: u32,
+) -> Option<&'a sys::CompositionLayerProjection> {
+    // SAFETY: promised by the caller; the type tells the structure.
+    unsafe {
+        let header = pointer.as_ref()?;
+        if header.ty != sys::CompositionLayerProjection::TYPE {
+            return None;
+        }
+        let layer = &*pointer.cast::<sys::CompositionLayerProjection>();
+        (layer.view_count == views && !layer.views.is_null()).then_some(layer)
+    }
+}
+
+/// The depth of a view.
+///
+/// # Safety
+/// The chain is one of structures.
+unsafe fn depth_of(view: &sys::CompositionLayerProjectionView) -> Option<&sys::CompositionLayerDepthInfoKHR> {
+    let mut structure = view.next.cast::<sys::BaseInStructure>();
+    // SAFETY: promised by the caller; the type tells the structure.
+    unsafe {
+        while let Some(header) = structure.as_ref() {
+            if header.ty == sys::CompositionLayerDepthInfoKHR::TYPE {
+                return Some(&*structure.cast::<sys::CompositionLayerDepthInfoKHR>());
+            }
+            structure = header.next;
+        }
+    }
+    None
+}
+
+/// The rectangle of a sub-image, if it lies in the swapchain.
+fn rectangle(sub_image: &sys::SwapchainSubImage, content: &Content) -> Result<Rectangle, Reason> {
+    let (offset, extent) = (sub_image.image_rect.offset, sub_image.image_rect.extent);
+    let fits = |offset: i32, extent: i32, size: u32| {
+        let (offset, extent) = (u32::try_from(offset).ok()?, u32::try_from(extent).ok()?);
+        (extent > 0 && offset.checked_add(extent)? <= size).then_some((offset, extent))
+    };
+    let x = fits(offset.x, extent.width, content.size[0]);
+    let y = fits(offset.y, extent.height, content.size[1]);
+    let (x, y) =
+        x.zip(y).filter(|_| sub_image.image_array_index < content.array_size).ok_or(Reason::Beyond)?;
+    Ok(Rectangle { origin: [x.0, y.0], size: [x.1, y.1] })
+}
+
+fn sub_image(swapchain: sys::Swapchain, part: Rectangle, layer: u32) -> sys::SwapchainSubImage {
+    let [x, y] = part.origin.map(|pixels| pixels as i32);
+    let [width, height] = part.size.map(|pixels| pixels as i32);
+    sys::SwapchainSubImage {
+        swapchain,
+        image_rect: sys::Rect2Di {
+            offset: sys::Offset2Di { x, y },
+            extent: sys::Extent2Di { width, height },
+        },
+        image_array_index: layer,
+    }
+}
+
+fn find(session: &Session, handle: sys::Swapchain, what: &'static str) -> Result<Arc<Swapchain>, Reason> {
+    let swapchains = lock(&session.swapchains);
+    let found = swapchains.iter().find(|swapchain| swapchain.handle == handle);
+    found.cloned().ok_or(Reason::Unreadable(what))
+}
+
+/// What is in the swapchain, and the image that the application has just released.
+fn held<'a>(swapchain: &'a Swapchain, what: &'static str) -> Result<(&'a Content, vk::Image), Reason> {
+    match (&swapchain.content, swapchain.held()) {
+        (None, _) => Err(Reason::Unreadable(what)),
+        (_, None) => Err(Reason::Old(what)),
+        (_, Some(held)) => Ok(held),
+    }
+}
+
+impl Frames {
+    /// Fills `layers` with the application's, and with others in place of those of one view.
+    ///
+    /// # Safety
+    /// The pointers are those of a valid XrFrameEndInfo.
+    unsafe fn rewrite(
+        &mut self,
+        session: &Session,
+        pointers: &[*const sys::CompositionLayerBaseHeader],
+        synthesize: bool,
+    ) {
+        self.layers.clear();
+        self.projections.clear();
+        self.views.clear();
+        // SAFETY: promised by the caller.
+        let of_one_view = |pointer| unsafe { projection(pointer, 1) };
+        let mut done = false;
+        for layer in pointers.iter().filter_map(|&pointer| of_one_view(pointer)) {
+            // SAFETY: a layer of one view.
+            let view = unsafe { &*layer.views };
+            let views = match (synthesize, done) {
+                (false, _) => None,
+                (true, true) => Some(Err(Reason::Another)),
+                (true, false) => {
+                    // SAFETY: promised by the caller.
+                    let work = AssertUnwindSafe(|| unsafe { self.synthesize(session, view) });
+                    Some(catch_unwind(work).unwrap_or(Err(Reason::Panic)))
+                }
+            };
+            let views = match views {
+                Some(Ok(views)) => {
+                    self.counts.synthesized += 1;
+                    done = true;
+                    views
+                }
+                Some(Err(reason)) => {
+                    self.fall_back(session, reason);
+                    same(view)
+                }
+                None => same(view),
+            };
+            self.views.push(views);
+            self.projections.push(sys::CompositionLayerProjection { view_count: 2, ..*layer });
+        }
+        for (projection, views) in self.projections.iter_mut().zip(&self.views) {
+            projection.views = views.as_ptr();
+        }
+        let mut rewritten = self.projections.iter();
+        for &pointer in pointers {
+            let replaced = of_one_view(pointer).and_then(|_| rewritten.next());
+            self.layers.push(replaced.map_or(pointer, |layer| std::ptr::from_ref(layer).cast()));
+        }
+    }
+
+    /// The two views in place of one.
+    ///
+    /// # Safety
+    /// The view is that of a valid layer, in xrEndFrame.
+    unsafe fn synthesize(
+        &mut self,
+        session: &Session,
+        view: &sys::CompositionLayerProjectionView,
+    ) -> Result<Views, Reason> {
+        // SAFETY: promised by the caller.
+        let info = unsafe { depth_of(view) }.ok_or(Reason::NoDepth)?;
+        let binding = session.binding.ok_or(Reason::NoVulkan)?;
+        let offer = lock(&session.offer).ok_or(Reason::NoViews)?.map_err(Reason::Views)?;
+        let color = find(session, view.sub_image.swapchain, "colour")?;
+        let depth = find(session, info.sub_image.swapchain, "depth")?;
+        let ((color, color_image), (depth, depth_image)) = (held(&color, "colour")?, held(&depth, "depth")?);
+        let part = rectangle(&view.sub_image, color)?;
+        if rectangle(&info.sub_image, depth)? != part || color.size != depth.size {
+            return Err(Reason::Apart);
+        }
+        let split = split(
+            &offer.eyes,
+            &Submitted {
+                pose: pose(view.pose),
+                frustum: frustum(view.fov),
+                size: part.size,
+                depth: SubmittedDepth {
+                    near: info.near_z,
+                    far: info.far_z,
+                    min: info.min_depth,
+                    max: info.max_depth,
+                },
+            },
+        )
+        .map_err(Reason::Geometry)?;
+
+        if self.synthesizer.is_none() {
+            // SAFETY: the application keeps its device until the session is destroyed, and this is dropped before.
+            self.synthesizer = Some(unsafe { Synthesizer::new(binding)? });
+        }
+        let target = self.target(session, color)?;
+        let target_image = target.acquire(session)?;
+        let (handle, format) = (target.handle, target.content.format);
+        let target_image = Image { image: target_image, format, size: target.content.size, layer: 0 };
+        let image = |image: vk::Image, content: &Content, layer: u32| Image {
+            image,
+            format: content.format,
+            size: content.size,
+            layer,
+        };
+        let color_image = image(color_image, color, view.sub_image.image_array_index);
+        let job = Job {
+            color: color_image,
+            depth: image(depth_image, depth, info.sub_image.image_array_index),
+            origin: part.origin,
+            split: &split,
+            target: target_image,
+        };
+        let whole = Rectangle { origin: [0; 2], size: split.crop.size };
+        let crop = split.crop.origin;
+        let crop =
+            Rectangle { origin: [part.origin[0] + crop[0], part.origin[1] + crop[1]], size: split.crop.size };
+        let (dominant, other) = (offer.eyes.dominant, offer.eyes.dominant.other());
+        let result = match &mut self.synthesizer {
+            // SAFETY: the application's side has these images: it has not released them, or the layer has kept that back.
+            // In xrEndFrame the application lets nobody else use the queue (XR_KHR_vulkan_enable).
+            Some(synthesizer) => unsafe {
+                let result = synthesizer.synthesize(&job);
+                if let (Ok(()), true) = (result, self.counts.frames == capture::FRAME) {
+                    capture::write(session, synthesizer, dominant, color_image, crop);
+                    capture::write(session, synthesizer, other, target_image, whole);
+                }
+                if let Some(time) = synthesizer.time() {
+                    self.counts.gpu += time;
+                    self.counts.timed += 1;
+                }
+                result
+            },
+            None => Err(Reason::NoVulkan),
+        };
+        // Released even if nothing is in it: it is not shown then.
+        release(session, handle)?;
+        result?;
+        let eye = |eye: Eye, sub_image| sys::CompositionLayerProjectionView {
+            ty: sys::CompositionLayerProjectionView::TYPE,
+            next: std::ptr::null(),
+            pose: xr_pose(split.poses[eye.index()]),
+            fov: xr_fov(split.frusta[eye.index()]),
+            sub_image,
+        };
+        let mut views =
+            [eye(dominant, sub_image(view.sub_image.swapchain, crop, view.sub_image.image_array_index)); 2];
+        views[other.index()] = eye(other, sub_image(handle, whole, 0));
+        Ok(views)
+    }
+
+    /// A swapchain for the other eye, like the application's.
+    fn target(&mut self, session: &Session, color: &Content) -> Result<&mut Target, Reason> {
+        let fits = |target: &Target| {
+            let size = target.content.size;
+            target.content.format == color.format && size[0] >= color.size[0] && size[1] >= color.size[1]
+        };
+        if !self.target.as_ref().is_some_and(fits) {
+            if let Some(old) = self.target.take() {
+                if let Some(synthesizer) = &mut self.synthesizer {
+                    synthesizer.forget(&old.content.images);
+                }
+                // SAFETY: the layer's own, whose images no command uses any more.
+                unsafe { (session.instance.next.destroy_swapchain)(old.handle) };
+            }
+            self.target = Some(Target::new(session, color)?);
+        }
+        self.target.as_mut().ok_or(Reason::NoVulkan)
+    }
+
+    fn fall_back(&mut self, session: &Session, reason: Reason) {
+        self.counts.fallbacks += 1;
+        if self.told & reason.bit() == 0 {
+            self.told |= reason.bit();
+            say(format_args!("{}: the same image for both eyes: {reason}", session.instance.application));
+        }
+    }
+
+    /// Once a second.
+    fn log(&mut self, session: &Session) {
+        let now = Instant::now();
+        let (start, last) = *self.last.get_or_insert((now, self.counts));
+        let taken = now.duration_since(start);
+        if taken >= Duration::from_secs(1) {
+            self.last = Some((now, self.counts));
+            let counts = &self.counts;
+            let rate = (counts.frames - last.frames) as f64 / taken.as_secs_f64();
+            let timed = counts.timed - last.timed;
+            let gpu = (counts.gpu - last.gpu).as_secs_f64() * 1e3 / timed.max(1) as f64;
+            let application = &session.instance.application;
+            let (synthesized, fallbacks) =
+                (counts.synthesized - last.synthesized, counts.fallbacks - last.fallbacks);
+            say(format_args!(
+                "{application}: {rate:.1} frames a second, {synthesized} synthesized in {gpu:.2} ms of GPU time each, \
+                 {fallbacks} not"
+            ));
+        }
+    }
+
+    /// Both views of what the application renders itself.
+    ///
+    /// # Safety
+    /// As [`Frames::rewrite`].
+    unsafe fn capture_stereo(
+        &mut self,
+        session: &Session,
+        pointers: &[*const sys::CompositionLayerBaseHeader],
+    ) {
+        let Some(binding) = session.binding else { return };
+        // SAFETY: promised by the caller.
+        let layer = pointers.iter().find_map(|&pointer| unsafe { projection(pointer, 2) });
+        let Some(layer) = layer else { return };
+        // SAFETY: a layer of two views.
+        let views = unsafe { std::slice::from_raw_parts(layer.views, 2) };
+        // SAFETY: as in `synthesize`.
+        let Ok(mut synthesizer) = (unsafe { Synthesizer::new(binding) }) else { return };
+        for (eye, view) in Eye::BOTH.into_iter().zip(views) {
+            let swapchain = find(session, view.sub_image.swapchain, "colour");
+            let Ok(swapchain) = swapchain else { continue };
+            let Ok((content, image)) = held(&swapchain, "colour") else { continue };
+            let Ok(part) = rectangle(&view.sub_image, content) else { continue };
+            let layer = view.sub_image.image_array_index;
+            let image = Image { image, format: content.format, size: content.size, layer };
+            // SAFETY: as in `synthesize`.
+            unsafe { capture::write(session, &mut synthesizer, eye, image, part) };
+        }
+    }
+
+    /// Forgets images that are about to be destroyed.
+    pub fn forget(&mut self, content: &Content) {
+        if let Some(synthesizer) = &mut self.synthesizer {
+            synthesizer.forget(&content.images);
+        }
+    }
+
+    /// Before the session is destroyed, which destroys its swapchains.
+    pub fn end(&mut self, session: &Session) {
+        self.synthesizer = None;
+        self.target = None;
+        let Counts { frames, synthesized, fallbacks, .. } = self.counts;
+        if session.is_mono() {
+            say(format_args!(
+                "{}: session ended after {frames} frames: {synthesized} synthesized, {fallbacks} not",
+                session.instance.application
+            ));
+        }
+        *self = Frames::default();
+    }
+}
+
+/// The one image for both eyes. What hangs on the view is for one eye, and goes no further.
+fn same(view: &sys::CompositionLayerProjectionView) -> Views {
+    [sys::CompositionLayerProjectionView { next: std::ptr::null(), ..*view }; 2]
+}
+
+impl Target {
+    fn new(session: &Session, color: &Content) -> Result<Target, Reason> {
+        let mut usage = sys::SwapchainUsageFlags::COLOR_ATTACHMENT | sys::SwapchainUsageFlags::SAMPLED;
+        if session.instance.settings.capture.is_some() {
+            usage |= sys::SwapchainUsageFlags::TRANSFER_SRC;
+        }
+        let info = sys::SwapchainCreateInfo {
+            ty: sys::SwapchainCreateInfo::TYPE,
+            next: std::ptr::null(),
+            create_flags: sys::SwapchainCreateFlags::EMPTY,
+            usage_flags: usage,
+            format: i64::from(color.format.as_raw()),
+            sample_count: 1,
+            width: color.size[0],
+            height: color.size[1],
+            face_count: 1,
+            array_size: 1,
+            mip_count: 1,
+        };
+        let next = &session.instance.next;
+        let mut handle = sys::Swapchain::NULL;
+        // SAFETY: a live session, and a valid description.
+        check(unsafe { (next.create_swapchain)(session.handle, &info, &mut handle) })
+            .map_err(|result| Reason::Runtime("xrCreateSwapchain", result))?;
+        match Content::of(next, handle, &info) {
+            Ok(content) => Ok(Target { handle, content, acquired: None }),
+            Err(result) => {
+                // SAFETY: made above.
+                unsafe { (next.destroy_swapchain)(handle) };
+                Err(Reason::Runtime("xrEnumerateSwapchainImages", result))
+            }
+        }
+    }
+
+    /// An image to write to.
+    fn acquire(&mut self, session: &Session) -> Result<vk::Image, Reason> {
+        let next = &session.instance.next;
+        let index = match self.acquired {
+            Some(index) => index,
+            None => {
+                let mut index = 0;
+                // SAFETY: a live swapchain.
+                check(unsafe { (next.acquire_swapchain_image)(self.handle, std::ptr::null(), &mut index) })
+                    .map_err(|result| Reason::Runtime("xrAcquireSwapchainImage", result))?;
+                *self.acquired.insert(index)
+            }
+        };
+        let info = sys::SwapchainImageWaitInfo {
+            ty: sys::SwapchainImageWaitInfo::TYPE,
+            next: std::ptr::null(),
+            timeout: sys::Duration::from_nanos(PATIENCE.as_nanos() as i64),
+        };
+        // SAFETY: a live swapchain.
+        match unsafe { (next.wait_swapchain_image)(self.handle, &info) } {
+            sys::Result::TIMEOUT_EXPIRED => return Err(Reason::Late),
+            result => check(result).map_err(|result| Reason::Runtime("xrWaitSwapchainImage", result))?,
+        };
+        self.acquired = None;
+        self.content.images.get(index as usize).copied().ok_or(Reason::Beyond)
+    }
+}
+
+fn release(session: &Session, target: sys::Swapchain) -> Result<(), Reason> {
+    // SAFETY: a live swapchain, of which an image was waited for.
+    check(unsafe { (session.instance.next.release_swapchain_image)(target, std::ptr::null()) })
+        .map(|_| ())
+        .map_err(|result| Reason::Runtime("xrReleaseSwapchainImage", result))
+}

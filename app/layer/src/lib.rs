@@ -1,0 +1,47 @@
+//! `XR_APILAYER_YORO_one_view`: an OpenXR API layer between an application that renders one view and a runtime that shows
+//! two.
+//!
+//! The application is offered the view configuration PRIMARY_MONO: one view, at the dominant eye's pose, that sees what
+//! both eyes see. What it submits in xrEndFrame, colour with depth (XR_KHR_composition_layer_depth), is cropped for the
+//! dominant eye, without a copy, and synthesized for the other one. Applications on Vulkan (XR_KHR_vulkan_enable and
+//! enable2); for all others, and for those that begin PRIMARY_STEREO, everything passes through.
+//!
+//! Whatever fails here does not fail the application: such a frame shows the same image to both eyes, the log says why
+//! once, and counts.
+//!
+//! * `entry`: the functions that loader and application call; no panic leaves them.
+//! * `dispatch`: those of the next layer or of the runtime.
+//! * `instance`, `session`, `swapchain`: what is known of the application's objects.
+//! * `frame`: xrEndFrame.
+//! * `geometry`: the offered view, and the parts of a submitted one.
+//! * `vulkan`: synthesis on the application's device and queue.
+
+mod capture;
+mod dispatch;
+mod entry;
+mod frame;
+mod geometry;
+mod instance;
+mod manifest;
+mod reason;
+mod session;
+pub mod settings;
+mod swapchain;
+mod vulkan;
+
+use std::fmt;
+use std::io::Write as _;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+pub use entry::xrNegotiateLoaderApiLayerInterface;
+pub use manifest::{DISABLE, ENABLE, MANIFEST, NAME, manifest};
+
+/// What a panic elsewhere has left is as good as before: nothing is changed in two steps.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Writes a line to the standard error output; an application may have closed it.
+fn say(line: fmt::Arguments) {
+    writeln!(std::io::stderr().lock(), "yoro layer: {line}").ok();
+}

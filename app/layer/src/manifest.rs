@@ -1,0 +1,53 @@
+//! What loaders read to find the layer.
+
+use std::path::Path;
+
+/// Name of the layer, as in XR_ENABLE_API_LAYERS.
+pub const NAME: &str = "XR_APILAYER_YORO_one_view";
+/// File name of the manifest.
+pub const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
+/// With this variable set to 1, loaders load the implicit layer.
+pub const ENABLE: &str = "YORO_LAYER_ENABLE";
+/// With this variable set to anything, loaders leave the implicit layer out.
+pub const DISABLE: &str = "YORO_LAYER_DISABLE";
+
+/// The manifest's text, for the layer's library at a path. An implicit layer is loaded in every application where
+/// [`ENABLE`] is set; an explicit one where it is asked for by name.
+pub fn manifest(library: &Path, implicit: bool) -> String {
+    let mut layer = serde_json::json!({
+        "name": NAME,
+        "library_path": library,
+        "api_version": "1.1",
+        "implementation_version": "1",
+        "description": "One rendered view becomes two",
+        "instance_extensions": [
+            { "name": "XR_KHR_composition_layer_depth", "extension_version": "6", "entrypoints": [] }
+        ],
+    });
+    if implicit {
+        layer["enable_environment"] = ENABLE.into();
+        layer["disable_environment"] = DISABLE.into();
+    }
+    format!("{:#}\n", serde_json::json!({ "file_format_version": "1.0.0", "api_layer": layer }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_implicit_layer_needs_to_be_enabled_by_a_variable() {
+        for implicit in [false, true] {
+            let text = manifest(Path::new("/lib/libyoro_layer.so"), implicit);
+            let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+            let layer = &json["api_layer"];
+            assert_eq!(
+                (&layer["name"], &layer["library_path"]),
+                (&NAME.into(), &"/lib/libyoro_layer.so".into())
+            );
+            assert_eq!(layer["instance_extensions"][0]["name"], "XR_KHR_composition_layer_depth");
+            assert_eq!(layer.get("enable_environment").is_some(), implicit);
+            assert_eq!(layer.get("disable_environment").is_some(), implicit);
+        }
+    }
+}

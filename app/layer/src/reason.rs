@@ -1,0 +1,81 @@
+//! Why a frame is not synthesized.
+
+use ash::vk;
+use openxr_sys as sys;
+use yoro::eyes::EyesError;
+use yoro::vulkan::VulkanError;
+
+use crate::geometry::GeometryError;
+
+/// The same image is shown to both eyes, for this reason.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Reason {
+    /// No XrCompositionLayerDepthInfoKHR.
+    #[error("it submits no depth; let it enable XR_KHR_composition_layer_depth and submit its depth buffer")]
+    NoDepth,
+    /// The session is bound to something else.
+    #[error("its session is not bound to Vulkan")]
+    NoVulkan,
+    /// No view was located yet, or none could be offered.
+    #[error("the headset's views are not known")]
+    NoViews,
+    /// The runtime's eyes fit no synthesis.
+    #[error("{0}")]
+    Views(EyesError),
+    /// What was submitted fits no synthesis.
+    #[error("{0}")]
+    Geometry(GeometryError),
+    /// The swapchain's images cannot be read.
+    #[error("{0} is in a swapchain that cannot be read (multisampled, protected, or a cube)")]
+    Unreadable(&'static str),
+    /// The image was not released in this frame.
+    #[error("{0} was not released since the last frame")]
+    Old(&'static str),
+    /// Colour and depth lie in different places.
+    #[error("colour and depth have different sizes or rectangles")]
+    Apart,
+    /// A rectangle or an array index beyond the swapchain.
+    #[error("a rectangle or an array index lies beyond its swapchain")]
+    Beyond,
+    /// More than one layer of one view in a frame.
+    #[error("it submits more than one projection layer; only the first with depth is synthesized")]
+    Another,
+    /// The GPU, or the runtime, does not get ready.
+    #[error("the GPU or the runtime is late by half a second")]
+    Late,
+    /// A command of Vulkan.
+    #[error("Vulkan fails with {0:?}")]
+    Vulkan(vk::Result),
+    /// A command of the synthesis.
+    #[error("{0}")]
+    Synthesis(VulkanError),
+    /// A call of the runtime.
+    #[error("{0} fails with {1:?}")]
+    Runtime(&'static str, sys::Result),
+    /// A mistake in the layer.
+    #[error("the layer has failed in an unexpected way")]
+    Panic,
+}
+
+impl Reason {
+    /// The bit of this kind of reason, in a set of those that were told.
+    pub fn bit(&self) -> u32 {
+        1 << match self {
+            Reason::NoDepth => 0,
+            Reason::NoVulkan => 1,
+            Reason::NoViews => 2,
+            Reason::Views(_) => 3,
+            Reason::Geometry(_) => 4,
+            Reason::Unreadable(_) => 5,
+            Reason::Old(_) => 6,
+            Reason::Apart => 7,
+            Reason::Beyond => 8,
+            Reason::Another => 9,
+            Reason::Late => 10,
+            Reason::Vulkan(_) => 11,
+            Reason::Synthesis(_) => 12,
+            Reason::Runtime(..) => 13,
+            Reason::Panic => 14,
+        }
+    }
+}

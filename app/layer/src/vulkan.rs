@@ -1,0 +1,491 @@
+//! Synthesis on the application's Vulkan device and queue.
+
+use std::ffi::c_void;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use ash::vk;
+use ash::vk::Handle as _;
+use openxr_sys as sys;
+use yoro::vulkan::{
+    Frame, Gather, Host, ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages,
+};
+
+use crate::geometry::{Rectangle, Split};
+use crate::reason::Reason;
+
+/// Frames whose commands may be pending at the same time.
+const FRAMES: usize = 3;
+/// How long commands of [`FRAMES`] frames ago, or an image of the runtime's, are waited for.
+pub const PATIENCE: Duration = Duration::from_millis(500);
+
+/// What the application binds its session to.
+#[derive(Clone, Copy)]
+pub struct Binding {
+    instance: vk::Instance,
+    physical_device: vk::PhysicalDevice,
+    device: vk::Device,
+    queue_family: u32,
+    queue: u32,
+}
+
+impl Binding {
+    /// Of a session's graphics binding.
+    pub fn new(binding: &sys::GraphicsBindingVulkanKHR) -> Binding {
+        let raw = |handle: *const c_void| handle as u64;
+        Binding {
+            instance: vk::Instance::from_raw(raw(binding.instance)),
+            physical_device: vk::PhysicalDevice::from_raw(raw(binding.physical_device)),
+            device: vk::Device::from_raw(raw(binding.device)),
+            queue_family: binding.queue_family_index,
+            queue: binding.queue_index,
+        }
+    }
+}
+
+/// An image of a swapchain, or one layer of its array.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Image {
+    pub image: vk::Image,
+    pub format: vk::Format,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    pub layer: u32,
+}
+
+/// What is synthesized in a frame.
+pub struct Job<'a> {
+    pub color: Image,
+    pub depth: Image,
+    /// Upper left corner of the submitted rectangle in both.
+    pub origin: [u32; 2],
+    pub split: &'a Split,
+    /// The other eye's part begins at its upper left corner.
+    pub target: Image,
+}
+
+/// Command buffers and the pipeline, for one session.
+pub struct Synthesizer {
+    // Before the device's other objects: it is dropped first.
+    gather: Option<(Gather, Options)>,
+    sources: Vec<([Image; 2], SourceId)>,
+    targets: Vec<(Image, TargetId)>,
+    instance: ash::Instance,
+    device: ash::Device,
+    binding: Binding,
+    queue: vk::Queue,
+    pool: vk::CommandPool,
+    slots: [Slot; FRAMES],
+    frame: usize,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Slot {
+    commands: vk::CommandBuffer,
+    /// Signalled when `commands` are not pending.
+    fence: vk::Fence,
+}
+
+/// Vulkan's loader, which the application has loaded, too.
+fn entry() -> Option<&'static ash::Entry> {
+    static ENTRY: OnceLock<Option<ash::Entry>> = OnceLock::new();
+    // SAFETY: the system's library, which is never unloaded.
+    ENTRY.get_or_init(|| unsafe { ash::Entry::load().ok() }).as_ref()
+}
+
+impl Synthesizer {
+    /// # Safety
+    /// The binding's handles are valid until this is dropped.
+    pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
+        let entry = entry().ok_or(Reason::NoVulkan)?;
+        // SAFETY: promised by the caller.
+        let (instance, device) = unsafe {
+            let instance = ash::Instance::load(entry.static_fn(), binding.instance);
+            let device = ash::Device::load(instance.fp_v1_0(), binding.device);
+            (instance, device)
+        };
+        // SAFETY: promised by the caller; all objects are this device's.
+        unsafe {
+            let queue = device.get_device_queue(binding.queue_family, binding.queue);
+            let info = vk::CommandPoolCreateInfo::default()
+                .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER)
+                .queue_family_index(binding.queue_family);
+            let pool = device.create_command_pool(&info, None).map_err(Reason::Vulkan)?;
+            // From here on dropping it destroys what there is.
+            let mut synthesizer = Synthesizer {
+                gather: None,
+                sources: Vec::new(),
+                targets: Vec::new(),
+                instance,
+                device,
+                binding,
+                queue,
+                pool,
+                slots: [Slot::default(); FRAMES],
+                frame: 0,
+            };
+            let device = &synthesizer.device;
+            let info = vk::CommandBufferAllocateInfo::default()
+                .command_pool(pool)
+                .command_buffer_count(FRAMES as u32);
+            let commands = device.allocate_command_buffers(&info).map_err(Reason::Vulkan)?;
+            let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
+            for (slot, commands) in synthesizer.slots.iter_mut().zip(commands) {
+                *slot =
+                    Slot { commands, fence: device.create_fence(&signalled, None).map_err(Reason::Vulkan)? };
+            }
+            Ok(synthesizer)
+        }
+    }
+
+    /// Submits the synthesis of one frame to the application's queue.
+    ///
+    /// # Safety
+    /// The images are this device's. The source's are in the layouts of attachments, and so is the target's left. Nobody
+    /// else uses the queue.
+    pub unsafe fn synthesize(&mut self, job: &Job) -> Result<(), Reason> {
+        let slot = self.slots[self.frame % FRAMES];
+        // SAFETY: promised by the caller; commands and images are this device's, and the slot's commands are not pending.
+        unsafe {
+            self.wait_for(slot)?;
+            self.make_gather(job)?;
+            let (source, target) = (self.source(job)?, self.target(job.target)?);
+            self.begin(slot)?;
+            let Some((gather, _)) = &mut self.gather else { return Err(Reason::NoVulkan) };
+            let from = job.split.source.origin;
+            let frame = Frame {
+                source,
+                source_origin: [job.origin[0] + from[0], job.origin[1] + from[1]],
+                target,
+                target_origin: [0, 0],
+            };
+            gather.record(slot.commands, &frame, &job.split.warp).map_err(Reason::Synthesis)?;
+            self.device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
+            self.submit(slot)
+        }
+    }
+
+    /// What the synthesis of an earlier frame took on the GPU, if that is known by now.
+    ///
+    /// # Safety
+    /// What was recorded was submitted.
+    pub unsafe fn time(&mut self) -> Option<Duration> {
+        let (gather, _) = self.gather.as_mut()?;
+        // SAFETY: promised by the caller. Without times there is nothing to say about them.
+        let times = unsafe { gather.pass_times() }.ok()??;
+        Some(times.tiles + times.spans + times.march)
+    }
+
+    /// Forgets a swapchain's images, which the application is about to destroy.
+    pub fn forget(&mut self, images: &[vk::Image]) {
+        let uses = |image: &Image| images.contains(&image.image);
+        if !self.sources.iter().any(|(source, _)| source.iter().any(uses))
+            && !self.targets.iter().any(|(target, _)| uses(target))
+        {
+            return;
+        }
+        self.wait_for_all();
+        let Some((gather, _)) = &mut self.gather else { return };
+        self.sources.retain(|(source, id)| {
+            let keep = !source.iter().any(uses);
+            if !keep {
+                // SAFETY: no command is pending.
+                unsafe { gather.release_source(*id) };
+            }
+            keep
+        });
+        self.targets.retain(|(target, id)| {
+            let keep = !uses(target);
+            if !keep {
+                // SAFETY: no command is pending.
+                unsafe { gather.release_target(*id) };
+            }
+            keep
+        });
+    }
+
+    /// A pipeline for these formats and sizes.
+    unsafe fn make_gather(&mut self, job: &Job) -> Result<(), Reason> {
+        let [source, target] = [job.color.size, job.target.size];
+        let fits = |limit: [u32; 2], size: [u32; 2]| limit[0] >= size[0] && limit[1] >= size[1];
+        if let Some((_, options)) = &self.gather
+            && options.color_format == job.target.format
+            && fits(options.max_source_size, source)
+            && fits(options.max_target_size, target)
+        {
+            return Ok(());
+        }
+        self.wait_for_all();
+        self.gather = None;
+        self.sources.clear();
+        self.targets.clear();
+        let options = Options {
+            color_format: job.target.format,
+            max_source_size: source,
+            max_target_size: target,
+            timed_frames: FRAMES as u32 + 1,
+            ..Options::default()
+        };
+        let host = Host {
+            instance: &self.instance,
+            physical_device: self.binding.physical_device,
+            device: &self.device,
+            queue_family: self.binding.queue_family,
+            // Whether the application has enabled it is not known.
+            dynamic_rendering: false,
+        };
+        // SAFETY: the handles are valid until this is dropped, which waits for its commands.
+        let gather = unsafe { Gather::new(&host, &options).map_err(Reason::Synthesis)? };
+        self.gather = Some((gather, options));
+        Ok(())
+    }
+
+    unsafe fn source(&mut self, job: &Job) -> Result<SourceId, Reason> {
+        let key = [job.color, job.depth];
+        if let Some((_, id)) = self.sources.iter().find(|(source, _)| *source == key) {
+            return Ok(*id);
+        }
+        let Some((gather, _)) = &mut self.gather else { return Err(Reason::NoVulkan) };
+        // SAFETY: live images, which are forgotten before they are destroyed.
+        let id = unsafe {
+            gather.register_source(&SourceImages {
+                color: layer_image(job.color, ImageState::COLOR_ATTACHMENT, ImageState::COLOR_ATTACHMENT),
+                depth: layer_image(job.depth, ImageState::DEPTH_ATTACHMENT, ImageState::DEPTH_ATTACHMENT),
+                size: job.color.size,
+            })
+        };
+        let id = id.map_err(Reason::Synthesis)?;
+        self.sources.push((key, id));
+        Ok(id)
+    }
+
+    unsafe fn target(&mut self, target: Image) -> Result<TargetId, Reason> {
+        if let Some((_, id)) = self.targets.iter().find(|(known, _)| *known == target) {
+            return Ok(*id);
+        }
+        let Some((gather, _)) = &mut self.gather else { return Err(Reason::NoVulkan) };
+        // SAFETY: live images, which are forgotten before they are destroyed.
+        let id = unsafe {
+            gather.register_target(&TargetImages {
+                color: layer_image(target, ImageState::DISCARDED, ImageState::COLOR_ATTACHMENT),
+                depth: None,
+                size: target.size,
+            })
+        };
+        let id = id.map_err(Reason::Synthesis)?;
+        self.targets.push((target, id));
+        Ok(id)
+    }
+
+    unsafe fn wait_for(&self, slot: Slot) -> Result<(), Reason> {
+        // SAFETY: this device's fence.
+        let waited = unsafe { self.device.wait_for_fences(&[slot.fence], true, PATIENCE.as_nanos() as u64) };
+        match waited {
+            Err(vk::Result::TIMEOUT) => Err(Reason::Late),
+            result => result.map_err(Reason::Vulkan),
+        }
+    }
+
+    unsafe fn begin(&self, slot: Slot) -> Result<(), Reason> {
+        let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: commands of this device that are not pending. An error may have left them in the middle of recording.
+        unsafe {
+            let device = &self.device;
+            device
+                .reset_command_buffer(slot.commands, vk::CommandBufferResetFlags::empty())
+                .and_then(|()| device.begin_command_buffer(slot.commands, &info))
+                .map_err(Reason::Vulkan)
+        }
+    }
+
+    unsafe fn submit(&mut self, slot: Slot) -> Result<(), Reason> {
+        let commands = [slot.commands];
+        let submits = [vk::SubmitInfo::default().command_buffers(&commands)];
+        // SAFETY: recorded commands of this device, and a fence that nothing waits for any more.
+        unsafe {
+            self.device.reset_fences(&[slot.fence]).map_err(Reason::Vulkan)?;
+            if let Err(error) = self.device.queue_submit(self.queue, &submits, slot.fence) {
+                self.renew_fence();
+                return Err(Reason::Vulkan(error));
+            }
+        }
+        self.frame += 1;
+        Ok(())
+    }
+
+    /// What could not be submitted signals no fence: another one, so that nobody waits for it.
+    unsafe fn renew_fence(&mut self) {
+        let slot = &mut self.slots[self.frame % FRAMES];
+        let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
+        // SAFETY: this device's fence, which nothing waits for.
+        unsafe {
+            if let Ok(fence) = self.device.create_fence(&signalled, None) {
+                self.device.destroy_fence(slot.fence, None);
+                slot.fence = fence;
+            }
+        }
+    }
+
+    fn wait_for_all(&self) {
+        for slot in self.slots.iter().filter(|slot| !slot.fence.is_null()) {
+            // SAFETY: this device's fence. A device that is lost or hangs has nothing pending any more that could be
+            // waited for.
+            unsafe {
+                self.device
+                    .wait_for_fences(&[slot.fence], true, Duration::from_secs(5).as_nanos() as u64)
+                    .ok()
+            };
+        }
+    }
+
+    /// Copies a rectangle of an image that is in the layout of a colour attachment, and waits for it: four bytes a pixel,
+    /// row 0 at the top. For tests.
+    ///
+    /// # Safety
+    /// As for [`Synthesizer::synthesize`].
+    pub unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
+        let slot = self.slots[self.frame % FRAMES];
+        let bytes = u64::from(part.size[0]) * u64::from(part.size[1]) * 4;
+        // SAFETY: promised by the caller; all other objects are made here and destroyed after the commands have ended.
+        unsafe {
+            self.wait_for(slot)?;
+            let staging = Staging::new(&self.instance, &self.device, self.binding.physical_device, bytes)?;
+            self.begin(slot)?;
+            let device = &self.device;
+            let turn = |from: ImageState, to: ImageState| {
+                let barrier = vk::ImageMemoryBarrier::default()
+                    .image(image.image)
+                    .old_layout(from.layout)
+                    .new_layout(to.layout)
+                    .src_access_mask(from.access)
+                    .dst_access_mask(to.access)
+                    .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .subresource_range(vk::ImageSubresourceRange {
+                        aspect_mask: vk::ImageAspectFlags::COLOR,
+                        base_mip_level: 0,
+                        level_count: 1,
+                        base_array_layer: image.layer,
+                        layer_count: 1,
+                    });
+                let dependencies = vk::DependencyFlags::empty();
+                device.cmd_pipeline_barrier(
+                    slot.commands,
+                    from.stages,
+                    to.stages,
+                    dependencies,
+                    &[],
+                    &[],
+                    &[barrier],
+                );
+            };
+            let copied = ImageState {
+                layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                stages: vk::PipelineStageFlags::TRANSFER,
+                access: vk::AccessFlags::TRANSFER_READ,
+            };
+            turn(ImageState::COLOR_ATTACHMENT, copied);
+            let copy = vk::BufferImageCopy::default()
+                .image_subresource(vk::ImageSubresourceLayers {
+                    aspect_mask: vk::ImageAspectFlags::COLOR,
+                    mip_level: 0,
+                    base_array_layer: image.layer,
+                    layer_count: 1,
+                })
+                .image_offset(vk::Offset3D { x: part.origin[0] as i32, y: part.origin[1] as i32, z: 0 })
+                .image_extent(vk::Extent3D { width: part.size[0], height: part.size[1], depth: 1 });
+            device.cmd_copy_image_to_buffer(
+                slot.commands,
+                image.image,
+                copied.layout,
+                staging.buffer,
+                &[copy],
+            );
+            turn(copied, ImageState::COLOR_ATTACHMENT);
+            device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
+            self.submit(slot)?;
+            self.wait_for(slot)?;
+            staging.bytes()
+        }
+    }
+}
+
+fn layer_image(image: Image, before: ImageState, after: ImageState) -> LayerImage {
+    LayerImage { image: image.image, format: image.format, layer: image.layer, before, after }
+}
+
+impl Drop for Synthesizer {
+    fn drop(&mut self) {
+        self.wait_for_all();
+        self.gather = None;
+        // SAFETY: this device's objects, which no command uses any more.
+        unsafe {
+            for slot in &self.slots {
+                self.device.destroy_fence(slot.fence, None);
+            }
+            self.device.destroy_command_pool(self.pool, None);
+        }
+    }
+}
+
+/// Memory that the CPU reads.
+struct Staging {
+    device: Arc<ash::Device>,
+    buffer: vk::Buffer,
+    memory: vk::DeviceMemory,
+    size: u64,
+}
+
+impl Staging {
+    unsafe fn new(
+        instance: &ash::Instance,
+        device: &ash::Device,
+        physical_device: vk::PhysicalDevice,
+        size: u64,
+    ) -> Result<Staging, Reason> {
+        let mut staging = Staging {
+            device: Arc::new(device.clone()),
+            buffer: vk::Buffer::null(),
+            memory: vk::DeviceMemory::null(),
+            size,
+        };
+        // SAFETY: a live device; what is made before an error is destroyed with the struct.
+        unsafe {
+            let info = vk::BufferCreateInfo::default().size(size).usage(vk::BufferUsageFlags::TRANSFER_DST);
+            staging.buffer = device.create_buffer(&info, None).map_err(Reason::Vulkan)?;
+            let needs = device.get_buffer_memory_requirements(staging.buffer);
+            let wanted = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
+            let types = instance.get_physical_device_memory_properties(physical_device);
+            let kind = types.memory_types_as_slice().iter().enumerate().position(|(i, kind)| {
+                needs.memory_type_bits & (1 << i) != 0 && kind.property_flags.contains(wanted)
+            });
+            let kind = kind.ok_or(Reason::Vulkan(vk::Result::ERROR_FEATURE_NOT_PRESENT))?;
+            let info =
+                vk::MemoryAllocateInfo::default().allocation_size(needs.size).memory_type_index(kind as u32);
+            staging.memory = device.allocate_memory(&info, None).map_err(Reason::Vulkan)?;
+            device.bind_buffer_memory(staging.buffer, staging.memory, 0).map_err(Reason::Vulkan)?;
+        }
+        Ok(staging)
+    }
+
+    unsafe fn bytes(&self) -> Result<Vec<u8>, Reason> {
+        // SAFETY: host-visible memory of this size, which nothing writes any more.
+        unsafe {
+            let flags = vk::MemoryMapFlags::empty();
+            let start = self.device.map_memory(self.memory, 0, self.size, flags).map_err(Reason::Vulkan)?;
+            let bytes = std::slice::from_raw_parts(start.cast::<u8>(), self.size as usize).to_vec();
+            self.device.unmap_memory(self.memory);
+            Ok(bytes)
+        }
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        // SAFETY: this device's objects, which no command uses any more.
+        unsafe {
+            self.device.destroy_buffer(self.buffer, None);
+            self.device.free_memory(self.memory, None);
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! A scene that can be drawn.
+
+use std::rc::Rc;
+
+use yoro::gl::{Context, GlError};
+use yoro_scene::Scene;
+
+use crate::render::{GpuScene, RenderSettings, Renderer};
+
+/// A scene on the GPU with the renderer that was compiled for it.
+pub struct PreparedScene {
+    /// The scene.
+    pub scene: GpuScene,
+    /// Its renderer.
+    pub renderer: Renderer,
+}
+
+impl PreparedScene {
+    /// Uploads a scene and compiles what it needs.
+    ///
+    /// # Errors
+    /// As [`GpuScene::upload`] and [`Renderer::new`].
+    pub fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Result<PreparedScene, GlError> {
+        let scene = GpuScene::upload(gl, scene)?;
+        let renderer = Renderer::new(gl, settings, &scene)?;
+        Ok(PreparedScene { scene, renderer })
+    }
+}

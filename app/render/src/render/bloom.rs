@@ -1,0 +1,101 @@
+//! Bloom.
+
+use std::rc::Rc;
+
+use glam::Vec2;
+
+use yoro::gl::{
+    Blend, Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
+};
+
+/// Levels of the pyramid; the first has half the view's size.
+const LEVELS: usize = 5;
+
+/// The pyramid of images.
+pub struct BloomTargets {
+    levels: [RenderTarget; LEVELS],
+}
+
+fn level_size(size: [u32; 2], level: usize) -> [u32; 2] {
+    size.map(|n| (n >> (level + 1)).max(1))
+}
+
+impl BloomTargets {
+    /// Targets for a view of `size` pixels.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`].
+    pub fn new(gl: &Rc<Context>, size: [u32; 2], format: Format) -> Result<BloomTargets, GlError> {
+        let level = |i| RenderTarget::new(gl, level_size(size, i), &[(format, Filter::Linear)], None);
+        Ok(BloomTargets { levels: [level(0)?, level(1)?, level(2)?, level(3)?, level(4)?] })
+    }
+
+    /// Fits the targets to a view of `size` pixels.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`].
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
+        self.levels.iter_mut().enumerate().try_for_each(|(i, level)| level.resize(level_size(size, i)))
+    }
+
+    /// The finished bloom, half the view's size.
+    pub fn result(&self) -> &Texture {
+        self.levels[0].color(0)
+    }
+}
+
+/// Spreads what is brighter than white over its surroundings.
+///
+/// Reads scene-referred colour, writes the pyramid.
+pub struct BloomPass {
+    gl: Rc<Context>,
+    first: Program,
+    down: Program,
+    up: Program,
+}
+
+impl BloomPass {
+    /// Compiles the programs; `defines` are those of `include/hdr.glsl`.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    pub fn new(gl: &Rc<Context>, defines: &[(&'static str, String)]) -> Result<BloomPass, GlError> {
+        let down = ShaderSource::Screen("render/bloom_down.frag");
+        let mut first = defines.to_vec();
+        first.push(("FIRST", String::new()));
+        Ok(BloomPass {
+            gl: gl.clone(),
+            first: Program::new(gl, down, &first)?,
+            down: Program::new(gl, down, defines)?,
+            up: Program::new(gl, ShaderSource::Screen("render/bloom_up.frag"), &[])?,
+        })
+    }
+
+    /// Computes the bloom of `source`, whose filter must be linear.
+    pub fn run(&self, targets: &BloomTargets, source: &Texture) {
+        let texel = |texture: &Texture| 1.0 / Vec2::from(texture.size().map(|n| n as f32));
+        self.gl.pass("bloom", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            let mut from = source;
+            let mut program = &self.first;
+            for level in &targets.levels {
+                level.bind();
+                program.bind().texture("source", 0, from.raw()).set("texel", texel(level.color(0)));
+                self.gl.draw_screen();
+                from = level.color(0);
+                program = &self.down;
+            }
+            self.gl.set_raster_state(&RasterState { blend: Blend::Add, ..RasterState::SCREEN });
+            for pair in targets.levels.windows(2).rev() {
+                let (large, small) = (&pair[0], pair[1].color(0));
+                large.bind();
+                self.up
+                    .bind()
+                    .texture("source", 0, small.raw())
+                    .set("texel", texel(large.color(0)))
+                    .set("source_texel", texel(small));
+                self.gl.draw_screen();
+            }
+        });
+    }
+}

@@ -1,0 +1,191 @@
+//! The g-buffer of one view, or of both eyes at once.
+
+use std::rc::Rc;
+
+use glam::{Mat4, Vec4};
+
+use yoro::eyes::{DepthConvention, Eye};
+use yoro::gl::{Context, Filter, Format, GlError, RenderTarget};
+
+/// Colour attachments of the g-buffer: albedo and roughness, normal and reflectance, emission and material.
+const COLOR_FORMATS: [(Format, Filter); 3] = [(Format::Rgba8, Filter::Nearest); 3];
+
+/// Which views a g-buffer holds, and how they are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// One view.
+    Single,
+    /// Both eyes side by side, left first, each triangle drawn twice by instancing.
+    DoubleWide(Seam),
+    /// Both eyes in the layers of array textures, by GL_OVR_multiview2.
+    Layered,
+}
+
+/// What keeps an eye's triangles out of the other half of a double-wide target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seam {
+    /// gl_ClipDistance.
+    ClipDistance,
+    /// `discard`, where the driver has no clip distances; it costs early depth tests.
+    Discard,
+}
+
+impl Layout {
+    /// Number of layouts.
+    pub const COUNT: usize = 4;
+
+    /// Place among the layouts.
+    pub fn index(self) -> usize {
+        match self {
+            Layout::Single => 0,
+            Layout::DoubleWide(Seam::ClipDistance) => 1,
+            Layout::DoubleWide(Seam::Discard) => 2,
+            Layout::Layered => 3,
+        }
+    }
+
+    /// The defines of `render/geometry.vert` and `render/geometry.frag`.
+    pub fn defines(self) -> &'static [&'static str] {
+        match self {
+            Layout::Single => &[],
+            Layout::DoubleWide(Seam::ClipDistance) => &["STEREO", "CLIP_DISTANCE"],
+            Layout::DoubleWide(Seam::Discard) => &["STEREO", "SEAM_DISCARD"],
+            Layout::Layered => &["STEREO", "MULTIVIEW"],
+        }
+    }
+
+    /// Instances of each draw call.
+    pub fn instances(self) -> usize {
+        match self {
+            Layout::DoubleWide(_) => 2,
+            Layout::Single | Layout::Layered => 1,
+        }
+    }
+
+    /// Columns from the left edge of an eye's image to that of the next. Even, so that the 2x2 pixels that
+    /// derivatives are taken of are the same as in a view by itself.
+    fn stride(width: u32) -> u32 {
+        width.next_multiple_of(2)
+    }
+
+    /// Size of the textures for views of `size` pixels.
+    pub fn texture_size(self, size: [u32; 2]) -> [u32; 2] {
+        match self {
+            Layout::DoubleWide(_) => [2 * Layout::stride(size[0]), size[1]],
+            Layout::Single | Layout::Layered => size,
+        }
+    }
+
+    /// Lower left corner of an eye's image, of `size` pixels.
+    pub fn origin(self, size: [u32; 2], eye: Eye) -> [u32; 2] {
+        match self {
+            Layout::DoubleWide(_) => [Layout::stride(size[0]) * eye.index() as u32, 0],
+            Layout::Single | Layout::Layered => [0, 0],
+        }
+    }
+
+    /// Moves an eye's clip space to where its image is.
+    pub fn placement(self, size: [u32; 2], eye: Eye) -> Mat4 {
+        let (whole, width) = (self.texture_size(size)[0] as f32, size[0] as f32);
+        let left = self.origin(size, eye)[0] as f32;
+        let mut placement = Mat4::IDENTITY;
+        placement.x_axis.x = width / whole;
+        placement.w_axis.x = (2.0 * left + width) / whole - 1.0;
+        placement
+    }
+
+    /// The plane of an eye's clip volume that lies at the seam, for positions that `eye_to_clip` takes.
+    pub fn seam_plane(eye_to_clip: &Mat4, eye: Eye) -> Vec4 {
+        let rows = eye_to_clip.transpose();
+        match eye {
+            Eye::Left => rows.w_axis - rows.x_axis,
+            Eye::Right => rows.w_axis + rows.x_axis,
+        }
+    }
+}
+
+/// Albedo and roughness, normal and reflectance, emission and material, and depth: 24 bits for standard, float for
+/// reversed depth.
+pub struct GBuffer {
+    gl: Rc<Context>,
+    layout: Layout,
+    convention: DepthConvention,
+    target: RenderTarget,
+}
+
+impl GBuffer {
+    /// A g-buffer for views of `size` pixels.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`]; [`GlError::Unsupported`] when the driver cannot do the layout.
+    pub fn new(
+        gl: &Rc<Context>,
+        layout: Layout,
+        size: [u32; 2],
+        convention: DepthConvention,
+    ) -> Result<GBuffer, GlError> {
+        let target = target(gl, layout, size, convention)?;
+        Ok(GBuffer { gl: gl.clone(), layout, convention, target })
+    }
+
+    /// Fits the textures to views of another size or convention; nothing is done when they fit already.
+    ///
+    /// # Errors
+    /// As [`GBuffer::new`].
+    pub fn fit(&mut self, size: [u32; 2], convention: DepthConvention) -> Result<(), GlError> {
+        if convention != self.convention {
+            self.target = target(&self.gl, self.layout, size, convention)?;
+            self.convention = convention;
+        }
+        self.target.resize(self.layout.texture_size(size))
+    }
+
+    /// Which views it holds.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// Its textures.
+    pub fn target(&self) -> &RenderTarget {
+        &self.target
+    }
+}
+
+fn target(
+    gl: &Rc<Context>,
+    layout: Layout,
+    size: [u32; 2],
+    convention: DepthConvention,
+) -> Result<RenderTarget, GlError> {
+    let depth = match convention {
+        DepthConvention::Standard => Format::Depth24,
+        DepthConvention::Reversed => Format::Depth32F,
+    };
+    let size = layout.texture_size(size);
+    match layout {
+        Layout::Layered => RenderTarget::multiview(gl, size, &COLOR_FORMATS, Some(depth)),
+        _ => RenderTarget::new(gl, size, &COLOR_FORMATS, Some(depth)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eyes_stand_side_by_side() {
+        let layout = Layout::DoubleWide(Seam::Discard);
+        for size in [[64, 32], [17, 5]] {
+            let whole = layout.texture_size(size)[0] as f32;
+            for eye in Eye::BOTH {
+                let place = layout.placement(size, eye);
+                let left = layout.origin(size, eye)[0] as f32;
+                for (x, pixel) in [(-1.0, left), (1.0, left + size[0] as f32)] {
+                    let clip = place * Vec4::new(3.0 * x, 1.0, 2.0, 3.0);
+                    assert!(((clip.x / clip.w + 1.0) * 0.5 * whole - pixel).abs() < 1e-4);
+                    assert_eq!([clip.y, clip.z, clip.w], [1.0, 2.0, 3.0]);
+                }
+            }
+        }
+    }
+}

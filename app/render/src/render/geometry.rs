@@ -1,0 +1,132 @@
+//! The g-buffer pass.
+
+use std::rc::Rc;
+
+use glam::{Mat4, Vec3};
+
+use super::cluster::{Culler, Selection, visible};
+use super::g_buffer::{Layout, Seam};
+use super::scene::{Features, GpuScene};
+use super::uniforms::{depth_test, eye_to_clip};
+use yoro::eyes::{DepthRange, Eye, View};
+use yoro::gl::{Blend, Context, GlError, Program, RasterState, RenderTarget, ShaderSource};
+
+/// Draws the opaque triangles of a scene.
+///
+/// Writes the g-buffer's three colour textures (12 bytes a pixel) and its depth; reads the material's maps.
+pub struct GeometryPass {
+    gl: Rc<Context>,
+    layout: Layout,
+    /// By [`Features::index`]; those that the scene uses.
+    programs: [Option<Program>; Features::COMBINATIONS],
+}
+
+impl GeometryPass {
+    /// Compiles the variants that the scene's materials need.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    pub fn new(gl: &Rc<Context>, scene: &GpuScene, layout: Layout) -> Result<GeometryPass, GlError> {
+        let mut programs = [const { None }; Features::COMBINATIONS];
+        for (material, _) in scene.opaque() {
+            let slot: &mut Option<Program> = &mut programs[material.features.index()];
+            if slot.is_none() {
+                let mut defines = material.features.defines();
+                defines.extend(scene.style_defines());
+                defines.extend(layout.defines().iter().map(|&name| (name, String::new())));
+                let source =
+                    ShaderSource::Raster { vertex: "render/geometry.vert", fragment: "render/geometry.frag" };
+                *slot = Some(Program::new(gl, source, &defines)?);
+            }
+        }
+        Ok(GeometryPass { gl: gl.clone(), layout, programs })
+    }
+
+    /// Clears a g-buffer.
+    pub fn clear(&self, target: &RenderTarget, view: &View) {
+        target.bind();
+        self.gl.clear(Some(view.depth.clear_value()));
+    }
+
+    /// Draws into a g-buffer of the pass's layout: of one view, or of both eyes, which are alike in size and depth.
+    /// Only what lies in `slice` is drawn (near and far plane in metres), with the depth that it has in the views.
+    pub fn draw(&self, target: &RenderTarget, scene: &GpuScene, views: &[View], slice: [f32; 2]) {
+        let Some(first) = views.first() else { return };
+        let range = first.depth;
+        let sliced =
+            |view: &View| View { depth: DepthRange { near: slice[0], far: slice[1], ..range }, ..*view };
+        // One of each for an eye; what a single view does not use repeats the first.
+        let of = |i: usize| views.get(i).unwrap_or(first);
+        let eyes: [Vec3; 2] = std::array::from_fn(|i| of(i).pose.position);
+        let matrices: [Mat4; 2] = std::array::from_fn(|i| eye_to_clip(&sliced(of(i))));
+        let cullers: [Culler; 2] =
+            std::array::from_fn(|i| Culler::new(eyes[i], &matrices[i], Selection::All));
+        self.draw_culled(target, scene, views, &cullers[..views.len()], &matrices, window(&range, slice));
+    }
+
+    /// As [`GeometryPass::draw`] of one whole view, with a culler that also selects.
+    pub fn draw_selected(&self, target: &RenderTarget, scene: &GpuScene, view: &View, culler: &Culler) {
+        let views = std::slice::from_ref(view);
+        let matrix = eye_to_clip(view);
+        self.draw_culled(target, scene, views, std::slice::from_ref(culler), &[matrix; 2], [0.0, 1.0]);
+    }
+
+    fn draw_culled(
+        &self,
+        target: &RenderTarget,
+        scene: &GpuScene,
+        views: &[View],
+        cullers: &[Culler],
+        matrices: &[Mat4; 2],
+        depth_window: [f32; 2],
+    ) {
+        let Some(first) = views.first() else { return };
+        let eyes: [Vec3; 2] = std::array::from_fn(|i| views.get(i).unwrap_or(first).pose.position);
+        let placed = Eye::BOTH.map(|eye| self.layout.placement(first.size, eye) * matrices[eye.index()]);
+        let seams = Eye::BOTH.map(|eye| Layout::seam_plane(&matrices[eye.index()], eye));
+        let clip = self.layout == Layout::DoubleWide(Seam::ClipDistance);
+        let depth = depth_test(first.depth.convention);
+        target.bind();
+        self.gl.set_depth_window(depth_window);
+        if clip {
+            self.gl.set_clip_distance(true);
+        }
+        scene.mesh.bind();
+        for (material, clusters) in scene.opaque() {
+            let Some(program) = &self.programs[material.features.index()] else { continue };
+            let mut ranges = visible(cullers, clusters).peekable();
+            if ranges.peek().is_none() {
+                continue;
+            }
+            let state = RasterState { depth, blend: Blend::Off, cull: !material.double_sided };
+            self.gl.set_raster_state(&state);
+            program.bind();
+            if self.layout == Layout::Single {
+                program.set("eye", eyes[0]).set("eye_to_clip", matrices[0]);
+            } else {
+                program
+                    .set("eyes", &eyes[..])
+                    .set("eyes_to_clip", &placed[..])
+                    .set("seams", &seams[..])
+                    .set("seam", self.layout.origin(first.size, Eye::Right)[0] as f32);
+            }
+            scene.set_material(program, material);
+            ranges.for_each(|range| scene.mesh.draw(range, self.layout.instances()));
+        }
+        if clip {
+            self.gl.set_clip_distance(false);
+        }
+        self.gl.set_depth_window([0.0, 1.0]);
+    }
+}
+
+/// The part of the depth buffer that a slice (near and far plane in metres) of a depth range takes.
+fn window(range: &DepthRange, [near, far]: [f32; 2]) -> [f32; 2] {
+    // Exactly all of it, whatever the rounding.
+    let depth = |distance: f32, plane: f32, at_plane: f32| {
+        if distance == plane { at_plane } else { range.depth(distance) }
+    };
+    let far_value = range.clear_value();
+    let (near, far) = (depth(near, range.near, 1.0 - far_value), depth(far, range.far, far_value));
+    [near.min(far), near.max(far)]
+}

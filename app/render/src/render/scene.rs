@@ -1,0 +1,291 @@
+//! A scene on the GPU.
+
+use std::rc::Rc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::{Vec3, Vec4};
+
+use super::cluster::{self, Batch, Cluster};
+use yoro::gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
+use yoro_scene::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
+
+/// What a material has; each combination that a scene uses is a shader variant of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct Features(u8);
+
+impl Features {
+    pub const DIFFUSE_MAP: Features = Features(1);
+    pub const SPECULAR_MAP: Features = Features(2);
+    pub const EMISSIVE_MAP: Features = Features(4);
+    pub const NORMAL_MAP: Features = Features(8);
+    pub const CUTOUT: Features = Features(16);
+    /// Number of combinations.
+    pub const COMBINATIONS: usize = 32;
+
+    const NAMES: [(Features, &str); 5] = [
+        (Features::DIFFUSE_MAP, "DIFFUSE_MAP"),
+        (Features::SPECULAR_MAP, "SPECULAR_MAP"),
+        (Features::EMISSIVE_MAP, "EMISSIVE_MAP"),
+        (Features::NORMAL_MAP, "NORMAL_MAP"),
+        (Features::CUTOUT, "CUTOUT"),
+    ];
+
+    fn of(material: &Material) -> Features {
+        let present = [
+            material.diffuse_map.is_some(),
+            material.specular_map.is_some(),
+            material.emissive_map.is_some(),
+            material.normal_map.is_some(),
+            matches!(material.alpha, Alpha::Cutout(_)),
+        ];
+        Features(Features::NAMES.iter().zip(present).fold(0, |bits, ((f, _), on)| bits | (f.0 * on as u8)))
+    }
+
+    /// Place among the combinations.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The features that are in both.
+    pub fn and(self, other: Features) -> Features {
+        Features(self.0 & other.0)
+    }
+
+    /// Those of either.
+    pub fn or(self, other: Features) -> Features {
+        Features(self.0 | other.0)
+    }
+
+    pub fn contains(self, other: Features) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// The defines of the shader variant.
+    pub fn defines(self) -> Vec<(&'static str, String)> {
+        let present = Features::NAMES.iter().filter(|(feature, _)| self.contains(*feature));
+        present.map(|&(_, name)| (name, String::new())).collect()
+    }
+}
+
+/// A material as shaders take it.
+pub(super) struct GpuMaterial {
+    pub features: Features,
+    pub double_sided: bool,
+    pub blended: bool,
+    /// Linear colour and opacity.
+    diffuse: Vec4,
+    emissive: Vec3,
+    /// Roughness, reflectance at normal incidence, alpha cut-off.
+    gloss: Vec3,
+    /// Indices of diffuse, specular, emissive and normal map.
+    maps: [Option<usize>; 4],
+    /// Tells neighbouring materials apart in 8 bits.
+    id: f32,
+}
+
+/// sRGB to linear.
+fn linear(srgb: Vec3) -> Vec3 {
+    let channel = |c: f32| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+    Vec3::new(channel(srgb.x), channel(srgb.y), channel(srgb.z))
+}
+
+/// Ks of 1 is a mirror in no MTL file: the brightest are taken for a third, the usual 0.2 for about 0.01 less
+/// than glass.
+const REFLECTANCE_OF_WHITE: f32 = 0.35;
+
+impl GpuMaterial {
+    fn new(index: usize, material: &Material) -> GpuMaterial {
+        let (opacity, cutoff) = match material.alpha {
+            Alpha::Opaque => (1.0, 0.0),
+            Alpha::Cutout(cutoff) => (1.0, cutoff),
+            Alpha::Blend(opacity) => (opacity, 0.0),
+        };
+        let specular = linear(material.specular).dot(Vec3::new(0.3, 0.6, 0.1));
+        let reflectance = (specular * REFLECTANCE_OF_WHITE).min(0.9);
+        GpuMaterial {
+            features: Features::of(material),
+            double_sided: material.double_sided || matches!(material.alpha, Alpha::Cutout(_)),
+            blended: matches!(material.alpha, Alpha::Blend(_)),
+            diffuse: linear(material.diffuse).extend(opacity),
+            emissive: linear(material.emissive),
+            gloss: Vec3::new(material.roughness.clamp(0.0, 1.0), reflectance, cutoff),
+            maps: [material.diffuse_map, material.specular_map, material.emissive_map, material.normal_map],
+            id: (index * 97 % 255) as f32 / 255.0,
+        }
+    }
+}
+
+/// A scene whose triangles and pictures live on the GPU, in clusters that are culled by themselves.
+pub struct GpuScene {
+    /// Unlike that of any other scene of this process.
+    pub(super) id: u64,
+    /// Name: a built-in one, or the file's stem.
+    pub name: String,
+    /// Shading style.
+    pub style: ShadingStyle,
+    /// Sun and sky.
+    pub sky: Sky,
+    /// Point lights.
+    pub lights: Vec<PointLight>,
+    /// Camera path.
+    pub viewpoints: Vec<Viewpoint>,
+    bounds: Bounds,
+    triangle_count: usize,
+    pub(super) mesh: Mesh,
+    pub(super) materials: Vec<GpuMaterial>,
+    textures: Vec<Texture>,
+    pub(super) clusters: Vec<Cluster>,
+    pub(super) batches: Vec<Batch>,
+}
+
+/// Floats of position, normal and uv of a [`yoro_scene::Vertex`].
+const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
+/// The texture units that materials use.
+const MAP_NAMES: [&str; 4] = ["diffuse_map", "specular_map", "emissive_map", "normal_map"];
+/// First texture unit that no material uses.
+pub(super) const FREE_UNIT: u32 = MAP_NAMES.len() as u32;
+
+impl GpuScene {
+    /// Uploads a scene. Its triangles are sorted into clusters; its memory is given back as soon as GL has
+    /// taken it over.
+    ///
+    /// # Errors
+    /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::Object`] without memory.
+    pub fn upload(gl: &Rc<Context>, scene: Scene) -> Result<GpuScene, GlError> {
+        static NEXT_ID: AtomicU64 = AtomicU64::new(0);
+        let Scene { name, mut model, style, sky, lights, viewpoints } = scene;
+        let bounds = model.bounds();
+        let triangle_count = model.triangle_count();
+        let cluster::Clusters { clusters, mut batches, indices } = cluster::build(&model);
+        // What is cut out comes last: much of it is hidden by then, and `discard` defeats early depth tests.
+        batches.sort_by_key(|b| matches!(model.materials[b.material].alpha, Alpha::Cutout(_)));
+        model.indices = Vec::new();
+        let mesh = Mesh::new(gl, &VERTEX_ATTRIBUTES, &model.vertices, &indices)?;
+        model.vertices = Vec::new();
+        drop(indices);
+        // No texture of a voxel world is filtered, whichever file it comes from.
+        let unfiltered = style == ShadingStyle::Voxel;
+        let upload = |image: TextureImage| {
+            upload_picture(gl, TextureImage { nearest: image.nearest || unfiltered, ..image })
+        };
+        let textures = model.textures.into_iter().map(upload).collect::<Result<_, _>>()?;
+        let materials = model.materials.iter().enumerate().map(|(i, m)| GpuMaterial::new(i, m)).collect();
+        Ok(GpuScene {
+            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
+            name,
+            style,
+            sky,
+            lights,
+            viewpoints,
+            bounds,
+            triangle_count,
+            mesh,
+            materials,
+            textures,
+            clusters,
+            batches,
+        })
+    }
+
+    /// Smallest box around all vertices.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangle_count
+    }
+
+    /// Whether there is a sun.
+    pub fn has_sun(&self) -> bool {
+        self.sky.sun_color.max_element() > 0.0
+    }
+
+    /// Whether anything is blended.
+    pub fn has_transparent(&self) -> bool {
+        self.batches.iter().any(|batch| self.materials[batch.material].blended)
+    }
+
+    /// The defines of the scene's shading style.
+    pub(super) fn style_defines(&self) -> Vec<(&'static str, String)> {
+        let name = match self.style {
+            ShadingStyle::Realistic => "STYLE_REALISTIC",
+            ShadingStyle::Cartoon => "STYLE_CARTOON",
+            ShadingStyle::LowPoly => "STYLE_LOW_POLY",
+            ShadingStyle::Voxel => "STYLE_VOXEL",
+            ShadingStyle::Anime => "STYLE_ANIME",
+        };
+        let mut defines = vec![(name, String::new())];
+        if matches!(self.style, ShadingStyle::LowPoly | ShadingStyle::Voxel) {
+            defines.push(("FACE_NORMALS", String::new()));
+        }
+        defines
+    }
+
+    /// The batches of the deferred pass with their materials and clusters.
+    pub(super) fn opaque(&self) -> impl Iterator<Item = (&GpuMaterial, &[Cluster])> {
+        self.batches.iter().filter_map(|batch| {
+            let material = &self.materials[batch.material];
+            (!material.blended).then(|| (material, &self.clusters[batch.clusters.clone()]))
+        })
+    }
+
+    /// Sets a material's uniforms and maps for the current program.
+    pub(super) fn set_material(&self, program: &Program, material: &GpuMaterial) {
+        program
+            .set("diffuse", material.diffuse)
+            .set("emissive", material.emissive)
+            .set("gloss", material.gloss)
+            .set("material_id", material.id);
+        for (unit, (name, map)) in MAP_NAMES.iter().zip(material.maps).enumerate() {
+            if let Some(texture) = map.and_then(|i| self.textures.get(i)) {
+                program.texture(name, unit as u32, texture.raw());
+            }
+        }
+    }
+}
+
+fn upload_picture(gl: &Rc<Context>, mut image: TextureImage) -> Result<Texture, GlError> {
+    let format = if image.srgb { Format::Srgb8Alpha8 } else { Format::Rgba8 };
+    let filter = if image.nearest { Filter::MaterialNearest } else { Filter::Material };
+    let texture = Texture::new(gl, image.size, format, filter)?;
+    flip_rows(&mut image.rgba, image.size[0] as usize * 4);
+    texture.upload(&image.rgba);
+    texture.generate_mipmaps();
+    Ok(texture)
+}
+
+/// Pictures start at the top, GL at the bottom.
+fn flip_rows(bytes: &mut [u8], row: usize) {
+    let (mut low, mut high) = (0, bytes.len() / row.max(1));
+    while low + 1 < high {
+        high -= 1;
+        let (head, tail) = bytes.split_at_mut(high * row);
+        head[low * row..(low + 1) * row].swap_with_slice(&mut tail[..row]);
+        low += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_reversed() {
+        let mut bytes = [1, 2, 3, 4, 5, 6];
+        flip_rows(&mut bytes, 2);
+        assert_eq!(bytes, [5, 6, 3, 4, 1, 2]);
+        flip_rows(&mut bytes, 3);
+        assert_eq!(bytes, [4, 1, 2, 5, 6, 3]);
+        flip_rows(&mut bytes, 6);
+        assert_eq!(bytes, [4, 1, 2, 5, 6, 3]);
+    }
+
+    #[test]
+    fn srgb_curve() {
+        assert_eq!(linear(Vec3::new(0.0, 1.0, 0.04045)).x, 0.0);
+        assert!((linear(Vec3::ONE) - Vec3::ONE).length() < 1e-6);
+        assert!((linear(Vec3::splat(0.5)).x - 0.21404).abs() < 1e-4);
+    }
+}

@@ -1,0 +1,117 @@
+//! The sun's shadow map.
+
+use std::rc::Rc;
+
+use glam::{Mat4, Quat, Vec3};
+
+use super::cluster::{Culler, Selection};
+use super::scene::{Features, GpuScene};
+use yoro::eyes::Pose;
+use yoro::gl::{
+    Blend, Context, DepthTest, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+};
+use yoro_scene::{Bounds, Viewpoint};
+
+/// Metres around the viewpoints within which a large scene has shadows.
+const REACH: f32 = 60.0;
+
+/// Shadow map of a scene that does not move: drawn once, then only read.
+///
+/// Writes a depth texture of its own; reads diffuse maps for alpha.
+pub struct ShadowMap {
+    target: RenderTarget,
+    /// World to 0..1.
+    matrix: Mat4,
+    /// See `include/shade.glsl`.
+    texel: Vec3,
+}
+
+impl ShadowMap {
+    /// Draws the shadow map of a scene, `size` texels wide.
+    ///
+    /// # Errors
+    /// As [`Program::new`] and [`RenderTarget::new`].
+    pub fn new(gl: &Rc<Context>, scene: &GpuScene, size: u32) -> Result<ShadowMap, GlError> {
+        let size = size.min(gl.capabilities().max_texture_size);
+        let target = RenderTarget::shadow_map(gl, [size, size], Format::Depth16)?;
+        let program = |features: Features| {
+            let source =
+                ShaderSource::Raster { vertex: "render/geometry.vert", fragment: "render/shadow.frag" };
+            Program::new(gl, source, &features.defines())
+        };
+        let (solid, colored, mapped) = (
+            program(Features::default())?,
+            program(Features::CUTOUT)?,
+            program(Features::CUTOUT.or(Features::DIFFUSE_MAP))?,
+        );
+        let (to_clip, extent) = light_box(scene.bounds(), &scene.viewpoints, scene.sky.sun_direction);
+        let texel = extent.x.max(extent.y) / size as f32;
+        gl.pass("shadow", || {
+            target.bind();
+            gl.clear(Some(1.0));
+            let culler = Culler::new(Vec3::ZERO, &to_clip, Selection::All);
+            for (material, clusters) in scene.opaque() {
+                let features = material.features.and(Features::CUTOUT.or(Features::DIFFUSE_MAP));
+                let program = if !features.contains(Features::CUTOUT) {
+                    &solid
+                } else if features.contains(Features::DIFFUSE_MAP) {
+                    &mapped
+                } else {
+                    &colored
+                };
+                // Rooms are often shells that face inwards: the sun is to fall through their roofs.
+                let state =
+                    RasterState { depth: DepthTest::Less, blend: Blend::Off, cull: !material.double_sided };
+                gl.set_raster_state(&state);
+                program.bind().set("eye", Vec3::ZERO).set("eye_to_clip", to_clip);
+                scene.set_material(program, material);
+                scene.mesh.bind();
+                culler.visible(clusters).for_each(|range| scene.mesh.draw(range, 1));
+            }
+        });
+        let to_unit =
+            Mat4::from_scale_rotation_translation(Vec3::splat(0.5), Quat::IDENTITY, Vec3::splat(0.5));
+        // Depth bias: a texel's height on a slope of 45 degrees.
+        let texel = Vec3::new(1.0 / size as f32, texel, texel / extent.z.max(1e-3));
+        Ok(ShadowMap { target, matrix: to_unit * to_clip, texel })
+    }
+
+    /// Sets what `include/shade.glsl` needs, for positions relative to `eye`.
+    pub fn set(&self, program: &Program, unit: u32, eye: Vec3) {
+        program
+            .texture("shadow_map", unit, self.target.depth().raw())
+            .set("shadow_matrix", self.matrix * Mat4::from_translation(eye))
+            .set("shadow_texel", self.texel);
+    }
+}
+
+/// The orthographic projection along the sun's rays that contains the scene, or of a large one the
+/// surroundings of its viewpoints; and the box's extent in metres.
+fn light_box(scene: Bounds, viewpoints: &[Viewpoint], sun: Vec3) -> (Mat4, Vec3) {
+    let sun = sun.normalize_or(Vec3::Y);
+    let rotation = Pose::look_at(Vec3::ZERO, -sun).view_matrix();
+    let seen = viewpoints.iter().fold(Bounds::EMPTY, |b, v| b.including(v.position).including(v.target));
+    let near = Bounds {
+        min: (seen.min - Vec3::splat(REACH)).max(scene.min),
+        max: (seen.max + Vec3::splat(REACH)).min(scene.max),
+    };
+    let whole = transformed(&rotation, if scene.is_empty() { near } else { scene });
+    let lit = if near.min.cmple(near.max).all() { transformed(&rotation, near) } else { whole };
+    // Casters outside the lit surroundings still throw their shadows into it.
+    let min = Vec3::new(lit.min.x, lit.min.y, whole.min.z) - Vec3::splat(0.05);
+    let max = Vec3::new(lit.max.x, lit.max.y, whole.max.z) + Vec3::splat(0.05);
+    let extent = max - min;
+    // The sun is on the side of larger z, which is nearer.
+    let scale = Vec3::new(2.0, 2.0, -2.0) / extent;
+    let to_clip = Mat4::from_scale_rotation_translation(scale, Quat::IDENTITY, -scale * 0.5 * (min + max));
+    (to_clip * rotation, extent)
+}
+
+fn transformed(rotation: &Mat4, b: Bounds) -> Bounds {
+    (0..8).fold(Bounds::EMPTY, |out, i| {
+        let corner = |bit: u32, low: f32, high: f32| if i >> bit & 1 == 0 { low } else { high };
+        let p =
+            Vec3::new(corner(0, b.min.x, b.max.x), corner(1, b.min.y, b.max.y), corner(2, b.min.z, b.max.z));
+        out.including(rotation.transform_point3(p))
+    })
+}

@@ -1,0 +1,115 @@
+//! Screen-space ambient occlusion.
+
+use std::f32::consts::TAU;
+use std::rc::Rc;
+
+use glam::{Vec3, Vec4};
+
+use super::role::{Role, RoleKind};
+use super::uniforms::set_view;
+use yoro::eyes::View;
+use yoro::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
+
+/// Samples per pixel; even.
+const SAMPLES: usize = 12;
+/// Turns of the spiral on which they lie, without a common divisor with their number.
+const TURNS: f32 = 5.0;
+
+/// The two images of the pass.
+pub struct SsaoTargets {
+    raw: RenderTarget,
+    blurred: RenderTarget,
+    scale: u32,
+}
+
+impl SsaoTargets {
+    /// Targets for a view of `size` pixels, smaller by `scale`.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`].
+    pub fn new(gl: &Rc<Context>, size: [u32; 2], scale: u32) -> Result<SsaoTargets, GlError> {
+        let formats = [(Format::Rgba8, Filter::Nearest)];
+        let size = size.map(|n| n.div_ceil(scale));
+        Ok(SsaoTargets {
+            raw: RenderTarget::new(gl, size, &formats, None)?,
+            blurred: RenderTarget::new(gl, size, &formats, None)?,
+            scale,
+        })
+    }
+
+    /// Fits the targets to a view of `size` pixels.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`].
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
+        let size = size.map(|n| n.div_ceil(self.scale));
+        self.raw.resize(size)?;
+        self.blurred.resize(size)
+    }
+
+    /// The finished occlusion.
+    pub fn result(&self) -> &RenderTarget {
+        &self.blurred
+    }
+}
+
+/// Ambient occlusion: 12 depth samples a pixel and a 4x4 blur that stays on a surface.
+///
+/// Reads the g-buffer's depth and normals, writes occlusion and distance (see `include/occlusion.glsl`).
+pub struct SsaoPass {
+    gl: Rc<Context>,
+    sample: Program,
+    blur: Program,
+    kernel: [Vec4; SAMPLES / 2],
+    radius: f32,
+}
+
+impl SsaoPass {
+    /// Occlusion by what is within `radius` metres, at 1 / `scale` of the resolution (1 or 2), in views of a role.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    pub fn new(gl: &Rc<Context>, radius: f32, scale: u32, role: RoleKind) -> Result<SsaoPass, GlError> {
+        let defines =
+            [("SAMPLES", SAMPLES.to_string()), ("STRENGTH", "3.2".to_owned()), ("SCALE", scale.to_string())];
+        let defines: Vec<_> = defines.into_iter().chain(role.define()).collect();
+        let point = |i: usize| {
+            let r = (i as f32 + 0.5) / SAMPLES as f32;
+            let (sin, cos) = (r * TURNS * TAU).sin_cos();
+            [r * cos, r * sin]
+        };
+        let kernel = std::array::from_fn(|i| {
+            let ([ax, ay], [bx, by]) = (point(2 * i), point(2 * i + 1));
+            Vec4::new(ax, ay, bx, by)
+        });
+        Ok(SsaoPass {
+            gl: gl.clone(),
+            sample: Program::new(gl, ShaderSource::Screen("render/ssao.frag"), &defines)?,
+            blur: Program::new(gl, ShaderSource::Screen("render/ssao_blur.frag"), &[])?,
+            kernel,
+            radius,
+        })
+    }
+
+    /// Computes the occlusion of the pixels that the role lights; the others' is undefined.
+    pub fn run(&self, targets: &SsaoTargets, g_buffer: &RenderTarget, view: &View, role: Role) {
+        self.gl.pass("ssao", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            let height = view.size[1] as f32;
+            let pixels_at_1_m = self.radius * height / view.frustum.height();
+            targets.raw.bind();
+            self.sample
+                .bind()
+                .texture_of("depth_map", 0, g_buffer.depth())
+                .texture_of("normal_map", 1, g_buffer.color(1))
+                .set("kernel", &self.kernel[..])
+                .set("radius", Vec3::new(self.radius, pixels_at_1_m, 0.12 * height));
+            set_view(&self.sample, view);
+            role.set(&self.sample, view);
+            self.gl.draw_screen();
+            targets.blurred.bind();
+            self.blur.bind().texture("occlusion_map", 0, targets.raw.color(0).raw());
+            self.gl.draw_screen();
+        });
+    }
+}

@@ -1,0 +1,389 @@
+//! The renderer on a small scene.
+
+use std::rc::Rc;
+
+use glam::Vec3;
+
+use super::*;
+use crate::fixture::quad;
+use yoro::eyes::{DepthRange, Frustum, Pose};
+use yoro::gl::{Program, ShaderSource};
+use yoro_context::{Backend, Headless};
+use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
+
+const SIZE: [u32; 2] = [144, 112];
+
+fn open() -> Headless {
+    Headless::open(Backend::Egl).unwrap()
+}
+
+fn cube(model: &mut Model, material: usize, center: Vec3, half: f32) {
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    for i in 0..3 {
+        let (n, a, b) = (axes[i], axes[(i + 1) % 3], axes[(i + 2) % 3]);
+        for (n, a, b) in [(n, a, b), (-n, b, a)] {
+            quad(model, material, center + (n - a - b) * half, a * 2.0 * half, b * 2.0 * half);
+        }
+    }
+}
+
+fn picture(size: u32, srgb: bool, texel: impl Fn(u32, u32) -> [u8; 4]) -> TextureImage {
+    let rgba = (0..size * size).flat_map(|i| texel(i % size, i / size)).collect();
+    TextureImage { name: format!("picture {size} {srgb}"), size: [size; 2], rgba, srgb, nearest: false }
+}
+
+/// Floor, cubes from one to twelve metres away, a row of fences, something that glows.
+fn scene(style: ShadingStyle) -> Scene {
+    let mut model = Model {
+        textures: vec![
+            picture(8, true, |x, y| [if (x + y) % 2 == 0 { 220 } else { 90 }, 140, 120, 255]),
+            picture(16, true, |x, _| [40, 150, 60, if x % 4 < 2 { 255 } else { 0 }]),
+            picture(8, false, |x, _| [if x % 2 == 0 { 90 } else { 166 }, 128, 240, 255]),
+        ],
+        ..Model::default()
+    };
+    let plain = Material::default();
+    model.materials = vec![
+        Material { diffuse_map: Some(0), diffuse: Vec3::ONE, ..plain.clone() },
+        Material { name: "red".into(), diffuse: Vec3::new(0.8, 0.2, 0.15), ..plain.clone() },
+        Material { name: "fence".into(), diffuse_map: Some(1), alpha: Alpha::Cutout(0.5), ..plain.clone() },
+        Material { name: "relief".into(), normal_map: Some(2), roughness: 0.3, ..plain.clone() },
+        Material { name: "lamp".into(), emissive: Vec3::new(3.0, 2.0, 1.0), ..plain.clone() },
+        Material { name: "glass".into(), alpha: Alpha::Blend(0.4), ..plain },
+    ];
+    quad(&mut model, 0, Vec3::new(-10.0, 0.0, 10.0), Vec3::X * 20.0, Vec3::NEG_Z * 40.0);
+    cube(&mut model, 1, Vec3::new(-0.5, 0.4, -1.6), 0.3);
+    cube(&mut model, 3, Vec3::new(0.9, 0.7, -3.0), 0.6);
+    cube(&mut model, 1, Vec3::new(-2.0, 1.0, -7.0), 1.0);
+    cube(&mut model, 4, Vec3::new(2.5, 2.4, -9.0), 0.4);
+    quad(&mut model, 2, Vec3::new(-3.0, 0.0, -5.0), Vec3::X * 6.0, Vec3::Y * 1.2);
+    Scene {
+        name: "test".into(),
+        model,
+        style,
+        sky: Sky::default(),
+        lights: (0..5)
+            .map(|i| PointLight {
+                position: Vec3::new(i as f32 - 2.0, 1.5, -2.0 * i as f32),
+                color: Vec3::new(1.0, 0.7, 0.4),
+                range: 4.0,
+            })
+            .collect(),
+        viewpoints: vec![Viewpoint { position: EYE, target: TARGET }],
+    }
+}
+
+const EYE: Vec3 = Vec3::new(0.1, 1.3, 0.6);
+const TARGET: Vec3 = Vec3::new(0.0, 0.8, -4.0);
+
+fn view(convention: DepthConvention) -> View {
+    View {
+        pose: Pose::look_at(EYE, TARGET),
+        frustum: Frustum::symmetric(1.1, SIZE[0] as f32 / SIZE[1] as f32),
+        depth: DepthRange { near: 0.2, far: 500.0, convention },
+        size: SIZE,
+    }
+}
+
+/// A small shadow map: tests run on CPU rasterizers.
+fn settings() -> RenderSettings {
+    RenderSettings { shadow_map_size: 512, ..RenderSettings::default() }
+}
+
+struct Rig {
+    scene: GpuScene,
+    renderer: Renderer,
+    targets: ViewTargets,
+}
+
+impl Rig {
+    fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Rig {
+        let scene = GpuScene::upload(gl, scene).unwrap();
+        let renderer = Renderer::new(gl, settings, &scene).unwrap();
+        let targets = ViewTargets::new(gl, SIZE, DepthConvention::Standard, settings).unwrap();
+        Rig { scene, renderer, targets }
+    }
+
+    fn render(&mut self, view: &View, selection: Selection) -> Vec<u8> {
+        self.renderer.render(&mut self.targets, &self.scene, view, selection).unwrap();
+        self.targets.color_target().read_rgba8(0, [0, 0], view.size)
+    }
+
+    /// Distance of each pixel along the axis, as rendered last.
+    fn depths(&self, gl: &Rc<Context>, view: &View) -> Vec<f32> {
+        let formats = [(Format::R32F, Filter::Nearest)];
+        let copy = RenderTarget::new(gl, view.size, &formats, None).unwrap();
+        gl.set_raster_state(&yoro::gl::RasterState::SCREEN);
+        copy.bind();
+        let program = Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
+        program.bind().texture("source", 0, self.targets.depth().raw());
+        gl.draw_screen();
+        copy.read_rgba32f(0, [0, 0], view.size).iter().map(|t| t[0]).collect()
+    }
+}
+
+fn largest_difference(a: &[u8], b: &[u8]) -> u8 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap()
+}
+
+fn mean(pixels: &[u8], channel: usize) -> f32 {
+    pixels.iter().skip(channel).step_by(4).map(|&v| v as f32).sum::<f32>() / (pixels.len() / 4) as f32
+}
+
+const STYLES: [ShadingStyle; 5] = [
+    ShadingStyle::Realistic,
+    ShadingStyle::Cartoon,
+    ShadingStyle::LowPoly,
+    ShadingStyle::Voxel,
+    ShadingStyle::Anime,
+];
+
+#[test]
+fn every_style_renders_a_picture_of_its_own() {
+    let head = open();
+    let gl = head.gl();
+    let mut pictures: Vec<Vec<u8>> = Vec::new();
+    for style in STYLES {
+        let mut rig = Rig::new(gl, scene(style), &settings());
+        let picture = rig.render(&view(DepthConvention::Standard), Selection::All);
+        assert_eq!(gl.take_errors(), None, "{style:?}");
+        for channel in 0..3 {
+            let mean = mean(&picture, channel);
+            assert!((50.0..210.0).contains(&mean), "{style:?}: channel {channel} has mean {mean}");
+        }
+        pictures.push(picture);
+    }
+    // Low poly and voxel shade alike; this scene of flat faces looks as the realistic one in both.
+    for (i, j) in [(0, 1), (0, 4), (1, 4)] {
+        assert!(largest_difference(&pictures[i], &pictures[j]) > 30);
+    }
+}
+
+#[test]
+fn every_variant_compiles_and_draws() {
+    let head = open();
+    let gl = head.gl();
+    let map = |on: bool, texture| on.then_some(texture);
+    for (style, all) in [(ShadingStyle::Realistic, true), (ShadingStyle::Voxel, false)] {
+        let mut scene = scene(style);
+        for bits in (0..32usize).filter(|&b| all || [0, 15, 31].contains(&b)) {
+            let base = Material {
+                diffuse_map: map(bits & 1 != 0, 1),
+                specular_map: map(bits & 2 != 0, 0),
+                emissive_map: map(bits & 4 != 0, 0),
+                normal_map: map(bits & 8 != 0, 2),
+                ..Material::default()
+            };
+            let alphas = if bits & 16 != 0 {
+                vec![Alpha::Cutout(0.3)]
+            } else {
+                vec![Alpha::Opaque, Alpha::Blend(0.5)]
+            };
+            for alpha in alphas {
+                let material = scene.model.materials.len();
+                scene.model.materials.push(Material { alpha, ..base.clone() });
+                cube(&mut scene.model, material, Vec3::new(bits as f32 * 0.1 - 1.5, 0.5, -4.0), 0.1);
+            }
+        }
+        let mut rig = Rig::new(gl, scene, &settings());
+        let view = view(DepthConvention::Standard);
+        rig.render(&view, Selection::All);
+        let depth = DepthImage::whole(rig.targets.depth());
+        let to = Destination::whole(rig.targets.color_target());
+        rig.renderer.draw_transparent(&to, depth, &rig.scene, &view).unwrap();
+        assert_eq!(gl.take_errors(), None, "{style:?}");
+    }
+    for style in STYLES {
+        let mut scene = scene(style);
+        scene.sky.sun_color = Vec3::ZERO;
+        let bare = RenderSettings { shadow_map_size: 0, ssao: false, bloom: false, ..settings() };
+        let half = RenderSettings { ssao_half_size: true, ..settings() };
+        for settings in [bare, half] {
+            Rig::new(gl, scene.clone(), &settings).render(&view(DepthConvention::Reversed), Selection::All);
+            assert_eq!(gl.take_errors(), None, "{style:?}");
+        }
+    }
+    // What drivers without float render targets compile.
+    let scene = GpuScene::upload(gl, self::scene(ShadingStyle::Realistic)).unwrap();
+    let mut defines = lighting::shading_defines(gl, &scene, &settings());
+    defines.push(("NO_FLOAT_TARGETS", String::new()));
+    Program::new(gl, ShaderSource::Screen("render/lighting.frag"), &defines).unwrap();
+    BloomPass::new(gl, &defines).unwrap();
+    TonemapPass::new(gl, &defines).unwrap();
+}
+
+#[test]
+fn both_depth_conventions_give_one_picture() {
+    let head = open();
+    for settings in [settings(), RenderSettings { ssao_half_size: true, ..settings() }] {
+        let mut rig = Rig::new(head.gl(), scene(ShadingStyle::Realistic), &settings);
+        let standard = rig.render(&view(DepthConvention::Standard), Selection::All);
+        let reversed = rig.render(&view(DepthConvention::Reversed), Selection::All);
+        assert!(largest_difference(&standard, &reversed) <= 2);
+        let mut infinite = view(DepthConvention::Reversed);
+        infinite.depth.far = f32::INFINITY;
+        assert!(largest_difference(&standard, &rig.render(&infinite, Selection::All)) <= 2);
+    }
+    assert_eq!(head.gl().take_errors(), None);
+}
+
+#[test]
+fn depth_is_what_the_view_says() {
+    let head = open();
+    let gl = head.gl();
+    let mut wall = scene(ShadingStyle::Realistic);
+    wall.model.parts.clear();
+    wall.model.indices.clear();
+    quad(&mut wall.model, 1, EYE + Vec3::new(-3.0, -9.0, -2.5), Vec3::X * 3.0, Vec3::Y * 18.0);
+    let mut rig = Rig::new(gl, wall, &settings());
+    for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+        let view = View { pose: Pose { position: EYE, ..Pose::IDENTITY }, ..view(convention) };
+        rig.render(&view, Selection::All);
+        let depths = rig.depths(gl, &view);
+        let row = &depths[SIZE[0] as usize * 50..][..SIZE[0] as usize];
+        assert!((view.depth.distance(row[40]) - 2.5).abs() < 1e-3, "{convention:?}");
+        assert_eq!(row[110], view.depth.clear_value(), "{convention:?}: nothing was drawn there");
+    }
+}
+
+#[test]
+fn targets_follow_the_size_and_nothing_leaks() {
+    let head = open();
+    let gl = head.gl();
+    let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
+    let fxaa = Fxaa::new(gl).unwrap();
+    let (small, mut large) = (view(DepthConvention::Standard), view(DepthConvention::Standard));
+    large.size = [301, 97];
+    let first = rig.render(&small, Selection::All);
+    let objects = gl.object_count();
+    for _ in 0..5 {
+        let picture = rig.render(&large, Selection::All);
+        assert_eq!(picture.len(), 301 * 97 * 4);
+        assert_eq!(rig.targets.size(), large.size);
+        assert_eq!(rig.render(&small, Selection::All), first, "a repeated frame is identical");
+        fxaa.run(rig.targets.color(), [0, 0], &Destination::whole(&rig.targets.light.hdr));
+    }
+    assert_eq!(gl.object_count(), objects);
+    assert_eq!(gl.take_errors(), None);
+    drop((rig, fxaa));
+    assert_eq!(gl.object_count(), 0, "everything is deleted");
+}
+
+#[test]
+fn nearer_and_farther_composite_to_the_whole() {
+    let head = open();
+    let gl = head.gl();
+    let settings = RenderSettings { ssao: false, bloom: false, ..settings() };
+    let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings);
+    let view = view(DepthConvention::Standard);
+    let whole = rig.render(&view, Selection::All);
+    let near = rig.render(&view, Selection::Nearer { from: EYE, distance: 3.0 });
+    let near_depth = rig.depths(gl, &view);
+    let far = rig.render(&view, Selection::Farther { from: EYE, distance: 3.0 });
+    let far_depth = rig.depths(gl, &view);
+    let drawn = near_depth.iter().filter(|&&d| d < 1.0).count();
+    assert!(drawn > 500 && drawn < near_depth.len() - 500, "{drawn} pixels are near");
+    let composite: Vec<u8> = (0..near_depth.len())
+        .flat_map(|i| {
+            let pixels = if near_depth[i] < far_depth[i] { &near } else { &far };
+            pixels[4 * i..4 * i + 4].to_vec()
+        })
+        .collect();
+    assert!(largest_difference(&whole, &composite) <= 1);
+}
+
+#[test]
+fn transparent_surfaces_are_hidden_by_nearer_ones_only() {
+    let head = open();
+    let gl = head.gl();
+    for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+        let mut scene = scene(ShadingStyle::Realistic);
+        // One pane in front of everything on the left, one behind the floor.
+        quad(&mut scene.model, 5, Vec3::new(-0.5, 0.9, -0.2), Vec3::X * 0.4, Vec3::Y * 0.8);
+        quad(&mut scene.model, 5, Vec3::new(-8.0, -0.5, 5.0), Vec3::X * 16.0, Vec3::NEG_Z * 30.0);
+        let mut rig = Rig::new(gl, scene, &settings());
+        let view = view(convention);
+        let before = rig.render(&view, Selection::All);
+        let depth = DepthImage::whole(rig.targets.depth());
+        let to = Destination::whole(rig.targets.color_target());
+        rig.renderer.draw_transparent(&to, depth, &rig.scene, &view).unwrap();
+        let after = rig.targets.color_target().read_rgba8(0, [0, 0], SIZE);
+        let changed: Vec<usize> =
+            (0..before.len() / 4).filter(|i| before[4 * i..][..3] != after[4 * i..][..3]).collect();
+        assert!(changed.len() > 300, "{convention:?}: {}", changed.len());
+        assert!(changed.iter().all(|i| i % (SIZE[0] as usize) < SIZE[0] as usize / 2 + 10), "{convention:?}");
+        assert!(before.iter().skip(3).step_by(4).eq(after.iter().skip(3).step_by(4)), "luma stays");
+        assert_eq!(gl.take_errors(), None);
+    }
+}
+
+#[test]
+fn fxaa_of_a_crop_is_the_crop_of_fxaa() {
+    let head = open();
+    let gl = head.gl();
+    let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
+    let raw = rig.render(&view(DepthConvention::Standard), Selection::All);
+    let fxaa = Fxaa::new(gl).unwrap();
+    let target = |size| RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
+    let (whole, part) = (target(SIZE), target([100, 90]));
+    fxaa.run(rig.targets.color(), [0, 0], &Destination::whole(&whole));
+    let to = Destination { framebuffer: Some(part.raw()), origin: [10, 20], size: [80, 60] };
+    fxaa.run(rig.targets.color(), [32, 16], &to);
+    let smooth = whole.read_rgba8(0, [32, 16], [80, 60]);
+    assert_eq!(smooth, part.read_rgba8(0, [10, 20], [80, 60]));
+    let whole = whole.read_rgba8(0, [0, 0], SIZE);
+    let changed = whole.chunks(4).zip(raw.chunks(4)).filter(|(a, b)| a != b).count();
+    assert!(changed > 100 && changed < whole.len() / 4 / 2, "{changed} pixels were smoothed");
+}
+
+#[test]
+fn pictures_stand_upright_and_grey_is_grey() {
+    let head = open();
+    let mut scene = scene(ShadingStyle::Realistic);
+    scene.model = Model {
+        textures: vec![picture(16, true, |_, y| if y < 8 { [255, 0, 0, 255] } else { [128, 128, 128, 255] })],
+        materials: vec![Material { diffuse: Vec3::ONE, diffuse_map: Some(0), ..Material::default() }],
+        ..Model::default()
+    };
+    scene.lights.clear();
+    scene.sky.sun_direction = Vec3::new(0.0, 0.5, 1.0).normalize();
+    quad(&mut scene.model, 0, Vec3::new(-5.0, -5.0, -2.0), Vec3::X * 10.0, Vec3::Y * 10.0);
+    let mut rig = Rig::new(head.gl(), scene, &settings());
+    let view = View { pose: Pose::IDENTITY, ..view(DepthConvention::Standard) };
+    let picture = rig.render(&view, Selection::All);
+    let pixel = |x: u32, y: u32| &picture[((y * SIZE[0] + x) * 4) as usize..][..4];
+    let (top, bottom) = (pixel(70, 100), pixel(70, 12));
+    assert!(top[0] > 150 && top[1] < 70, "the picture's upper half is red: {top:?}");
+    assert!((110..=190).contains(&bottom[1]), "sunlit middle grey stays in the middle: {bottom:?}");
+    let luma = 0.299 * bottom[0] as f32 + 0.587 * bottom[1] as f32 + 0.114 * bottom[2] as f32;
+    assert!((luma - bottom[3] as f32).abs() <= 1.5, "alpha is luma: {bottom:?}");
+}
+
+#[test]
+fn a_renderer_refuses_another_scene() {
+    let head = open();
+    let gl = head.gl();
+    let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
+    let other = GpuScene::upload(gl, scene(ShadingStyle::Anime)).unwrap();
+    let view = view(DepthConvention::Standard);
+    assert!(rig.renderer.render(&mut rig.targets, &other, &view, Selection::All).is_err());
+}
+
+#[test]
+fn unknown_settings_are_refused() {
+    assert!(serde_json::from_str::<RenderSettings>(r#"{"shadows": 3}"#).is_err());
+    let parsed: RenderSettings = serde_json::from_str(r#"{"bloom": false}"#).unwrap();
+    assert_eq!(parsed, RenderSettings { bloom: false, ..RenderSettings::default() });
+}
+
+/// As on a GPU with EXT_color_buffer_half_float alone, which refuses packed floats: here a depth format stands for them.
+#[test]
+fn scene_referred_colour_falls_back_to_what_can_be_rendered_to() {
+    let headless = open();
+    let gl = headless.gl();
+    let objects = gl.object_count();
+    assert_eq!(first_renderable(gl, [Format::Depth16, Format::Rgba16F]), Format::Rgba16F);
+    assert_eq!(hdr_format(gl), Format::R11G11B10F);
+    assert_eq!((gl.take_errors(), gl.object_count()), (None, objects));
+}

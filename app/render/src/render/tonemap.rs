@@ -1,0 +1,37 @@
+//! Scene-referred to display-referred colour.
+
+use std::rc::Rc;
+
+use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
+
+/// Adds bloom, applies exposure and the tone curve, encodes as sRGB.
+///
+/// Reads scene-referred colour and bloom, writes 8-bit colour with luma in alpha.
+pub struct TonemapPass {
+    gl: Rc<Context>,
+    program: Program,
+}
+
+impl TonemapPass {
+    /// Compiles the program; `defines` are those of `include/hdr.glsl`, and `BLOOM`.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    pub fn new(gl: &Rc<Context>, defines: &[(&'static str, String)]) -> Result<TonemapPass, GlError> {
+        let program = Program::new(gl, ShaderSource::Screen("render/tonemap.frag"), defines)?;
+        Ok(TonemapPass { gl: gl.clone(), program })
+    }
+
+    /// Writes `target`.
+    pub fn run(&self, target: &RenderTarget, source: &Texture, bloom: Option<&Texture>, exposure: f32) {
+        self.gl.pass("tonemap", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            target.bind();
+            self.program.bind().texture("source", 0, source.raw()).set("exposure", exposure);
+            if let Some(bloom) = bloom {
+                self.program.texture("bloom", 1, bloom.raw()).set("bloom_strength", 0.12);
+            }
+            self.gl.draw_screen();
+        });
+    }
+}

@@ -1,0 +1,54 @@
+//! The last steps of an eye.
+
+use std::rc::Rc;
+
+use super::method::EyeTarget;
+use crate::render::{DepthImage, Fxaa, GpuScene, Renderer};
+use yoro::eyes::View;
+use yoro::gl::{Context, Destination, GlError, RenderTarget};
+
+/// Transparent objects, then anti-aliasing or a plain copy of a part of an image into the
+/// frame.
+pub(super) struct Finish {
+    gl: Rc<Context>,
+    fxaa: Option<Fxaa>,
+}
+
+impl Finish {
+    pub(super) fn new(gl: &Rc<Context>, anti_alias: bool) -> Result<Finish, GlError> {
+        Ok(Finish { gl: gl.clone(), fxaa: anti_alias.then(|| Fxaa::new(gl)).transpose()? })
+    }
+
+    /// Draws the transparent part of the scene over a rendered eye and fills `to` from it.
+    pub(super) fn eye(
+        &self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        view: &View,
+        color: &RenderTarget,
+        depth: DepthImage,
+        to: &EyeTarget,
+    ) -> Result<(), GlError> {
+        if scene.has_transparent() {
+            renderer.draw_transparent(&Destination::whole(color), depth, scene, view)?;
+        }
+        self.color(color, [0, 0], &to.color);
+        Finish::depth(depth, to);
+        Ok(())
+    }
+
+    /// Fills `to` from the part of `from` whose lower left corner is `crop`.
+    pub(super) fn color(&self, from: &RenderTarget, crop: [u32; 2], to: &Destination) {
+        match &self.fxaa {
+            Some(fxaa) => fxaa.run(from.color(0), crop, to),
+            None => self.gl.pass("copy", || from.copy_color(crop, to)),
+        }
+    }
+
+    /// Hands an eye's depth to whoever wants it.
+    pub(super) fn depth(from: DepthImage, to: &EyeTarget) {
+        if let Some(depth) = &to.depth {
+            depth.copy.run(from, &depth.to);
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! How a frame gets its two eyes, one file a method.
+
+mod conventional;
+mod finish;
+mod hybrid;
+mod method;
+mod mono;
+mod near_field;
+mod options;
+mod shading_reprojection;
+mod single_pass;
+mod synthesized;
+#[cfg(test)]
+mod tests;
+
+use std::rc::Rc;
+
+use crate::render::RenderSettings;
+use yoro::gl::{Context, GlError};
+
+use conventional::Conventional;
+use hybrid::Hybrid;
+pub use method::{DepthTarget, EyeTarget, StereoError, StereoFrame, StereoMethod};
+use mono::Mono;
+pub use options::{AntiAliasing, Method, StereoOptions};
+use shading_reprojection::ShadingReprojection;
+use single_pass::SinglePass;
+use synthesized::Yoro;
+
+/// Makes a method; all that does not depend on the scene is compiled here ([`StereoMethod::prepare`] does the rest).
+///
+/// # Errors
+/// [`GlError`] when the driver cannot run it.
+pub fn create(
+    gl: &Rc<Context>,
+    method: Method,
+    settings: &RenderSettings,
+    options: &StereoOptions,
+) -> Result<Box<dyn StereoMethod>, GlError> {
+    method.supported(gl.capabilities())?;
+    Ok(match method {
+        Method::Conventional => Box::new(Conventional::new(gl, settings, options)?),
+        Method::Instanced => Box::new(SinglePass::instanced(gl, settings, options)?),
+        Method::Multiview => Box::new(SinglePass::multiview(gl, settings, options)?),
+        Method::Hybrid => Box::new(Hybrid::new(gl, settings, options)?),
+        Method::ShadingReprojection => Box::new(ShadingReprojection::new(gl, settings, options)?),
+        Method::Mono => Box::new(Mono::new(gl, settings, options)?),
+        Method::Yoro => Box::new(Yoro::new(gl, settings, options)?),
+    })
+}

@@ -1,0 +1,105 @@
+//! What the hybrid near field needs: layers composited by depth, and how much of a view is too near.
+
+use std::rc::Rc;
+
+use glam::IVec2;
+
+use crate::render::ViewTargets;
+use yoro::eyes::{DepthConvention, DepthRange};
+use yoro::gl::{
+    Context, Filter, Format, GlError, PixelBuffer, Program, RasterState, RenderTarget, ShaderSource, Texture,
+};
+
+/// Composites a near layer over a far one by depth.
+pub(super) struct Composite {
+    gl: Rc<Context>,
+    program: Program,
+}
+
+impl Composite {
+    pub(super) fn new(gl: &Rc<Context>) -> Result<Composite, GlError> {
+        let program = Program::new(gl, ShaderSource::Screen("stereo/composite.frag"), &[])?;
+        Ok(Composite { gl: gl.clone(), program })
+    }
+
+    /// Writes colour and depth of whichever layer is nearer. All images have the size of `to`.
+    pub(super) fn run(
+        &self,
+        (far_color, far_depth): (&Texture, &Texture),
+        near: &ViewTargets,
+        convention: DepthConvention,
+        to: &RenderTarget,
+    ) {
+        self.gl.pass("composite", || {
+            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+            to.bind();
+            self.program
+                .bind()
+                .texture("far_color", 0, far_color.raw())
+                .texture("far_depth", 1, far_depth.raw())
+                .texture("near_color", 2, near.color().raw())
+                .texture("near_depth", 3, near.depth().raw())
+                .set("reversed", convention == DepthConvention::Reversed);
+            self.gl.draw_screen();
+            self.gl.set_raster_state(&RasterState::SCREEN);
+        });
+    }
+}
+
+/// Texels per side of the image that [`NearFraction`] reads back; `stereo/near_fraction.frag`.
+const GRID: u32 = 16;
+
+/// Measures which fraction of a view is nearer than a distance, one frame late so that nothing waits.
+pub(super) struct NearFraction {
+    gl: Rc<Context>,
+    program: Program,
+    cells: RenderTarget,
+    buffer: PixelBuffer,
+    pending: bool,
+}
+
+impl NearFraction {
+    pub(super) fn new(gl: &Rc<Context>) -> Result<NearFraction, GlError> {
+        let program = Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), &[])?;
+        let cells = RenderTarget::new(gl, [GRID; 2], &[(Format::Rgba8, Filter::Nearest)], None)?;
+        let buffer = PixelBuffer::new(gl, (GRID * GRID * 4) as usize)?;
+        Ok(NearFraction { gl: gl.clone(), program, cells, buffer, pending: false })
+    }
+
+    /// Starts to measure the part of a depth image at `origin` with `size` pixels.
+    pub(super) fn measure(
+        &mut self,
+        depth: &Texture,
+        origin: [u32; 2],
+        size: [u32; 2],
+        range: &DepthRange,
+        distance: f32,
+    ) {
+        let to_ivec = |v: [u32; 2]| IVec2::new(v[0] as i32, v[1] as i32);
+        self.gl.pass("near fraction", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            self.cells.bind();
+            self.program
+                .bind()
+                .texture("depth_map", 0, depth.raw())
+                .set("origin", to_ivec(origin))
+                .set("size", to_ivec(size))
+                .set("near_depth", range.depth(distance))
+                .set("reversed", range.convention == DepthConvention::Reversed);
+            self.gl.draw_screen();
+            self.cells.read_into(&self.buffer);
+        });
+        self.pending = true;
+    }
+
+    /// The result of the last [`NearFraction::measure`], 0 to 1; once.
+    pub(super) fn take(&mut self) -> Option<f32> {
+        if !std::mem::take(&mut self.pending) {
+            return None;
+        }
+        let mut cells = [0u8; (GRID * GRID * 4) as usize];
+        self.buffer.read(&mut cells);
+        let sum: u32 = cells.iter().step_by(4).map(|&c| c as u32).sum();
+        Some(sum as f32 / (255 * GRID * GRID) as f32)
+    }
+}

@@ -1,0 +1,178 @@
+//! The dominant eye rendered, the other one synthesized.
+
+use std::rc::Rc;
+
+use super::conventional::Conventional;
+use super::finish::Finish;
+use super::method::{EyeTarget, StereoError, StereoMethod};
+use super::near_field::{Composite, NearFraction};
+use super::options::{AntiAliasing, StereoOptions};
+use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+use yoro::eyes::{DepthConvention, EyePair, SynthesisViews};
+use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro::synthesis::{self, FrameMode, NearFieldPolicy, Outputs, Source, Synthesis};
+
+/// One render (with a guard band), one synthesis; near objects and mostly near frames as [`StereoOptions`] say.
+pub struct Yoro {
+    options: StereoOptions,
+    targets: ViewTargets,
+    synthesis: Box<dyn Synthesis>,
+    /// The synthesized eye before transparent objects and anti-aliasing: colour and depth.
+    other: RenderTarget,
+    /// The rendered eye after anti-aliasing, when that comes before synthesis.
+    smooth: Option<RenderTarget>,
+    before: Finish,
+    after: Finish,
+    near_layer: Option<NearLayer>,
+    switch: Option<Switch>,
+}
+
+/// The hybrid near field: its own targets for the near objects, and for what they are composited into.
+struct NearLayer {
+    distance: f32,
+    targets: ViewTargets,
+    composite: Composite,
+    /// Dominant eye with guard band, other eye.
+    layers: [RenderTarget; 2],
+}
+
+/// The automatic switch to two real renders.
+struct Switch {
+    policy: NearFieldPolicy,
+    mode: FrameMode,
+    fraction: NearFraction,
+    conventional: Conventional,
+}
+
+fn layer(gl: &Rc<Context>) -> Result<RenderTarget, GlError> {
+    // A float depth texture can hold both conventions.
+    RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], Some(Format::Depth32F))
+}
+
+impl Yoro {
+    /// Compiles the pipeline and makes the targets.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver cannot run the pipeline.
+    pub fn new(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        options: &StereoOptions,
+    ) -> Result<Yoro, GlError> {
+        let targets = || ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings);
+        let outputs = Outputs { depth: true, ..Outputs::default() };
+        let smooth = (options.anti_aliasing == AntiAliasing::Before)
+            .then(|| RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None));
+        let near_layer = options.near_field.map(|distance| -> Result<_, GlError> {
+            let layers = [layer(gl)?, layer(gl)?];
+            Ok(NearLayer { distance, targets: targets()?, composite: Composite::new(gl)?, layers })
+        });
+        let switch = options.policy.map(|policy| -> Result<_, GlError> {
+            Ok(Switch {
+                policy,
+                mode: FrameMode::default(),
+                fraction: NearFraction::new(gl)?,
+                conventional: Conventional::new(gl, settings, options)?,
+            })
+        });
+        Ok(Yoro {
+            options: *options,
+            targets: targets()?,
+            synthesis: synthesis::create(gl, &options.synthesis, outputs)?,
+            other: layer(gl)?,
+            smooth: smooth.transpose()?,
+            before: Finish::new(gl, options.anti_aliasing == AntiAliasing::Before)?,
+            after: Finish::new(gl, options.anti_aliasing == AntiAliasing::After)?,
+            near_layer: near_layer.transpose()?,
+            switch: switch.transpose()?,
+        })
+    }
+
+    /// Renders the dominant eye and synthesizes the other into `self.other`.
+    fn synthesize(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        views: &SynthesisViews,
+    ) -> Result<(), StereoError> {
+        let middle = pair.middle();
+        let selection = match &self.near_layer {
+            Some(near) => Selection::Farther { from: middle, distance: near.distance },
+            None => Selection::All,
+        };
+        renderer.render(&mut self.targets, scene, &views.source, selection)?;
+        let mut color = self.targets.color();
+        if let Some(smooth) = &mut self.smooth {
+            smooth.resize(views.source.size)?;
+            self.before.color(self.targets.color_target(), [0, 0], &Destination::whole(smooth));
+            color = smooth.color(0);
+        }
+        self.other.resize(pair.size)?;
+        let source = Source { color: color.raw(), depth: self.targets.depth().raw() };
+        self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.other))?;
+        Ok(())
+    }
+}
+
+impl StereoMethod for Yoro {
+    fn render_to(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError> {
+        if let Some(switch) = &mut self.switch {
+            if let Some(fraction) = switch.fraction.take() {
+                switch.mode = switch.policy.next(switch.mode, fraction);
+            }
+            if switch.mode == FrameMode::BothRendered {
+                switch.conventional.render_to(renderer, scene, pair, to)?;
+                let depth = switch.conventional.targets().depth();
+                switch.fraction.measure(depth, [0, 0], pair.size, &pair.depth, switch.policy.distance);
+                return Ok(());
+            }
+        }
+        let views = pair.synthesis(self.options.guard_band)?;
+        self.synthesize(renderer, scene, pair, &views)?;
+        if let Some(switch) = &mut self.switch {
+            // Of the far layer alone when near objects have their own: what they hide is not too near.
+            let (depth, distance) = (self.targets.depth(), switch.policy.distance);
+            switch.fraction.measure(depth, views.dominant_crop, pair.size, &pair.depth, distance);
+        }
+        let mut dominant = self.smooth.as_ref().unwrap_or(self.targets.color_target());
+        let mut dominant_depth = self.targets.depth();
+        let mut other = &self.other;
+        if let Some(near) = &mut self.near_layer {
+            let middle = pair.middle();
+            let selection = Selection::Nearer { from: middle, distance: near.distance };
+            let far = [(dominant.color(0), dominant_depth), (other.color(0), other.depth())];
+            for (i, view) in [&views.source, &views.target].into_iter().enumerate() {
+                renderer.render(&mut near.targets, scene, view, selection)?;
+                near.layers[i].resize(view.size)?;
+                near.composite.run(far[i], &near.targets, pair.depth.convention, &near.layers[i]);
+            }
+            dominant = &near.layers[0];
+            dominant_depth = near.layers[0].depth();
+            other = &near.layers[1];
+        }
+        if scene.has_transparent() {
+            for (image, depth, view) in
+                [(dominant, dominant_depth, &views.source), (other, other.depth(), &views.target)]
+            {
+                // Depth is read in the shader, so only the colour of the layer may be attached.
+                renderer.draw_transparent(&image.color_only(), DepthImage::whole(depth), scene, view)?;
+            }
+        }
+        let crop = views.dominant_crop;
+        let cropped = DepthImage { origin: crop, ..DepthImage::whole(dominant_depth) };
+        let depth = DepthImage::whole(other.depth());
+        let [dominant_to, other_to] = [pair.dominant, pair.dominant.other()].map(|eye| &to[eye.index()]);
+        self.after.color(dominant, crop, &dominant_to.color);
+        Finish::depth(cropped, dominant_to);
+        self.after.color(other, [0, 0], &other_to.color);
+        Finish::depth(depth, other_to);
+        Ok(())
+    }
+}

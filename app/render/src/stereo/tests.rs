@@ -1,0 +1,215 @@
+//! What cannot be seen from outside: the seam without clip distances, and the mask of disocclusions.
+
+use std::rc::Rc;
+
+use glam::Vec3;
+
+use super::*;
+use crate::fixture::quad;
+use crate::render::{GpuScene, Layout, Renderer, Seam};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose};
+use yoro_context::{Backend, Headless};
+use yoro_scene::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
+
+const SIZE: [u32; 2] = [160, 120];
+
+/// Posts before a wall on a floor, under a sky; wide enough to cross the border of every eye; glass.
+fn scene() -> Scene {
+    let color =
+        |rgb: [f32; 3]| Material { diffuse: Vec3::from(rgb), double_sided: true, ..Material::default() };
+    let glass = Material { alpha: Alpha::Blend(0.4), ..color([0.2, 0.5, 0.9]) };
+    let mut model = Model {
+        materials: vec![color([0.6, 0.6, 0.5]), color([0.8, 0.3, 0.2]), color([0.2, 0.7, 0.3]), glass],
+        ..Model::default()
+    };
+    let mut place = |material, center: Vec3, half_across: Vec3, half_up: Vec3| {
+        quad(&mut model, material, center - half_across - half_up, half_across * 2.0, half_up * 2.0);
+    };
+    place(0, Vec3::new(0.0, -1.0, -10.0), Vec3::X * 20.0, Vec3::NEG_Z * 20.0);
+    place(1, Vec3::new(0.0, 0.0, -9.0), Vec3::X * 12.0, Vec3::Y);
+    for i in 0..9 {
+        let center = Vec3::new(i as f32 * 0.5 - 2.0, -0.2, -1.5 - 0.4 * (i % 3) as f32);
+        place(2, center, Vec3::new(0.07, 0.0, 0.03), Vec3::Y * 0.8);
+    }
+    place(3, Vec3::new(0.2, 0.3, -3.0), Vec3::X * 0.5, Vec3::Y * 0.4);
+    Scene {
+        name: "posts".into(),
+        model,
+        style: ShadingStyle::Realistic,
+        sky: Sky::default(),
+        lights: Vec::new(),
+        viewpoints: vec![Viewpoint { position: Vec3::ZERO, target: Vec3::NEG_Z }],
+    }
+}
+
+/// Only what stays on its pixel: no ambient occlusion, no bloom.
+fn local() -> RenderSettings {
+    RenderSettings { shadow_map_size: 256, ssao: false, bloom: false, ..RenderSettings::default() }
+}
+
+fn pair(dominant: Eye, convention: DepthConvention) -> EyePair {
+    let depth = DepthRange { near: 0.2, far: 500.0, convention };
+    EyePair::parallel(Pose::IDENTITY, Frustum::symmetric(1.0, 4.0 / 3.0), 0.063, depth, SIZE, dominant)
+}
+
+struct Rig {
+    scene: GpuScene,
+    renderer: Renderer,
+    frame: StereoFrame,
+}
+
+impl Rig {
+    fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Rig {
+        let scene = GpuScene::upload(gl, scene()).unwrap();
+        let renderer = Renderer::new(gl, settings, &scene).unwrap();
+        Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() }
+    }
+
+    fn render(&mut self, method: &mut dyn StereoMethod, pair: &EyePair) -> [Vec<u8>; 2] {
+        method.render(&mut self.renderer, &self.scene, pair, &mut self.frame).unwrap();
+        Eye::BOTH.map(|eye| self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size))
+    }
+}
+
+/// Share of the pixels whose channels all differ by at most 1.
+fn equal_share(a: &[u8], b: &[u8]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let equal =
+        a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).all(|(a, b)| a.abs_diff(*b) <= 1));
+    equal.count() as f64 / (a.len() / 4) as f64
+}
+
+#[test]
+fn every_seam_separates_the_eyes() {
+    for backend in [Backend::Egl, Backend::Osmesa] {
+        let Ok(head) = Headless::open(backend) else {
+            eprintln!("SKIPPED: no {backend:?} here");
+            continue;
+        };
+        let gl = head.gl();
+        let settings = RenderSettings { shadow_map_size: 256, ..RenderSettings::default() };
+        let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
+        let mut rig = Rig::new(gl, &settings);
+        let mut conventional = Conventional::new(gl, &settings, &options).unwrap();
+        for seam in [Seam::ClipDistance, Seam::Discard] {
+            if seam == Seam::ClipDistance && !gl.capabilities().clip_distances {
+                eprintln!("SKIPPED: {backend:?} has no clip distances");
+                continue;
+            }
+            let mut method = SinglePass::new(gl, Layout::DoubleWide(seam), &settings, &options).unwrap();
+            for size in [SIZE, [97, 60]] {
+                let pair = EyePair { size, ..pair(Eye::Left, DepthConvention::Reversed) };
+                let expected = rig.render(&mut conventional, &pair);
+                let both = rig.render(&mut method, &pair);
+                for eye in Eye::BOTH {
+                    let share = equal_share(&expected[eye.index()], &both[eye.index()]);
+                    assert!(share >= 0.999, "{backend:?}, {seam:?}, {size:?}, {eye:?}: {share}");
+                }
+            }
+        }
+        assert_eq!(gl.take_errors(), None, "{backend:?}");
+    }
+}
+
+#[test]
+fn disocclusions_are_shaded_as_by_two_renders_and_the_rest_is_close() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
+    let mut rig = Rig::new(gl, &local());
+    let mut conventional = Conventional::new(gl, &local(), &options).unwrap();
+    let mut method = ShadingReprojection::new(gl, &local(), &options).unwrap();
+    for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+        for dominant in Eye::BOTH {
+            let pair = pair(dominant, convention);
+            let expected = rig.render(&mut conventional, &pair);
+            let both = rig.render(&mut method, &pair);
+            assert_eq!(both[dominant.index()], expected[dominant.index()], "the dominant eye is rendered");
+            let second = dominant.other().index();
+            let mask = method.disocclusion().read_rgba8(0, [0, 0], SIZE);
+            let (mut disoccluded, mut sum) = (0, 0u32);
+            for ((m, a), b) in mask.chunks(4).zip(both[second].chunks(4)).zip(expected[second].chunks(4)) {
+                let difference = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+                sum += u32::from(difference);
+                if m[0] == 255 {
+                    disoccluded += 1;
+                    assert!(difference <= 1, "{a:?} instead of {b:?}");
+                }
+            }
+            let pixels = SIZE[0] * SIZE[1];
+            assert!(disoccluded > pixels / 100 && disoccluded < pixels / 4, "{disoccluded} of {pixels}");
+            let mean = f64::from(sum) / f64::from(pixels);
+            assert!(mean < 1.0, "{convention:?}, {dominant:?}: mean difference {mean}");
+            let share = equal_share(&both[second], &expected[second]);
+            assert!(share > 0.9, "{convention:?}, {dominant:?}: {share} equal");
+        }
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn without_distance_between_the_eyes_nothing_is_disoccluded() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let options = StereoOptions::default();
+    let mut rig = Rig::new(gl, &local());
+    let mut method = ShadingReprojection::new(gl, &local(), &options).unwrap();
+    let mut pair = pair(Eye::Left, DepthConvention::Standard);
+    pair.poses = [Pose::IDENTITY; 2];
+    let [left, right] = rig.render(&mut method, &pair);
+    assert_eq!(left, right);
+}
+
+#[test]
+fn ambient_occlusion_is_right_at_the_rims_of_disocclusions() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
+    for ssao_half_size in [false, true] {
+        let settings = RenderSettings { ssao: true, ssao_half_size, ..local() };
+        let mut rig = Rig::new(gl, &settings);
+        let mut conventional = Conventional::new(gl, &settings, &options).unwrap();
+        let mut method = ShadingReprojection::new(gl, &settings, &options).unwrap();
+        let pair = pair(Eye::Right, DepthConvention::Standard);
+        let expected = rig.render(&mut conventional, &pair);
+        let both = rig.render(&mut method, &pair);
+        let mask = method.disocclusion().read_rgba8(0, [0, 0], SIZE);
+        for (i, m) in mask.chunks(4).enumerate() {
+            let [a, b] = [&both[0], &expected[0]].map(|image| &image[i * 4..i * 4 + 4]);
+            let equal = a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1);
+            assert!(m[0] < 255 || equal, "half size {ssao_half_size}, pixel {i}: {a:?} instead of {b:?}");
+        }
+    }
+}
+
+#[test]
+fn mono_shows_each_eye_its_own_part_of_the_view() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let (gl, settings) = (head.gl(), local());
+    let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
+    let mut rig = Rig::new(gl, &settings);
+    let mut conventional = Conventional::new(gl, &settings, &options).unwrap();
+    let mut mono = Mono::new(gl, &settings, &options).unwrap();
+    let plain = pair(Eye::Right, DepthConvention::Standard);
+    let [left, right] = rig.render(&mut mono, &plain);
+    assert!(left == right, "the same image where the frusta are the same");
+    // The right eye's frustum lies 32 pixels further right and 12 higher.
+    let frustum = plain.frusta[0];
+    let [x, y] = [32.0 / SIZE[0] as f32 * frustum.width(), 12.0 / SIZE[1] as f32 * frustum.height()];
+    let shifted = |x: f32, y: f32| Frustum {
+        left: frustum.left + x,
+        right: frustum.right + x,
+        bottom: frustum.bottom + y,
+        top: frustum.top + y,
+    };
+    for dominant in Eye::BOTH {
+        let asymmetric = EyePair { frusta: [shifted(-x / 2.0, 0.0), shifted(x / 2.0, y)], dominant, ..plain };
+        let here = asymmetric.poses[dominant.index()];
+        let expected = rig.render(&mut conventional, &EyePair { poses: [here; 2], ..asymmetric });
+        let both = rig.render(&mut mono, &asymmetric);
+        for eye in Eye::BOTH {
+            let equal = equal_share(&both[eye.index()], &expected[eye.index()]);
+            assert!(equal > 0.99, "{dominant:?} dominant, {eye:?}: {equal}");
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What can go wrong between a scene and its files.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a scene could not be read or written. Every message is one sentence that names the file and the remedy.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// No such file.
+    #[error("there is no file {path}: give the path of an .obj, .gltf or .glb file")]
+    NotFound {
+        /// The path given.
+        path: PathBuf,
+    },
+    /// A folder, a device, a pipe.
+    #[error("{path} is not a file: give the path of the .obj, .gltf or .glb file itself")]
+    NotAFile {
+        /// The path given.
+        path: PathBuf,
+    },
+    /// A file of another kind.
+    #[error("{path} is not a scene that can be read: convert it to .obj, .gltf or .glb")]
+    UnknownFormat {
+        /// The path given.
+        path: PathBuf,
+    },
+    /// The operating system refused.
+    #[error("{path} cannot be read ({source}): check its permissions and the disk")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A statement that makes no sense, with its line.
+    #[error("{path}, line {line}: {what}; correct the line or export the model again")]
+    Statement {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// What is wrong.
+        what: String,
+    },
+    /// A damaged file or one that uses something unsupported; `what` contains the remedy.
+    #[error("{path}: {what}")]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what helps.
+        what: String,
+    },
+    /// Nothing to draw.
+    #[error("{path} contains no triangle that can be drawn: export the model again with its faces")]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// More than fits into 32-bit indices and memory.
+    #[error("{path} has more than {limit} {what}: split the model or reduce it")]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Largest number accepted.
+        limit: usize,
+        /// What is counted.
+        what: &'static str,
+    },
+    /// A texture that is there but cannot be decoded.
+    #[error("the texture {path} cannot be used ({what}): replace it, or remove it to load the model without")]
+    Texture {
+        /// The picture's file.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+    /// A malformed `camera.json` or `scene.json`.
+    #[error("{path} is malformed ({what}): correct it, or remove it to get defaults")]
+    Sidecar {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+}
+
+impl SceneError {
+    pub(super) fn unusable(path: &Path, what: impl Into<String>) -> SceneError {
+        SceneError::Unusable { path: path.into(), what: what.into() }
+    }
+}
+
+/// Largest number of vertices, of triangle corners, and of entries of one kind in a file: keeps every index in
+/// 32 bits and bounds the memory a damaged or hostile file can take.
+pub(super) const MAX_ELEMENTS: usize = 1 << 27;
+
+/// Checks that a path is a regular file and returns its size in bytes.
+pub(super) fn file_size(path: &Path) -> Result<u64, SceneError> {
+    let size = yoro_files::size(path).map_err(|source| match source.kind() {
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => SceneError::NotFound { path: path.into() },
+        _ => SceneError::Read { path: path.into(), source },
+    })?;
+    size.ok_or_else(|| SceneError::NotAFile { path: path.into() })
+}

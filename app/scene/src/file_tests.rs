@@ -1,0 +1,927 @@
+//! Files of every kind, good and bad, through [`load`].
+
+use std::path::{Path, PathBuf};
+use std::{fs, time};
+
+use base64::Engine as _;
+use glam::{Vec2, Vec3};
+use image::{Rgba, RgbaImage};
+use proptest::prelude::*;
+use tempfile::TempDir;
+
+use super::*;
+
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Folder {
+        Folder(tempfile::tempdir().unwrap())
+    }
+
+    fn put(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, content).unwrap();
+        path
+    }
+
+    fn picture(&self, name: &str, size: u32, f: impl Fn(u32, u32) -> [u8; 4]) -> PathBuf {
+        let path = self.put(name, "");
+        RgbaImage::from_fn(size, size, |x, y| Rgba(f(x, y))).save(&path).unwrap();
+        path
+    }
+}
+
+fn obj(text: &str) -> Model {
+    try_obj(text).unwrap()
+}
+
+fn try_obj(text: impl AsRef<[u8]>) -> Result<Model, SceneError> {
+    let folder = Folder::new();
+    load(&folder.put("t.obj", text)).map(|s| s.model)
+}
+
+fn refused(text: impl AsRef<[u8]>, words: &[&str]) {
+    let message = try_obj(text).unwrap_err().to_string();
+    for word in words.iter().chain(&["t.obj"]) {
+        assert!(message.contains(word), "`{message}` should mention `{word}`");
+    }
+    assert!(!message.contains('\n'));
+}
+
+/// Sum of the triangles' area vectors.
+fn area(model: &Model) -> Vec3 {
+    let triangle = |t: &[u32]| {
+        let [a, b, c] = [0, 1, 2].map(|k| model.vertices[t[k] as usize].position);
+        (b - a).cross(c - a) * 0.5
+    };
+    model.indices.chunks_exact(3).map(triangle).sum()
+}
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+fn square(rest: &str) -> String {
+    format!("{SQUARE}{rest}")
+}
+
+#[test]
+fn the_least_that_is_a_model() {
+    let model = obj(&square("f 1 2 3 4"));
+    assert_eq!((model.triangle_count(), model.vertices.len()), (2, 4));
+    assert!(model.vertices.iter().all(|v| v.normal == Vec3::Z && v.uv == Vec2::ZERO));
+    assert_eq!(model.materials, [Material { double_sided: true, ..Material::default() }]);
+    assert_eq!(model.parts, [Part { name: "model".into(), material: 0, indices: 0..6 }]);
+}
+
+#[test]
+fn all_ways_to_write_a_corner() {
+    let given = "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 2\nvn 1 0 0\n";
+    for face in ["1/1/1 2/2/1 3/3/1", "-4/-3/-2 -3/-2/-2 -2/-1/-2", "1/1/-2 2/2/1 -2/3/-2"] {
+        let model = obj(&square(&format!("{given}f {face}\n")));
+        assert_eq!(
+            model.vertices[2],
+            Vertex { position: Vec3::new(1., 1., 0.), normal: Vec3::Z, uv: Vec2::ONE },
+            "{face}"
+        );
+    }
+    let model = obj(&square(&format!("{given}f 1//2 2//2 3//2\nf 1/1 3/3 4/0/0\n")));
+    assert_eq!(model.vertices[0].normal, Vec3::X);
+    // The second face shares no vertex with the first and gets its own normal.
+    let last = model.vertices[model.indices[5] as usize];
+    assert_eq!((last.position, last.normal), (Vec3::Y, Vec3::Z));
+}
+
+#[test]
+fn corners_with_and_without_normals_do_not_mix_up() {
+    let model = obj(&square("vn 1 0 0\nvt .5 .5\nf 1 2//1 3/1\n"));
+    let of = |k: usize| model.vertices[model.indices[k] as usize];
+    assert_eq!([of(0).normal, of(1).normal, of(2).normal], [Vec3::Z, Vec3::X, Vec3::Z]);
+    assert_eq!(of(2).uv, Vec2::splat(0.5));
+}
+
+#[test]
+fn concave_polygons() {
+    let arrow = obj("v 0 0 0\nv 2 1 0\nv 0 2 0\nv 1 1 0\nf 1 2 3 4\n");
+    assert_eq!(area(&arrow), Vec3::Z);
+    let l = obj("v 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nf 1 2 3 4 5 6\n");
+    assert_eq!((l.triangle_count(), area(&l)), (4, Vec3::Z * 3.0));
+    let mixed = obj(&square("f 1 2 3\nf 1 2 3 4\nf 1 2 3\n"));
+    assert_eq!(mixed.triangle_count(), 4);
+}
+
+#[test]
+fn lines_of_every_system() {
+    let unix = obj(&square("f 1 2 3 4\n"));
+    assert_eq!(obj(&square("f 1 2 3 4\n").replace('\n', "\r\n")), unix);
+    assert_eq!(obj(&square("f 1 2 3 4\n").replace('\n', "\r")), unix);
+    assert_eq!(obj(&square("f 1 2 \\\n3 \\\r\n4 # a face")), unix);
+    assert_eq!(obj(&format!("\u{feff}{}", square("f 1 2 3 4"))), unix);
+    assert_eq!(obj(&square("\t f\t1  2\t3 4   ")), unix);
+    let latin1 = [b"# caf\xe9\n".as_slice(), square("f 1 2 3 4").as_bytes()].concat();
+    assert_eq!(try_obj(latin1).unwrap(), unix);
+    assert_eq!(obj(&square("p 1\nl 1 2 3\nf 1 2\nxyz 3\nvp 1\nf 1 2 3 4\nend")), unix);
+    assert_eq!(obj(&square("f 1 2 3 4\nf 1 2 2\n")).triangle_count(), 2);
+}
+
+#[test]
+fn groups_objects_and_materials_without_library() {
+    let model = obj(&square(
+        "usemtl a\no one\nf 1 2 3\nusemtl b\nf 1 3 4\ng two\nusemtl\ta\nf 2 3 4\ng one\nf 1 2 4",
+    ));
+    let names: Vec<_> = model.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(names, ["a", "b"]);
+    let parts: Vec<_> = model.parts.iter().map(|p| (p.name.as_str(), p.material, p.indices.len())).collect();
+    assert_eq!(parts, [("one", 0, 6), ("two", 0, 3), ("one", 1, 3)]);
+}
+
+#[test]
+fn smoothing_off_makes_faces_flat() {
+    let roof = "v -1 0 0\nv 0 .3 0\nv 1 0 0\nv -1 0 -1\nv 0 .3 -1\nv 1 0 -1\n";
+    assert_eq!(obj(&format!("{roof}f 1 2 5 4\nf 2 3 6 5")).vertices.len(), 6);
+    assert_eq!(obj(&format!("{roof}s off\nf 1 2 5 4\nf 2 3 6 5")).vertices.len(), 8);
+}
+
+#[test]
+fn vertex_colours_become_a_palette() {
+    let model = obj(
+        "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 1 1 0 0 1 1\nv 2 2 0\nf 1 2 3\nf 2 4 4 3\nf 5 5 4\nf 1 2 5",
+    );
+    let texture = &model.textures[model.materials[0].diffuse_map.unwrap()];
+    let uv = model.vertices[model.indices[0] as usize].uv;
+    let [w, h] = texture.size.map(|s| s as f32);
+    let (x, y) = ((uv.x * w) as usize, ((1.0 - uv.y) * h) as usize);
+    assert_eq!(texture.rgba[(y * w as usize + x) * 4..][..4], [255, 0, 0, 255]);
+}
+
+#[test]
+fn a_large_group_is_joined_again() {
+    let mut text = String::new();
+    for i in 0..70_000 {
+        text += &format!("v {i} 0 0\nv {i} 1 0\nv {i} 0 1\nvn 1 0 0\nf -3//-1 -2//-1 -1//-1\n");
+    }
+    let model = obj(&text);
+    assert_eq!((model.triangle_count(), model.parts.len()), (70_000, 1));
+}
+
+#[test]
+fn absurd_files_are_refused_in_a_sentence() {
+    refused("", &["no triangle", "export"]);
+    refused("# nothing\nv 1 2 3\n", &["no triangle"]);
+    refused("<html>not a model</html>", &["no triangle"]);
+    refused([0x7f, b'E', b'L', b'F', 0, 0, 1], &["line 1", "binary"]);
+    refused("v 0 0 0\nf 1 1 1", &["no triangle"]);
+    refused("v nan nan nan\nv 0 1 0\nv 1 0 0\nf 1 2 3", &["no triangle"]);
+    refused("v 1 x 3", &["line 1", "`x`", "number"]);
+    refused("v 1,5 2,5 3", &["`1,5`", "point"]);
+    refused("\n\nv 1 2", &["line 3", "3 numbers"]);
+    refused("vn 1 2", &["`vn`"]);
+    refused("vt", &["`vt`"]);
+    refused(square("f 1 2 5"), &["line 5", "vertex 5", "only 4"]);
+    refused(square("f 1 2 \\\n-5"), &["line 6", "5 back"]);
+    refused(square("f 1/9 2/1 3/1"), &["texture coordinate 9"]);
+    refused(square("vn 0 0 1\nf 1//2 2//1 3//1"), &["normal 2"]);
+    refused(square("f 0 1 2"), &["counted from 1"]);
+    refused(square("f a b c"), &["`a`"]);
+    refused(square("f 1.5 2 3"), &["`1.5`"]);
+    refused(square("f 1/2/3/4 2 3"), &["`1/2/3/4`"]);
+    refused(square("f /1 2 3"), &["`/1`"]);
+    refused(square("f 9223372036854775807 1 2"), &["9223372036854775807"]);
+    refused(square("f -9223372036854775808 1 2"), &["back"]);
+    refused(square("f 99999999999999999999999 1 2"), &["corner"]);
+    refused(square("f 1/-9223372036854775808 1 2"), &["back"]);
+    refused(square("f 1/9223372036854775807 2 3"), &["texture coordinate"]);
+    refused(vec![b'x'; 17 << 20], &["line 1", "long"]);
+    refused("v 1e30 0 0\nv 0 1e30 0\nv 0 0 0\nf 1 2 3", &["scale"]);
+}
+
+#[test]
+fn paths_that_are_no_models() {
+    let folder = Folder::new();
+    let message = |p: &Path| load(p).unwrap_err().to_string();
+    assert!(message(&folder.0.path().join("no.obj")).contains("there is no file"));
+    assert!(message(folder.0.path()).contains("is not a file"));
+    assert!(message(&folder.put("a.fbx", "x")).contains("convert it"));
+    assert!(message(&folder.put("a", "x")).contains("convert it"));
+    assert!(message(&folder.put("a.obj", "").join("b.obj")).contains("there is no file"));
+}
+
+#[test]
+fn forward_references_within_a_group() {
+    assert_eq!(obj(&format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
+    refused(format!("f 1 2 3\ng x\nf 1 2 3\n{SQUARE}"), &["line 1", "vertex 1"]);
+}
+
+#[test]
+fn libraries_are_found_and_missing_ones_replaced() {
+    let folder = Folder::new();
+    folder.put("Lib One.mtl", "newmtl red\nKd 1 0 0\n");
+    folder.put("two.mtl", "newmtl Green\nKd 0 1 0\nnewmtl red\nKd 0 0 0");
+    let text = square(
+        "mtllib lib one.mtl\nmtllib TWO.MTL missing.mtl\nusemtl red\nf 1 2 3\nusemtl Green\nf 1 3 4\nusemtl none\nf 2 3 4",
+    );
+    let model = load(&folder.put("a.obj", text)).unwrap().model;
+    let colours: Vec<_> = model.materials.iter().map(|m| m.diffuse).collect();
+    assert_eq!(colours, [Vec3::X, Vec3::Y, Material::default().diffuse]);
+    // Without any library that exists, the one with the model's name.
+    folder.put("b.mtl", "newmtl red\nKd 0 0 1");
+    let model = load(&folder.put("b.obj", square("mtllib gone.mtl\nusemtl red\nf 1 2 3"))).unwrap().model;
+    assert_eq!(model.materials[0].diffuse, Vec3::Z);
+    folder.put("c.mtl", [0u8, 255, 3]);
+    assert!(load(&folder.put("c.obj", square("mtllib c.mtl\nusemtl red\nf 1 2 3"))).is_ok());
+}
+
+#[test]
+fn textures_are_found_however_they_are_written() {
+    let folder = Folder::new();
+    folder.picture("Textures/My Wood.PNG", 4, |_, _| [200, 100, 50, 255]);
+    for name in [
+        "Textures/My Wood.PNG",
+        "textures\\my wood.png",
+        "C:\\art\\maps\\my wood.png",
+        "/home/x/Textures/My Wood.PNG",
+        "my wood.png",
+        "-s 2 2 -o 0.5 0 textures/my wood.png",
+    ] {
+        folder.put("a.mtl", format!("newmtl m\nmap_Kd {name}\n"));
+        let model = load(
+            &folder.put("a.obj", square("mtllib a.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3")),
+        )
+        .unwrap()
+        .model;
+        assert_eq!(model.materials[0].diffuse_map, Some(0), "{name}");
+        assert_eq!(
+            (model.textures[0].size, &model.textures[0].rgba[..4]),
+            ([4, 4], [200, 100, 50, 255].as_slice())
+        );
+        let moved = name.starts_with("-s");
+        assert_eq!(model.vertices[2].uv, if moved { Vec2::new(2.5, 2.0) } else { Vec2::ONE });
+    }
+    for name in ["gone.png", "a.obj"] {
+        folder.put("a.mtl", format!("newmtl m\nKd .5 .5 .5\nmap_Kd {name}\n"));
+        let model = load(&folder.0.path().join("a.obj")).unwrap().model;
+        assert_eq!((model.materials[0].diffuse_map, model.textures.len()), (None, 0));
+    }
+}
+
+#[test]
+fn every_kind_of_map() {
+    let folder = Folder::new();
+    folder.picture("leaf.png", 8, |x, _| [0, 200, 0, if x < 4 { 0 } else { 255 }]);
+    folder.picture("mask.png", 8, |x, _| if x < 4 { [0, 0, 0, 255] } else { [255; 4] });
+    folder.picture("glass.png", 8, |_, _| [0, 0, 255, 100]);
+    folder.picture("plain.png", 8, |x, _| [x as u8 * 30, 0, 0, 255]);
+    folder.picture("bumps.png", 8, |x, _| [(x * 30) as u8; 4].map(|v| v.max(1)));
+    folder.picture("normals.png", 8, |_, _| [128, 128, 255, 255]);
+    folder.put("a.mtl", "newmtl leaf\nmap_Kd leaf.png\nnewmtl masked\nmap_Kd plain.png\nmap_d mask.png\nnewmtl only\nKd 0 1 0\nmap_d mask.png\n\
+        newmtl glass\nd .5\nmap_Kd glass.png\nnewmtl rest\nmap_Kd plain.png\nmap_Ks plain.png\nmap_Ke plain.png\nmap_Bump -bm 2 bumps.png\nnewmtl n\nbump normals.png -bm 1\n");
+    let mut text = square("mtllib a.mtl\n");
+    for m in ["leaf", "masked", "only", "glass", "rest", "n"] {
+        text += &format!("usemtl {m}\nf 1 2 3\n");
+    }
+    let model = load(&folder.put("a.obj", text)).unwrap().model;
+    let [leaf, masked, only, glass, rest, n] = model.materials.as_slice() else { panic!() };
+    let texture = |i: Option<usize>| &model.textures[i.unwrap()];
+    assert_eq!([leaf.alpha, masked.alpha, only.alpha], [Alpha::Cutout(0.5); 3]);
+    assert_eq!(glass.alpha, Alpha::Blend(0.5));
+    assert_eq!(rest.alpha, Alpha::Opaque);
+    assert_eq!(texture(masked.diffuse_map).rgba[..4], [0, 0, 0, 0]);
+    assert_eq!(texture(masked.diffuse_map).rgba[28..32], [210, 0, 0, 255]);
+    assert_eq!(texture(only.diffuse_map).rgba[28..32], [255; 4]);
+    assert_eq!(rest.diffuse_map, rest.specular_map);
+    assert_eq!(rest.emissive_map, rest.diffuse_map);
+    let normals = texture(rest.normal_map);
+    assert!(!normals.srgb && normals.rgba[4 * 3] < 128 && normals.rgba[4 * 3 + 2] > 128);
+    assert_eq!(texture(n.normal_map).rgba[..4], [128, 128, 255, 255]);
+    // Generated, since there are maps.
+    assert!(model.vertices.iter().any(|v| v.uv == Vec2::ONE));
+}
+
+#[test]
+fn bad_pictures_are_named() {
+    let folder = Folder::new();
+    folder.put("a.mtl", "newmtl m\nmap_Kd p.png");
+    let scene = folder.put("a.obj", square("mtllib a.mtl\nusemtl m\nf 1 2 3"));
+    let mut png =
+        fs::read(folder.picture("p.png", 64, |x, y| [x as u8, y as u8, (x * y) as u8, 255])).unwrap();
+    png.truncate(png.len() / 2);
+    folder.put("p.png", &png);
+    let message = load(&scene).unwrap_err().to_string();
+    assert!(message.contains("p.png") && message.contains("replace"), "{message}");
+    // A header that promises 30000 x 30000 pixels.
+    let mut huge = b"BM".to_vec();
+    huge.extend([0, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0]);
+    huge.extend(30_000i32.to_le_bytes());
+    huge.extend(30_000i32.to_le_bytes());
+    huge.extend([1, 0, 24, 0]);
+    huge.extend([0; 24]);
+    folder.put("p.png", &huge);
+    let message = load(&scene).unwrap_err().to_string();
+    assert!(message.contains("p.png") && message.contains("scale it down"), "{message}");
+    folder.put("p.png", "not a picture at all");
+    let message = load(&scene).unwrap_err().to_string();
+    assert!(message.contains("p.png"), "{message}");
+}
+
+#[test]
+fn cameras_beside_the_model() {
+    let folder = Folder::new();
+    let scene = folder.put("a.obj", square("f 1 2 3"));
+    assert_eq!(load(&scene).unwrap().viewpoints.len(), 8);
+    folder.put("camera.json", r#"[{"position": [1, 2, 3], "target": [0, 0, 0]}]"#);
+    assert_eq!(
+        load(&scene).unwrap().viewpoints,
+        [Viewpoint { position: Vec3::new(1., 2., 3.), target: Vec3::ZERO }]
+    );
+    for (text, word) in [
+        ("", "EOF"),
+        ("[]", "no viewpoint"),
+        ("{}", "map"),
+        (r#"[{"position": [1, 2], "target": [0, 0, 0]}]"#, "line 1"),
+        (r#"[{"position": [1, 2, 3]}]"#, "target"),
+        (r#"[{"position": [1, 2, 3], "target": [1, 2, 3]}]"#, "looks at"),
+        (r#"[{"position": [1e39, 2, 3], "target": [1, 2, 3]}]"#, ""),
+    ] {
+        folder.put("a.camera.json", text);
+        let message = load(&scene).unwrap_err().to_string();
+        assert!(
+            message.contains("a.camera.json") && message.contains(word) && message.contains("remove it"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn notes_beside_the_model() {
+    let folder = Folder::new();
+    let scene = folder.put("a.obj", square("f 1 2 3"));
+    folder.put("scene.json", r#"{"style": "anime", "scale": 2, "lights": []}"#);
+    let s = load(&scene).unwrap();
+    assert_eq!(
+        (s.style, s.model.bounds().max, s.lights.len()),
+        (ShadingStyle::Anime, Vec3::new(2., 2., 0.), 0)
+    );
+    for (text, word) in [
+        (r#"{"colour": 1}"#, "unknown field"),
+        (r#"{"scale": 0}"#, "greater than 0"),
+        (r#"{"lights": [{"position": [0,0,0], "color": [1,1,1], "range": 0}]}"#, "range"),
+        (r#"{"materials": {"m": {"alpha": {"blend": 2}, "double_sided": true}}}"#, "between 0 and 1"),
+    ] {
+        folder.put("scene.json", text);
+        let message = load(&scene).unwrap_err().to_string();
+        assert!(message.contains("scene.json") && message.contains(word), "{message}");
+    }
+}
+
+/// A box seen from inside or outside, by its corners.
+fn box_obj(min: [f32; 3], max: [f32; 3]) -> String {
+    let mut text = String::new();
+    for i in 0..8 {
+        let at = |k: usize| if i >> k & 1 == 0 { min[k] } else { max[k] };
+        text += &format!("v {} {} {}\n", at(0), at(1), at(2));
+    }
+    text + "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3\n"
+}
+
+#[test]
+fn small_things_are_circled_and_stay_in_view() {
+    let folder = Folder::new();
+    let s = load(&folder.put("a.obj", box_obj([-0.1, 0.0, -0.1], [0.1, 0.3, 0.1]))).unwrap();
+    assert_eq!(s.viewpoints.len(), 8);
+    for v in &s.viewpoints {
+        let away = v.position.distance(Vec3::new(0.0, 0.15, 0.0));
+        assert!((0.25..1.0).contains(&away));
+        assert!(v.pose().forward().dot((Vec3::new(0.0, 0.15, 0.0) - v.position).normalize()) > 0.99);
+    }
+    assert_eq!((s.sky, s.lights.len()), (Sky::default(), 0));
+}
+
+#[test]
+fn rooms_are_walked_and_have_lamps() {
+    let folder = Folder::new();
+    // A room with a table.
+    let room = box_obj([-4.0, 0.0, -3.0], [4.0, 3.0, 3.0]) + &box_obj([-1.0, 0.0, -0.5], [1.0, 0.8, 0.5]);
+    let s = load(&folder.put("a.obj", room)).unwrap();
+    assert_eq!(s.viewpoints.len(), 8);
+    for v in &s.viewpoints {
+        assert!((1.5..2.5).contains(&v.position.y), "{}", v.position);
+        assert!(v.position.x.abs() < 3.6 && v.position.z.abs() < 2.6);
+    }
+    assert!(!s.lights.is_empty() && s.sky.sun_color == Vec3::ZERO);
+    for l in &s.lights {
+        assert!(l.position.y > 1.6 && l.position.y < 3.0 && l.color.min_element() > 0.5);
+    }
+}
+
+#[test]
+fn glowing_surfaces_are_lights() {
+    let folder = Folder::new();
+    folder.put("a.mtl", "newmtl lamp\nKe 1 1 0.5\n");
+    let room = "mtllib a.mtl\n".to_owned()
+        + &box_obj([-4.0, 0.0, -3.0], [4.0, 3.0, 3.0])
+        + "usemtl lamp\nv 0 2.9 0\nv 0 2.9 1\nv 1 2.9 1\nv 1 2.9 0\nf -1 -2 -3 -4\n";
+    let s = load(&folder.put("a.obj", room)).unwrap();
+    assert!((1..=4).contains(&s.lights.len()), "{:?}", s.lights);
+    assert!(s.lights.iter().all(|l| l.position.y < 2.9 && l.color.z < l.color.x));
+}
+
+#[test]
+fn streets_are_walked_on_the_ground() {
+    let folder = Folder::new();
+    let mut city = "v -50 0 -50\nv 50 0 -50\nv 50 0 50\nv -50 0 50\nf -1 -2 -3 -4\n".to_owned();
+    for (x, z) in (0..16).map(|i| ((i % 4) as f32, (i / 4) as f32)) {
+        city += &box_obj([x * 24.0 - 44.0, 0.0, z * 24.0 - 44.0], [x * 24.0 - 28.0, 20.0, z * 24.0 - 28.0]);
+    }
+    let s = load(&folder.put("a.obj", city)).unwrap();
+    assert_eq!(s.viewpoints.len(), 8);
+    let inside = |p: f32| (p + 44.0).rem_euclid(24.0) < 16.0 && p.abs() < 44.0;
+    for v in &s.viewpoints {
+        assert!((v.position.y - 1.6).abs() < 0.1, "{}", v.position);
+        assert!(!(inside(v.position.x) && inside(v.position.z)), "{} is in a house", v.position);
+    }
+    assert_eq!(s.sky, Sky::default());
+}
+
+/// Large enough to be walked through, but with no place to walk: two cubes, a figure of blocks, and a wall whose top is
+/// a ledge.
+#[test]
+fn large_things_without_a_floor_are_circled() {
+    let folder = Folder::new();
+    let cubes = box_obj([-2.5, -1.0, -1.0], [-0.5, 1.0, 1.0]) + &box_obj([0.5, -1.0, -1.0], [2.5, 1.0, 1.0]);
+    let figure = box_obj([-2.0, 0.0, -1.0], [-0.5, 6.0, 1.0])
+        + &box_obj([0.5, 0.0, -1.0], [2.0, 6.0, 1.0])
+        + &box_obj([-3.0, 6.0, -1.0], [3.0, 14.0, 1.0])
+        + &box_obj([-1.5, 14.0, -1.0], [1.5, 18.0, 1.0]);
+    let wall = box_obj([-10.0, 0.0, -0.5], [10.0, 8.0, 0.5]);
+    // Of the hall in it nobody sees the walls.
+    let block = box_obj([-4.0, 0.0, -4.0], [4.0, 4.0, 4.0]);
+    for (name, text) in [("cubes", cubes), ("figure", figure), ("wall", wall), ("block", block)] {
+        let mut model = load(&folder.put("a.obj", text)).unwrap().model;
+        model.materials.iter_mut().for_each(|m| m.double_sided = false);
+        let (viewpoints, _) = defaults::viewpoints(&model, &rays::Rays::new(&model));
+        let bounds = model.bounds();
+        assert_eq!(viewpoints.len(), 8);
+        for v in &viewpoints {
+            assert_eq!(v.target, bounds.center(), "{name}");
+            assert!(bounds.distance(v.position) > 0.0, "{name}: {}", v.position);
+        }
+    }
+}
+
+/// A terrace with a small house: there is ground to walk on, and no view from it into the sky alone.
+#[test]
+fn a_walk_shows_the_model() {
+    let folder = Folder::new();
+    let terrace = "v -15 0 -15\nv 15 0 -15\nv 15 0 15\nv -15 0 15\nf -1 -2 -3 -4\n".to_owned()
+        + &box_obj([-3.0, 0.0, -3.0], [3.0, 4.0, 3.0]);
+    let s = load(&folder.put("a.obj", terrace)).unwrap();
+    let rays = rays::Rays::new(&s.model);
+    for v in &s.viewpoints {
+        assert!((v.position.y - 1.6).abs() < 0.1, "{}", v.position);
+        let ahead = v.pose().forward();
+        let side = ahead.cross(Vec3::Y) * 0.3;
+        let shown = |d: &Vec3| rays.cast(v.position, *d, 1e3).is_some_and(|h| h.distance < 20.0);
+        let rays = [-0.5, -0.35, -0.2f32].map(|y| [-1.0, 0.0, 1.0].map(|x| ahead + side * x + Vec3::Y * y));
+        let count = rays.iter().flatten().filter(|d| shown(d)).count();
+        assert!(count >= 5, "{v:?} sees {count} of 9");
+    }
+}
+
+/// A scene with all that a file must carry.
+fn rich_scene() -> Scene {
+    let texture = |name: &str, srgb, nearest, f: fn(u32) -> [u8; 4]| TextureImage {
+        name: name.into(),
+        size: [8, 4],
+        rgba: (0..32).flat_map(f).collect(),
+        srgb,
+        nearest,
+    };
+    let material = |name: &str| Material { name: name.into(), ..Material::default() };
+    let mut model = Model {
+        textures: vec![
+            texture("bricks", true, false, |i| [i as u8, 40, 90, 255]),
+            texture("leaves", true, true, |i| [10, 200, 0, if i % 3 == 0 { 0 } else { 255 }]),
+            texture("bumps", false, false, |_| [140, 128, 250, 255]),
+            texture("screen", true, false, |i| [0, i as u8 * 8, 255, 255]),
+        ],
+        materials: vec![
+            Material {
+                diffuse: Vec3::new(0.1, 0.25, 0.7),
+                roughness: 0.123,
+                diffuse_map: Some(0),
+                specular_map: Some(0),
+                normal_map: Some(2),
+                ..material("wall")
+            },
+            Material {
+                diffuse: Vec3::ONE,
+                alpha: Alpha::Cutout(0.3),
+                double_sided: true,
+                diffuse_map: Some(1),
+                ..material("leaf")
+            },
+            Material { alpha: Alpha::Blend(0.4), ..material("glass") },
+            Material { emissive: Vec3::new(2.0, 1.5, 0.1), emissive_map: Some(3), ..material("tv") },
+            Material { diffuse_map: Some(1), ..material("opaque_leaf") },
+        ],
+        ..Model::default()
+    };
+    for (i, part) in ["wall", "tree", "window", "screen", "sign"].into_iter().enumerate() {
+        let start = model.indices.len();
+        for k in 0..40 {
+            let base = model.vertices.len() as u32;
+            for c in 0..3 {
+                let a = (k * 3 + c) as f32 * 0.7 + i as f32;
+                model.vertices.push(Vertex {
+                    position: Vec3::new(a.sin() * 3.0 + c as f32, a.cos() + k as f32 * 0.1, (a * 1.3).sin()),
+                    normal: Vec3::new(a.sin(), a.cos(), 0.3).normalize(),
+                    uv: Vec2::new(a * 0.1, 1.0 - a * 0.03),
+                });
+            }
+            model.indices.extend([base, base + 1, base + 2]);
+        }
+        model.parts.push(Part { name: part.into(), material: i, indices: start..model.indices.len() });
+    }
+    Scene {
+        name: "rich".into(),
+        model,
+        style: ShadingStyle::LowPoly,
+        sky: Sky { sun_color: Vec3::new(1.0, 0.3, 0.1), ..Sky::default() },
+        lights: vec![PointLight { position: Vec3::ONE, color: Vec3::new(5.0, 4.0, 3.0), range: 7.5 }],
+        viewpoints: (0..8)
+            .map(|i| Viewpoint { position: Vec3::new(i as f32 * 0.1, 1.6, 5.0), target: Vec3::Y })
+            .collect(),
+    }
+}
+
+#[test]
+fn what_is_exported_is_loaded_again() {
+    let folder = Folder::new();
+    let scene = rich_scene();
+    let target = folder.0.path().join("new/folder");
+    let path = export(&scene, &target, "MIT OR Apache-2.0").unwrap();
+    let again = load(&path).unwrap();
+    assert_eq!((again.name, again.style, again.viewpoints), (scene.name, scene.style, scene.viewpoints));
+    assert_eq!((again.sky, again.lights), (scene.sky, scene.lights));
+    assert_eq!(again.model.parts, scene.model.parts);
+    for (a, b) in again.model.indices.iter().zip(&scene.model.indices) {
+        let (a, b) = (again.model.vertices[*a as usize], scene.model.vertices[*b as usize]);
+        assert_eq!((a.position, a.uv), (b.position, b.uv));
+        assert!(a.normal.distance(b.normal) < 1e-6);
+    }
+    assert_eq!(again.model.indices.len(), scene.model.indices.len());
+    let texture = |m: &Model, i: Option<usize>| i.map(|i| m.textures[i].clone());
+    for (a, b) in again.model.materials.iter().zip(&scene.model.materials) {
+        assert_eq!(texture(&again.model, a.diffuse_map), texture(&scene.model, b.diffuse_map));
+        assert_eq!(texture(&again.model, a.specular_map), texture(&scene.model, b.specular_map));
+        assert_eq!(texture(&again.model, a.emissive_map), texture(&scene.model, b.emissive_map));
+        assert_eq!(texture(&again.model, a.normal_map), texture(&scene.model, b.normal_map));
+        let without = |m: &Material| Material {
+            diffuse_map: None,
+            specular_map: None,
+            emissive_map: None,
+            normal_map: None,
+            ..m.clone()
+        };
+        assert_eq!(without(a), without(b));
+    }
+    let mut files: Vec<_> =
+        fs::read_dir(&target).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    files.sort();
+    assert_eq!(
+        files,
+        ["LICENSE.txt", "rich.camera.json", "rich.mtl", "rich.obj", "rich.scene.json", "textures"]
+    );
+    assert_eq!(fs::read_to_string(target.join("LICENSE.txt")).unwrap(), "MIT OR Apache-2.0\n");
+}
+
+#[test]
+fn an_export_that_fails_says_where() {
+    let folder = Folder::new();
+    let file = folder.put("file", "");
+    let message = export(&rich_scene(), &file, "x").unwrap_err().to_string();
+    assert!(message.contains("file is not a folder"), "{message}");
+}
+
+/// A triangle with normals and texture coordinates, one with indices, and a picture, as glTF.
+fn gltf_text(folder: &Folder, embedded: bool) -> (String, Vec<u8>) {
+    let floats = |v: &[f32]| v.iter().flat_map(|f| f.to_le_bytes()).collect::<Vec<u8>>();
+    let mut data = floats(&[0., 0., 0., 1., 0., 0., 0., 1., 0.]);
+    data.extend(floats(&[0., 0., 1., 0., 0., 1., 0., 0., 1.]));
+    data.extend(floats(&[0., 0., 1., 0., 0., 1.]));
+    data.extend([0, 0, 1, 0, 2, 0, 0, 0]);
+    let picture = fs::read(folder.picture("pic.png", 4, |_, _| [90, 80, 70, 255])).unwrap();
+    let uri = |bytes: &[u8], kind: &str| {
+        format!("data:{kind};base64,{}", base64::engine::general_purpose::STANDARD.encode(bytes))
+    };
+    let (buffer, image) = if embedded {
+        (uri(&data, "application/octet-stream"), uri(&picture, "image/png"))
+    } else {
+        folder.put("my data.bin", &data);
+        ("my%20data.bin".into(), "pic.png".into())
+    };
+    let text = format!(
+        r#"{{
+        "asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0, 2, 3]}}],
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {{"KHR_lights_punctual": {{"lights": [{{"type": "point", "intensity": 40, "color": [1, 0.5, 0]}}]}}}},
+        "nodes": [{{"children": [1], "translation": [10, 0, 0]}}, {{"mesh": 0, "name": "tri", "scale": [-2, 2, 2]}},
+                  {{"camera": 0, "translation": [0, 1, 5]}}, {{"translation": [0, 3, 0], "extensions": {{"KHR_lights_punctual": {{"light": 0}}}}}}],
+        "cameras": [{{"type": "perspective", "perspective": {{"yfov": 1, "znear": 0.1}}}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}}, "indices": 3, "material": 0}}]}}],
+        "materials": [{{"name": "m", "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.25, "emissiveFactor": [1, 0, 0],
+            "pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}, "metallicFactor": 0, "roughnessFactor": 0.5}}}}],
+        "textures": [{{"source": 0}}], "images": [{{"uri": "{image}"}}],
+        "buffers": [{{"byteLength": {}, "uri": "{buffer}"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}, {{"buffer": 0, "byteOffset": 36, "byteLength": 36}},
+            {{"buffer": 0, "byteOffset": 72, "byteLength": 24}}, {{"buffer": 0, "byteOffset": 96, "byteLength": 6}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]}},
+            {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"}},
+            {{"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"}},
+            {{"bufferView": 3, "componentType": 5123, "count": 3, "type": "SCALAR"}}]
+    }}"#,
+        data.len()
+    );
+    (text, data)
+}
+
+fn check_gltf(scene: &Scene) {
+    let m = &scene.model;
+    assert_eq!(m.triangle_count(), 1);
+    // Mirrored, so turned round again.
+    assert!(area(m).z > 0.0);
+    let corner = m.vertices.iter().find(|v| v.position == Vec3::new(8., 0., 0.)).unwrap();
+    assert_eq!((corner.normal, corner.uv), (Vec3::Z, Vec2::ONE));
+    let material = &m.materials[0];
+    assert_eq!((material.alpha, material.double_sided, material.roughness), (Alpha::Cutout(0.25), true, 0.5));
+    assert!(material.diffuse.distance(Vec3::ONE) < 1e-6 && material.emissive.distance(Vec3::X) < 1e-6);
+    assert_eq!(m.textures[material.diffuse_map.unwrap()].rgba[..4], [90, 80, 70, 255]);
+    assert_eq!(
+        scene.viewpoints,
+        [Viewpoint { position: Vec3::new(0., 1., 5.), target: Vec3::new(0., 1., 1.) }]
+    );
+    assert_eq!((scene.lights[0].position, scene.lights[0].color.x), (Vec3::new(0., 3., 0.), 8.0));
+}
+
+#[test]
+fn gltf_of_every_packing() {
+    let folder = Folder::new();
+    for embedded in [true, false] {
+        let (text, _) = gltf_text(&folder, embedded);
+        check_gltf(&load(&folder.put("a.gltf", text)).unwrap());
+    }
+    let (text, data) = gltf_text(&folder, true);
+    check_gltf(&load(&folder.put("a.glb", glb(&text, &data))).unwrap());
+}
+
+fn glb(text: &str, data: &[u8]) -> Vec<u8> {
+    // Cut the embedded buffer out: without a URI it is the binary chunk.
+    let start = text.find(r#", "uri": "data:application"#).unwrap();
+    let end = start + text[start..].find('}').unwrap();
+    let mut json = format!("{}{}", &text[..start], &text[end..]).into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut out = b"glTF".to_vec();
+    out.extend(2u32.to_le_bytes());
+    out.extend((28 + json.len() as u32 + data.len() as u32).to_le_bytes());
+    out.extend((json.len() as u32).to_le_bytes());
+    out.extend(b"JSON");
+    out.extend(json);
+    out.extend((data.len() as u32).to_le_bytes());
+    out.extend(b"BIN\0");
+    out.extend(data);
+    out
+}
+
+#[test]
+fn damaged_gltf_is_refused_in_a_sentence() {
+    let folder = Folder::new();
+    let (good, _) = gltf_text(&folder, true);
+    let changed = |from: &str, to: &str, word: &str| {
+        assert!(good.contains(from), "{from}");
+        let message = load(&folder.put("a.gltf", good.replacen(from, to, 1))).unwrap_err().to_string();
+        assert!(message.contains("a.gltf") && message.contains(word) && !message.contains('\n'), "{message}");
+    };
+    changed("\"count\": 3", "\"count\": 4", "accessor 0");
+    changed("\"count\": 3", "\"count\": 18446744073709551615", "accessor 0");
+    changed("\"byteLength\": 36", "\"byteLength\": 36000", "accessor 0");
+    changed("\"byteLength\": 104", "\"byteLength\": 9999", "instead of 9999");
+    changed("\"VEC3\"", "\"VEC2\"", "accessor 0");
+    changed("\"mesh\": 0", "\"mesh\": 7", "nodes[1].mesh");
+    changed("\"indices\": 3", "\"indices\": 0", "accessor 0");
+    changed("data:application/octet-stream;base64,", "data:x;base64,***", "damaged");
+    changed("data:application/octet-stream;base64,", "gone.bin?", "gone.bin");
+    changed("\"scene\": 0", "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"]", "KHR_draco");
+    for bad in ["", "{}", "[]", "null", "glTF", "{\"asset\": {\"version\": \"2.0\"}}"] {
+        assert!(load(&folder.put("a.gltf", bad)).unwrap_err().to_string().contains("a.gltf"));
+    }
+    let without_bounds = good.replacen(r#", "min": [0,0,0], "max": [1,1,0]"#, "", 1);
+    assert!(without_bounds.len() < good.len() && load(&folder.put("a.gltf", without_bounds)).is_ok());
+    // A circle of nodes ends.
+    let circle = good.replacen("\"mesh\": 0,", "\"mesh\": 0, \"children\": [0],", 1);
+    assert!(load(&folder.put("a.gltf", circle)).is_ok());
+}
+
+/// What the specification allows and a reader may stumble over.
+#[test]
+fn valid_gltf_of_unusual_kinds() {
+    let folder = Folder::new();
+    let (good, _) = gltf_text(&folder, true);
+    let changed = |from: &str, to: &str| {
+        assert!(good.contains(from), "{from}");
+        good.replacen(from, to, 1)
+    };
+    for (from, to) in [
+        ("\"POSITION\": 0", "\"POSITION\": 0, \"_FEATURE_ID_0\": 3"),
+        ("\"name\": \"tri\"", "\"name\": \"tri\", \"extras\": 5"),
+        ("\"doubleSided\": true", "\"doubleSided\": true, \"extras\": [\"a\", null]"),
+        ("{\"mesh\": 0", "{\"extras\": \"text\", \"mesh\": 0"),
+    ] {
+        let text = good.replacen(from, to, 1);
+        check_gltf(&load(&folder.put("a.gltf", text)).unwrap());
+    }
+    // What an extension leaves out is not what is wrong.
+    for extension in ["KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
+        let required = format!("\"extensionsRequired\": [\"{extension}\"], \"scene\": 0");
+        let text = changed("\"scene\": 0", &required)
+            .replacen("\"bufferView\": 0, \"componentType\"", "\"componentType\"", 1)
+            .replacen("\"POSITION\": 0", "\"POSITION\": 99", 1);
+        let message = load(&folder.put("a.gltf", text)).unwrap_err().to_string();
+        assert!(message.contains(extension) && message.contains("without it"), "{message}");
+    }
+}
+
+#[test]
+fn sparse_accessors() {
+    let folder = Folder::new();
+    let (good, _) = gltf_text(&folder, true);
+    // The corner at (1, 0, 0) moves to where the normals say: (0, 0, 1), by the index in bytes 100 and 101.
+    let sparse = |base: &str, offset: u32| {
+        let sparse = format!(
+            r#"{{{base}"sparse": {{"count": 1, "indices": {{"bufferView": 3, "byteOffset": {offset}, "componentType": 5123}}, "values": {{"bufferView": 1}}}}, "#
+        );
+        good.replacen("{\"bufferView\": 0, ", &sparse, 1)
+    };
+    let corners = |text: String| -> Vec<Vec3> {
+        let model = load(&folder.put("a.gltf", text)).unwrap().model;
+        // As in the file: twice as large, mirrored, 10 m to the side.
+        model.vertices.iter().map(|v| (v.position - Vec3::X * 10.0) / Vec3::new(-2., 2., 2.)).collect()
+    };
+    let mut moved = corners(sparse("\"bufferView\": 0, ", 2));
+    moved.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
+    assert_eq!(moved, [Vec3::ZERO, Vec3::Z, Vec3::Y]);
+    // All others are zero: nothing is left to draw.
+    let message = load(&folder.put("a.gltf", sparse("", 2))).unwrap_err().to_string();
+    assert!(message.contains("no triangle"), "{message}");
+    let beyond = sparse("\"bufferView\": 0, ", 2).replacen("\"byteOffset\": 2,", "\"byteOffset\": 6,", 1);
+    let message = load(&folder.put("a.gltf", beyond)).unwrap_err().to_string();
+    assert!(message.contains("accessor 0 reaches beyond"), "{message}");
+}
+
+/// Two triangles with a colour for each vertex, in linear light, and a material.
+fn painted_gltf(material: &str, colors: [[f32; 4]; 3]) -> String {
+    let mut data: Vec<u8> =
+        [0f32, 0., 0., 1., 0., 0., 0., 1., 0.].iter().flat_map(|f| f.to_le_bytes()).collect();
+    data.extend(colors.iter().flatten().flat_map(|f| f.to_le_bytes()));
+    let uri = base64::engine::general_purpose::STANDARD.encode(&data);
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0, 1]}}], "nodes": [{{"mesh": 0}}, {{"mesh": 1}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "COLOR_0": 1}}, "material": 0}}]}},
+                   {{"primitives": [{{"attributes": {{"POSITION": 0}}, "material": 0}}]}}],
+        "materials": [{{"name": "m", {material}}}],
+        "buffers": [{{"byteLength": 84, "uri": "data:application/octet-stream;base64,{uri}"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}, {{"buffer": 0, "byteOffset": 36, "byteLength": 48}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}},
+            {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC4"}}]}}"#
+    )
+}
+
+#[test]
+fn vertex_colours_of_gltf_multiply_the_material() {
+    let folder = Folder::new();
+    let material = r#""pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 1, 1], "metallicFactor": 0}"#;
+    let red = [[1.0, 0.0, 0.0, 1.0]; 3];
+    let model = load(&folder.put("a.gltf", painted_gltf(material, red))).unwrap().model;
+    let m = &model.materials[0];
+    assert!((m.diffuse - Vec3::new(0.7354, 1.0, 1.0)).abs().max_element() < 1e-3, "{}", m.diffuse);
+    let texture = &model.textures[m.diffuse_map.unwrap()];
+    let mut shown: Vec<[u8; 4]> = model
+        .vertices
+        .iter()
+        .map(|v| {
+            let [w, h] = texture.size.map(|s| s as f32);
+            let (x, y) = ((v.uv.x * w) as usize, ((1.0 - v.uv.y) * h) as usize);
+            texture.rgba[(y * w as usize + x) * 4..][..4].try_into().unwrap()
+        })
+        .collect();
+    shown.sort_unstable();
+    shown.dedup();
+    // The mesh without colours is white.
+    assert_eq!(shown, [[255, 0, 0, 255], [255; 4]]);
+    // White says nothing.
+    let model = load(&folder.put("a.gltf", painted_gltf(material, [[1.0; 4]; 3]))).unwrap().model;
+    assert_eq!((model.textures.len(), model.materials[0].diffuse_map), (0, None));
+    // With a texture, that is what is drawn.
+    folder.picture("pic.png", 4, |_, _| [90, 80, 70, 255]);
+    let textured = painted_gltf(r#""pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}"#, red)
+        .replacen(
+            "\"buffers\"",
+            "\"textures\": [{\"source\": 0}], \"images\": [{\"uri\": \"pic.png\"}], \"buffers\"",
+            1,
+        );
+    let model = load(&folder.put("a.gltf", textured)).unwrap().model;
+    assert_eq!((model.textures.len(), model.textures[0].size), (1, [4, 4]));
+}
+
+#[test]
+fn specular_glossiness_is_a_material() {
+    let folder = Folder::new();
+    folder.picture("gloss.png", 4, |_, _| [255, 188, 0, 51]);
+    folder.picture("diffuse.png", 4, |_, _| [188, 188, 188, 255]);
+    let material = |inside: &str| {
+        let extension = format!(r#""extensions": {{"KHR_materials_pbrSpecularGlossiness": {{{inside}}}}}"#);
+        let text = painted_gltf(&extension, [[1.0; 4]; 3]).replacen(
+            "\"buffers\"",
+            r#""extensionsUsed": ["KHR_materials_pbrSpecularGlossiness"], "textures": [{"source": 0}, {"source": 1}],
+            "images": [{"uri": "diffuse.png"}, {"uri": "gloss.png"}], "buffers""#,
+            1,
+        );
+        let model = load(&folder.put("a.gltf", text)).unwrap().model;
+        (model.materials[0].clone(), model.textures)
+    };
+    let srgb = |v: Vec3| Vec3::from(v.to_array().map(textures::to_srgb));
+    // A dielectric: nothing is taken for metal.
+    let (m, _) = material(
+        r#""diffuseFactor": [1, 0.5, 0, 1], "specularFactor": [0.04, 0.04, 0.04], "glossinessFactor": 0.75"#,
+    );
+    assert!(m.diffuse.distance(srgb(Vec3::new(0.96, 0.48, 0.0))) < 1e-5, "{}", m.diffuse);
+    assert!(m.specular.distance(srgb(Vec3::splat(0.04))) < 1e-5 && m.roughness == 0.25);
+    // A metal looks as it does in the other model.
+    let (m, _) = material(r#""diffuseFactor": [0, 0, 0, 1], "specularFactor": [1, 0.8, 0.3]"#);
+    assert!(m.diffuse.distance(srgb(Vec3::new(0.3, 0.24, 0.09))) < 0.03, "{}", m.diffuse);
+    assert_eq!((m.specular, m.roughness), (srgb(Vec3::new(1.0, 0.8, 0.3)), 0.0));
+    let (m, textures) = material(
+        r#""diffuseTexture": {"index": 0}, "specularGlossinessTexture": {"index": 1}, "glossinessFactor": 0.5"#,
+    );
+    assert!((m.roughness - 0.9).abs() < 1e-3, "{}", m.roughness);
+    let [diffuse, specular] = [m.diffuse_map, m.specular_map].map(|i| &textures[i.unwrap()]);
+    assert_eq!(specular.rgba[..4], [255, 188, 0, 255]);
+    // Nothing of it is diffuse; what metal keeps of its colour is.
+    let level = |v: f32| (textures::to_srgb(v) * 255.0).round() as u8;
+    assert_eq!(
+        diffuse.rgba[..4],
+        [level(0.288), level(0.3 * (textures::to_linear(188.0 / 255.0) - 0.04)), 0, 255]
+    );
+}
+
+#[test]
+fn samplers_without_magnification_filter_are_kept() {
+    let folder = Folder::new();
+    let (good, _) = gltf_text(&folder, true);
+    let text = good.replacen(
+        "\"textures\": [{\"source\": 0}]",
+        "\"samplers\": [{\"magFilter\": 9728, \"wrapS\": 33071}], \"textures\": [{\"source\": 0, \"sampler\": 0}]",
+        1,
+    );
+    assert!(text != good && load(&folder.put("a.gltf", text)).unwrap().model.textures[0].nearest);
+    assert!(!load(&folder.put("a.gltf", good)).unwrap().model.textures[0].nearest);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_bytes_are_no_model_or_one(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        let folder = Folder::new();
+        for name in ["a.obj", "a.gltf", "a.glb"] {
+            let _ = load(&folder.put(name, &bytes));
+        }
+    }
+
+    #[test]
+    fn any_statements_are_no_model_or_one(words in proptest::collection::vec(
+        prop_oneof![
+            4 => "(v|vt|vn|f|f|f|o|g|s|usemtl|mtllib|l)",
+            8 => "-?[0-9]{1,2}(/-?[0-9]{0,2}){0,2}",
+            4 => "-?[0-9]\\.[0-9]",
+            1 => "(nan|inf|-1e38|#|/|//|off|a\\.mtl|\\\\)",
+            6 => Just("\n".to_owned()),
+        ], 0..250)) {
+        let folder = Folder::new();
+        let start = time::Instant::now();
+        // A start that makes faces likely to be valid.
+        let text = format!("{SQUARE}vt 0 0\nvn 0 1 0\n{}\nf 1 2 3 4", words.join(" "));
+        let _ = load(&folder.put("a.obj", text));
+        prop_assert!(start.elapsed().as_secs() < 20);
+    }
+
+    #[test]
+    fn damaged_gltf_never_panics(cuts in proptest::collection::vec((0usize..4000, any::<u8>(), any::<bool>()), 1..4), binary in any::<bool>()) {
+        let folder = Folder::new();
+        let (text, data) = gltf_text(&folder, true);
+        let mut bytes = if binary { glb(&text, &data) } else { text.into_bytes() };
+        for (at, byte, digit) in cuts {
+            let at = at % bytes.len();
+            bytes[at] = if digit { b'0' + byte % 10 } else { byte };
+        }
+        let _ = load(&folder.put(if binary { "a.glb" } else { "a.gltf" }, &bytes));
+    }
+}

@@ -1,0 +1,365 @@
+//! MTL material libraries: what [`tobj::load_mtl_buf`] reads, made safe and complete.
+//!
+//! tobj knows one spelling of each keyword, leaves the options of map statements to its caller, and panics on a
+//! colour of fewer than three numbers. So a library is first rewritten statement by statement: keywords in tobj's
+//! spelling, numbers checked, what cannot be understood left out with a warning.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use glam::{Vec2, Vec3};
+
+use super::model::{Alpha, Material};
+
+/// A picture that a material asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MapStatement {
+    /// As written, without options.
+    pub file: String,
+    /// `-bm`: strength of bumps.
+    pub bump: f32,
+    /// `-s`, `-o`: texture coordinates are multiplied, then moved.
+    pub scale: Vec2,
+    pub offset: Vec2,
+    /// `-imfchan`: `r`, `g`, `b`, `m`, `l` or `z`.
+    pub channel: Option<char>,
+}
+
+/// A material of a library with the pictures it asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MtlEntry {
+    pub material: Material,
+    pub diffuse: Option<MapStatement>,
+    pub specular: Option<MapStatement>,
+    pub emissive: Option<MapStatement>,
+    /// A height or normal map.
+    pub bump: Option<MapStatement>,
+    /// Surely a normal map.
+    pub normal: Option<MapStatement>,
+    pub alpha: Option<MapStatement>,
+}
+
+/// Reads the text of a library. Never fails: what cannot be understood is warned about and left out.
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Vec<MtlEntry> {
+    let mut text = String::new();
+    let mut faults = 0;
+    for statement in statements(&String::from_utf8_lossy(bytes)) {
+        match canonical(&statement) {
+            Some(line) => {
+                text.push_str(&line);
+                text.push('\n');
+            }
+            None => {
+                faults += 1;
+                if faults <= 5 {
+                    log::warn!("{}: `{}` is ignored", path.display(), abridged(&statement));
+                }
+            }
+        }
+    }
+    match tobj::load_mtl_buf(&mut Cursor::new(text)) {
+        Ok((materials, _)) => materials.iter().map(entry).collect(),
+        Err(e) => {
+            log::warn!("{} is not used ({e}): its materials are replaced by a default", path.display());
+            Vec::new()
+        }
+    }
+}
+
+/// Lines without comments and surrounding blanks, joined where they end in a backslash.
+fn statements(text: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    let mut open = String::new();
+    for line in text.trim_start_matches('\u{feff}').split(['\n', '\r']) {
+        let line = without_comment(line).trim();
+        match line.strip_suffix('\\') {
+            // No statement is a folder that ends in a backslash, so nothing is lost.
+            Some(start) => {
+                open.push_str(start);
+                open.push(' ');
+            }
+            None => {
+                open.push_str(line);
+                if !open.trim().is_empty() {
+                    all.push(open.trim().to_owned());
+                }
+                open.clear();
+            }
+        }
+    }
+    all
+}
+
+/// Cuts at a `#` that stands at the start or after a blank: names may contain one.
+pub(super) fn without_comment(line: &str) -> &str {
+    let start = line
+        .match_indices('#')
+        .map(|(i, _)| i)
+        .find(|&i| i == 0 || line.as_bytes()[i - 1].is_ascii_whitespace());
+    start.map_or(line, |i| &line[..i])
+}
+
+/// The start of a statement, for messages.
+pub(super) fn abridged(statement: &str) -> String {
+    let mut s: String = statement.chars().filter(|c| !c.is_control()).take(60).collect();
+    if s.len() < statement.len() {
+        s.push_str("...");
+    }
+    s
+}
+
+/// The statement as tobj wants it; none if it cannot be understood.
+fn canonical(statement: &str) -> Option<String> {
+    let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
+    let rest = rest.trim();
+    let numbers: Vec<f32> =
+        rest.split_whitespace().map_while(|w| w.parse().ok()).filter(|n: &f32| n.is_finite()).collect();
+    let lower = keyword.to_ascii_lowercase();
+    let name = match lower.as_str() {
+        "newmtl" => return Some(format!("newmtl {}", if rest.is_empty() { "unnamed" } else { rest })),
+        "ka" | "kd" | "ks" | "ke" => {
+            let [r, g, b] = match *numbers.as_slice() {
+                [grey] => [grey; 3],
+                [r, g, b, ..] => [r, g, b],
+                _ => return None,
+            };
+            return Some(format!("K{} {r} {g} {b}", &lower[1..]));
+        }
+        "ns" | "ni" => return numbers.first().map(|n| format!("N{} {n}", &lower[1..])),
+        "d" => {
+            let number = rest.strip_prefix("-halo").unwrap_or(rest).split_whitespace().next()?;
+            return number.parse().ok().filter(|n: &f32| n.is_finite()).map(|n| format!("d {n}"));
+        }
+        "tr" | "pr" | "pm" => return numbers.first().map(|n| format!("{lower} {n}")),
+        "illum" => return numbers.first().map(|n| format!("illum {}", n.clamp(0.0, 10.0) as u8)),
+        "map_kd" => "map_Kd",
+        "map_ks" => "map_Ks",
+        "map_ke" => "map_ke",
+        "map_bump" | "bump" => "bump",
+        "norm" | "map_norm" | "map_kn" => "norm",
+        "map_d" => "map_d",
+        // Of no use here, but not worth a warning either.
+        _ if rest.is_empty() => return Some(String::new()),
+        _ => return Some(format!("other {rest}")),
+    };
+    (!rest.is_empty()).then(|| format!("{name} {rest}"))
+}
+
+fn entry(m: &tobj::Material) -> MtlEntry {
+    let extra = |key: &str| m.unknown_param.get(key);
+    let number = |key: &str| extra(key).and_then(|v| v.parse::<f32>().ok());
+    let map = |s: Option<&String>| s.and_then(|s| map_statement(s));
+    let default = Material::default();
+    let (diffuse, specular) = (map(m.diffuse_texture.as_ref()), map(m.specular_texture.as_ref()));
+    let emissive = map(extra("map_ke"));
+    let colour =
+        |c: Option<[f32; 3]>, otherwise: Vec3| c.map_or(otherwise, |c| Vec3::from(c).max(Vec3::ZERO));
+    let mut kd =
+        colour(m.diffuse, if diffuse.is_some() { Vec3::ONE } else { default.diffuse }).min(Vec3::ONE);
+    // Exporters that leave Kd black beside a map mean the map.
+    if diffuse.is_some() && kd == Vec3::ZERO {
+        kd = Vec3::ONE;
+    }
+    let mut ks = colour(m.specular, default.specular).min(Vec3::ONE);
+    if m.specular.is_none() && m.illumination_model.is_some_and(|i| i < 2) {
+        ks = Vec3::ZERO;
+    }
+    if let Some(metallic) =
+        number("pm").map(|p| p.clamp(0.0, 1.0)).filter(|&p| p > 0.0 && m.specular.is_none())
+    {
+        ks = ks.lerp(kd, metallic);
+        kd *= 1.0 - metallic;
+    }
+    let mut ke = colour(m.emissive, Vec3::ZERO);
+    if emissive.is_some() && ke == Vec3::ZERO {
+        ke = Vec3::ONE;
+    }
+    let roughness = match (number("pr"), m.shininess) {
+        (Some(pr), _) => pr.clamp(0.0, 1.0),
+        (None, Some(ns)) => (2.0 / (ns.max(0.0) + 2.0)).sqrt(),
+        (None, None) => default.roughness,
+    };
+    let opacity = m.dissolve.or_else(|| number("tr").map(|t| 1.0 - t)).unwrap_or(1.0);
+    // Nobody models what cannot be seen: some exporters swap the meaning of d and Tr.
+    let alpha = if opacity > 0.0 && opacity < 1.0 { Alpha::Blend(opacity) } else { Alpha::Opaque };
+    MtlEntry {
+        material: Material {
+            name: m.name.clone(),
+            diffuse: kd,
+            specular: ks,
+            emissive: ke,
+            roughness,
+            alpha,
+            ..obj_default()
+        },
+        diffuse,
+        specular,
+        emissive,
+        bump: map(m.normal_texture.as_ref()),
+        normal: map(extra("norm")),
+        alpha: map(m.dissolve_texture.as_ref()),
+    }
+}
+
+/// The material of faces without one. OBJ does not say which side of a face is seen, and many files are wound
+/// both ways or have walls without thickness: both sides are drawn.
+pub(super) fn obj_default() -> Material {
+    Material { double_sided: true, ..Material::default() }
+}
+
+/// Splits a map statement's value into options, before or after the name, and the name, which may contain blanks.
+pub(super) fn map_statement(value: &str) -> Option<MapStatement> {
+    let mut map =
+        MapStatement { file: String::new(), bump: 1.0, scale: Vec2::ONE, offset: Vec2::ZERO, channel: None };
+    let mut rest = value.trim();
+    while let Some(after) = option(rest, &mut map) {
+        rest = after;
+    }
+    // Options behind the name count only if nothing else follows: ` -s` may be part of a name.
+    for (i, _) in rest.match_indices(" -") {
+        let mut with_tail = map.clone();
+        let mut tail = rest[i..].trim_start();
+        while let Some(after) = option(tail, &mut with_tail) {
+            tail = after;
+        }
+        if tail.is_empty() {
+            map = with_tail;
+            rest = &rest[..i];
+            break;
+        }
+    }
+    map.file = rest.trim().trim_matches('"').trim().to_owned();
+    (!map.file.is_empty()).then_some(map)
+}
+
+/// Reads one option with its arguments; what follows it, or none if there is no option.
+fn option<'a>(text: &'a str, map: &mut MapStatement) -> Option<&'a str> {
+    let word = |s: &'a str| {
+        let s = s.trim_start();
+        let end = s.find(char::is_whitespace).unwrap_or(s.len());
+        (&s[..end], &s[end..])
+    };
+    let number = |s: &'a str| {
+        let (w, rest) = word(s);
+        w.parse::<f32>().ok().filter(|n| n.is_finite()).map(|n| (n, rest))
+    };
+    let (name, mut rest) = word(text);
+    match name.to_ascii_lowercase().as_str() {
+        "-blendu" | "-blendv" | "-cc" | "-clamp" | "-type" | "-texres" | "-colorspace" => rest = word(rest).1,
+        "-boost" => rest = number(rest)?.1,
+        "-mm" => rest = number(number(rest)?.1)?.1,
+        "-bm" => (map.bump, rest) = number(rest)?,
+        "-imfchan" => {
+            let (channel, after) = word(rest);
+            (map.channel, rest) = (channel.chars().next(), after);
+        }
+        "-s" | "-o" | "-t" => {
+            let mut values = Vec::new();
+            while let Some((n, after)) = number(rest).filter(|_| values.len() < 3) {
+                values.push(n);
+                rest = after;
+            }
+            let pair = |fill: f32| {
+                Vec2::new(values.first().copied().unwrap_or(fill), values.get(1).copied().unwrap_or(fill))
+            };
+            match name {
+                "-s" => map.scale = pair(1.0),
+                "-o" => map.offset = pair(0.0),
+                _ => {}
+            }
+        }
+        _ => return None,
+    }
+    Some(rest.trim_start())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn one(text: &str) -> MtlEntry {
+        let mut all = parse(Path::new("t.mtl"), text.as_bytes());
+        assert_eq!(all.len(), 1, "{all:?}");
+        all.remove(0)
+    }
+
+    #[test]
+    fn colours_and_roughness() {
+        let e = one("newmtl a b\r\nKd 0.5 0.25 1\r\nKs .1 .1 .1\r\nKe 2 0 0\r\nNs 6\r\n");
+        assert_eq!(e.material.name, "a b");
+        assert_eq!(e.material.diffuse, Vec3::new(0.5, 0.25, 1.0));
+        assert_eq!(e.material.emissive, Vec3::new(2.0, 0.0, 0.0));
+        assert_eq!(e.material.roughness, 0.5);
+        assert!(e.material.double_sided);
+        assert_eq!(one("newmtl a\nNs 6\nPr 0.3").material.roughness, 0.3);
+        assert_eq!(one("newmtl a\nNs -9").material.roughness, 1.0);
+    }
+
+    #[test]
+    fn opacity_in_both_spellings() {
+        assert_eq!(one("newmtl a\nd 0.4").material.alpha, Alpha::Blend(0.4));
+        assert_eq!(one("newmtl a\nd -halo 0.4").material.alpha, Alpha::Blend(0.4));
+        assert_eq!(one("newmtl a\nTr 0.25").material.alpha, Alpha::Blend(0.75));
+        assert_eq!(one("newmtl a\nd 1\nTr 0.5").material.alpha, Alpha::Opaque);
+        assert_eq!(one("newmtl a\nTr 1").material.alpha, Alpha::Opaque);
+    }
+
+    #[test]
+    fn damaged_statements_are_left_out() {
+        let e = one(
+            "Kd 1 0 0\nnewmtl a\nKd 0.5\nKs 1 2\nKe red\nNs\nd x\nillum many\nmap_Kd\nKd spectral f.rfl\n\u{0}\u{1} 3",
+        );
+        assert_eq!(e.material.diffuse, Vec3::splat(0.5));
+        assert_eq!(e.material.specular, Material::default().specular);
+        assert_eq!(e.diffuse, None);
+        assert_eq!(one("newmtl\nKd 1 1 1").material.name, "unnamed");
+    }
+
+    #[test]
+    fn maps_in_any_spelling() {
+        let e = one(
+            "newmtl a\nmap_kd a.png\nMAP_KS s.png\nmap_Ke e.png\nmap_Bump -bm 0.3 b.png\nnorm n.png\nmap_d d.png # mask",
+        );
+        let file = |m: &Option<MapStatement>| m.as_ref().unwrap().file.clone();
+        assert_eq!(
+            [&e.diffuse, &e.specular, &e.emissive, &e.bump, &e.normal, &e.alpha].map(file),
+            ["a.png", "s.png", "e.png", "b.png", "n.png", "d.png"]
+        );
+        assert_eq!(e.bump.unwrap().bump, 0.3);
+        assert_eq!((e.material.diffuse, e.material.emissive), (Vec3::ONE, Vec3::ONE));
+        assert_eq!(one("newmtl a\nKd 0 0 0\nmap_Kd a.png").material.diffuse, Vec3::ONE);
+    }
+
+    #[test]
+    fn map_options_before_and_after_the_name() {
+        let map = |s: &str| map_statement(s).unwrap();
+        let m = map("-s 2 3 1 -o 0.5 0 0 -clamp on -blendu off -mm 0 1 my wall 2.png");
+        assert_eq!(
+            (m.file.as_str(), m.scale, m.offset),
+            ("my wall 2.png", Vec2::new(2.0, 3.0), Vec2::new(0.5, 0.0))
+        );
+        let m = map(r"C:\tex\a -b.png -bm 0.2 -imfchan r");
+        assert_eq!((m.file.as_str(), m.bump, m.channel), (r"C:\tex\a -b.png", 0.2, Some('r')));
+        assert_eq!(map("\"quoted name.png\"").file, "quoted name.png");
+        assert_eq!(map("-s 2 4tiles.png").file, "4tiles.png");
+        assert_eq!(map("wood -s.png").file, "wood -s.png");
+        assert_eq!(map_statement("-clamp on"), None);
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_do(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+            parse(Path::new("t.mtl"), &bytes);
+        }
+
+        #[test]
+        fn any_statements_do(words in proptest::collection::vec(
+            prop_oneof!["newmtl|Kd|Ks|Ke|Ns|d|Tr|illum|map_Kd|bump|-bm|-s|-o|-clamp|norm|Pr|Pm", "[0-9.e+-]{0,6}", "nan|inf|\\\\|#|a b", Just("\n".to_owned())], 0..60)) {
+            for e in parse(Path::new("t.mtl"), words.join(" ").as_bytes()) {
+                let m = e.material;
+                prop_assert!(m.diffuse.is_finite() && m.specular.is_finite() && m.emissive.is_finite() && (0.0..=1.0).contains(&m.roughness));
+            }
+        }
+    }
+}

@@ -1,0 +1,590 @@
+//! OBJ files with their MTL libraries.
+//!
+//! [`tobj`] reads the numbers and builds the single index. Statements reach it through a normalizer, because on
+//! its own it has no line numbers, joins materials that it does not know, lets vertices with and without normals
+//! run out of step, overflows on absurd indices, and knows neither continued lines nor trailing comments nor
+//! smoothing groups. Polygons are cut here: tobj cuts them as fans, which is wrong for concave ones.
+
+use std::collections::HashMap;
+use std::io::{self, BufRead, BufReader, Read, Write as _};
+use std::path::{Path, PathBuf};
+
+use glam::{Vec2, Vec3};
+
+use super::error::{MAX_ELEMENTS, SceneError, file_size};
+use super::model::{Alpha, Material, Model, Vertex};
+use super::mtl::{self, MapStatement, MtlEntry};
+use super::palette::{paint, palette};
+use super::polygon::triangulate;
+use super::repair::{RawMesh, assemble};
+use super::textures::{AlphaUse, Built, Recipe, Source, TextureSet, find_file};
+
+/// Longest statement accepted, in bytes: a face of a million corners.
+const MAX_STATEMENT: usize = 16 << 20;
+
+/// Largest MTL library read, in bytes.
+const MAX_LIBRARY: u64 = 64 << 20;
+
+/// Faces after which a new tobj model is begun: it keeps tobj's tables small.
+const FACES_PER_MODEL: usize = 1 << 16;
+
+/// Reads an OBJ file with its materials and textures. One unit is one metre.
+///
+/// Missing libraries and textures are warned about and replaced by a default material or plain colour; missing
+/// normals and texture coordinates are generated; materials are double-sided.
+///
+/// # Errors
+/// [`SceneError`] for a file that cannot be read or understood, and for textures that are there but damaged.
+pub fn load_obj(path: &Path) -> Result<Model, SceneError> {
+    file_size(path)?;
+    let file = yoro_files::open(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
+    let mut input = Normalizer::new(path, BufReader::with_capacity(1 << 20, file));
+    let options = tobj::LoadOptions { single_index: true, ..Default::default() };
+    // Statements about materials do not reach tobj: the libraries are read below.
+    let parsed = tobj::load_obj_buf(&mut input, &options, |_| Ok(Default::default()));
+    if let Some(error) = input.error.take() {
+        return Err(error);
+    }
+    let models = match parsed {
+        Ok((models, _)) => models,
+        Err(e) => {
+            let unknown = || SceneError::unusable(path, format!("{e}; export the model again"));
+            return Err(input.beyond.take().unwrap_or_else(unknown));
+        }
+    };
+    if input.curves {
+        log::warn!("{}: curves and surfaces are left out; export them as polygons", path.display());
+    }
+    let entries = libraries(path, &input);
+    let mut textures = TextureSet::default();
+    let mut materials = Vec::new();
+    let mut wanted = Vec::new();
+    for name in &input.materials.names {
+        let entry = entries.get(name.as_str());
+        if entry.is_none() && !name.is_empty() {
+            log::warn!("{}: the material {name} is not defined; a default takes its place", path.display());
+        }
+        let shown = if name.is_empty() { "default".to_owned() } else { name.clone() };
+        materials
+            .push(Material { name: shown, ..entry.map_or_else(mtl::obj_default, |e| e.material.clone()) });
+        wanted.push(entry.map_or_else(Wanted::default, |e| Wanted::new(path, e, &mut textures)));
+    }
+    let mut built = textures.build()?;
+    for (material, wanted) in materials.iter_mut().zip(&wanted) {
+        wanted.apply(material, &built);
+    }
+    let coloured = input.coloured;
+    let painted: Vec<bool> = materials.iter().map(|m| coloured && m.diffuse_map.is_none()).collect();
+    let meshes = models
+        .into_iter()
+        .filter_map(|model| {
+            // The name is the number of the part.
+            let part = model.name.parse::<usize>().ok().and_then(|i| input.parts.get(i))?;
+            let name = input.names.names[part.name].clone();
+            Some(raw_mesh(model.mesh, part, name, wanted[part.material].placement, painted[part.material]))
+        })
+        .collect();
+    if painted.contains(&true) {
+        for material in materials.iter_mut().zip(&painted).filter_map(|(m, p)| p.then_some(m)) {
+            material.diffuse = Vec3::ONE;
+            material.diffuse_map = Some(built.images.len());
+        }
+        built.images.push(palette());
+    }
+    drop(input);
+    let mut model = assemble(path, meshes, materials)?;
+    model.textures = built.images;
+    Ok(model)
+}
+
+/// Reads the libraries an OBJ file names, or the one with its own name; the first definition of a name counts.
+fn libraries(path: &Path, input: &Normalizer<impl BufRead>) -> HashMap<String, MtlEntry> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files: Vec<PathBuf> = Vec::new();
+    for statement in &input.libraries {
+        // Names may contain blanks, and a statement several names.
+        let found: Vec<PathBuf> = match find_file(folder, statement.trim_matches('"')) {
+            Some(file) => vec![file],
+            None => statement.split_whitespace().filter_map(|name| find_file(folder, name)).collect(),
+        };
+        if found.is_empty() {
+            log::warn!("{}: the material library {statement} is missing", path.display());
+        }
+        files.extend(found);
+    }
+    if files.is_empty() && input.materials.names.iter().any(|n| !n.is_empty()) {
+        files.extend(
+            path.with_extension("mtl").file_name().and_then(|n| find_file(folder, &n.to_string_lossy())),
+        );
+    }
+    let mut entries = HashMap::new();
+    for file in files {
+        let mut bytes = Vec::new();
+        match yoro_files::open(&file).and_then(|f| f.take(MAX_LIBRARY).read_to_end(&mut bytes)) {
+            Ok(_) => mtl::parse(&file, &bytes).into_iter().for_each(|e| {
+                entries.entry(e.material.name.clone()).or_insert(e);
+            }),
+            Err(e) => log::warn!("the material library {} cannot be read ({e})", file.display()),
+        }
+    }
+    entries
+}
+
+/// The textures of one material, by their number in the [`TextureSet`].
+#[derive(Default)]
+struct Wanted {
+    diffuse: Option<usize>,
+    specular: Option<usize>,
+    emissive: Option<usize>,
+    normal: Option<usize>,
+    /// Scale and offset of texture coordinates.
+    placement: Option<(Vec2, Vec2)>,
+}
+
+impl Wanted {
+    fn new(path: &Path, entry: &MtlEntry, textures: &mut TextureSet) -> Wanted {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let source = |map: &Option<MapStatement>| {
+            let map = map.as_ref()?;
+            let found = find_file(folder, &map.file).map(Source::File);
+            if found.is_none() {
+                log::warn!(
+                    "{}: the texture {} of {} is missing",
+                    path.display(),
+                    map.file,
+                    entry.material.name
+                );
+            }
+            found
+        };
+        let diffuse = match (source(&entry.diffuse), source(&entry.alpha)) {
+            (color, Some(mask)) if color.as_ref() != Some(&mask) => {
+                let channel = entry.alpha.as_ref().and_then(|m| m.channel);
+                Some(Recipe::Masked { color, mask, channel })
+            }
+            (color, _) => color.map(Recipe::Color),
+        };
+        let bump = |map: &Option<MapStatement>, normal| {
+            let strength = map.as_ref().map_or(1.0, |m| m.bump).to_bits();
+            source(map).map(|source| Recipe::Bump { source, strength, normal })
+        };
+        let normal = bump(&entry.normal, true).or_else(|| bump(&entry.bump, false));
+        let placed =
+            [&entry.diffuse, &entry.bump, &entry.normal, &entry.alpha, &entry.specular, &entry.emissive];
+        let placement = placed.into_iter().flatten().next().map(|m| (m.scale, m.offset));
+        let mut request = |recipe: Option<Recipe>| recipe.map(|r| textures.request(r));
+        Wanted {
+            diffuse: request(diffuse),
+            specular: request(source(&entry.specular).map(Recipe::Color)),
+            emissive: request(source(&entry.emissive).map(Recipe::Color)),
+            normal: request(normal),
+            placement: placement.filter(|&p| p != (Vec2::ONE, Vec2::ZERO)),
+        }
+    }
+
+    fn apply(&self, material: &mut Material, built: &Built) {
+        material.diffuse_map = built.index(self.diffuse);
+        material.specular_map = built.index(self.specular);
+        material.emissive_map = built.index(self.emissive);
+        material.normal_map = built.index(self.normal);
+        material.alpha = match (built.get(self.diffuse).map(|f| f.alpha), material.alpha) {
+            (Some(AlphaUse::Mask), Alpha::Opaque) => Alpha::Cutout(0.5),
+            (Some(AlphaUse::Blend), Alpha::Opaque) => Alpha::Blend(1.0),
+            (_, alpha) => alpha,
+        };
+    }
+}
+
+fn raw_mesh(
+    mesh: tobj::Mesh,
+    part: &PartKey,
+    name: String,
+    placement: Option<(Vec2, Vec2)>,
+    painted: bool,
+) -> RawMesh {
+    let triple = |v: &[f32], i: usize| Vec3::new(v[i * 3], v[i * 3 + 1], v[i * 3 + 2]);
+    let (scale, offset) = placement.unwrap_or((Vec2::ONE, Vec2::ZERO));
+    let mut vertices: Vec<Vertex> = (0..mesh.positions.len() / 3)
+        .map(|i| Vertex {
+            position: triple(&mesh.positions, i),
+            normal: triple(&mesh.normals, i),
+            uv: Vec2::new(mesh.texcoords[i * 2], mesh.texcoords[i * 2 + 1]) * scale + offset,
+        })
+        .collect();
+    let mut indices = mesh.indices;
+    if !mesh.face_arities.is_empty() {
+        let polygons = std::mem::take(&mut indices);
+        let mut at = 0;
+        let mut points = Vec::new();
+        for arity in mesh.face_arities {
+            let corners = &polygons[at..at + arity as usize];
+            at += arity as usize;
+            points.clear();
+            points.extend(corners.iter().map(|&i| vertices[i as usize].position));
+            triangulate(&points, |t| indices.extend(t.map(|k| corners[k])));
+        }
+    }
+    if painted {
+        let color = |i: u32| triple(&mesh.vertex_color, i as usize);
+        paint(&mut vertices, &mut indices, |corners| corners.into_iter().map(color).sum::<Vec3>() / 3.0);
+    }
+    RawMesh { name, material: part.material, vertices, indices, flat: part.flat }
+}
+
+/// Numbers names in the order of first use.
+#[derive(Default)]
+struct Names {
+    names: Vec<String>,
+    known: HashMap<String, usize>,
+}
+
+impl Names {
+    fn number(&mut self, name: &str) -> usize {
+        if let Some(&i) = self.known.get(name) {
+            return i;
+        }
+        self.names.push(name.to_owned());
+        self.known.insert(name.to_owned(), self.names.len() - 1);
+        self.names.len() - 1
+    }
+}
+
+/// What the faces of one tobj model share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PartKey {
+    name: usize,
+    material: usize,
+    flat: bool,
+}
+
+/// Reads an OBJ file and gives it out in the form that tobj understands without doubt: one statement a line;
+/// only `v`, `vt`, `vn`, `f` and `g`; every corner with all three indices, absolute and within the file.
+/// The first `vt` and `vn` are not numbers: corners without refer to them. `g` carries the number of an entry of
+/// [`Normalizer::parts`].
+struct Normalizer<R> {
+    path: PathBuf,
+    input: R,
+    line: usize,
+    /// The statement as read, and as given out from `given` on.
+    statement: Vec<u8>,
+    out: Vec<u8>,
+    given: usize,
+    /// `v`, `vt`, `vn` so far.
+    counts: [usize; 3],
+    corners: usize,
+    /// Whether the first vertex had a colour; then all have.
+    coloured: bool,
+    name: String,
+    material: String,
+    flat: bool,
+    /// Whether name, material or smoothing have been stated since the last face.
+    restated: bool,
+    faces_in_part: usize,
+    names: Names,
+    materials: Names,
+    parts: Vec<PartKey>,
+    libraries: Vec<String>,
+    curves: bool,
+    error: Option<SceneError>,
+    /// The first face that refers to a vertex further down: right only if that
+    /// follows before the faces of the next group.
+    beyond: Option<SceneError>,
+}
+
+impl<R: BufRead> Normalizer<R> {
+    fn new(path: &Path, input: R) -> Normalizer<R> {
+        Normalizer {
+            path: path.into(),
+            input,
+            line: 0,
+            statement: Vec::new(),
+            out: b"vt nan nan\nvn nan nan nan\n".to_vec(),
+            given: 0,
+            counts: [0; 3],
+            corners: 0,
+            coloured: false,
+            name: "model".into(),
+            material: String::new(),
+            flat: false,
+            restated: true,
+            faces_in_part: 0,
+            names: Names::default(),
+            materials: Names::default(),
+            parts: Vec::new(),
+            libraries: Vec::new(),
+            curves: false,
+            error: None,
+            beyond: None,
+        }
+    }
+
+    fn fault(&self, what: impl Into<String>) -> SceneError {
+        SceneError::Statement { path: self.path.clone(), line: self.line, what: what.into() }
+    }
+
+    /// Reads one statement, continued lines joined; false at the end.
+    fn next_statement(&mut self) -> Result<bool, SceneError> {
+        self.statement.clear();
+        loop {
+            let start = self.statement.len();
+            let room = (MAX_STATEMENT - start) as u64;
+            let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.statement);
+            let n = read.map_err(|source| SceneError::Read { path: self.path.clone(), source })?;
+            if n == 0 && start == 0 {
+                return Ok(false);
+            }
+            self.line += 1;
+            if self.statement.len() >= MAX_STATEMENT {
+                return Err(self.fault("the line is too long for a model; is this an OBJ file?"));
+            }
+            if self.statement[start..].contains(&0) {
+                return Err(self.fault(
+                    "there are zero bytes, so this is a binary or UTF-16 file; save it as OBJ text in UTF-8",
+                ));
+            }
+            while self.statement.last().is_some_and(|b| b.is_ascii_whitespace())
+                && self.statement.len() > start
+            {
+                self.statement.pop();
+            }
+            if n > 0 && self.statement.len() > start && self.statement.last() == Some(&b'\\') {
+                self.statement.pop();
+                self.statement.push(b' ');
+            } else {
+                return Ok(true);
+            }
+        }
+    }
+
+    /// Translates the statement into `out`, which stays empty if tobj need not see it.
+    fn translate(&mut self) -> Result<(), SceneError> {
+        let taken = std::mem::take(&mut self.statement);
+        let text = String::from_utf8_lossy(&taken);
+        let text = if self.line == 1 { text.trim_start_matches('\u{feff}') } else { &text };
+        // Old Macintosh files end lines with CR alone.
+        let result =
+            text.split('\r').try_for_each(|line| self.translate_line(mtl::without_comment(line).trim()));
+        self.statement = taken;
+        result
+    }
+
+    fn translate_line(&mut self, text: &str) -> Result<(), SceneError> {
+        let (keyword, rest) = text.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((text, ""));
+        match keyword {
+            "v" | "vt" | "vn" => return self.vector(keyword, rest),
+            "f" | "fo" => return self.face(rest),
+            "o" | "g" => {
+                let name = rest.trim();
+                self.name = if name.is_empty() { "model".into() } else { name.into() };
+                self.restated = true;
+            }
+            "usemtl" => {
+                self.material = rest.trim().into();
+                self.restated = true;
+            }
+            "s" => {
+                self.flat = matches!(rest.trim(), "off" | "0");
+                self.restated = true;
+            }
+            "mtllib" if !rest.trim().is_empty() => {
+                let library = rest.trim().to_owned();
+                if !self.libraries.contains(&library) && self.libraries.len() < 1000 {
+                    self.libraries.push(library);
+                }
+            }
+            "curv" | "curv2" | "surf" => self.curves = true,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn vector(&mut self, keyword: &str, rest: &str) -> Result<(), SceneError> {
+        // Passed on as they are written: printing numbers anew takes longer than all the rest.
+        let mut words = [""; 7];
+        let mut n = 0;
+        for word in rest.split_ascii_whitespace().take(7) {
+            words[n] = match number(word) {
+                Some(x) if x.is_nan() => "nan",
+                Some(_) => word,
+                None => {
+                    let hint = if word.contains(',') { " (decimals need a point)" } else { "" };
+                    return Err(self.fault(format!("`{}` is not a number{hint}", mtl::abridged(word))));
+                }
+            };
+            n += 1;
+        }
+        let (kind, needed) = match keyword {
+            "v" => (0, 3),
+            "vt" => (1, 1),
+            _ => (2, 3),
+        };
+        if n < needed {
+            return Err(self.fault(format!("`{keyword}` needs {needed} numbers and has {n}")));
+        }
+        if kind == 0 && self.counts[0] == 0 {
+            self.coloured = n >= 6;
+        }
+        self.counts[kind] += 1;
+        if self.counts[kind] > MAX_ELEMENTS {
+            return Err(SceneError::TooLarge {
+                path: self.path.clone(),
+                limit: MAX_ELEMENTS,
+                what: "vertices",
+            });
+        }
+        let [a, b, c, colour @ ..] = words;
+        let written = match kind {
+            0 if self.coloured => {
+                let [r, g, b2] = if n >= 6 { [colour[0], colour[1], colour[2]] } else { ["1"; 3] };
+                writeln!(self.out, "v {a} {b} {c} {r} {g} {b2}")
+            }
+            0 => writeln!(self.out, "v {a} {b} {c}"),
+            1 => writeln!(self.out, "vt {a} {}", if n < 2 { "0" } else { b }),
+            _ => writeln!(self.out, "vn {a} {b} {c}"),
+        };
+        written.map_err(|source| SceneError::Read { path: self.path.clone(), source })
+    }
+
+    fn face(&mut self, rest: &str) -> Result<(), SceneError> {
+        if self.restated || self.faces_in_part >= FACES_PER_MODEL {
+            self.begin_part();
+        }
+        let began = self.out.len();
+        self.out.push(b'f');
+        let mut corners = 0;
+        for word in rest.split_ascii_whitespace() {
+            let mut indices = [0usize, 1, 1];
+            let mut parts = word.split('/');
+            for (kind, slot) in indices.iter_mut().enumerate() {
+                let part = parts.next().unwrap_or("");
+                if let Some(index) = self.index(part, kind, word)? {
+                    // Behind the first of vt and vn, which stand for missing ones.
+                    *slot = if kind == 0 { index } else { index + 1 };
+                }
+            }
+            if parts.next().is_some() || indices[0] == 0 {
+                return Err(self.fault(format!("`{}` is not the corner of a face", mtl::abridged(word))));
+            }
+            let [v, vt, vn] = indices;
+            let written = write!(self.out, " {v}/{vt}/{vn}");
+            written.map_err(|source| SceneError::Read { path: self.path.clone(), source })?;
+            corners += 1;
+        }
+        self.corners += corners;
+        if self.corners > MAX_ELEMENTS {
+            return Err(SceneError::TooLarge {
+                path: self.path.clone(),
+                limit: MAX_ELEMENTS,
+                what: "corners of faces",
+            });
+        }
+        if corners < 3 {
+            // Points and lines; the part that was begun for them stays open.
+            self.out.truncate(began);
+        } else {
+            self.out.push(b'\n');
+            self.faces_in_part += 1;
+        }
+        Ok(())
+    }
+
+    fn begin_part(&mut self) {
+        self.restated = false;
+        let key = PartKey {
+            name: self.names.number(&self.name),
+            material: self.materials.number(&self.material),
+            flat: self.flat,
+        };
+        if self.parts.last() == Some(&key) && self.faces_in_part < FACES_PER_MODEL {
+            return;
+        }
+        self.faces_in_part = 0;
+        self.out.extend_from_slice(format!("g {}\n", self.parts.len()).as_bytes());
+        self.parts.push(key);
+    }
+
+    /// An index of a corner, counted from 1; none if it is left out.
+    fn index(&mut self, text: &str, kind: usize, corner: &str) -> Result<Option<usize>, SceneError> {
+        let what = ["vertex", "texture coordinate", "normal"][kind];
+        if text.is_empty() {
+            return Ok(None);
+        }
+        let corner = || mtl::abridged(corner);
+        let index: i64 =
+            text.parse().map_err(|_| self.fault(format!("`{}` is not the corner of a face", corner())))?;
+        let count = self.counts[kind];
+        match index {
+            // Some exporters write 0 for what is missing.
+            0 if kind > 0 => Ok(None),
+            0 => Err(self.fault(format!("`{}` names {what} 0, but they are counted from 1", corner()))),
+            i if i < 0 => match usize::try_from(i.unsigned_abs()).ok().filter(|&back| back <= count) {
+                Some(back) => Ok(Some(count - back + 1)),
+                None => Err(self.fault(format!(
+                    "`{}` refers {} back, but there are only {count} before",
+                    corner(),
+                    i.unsigned_abs()
+                ))),
+            },
+            i => {
+                let fault = |s: &Self| {
+                    s.fault(format!("`{}` names {what} {i}, but there are only {count}", corner()))
+                };
+                let i = usize::try_from(i).unwrap_or(usize::MAX);
+                if i > MAX_ELEMENTS {
+                    return Err(fault(self));
+                }
+                if i > count && self.beyond.is_none() {
+                    self.beyond = Some(fault(self));
+                }
+                Ok(Some(i))
+            }
+        }
+    }
+}
+
+/// A number, also the ways in which C libraries write what is none.
+fn number(word: &str) -> Option<f32> {
+    let none = || {
+        let w = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
+        (w.starts_with("nan") || w.starts_with("1.#") || w.starts_with("inf")).then_some(f32::NAN)
+    };
+    word.parse().ok().or_else(none)
+}
+
+impl<R: BufRead> BufRead for Normalizer<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.given >= self.out.len() {
+            self.out.clear();
+            self.given = 0;
+            // Many at once: tobj asks line by line.
+            while self.out.len() < 1 << 16 {
+                match self
+                    .next_statement()
+                    .and_then(|more| if more { self.translate().map(|()| true) } else { Ok(false) })
+                {
+                    Ok(true) => {}
+                    Ok(false) => break,
+                    Err(error) => {
+                        self.error = Some(error);
+                        return Err(io::ErrorKind::InvalidData.into());
+                    }
+                }
+            }
+        }
+        Ok(&self.out[self.given..])
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.given += amount;
+    }
+}
+
+impl<R: BufRead> Read for Normalizer<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let available = self.fill_buf()?;
+        let n = available.len().min(buffer.len());
+        buffer[..n].copy_from_slice(&available[..n]);
+        self.consume(n);
+        Ok(n)
+    }
+}

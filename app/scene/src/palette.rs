@@ -1,0 +1,56 @@
+//! Colours of vertices, for a renderer that has materials alone: a texture of all colours, and one texel of it for each
+//! triangle.
+
+use std::collections::HashMap;
+
+use glam::{Vec2, Vec3};
+
+use super::model::{TextureImage, Vertex};
+
+/// Levels per channel.
+const LEVELS: u32 = 64;
+
+/// All colours of [`LEVELS`] per channel, a block of red and green for every blue, 8 x 8 blocks.
+pub(super) fn palette() -> TextureImage {
+    let edge = LEVELS * 8;
+    let level = |i: u32| (i * 255 / (LEVELS - 1)) as u8;
+    let rgba = (0..edge * edge).flat_map(|i| {
+        let (x, y) = (i % edge, i / edge);
+        [level(x % LEVELS), level(y % LEVELS), level(y / LEVELS * 8 + x / LEVELS), 255]
+    });
+    TextureImage {
+        name: "vertex-colours".into(),
+        size: [edge; 2],
+        rgba: rgba.collect(),
+        srgb: true,
+        nearest: true,
+    }
+}
+
+/// Gives every triangle the texture coordinates of its colour in the [`palette`]: display-referred (sRGB), 0 to 1. One
+/// colour a triangle, since neighbours in the palette are not neighbours in colour; vertices that triangles of
+/// different colours share are split.
+pub(super) fn paint(vertices: &mut Vec<Vertex>, indices: &mut [u32], color: impl Fn([u32; 3]) -> Vec3) {
+    let mut known = HashMap::new();
+    let mut split = Vec::with_capacity(vertices.len());
+    for triangle in indices.chunks_exact_mut(3) {
+        let uv = palette_uv(color([triangle[0], triangle[1], triangle[2]]));
+        for i in triangle {
+            *i = *known.entry((*i, uv.x.to_bits(), uv.y.to_bits())).or_insert_with(|| {
+                split.push(Vertex { uv, ..vertices[*i as usize] });
+                split.len() as u32 - 1
+            });
+        }
+    }
+    *vertices = split;
+}
+
+/// Middle of a colour's texel in the palette.
+fn palette_uv(color: Vec3) -> Vec2 {
+    let c = if color.is_finite() { color.clamp(Vec3::ZERO, Vec3::ONE) } else { Vec3::ONE };
+    let [r, g, b] = (c * (LEVELS - 1) as f32).round().to_array().map(|l| l as u32);
+    let (x, y) = (b % 8 * LEVELS + r, b / 8 * LEVELS + g);
+    let edge = (LEVELS * 8) as f32;
+    // Rows are stored from the top, texture coordinates count from the bottom.
+    Vec2::new((x as f32 + 0.5) / edge, 1.0 - (y as f32 + 0.5) / edge)
+}

@@ -1,0 +1,116 @@
+//! Values that go by a name on the command line, with a line of help for each.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use yoro::synthesis::Pipeline;
+use yoro_context::Backend;
+use yoro_lab::bench::Suite;
+use yoro_lab::inpaint::PatcherKind;
+use yoro_render::stereo::{AntiAliasing, Method};
+use yoro_scene::ShadingStyle;
+
+/// A parser of the values given, by their names.
+fn choice<T: Copy + Send + Sync + 'static>(
+    values: impl IntoIterator<Item = T>,
+    name: fn(T) -> &'static str,
+    help: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let values: Vec<T> = values.into_iter().collect();
+    let possible = values.iter().map(|&v| PossibleValue::new(name(v)).help(help(v)));
+    PossibleValuesParser::new(possible).try_map(move |text| {
+        values.iter().copied().find(|&v| name(v) == text).ok_or("not one of the possible values")
+    })
+}
+
+/// `--gl`.
+pub fn backend() -> impl TypedValueParser<Value = Backend> {
+    choice(Backend::ALL, Backend::name, |backend| match backend {
+        Backend::Auto => "EGL, then OSMesa",
+        Backend::Egl => "OpenGL ES by EGL, without a window",
+        Backend::Osmesa => "Mesa's off-screen library, desktop GL on the CPU",
+    })
+}
+
+/// `--pipeline`.
+pub fn pipeline() -> impl TypedValueParser<Value = Pipeline> {
+    choice(Pipeline::ALL, Pipeline::name, |pipeline| match pipeline {
+        Pipeline::Gather => "Fragment shaders that march along the source row",
+        Pipeline::Rowgroup => "One compute workgroup per row",
+        Pipeline::Paper => "Algorithms 1 to 3 of the paper",
+    })
+}
+
+/// `--method`.
+pub fn method() -> impl TypedValueParser<Value = Method> {
+    choice(Method::ALL, Method::name, |method| match method {
+        Method::Conventional => "Both eyes rendered, one after the other: the ground truth",
+        Method::Instanced => "Both eyes in one set of draw calls, by instancing",
+        Method::Multiview => "Both eyes in one set of draw calls, by GL_OVR_multiview2",
+        Method::Hybrid => {
+            "The far field rendered once for both eyes, the near field for each (Fink et al. 2019)"
+        }
+        Method::ShadingReprojection => {
+            "The dominant eye's shading reprojected to the other eye's geometry; only disocclusions are shaded"
+        }
+        Method::Mono => "The dominant eye's image shown to both: the lower bound",
+        Method::Yoro => "The dominant eye rendered, the other synthesized",
+    })
+}
+
+/// `--anti-aliasing`.
+pub fn anti_aliasing() -> impl TypedValueParser<Value = AntiAliasing> {
+    choice(AntiAliasing::ALL, AntiAliasing::name, |anti_aliasing| match anti_aliasing {
+        AntiAliasing::After => "After synthesis, on each eye",
+        AntiAliasing::Before => "Before synthesis, on the rendered eye only, as in the paper",
+        AntiAliasing::Off => "Not at all",
+    })
+}
+
+/// `--style`.
+pub fn style() -> impl TypedValueParser<Value = ShadingStyle> {
+    choice(ShadingStyle::ALL, ShadingStyle::name, |style| match style {
+        ShadingStyle::Realistic => "GGX, smooth normals",
+        ShadingStyle::Cartoon => "Few bands of light, saturated, soft outline-free",
+        ShadingStyle::LowPoly => "One normal per triangle",
+        ShadingStyle::Voxel => {
+            "One normal per face, unfiltered textures, ambient occlusion in the foreground"
+        }
+        ShadingStyle::Anime => "Toon ramp with a tinted shadow side, rim light and ink outlines",
+    })
+}
+
+/// `--patcher`.
+pub fn patcher() -> impl TypedValueParser<Value = PatcherKind> {
+    choice(PatcherKind::ALL, PatcherKind::name, |kind| match kind {
+        PatcherKind::Paper => "Algorithm 3 of the paper, as corrected",
+        PatcherKind::Gather => "The fill of the pipeline gather: five rows of the background's edge",
+        PatcherKind::Median => "Median of the valid ones of 5x5 neighbours (Noori et al.)",
+        PatcherKind::Xiao => "Background filter of 29x29 pixels (Xiao et al. 2022)",
+        PatcherKind::Telea => "Fast marching (Telea 2004), on the CPU",
+        PatcherKind::NavierStokes => "Isophotes carried on (Bertalmio et al. 2001), on the CPU",
+        PatcherKind::Neural => "A small neural network from an ONNX file, on the CPU",
+    })
+}
+
+/// The suites of `yoro bench`.
+pub fn suite() -> impl TypedValueParser<Value = Suite> {
+    choice(Suite::ALL.into_iter().chain([Suite::All]), Suite::name, |suite| match suite {
+        Suite::Scenes => "Frame time and quality of every method on eight scenes",
+        Suite::Complexity => "Frame time of every method as the number of triangles grows",
+        Suite::Styles => "Quality in each shading style",
+        Suite::Ipd => "Quality as the distance between the eyes grows from 50 to 75 mm",
+        Suite::Distance => "Quality as an object, equally large on the screen, moves from 0.5 to 3 m",
+        Suite::Patchers => "Quality and time of the patchers on the same reprojected images",
+        Suite::Imbuffer => {
+            "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation"
+        }
+        Suite::Lights => {
+            "Frame time of every method with four lights: the paper's setting for single-pass instancing"
+        }
+        Suite::Resolution => "Frame time and quality of every method from 512 to 2048 pixels per eye",
+        Suite::Flicker => "Flicker of the synthesized eye from frame to frame along a camera path",
+        Suite::Bandwidth => {
+            "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path"
+        }
+        Suite::All => "All of them, one after the other",
+    })
+}

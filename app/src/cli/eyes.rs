@@ -1,0 +1,173 @@
+//! What `render`, `run` and their like share: eyes to look with, options of stereo frames.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::ensure;
+use glam::Vec3;
+
+use crate::cli::args::{SynthesisArgs, parse_fov, parse_ipd, parse_positive};
+use crate::cli::choices;
+use yoro::eyes::{
+    DEFAULT_IPD, DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose,
+    full_overlap_distance, minimum_object_distance,
+};
+use yoro::synthesis::{NearFieldPolicy, Pipeline};
+use yoro_render::stereo::{AntiAliasing, StereoOptions};
+use yoro_scene::Viewpoint;
+
+/// The eyes and what they see of the world.
+#[derive(clap::Args, Clone, Debug)]
+pub struct EyeArgs {
+    /// Size of each eye's image in pixels
+    #[arg(long, default_value = "1024x1024", value_parser = parse_size, value_name = "WxH")]
+    pub size: [u32; 2],
+    /// Vertical field of view in degrees
+    #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
+    pub fov_y: f32,
+    /// Distance between the eyes in metres
+    #[arg(long, default_value_t = DEFAULT_IPD, value_parser = parse_ipd, allow_negative_numbers = true)]
+    pub ipd: f32,
+    /// The eye that is rendered
+    #[arg(long, value_parser = parse_eye, default_value = "right")]
+    pub dominant: Eye,
+    /// Near plane in metres
+    #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive, allow_negative_numbers = true)]
+    pub near: f32,
+    /// Far plane in metres; `inf` for none
+    #[arg(long, default_value_t = DepthRange::PAPER.far, allow_negative_numbers = true)]
+    pub far: f32,
+    /// Reversed depth, 1 near to 0 far, in float
+    #[arg(long)]
+    pub reversed_z: bool,
+    /// Outer and inner half-angles of asymmetric frusta in degrees, such as 52,42; instead of the width that
+    /// follows from --fov-y-degrees
+    #[arg(long, value_parser = parse_half_angles, value_name = "OUTER,INNER")]
+    pub half_angles_degrees: Option<[f32; 2]>,
+}
+
+impl EyeArgs {
+    /// As the library takes them.
+    pub fn options(&self) -> EyeOptions {
+        let convention = if self.reversed_z { DepthConvention::Reversed } else { DepthConvention::Standard };
+        EyeOptions {
+            size: self.size,
+            fov_y: self.fov_y,
+            ipd: self.ipd,
+            dominant: self.dominant,
+            depth: DepthRange { near: self.near, far: self.far, convention },
+            outer_inner: self.half_angles_degrees.map(|angles| angles.map(f32::to_radians)),
+        }
+    }
+
+    /// The two eyes around a head pose.
+    pub fn pair(&self, head: Pose) -> EyePair {
+        self.options().pair(head)
+    }
+
+    /// Refuses what no pair of eyes can be made of.
+    pub fn check(&self) -> anyhow::Result<()> {
+        ensure!(self.near < self.far, "--near {} must be less than --far {}", self.near, self.far);
+        Ok(())
+    }
+
+    /// One line about how near objects may come.
+    pub fn distances(&self, guard: GuardBand) -> String {
+        let frustum = self.pair(Pose::IDENTITY).frusta[self.dominant.index()];
+        let fov_x = frustum.right.atan() - frustum.left.atan();
+        let guard = match guard {
+            GuardBand::None => "no guard band".to_owned(),
+            GuardBand::Distance(z) => format!("guard band complete from {z} m"),
+            GuardBand::Pixels(n) => format!("guard band of {n} pixels"),
+        };
+        format!(
+            "minimum object distance {:.3} m (IPD/2 cot(fov/2)), disparity of half the image at {:.3} m, {guard}",
+            minimum_object_distance(self.ipd, fov_x),
+            full_overlap_distance(self.ipd, fov_x)
+        )
+    }
+}
+
+/// How stereo frames are made.
+#[derive(clap::Args, Clone, Debug)]
+pub struct StereoArgs {
+    #[command(flatten)]
+    synthesis: SynthesisArgs,
+    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in
+    /// metres (`1.0`) [default: 1.0; paper: none]
+    #[arg(long, value_name = "none|Npx|METRES")]
+    guard_band: Option<GuardBand>,
+    /// When to anti-alias [default: after; paper: before]
+    #[arg(long, value_parser = choices::anti_aliasing())]
+    anti_aliasing: Option<AntiAliasing>,
+    /// Hybrid near field: render objects nearer than this (metres) for both eyes
+    #[arg(long, value_parser = parse_positive, value_name = "METRES")]
+    near_field: Option<f32>,
+    /// Never switch to two real renders, however near everything is
+    #[arg(long)]
+    no_switch: bool,
+    /// hybrid: the far field starts where the eyes' disparity is this many pixels
+    #[arg(long, value_parser = parse_positive, default_value_t = StereoOptions::default().split_disparity, value_name = "PIXELS", allow_negative_numbers = true)]
+    split_disparity: f32,
+}
+
+impl StereoArgs {
+    /// The options for the pipeline that was chosen.
+    pub fn options(&self) -> StereoOptions {
+        self.options_of(self.synthesis.pipeline)
+    }
+
+    /// The options for any pipeline, with the knobs that were given.
+    pub fn options_of(&self, pipeline: Pipeline) -> StereoOptions {
+        let mut options = StereoOptions::of_pipeline(pipeline);
+        options.synthesis.paper = self.synthesis.options().paper;
+        options.guard_band = self.guard_band.unwrap_or(options.guard_band);
+        options.anti_aliasing = self.anti_aliasing.unwrap_or(options.anti_aliasing);
+        options.near_field = self.near_field;
+        options.policy = (!self.no_switch).then(NearFieldPolicy::default);
+        options.split_disparity = self.split_disparity;
+        options
+    }
+}
+
+/// A viewpoint from the command line.
+pub fn viewpoint(position: Option<Vec3>, target: Option<Vec3>) -> Option<Viewpoint> {
+    let position = position?;
+    Some(Viewpoint { position, target: target.unwrap_or(position + Vec3::NEG_Z) })
+}
+
+/// Where a scene's pictures go.
+pub fn picture_path(folder: &Path, stem: &str, kind: &str) -> PathBuf {
+    folder.join(format!("{stem}.{kind}.png"))
+}
+
+/// Parses `x,y,z` in metres.
+pub fn parse_point(text: &str) -> Result<Vec3, String> {
+    let numbers: Vec<f32> = text.split(',').filter_map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        &[x, y, z] if Vec3::new(x, y, z).is_finite() => Ok(Vec3::new(x, y, z)),
+        _ => Err("give three numbers in metres, such as 1.5,1.6,-2".into()),
+    }
+}
+
+/// Parses `WxH`, or one number for both, in pixels.
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let number = |t: &str| t.parse::<u32>().ok().filter(|n| (16..=4096).contains(n));
+    let (w, h) = text.split_once('x').unwrap_or((text, text));
+    number(w)
+        .zip(number(h))
+        .map(|(w, h)| [w, h])
+        .ok_or_else(|| "give pixels from 16 to 4096, such as 1024x1024".into())
+}
+
+/// Parses `left` or `right`.
+pub fn parse_eye(text: &str) -> Result<Eye, String> {
+    Eye::BOTH.into_iter().find(|eye| eye.name() == text).ok_or_else(|| "give left or right".into())
+}
+
+fn parse_half_angles(text: &str) -> Result<[f32; 2], String> {
+    let parse = |t: &str| t.trim().parse::<f32>().ok().filter(|d| (1.0..=85.0).contains(d));
+    text.split_once(',')
+        .and_then(|(a, b)| parse(a).zip(parse(b)))
+        .map(|(a, b)| [a, b])
+        .ok_or_else(|| "give two angles from 1 to 85 degrees, outwards and inwards, such as 52,42".into())
+}

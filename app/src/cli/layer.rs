@@ -1,0 +1,205 @@
+//! `yoro layer`: stereo for OpenXR applications that render one view.
+
+use std::env;
+use std::ffi::OsString;
+use std::fs;
+use std::io::ErrorKind;
+use std::os::unix::process::ExitStatusExt as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context as _, bail};
+use clap::Subcommand;
+use yoro_files as files;
+use yoro_layer::{DISABLE, ENABLE, MANIFEST, NAME};
+
+const LIBRARY: &str = "libyoro_layer.so";
+
+/// Stereo in OpenXR applications that render one view: an API layer that synthesizes the other
+#[derive(clap::Args, Clone, Debug)]
+pub struct LayerArgs {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand, Clone, Debug)]
+enum Task {
+    /// Run a program with the layer, without installing it
+    Run {
+        #[command(flatten)]
+        library: LibraryArgs,
+        /// The program and its arguments
+        #[arg(required = true, trailing_var_arg = true, allow_hyphen_values = true, value_name = "PROGRAM")]
+        program: Vec<OsString>,
+    },
+    /// Put the layer where this user's OpenXR loaders look
+    Install {
+        /// For every program that runs with YORO_LAYER_ENABLE=1, in place of those with the layer's name in
+        /// XR_ENABLE_API_LAYERS
+        #[arg(long)]
+        implicit: bool,
+        #[command(flatten)]
+        library: LibraryArgs,
+    },
+    /// Say whether it is there, and what its settings are
+    Status,
+    /// Take it away again
+    Remove,
+}
+
+#[derive(clap::Args, Clone, Debug)]
+struct LibraryArgs {
+    /// The layer's library [default: libyoro_layer.so beside this program or in ../lib]
+    #[arg(long, value_name = "FILE")]
+    library: Option<PathBuf>,
+}
+
+impl LibraryArgs {
+    fn find(&self) -> anyhow::Result<PathBuf> {
+        if let Some(library) = &self.library {
+            return library.canonicalize().with_context(|| {
+                format!(
+                    "{}: there is no such library; give that of the package yoro-layer",
+                    library.display()
+                )
+            });
+        }
+        let program = env::current_exe().context("this program's own place is not known; give --library")?;
+        let folder = program.parent().unwrap_or(Path::new("/"));
+        // A build for tests leaves it in deps.
+        let places =
+            [folder.join(LIBRARY), folder.join("../lib").join(LIBRARY), folder.join("deps").join(LIBRARY)];
+        let found = places.iter().find_map(|place| place.canonicalize().ok());
+        found.with_context(|| {
+            format!(
+                "{LIBRARY} is not beside {}; build it (cargo build --release -p yoro-layer), or give --library",
+                program.display()
+            )
+        })
+    }
+}
+
+/// Where this user's data are.
+fn data() -> anyhow::Result<PathBuf> {
+    let folder = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let data = folder("XDG_DATA_HOME").or_else(|| folder("HOME").map(|home| home.join(".local/share")));
+    data.context("neither XDG_DATA_HOME nor HOME is an absolute path; set one of them")
+}
+
+/// The manifest as an implicit layer and as an explicit one.
+fn manifest_path(data: &Path, implicit: bool) -> PathBuf {
+    let kind = if implicit { "implicit.d" } else { "explicit.d" };
+    data.join("openxr/1/api_layers").join(kind).join(MANIFEST)
+}
+
+fn library_path(data: &Path) -> PathBuf {
+    data.join("yoro").join(LIBRARY)
+}
+
+/// Removes a file, if it is there.
+fn remove(path: &Path) -> anyhow::Result<bool> {
+    match fs::remove_file(path) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        Err(error) => {
+            Err(error).with_context(|| format!("{} cannot be removed: remove it by hand", path.display()))
+        }
+    }
+}
+
+fn write(path: &Path, content: &[u8]) -> anyhow::Result<()> {
+    if let Some(folder) = path.parent() {
+        files::create_folder(folder)?;
+    }
+    Ok(files::write(path, content)?)
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// When a file cannot be found, written or removed, or the program cannot be started.
+pub fn run(args: &LayerArgs) -> anyhow::Result<()> {
+    match &args.task {
+        Task::Run { library, program } => run_program(&library.find()?, program),
+        Task::Install { implicit, library } => install(*implicit, &library.find()?),
+        Task::Status => status(),
+        Task::Remove => {
+            let data = data()?;
+            let all = [manifest_path(&data, false), manifest_path(&data, true), library_path(&data)];
+            let mut any = false;
+            for path in all {
+                if remove(&path)? {
+                    println!("removed {}", path.display());
+                    any = true;
+                }
+            }
+            if !any {
+                println!("{NAME} is not installed");
+            }
+            Ok(())
+        }
+    }
+}
+
+fn install(implicit: bool, library: &Path) -> anyhow::Result<()> {
+    let data = data()?;
+    let (manifest, own) = (manifest_path(&data, implicit), library_path(&data));
+    write(&own, &files::read(library)?)?;
+    write(&manifest, yoro_layer::manifest(&own, implicit).as_bytes())?;
+    // One of the two, or loaders would find it twice.
+    remove(&manifest_path(&data, !implicit))?;
+    println!("{}\n{}", own.display(), manifest.display());
+    match implicit {
+        true => println!("on in programs that run with {ENABLE}=1; off with {DISABLE}=1"),
+        false => println!("on in programs that run with XR_ENABLE_API_LAYERS={NAME}"),
+    }
+    Ok(())
+}
+
+fn status() -> anyhow::Result<()> {
+    let data = data()?;
+    for (implicit, how) in [(false, "explicit"), (true, "implicit")] {
+        let manifest = manifest_path(&data, implicit);
+        if manifest.is_file() {
+            println!("{how}: {}", manifest.display());
+            let library = library_path(&data);
+            if !library.is_file() {
+                bail!("{} is missing; run `yoro layer install`", library.display());
+            }
+        } else {
+            println!("{how}: not installed");
+        }
+    }
+    if let Some(path) = yoro_layer::settings::path() {
+        let there = if path.is_file() { "" } else { " (not there)" };
+        println!("settings: {}{there}", path.display());
+    }
+    let (_, errors) = yoro_layer::settings::Settings::of("");
+    match errors.into_iter().next() {
+        Some(error) => Err(error.into()),
+        None => Ok(()),
+    }
+}
+
+fn run_program(library: &Path, program: &[OsString]) -> anyhow::Result<()> {
+    let folder = tempfile::tempdir()
+        .context("no folder for the layer's manifest; set TMPDIR to one that can be written")?;
+    write(&folder.path().join(MANIFEST), yoro_layer::manifest(library, false).as_bytes())?;
+    let join = |first: OsString, variable: &str| {
+        let rest = env::var_os(variable).filter(|rest| !rest.is_empty());
+        rest.map_or(first.clone(), |rest| [first, rest].join(std::ffi::OsStr::new(":")))
+    };
+    let status = Command::new(&program[0])
+        .args(&program[1..])
+        .env("XR_API_LAYER_PATH", join(folder.path().into(), "XR_API_LAYER_PATH"))
+        .env("XR_ENABLE_API_LAYERS", join(NAME.into(), "XR_ENABLE_API_LAYERS"))
+        .status()
+        .with_context(|| {
+            format!("{} cannot be started; give a program's name or path", program[0].display())
+        })?;
+    drop(folder);
+    match status.code().or(status.signal().map(|signal| 128 + signal)) {
+        Some(0) => Ok(()),
+        code => std::process::exit(code.unwrap_or(1)),
+    }
+}

@@ -1,0 +1,298 @@
+//! Which quality holds the display's rate: a controller without clock or GL.
+
+/// A quality to render with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// Render scale per axis, as a factor on the setting.
+    pub render_scale: f32,
+    /// Factor on the divisor of the ImBuffer's resolution.
+    pub imbuffer: u32,
+}
+
+impl Quality {
+    /// Everything as set.
+    pub const FULL: Quality = Quality { render_scale: 1.0, imbuffer: 1 };
+}
+
+/// The qualities, best first. Few and far apart, since each change costs new render targets.
+const LADDER: [Quality; 6] = [
+    Quality::FULL,
+    Quality { render_scale: 0.9, imbuffer: 1 },
+    Quality { render_scale: 0.8, imbuffer: 2 },
+    Quality { render_scale: 0.7, imbuffer: 2 },
+    Quality { render_scale: 0.6, imbuffer: 4 },
+    Quality { render_scale: 0.5, imbuffer: 4 },
+];
+
+/// What one frame was like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// When it was finished, in nanoseconds.
+    pub now_ns: i64,
+    /// Refresh rate of the display in Hz; 0 if unknown.
+    pub refresh_hz: f32,
+    /// Refreshes for which it came too late.
+    pub late_refreshes: u32,
+    /// Its GPU time in milliseconds, if known.
+    pub gpu_ms: Option<f32>,
+}
+
+/// Chooses a quality frame by frame.
+///
+/// Frames are judged in windows of half a second. Down: at once after a window with more than 5 % late frames, or a
+/// mean GPU time beyond 95 % of a refresh. Up: after three seconds without a late frame, if the GPU time, where it
+/// is known, is expected to stay below 80 % there. A step up that fails doubles the wait before the next, up to
+/// 48 s, so that the quality does not swing. Heat: no step up from a thermal headroom of 0.85, steps down from
+/// 0.95, at most one in ten seconds; 1 is severe throttling.
+#[derive(Clone, Debug)]
+pub struct Controller {
+    level: usize,
+    headroom: Option<f32>,
+    window: Window,
+    good_windows: u32,
+    needed_windows: u32,
+    since_up: u32,
+    cooling_until_ns: i64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Window {
+    begin_ns: Option<i64>,
+    frames: u32,
+    late: u32,
+    gpu_ms: f32,
+    timed: u32,
+}
+
+impl Controller {
+    const WINDOW_NS: i64 = 500_000_000;
+    const COOLING_NS: i64 = 10_000_000_000;
+    const LATE_SHARE: f32 = 0.05;
+    const FULL_LOAD: f32 = 0.95;
+    const ROOM: f32 = 0.80;
+    const WARM: f32 = 0.85;
+    const HOT: f32 = 0.95;
+    const WINDOWS_UP: u32 = 6;
+    const MOST_WINDOWS_UP: u32 = 96;
+    /// A step up that lasts less long has failed.
+    const TRIAL: u32 = 10;
+    /// Frames that take longer than this are breaks.
+    const LONGEST_FRAME_NS: i64 = 1_000_000_000;
+
+    /// Starts at full quality.
+    pub fn new() -> Controller {
+        Controller {
+            level: 0,
+            headroom: None,
+            window: Window::default(),
+            good_windows: 0,
+            needed_windows: Self::WINDOWS_UP,
+            since_up: Self::TRIAL,
+            cooling_until_ns: 0,
+        }
+    }
+
+    /// The quality to render with.
+    pub fn quality(&self) -> Quality {
+        LADDER[self.level]
+    }
+
+    /// The device's thermal headroom, where it is known.
+    pub fn set_thermal_headroom(&mut self, headroom: Option<f32>) {
+        self.headroom = headroom.filter(|h| h.is_finite());
+    }
+
+    /// Forgets the frames so far: there was a break, or the load has changed by itself.
+    pub fn restart(&mut self) {
+        self.window = Window::default();
+        self.good_windows = 0;
+    }
+
+    /// Takes a frame; returns the quality for the next one.
+    pub fn frame(&mut self, load: &Load) -> Quality {
+        let begin = *self.window.begin_ns.get_or_insert(load.now_ns);
+        let elapsed = load.now_ns - begin;
+        if !(0..Self::WINDOW_NS + Self::LONGEST_FRAME_NS).contains(&elapsed) {
+            self.restart();
+            return self.quality();
+        }
+        self.window.frames += 1;
+        self.window.late += (load.late_refreshes > 0) as u32;
+        if let Some(ms) = load.gpu_ms {
+            self.window.gpu_ms += ms;
+            self.window.timed += 1;
+        }
+        if elapsed >= Self::WINDOW_NS {
+            self.judge(load);
+            self.window = Window { begin_ns: Some(load.now_ns), ..Window::default() };
+        }
+        self.quality()
+    }
+
+    fn judge(&mut self, load: &Load) {
+        let window = self.window;
+        let late_share = window.late as f32 / window.frames as f32;
+        // Share of a refresh that the GPU is busy.
+        let gpu = (window.timed > 0 && load.refresh_hz > 0.0)
+            .then(|| window.gpu_ms / window.timed as f32 * load.refresh_hz / 1e3);
+        self.since_up = self.since_up.saturating_add(1);
+        let headroom = self.headroom.unwrap_or(0.0);
+        if headroom >= Self::HOT && load.now_ns >= self.cooling_until_ns {
+            self.cooling_until_ns = load.now_ns + Self::COOLING_NS;
+            self.down();
+        } else if late_share > Self::LATE_SHARE || gpu.is_some_and(|g| g > Self::FULL_LOAD) {
+            if self.since_up < Self::TRIAL {
+                self.needed_windows = (self.needed_windows * 2).min(Self::MOST_WINDOWS_UP);
+            }
+            self.down();
+        } else if window.late > 0 {
+            self.good_windows = 0;
+        } else {
+            self.good_windows += 1;
+            if self.since_up == Self::TRIAL {
+                self.needed_windows = Self::WINDOWS_UP;
+            }
+            if self.good_windows >= self.needed_windows && headroom < Self::WARM {
+                self.up(gpu);
+            }
+        }
+    }
+
+    fn down(&mut self) {
+        self.level = (self.level + 1).min(LADDER.len() - 1);
+        self.good_windows = 0;
+        self.since_up = Self::TRIAL;
+    }
+
+    fn up(&mut self, gpu: Option<f32>) {
+        let Some(better) = self.level.checked_sub(1) else { return };
+        let pixels = (LADDER[better].render_scale / LADDER[self.level].render_scale).powi(2);
+        if gpu.is_some_and(|g| g * pixels > Self::ROOM) {
+            return;
+        }
+        self.level = better;
+        self.good_windows = 0;
+        self.since_up = 0;
+    }
+}
+
+impl Default for Controller {
+    fn default() -> Controller {
+        Controller::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device whose GPU needs `full_ms` at full quality, on a display of 60 Hz.
+    struct Device {
+        controller: Controller,
+        now_ns: i64,
+        full_ms: f32,
+        timer_queries: bool,
+        changes: usize,
+    }
+
+    impl Device {
+        fn new(full_ms: f32, timer_queries: bool) -> Device {
+            Device { controller: Controller::new(), now_ns: 0, full_ms, timer_queries, changes: 0 }
+        }
+
+        fn run(&mut self, seconds: f32) -> f32 {
+            let end = self.now_ns + (seconds * 1e9) as i64;
+            while self.now_ns < end {
+                let before = self.controller.quality();
+                let gpu_ms = self.full_ms * before.render_scale * before.render_scale;
+                let late_refreshes = (gpu_ms / (1e3 / 60.0)).floor() as u32;
+                self.now_ns += (1 + late_refreshes as i64) * 16_666_667;
+                let load = Load {
+                    now_ns: self.now_ns,
+                    refresh_hz: 60.0,
+                    late_refreshes,
+                    gpu_ms: self.timer_queries.then_some(gpu_ms),
+                };
+                self.changes += (self.controller.frame(&load) != before) as usize;
+            }
+            self.controller.quality().render_scale
+        }
+    }
+
+    #[test]
+    fn a_fast_device_keeps_full_quality() {
+        for timer_queries in [false, true] {
+            let mut device = Device::new(9.0, timer_queries);
+            assert_eq!((device.run(30.0), device.changes), (1.0, 0));
+        }
+    }
+
+    #[test]
+    fn a_slow_device_settles_where_it_holds_the_rate() {
+        // 24 ms * 0.8^2 = 15.4 ms is in time, 24 * 0.9^2 = 19.4 is not.
+        let mut device = Device::new(24.0, true);
+        assert_eq!(device.run(5.0), 0.8);
+        let changes = device.changes;
+        assert_eq!(device.run(60.0), 0.8);
+        assert_eq!(device.changes, changes, "with known GPU times it does not try in vain");
+    }
+
+    #[test]
+    fn without_gpu_times_it_tries_less_and_less_often() {
+        let mut device = Device::new(24.0, false);
+        device.run(60.0);
+        let early = std::mem::take(&mut device.changes);
+        device.run(60.0);
+        let later = std::mem::take(&mut device.changes);
+        assert!(later < early && later <= 6, "{early} changes, then {later}");
+    }
+
+    #[test]
+    fn quality_returns_when_the_load_falls() {
+        let mut device = Device::new(24.0, true);
+        device.run(5.0);
+        device.full_ms = 6.0;
+        assert_eq!(device.run(10.0), 1.0);
+    }
+
+    #[test]
+    fn the_worst_quality_is_the_end() {
+        assert_eq!(Device::new(400.0, true).run(20.0), 0.5);
+    }
+
+    #[test]
+    fn heat_lowers_quality_slowly_and_keeps_it_low() {
+        let mut device = Device::new(6.0, true);
+        device.controller.set_thermal_headroom(Some(0.97));
+        assert_eq!(device.run(5.0), 0.9);
+        assert_eq!(device.run(10.0), 0.8);
+        device.controller.set_thermal_headroom(Some(0.9));
+        assert_eq!(device.run(30.0), 0.8);
+        device.controller.set_thermal_headroom(Some(f32::NAN));
+        assert_eq!(device.run(30.0), 1.0);
+    }
+
+    #[test]
+    fn a_single_late_frame_changes_nothing() {
+        let mut device = Device::new(9.0, true);
+        device.run(0.6);
+        let late = Load {
+            now_ns: device.now_ns + 33_000_000,
+            refresh_hz: 60.0,
+            late_refreshes: 1,
+            gpu_ms: Some(9.0),
+        };
+        assert_eq!(device.controller.frame(&late), Quality::FULL);
+        device.run(2.0);
+        assert_eq!(device.controller.quality(), Quality::FULL);
+    }
+
+    #[test]
+    fn a_break_is_no_load() {
+        let mut device = Device::new(9.0, false);
+        device.run(1.0);
+        device.now_ns += 60_000_000_000;
+        let load = Load { now_ns: device.now_ns, refresh_hz: 60.0, late_refreshes: 3600, gpu_ms: None };
+        assert_eq!(device.controller.frame(&load), Quality::FULL);
+    }
+}

@@ -1,0 +1,153 @@
+//! What the HUD says: figures, and what the user has just done.
+
+use std::fmt::{self, Write};
+
+use crate::hud::COLUMNS;
+use crate::telemetry::Line;
+
+/// How long a message stays in view, in nanoseconds.
+const MESSAGE_NS: i64 = 2_000_000_000;
+
+/// What there is to say of the application.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Status<'a> {
+    /// The last second.
+    pub frames: Option<&'a Line>,
+    /// The device's temperature in degrees Celsius.
+    pub celsius: Option<f32>,
+    pub method: &'a str,
+    pub pipeline: Option<&'a str>,
+    /// The scene that is on its way.
+    pub loading: Option<&'a str>,
+}
+
+/// The HUD's words, and whether they are to be seen.
+pub(crate) struct Caption {
+    /// Whether the user wants to see it.
+    pub is_shown: bool,
+    message: String,
+    message_until_ns: i64,
+    text: String,
+}
+
+impl Caption {
+    pub fn new(is_shown: bool) -> Caption {
+        let text = String::with_capacity(3 * COLUMNS);
+        Caption { is_shown, message: String::new(), message_until_ns: 0, text }
+    }
+
+    /// Shows a message for two seconds, also where the HUD is hidden; an empty one takes away the one before.
+    pub fn announce(&mut self, message: String, now_ns: i64) {
+        self.message_until_ns = if message.is_empty() { 0 } else { now_ns + MESSAGE_NS };
+        self.message = message;
+    }
+
+    /// Whether there is something to see: the HUD, or a message.
+    pub fn is_in_view(&self, now_ns: i64) -> bool {
+        self.is_shown || self.has_message(now_ns)
+    }
+
+    fn has_message(&self, now_ns: i64) -> bool {
+        now_ns < self.message_until_ns
+    }
+
+    /// The words as they were written last.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Where to write other words.
+    pub fn text_mut(&mut self) -> &mut String {
+        &mut self.text
+    }
+
+    /// Writes rate, frame time and temperature as far as they are known, the method, and what happens.
+    pub fn write_status(&mut self, status: &Status, now_ns: i64) {
+        let message = self.has_message(now_ns).then_some(self.message.as_str());
+        let text = &mut self.text;
+        text.clear();
+        let mut write = || -> fmt::Result {
+            if let Some(Line { fps: Some(fps), frame_ms: Some(ms), refresh_hz, .. }) = status.frames {
+                write!(text, "{fps:.0}")?;
+                if let Some(hz) = refresh_hz {
+                    write!(text, "/{hz:.0}")?;
+                }
+                write!(text, " FPS {ms:.1} ms")?;
+                if let Some(celsius) = status.celsius {
+                    write!(text, " {celsius:.0} C")?;
+                }
+                text.push('\n');
+            }
+            writeln!(text, "{} {}", status.method, status.pipeline.unwrap_or_default())?;
+            match (status.loading, message) {
+                (Some(scene), _) => write!(text, "loading {scene}"),
+                (None, Some(message)) => text.write_str(message),
+                (None, None) => Ok(()),
+            }
+        };
+        // A string takes everything.
+        let _ = write();
+    }
+
+    /// Writes a sentence in lines of the panel's width, words kept whole.
+    pub fn write_sentence(&mut self, sentence: &str) {
+        let text = &mut self.text;
+        text.clear();
+        let mut column = 0;
+        for word in sentence.split_whitespace() {
+            let length = word.chars().count();
+            if column == 0 {
+                column = length;
+            } else if column + 1 + length > COLUMNS {
+                text.push('\n');
+                column = length;
+            } else {
+                text.push(' ');
+                column += 1 + length;
+            }
+            text.push_str(word);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_lines_say() {
+        let mut caption = Caption::new(true);
+        let loading = Status {
+            celsius: Some(31.0),
+            method: "yoro",
+            pipeline: Some("gather"),
+            loading: Some("street"),
+            ..Status::default()
+        };
+        caption.write_status(&loading, 0);
+        assert_eq!(caption.text(), "yoro gather\nloading street");
+        let line =
+            Line { fps: Some(59.94), refresh_hz: Some(60.0), frame_ms: Some(16.68), ..Line::default() };
+        let running =
+            Status { frames: Some(&line), celsius: Some(31.2), method: "mono", ..Status::default() };
+        caption.write_status(&running, 0);
+        assert_eq!(caption.text(), "60/60 FPS 16.7 ms 31 C\nmono \n");
+        caption.write_sentence("there is no file room.obj: give the path of an .obj, .gltf or .glb file");
+        assert_eq!(
+            caption.text(),
+            "there is no file room.obj: give\nthe path of an .obj, .gltf or .glb\nfile"
+        );
+    }
+
+    #[test]
+    fn a_message_goes_by_itself_and_shows_through_a_hidden_hud() {
+        let mut caption = Caption::new(false);
+        assert!(!caption.is_in_view(0));
+        caption.announce("recentered".into(), 1);
+        caption.write_status(&Status { method: "mono", ..Status::default() }, MESSAGE_NS);
+        assert!(caption.is_in_view(MESSAGE_NS) && !caption.is_in_view(MESSAGE_NS + 1));
+        assert_eq!(caption.text(), "mono \nrecentered");
+        caption.announce(String::new(), 1);
+        assert!(!caption.is_in_view(1));
+    }
+}

@@ -1,0 +1,304 @@
+//! A phone in a Cardboard-compatible viewer: a screen behind lenses, and the phone's own motion sensors.
+
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use glam::{Quat, Vec3};
+
+use super::fence::Fence;
+use super::head::{HeadTracker, MotionSample, neck_offset};
+use super::lens::LensPass;
+use super::optics::{Optics, Screen};
+use super::params::ViewerParams;
+use crate::error::ViewerError;
+use crate::event::{Action, Event};
+use crate::frame::{FrameReport, FrameTiming};
+use crate::settings::Settings;
+use crate::viewer::Viewer;
+use yoro::eyes::{DepthRange, Eye, EyePair, MAX_IPD, Pose};
+use yoro::gl::{Context, Destination};
+use yoro_render::stereo::StereoFrame;
+
+/// A head held still, instead of the one that the sensors measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldHead {
+    /// Rotation from head to world at which frames are rendered.
+    pub rendered: Quat,
+    /// Rotation from head to world at which they are shown: another one than `rendered` is what timewarp
+    /// makes up for.
+    pub displayed: Quat,
+}
+
+/// What lives in the GL context.
+struct Attached {
+    gl: Rc<Context>,
+    frame: StereoFrame,
+    lens: LensPass,
+    /// Behind the last frame that was presented.
+    presented: Fence,
+    /// The last frame that was rendered: rotation from head to world.
+    rendered: Option<Quat>,
+}
+
+/// A [`Viewer`] on the screen of a phone.
+///
+/// ```text
+/// new ──> attach(gl) ──> [ sensor()* ── event()* ── render() ── wait() ── sensor()* ── present() ]*
+/// ```
+pub struct Cardboard {
+    viewer: Viewer,
+    screen: Screen,
+    params: ViewerParams,
+    optics: Optics,
+    tracker: HeadTracker,
+    held: Option<HeldHead>,
+    attached: Option<Attached>,
+}
+
+impl Cardboard {
+    /// Puts a screen into a viewer and starts to load the scene in the background. `folders` are where scenes and
+    /// viewer files given by name are looked for.
+    ///
+    /// # Errors
+    /// [`ViewerError::Params`] and [`ViewerError::NoScene`]: mistakes in the settings.
+    pub fn new(settings: Settings, screen: Screen, folders: &[PathBuf]) -> Result<Cardboard, ViewerError> {
+        let params = ViewerParams::find_in(&settings.viewer, folders)?;
+        let mut viewer = Viewer::new(settings, folders)?;
+        viewer.set_native_ipd(params.inter_lens.min(MAX_IPD));
+        let metres = metres(viewer.settings(), &screen);
+        log::info!("viewer: {} {}, screen {:.1?} mm", params.vendor, params.model, metres.map(|m| m * 1e3));
+        Ok(Cardboard {
+            viewer,
+            optics: Optics::new(&params, metres),
+            tracker: HeadTracker::new(screen.rotation),
+            screen,
+            params,
+            held: None,
+            attached: None,
+        })
+    }
+
+    /// The application behind the lenses.
+    pub fn viewer(&self) -> &Viewer {
+        &self.viewer
+    }
+
+    /// The application behind the lenses, for what is not the display's own: telemetry, scenes.
+    pub fn viewer_mut(&mut self) -> &mut Viewer {
+        &mut self.viewer
+    }
+
+    /// As [`Viewer::attach`].
+    ///
+    /// # Errors
+    /// [`ViewerError::Gl`].
+    pub fn attach(&mut self, gl: Rc<Context>) -> Result<(), ViewerError> {
+        let chromatic = self.viewer.settings().chromatic;
+        self.viewer.attach(gl.clone())?;
+        self.attached = Some(Attached {
+            frame: StereoFrame::new(&gl, self.eye_size())?,
+            lens: LensPass::new(&gl, &self.optics, chromatic)?,
+            presented: Fence::new(&gl),
+            rendered: None,
+            gl,
+        });
+        Ok(())
+    }
+
+    /// As [`Viewer::detach`].
+    pub fn detach(&mut self) {
+        self.attached = None;
+        self.viewer.detach();
+    }
+
+    /// Whether there is a GL context.
+    pub fn is_attached(&self) -> bool {
+        self.attached.is_some()
+    }
+
+    /// The screen has another size, or is turned otherwise.
+    ///
+    /// # Errors
+    /// [`ViewerError::Gl`].
+    pub fn resize(&mut self, screen: Screen) -> Result<(), ViewerError> {
+        if screen == self.screen {
+            return Ok(());
+        }
+        self.screen = screen;
+        self.tracker.set_rotation(screen.rotation);
+        self.make_optics()?;
+        if let Some(attached) = &mut self.attached {
+            attached.rendered = None;
+        }
+        Ok(())
+    }
+
+    /// Recomputes the lenses.
+    fn make_optics(&mut self) -> Result<(), ViewerError> {
+        self.optics = Optics::new(&self.params, metres(self.viewer.settings(), &self.screen));
+        if let Some(attached) = &mut self.attached {
+            let chromatic = self.viewer.settings().chromatic;
+            attached.lens = LensPass::new(&attached.gl, &self.optics, chromatic)?;
+        }
+        Ok(())
+    }
+
+    /// As [`Viewer::configure`].
+    ///
+    /// # Errors
+    /// As [`Viewer::configure`], and [`ViewerError::Params`]; the settings before stay.
+    pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
+        let before = self.viewer.settings();
+        let optics_differ = (settings.chromatic, settings.screen) != (before.chromatic, before.screen);
+        let params = match settings.viewer == before.viewer {
+            true => None,
+            false => Some(ViewerParams::find_in(&settings.viewer, folders)?),
+        };
+        self.viewer.configure(settings, folders)?;
+        let lenses_differ = params.is_some() || optics_differ;
+        if let Some(params) = params {
+            self.params = params;
+            self.viewer.set_native_ipd(self.params.inter_lens.min(MAX_IPD));
+            self.viewer.reset_ipd();
+        }
+        if lenses_differ {
+            self.make_optics()?;
+        }
+        Ok(())
+    }
+
+    /// As [`Viewer::event`].
+    ///
+    /// # Errors
+    /// As [`Viewer::event`].
+    pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
+        let action = self.viewer.event(event)?;
+        if action == Action::Recenter {
+            self.tracker.recenter();
+        }
+        Ok(action)
+    }
+
+    /// Takes a sample of a motion sensor with its own timestamp in nanoseconds.
+    pub fn sensor(&mut self, sample: MotionSample, timestamp_ns: i64) {
+        self.tracker.add(sample, timestamp_ns);
+    }
+
+    /// Holds the head still, whatever the sensors say, or lets it go.
+    pub fn hold_head(&mut self, head: Option<HeldHead>) {
+        self.held = head;
+    }
+
+    /// As [`Viewer::pause`]; the head stands still.
+    pub fn pause(&mut self) {
+        self.tracker.pause();
+        self.viewer.pause();
+    }
+
+    /// As [`Viewer::resume`].
+    pub fn resume(&mut self) {
+        self.viewer.resume();
+    }
+
+    /// [`Cardboard::render`] and [`Cardboard::present`].
+    ///
+    /// # Errors
+    /// As those.
+    pub fn frame(&mut self, window: &Destination, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
+        self.render(timing)?;
+        self.present(window, timing)
+    }
+
+    /// Renders both eyes for the head pose that is expected when the frame is seen. Until the scene is there,
+    /// that is a progress bar.
+    ///
+    /// # Errors
+    /// As [`Viewer::render_eyes`].
+    pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
+        self.viewer.begin(timing);
+        let head = self.head(timing).0;
+        let pair = self.eyes(head);
+        let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
+        attached.frame.resize(pair.size)?;
+        let targets = attached.frame.targets();
+        self.viewer.render_eyes(&pair, &targets)?;
+        if let Some(panel) = self.viewer.hud()? {
+            panel.draw_into_eyes(&pair, &targets.map(|target| target.color));
+        }
+        attached.rendered = Some(head);
+        Ok(())
+    }
+
+    /// Waits until the GPU has finished the frame that was presented before; meanwhile it begins with the one that was
+    /// rendered since. Without this a GPU that is slower than the display works off a queue of frames, each of which shows
+    /// where the head pointed when it was put there. No longer than a quarter of a second.
+    pub fn wait(&mut self) {
+        if let Some(attached) = &mut self.attached {
+            attached.presented.wait();
+        }
+    }
+
+    /// Puts the frame that was rendered last on the screen: through the lenses, turned to where the head points
+    /// now. May be called again for the same frame, when the next one is late.
+    ///
+    /// # Errors
+    /// As [`Viewer::end`].
+    pub fn present(
+        &mut self,
+        window: &Destination,
+        timing: &FrameTiming,
+    ) -> Result<FrameReport, ViewerError> {
+        let displayed = self.head(timing).1;
+        let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
+        let rendered = attached.rendered.unwrap_or(displayed);
+        let timewarp = self.viewer.settings().timewarp;
+        let turn = if timewarp { rendered.inverse() * displayed } else { Quat::IDENTITY };
+        attached.lens.run(&attached.frame, turn, window);
+        attached.presented.set();
+        self.viewer.end(timing)
+    }
+
+    /// The viewer's parameters and the screen in it.
+    pub fn optics(&self) -> &Optics {
+        &self.optics
+    }
+
+    /// Where the head points.
+    pub fn tracker(&self) -> &HeadTracker {
+        &self.tracker
+    }
+
+    /// Size in pixels of each eye's image.
+    pub fn eye_size(&self) -> [u32; 2] {
+        self.viewer.eye_size(self.optics.full_size(self.screen.size))
+    }
+
+    /// Rotation from head to world at which to render, and at which to show.
+    fn head(&self, timing: &FrameTiming) -> (Quat, Quat) {
+        if let Some(held) = self.held {
+            return (held.rendered, held.displayed);
+        }
+        let head = self.tracker.world_from_head(timing.now_ns, timing.expected_display_ns);
+        (head, head)
+    }
+
+    /// The eyes of a head that is turned like this, at the scene's viewpoint.
+    fn eyes(&self, head: Quat) -> EyePair {
+        // At rest the eyes are where the scene's author has put them.
+        let moved = neck_offset(head) - neck_offset(Quat::IDENTITY);
+        let head = self.viewer.place(Pose { position: moved, orientation: head });
+        let half = self.viewer.ipd() / 2.0;
+        EyePair {
+            poses: Eye::BOTH.map(|eye| head.translated_local(Vec3::X * (eye.side() * half))),
+            frusta: Eye::BOTH.map(|eye| self.optics.frustum(eye)),
+            depth: DepthRange::PAPER,
+            size: self.eye_size(),
+            dominant: self.viewer.settings().dominant,
+        }
+    }
+}
+
+/// Width and height in metres of the screen behind the lenses: what the settings say counts more than what the device says.
+fn metres(settings: &Settings, screen: &Screen) -> [f32; 2] {
+    settings.screen.map_or_else(|| screen.metres(), |size| size.metres())
+}

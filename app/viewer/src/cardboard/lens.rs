@@ -1,0 +1,182 @@
+//! The pass that puts both eyes on the screen: lens distortion, chromatic correction, timewarp, vignette.
+
+use std::rc::Rc;
+
+use glam::{Mat4, Quat, Vec2, Vec4};
+
+use super::optics::{Optics, mesh_strip};
+use yoro::eyes::{Eye, Frustum};
+use yoro::gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
+use yoro_render::stereo::StereoFrame;
+
+/// How much further from the axis red and blue light is seen through a lens than green, for which lenses are
+/// specified: acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
+const DISPERSION: [f32; 2] = [0.9913, 1.0106];
+/// Width of the vignette as a part of the image.
+const VIGNETTE: f32 = 0.03;
+/// Width of the alignment line in metres, and its grey.
+const LINE_WIDTH: f32 = 0.0006;
+const LINE_COLOR: [f32; 4] = [0.35, 0.35, 0.35, 1.0];
+
+/// Distortion meshes of both eyes and the program that draws them.
+pub struct LensPass {
+    gl: Rc<Context>,
+    program: Program,
+    meshes: [Mesh; 2],
+    frusta: [Frustum; 2],
+    line: f32,
+}
+
+impl LensPass {
+    /// Compiles the program and makes the meshes of a viewer; `chromatic` turns chromatic correction on.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses a program or a mesh.
+    pub fn new(gl: &Rc<Context>, optics: &Optics, chromatic: bool) -> Result<LensPass, GlError> {
+        let defines = if chromatic { vec![("CHROMATIC", String::new())] } else { Vec::new() };
+        let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
+        let program = Program::new(gl, source, &defines)?;
+        let mesh = |eye| {
+            // Position and uv of a `MeshVertex`.
+            Mesh::new(gl, &[2, 2], &optics.mesh(eye), &mesh_strip())
+        };
+        let meshes = [mesh(Eye::Left)?, mesh(Eye::Right)?];
+        let frusta = Eye::BOTH.map(|eye| optics.frustum(eye));
+        let line = LINE_WIDTH / optics.screen()[0];
+        Ok(LensPass { gl: gl.clone(), program, meshes, frusta, line })
+    }
+
+    /// Fills the window. `turn` rotates a direction of the head as it is now into the head as it was when the
+    /// frame was rendered.
+    pub fn run(&self, frame: &StereoFrame, turn: Quat, window: &Destination) {
+        let [width, height] = window.size;
+        self.gl.pass("lens", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
+            self.gl.fill(window.origin, window.size, [0.0, 0.0, 0.0, 1.0]);
+            self.program
+                .bind()
+                .set("turn", Mat4::from_quat(turn))
+                .set("dispersion", Vec2::from(DISPERSION))
+                .set("vignette", VIGNETTE);
+            for eye in Eye::BOTH {
+                let frustum = &self.frusta[eye.index()];
+                let rectangle = Vec4::new(frustum.left, frustum.bottom, frustum.width(), frustum.height());
+                self.program.texture("image", 0, frame.eye(eye).color(0).raw()).set("frustum", rectangle);
+                let mesh = &self.meshes[eye.index()];
+                mesh.bind();
+                mesh.draw_strip();
+            }
+            // Even, so that it lies symmetrically on an even width.
+            let line = ((self.line * width as f32 / 2.0).round() as u32).max(1) * 2;
+            let x = (width / 2).saturating_sub(line / 2);
+            self.gl.fill([window.origin[0] + x, window.origin[1]], [line.min(width), height], LINE_COLOR);
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cardboard::optics::{Distortion, MESH_RESOLUTION, Rotation, Screen};
+    use crate::cardboard::params::ViewerParams;
+    use yoro::gl::{Filter, Format, RenderTarget};
+    use yoro_context::{Backend, Headless};
+
+    const WINDOW: [u32; 2] = [320, 180];
+
+    fn screen() -> Screen {
+        // 110 x 62 mm.
+        Screen { size: WINDOW, dpi: [74.0; 2], rotation: Rotation::LandscapeLeft }
+    }
+
+    fn optics() -> Optics {
+        Optics::new(&ViewerParams::v1(), screen().metres())
+    }
+
+    fn window(gl: &Rc<Context>) -> RenderTarget {
+        RenderTarget::new(gl, WINDOW, &[(Format::Rgba8, Filter::Nearest)], None).unwrap()
+    }
+
+    /// A pixel of the window by metres from its lower left corner.
+    fn pixel(window: &RenderTarget, metres: Vec2) -> [u8; 4] {
+        let size = screen().metres();
+        let at = [0, 1].map(|i| (metres[i] / size[i] * WINDOW[i] as f32) as u32);
+        window.read_rgba8(0, at, [1, 1]).try_into().unwrap()
+    }
+
+    /// A frame of two images, each of one colour with a white column in the middle (tangent 0).
+    fn marked_frame(gl: &Rc<Context>, optics: &Optics) -> StereoFrame {
+        let size = [256, 256];
+        let frame = StereoFrame::new(gl, size).unwrap();
+        for (eye, color) in Eye::BOTH.into_iter().zip([[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]) {
+            let frustum = optics.frustum(eye);
+            let middle = (-frustum.left / frustum.width() * size[0] as f32) as u32;
+            frame.eye(eye).bind();
+            gl.fill([0, 0], size, color);
+            gl.fill([middle - 4, 0], [8, size[1]], [1.0; 4]);
+        }
+        frame
+    }
+
+    #[test]
+    fn each_eye_sees_its_own_image_around_its_lens() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let (gl, optics) = (headless.gl(), optics());
+        let (frame, window) = (marked_frame(gl, &optics), window(gl));
+        for chromatic in [false, true] {
+            let lens = LensPass::new(gl, &optics, chromatic).unwrap();
+            lens.run(&frame, Quat::IDENTITY, &Destination::whole(&window));
+            for (eye, color) in Eye::BOTH.into_iter().zip([[255, 0, 0, 255], [0, 0, 255, 255]]) {
+                let center = optics.lens_center(eye);
+                assert_eq!(pixel(&window, center), [255; 4], "straight ahead is at the lens's centre");
+                for side in [-0.010, 0.010] {
+                    assert_eq!(pixel(&window, center + Vec2::new(side, 0.0)), color);
+                }
+            }
+            let [line, ..] = pixel(&window, Vec2::new(screen().metres()[0] / 2.0, 0.001));
+            assert_eq!(line, 89, "the alignment line");
+            assert_eq!(pixel(&window, Vec2::new(0.0005, 0.0005)), [0, 0, 0, 255], "no lens shows the corner");
+        }
+        assert_eq!(gl.take_errors(), None);
+    }
+
+    #[test]
+    fn straight_lines_bow_towards_the_lens() {
+        // The lens magnifies the border more than the middle (pincushion), so that the screen shows a barrel: a
+        // vertical line beside the centre is nearer to the centre at its ends.
+        let mesh = optics().mesh(Eye::Left);
+        let center = optics().lens_center(Eye::Left).x / screen().metres()[0] * 2.0 - 1.0;
+        let distance = |row: usize| (mesh[row * MESH_RESOLUTION].position.x - center).abs();
+        assert!(distance(0) < distance(20) && distance(39) < distance(20));
+    }
+
+    /// Columns of the left half's white mark, at the height of the lens.
+    fn mark(window: &RenderTarget, optics: &Optics) -> f32 {
+        let row = (optics.lens_center(Eye::Left).y / screen().metres()[1] * WINDOW[1] as f32) as u32;
+        let pixels = window.read_rgba8(0, [0, row], [WINDOW[0] / 2 - 4, 1]);
+        let white: Vec<usize> =
+            (0..pixels.len() / 4).filter(|&x| pixels[x * 4..x * 4 + 3].iter().all(|&c| c > 200)).collect();
+        white.iter().sum::<usize>() as f32 / white.len() as f32
+    }
+
+    #[test]
+    fn timewarp_turns_the_image_against_the_head() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let (gl, optics) = (headless.gl(), optics());
+        let (frame, window) = (marked_frame(gl, &optics), window(gl));
+        let lens = LensPass::new(gl, &optics, false).unwrap();
+        let at = |turn| {
+            lens.run(&frame, turn, &Destination::whole(&window));
+            mark(&window, &optics)
+        };
+        let still = at(Quat::IDENTITY);
+        // What is straight ahead is 10 degrees to the right once the head has turned 10 degrees to the left.
+        let angle = 10f32.to_radians();
+        let turned = at(Quat::from_rotation_y(angle));
+        let metres = Distortion::new(&[0.441, 0.156]).undistort(angle.tan()) * 0.042;
+        let expected = metres / screen().metres()[0] * WINDOW[0] as f32;
+        assert!((turned - still - expected).abs() < 1.0, "{still} -> {turned}, expected {expected}");
+        assert!(at(Quat::from_rotation_y(-angle)) < still);
+    }
+}

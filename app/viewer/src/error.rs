@@ -1,0 +1,28 @@
+//! Why the viewer cannot go on.
+
+use crate::cardboard::params::ParamsError;
+use yoro::gl::GlError;
+use yoro_render::stereo::StereoError;
+
+/// Why the viewer cannot go on. A scene that cannot be loaded is not among these: it is shown in view, see
+/// [`Viewer::failure`](crate::Viewer::failure).
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewerError {
+    /// The viewer's parameters.
+    #[error(transparent)]
+    Params(#[from] ParamsError),
+    /// The scene does not exist.
+    #[error("{0}")]
+    NoScene(String),
+    /// GL refused.
+    #[error(transparent)]
+    Gl(#[from] GlError),
+    /// A method cannot render a frame.
+    #[error(transparent)]
+    Stereo(#[from] StereoError),
+    /// A call that needs a GL context came before [`Viewer::attach`](crate::Viewer::attach) or after
+    /// [`Viewer::detach`](crate::Viewer::detach).
+    #[error("the viewer has no GL context: attach one first")]
+    NoContext,
+}

@@ -1,0 +1,65 @@
+//! What the user does, and what it has led to.
+
+use std::fmt;
+
+use yoro_render::stereo::Method;
+
+/// What the user does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A tap on the screen, the viewer's trigger, or a controller's: the next method.
+    Tap,
+    /// The method before.
+    PreviousMethod,
+    /// A long press: straight ahead is where the head points now.
+    LongPress,
+    /// Volume up: the eyes a millimetre further apart.
+    IpdUp,
+    /// Volume down: the eyes a millimetre closer.
+    IpdDown,
+    /// Shows or hides the HUD.
+    ToggleHud,
+    /// Goes to the scene's next viewpoint.
+    NextViewpoint,
+    /// Loads the next scene: the built-in ones, then the files in the scene folders.
+    NextScene,
+}
+
+/// What an event has led to, for the log.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// The method that is used now.
+    Method(Method),
+    /// The head's direction starts over: that is for the display to do.
+    Recenter,
+    /// The distance between the eyes in metres.
+    Ipd(f32),
+    /// Whether the HUD is shown.
+    Hud(bool),
+    /// The viewpoint's number.
+    Viewpoint(usize),
+    /// Another scene is being loaded: [`Viewer::scene_name`](crate::Viewer::scene_name).
+    Scene,
+    /// The marker of the slider was moved to this rating.
+    Marker(f32),
+    /// A question was answered: the last of [`Viewer::ratings`](crate::Viewer::ratings).
+    Answer,
+    /// Nothing, because a question is being asked, or there is no other method, viewpoint or scene.
+    Nothing,
+}
+
+impl fmt::Display for Action {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Action::Method(method) => write!(f, "method: {}", method.name()),
+            Action::Recenter => f.write_str("recentered"),
+            Action::Ipd(ipd) => write!(f, "ipd: {ipd:.3} m"),
+            Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
+            Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),
+            Action::Scene => f.write_str("another scene"),
+            Action::Marker(rating) => write!(f, "marker: {rating}"),
+            Action::Answer => f.write_str("answered"),
+            Action::Nothing => f.write_str("nothing"),
+        }
+    }
+}

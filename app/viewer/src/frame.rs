@@ -1,0 +1,42 @@
+//! What the platform says of a frame, and what it hears of it.
+
+/// The times of a frame, all on the monotonic clock of the sensors' timestamps where the platform has one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameTiming {
+    /// Now, in nanoseconds.
+    pub now_ns: i64,
+    /// When the frame is expected to be seen, in nanoseconds.
+    pub expected_display_ns: i64,
+    /// Refresh rate of the display in Hz; 0 if unknown.
+    pub refresh_hz: f32,
+}
+
+/// Where the scene is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneState {
+    /// Being loaded or generated; a progress bar is in view.
+    Loading,
+    /// In view.
+    Ready,
+    /// It cannot be loaded; the reason is in view and in [`Viewer::failure`](crate::Viewer::failure).
+    Failed,
+}
+
+/// What a presented frame was like and what the platform should do next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameReport {
+    /// Where the scene is.
+    pub scene: SceneState,
+    /// Refreshes of the display for which this frame came too late.
+    pub late_refreshes: u32,
+    /// GPU time in milliseconds of a frame some frames ago, where it is measured.
+    pub gpu_ms: Option<f32>,
+    /// A second has passed: collect a [`DeviceState`](crate::telemetry::DeviceState) and call
+    /// [`Viewer::telemetry`](crate::Viewer::telemetry).
+    pub telemetry_due: bool,
+    /// The session's `duration` has passed since the scene came into view, and its questions are answered: log
+    /// [`Viewer::summary`](crate::Viewer::summary). True in one report only.
+    pub session_over: bool,
+    /// The session is over and `auto-exit` is on: end the program. True from then on.
+    pub exit: bool,
+}

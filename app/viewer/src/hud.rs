@@ -1,0 +1,281 @@
+//! A small panel of text that hangs before the eyes, turning with the head.
+
+use std::rc::Rc;
+
+use embedded_graphics::mono_font::MonoTextStyle;
+use embedded_graphics::mono_font::ascii::FONT_10X20;
+use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::prelude::*;
+use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
+use embedded_graphics::text::{Baseline, Text};
+use glam::{Vec3, Vec4};
+
+use yoro::eyes::{Eye, EyePair};
+use yoro::gl::{
+    Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
+};
+
+/// Characters of a line; longer ones are cut.
+pub(crate) const COLUMNS: usize = 34;
+const LINES: usize = 4;
+const FONT: [usize; 2] = [10, 20];
+const MARGIN: usize = 8;
+const BAR_HEIGHT: usize = 12;
+const SIZE: [usize; 2] = [COLUMNS * FONT[0] + 2 * MARGIN, LINES * FONT[1] + 3 * MARGIN + BAR_HEIGHT];
+/// Part of the progress bar that moves to and fro.
+const BLOCK: f32 = 0.25;
+
+/// Where the panel hangs: metres ahead, and tangents of its width and of its centre below the horizon.
+const DISTANCE: f32 = 1.5;
+const WIDTH: f32 = 0.42;
+const BELOW: f32 = 0.40;
+
+/// What the panel says, and how far the loading of a scene has come round.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Content<'a> {
+    /// At most four lines.
+    pub text: &'a str,
+    /// Place of the moving part of a progress bar, 0 to 1; the work's end is not known.
+    pub progress: Option<f32>,
+}
+
+/// The panel's pixels, rows from the top, 0 or 255.
+struct Pixels(Vec<u8>);
+
+impl OriginDimensions for Pixels {
+    fn size(&self) -> Size {
+        Size::new(SIZE[0] as u32, SIZE[1] as u32)
+    }
+}
+
+impl DrawTarget for Pixels {
+    type Color = BinaryColor;
+    type Error = std::convert::Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
+        &mut self,
+        pixels: I,
+    ) -> Result<(), Self::Error> {
+        for Pixel(Point { x, y }, color) in pixels {
+            if (0..SIZE[0] as i32).contains(&x) && (0..SIZE[1] as i32).contains(&y) {
+                self.0[y as usize * SIZE[0] + x as usize] = if color.is_on() { 255 } else { 0 };
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Pixels {
+    fn draw(&mut self, content: Content) {
+        self.0.fill(0);
+        let style = MonoTextStyle::new(&FONT_10X20, BinaryColor::On);
+        for (i, line) in content.text.lines().take(LINES).enumerate() {
+            let end = line.char_indices().nth(COLUMNS).map_or(line.len(), |(at, _)| at);
+            let at = Point::new(MARGIN as i32, (MARGIN + i * FONT[1]) as i32);
+            let Ok(_) = Text::with_baseline(&line[..end], at, style, Baseline::Top).draw(self);
+        }
+        let Some(progress) = content.progress else { return };
+        let (x, y) = (MARGIN as i32, (2 * MARGIN + LINES * FONT[1]) as i32);
+        let width = (SIZE[0] - 2 * MARGIN) as u32;
+        let frame = Rectangle::new(Point::new(x, y), Size::new(width, BAR_HEIGHT as u32));
+        let Ok(()) = frame.into_styled(PrimitiveStyle::with_stroke(BinaryColor::On, 1)).draw(self);
+        let block = (width as f32 * BLOCK) as u32;
+        let left = x + (progress.clamp(0.0, 1.0) * (width - block) as f32) as i32;
+        let block = Rectangle::new(Point::new(left, y), Size::new(block, BAR_HEIGHT as u32));
+        let Ok(()) = block.into_styled(PrimitiveStyle::with_fill(BinaryColor::On)).draw(self);
+    }
+
+    /// Rows from the bottom, as GL takes them.
+    fn flip_into(&self, rows: &mut Vec<u8>) {
+        rows.clear();
+        self.0.chunks_exact(SIZE[0]).rev().for_each(|row| rows.extend_from_slice(row));
+    }
+}
+
+/// The panel on the GPU.
+pub struct Hud {
+    gl: Rc<Context>,
+    program: Program,
+    texture: Texture,
+    pixels: Pixels,
+    rows: Vec<u8>,
+    /// What the texture shows.
+    text: String,
+    progress: Option<f32>,
+    /// Rows in use, from the top.
+    used: usize,
+    /// Number of changes.
+    version: u64,
+}
+
+impl Hud {
+    /// An empty panel.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses the program or the texture.
+    pub fn new(gl: &Rc<Context>) -> Result<Hud, GlError> {
+        Ok(Hud {
+            gl: gl.clone(),
+            program: Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?,
+            texture: Texture::new(gl, SIZE.map(|n| n as u32), Format::R8, Filter::Linear)?,
+            pixels: Pixels(vec![0; SIZE[0] * SIZE[1]]),
+            rows: Vec::with_capacity(SIZE[0] * SIZE[1]),
+            text: String::with_capacity(256),
+            progress: Some(f32::NAN),
+            used: SIZE[1],
+            version: 0,
+        })
+    }
+
+    /// Changes what the panel says; nothing happens if it says that already.
+    pub fn set(&mut self, content: Content, placement: Placement) -> Panel<'_> {
+        if self.text != content.text || self.progress != content.progress {
+            self.text.clear();
+            self.text.push_str(content.text);
+            self.progress = content.progress;
+            self.used = match content.progress {
+                Some(_) => SIZE[1],
+                None => 2 * MARGIN + content.text.lines().count().min(LINES) * FONT[1],
+            };
+            self.version += 1;
+            self.pixels.draw(content);
+            self.pixels.flip_into(&mut self.rows);
+            self.texture.upload(&self.rows);
+        }
+        Panel { hud: self, placement }
+    }
+
+    /// Blends the part in use over a rectangle.
+    fn draw(&self, to: &Destination) {
+        self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+        let rectangle = [to.origin[0], to.origin[1], to.size[0], to.size[1]].map(|n| n as f32);
+        self.program
+            .bind()
+            .texture("panel", 0, self.texture.raw())
+            .set("rectangle", Vec4::from(rectangle))
+            .set("used", self.used as f32 / SIZE[1] as f32);
+        self.gl.draw_screen();
+    }
+}
+
+/// Where the panel hangs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placement {
+    /// Below what is looked at.
+    Below,
+    /// Straight ahead: there is nothing else to look at.
+    Middle,
+}
+
+/// The panel as it is in one frame.
+pub struct Panel<'a> {
+    hud: &'a Hud,
+    placement: Placement,
+}
+
+impl Panel<'_> {
+    /// The largest size in pixels that a panel can have.
+    pub const MAX_SIZE: [u32; 2] = [SIZE[0] as u32, SIZE[1] as u32];
+
+    /// Size in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [SIZE[0], self.hud.used].map(|n| n as u32)
+    }
+
+    /// Size in metres.
+    pub fn metres(&self) -> [f32; 2] {
+        let width = WIDTH * DISTANCE;
+        [width, width * self.hud.used as f32 / SIZE[0] as f32]
+    }
+
+    /// Its centre in metres, as seen from between the eyes.
+    pub fn center(&self) -> Vec3 {
+        Vec3::new(0.0, below(self.placement), -1.0) * DISTANCE
+    }
+
+    /// Changes whenever the text does.
+    pub fn version(&self) -> u64 {
+        self.hud.version
+    }
+
+    /// Fills a rectangle of its size, translucent where there are no letters; colour is not multiplied by alpha.
+    pub fn draw(&self, to: &Destination) {
+        self.hud.gl.pass("hud", || {
+            self.hud.gl.set_raster_state(&RasterState::SCREEN);
+            self.hud.draw(to);
+        });
+    }
+
+    /// Draws it into the images of both eyes.
+    pub fn draw_into_eyes(&self, pair: &EyePair, eyes: &[Destination; 2]) {
+        let gl = &self.hud.gl;
+        gl.pass("hud", || {
+            gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
+            for eye in Eye::BOTH {
+                let to = &eyes[eye.index()];
+                let ([x, y], size) = place(pair, eye, self.hud.used, self.placement);
+                let origin = [to.origin[0] + x, to.origin[1] + y];
+                self.hud.draw(&Destination { origin, size, ..*to });
+            }
+            gl.set_raster_state(&RasterState::SCREEN);
+        });
+    }
+}
+
+/// Tangent of the panel's centre.
+fn below(placement: Placement) -> f32 {
+    match placement {
+        Placement::Below => -BELOW,
+        Placement::Middle => 0.0,
+    }
+}
+
+/// Origin and size, in pixels of an eye's image, of the `used` upper rows of the panel.
+fn place(pair: &EyePair, eye: Eye, used: usize, placement: Placement) -> ([u32; 2], [u32; 2]) {
+    let frustum = &pair.frusta[eye.index()];
+    let height = WIDTH * used as f32 / SIZE[0] as f32;
+    let x = -eye.side() * pair.ipd() / 2.0 / DISTANCE - WIDTH / 2.0;
+    let y = below(placement).max(frustum.bottom + height) - height / 2.0;
+    let per_tangent = [pair.size[0] as f32 / frustum.width(), pair.size[1] as f32 / frustum.height()];
+    let corner = [(x - frustum.left) * per_tangent[0], (y - frustum.bottom) * per_tangent[1]];
+    let size = [WIDTH * per_tangent[0], height * per_tangent[1]];
+    (corner.map(|n| n.round().max(0.0) as u32), size.map(|n| n.round().max(1.0) as u32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use yoro::eyes::{DepthRange, Frustum, Pose};
+
+    #[test]
+    fn text_and_bar_are_drawn_where_they_should() {
+        let mut panel = Pixels(vec![0; SIZE[0] * SIZE[1]]);
+        let lit = |panel: &Pixels, rows: std::ops::Range<usize>| {
+            panel.0[rows.start * SIZE[0]..rows.end * SIZE[0]].iter().filter(|&&p| p == 255).count()
+        };
+        panel.draw(Content { text: "60 FPS\nyoro", progress: None });
+        assert!(lit(&panel, 8..28) > 100 && lit(&panel, 28..48) > 50);
+        assert_eq!(lit(&panel, 48..SIZE[1]), 0);
+        panel.draw(Content { text: "", progress: Some(0.5) });
+        assert_eq!(lit(&panel, 0..96), 0);
+        // The moving part is a quarter of the bar.
+        let bar = lit(&panel, 96..SIZE[1]);
+        assert!(bar > 340 * BAR_HEIGHT / 4 && bar < 340 * BAR_HEIGHT / 2, "{bar}");
+        panel.draw(Content { text: &"x".repeat(200), progress: Some(1.0) });
+        assert_eq!(panel.0[100 * SIZE[0] + SIZE[0] - MARGIN - 4], 255);
+        let mut rows = Vec::new();
+        panel.flip_into(&mut rows);
+        assert_eq!(rows[..SIZE[0]], panel.0[(SIZE[1] - 1) * SIZE[0]..]);
+    }
+
+    #[test]
+    fn the_panel_hangs_at_its_distance() {
+        let frustum = Frustum::from_fov(-0.7, 0.7, 0.7, -0.7);
+        let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.06, DepthRange::PAPER, [1000; 2], Eye::Right);
+        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, SIZE[1], Placement::Below));
+        assert_eq!(left.1, right.1);
+        let disparity = left.0[0] as f32 - right.0[0] as f32;
+        assert!((disparity - 0.06 / DISTANCE * pair.focal_length_pixels()).abs() <= 1.0);
+        assert!(left.0[1] + left.1[1] < 500, "below the horizon");
+    }
+}

@@ -1,0 +1,232 @@
+//! The stereo method in use, and the quality that it renders with.
+
+use std::rc::Rc;
+
+use crate::adaptive::{Controller, Load, Quality};
+use crate::error::ViewerError;
+use crate::scene_slot::Shown;
+use crate::settings::Settings;
+use yoro::eyes::{EyePair, EyesError, GuardBand};
+use yoro::gl::{Context, GlError};
+use yoro::synthesis::{ImBufferSize, Pipeline};
+use yoro_render::stereo::{self, EyeTarget, Method, StereoMethod, StereoOptions};
+
+/// The place of the one method.
+pub(crate) struct MethodSlot {
+    method: Method,
+    pipeline: Pipeline,
+    controller: Controller,
+    /// What the controller last asked for.
+    quality: Quality,
+    /// Why the eyes of the last frame were such that neither can be synthesized from the other.
+    unfit: Option<EyesError>,
+    /// The method, while there is a scene to use it on.
+    made: Option<Box<dyn StereoMethod>>,
+    /// Renders both eyes while they are unfit.
+    substitute: Option<Box<dyn StereoMethod>>,
+}
+
+impl MethodSlot {
+    /// The method of the settings, at full quality.
+    pub fn new(settings: &Settings) -> MethodSlot {
+        MethodSlot {
+            method: settings.method,
+            pipeline: settings.pipeline,
+            controller: Controller::new(),
+            quality: Quality::FULL,
+            unfit: None,
+            made: None,
+            substitute: None,
+        }
+    }
+
+    /// Method and pipeline, to come back to with [`MethodSlot::set_choice`].
+    pub fn choice(&self) -> (Method, Pipeline) {
+        (self.method, self.pipeline)
+    }
+
+    /// Chooses a method and a pipeline without making them.
+    pub fn set_choice(&mut self, (method, pipeline): (Method, Pipeline)) {
+        (self.method, self.pipeline) = (method, pipeline);
+    }
+
+    /// Chooses the pipeline of the settings, or the one that every driver can do.
+    pub fn choose_pipeline(&mut self, gl: &Context, settings: &Settings) {
+        self.pipeline = settings.pipeline;
+        if self.pipeline != Pipeline::Gather && !gl.capabilities().compute {
+            log::warn!(
+                "{} has no compute shaders (OpenGL ES 3.1), which the pipeline {} needs: gather is used instead",
+                gl.capabilities().renderer,
+                self.pipeline.name()
+            );
+            self.pipeline = Pipeline::Gather;
+        }
+    }
+
+    /// The method's name in log lines.
+    pub fn name(&self) -> &'static str {
+        self.method.name()
+    }
+
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    pub fn pipeline(&self) -> Pipeline {
+        self.pipeline
+    }
+
+    /// The pipeline's name, where the method synthesizes.
+    pub fn pipeline_name(&self) -> Option<&'static str> {
+        (self.method == Method::Yoro).then(|| self.pipeline.name())
+    }
+
+    /// The factor by which the quality reduces the render scale.
+    pub fn render_scale(&self) -> f32 {
+        self.quality.render_scale
+    }
+
+    /// Divisor of the ImBuffer's resolution, where there is an ImBuffer of the eye's size.
+    pub fn imbuffer_divisor(&self, settings: &Settings) -> Option<u32> {
+        match self.options(settings).synthesis.paper.imbuffer {
+            ImBufferSize::Divisor(n) if self.method == Method::Yoro && self.pipeline == Pipeline::Paper => {
+                Some(n)
+            }
+            _ => None,
+        }
+    }
+
+    /// The options of the settings with the pipeline and the ImBuffer that are in use.
+    fn options(&self, settings: &Settings) -> StereoOptions {
+        let mut options = settings.stereo_options(self.pipeline);
+        let (imbuffer, divisor) = (&mut options.synthesis.paper.imbuffer, self.quality.imbuffer);
+        *imbuffer = match *imbuffer {
+            ImBufferSize::Divisor(n) => ImBufferSize::Divisor(n * divisor),
+            ImBufferSize::Fixed(size) => ImBufferSize::Fixed(size.map(|n| (n / divisor).max(1))),
+        };
+        options
+    }
+
+    /// Compiles the current method, if there is a context with a scene to use it on.
+    pub fn make(&mut self, gl: Option<&Rc<Context>>, settings: &Settings) -> Result<(), GlError> {
+        if let Some(gl) = gl {
+            let (render, options) = (settings.render_settings(), self.options(settings));
+            self.made = Some(stereo::create(gl, self.method, &render, &options)?);
+            self.substitute = None;
+        }
+        self.controller.restart();
+        Ok(())
+    }
+
+    /// Compiles the method for the first time, or synthesis where the driver cannot do it.
+    pub fn make_first(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
+        let (render, options) = (settings.render_settings(), self.options(settings));
+        let made = match stereo::create(gl, self.method, &render, &options) {
+            Err(GlError::Unsupported(reason)) if self.method != Method::Yoro => {
+                log::warn!("{} is used instead of {}: {reason}", Method::Yoro.name(), self.method.name());
+                self.method = Method::Yoro;
+                stereo::create(gl, self.method, &render, &options)
+            }
+            made => made,
+        }?;
+        self.made = Some(made);
+        Ok(())
+    }
+
+    /// Drops what is on the GPU.
+    pub fn drop_made(&mut self) {
+        (self.made, self.substitute) = (None, None);
+    }
+
+    /// Goes to the next (1) or previous (-1) method of the settings' list that the driver can do.
+    pub fn switch(
+        &mut self,
+        gl: Option<&Rc<Context>>,
+        settings: &Settings,
+        step: isize,
+    ) -> Result<Option<Method>, GlError> {
+        let methods = &settings.methods;
+        let count = methods.len() as isize;
+        let at = methods.iter().position(|m| *m == self.method);
+        // A method that is not in the list comes before its first and after its last.
+        let start = at.map_or(if step > 0 { 0 } else { -1 }, |at| at as isize + step);
+        for next in (0..count).map(|i| methods[(start + i * step).rem_euclid(count) as usize]) {
+            if next == self.method {
+                continue;
+            }
+            let before = std::mem::replace(&mut self.method, next);
+            match self.make(gl, settings) {
+                Ok(()) => return Ok(Some(next)),
+                Err(GlError::Unsupported(reason)) => {
+                    log::warn!("the method {} is skipped: {reason}", next.name());
+                    self.method = before;
+                }
+                Err(error) => {
+                    self.method = before;
+                    return Err(error);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Looks whether one of the eyes can be synthesized from the other, where the method needs that.
+    pub fn judge(&mut self, pair: &EyePair) {
+        let unfit = self.method.needs_aligned_eyes().then(|| pair.synthesis(GuardBand::None).err()).flatten();
+        if unfit.as_ref().map(std::mem::discriminant) != self.unfit.as_ref().map(std::mem::discriminant) {
+            match &unfit {
+                Some(reason) => {
+                    log::warn!("both eyes are rendered instead of using {}: {reason}", self.method.name())
+                }
+                None => log::info!("{} can be used again", self.method.name()),
+            }
+        }
+        self.unfit = unfit;
+    }
+
+    /// Renders both eyes; unfit ones without synthesis, whatever the method.
+    pub fn render(
+        &mut self,
+        gl: &Rc<Context>,
+        settings: &Settings,
+        shown: &mut Shown,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), ViewerError> {
+        if self.unfit.is_some() && self.substitute.is_none() {
+            let (render, options) = (settings.render_settings(), self.options(settings));
+            self.substitute = Some(stereo::create(gl, Method::Conventional, &render, &options)?);
+        }
+        let method = if self.unfit.is_some() { &mut self.substitute } else { &mut self.made };
+        let method = method.as_mut().ok_or(ViewerError::NoContext)?;
+        Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)
+    }
+
+    /// Lets the controller judge a frame; true when the method has to be made again for another ImBuffer, which the
+    /// controller keeps rare.
+    pub fn adapt(&mut self, load: &Load, settings: &Settings) -> bool {
+        let before = std::mem::replace(&mut self.quality, self.controller.frame(load));
+        before.imbuffer != self.quality.imbuffer && self.imbuffer_divisor(settings).is_some()
+    }
+
+    /// The device's thermal headroom, where it is known.
+    pub fn set_thermal_headroom(&mut self, headroom: Option<f32>) {
+        self.controller.set_thermal_headroom(headroom);
+    }
+
+    /// Frames stop, or resume after a pause: those counted so far no longer describe the load.
+    pub fn interrupt(&mut self) {
+        self.controller.restart();
+    }
+
+    /// The controller starts over: another session begins.
+    pub fn restart_controller(&mut self) {
+        self.controller = Controller::new();
+    }
+
+    /// Back to full quality: the settings of quality are others.
+    pub fn restore_quality(&mut self) {
+        self.restart_controller();
+        self.quality = Quality::FULL;
+    }
+}

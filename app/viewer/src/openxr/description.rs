@@ -1,0 +1,84 @@
+//! What a headset's sessions should be like, and what they and their frames are like.
+
+use crate::frame::FrameReport;
+use yoro::eyes::EyePair;
+
+/// What a session should be like, besides the viewer's settings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// One view instead of two, for debugging.
+    pub mono: bool,
+    /// The activity.
+    #[cfg(target_os = "android")]
+    pub android: Option<super::graphics::Android>,
+}
+
+/// What runtime, system and session are like.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Description {
+    /// The runtime's name and version.
+    pub runtime: String,
+    /// The system's name.
+    pub system: String,
+    /// `stereo` or `mono`.
+    pub views: String,
+    /// The size in pixels that the runtime recommends for each eye.
+    pub recommended: [u32; 2],
+    /// The size in pixels of the images.
+    pub size: [u32; 2],
+    /// Format of the images.
+    pub format: String,
+    /// Whether both eyes are layers of one swapchain.
+    pub array: bool,
+    /// Whether eyes are drawn straight into the runtime's images.
+    pub direct: bool,
+    /// Format of the depth that is submitted, if any.
+    pub depth: Option<String>,
+    /// Whether the lenses hide a part of the images.
+    pub mask: bool,
+    /// Refresh rates that the display offers, in Hz, where the runtime says.
+    pub refresh_rates: Vec<f32>,
+    /// Whether controllers are used.
+    pub input: bool,
+}
+
+impl Description {
+    /// Says it in one line.
+    pub(super) fn log(&self) {
+        let [w, h] = self.size;
+        let rates: Vec<String> = self.refresh_rates.iter().map(|hz| format!("{hz:.0}")).collect();
+        log::info!(
+            "OpenXR: {}, system {}, {} views of {w}x{h} ({} as {}, {}), depth {}, hidden part {}, refresh rates {}",
+            self.runtime,
+            self.system,
+            self.views,
+            self.format,
+            if self.array { "one array" } else { "two swapchains" },
+            if self.direct { "drawn straight into" } else { "drawn aside and decoded" },
+            self.depth.as_deref().unwrap_or("none"),
+            if self.mask { "masked" } else { "unknown" },
+            if rates.is_empty() { "unknown".to_owned() } else { format!("{} Hz", rates.join(", ")) },
+        );
+    }
+}
+
+/// A frame of both eyes as the runtime gets it.
+#[derive(Clone, Debug)]
+pub struct Capture {
+    /// RGBA, rows from the bottom.
+    pub eyes: [Vec<u8>; 2],
+    /// The eyes in the scene.
+    pub pair: EyePair,
+}
+
+/// A frame that was handed to the runtime.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// What the viewer says of it; none for a frame without images, which the runtime asks for while nobody looks.
+    pub report: Option<FrameReport>,
+    /// Time that this program's thread worked on it, in milliseconds; waiting for the runtime does not count.
+    pub cpu_ms: f64,
+    /// Its images, if they were asked for.
+    pub capture: Option<Box<Capture>>,
+}

@@ -1,0 +1,222 @@
+//! The runtime's images, with a framebuffer for each of their layers.
+
+use std::num::NonZeroU32;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use openxr as xr;
+use xr::sys;
+
+use super::error::{XrError, call, check};
+use super::graphics::make_current;
+use yoro::eyes::Eye;
+use yoro::gl::{Context, Destination, ForeignTarget};
+use yoro_context::Graphics;
+
+/// A compositor that holds an image for longer than this is stuck.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// One wait; in between the program stays answerable.
+const WAIT_NS: i64 = 250_000_000;
+
+/// What the images of a swapchain are like.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kind {
+    /// GL's internal format.
+    pub format: u32,
+    pub is_depth: bool,
+    pub size: [u32; 2],
+    pub layers: u32,
+}
+
+/// A swapchain.
+pub(super) struct Images {
+    // The framebuffers go before the images.
+    /// By image and layer.
+    framebuffers: Vec<Vec<ForeignTarget>>,
+    swapchain: xr::Swapchain<xr::OpenGlEs>,
+    instance: xr::Instance,
+    layers: u32,
+    /// The image that is being drawn into.
+    current: Option<usize>,
+}
+
+impl Images {
+    /// xrCreateSwapchain.
+    pub fn new(
+        graphics: &dyn Graphics,
+        gl: &Rc<Context>,
+        session: &xr::Session<xr::OpenGlEs>,
+        kind: Kind,
+    ) -> Result<Images, XrError> {
+        let usage = match kind.is_depth {
+            true => xr::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            false => xr::SwapchainUsageFlags::COLOR_ATTACHMENT | xr::SwapchainUsageFlags::SAMPLED,
+        };
+        let swapchain = session.create_swapchain(&xr::SwapchainCreateInfo {
+            create_flags: xr::SwapchainCreateFlags::EMPTY,
+            usage_flags: usage,
+            format: kind.format,
+            sample_count: 1,
+            width: kind.size[0],
+            height: kind.size[1],
+            face_count: 1,
+            array_size: kind.layers,
+            mip_count: 1,
+        });
+        make_current(graphics)?;
+        let swapchain = call("xrCreateSwapchain", swapchain)?;
+        let images = swapchain.enumerate_images();
+        make_current(graphics)?;
+        let images = call("xrEnumerateSwapchainImages", images)?;
+        if images.is_empty() {
+            return Err(XrError::Nonsense("offers a swapchain without images".into()));
+        }
+        let framebuffers = images.into_iter().map(|image| {
+            let name = NonZeroU32::new(image)
+                .ok_or_else(|| XrError::Nonsense("offers an image without a name".into()))?;
+            let framebuffer = |layer| {
+                let layer = (kind.layers > 1).then_some(layer);
+                // SAFETY: the runtime's textures of this swapchain live as long as it; the framebuffers go first.
+                unsafe { ForeignTarget::new(gl, glow::NativeTexture(name), layer, kind.is_depth, kind.size) }
+            };
+            (0..kind.layers).map(framebuffer).collect::<Result<Vec<_>, _>>().map_err(XrError::Gl)
+        });
+        Ok(Images {
+            framebuffers: framebuffers.collect::<Result<_, _>>()?,
+            swapchain,
+            instance: session.instance().clone(),
+            layers: kind.layers,
+            current: None,
+        })
+    }
+
+    /// xrAcquireSwapchainImage and xrWaitSwapchainImage: the next image can be drawn into.
+    pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        let (fp, raw) = (self.instance.fp(), self.swapchain.as_raw());
+        let mut index = 0;
+        // SAFETY: a live swapchain; the result has a place.
+        let result = unsafe { (fp.acquire_swapchain_image)(raw, std::ptr::null(), &mut index) };
+        make_current(graphics)?;
+        check("xrAcquireSwapchainImage", result)?;
+        let info = sys::SwapchainImageWaitInfo {
+            ty: sys::SwapchainImageWaitInfo::TYPE,
+            next: std::ptr::null(),
+            timeout: xr::Duration::from_nanos(WAIT_NS),
+        };
+        let begin = Instant::now();
+        loop {
+            // SAFETY: as above.
+            let result = unsafe { (fp.wait_swapchain_image)(raw, &info) };
+            make_current(graphics)?;
+            if check("xrWaitSwapchainImage", result)? != sys::Result::TIMEOUT_EXPIRED {
+                break;
+            }
+            if begin.elapsed() > PATIENCE {
+                return Err(XrError::Call { function: "xrWaitSwapchainImage", result });
+            }
+        }
+        if index as usize >= self.framebuffers.len() {
+            return Err(XrError::Nonsense(format!("names an image number {index} that does not exist")));
+        }
+        self.current = Some(index as usize);
+        Ok(())
+    }
+
+    /// xrReleaseSwapchainImage: what was drawn can be shown.
+    pub fn release(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        if self.current.take().is_none() {
+            return Ok(());
+        }
+        // SAFETY: a live swapchain.
+        let result = unsafe {
+            (self.instance.fp().release_swapchain_image)(self.swapchain.as_raw(), std::ptr::null())
+        };
+        make_current(graphics)?;
+        check("xrReleaseSwapchainImage", result).map(drop)
+    }
+
+    /// Deletes the framebuffers; nothing more can be drawn.
+    pub fn close(&mut self) {
+        self.framebuffers.clear();
+    }
+
+    /// Where to draw a layer of the image that was acquired.
+    pub fn destination(&self, layer: u32, size: [u32; 2]) -> Option<Destination> {
+        let image = self.framebuffers.get(self.current?)?;
+        Some(image.get(layer as usize)?.part(size))
+    }
+
+    /// The lower left part of a layer, as layers of a frame name it.
+    pub fn sub_image(&self, layer: u32, size: [u32; 2]) -> sys::SwapchainSubImage {
+        sys::SwapchainSubImage {
+            swapchain: self.swapchain.as_raw(),
+            image_rect: xr::Rect2Di {
+                offset: xr::Offset2Di { x: 0, y: 0 },
+                extent: xr::Extent2Di { width: size[0] as i32, height: size[1] as i32 },
+            },
+            image_array_index: layer,
+        }
+    }
+}
+
+/// The images of both eyes: two layers of one swapchain, or two swapchains where the runtime has no arrays.
+pub(super) struct EyeImages(Vec<Images>);
+
+impl EyeImages {
+    /// `kind.layers` is found out.
+    pub fn new(
+        graphics: &dyn Graphics,
+        gl: &Rc<Context>,
+        session: &xr::Session<xr::OpenGlEs>,
+        kind: Kind,
+    ) -> Result<EyeImages, XrError> {
+        match Images::new(graphics, gl, session, Kind { layers: 2, ..kind }) {
+            Ok(images) => Ok(EyeImages(vec![images])),
+            Err(error) if error.is_loss() => Err(error),
+            Err(error) => {
+                log::info!("each eye has its own swapchain, since {error}");
+                let single = || Images::new(graphics, gl, session, Kind { layers: 1, ..kind });
+                Ok(EyeImages(vec![single()?, single()?]))
+            }
+        }
+    }
+
+    /// Whether both eyes are layers of one swapchain.
+    pub fn is_array(&self) -> bool {
+        self.0.len() == 1
+    }
+
+    fn of(&self, eye: Eye) -> (&Images, u32) {
+        match self.0.as_slice() {
+            [_, right] if eye == Eye::Right => (right, 0),
+            [left, ..] if left.layers == 1 => (left, 0),
+            _ => (&self.0[0], eye.index() as u32),
+        }
+    }
+
+    pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        self.0.iter_mut().try_for_each(|images| images.acquire(graphics))
+    }
+
+    pub fn release(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        self.0.iter_mut().try_for_each(|images| images.release(graphics))
+    }
+
+    pub fn close(&mut self) {
+        self.0.iter_mut().for_each(Images::close);
+    }
+
+    /// Where to draw both eyes.
+    pub fn destinations(&self, size: [u32; 2]) -> Option<[Destination; 2]> {
+        let [left, right] = Eye::BOTH.map(|eye| {
+            let (images, layer) = self.of(eye);
+            images.destination(layer, size)
+        });
+        Some([left?, right?])
+    }
+
+    pub fn sub_image(&self, eye: Eye, size: [u32; 2]) -> sys::SwapchainSubImage {
+        let (images, layer) = self.of(eye);
+        images.sub_image(layer, size)
+    }
+}

@@ -1,0 +1,167 @@
+//! Why a place led to no runtime.
+
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use openxr::sys;
+
+use super::places::Place;
+
+/// No place led to a runtime. Displayed, it says in one line what each of them said.
+#[derive(Debug)]
+pub struct NotFound {
+    /// The places in the order in which they were tried; a broker that offers several runtimes appears once for each.
+    pub attempts: Vec<(Place, Failure)>,
+}
+
+impl NotFound {
+    /// Whether nothing at all is installed: no place names a library. A phone is like this; anything else is a runtime
+    /// that is there and does not work.
+    pub fn nothing_installed(&self) -> bool {
+        self.attempts.iter().all(|(place, failure)| {
+            matches!(
+                (place, failure),
+                (_, Failure::NoManifest { .. } | Failure::NoBroker { .. } | Failure::NoActiveRuntime { .. })
+                    | (Place::Loader(_), Failure::Open { .. })
+            )
+        })
+    }
+}
+
+impl fmt::Display for NotFound {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "no OpenXR runtime was found")?;
+        for (i, (_, failure)) in self.attempts.iter().enumerate() {
+            write!(f, "{} {failure}", if i == 0 { ":" } else { ";" })?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for NotFound {}
+
+/// What went wrong at one place. Each says which step, and with which file, library or broker.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Failure {
+    /// There is no manifest at this path.
+    #[error("{} does not exist", path.display())]
+    NoManifest {
+        /// The manifest.
+        path: PathBuf,
+    },
+    /// The manifest cannot be read.
+    #[error("the manifest {} cannot be read ({source})", path.display())]
+    ReadManifest {
+        /// The manifest.
+        path: PathBuf,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// The manifest is not JSON, or not that of a runtime.
+    #[error("{} is not the manifest of an OpenXR runtime ({source})", path.display())]
+    Manifest {
+        /// The manifest.
+        path: PathBuf,
+        /// What is wrong where.
+        source: serde_json::Error,
+    },
+    /// The manifest is of a format that is not known.
+    #[error("the manifest {} is of format {version}; only 1.0.0 is known", path.display())]
+    ManifestVersion {
+        /// The manifest.
+        path: PathBuf,
+        /// Its `file_format_version`.
+        version: String,
+    },
+    /// No content provider answers at the authority.
+    #[error("no broker at {authority}")]
+    NoBroker {
+        /// The authority asked.
+        authority: String,
+    },
+    /// Asking the broker failed.
+    #[error("the broker {authority} cannot be asked ({reason})")]
+    Broker {
+        /// The authority asked.
+        authority: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// The broker knows no active runtime for this architecture.
+    #[error("the broker {authority} has no active runtime")]
+    NoActiveRuntime {
+        /// The authority asked.
+        authority: String,
+    },
+    /// The broker's answer lacks something.
+    #[error("the broker {authority} names a runtime without {column}")]
+    BrokerRow {
+        /// The authority asked.
+        authority: String,
+        /// The column that is missing or empty.
+        column: &'static str,
+    },
+    /// The broker says that functions are renamed and does not say how.
+    #[error("the broker {authority} does not tell the function names of {package}")]
+    BrokerFunctions {
+        /// The authority asked.
+        authority: String,
+        /// The runtime's package.
+        package: String,
+    },
+    /// The library cannot be loaded.
+    #[error("{} cannot be loaded ({reason})", library.display())]
+    Open {
+        /// The library.
+        library: PathBuf,
+        /// What the dynamic linker said.
+        reason: String,
+    },
+    /// The library is not what it should be.
+    #[error("{} has no function {symbol}: it is not an OpenXR {kind}", library.display())]
+    Symbol {
+        /// The library.
+        library: PathBuf,
+        /// The function's name, after renaming.
+        symbol: String,
+        /// `runtime` or `loader`.
+        kind: &'static str,
+    },
+    /// `xrInitializeLoaderKHR` failed.
+    #[error("{} refuses to be initialised with xrInitializeLoaderKHR ({result})", library.display())]
+    Initialize {
+        /// The library.
+        library: PathBuf,
+        /// Its answer.
+        result: sys::Result,
+    },
+    /// `xrNegotiateLoaderRuntimeInterface` failed.
+    #[error("{} refuses loader interface 1 with OpenXR 1 ({result})", library.display())]
+    Refused {
+        /// The library.
+        library: PathBuf,
+        /// Its answer.
+        result: sys::Result,
+    },
+    /// The negotiation ended with something else than what was asked for.
+    #[error(
+        "{} negotiates loader interface {interface} and OpenXR {}.{}; needed are interface 1 and OpenXR 1",
+        library.display(), api.major(), api.minor()
+    )]
+    Version {
+        /// The library.
+        library: PathBuf,
+        /// The version of the interface between loader and runtime.
+        interface: u32,
+        /// The version of the API.
+        api: sys::Version,
+    },
+    /// The negotiation succeeded, and there is nothing to call.
+    #[error("{} negotiates well and gives no xrGetInstanceProcAddr", library.display())]
+    NoEntryPoint {
+        /// The library.
+        library: PathBuf,
+    },
+}

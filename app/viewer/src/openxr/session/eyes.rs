@@ -1,0 +1,164 @@
+//! The eyes of a frame: where the runtime has them, and as the viewer's method can have them.
+
+use glam::{Quat, Vec3};
+use openxr as xr;
+
+use super::state::Session;
+use crate::openxr::error::{XrError, call};
+use crate::settings::Settings;
+use crate::viewer::Viewer;
+use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
+
+/// Half of the angle beyond which no frustum makes sense, in radians.
+const WIDEST: f32 = 1.55;
+/// A quaternion that is shorter points nowhere: what is left of it are rounding errors.
+const SHORTEST: f32 = 1e-3;
+/// Canted eyes are rendered parallel only while their frusta grow by no more than this factor on either axis.
+const MOST_GROWTH: f32 = 1.5;
+
+impl Session {
+    /// Where the eyes will be, as the runtime has them; none while it does not know.
+    pub(super) fn locate(
+        &self,
+        settings: &Settings,
+        time: xr::Time,
+        size: [u32; 2],
+    ) -> Result<Option<EyePair>, XrError> {
+        let (flags, views) =
+            call("xrLocateViews", self.session.locate_views(self.views, time, &self.spaces.ahead))?;
+        if !flags.contains(xr::ViewStateFlags::ORIENTATION_VALID | xr::ViewStateFlags::POSITION_VALID) {
+            return Ok(None);
+        }
+        let [left, right] = match views.as_slice() {
+            [left, right] => [left, right],
+            [one] => [one, one],
+            _ => return Err(XrError::Nonsense(format!("locates {} views", views.len()))),
+        };
+        let mut frusta = [Frustum { left: 0.0, right: 0.0, bottom: 0.0, top: 0.0 }; 2];
+        for (frustum, view) in frusta.iter_mut().zip([left, right]) {
+            *frustum = to_frustum(&view.fov)
+                .ok_or_else(|| XrError::Nonsense(format!("gives an eye the field of view {:?}", view.fov)))?;
+        }
+        // A pose that is none is one that is not known, whatever the flags say.
+        let (Some(left), Some(right)) = (to_pose(&left.pose), to_pose(&right.pose)) else { return Ok(None) };
+        let (poses, dominant) = ([left, right], settings.dominant);
+        Ok(Some(EyePair { poses, frusta, depth: DepthRange::PAPER, size, dominant }))
+    }
+
+    /// Eyes that the viewer's method can do, near those of the runtime.
+    pub(super) fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
+        let reason = match viewer.method().needs_aligned_eyes() {
+            true => native.synthesis(GuardBand::None).err(),
+            false => None,
+        };
+        let aligned = match reason {
+            None => None,
+            Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(native.evened()),
+            Some(EyesError::Canted { .. } | EyesError::OffAxis { .. }) => native.parallelized(),
+            Some(_) => None,
+        };
+        let growth = |eyes: &EyePair| {
+            let of =
+                |eye: usize, size: fn(&Frustum) -> f32| size(&eyes.frusta[eye]) / size(&native.frusta[eye]);
+            [of(0, Frustum::width), of(1, Frustum::width), of(0, Frustum::height), of(1, Frustum::height)]
+                .into_iter()
+                .fold(1.0, f32::max)
+        };
+        let aligned =
+            aligned.filter(|eyes| growth(eyes) <= MOST_GROWTH && eyes.synthesis(GuardBand::None).is_ok());
+        let kind = std::mem::discriminant::<EyesError>;
+        if reason.as_ref().map(kind) != self.realigned.as_ref().map(kind) {
+            if let (Some(eyes), Some(reason)) = (&aligned, &reason) {
+                let more = (growth(eyes) - 1.0) * 100.0;
+                log::info!(
+                    "{}: both eyes are rendered parallel and alike, in frusta up to {more:.0} % wider, and the compositor turns them back",
+                    match reason {
+                        EyesError::Canted { degrees } =>
+                            format!("the eyes are canted by {degrees:.1} degrees"),
+                        EyesError::OffAxis { off_axis } =>
+                            format!("the eyes are {off_axis:.4} m off one line"),
+                        EyesError::Rows { .. } => "the rows of the eyes do not align".into(),
+                        _ => "the frusta of the eyes differ in size".into(),
+                    }
+                );
+            }
+            self.realigned = reason;
+        }
+        aligned.unwrap_or(native)
+    }
+}
+
+/// A pose of this library; none where the numbers are no pose. The specification lets a runtime be off unit length by a
+/// hundredth, and some are off by more, so the quaternion is normalised.
+pub(super) fn to_pose(pose: &xr::Posef) -> Option<Pose> {
+    let (p, q) = (pose.position, pose.orientation);
+    let (position, orientation) = (Vec3::new(p.x, p.y, p.z), Quat::from_xyzw(q.x, q.y, q.z, q.w));
+    let length = orientation.length();
+    let is_pose = position.is_finite() && length.is_finite() && length > SHORTEST;
+    is_pose.then(|| Pose { position, orientation: orientation / length })
+}
+
+/// A pose of OpenXR.
+pub(super) fn from_pose(pose: &Pose) -> xr::Posef {
+    let (p, q) = (pose.position, pose.orientation);
+    xr::Posef {
+        position: xr::Vector3f { x: p.x, y: p.y, z: p.z },
+        orientation: xr::Quaternionf { x: q.x, y: q.y, z: q.z, w: q.w },
+    }
+}
+
+/// None for a field of view that no image can have.
+fn to_frustum(fov: &xr::Fovf) -> Option<Frustum> {
+    let angles = [fov.angle_left, fov.angle_right, fov.angle_down, fov.angle_up];
+    let fits = angles.iter().all(|angle| angle.abs() < WIDEST);
+    let frustum = Frustum::from_fov(fov.angle_left, fov.angle_right, fov.angle_up, fov.angle_down);
+    (fits && frustum.width() > 0.0 && frustum.height() > 0.0).then_some(frustum)
+}
+
+/// A field of view.
+pub(super) fn from_frustum(frustum: &Frustum) -> xr::Fovf {
+    xr::Fovf {
+        angle_left: frustum.left.atan(),
+        angle_right: frustum.right.atan(),
+        angle_up: frustum.top.atan(),
+        angle_down: frustum.bottom.atan(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quaternions_are_normalised_and_those_that_are_none_refused() {
+        let pose = |w: f32, x: f32| xr::Posef {
+            orientation: xr::Quaternionf { w, x: 0.0, y: 0.0, z: 0.0 },
+            position: xr::Vector3f { x, y: 1.6, z: 0.0 },
+        };
+        for w in [0.9, 1.0, 1.02, -3.0] {
+            let orientation = to_pose(&pose(w, 0.0)).unwrap().orientation;
+            assert!(orientation.is_normalized() && orientation.angle_between(Quat::IDENTITY) < 1e-3, "{w}");
+        }
+        for none in [pose(0.0, 0.0), pose(f32::NAN, 0.0), pose(f32::INFINITY, 0.0), pose(1.0, f32::NAN)] {
+            assert_eq!(to_pose(&none), None, "{none:?}");
+        }
+    }
+
+    #[test]
+    fn fields_of_view_that_are_none_are_refused() {
+        let fov = xr::Fovf { angle_left: -0.9, angle_right: 0.7, angle_up: 0.8, angle_down: -0.6 };
+        let frustum = to_frustum(&fov).unwrap();
+        assert!((frustum.left + 0.9f32.tan()).abs() < 1e-6 && frustum.bottom < 0.0);
+        let back = from_frustum(&frustum);
+        assert!((back.angle_left - fov.angle_left).abs() < 1e-6 && (back.angle_up - 0.8).abs() < 1e-6);
+        for wrong in [
+            xr::Fovf { angle_left: 0.8, ..fov },
+            xr::Fovf { angle_up: -0.7, ..fov },
+            xr::Fovf { angle_right: f32::NAN, ..fov },
+            xr::Fovf { angle_right: 1.6, ..fov },
+            xr::Fovf::default(),
+        ] {
+            assert_eq!(to_frustum(&wrong), None, "{wrong:?}");
+        }
+    }
+}

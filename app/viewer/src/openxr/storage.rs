@@ -1,0 +1,216 @@
+//! How finished images get into the runtime's images with the colours that they have.
+//!
+//! Finished images are display-referred sRGB. The runtime's images should be stored as just that (SRGB8_ALPHA8), but
+//! OpenGL ES encodes what is written to such a framebuffer once more, unless GL_EXT_sRGB_write_control turns it off.
+//! Where it does (which is tried out once, for all ways of writing), eyes are drawn straight into the images;
+//! elsewhere they are drawn aside and decoded on their way.
+
+use std::rc::Rc;
+
+use glow::HasContext as _;
+
+use yoro::gl::{
+    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+};
+use yoro_render::stereo::{EyeTarget, StereoFrame};
+
+/// Formats of eye images, best first: stored as sRGB, or with bits to spare for linear colour, or neither.
+pub(super) const COLOR_FORMATS: [u32; 4] = [glow::SRGB8_ALPHA8, glow::RGBA16F, glow::RGB10_A2, glow::RGBA8];
+/// Formats of depth images, best first: most are what the g-buffer has.
+pub(super) const DEPTH_FORMATS: [u32; 5] = [
+    glow::DEPTH_COMPONENT24,
+    glow::DEPTH24_STENCIL8,
+    glow::DEPTH_COMPONENT32F,
+    glow::DEPTH32F_STENCIL8,
+    glow::DEPTH_COMPONENT16,
+];
+
+/// The name of a format in GL.
+pub(super) fn format_name(format: u32) -> String {
+    let name = match format {
+        glow::SRGB8_ALPHA8 => "SRGB8_ALPHA8",
+        glow::RGBA16F => "RGBA16F",
+        glow::RGB10_A2 => "RGB10_A2",
+        glow::RGBA8 => "RGBA8",
+        glow::DEPTH_COMPONENT24 => "DEPTH_COMPONENT24",
+        glow::DEPTH24_STENCIL8 => "DEPTH24_STENCIL8",
+        glow::DEPTH_COMPONENT32F => "DEPTH_COMPONENT32F",
+        glow::DEPTH32F_STENCIL8 => "DEPTH32F_STENCIL8",
+        glow::DEPTH_COMPONENT16 => "DEPTH_COMPONENT16",
+        other => return format!("0x{other:x}"),
+    };
+    name.into()
+}
+
+/// The first of `wanted` that is among `offered`.
+pub(super) fn choose(wanted: &[u32], offered: &[u32]) -> Option<u32> {
+    wanted.iter().copied().find(|format| offered.contains(format))
+}
+
+/// Whether the driver can be told not to encode what is written to sRGB framebuffers.
+fn has_control(gl: &Context) -> bool {
+    gl.raw().supported_extensions().contains("GL_EXT_sRGB_write_control")
+}
+
+/// Turns encoding on, which is how OpenGL ES begins, or off. Only where [`has_control`].
+fn set_encoding(gl: &Context, on: bool) {
+    // SAFETY: a valid enum with the extension.
+    unsafe {
+        match on {
+            true => gl.raw().enable(glow::FRAMEBUFFER_SRGB),
+            false => gl.raw().disable(glow::FRAMEBUFFER_SRGB),
+        }
+    }
+}
+
+/// How eyes get into the runtime's images.
+pub(super) struct Storage {
+    gl: Rc<Context>,
+    /// Where eyes are drawn first, and the pass that decodes them.
+    detour: Option<(StereoFrame, Program)>,
+}
+
+impl Storage {
+    /// Finds the way for images of a format.
+    pub fn new(gl: &Rc<Context>, format: u32) -> Result<Storage, GlError> {
+        let is_direct = format == glow::SRGB8_ALPHA8 && has_control(gl) && stores_as_written(gl)?;
+        Storage::by(gl, is_direct)
+    }
+
+    fn by(gl: &Rc<Context>, is_direct: bool) -> Result<Storage, GlError> {
+        let detour = (!is_direct).then(|| -> Result<_, GlError> {
+            let program = Program::new(gl, ShaderSource::Screen("openxr/transfer.frag"), &[])?;
+            Ok((StereoFrame::new(gl, [1, 1])?, program))
+        });
+        Ok(Storage { gl: gl.clone(), detour: detour.transpose()? })
+    }
+
+    /// Whether eyes are drawn straight into the runtime's images.
+    pub fn is_direct(&self) -> bool {
+        self.detour.is_none()
+    }
+
+    /// Begins a frame: where to draw the eyes that are to end up in `images`.
+    pub fn begin(&mut self, images: [Destination; 2]) -> Result<[Destination; 2], GlError> {
+        match &mut self.detour {
+            None => {
+                set_encoding(&self.gl, false);
+                Ok(images)
+            }
+            Some((frame, _)) => {
+                frame.resize(images[0].size)?;
+                Ok(frame.targets().map(|EyeTarget { color, .. }| color))
+            }
+        }
+    }
+
+    /// Ends a frame.
+    pub fn end(&self, images: [Destination; 2]) {
+        let Some((frame, program)) = &self.detour else {
+            set_encoding(&self.gl, true);
+            return;
+        };
+        self.gl.pass("transfer", || {
+            // Synthesis turns it off.
+            if has_control(&self.gl) {
+                set_encoding(&self.gl, true);
+            }
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            for (eye, to) in yoro::eyes::Eye::BOTH.into_iter().zip(images) {
+                self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+                program.bind().texture_of("source", 0, frame.eye(eye).color(0));
+                self.gl.draw_screen();
+            }
+        });
+    }
+}
+
+/// Tries out whether an sRGB framebuffer keeps the bits of what is drawn, cleared, and copied into it, with encoding
+/// turned off.
+fn stores_as_written(gl: &Rc<Context>) -> Result<bool, GlError> {
+    const SIZE: [u32; 2] = [4, 4];
+    const GREY: [f32; 4] = [100.0 / 255.0, 100.0 / 255.0, 100.0 / 255.0, 1.0];
+    let target = |format| RenderTarget::new(gl, SIZE, &[(format, Filter::Nearest)], None);
+    let (plain, first, second) =
+        (target(Format::Rgba8)?, target(Format::Srgb8Alpha8)?, target(Format::Srgb8Alpha8)?);
+    let draw = Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
+    let is_grey = |target: &RenderTarget| {
+        let pixels = target.read_rgba8(0, [0, 0], SIZE);
+        pixels.chunks_exact(4).all(|p| p[..3].iter().all(|c| c.abs_diff(100) <= 1))
+    };
+    set_encoding(gl, false);
+    plain.bind();
+    gl.fill([0, 0], SIZE, GREY);
+    first.bind();
+    gl.fill([0, 0], SIZE, GREY);
+    let mut fine = is_grey(&first);
+    gl.copy(&Destination::whole(&plain), &Destination::whole(&second));
+    fine &= is_grey(&second);
+    gl.copy(&Destination::whole(&second), &Destination::whole(&first));
+    fine &= is_grey(&first);
+    gl.set_raster_state(&RasterState::SCREEN);
+    second.bind();
+    gl.fill([0, 0], SIZE, [0.0; 4]);
+    // The panel's shader shows its texture's red channel as grey.
+    draw.bind()
+        .texture_of("panel", 0, plain.color(0))
+        .set("rectangle", glam::Vec4::new(0.0, 0.0, 4.0, 4.0))
+        .set("used", 1.0);
+    gl.draw_screen();
+    fine &= is_grey(&second);
+    set_encoding(gl, true);
+    Ok(fine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use yoro::eyes::Eye;
+    use yoro_context::{Backend, Headless};
+
+    /// Both ways end with the same bits, in a framebuffer that is sRGB as in one that is not.
+    #[test]
+    fn colours_arrive_as_they_are() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let objects = gl.object_count();
+        let size = [64, 4];
+        for is_direct in [true, false] {
+            if is_direct && !Storage::new(gl, glow::SRGB8_ALPHA8).unwrap().is_direct() {
+                eprintln!("SKIPPED: this driver always encodes");
+                continue;
+            }
+            let mut storage = Storage::by(gl, is_direct).unwrap();
+            let image = || RenderTarget::new(gl, size, &[(Format::Srgb8Alpha8, Filter::Nearest)], None);
+            let images = [image().unwrap(), image().unwrap()];
+            let to = [Destination::whole(&images[0]), Destination::whole(&images[1])];
+            let eyes = storage.begin(to).unwrap();
+            for x in 0..64u32 {
+                for (eye, way) in Eye::BOTH.into_iter().zip(eyes) {
+                    gl.bind_framebuffer(way.framebuffer, way.origin, way.size);
+                    let grey = (x * 4 + eye.index() as u32) as f32 / 255.0;
+                    gl.fill([x, 0], [1, 4], [grey, grey, grey, 1.0]);
+                }
+            }
+            storage.end(to);
+            for eye in Eye::BOTH {
+                let row = images[eye.index()].read_rgba8(0, [0, 1], [64, 1]);
+                for (x, pixel) in row.chunks_exact(4).enumerate() {
+                    let expected = (x * 4 + eye.index()) as u8;
+                    assert!(
+                        pixel[0].abs_diff(expected) <= 1,
+                        "direct {is_direct}: {} for {expected}",
+                        pixel[0]
+                    );
+                }
+            }
+        }
+        assert_eq!((gl.object_count(), gl.take_errors()), (objects, None));
+    }
+
+    #[test]
+    fn the_best_format_is_chosen() {
+        assert_eq!(choose(&COLOR_FORMATS, &[glow::RGBA8, glow::SRGB8_ALPHA8]), Some(glow::SRGB8_ALPHA8));
+        assert_eq!(choose(&DEPTH_FORMATS, &[glow::RGBA8]), None);
+    }
+}

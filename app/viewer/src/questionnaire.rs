@@ -1,0 +1,186 @@
+//! Questions at the end of a session, answered on a slider: by turning the head, or with the volume keys.
+
+use std::f32::consts::{PI, TAU};
+use std::fmt::Write;
+
+use glam::{Quat, Vec3};
+
+/// Turn of the head in radians that moves the marker from one end to the other.
+const SPAN: f32 = 0.7;
+/// Ratings are multiples of this.
+const STEP: f32 = 0.5;
+/// A marker that was moved and then left where it is for so long, in nanoseconds, is the answer: some viewers have no
+/// button.
+const PATIENCE_NS: i64 = 5_000_000_000;
+
+/// The questions that are still open, and the marker on the slider of the first of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Questionnaire {
+    /// In reverse order.
+    questions: Vec<String>,
+    best: f32,
+    /// Between 1 and `best`, not rounded.
+    value: f32,
+    /// Where the head pointed last, in radians to the left.
+    heading: Option<f32>,
+    /// When the rating changed last; none until it is moved.
+    moved_ns: Option<i64>,
+}
+
+impl Questionnaire {
+    /// Ratings go from 1 to `best`; the marker starts in the middle.
+    pub fn new(questions: &[String], best: u32) -> Questionnaire {
+        let mut questionnaire = Questionnaire {
+            questions: questions.iter().rev().cloned().collect(),
+            best: best as f32,
+            value: 0.0,
+            heading: None,
+            moved_ns: None,
+        };
+        questionnaire.center();
+        questionnaire
+    }
+
+    fn center(&mut self) {
+        self.value = (1.0 + self.best) / 2.0;
+        self.heading = None;
+        self.moved_ns = None;
+    }
+
+    /// Whether all questions are answered.
+    pub fn is_done(&self) -> bool {
+        self.questions.is_empty()
+    }
+
+    /// What the marker stands for.
+    pub fn rating(&self) -> f32 {
+        (self.value / STEP).round() * STEP
+    }
+
+    /// Where the marker is, from 0 to 1.
+    pub fn position(&self) -> f32 {
+        (self.rating() - 1.0) / (self.best - 1.0)
+    }
+
+    /// The head points elsewhere: to the right for a better rating.
+    pub fn look(&mut self, orientation: Quat, now_ns: i64) {
+        let ahead = orientation * Vec3::NEG_Z;
+        let heading = (-ahead.x).atan2(-ahead.z);
+        let before = self.heading.replace(heading).unwrap_or(heading);
+        let turn = (heading - before + PI).rem_euclid(TAU) - PI;
+        self.shift(-turn / SPAN * (self.best - 1.0), now_ns);
+    }
+
+    /// Moves the marker by steps.
+    pub fn nudge(&mut self, steps: f32, now_ns: i64) {
+        self.value = self.rating();
+        self.shift(steps * STEP, now_ns);
+    }
+
+    fn shift(&mut self, change: f32, now_ns: i64) {
+        let before = self.rating();
+        self.value = (self.value + change).clamp(1.0, self.best);
+        if self.rating() != before {
+            self.moved_ns = Some(now_ns);
+        }
+    }
+
+    /// Straight ahead will be elsewhere, which is not a turn of the head.
+    pub fn recenter(&mut self) {
+        self.heading = None;
+    }
+
+    /// Whether the marker was moved and then left alone.
+    pub fn has_settled(&self, now_ns: i64) -> bool {
+        self.moved_ns.is_some_and(|moved| now_ns - moved >= PATIENCE_NS)
+    }
+
+    /// Takes the marker for the answer: the question and its rating. The next question is asked.
+    pub fn answer(&mut self) -> Option<(String, f32)> {
+        let answer = (self.questions.pop()?, self.rating());
+        self.center();
+        Some(answer)
+    }
+
+    /// What the panel says.
+    pub fn write(&self, text: &mut String) {
+        text.clear();
+        let Some(question) = self.questions.last() else { return };
+        text.extend(question.chars().map(|c| if c == '-' { ' ' } else { c }));
+        let (rating, best) = (self.rating(), self.best);
+        write!(
+            text,
+            "?\n1 (worst) to {best} (best): {rating}\nturn your head to change it\ntap or trigger when done"
+        )
+        .expect("a string takes everything");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SECOND: i64 = 1_000_000_000;
+
+    fn asked(best: u32) -> Questionnaire {
+        Questionnaire::new(&["image-quality".into(), "comfort".into()], best)
+    }
+
+    #[test]
+    fn questions_come_in_order_each_from_the_middle() {
+        let mut q = asked(5);
+        assert_eq!((q.rating(), q.position()), (3.0, 0.5));
+        q.nudge(3.0, 0);
+        assert_eq!(q.answer(), Some(("image-quality".into(), 4.5)));
+        assert_eq!(q.rating(), 3.0);
+        q.nudge(-1.0, 0);
+        assert!(!q.is_done());
+        assert_eq!(q.answer(), Some(("comfort".into(), 2.5)));
+        assert!(q.is_done());
+        assert_eq!(q.answer(), None);
+    }
+
+    #[test]
+    fn a_turn_to_the_right_is_better_and_ends_are_ends() {
+        let mut q = asked(5);
+        let look = |q: &mut Questionnaire, left: f32| q.look(Quat::from_rotation_y(left), 0);
+        // Where the head points at first is not a turn.
+        look(&mut q, 3.0);
+        assert_eq!(q.rating(), 3.0);
+        look(&mut q, 3.0 - SPAN / 4.0);
+        assert_eq!(q.rating(), 4.0);
+        look(&mut q, 3.0 - 2.0 * SPAN);
+        assert_eq!((q.rating(), q.position()), (5.0, 1.0));
+        // From the end it goes back at once.
+        look(&mut q, 3.0 - 1.5 * SPAN);
+        assert_eq!(q.rating(), 3.0);
+        // Across the back, where the angle starts over.
+        let mut q = asked(5);
+        look(&mut q, PI - 0.01);
+        look(&mut q, PI - 0.01 + SPAN / 4.0);
+        assert_eq!(q.rating(), 2.0);
+    }
+
+    #[test]
+    fn only_a_marker_that_was_moved_settles() {
+        let mut q = asked(7);
+        assert!(!q.has_settled(100 * SECOND));
+        q.nudge(1.0, 2 * SECOND);
+        assert!(!q.has_settled(6 * SECOND) && q.has_settled(7 * SECOND));
+        q.look(Quat::IDENTITY, 6 * SECOND);
+        // Too little to change the rating.
+        q.look(Quat::from_rotation_y(0.01), 6 * SECOND);
+        assert!(q.has_settled(7 * SECOND));
+        q.nudge(1.0, 7 * SECOND);
+        assert!(!q.has_settled(8 * SECOND));
+    }
+
+    #[test]
+    fn the_panel_says_it_in_four_lines() {
+        let mut text = String::new();
+        asked(5).write(&mut text);
+        let lines: Vec<_> = text.lines().collect();
+        assert_eq!(lines[..2], ["image quality?", "1 (worst) to 5 (best): 3"]);
+        assert!(lines.len() == 4 && lines.iter().all(|line| line.len() <= crate::hud::COLUMNS));
+    }
+}

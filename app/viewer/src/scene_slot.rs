@@ -1,0 +1,166 @@
+//! The scene: on its way, in view, or failed.
+
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use glam::{Quat, Vec3};
+
+use crate::frame::SceneState;
+use crate::loading::{Loader, SceneSource};
+use yoro::eyes::Pose;
+use yoro::gl::{Context, GlError};
+use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_scene::{Scene, Viewpoint};
+
+/// A scene on the GPU and what renders it.
+pub(crate) struct Shown {
+    pub scene: GpuScene,
+    pub renderer: Renderer,
+}
+
+impl Shown {
+    /// Uploads a scene and makes its renderer.
+    pub fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Result<Shown, GlError> {
+        let scene = GpuScene::upload(gl, scene)?;
+        Ok(Shown { renderer: Renderer::new(gl, settings, &scene)?, scene })
+    }
+}
+
+/// The place of the one scene. While another is being loaded, the old one stays in view.
+pub(crate) struct SceneSlot {
+    source: SceneSource,
+    name: String,
+    loader: Option<Loader>,
+    failure: Option<String>,
+    viewpoints: Vec<Viewpoint>,
+    /// Which of them the viewer stands at; any number until they are known.
+    viewpoint: usize,
+    shown: Option<Shown>,
+}
+
+impl SceneSlot {
+    /// Starts to load a scene.
+    pub fn new(source: SceneSource, viewpoint: usize) -> SceneSlot {
+        SceneSlot {
+            loader: Some(Loader::start(&source)),
+            name: source.name(),
+            source,
+            failure: None,
+            viewpoints: Vec::new(),
+            viewpoint,
+            shown: None,
+        }
+    }
+
+    /// Starts to load another scene.
+    pub fn replace(&mut self, source: SceneSource, viewpoint: usize) {
+        self.loader = Some(Loader::start(&source));
+        self.name = source.name();
+        self.source = source;
+        self.failure = None;
+        self.viewpoint = viewpoint;
+    }
+
+    /// Starts to load the scene again, unless it is on its way or has failed: there is a new GL context.
+    pub fn reload(&mut self) {
+        if self.loader.is_none() && self.failure.is_none() {
+            self.loader = Some(Loader::start(&self.source));
+        }
+    }
+
+    /// The scene, once, when it is loaded.
+    pub fn take_loaded(&mut self) -> Option<Result<Scene, String>> {
+        let result = self.loader.as_ref()?.poll()?;
+        self.loader = None;
+        Some(result)
+    }
+
+    /// Takes over the viewpoints of a scene that is about to come into view.
+    pub fn set_viewpoints(&mut self, viewpoints: &[Viewpoint]) {
+        self.viewpoints = viewpoints.to_vec();
+        self.go_to(self.viewpoint);
+    }
+
+    /// Brings a scene into view.
+    pub fn show(&mut self, shown: Shown) {
+        self.shown = Some(shown);
+    }
+
+    /// Drops what is on the GPU.
+    pub fn drop_shown(&mut self) {
+        self.shown = None;
+    }
+
+    /// Notes in one sentence why the scene cannot be shown.
+    pub fn fail(&mut self, reason: String) {
+        self.failure = Some(reason);
+    }
+
+    /// What is in view.
+    pub fn shown(&mut self) -> Option<&mut Shown> {
+        self.shown.as_mut()
+    }
+
+    pub fn is_shown(&self) -> bool {
+        self.shown.is_some()
+    }
+
+    pub fn is_loading(&self) -> bool {
+        self.loader.is_some()
+    }
+
+    pub fn state(&self) -> SceneState {
+        match (&self.shown, &self.failure) {
+            (Some(_), _) => SceneState::Ready,
+            (None, Some(_)) => SceneState::Failed,
+            (None, None) => SceneState::Loading,
+        }
+    }
+
+    pub fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+
+    /// The name of the scene that is in view or on its way.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The scene after this one, if there is another.
+    pub fn next(&self, seed: u64, folders: &[PathBuf]) -> Option<SceneSource> {
+        let sources = SceneSource::all(seed, folders);
+        let at = sources.iter().position(|source| *source == self.source);
+        let next = at.map_or(0, |at| at + 1) % sources.len().max(1);
+        sources.into_iter().nth(next).filter(|source| *source != self.source)
+    }
+
+    /// Number of the viewpoint.
+    pub fn viewpoint(&self) -> usize {
+        self.viewpoint
+    }
+
+    /// Goes to a viewpoint; beyond the last it starts over.
+    pub fn go_to(&mut self, viewpoint: usize) {
+        self.viewpoint = viewpoint % self.viewpoints.len().max(1);
+    }
+
+    /// Goes to the next viewpoint, if there is another.
+    pub fn next_viewpoint(&mut self) -> Option<usize> {
+        (self.viewpoints.len() > 1).then(|| {
+            self.go_to(self.viewpoint + 1);
+            self.viewpoint
+        })
+    }
+
+    /// Where something is in the scene that is `pose` as seen from the viewpoint: metres, Y up, -Z ahead.
+    pub fn place(&self, pose: Pose) -> Pose {
+        let viewpoint = self.viewpoints.get(self.viewpoint).map_or(Pose::IDENTITY, Viewpoint::pose);
+        // Gravity says what is level; of the viewpoint only the heading is left.
+        let ahead = viewpoint.orientation * Vec3::NEG_Z;
+        let heading = Quat::from_rotation_y((-ahead.x).atan2(-ahead.z));
+        Pose {
+            position: viewpoint.position + heading * pose.position,
+            orientation: heading * pose.orientation,
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! What a session counts and asks.
+
+use glam::Quat;
+
+use crate::questionnaire::Questionnaire;
+use crate::settings::Settings;
+use crate::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
+use yoro::gl::PassTime;
+
+/// What is counted and asked from the time that a scene comes into view to the end of the session.
+#[derive(Default)]
+pub(crate) struct Tally {
+    telemetry: Telemetry,
+    last_line: Option<Line>,
+    celsius: Option<f32>,
+    /// When the scene came into view.
+    begin_ns: Option<i64>,
+    /// What is asked after the session; none before its end.
+    questionnaire: Option<Questionnaire>,
+    ratings: Vec<Rating>,
+    is_over: bool,
+}
+
+impl Tally {
+    /// A scene comes into view; true when a session begins with it. One that is only back after a lost context goes
+    /// on.
+    pub fn begin(&mut self, now_ns: i64) -> bool {
+        let is_new = self.begin_ns.is_none();
+        if is_new {
+            self.telemetry = Telemetry::default();
+            self.begin_ns = Some(now_ns);
+        }
+        is_new
+    }
+
+    /// Another scene is on its way: the session that begins with it is a new one.
+    pub fn expect_scene(&mut self) {
+        self.begin_ns = None;
+        self.reopen();
+    }
+
+    /// Takes back the end of the session, and its questions.
+    pub fn reopen(&mut self) {
+        self.questionnaire = None;
+        self.is_over = false;
+    }
+
+    /// Frames stop; the time until the next one is not counted.
+    pub fn pause(&mut self) {
+        self.telemetry.pause();
+    }
+
+    /// Counts a frame, with the GPU times of `timed` earlier ones; how many refreshes it was late.
+    pub fn frame(&mut self, now_ns: i64, refresh_hz: f32, passes: &[PassTime], timed: u32) -> u32 {
+        self.telemetry.gpu(passes, timed);
+        self.telemetry.frame(now_ns, refresh_hz)
+    }
+
+    /// Whether a second has passed since the last line.
+    pub fn is_line_due(&self, now_ns: i64) -> bool {
+        self.telemetry.is_due(now_ns)
+    }
+
+    /// Ends a second.
+    pub fn line(&mut self, now_ns: i64, viewer: &ViewerState, device: &DeviceState) -> Line {
+        self.celsius = device.skin_celsius.or(device.battery_celsius);
+        let line = self.telemetry.line(now_ns, viewer, device);
+        self.last_line = Some(line.clone());
+        line
+    }
+
+    /// The last second.
+    pub fn last_line(&self) -> Option<&Line> {
+        self.last_line.as_ref()
+    }
+
+    /// The device's temperature in degrees Celsius.
+    pub fn celsius(&self) -> Option<f32> {
+        self.celsius
+    }
+
+    pub fn summary(&self, now_ns: i64) -> SessionSummary {
+        self.telemetry.summary(now_ns)
+    }
+
+    /// Whether the session's time is up.
+    pub fn is_time_up(&self, settings: &Settings, now_ns: i64) -> bool {
+        let shown_ns = self.begin_ns.map_or(0, |begin| now_ns - begin);
+        settings.duration.is_some_and(|s| shown_ns as f64 >= s as f64 * 1e9)
+    }
+
+    /// Asks the questions of the settings, if they are not being asked already.
+    pub fn ask(&mut self, settings: &Settings) {
+        let Settings { questions, best_rating, .. } = settings;
+        self.questionnaire.get_or_insert_with(|| Questionnaire::new(questions, *best_rating));
+    }
+
+    /// The question in view.
+    pub fn question(&self) -> Option<&Questionnaire> {
+        self.questionnaire.as_ref().filter(|questions| !questions.is_done())
+    }
+
+    /// The question in view, to be answered.
+    pub fn question_mut(&mut self) -> Option<&mut Questionnaire> {
+        self.questionnaire.as_mut().filter(|questions| !questions.is_done())
+    }
+
+    /// The head has turned.
+    pub fn look(&mut self, orientation: Quat, now_ns: i64) {
+        if let Some(questions) = &mut self.questionnaire {
+            questions.look(orientation, now_ns);
+        }
+    }
+
+    /// Keeps an answer.
+    pub fn keep(&mut self, rating: Rating) {
+        self.ratings.push(rating);
+    }
+
+    pub fn ratings(&self) -> &[Rating] {
+        &self.ratings
+    }
+
+    /// Whether the session is over.
+    pub fn is_over(&self) -> bool {
+        self.is_over
+    }
+
+    /// Ends the session.
+    pub fn end(&mut self) {
+        self.is_over = true;
+    }
+}

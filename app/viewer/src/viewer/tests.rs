@@ -1,0 +1,311 @@
+//! The viewer on a real GL context.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use glam::{Quat, Vec3};
+
+use super::*;
+use crate::cardboard::{Cardboard, HeldHead, MotionSample, Rotation, Screen};
+use yoro::gl::{Filter, Format, RenderTarget};
+use yoro_context::{Backend, Headless};
+
+const WINDOW: [u32; 2] = [320, 180];
+const PERIOD_NS: i64 = 16_666_667;
+
+fn screen() -> Screen {
+    // 110 x 62 mm.
+    Screen { size: WINDOW, dpi: [74.0; 2], rotation: Rotation::LandscapeLeft }
+}
+
+fn window(gl: &Rc<Context>) -> RenderTarget {
+    RenderTarget::new(gl, WINDOW, &[(Format::Rgba8, Filter::Nearest)], None).unwrap()
+}
+
+fn settings(pairs: &[&str]) -> Settings {
+    let cheap =
+        ["scene=prototype", "viewer=v1", "shadow-map=0", "ssao=off", "bloom=false", "render-scale=0.5"];
+    Settings::resolve(None, cheap.iter().chain(pairs)).unwrap()
+}
+
+/// A display and a clock for a viewer.
+struct Run {
+    viewer: Cardboard,
+    window: RenderTarget,
+    now_ns: i64,
+}
+
+impl Run {
+    fn new(gl: &Rc<Context>, pairs: &[&str]) -> Run {
+        let mut viewer = Cardboard::new(settings(pairs), screen(), &[]).unwrap();
+        viewer.attach(gl.clone()).unwrap();
+        Run { viewer, window: window(gl), now_ns: 0 }
+    }
+
+    fn frame(&mut self) -> FrameReport {
+        self.now_ns += PERIOD_NS;
+        let timing = FrameTiming {
+            now_ns: self.now_ns,
+            expected_display_ns: self.now_ns + PERIOD_NS,
+            refresh_hz: 60.0,
+        };
+        self.viewer.frame(&Destination::whole(&self.window), &timing).unwrap()
+    }
+
+    fn load(&mut self) {
+        while self.viewer.viewer().scene_state() == SceneState::Loading {
+            self.viewer.viewer_mut().poll_scene();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn image(&self) -> Vec<u8> {
+        self.window.read_rgba8(0, [0, 0], WINDOW)
+    }
+}
+
+#[test]
+fn from_loading_to_the_end_of_a_session() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let mut run = Run::new(gl, &["duration=0.5", "auto-exit=true", "adaptive=true"]);
+    assert_eq!(run.frame().scene, SceneState::Loading);
+    let loading = run.image();
+    assert!(loading.chunks_exact(4).any(|p| p[0] > 200), "the progress bar");
+    run.load();
+    let (mut over, mut lines) = (0, Vec::new());
+    for i in 0..64 {
+        let report = run.frame();
+        assert_eq!((report.scene, report.late_refreshes), (SceneState::Ready, 0));
+        over += report.session_over as u32;
+        assert_eq!(report.exit, over > 0);
+        if report.telemetry_due {
+            let device = DeviceState { battery_celsius: Some(31.0), ..DeviceState::default() };
+            lines.push((i, run.viewer.viewer_mut().telemetry(run.now_ns, &device)));
+        }
+    }
+    assert_eq!(over, 1);
+    assert_ne!(run.image(), loading);
+    let [(_, line)] = lines.as_slice() else { panic!("{lines:?}") };
+    let read: Line = line.to_string().parse().unwrap();
+    assert_eq!(read.to_string(), line.to_string());
+    assert_eq!((line.method.as_str(), line.pipeline.as_deref()), ("yoro", Some("gather")));
+    assert_eq!((line.scene.as_str(), line.stale, line.current_ma), ("prototype", Some(0), None));
+    assert!((line.fps.unwrap() - 60.0).abs() < 0.1, "{line}");
+    let summary = run.viewer.viewer().summary(run.now_ns).to_string();
+    assert!(summary.contains("frames=60,FPS=60.0"), "{summary}");
+
+    // The context is lost and comes back; the scene is loaded again.
+    let before = run.image();
+    run.viewer.detach();
+    assert!(matches!(
+        run.viewer.render(&FrameTiming { now_ns: 0, expected_display_ns: 0, refresh_hz: 0.0 }),
+        Err(ViewerError::NoContext)
+    ));
+    run.viewer.attach(gl.clone()).unwrap();
+    run.load();
+    run.viewer.event(Event::ToggleHud).unwrap();
+    run.frame();
+    let differing = run.image().iter().zip(&before).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    assert!(differing > 0 && differing < before.len() / 8, "only the HUD is gone: {differing}");
+    drop(run);
+    assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
+}
+
+#[test]
+fn events_change_what_is_seen() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let mut run = Run::new(gl, &["hud=false", "methods=yoro,conventional,mono", "ipd=0.063"]);
+    run.load();
+    run.frame();
+    let yoro = run.image();
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Conventional));
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Mono));
+    let objects = gl.object_count();
+    for _ in 0..3 {
+        run.viewer.event(Event::Tap).unwrap();
+        run.frame();
+    }
+    assert_eq!(run.viewer.viewer().method(), Method::Mono);
+    assert_eq!(gl.object_count(), objects, "switching leaves nothing behind");
+    run.viewer.event(Event::Tap).unwrap();
+    let Action::Ipd(ipd) = run.viewer.event(Event::IpdUp).unwrap() else { panic!() };
+    assert!((ipd - 0.064).abs() < 1e-6);
+    for _ in 0..100 {
+        run.viewer.event(Event::IpdUp).unwrap();
+    }
+    assert_eq!(run.viewer.viewer().ipd(), MAX_IPD);
+    run.frame();
+    assert_ne!(run.image(), yoro);
+    assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Recenter);
+    assert_eq!(run.viewer.event(Event::ToggleHud).unwrap(), Action::Hud(true));
+    assert!(matches!(run.viewer.event(Event::NextViewpoint).unwrap(), Action::Viewpoint(1)));
+    let rotated = Screen { size: [200, 100], rotation: Rotation::LandscapeRight, ..screen() };
+    run.viewer.resize(rotated).unwrap();
+    run.frame();
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn sensors_turn_the_picture() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let mut run = Run::new(headless.gl(), &["hud=false"]);
+    run.load();
+    run.frame();
+    let ahead = run.image();
+    run.viewer.sensor(MotionSample::Accelerometer(Vec3::new(9.81, 0.0, 0.0)), 1);
+    run.frame();
+    assert_eq!(run.image(), ahead, "upright is straight ahead");
+    for i in 1..=50 {
+        run.viewer.sensor(MotionSample::Gyroscope(Vec3::X), i * 10_000_000);
+    }
+    run.viewer.pause();
+    run.viewer.resume();
+    run.now_ns = 500_000_000;
+    run.frame();
+    let turned = run.image();
+    assert_ne!(turned, ahead);
+    let angle = run.viewer.tracker().head_from_world(0.0).inverse().to_scaled_axis().y;
+    run.viewer.hold_head(Some(HeldHead {
+        rendered: Quat::from_rotation_y(angle),
+        displayed: Quat::from_rotation_y(angle),
+    }));
+    run.frame();
+    let differing = run.image().iter().zip(&turned).filter(|(a, b)| a.abs_diff(**b) > 3).count();
+    assert!(differing < turned.len() / 100, "the picture is that of the head's angle: {differing}");
+}
+
+#[test]
+fn a_scene_that_cannot_be_loaded_is_said_in_view() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("room.obj"), "f 1 2 3\n").unwrap();
+    let folders: [PathBuf; 1] = [folder.path().into()];
+    let mut viewer = Cardboard::new(settings(&["scene=room"]), screen(), &folders).unwrap();
+    viewer.attach(headless.gl().clone()).unwrap();
+    let mut run = Run { viewer, window: window(headless.gl()), now_ns: 0 };
+    run.load();
+    assert_eq!(run.frame().scene, SceneState::Failed);
+    assert!(run.viewer.viewer().failure().unwrap().contains("room.obj"));
+    assert!(run.image().chunks_exact(4).any(|p| p[0] > 200), "the reason is in view");
+    let mistake = Cardboard::new(settings(&["scene=palace"]), screen(), &folders).err().unwrap().to_string();
+    assert!(mistake.contains("palace") && mistake.contains("room.obj"), "{mistake}");
+}
+
+#[test]
+fn questions_are_asked_after_the_session_and_answered_by_head_or_keys() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let settings = ["duration=0.1", "auto-exit=true", "hud=false", "participant=P03", "trial=4"];
+    let questions = ["questions=image-quality,comfort", "method=mono"];
+    let mut run = Run::new(headless.gl(), &[&settings[..], &questions].concat());
+    run.load();
+    let seen = run.frame();
+    assert!(!seen.session_over);
+    let scene = run.image();
+    for _ in 0..8 {
+        assert!(!run.frame().session_over, "it is not over before the questions are answered");
+    }
+    assert_ne!(run.image(), scene, "the panel");
+    // Keys mean something else now, and the method stays what is being judged.
+    assert_eq!(run.viewer.event(Event::IpdUp).unwrap(), Action::Marker(3.5));
+    assert_eq!(run.viewer.event(Event::NextViewpoint).unwrap(), Action::Nothing);
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Answer);
+    assert_eq!(run.viewer.viewer().method(), Method::Mono);
+    // The second question: the head turns to the left and stays there.
+    let hold = |run: &mut Run, left: f32| {
+        let head = Quat::from_rotation_y(left);
+        run.viewer.hold_head(Some(HeldHead { rendered: head, displayed: head }));
+    };
+    hold(&mut run, 0.0);
+    run.frame();
+    hold(&mut run, 0.35);
+    let mut report = run.frame();
+    for _ in 0..6 * 60 {
+        if report.session_over {
+            break;
+        }
+        report = run.frame();
+    }
+    assert!(report.session_over && report.exit, "a marker left alone is an answer");
+    let said: Vec<String> = run.viewer.viewer().ratings().iter().map(ToString::to_string).collect();
+    let line = "rating,v=1,participant=P03,trial=4,method=mono,pipeline=na,scene=prototype,question=";
+    assert_eq!(said, [format!("{line}image-quality,value=3.5"), format!("{line}comfort,value=1.0")]);
+}
+
+const TIMING: FrameTiming = FrameTiming { now_ns: 1, expected_display_ns: 2, refresh_hz: 60.0 };
+
+fn ready(headless: &Headless) -> Cardboard {
+    let screen = Screen { size: [256, 128], dpi: [0.0; 2], rotation: Rotation::LandscapeLeft };
+    let mut settings = Settings::default();
+    for pair in ["scene=prototype", "render-scale=0.25", "shadow-map=0", "ssao=off", "bloom=false"] {
+        settings.apply(pair).unwrap();
+    }
+    let mut viewer = Cardboard::new(settings, screen, &[]).unwrap();
+    viewer.attach(headless.gl().clone()).unwrap();
+    wait(&mut viewer);
+    viewer
+}
+
+fn wait(viewer: &mut Cardboard) {
+    while viewer.viewer().scene.is_loading() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        viewer.viewer_mut().poll_scene();
+    }
+    assert_eq!(viewer.viewer().scene_state(), SceneState::Ready);
+}
+
+fn with(viewer: &Cardboard, pairs: &[&str]) -> Settings {
+    let mut settings = viewer.viewer().settings().clone();
+    pairs.iter().for_each(|pair| settings.apply(pair).unwrap());
+    settings
+}
+
+#[test]
+fn what_differs_changes_and_nothing_else() {
+    let headless = Headless::open(Backend::Auto).unwrap();
+    let mut viewer = ready(&headless);
+    viewer.event(Event::IpdUp).unwrap();
+    let ipd = viewer.viewer().ipd();
+    viewer.configure(with(&viewer, &["method=mono", "timewarp=false", "hud=false"]), &[]).unwrap();
+    assert_eq!(
+        (viewer.viewer().method(), viewer.viewer().ipd(), viewer.viewer().caption.is_shown),
+        (Method::Mono, ipd, false)
+    );
+    viewer.event(Event::Tap).unwrap();
+    assert_ne!(viewer.viewer().method(), Method::Mono);
+    let tapped = viewer.viewer().method();
+    viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "ssao=half"]), &[]).unwrap();
+    assert_eq!((viewer.viewer().method(), viewer.viewer().ipd()), (tapped, 0.05));
+    assert!((viewer.optics().params().inter_lens - 0.060).abs() < 1e-6);
+    let told = viewer.optics().screen();
+    viewer.configure(with(&viewer, &["screen=158x71mm"]), &[]).unwrap();
+    assert_eq!(viewer.optics().screen(), [0.158, 0.071]);
+    viewer.configure(with(&viewer, &["screen=auto"]), &[]).unwrap();
+    assert_eq!(viewer.optics().screen(), told);
+    viewer.configure(with(&viewer, &["ipd=auto"]), &[]).unwrap();
+    assert_eq!(viewer.viewer().ipd(), viewer.optics().params().inter_lens);
+    viewer.configure(with(&viewer, &["seed=2"]), &[]).unwrap();
+    assert!(viewer.viewer().scene.is_loading());
+    wait(&mut viewer);
+    viewer.render(&TIMING).unwrap();
+    assert_eq!(headless.gl().take_errors(), None);
+}
+
+#[test]
+fn mistakes_change_nothing() {
+    let headless = Headless::open(Backend::Auto).unwrap();
+    let mut viewer = ready(&headless);
+    let before = viewer.viewer().settings().clone();
+    for pair in ["scene=nowhere", "viewer=/no/such/file"] {
+        let settings = with(&viewer, &[pair, "method=mono", "ipd=0.02"]);
+        assert!(viewer.configure(settings, &[]).is_err());
+        assert_eq!((viewer.viewer().settings(), viewer.viewer().method()), (&before, before.method));
+    }
+    if !headless.gl().capabilities().multiview {
+        let settings = with(&viewer, &["method=multiview"]);
+        assert!(matches!(viewer.configure(settings, &[]), Err(ViewerError::Gl(GlError::Unsupported(_)))));
+        assert_eq!((viewer.viewer().settings(), viewer.viewer().method()), (&before, before.method));
+    }
+    viewer.render(&TIMING).unwrap();
+}

@@ -1,0 +1,143 @@
+// A headset, by WebXR: views, projections and framebuffer as the browser gives them.
+
+import { sentence } from './main.js';
+
+const element = (id) => document.getElementById(id);
+/** xr-standard gamepads: trigger, squeeze, thumbstick; axes 2 and 3 are the thumbstick's. */
+const [TRIGGER, SQUEEZE, THUMBSTICK] = [0, 1, 3];
+const METRES_PER_SECOND = 1.5;
+const TURN = Math.PI / 6;
+
+/** Presses since the last call, and where the thumbsticks point. */
+function controllers(session, before) {
+  const presses = { [TRIGGER]: false, [SQUEEZE]: false, [THUMBSTICK]: false };
+  const stick = { left: [0, 0], right: [0, 0] };
+  for (const source of session.inputSources) {
+    const pad = source.gamepad;
+    if (!pad) continue;
+    for (const button of Object.keys(presses)) {
+      const key = `${source.handedness}${button}`;
+      const down = Boolean(pad.buttons[button]?.pressed);
+      presses[button] ||= down && !before.get(key);
+      before.set(key, down);
+    }
+    if (source.handedness in stick) stick[source.handedness] = [pad.axes[2] ?? 0, pad.axes[3] ?? 0];
+  }
+  return { presses, stick };
+}
+
+async function enter(app, button) {
+  const { gl } = app;
+  const session = await navigator.xr.requestSession('immersive-vr', { optionalFeatures: ['local'] });
+  const run = { name: 'headset', stop: () => session.end().catch(() => {}) };
+  app.busy = run;
+  button.textContent = 'Leave VR';
+  session.addEventListener('end', () => {
+    app.page?.xrEnd();
+    if (app.busy === run) app.busy = null;
+    button.textContent = 'Enter VR';
+    app.startLoop();
+  });
+  try {
+    await gl.makeXRCompatible();
+    const layer = new XRWebGLLayer(session, gl, { antialias: false, alpha: false, depth: true, stencil: false });
+    const [depthNear, depthFar] = app.page.constructor.xrPlanes();
+    await session.updateRenderState({ baseLayer: layer, depthNear, depthFar });
+    const space = await session.requestReferenceSpace('local').catch(() => session.requestReferenceSpace('viewer'));
+    const pressed = new Map();
+    const times = [];
+    let text = '';
+    let shown = true;
+    let turning = false;
+    let last = 0;
+    const frame = (now, xr) => {
+      if (app.busy !== run || !app.page) return;
+      session.requestAnimationFrame(frame);
+      try {
+        const dt = last ? Math.min((now - last) / 1000, 0.1) : 0;
+        if (last) times.push(now - last);
+        last = now;
+        const { presses, stick } = controllers(session, pressed);
+        if (presses[TRIGGER]) app.step('method');
+        if (presses[SQUEEZE]) app.step('viewpoint');
+        if (presses[THUMBSTICK]) shown = !shown;
+        const [right, back] = stick.left;
+        if (Math.hypot(right, back) > 0.15) app.page.walk(right * dt * METRES_PER_SECOND, 0, -back * dt * METRES_PER_SECOND);
+        const turn = Math.abs(stick.right[0]) > 0.6;
+        if (turn && !turning) app.page.turn(-Math.sign(stick.right[0]) * TURN, 0);
+        turning = turn;
+        const pose = xr.getViewerPose(space);
+        if (!pose) return;
+        const eyes = ['left', 'right'].map((eye) => pose.views.find((view) => view.eye === eye));
+        if (!eyes[0] || !eyes[1]) throw new Error('This headset has no two eyes.');
+        const ports = eyes.map((view) => layer.getViewport(view));
+        const floats = new Float32Array(46);
+        eyes.forEach(({ transform: { position: p, orientation: o }, projectionMatrix }, i) => {
+          floats.set([p.x, p.y, p.z, o.x, o.y, o.z, o.w, ...projectionMatrix], i * 23);
+        });
+        const size = [Math.min(ports[0].width, ports[1].width), Math.min(ports[0].height, ports[1].height)];
+        if (times.length >= 36) {
+          const mean = times.reduce((sum, ms) => sum + ms, 0) / times.length;
+          times.length = 0;
+          text = `${app.settings.method}\n${mean.toFixed(1)} ms, ${(1000 / mean).toFixed(0)} Hz\n${size.join('x')} per eye`;
+        } else if (presses[TRIGGER]) {
+          text = app.settings.method;
+          times.length = 0;
+        }
+        const fits = app.page.xrFrame(floats, ...size, shown ? text : '');
+        if (!fits && !run.told) {
+          run.told = true;
+          app.say('This headset’s eyes are canted or shifted: both are rendered.');
+        }
+        ports.forEach(({ x, y, width, height }, eye) => {
+          gl.bindFramebuffer(gl.FRAMEBUFFER, layer.framebuffer);
+          gl.viewport(x, y, width, height);
+          app.page.xrShow(eye, x, y, width, height);
+        });
+        Object.assign(run, { frames: (run.frames ?? 0) + 1, views: floats, size });
+      } catch (error) {
+        run.stop();
+        app.say(sentence(error));
+      }
+    };
+    session.requestAnimationFrame(frame);
+  } catch (error) {
+    await run.stop();
+    throw error;
+  }
+}
+
+/** Makes the panel work. */
+export async function offerHeadset(app) {
+  const [button, state] = [element('headset'), element('headset-state')];
+  const look = async () => {
+    const here = await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false);
+    button.disabled = !here;
+    if (here) state.textContent = 'A headset is here.';
+    else if (!navigator.xr) {
+      state.textContent = isSecureContext
+        ? 'This browser has no WebXR. A headset’s own browser has it.'
+        : 'WebXR needs https, or an address on this machine (localhost).';
+    } else state.textContent = 'There is no headset for this browser.';
+  };
+  navigator.xr?.addEventListener?.('devicechange', look);
+  button.addEventListener('click', async () => {
+    if (app.busy?.name === 'headset') {
+      app.busy.stop();
+      return;
+    }
+    if (!app.facts || app.busy) {
+      app.say('A headset shows a scene: choose one above.');
+      return;
+    }
+    app.clear();
+    button.disabled = true;
+    try {
+      await enter(app, button);
+    } catch (error) {
+      app.say(`The headset cannot be entered: ${sentence(error)}`);
+    }
+    button.disabled = false;
+  });
+  await look();
+}

@@ -1,0 +1,28 @@
+// Keeps the page's files, so that it works without a network. What the network has is newer.
+
+const CACHE = 'yoro';
+const FILES = [
+  './', 'icon.svg', 'style.css', 'main.js', 'link.js', 'controls.js', 'worker.js', 'measure.js', 'files.js', 'phone.js',
+  'headset.js', 'yoro_web.js', 'yoro_web_bg.wasm',
+];
+
+self.addEventListener('install', (event) => {
+  event.waitUntil(caches.open(CACHE).then((cache) => cache.addAll(FILES)).then(() => self.skipWaiting()));
+});
+self.addEventListener('activate', (event) => event.waitUntil(self.clients.claim()));
+self.addEventListener('fetch', (event) => {
+  const { request } = event;
+  if (request.method !== 'GET' || new URL(request.url).origin !== location.origin) return;
+  event.respondWith((async () => {
+    const cache = await caches.open(CACHE);
+    try {
+      const response = await fetch(request);
+      if (response.ok) await cache.put(request, response.clone());
+      return response;
+    } catch (error) {
+      const kept = await cache.match(request, { ignoreSearch: true });
+      if (kept) return kept;
+      throw error;
+    }
+  })());
+});

@@ -1,0 +1,17 @@
+// Makes scenes away from the page: generating and decoding take seconds.
+
+import init, { buildScene, loadScene, takeWarnings } from './yoro_web.js';
+
+onmessage = async ({ data }) => {
+  try {
+    await init({ module_or_path: data.module });
+    const bytes = data.builtin
+      ? buildScene(data.builtin)
+      : loadScene(data.main, data.files.map((file) => file.name), data.files.map((file) => new Uint8Array(file.bytes)));
+    postMessage({ bytes, warnings: takeWarnings() }, [bytes.buffer]);
+  } catch (error) {
+    // The module ends itself where memory ends, and says nothing then.
+    const full = error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
+    postMessage({ error: full ? 'The scene could not be made, probably for want of memory: choose a smaller one.' : error.message });
+  }
+};

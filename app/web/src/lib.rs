@@ -1,0 +1,31 @@
+//! The page's module: every method in a browser's WebGL 2.
+//!
+//! Rust renders and measures; the page's own JavaScript (`app/web/page`) has the elements, the sensors and WebXR. Scenes
+//! are generated and files decoded in a worker, by the functions of `work`; `Page` draws on the canvas. Everything
+//! that JavaScript calls returns an error that is a sentence for the page.
+//!
+//! This crate must never know HTML, nor ask a server for anything.
+
+#[cfg(target_arch = "wasm32")]
+mod bench;
+#[cfg(target_arch = "wasm32")]
+mod page;
+#[cfg(target_arch = "wasm32")]
+mod phone;
+mod pictures;
+mod settings;
+#[cfg(target_arch = "wasm32")]
+mod show;
+mod views;
+mod walker;
+#[cfg(target_arch = "wasm32")]
+mod work;
+#[cfg(target_arch = "wasm32")]
+mod xr;
+
+#[cfg(target_arch = "wasm32")]
+pub use page::Page;
+pub use pictures::{Encoding, PictureError, PictureOptions, PicturePair, SourceEye};
+pub use settings::{Display, Settings};
+pub use views::{VIEW_FLOATS, view};
+pub use walker::Walker;

@@ -1,0 +1,116 @@
+//! What the page lets people choose.
+
+use serde::{Deserialize, Serialize};
+use yoro::eyes::{DEFAULT_IPD, DepthRange, Eye, EyeOptions, EyePair, MAX_IPD, Pose};
+use yoro_render::stereo::{AntiAliasing, Method, StereoOptions};
+
+/// How two images are shown on a flat screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Display {
+    /// The left eye's image on the left.
+    #[default]
+    SideBySide,
+    /// The left eye's image on the right.
+    CrossEyed,
+    /// For glasses with a red filter on the left.
+    Anaglyph,
+    /// One image.
+    Left,
+    /// One image.
+    Right,
+    /// Where the eye that is not dominant differs from a real render of it.
+    Difference,
+    /// That eye, in turn as the method makes it and really rendered.
+    Flicker,
+}
+
+impl Display {
+    /// Whether both images stand on the screen.
+    pub fn is_split(self) -> bool {
+        matches!(self, Display::SideBySide | Display::CrossEyed)
+    }
+
+    /// Whether the eye that is not dominant has to be rendered, too.
+    pub fn needs_truth(self) -> bool {
+        matches!(self, Display::Difference | Display::Flicker)
+    }
+}
+
+/// The page's choices; keys that are left out are as by default, unknown ones are refused.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Settings {
+    /// How both eyes are made.
+    pub method: Method,
+    /// When anti-aliasing runs.
+    pub anti_aliasing: AntiAliasing,
+    /// Distance between the eyes in metres.
+    pub ipd: f32,
+    /// The eye that is rendered.
+    pub dominant: Eye,
+    /// How both are shown.
+    pub display: Display,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            method: Method::Yoro,
+            anti_aliasing: AntiAliasing::After,
+            ipd: DEFAULT_IPD,
+            dominant: Eye::Right,
+            display: Display::SideBySide,
+        }
+    }
+}
+
+impl Settings {
+    /// Of JSON.
+    ///
+    /// # Errors
+    /// What is wrong with it, in a sentence.
+    pub fn parse(json: &str) -> Result<Settings, String> {
+        let settings: Settings =
+            serde_json::from_str(json).map_err(|error| format!("These settings cannot be used: {error}."))?;
+        if !(0.0..=MAX_IPD).contains(&settings.ipd) {
+            return Err(format!("The IPD must be between 0 and {} mm.", MAX_IPD * 1e3));
+        }
+        Ok(settings)
+    }
+
+    /// As the desktop's, but that no frame is rendered twice because much of it is near: finding that out would have
+    /// the browser wait for the GPU.
+    pub fn stereo_options(&self) -> StereoOptions {
+        StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
+    }
+
+    /// Both eyes of a head, with images of `size` pixels.
+    pub fn pair(&self, head: Pose, size: [u32; 2]) -> EyePair {
+        let options = EyeOptions {
+            size,
+            ipd: self.ipd,
+            dominant: self.dominant,
+            depth: DepthRange::PAPER,
+            ..EyeOptions::default()
+        };
+        options.pair(head)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_checked() {
+        let json = r#"{"method":"shading-reprojection","ipd":0.07,"dominant":"left","display":"cross-eyed"}"#;
+        let settings = Settings::parse(json).unwrap();
+        assert_eq!((settings.method, settings.dominant), (Method::ShadingReprojection, Eye::Left));
+        assert_eq!(settings.anti_aliasing, AntiAliasing::After);
+        for wrong in [r#"{"ipd":0.09}"#, r#"{"method":"none"}"#, r#"{"colour":"red"}"#, r#"{"ipd":null}"#] {
+            let error = Settings::parse(wrong).unwrap_err();
+            assert!(error.ends_with('.'), "{error}");
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! A head that is turned and walked about by hand.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+use glam::{EulerRot, Quat, Vec3};
+use yoro::eyes::Pose;
+
+/// Where the head is, and where it looks: level, but for looking up and down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Walker {
+    position: Vec3,
+    /// Radians to the left of -Z, and above the horizon.
+    heading: [f32; 2],
+    /// The pose to the bit, while it has not moved.
+    start: Option<Pose>,
+}
+
+/// A little less than straight up, where heading has no meaning.
+const STEEPEST: f32 = FRAC_PI_2 - 0.01;
+
+impl Walker {
+    /// Stands at a pose.
+    pub fn new(pose: Pose) -> Walker {
+        let ahead = pose.forward();
+        let heading = [(-ahead.x).atan2(-ahead.z), ahead.y.clamp(-1.0, 1.0).asin()];
+        Walker { position: pose.position, heading, start: Some(pose) }
+    }
+
+    /// As [`Walker::place`] gives it.
+    pub fn at(place: [f32; 5]) -> Option<Walker> {
+        let [x, y, z, yaw, pitch] = place;
+        place.iter().all(|n| n.is_finite() && n.abs() < 1e6).then(|| Walker {
+            position: Vec3::new(x, y, z),
+            heading: [yaw.rem_euclid(TAU), pitch.clamp(-STEEPEST, STEEPEST)],
+            start: None,
+        })
+    }
+
+    /// Position in metres, radians to the left and upwards: none while it stands where it began.
+    pub fn place(&self) -> Option<[f32; 5]> {
+        let ([x, y, z], [yaw, pitch]) = (self.position.to_array(), self.heading);
+        self.start.is_none().then_some([x, y, z, yaw, pitch])
+    }
+
+    /// Turns by radians to the left and upwards.
+    pub fn turn(&mut self, [left, up]: [f32; 2]) {
+        let [yaw, pitch] = self.heading;
+        self.heading = [(yaw + left).rem_euclid(TAU), (pitch + up).clamp(-STEEPEST, STEEPEST)];
+        self.start = None;
+    }
+
+    /// Walks by metres to the right, upwards and ahead; the ground is level.
+    pub fn walk(&mut self, [right, up, ahead]: [f32; 3]) {
+        self.position += Quat::from_rotation_y(self.heading[0]) * Vec3::new(right, up, -ahead);
+        self.start = None;
+    }
+
+    /// The head.
+    pub fn pose(&self) -> Pose {
+        let [yaw, pitch] = self.heading;
+        let turned = || Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
+        self.start.unwrap_or_else(|| Pose { position: self.position, orientation: turned() })
+    }
+
+    /// Where something is that is `pose` as seen from the head's place with its heading: metres, Y up, -Z ahead.
+    pub fn locate(&self, pose: Pose) -> Pose {
+        let heading = Quat::from_rotation_y(self.heading[0]);
+        Pose {
+            position: self.position + heading * pose.position,
+            orientation: (heading * pose.orientation).normalize(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: Vec3, b: Vec3) {
+        assert!((a - b).length() < 1e-4, "{a} is not {b}");
+    }
+
+    #[test]
+    fn the_first_pose_is_kept_to_the_bit() {
+        let pose = Pose::look_at(Vec3::new(1.0, 1.6, 2.0), Vec3::new(-3.0, 1.0, 0.5));
+        let mut walker = Walker::new(pose);
+        assert_eq!((walker.pose(), walker.place()), (pose, None));
+        walker.turn([0.0, 0.0]);
+        close(walker.pose().forward(), pose.forward());
+        close(walker.pose().right(), pose.right());
+    }
+
+    #[test]
+    fn turning_and_walking() {
+        let mut walker = Walker::new(Pose::IDENTITY);
+        walker.turn([FRAC_PI_2, 0.3]);
+        close(walker.pose().right(), Vec3::NEG_Z);
+        assert!(walker.pose().forward().y > 0.29);
+        walker.walk([1.0, 0.5, 2.0]);
+        close(walker.pose().position, Vec3::new(-2.0, 0.5, -1.0));
+        walker.turn([0.0, 9.0]);
+        assert!(walker.pose().forward().y < 1.0 && walker.pose().orientation.is_normalized());
+        let there = Walker::at(walker.place().unwrap()).unwrap();
+        assert_eq!(there, walker);
+        assert_eq!(Walker::at([f32::NAN; 5]), None);
+        let seen = walker.locate(Pose { position: Vec3::NEG_Z, orientation: Quat::IDENTITY });
+        close(seen.position, Vec3::new(-3.0, 0.5, -1.0));
+    }
+}

@@ -1,0 +1,235 @@
+//! The shaders of yoro, and how their files become the text that a driver compiles.
+//!
+//! Files are named by their path in this package, such as `synthesis/gather/march.frag`; folders are named after
+//! the modules that use them. A file may `#include "PATH"` another one; [`assemble`] puts each in once, with `#line`, so
+//! that a driver's messages lead back to file and line ([`Assembled::name_files`]).
+//!
+//! With the feature `hot-reload` the environment variable `YORO_SHADERS` may name a folder from which shaders are read
+//! instead: a change is seen at the next start, without compiling.
+//!
+//! This crate must never know OpenGL or any other interface to a GPU: it deals in text.
+
+use std::fmt::Write as _;
+
+/// Path and content of every file given.
+macro_rules! embed {
+    ($($path:literal,)*) => { &[$(($path, include_str!(concat!("../", $path)))),*] };
+}
+
+/// Sorted by path.
+static FILES: &[(&str, &str)] = embed![
+    "include/color.glsl",
+    "include/extensions.glsl",
+    "include/fill.glsl",
+    "include/g_buffer.glsl",
+    "include/hdr.glsl",
+    "include/imbuffer.glsl",
+    "include/march.glsl",
+    "include/material.glsl",
+    "include/normal.glsl",
+    "include/occlusion.glsl",
+    "include/reprojection.glsl",
+    "include/role.glsl",
+    "include/shade.glsl",
+    "include/tiles.glsl",
+    "include/uniforms.glsl",
+    "include/view.glsl",
+    "include/warp.glsl",
+    "inpaint/gather.frag",
+    "inpaint/holes.glsl",
+    "inpaint/median.frag",
+    "inpaint/paper.frag",
+    "inpaint/xiao.frag",
+    "openxr/hidden.frag",
+    "openxr/hidden.vert",
+    "openxr/transfer.frag",
+    "render/bloom_down.frag",
+    "render/bloom_up.frag",
+    "render/depth_copy.frag",
+    "render/depth_write.frag",
+    "render/fxaa.frag",
+    "render/geometry.frag",
+    "render/geometry.vert",
+    "render/lighting.frag",
+    "render/shadow.frag",
+    "render/ssao.frag",
+    "render/ssao_blur.frag",
+    "render/tonemap.frag",
+    "render/transparent.frag",
+    "screen.vert",
+    "stereo/composite.frag",
+    "stereo/disocclusion.frag",
+    "stereo/far_depth.frag",
+    "stereo/hidden.frag",
+    "stereo/near_fraction.frag",
+    "synthesis/gather/march.frag",
+    "synthesis/gather/spans.frag",
+    "synthesis/gather/tiles.frag",
+    "synthesis/paper/patch.frag",
+    "synthesis/paper/reproject.frag",
+    "synthesis/paper/scatter.comp",
+    "synthesis/rowgroup/resolve.frag",
+    "synthesis/rowgroup/scatter.comp",
+    "viewer/hud.frag",
+    "viewer/lens.frag",
+    "viewer/lens.vert",
+    "viewer/show.frag",
+];
+
+/// What GLSL wants before every declaration.
+const EXTENSIONS: &str = "include/extensions.glsl";
+
+/// A file that is not part of this package, or an `#include` of one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingFile(pub String);
+
+/// The paths of all files, sorted.
+pub fn files() -> impl Iterator<Item = &'static str> {
+    FILES.iter().map(|(path, _)| *path)
+}
+
+/// A shader's text with its includes resolved.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assembled {
+    /// What the driver compiles.
+    pub text: String,
+    /// File by source string number; number 0 is what comes before all files.
+    files: Vec<String>,
+}
+
+impl Assembled {
+    /// The files that the text is made of, the includes among them.
+    pub fn files(&self) -> &[String] {
+        &self.files[1..]
+    }
+
+    /// Replaces `NUMBER:LINE` at the start of a driver's messages (Mesa, most mobile drivers) by the file's name.
+    pub fn name_files(&self, log: &str) -> String {
+        let mut named = String::new();
+        for line in log.trim_end_matches(['\0', '\n']).lines() {
+            let body = line.trim_start_matches("ERROR: ");
+            let digits = body.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
+            let file = body[..digits].parse::<usize>().ok().and_then(|n| self.files.get(n));
+            match file {
+                Some(file) => drop(writeln!(named, "{file}{}", &body[digits..])),
+                None => drop(writeln!(named, "{line}")),
+            }
+        }
+        named.trim_end().to_owned()
+    }
+}
+
+/// Puts `#version` (such as `310 es`), the defines, the extensions and the precision statements first, then the file
+/// with its `#include`s resolved (each file once).
+///
+/// # Errors
+/// [`MissingFile`].
+pub fn assemble(path: &str, version: &str, defines: &[(&str, String)]) -> Result<Assembled, MissingFile> {
+    let mut out = Assembled { text: format!("#version {version}\n"), files: vec!["defines".into()] };
+    for (name, value) in defines {
+        let _ = writeln!(out.text, "#define {name} {value}");
+    }
+    include(EXTENSIONS, &mut out)?;
+    for kind in ["float", "int", "sampler2D", "usampler2D", "sampler2DShadow", "sampler2DArray"] {
+        let _ = writeln!(out.text, "precision highp {kind};");
+    }
+    include(path, &mut out)?;
+    Ok(out)
+}
+
+fn include(path: &str, out: &mut Assembled) -> Result<(), MissingFile> {
+    if out.files.iter().any(|f| f == path) {
+        return Ok(());
+    }
+    let source = read(path)?;
+    let number = out.files.len();
+    out.files.push(path.to_owned());
+    let _ = writeln!(out.text, "#line 1 {number}");
+    for (i, line) in source.lines().enumerate() {
+        let directive = line.trim_start();
+        if let Some(name) = directive.strip_prefix("#include") {
+            include(name.trim().trim_matches('"'), out)?;
+            let _ = writeln!(out.text, "#line {} {number}", i + 2);
+        } else if directive.starts_with("#version") {
+            out.text.push('\n');
+        } else {
+            out.text.push_str(line);
+            out.text.push('\n');
+        }
+    }
+    Ok(())
+}
+
+#[cfg(feature = "hot-reload")]
+fn read(path: &str) -> Result<std::borrow::Cow<'static, str>, MissingFile> {
+    let Some(folder) = std::env::var_os("YORO_SHADERS") else { return embedded(path).map(Into::into) };
+    let file = std::path::Path::new(&folder).join(path);
+    std::fs::read_to_string(&file).map(Into::into).map_err(|_| MissingFile(file.display().to_string()))
+}
+
+#[cfg(not(feature = "hot-reload"))]
+use embedded as read;
+
+fn embedded(path: &str) -> Result<&'static str, MissingFile> {
+    let found = FILES.binary_search_by_key(&path, |(name, _)| name);
+    found.map(|i| FILES[i].1).map_err(|_| MissingFile(path.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::{Path, PathBuf};
+
+    fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            match path.extension().and_then(|e| e.to_str()) {
+                None if path.is_dir() => walk(&path, found),
+                Some("glsl" | "vert" | "frag" | "comp") => found.push(path),
+                _ => {}
+            }
+        }
+    }
+
+    #[test]
+    fn every_file_is_embedded_and_sorted() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut found = Vec::new();
+        walk(root, &mut found);
+        let mut found: Vec<&str> =
+            found.iter().map(|path| path.strip_prefix(root).unwrap().to_str().unwrap()).collect();
+        found.sort_unstable();
+        assert_eq!(files().collect::<Vec<_>>(), found);
+    }
+
+    #[test]
+    fn each_file_is_included_once_and_lines_are_counted() {
+        let assembled = assemble("synthesis/gather/march.frag", "300 es", &[("A", "1".into())]).unwrap();
+        assert!(assembled.text.starts_with("#version 300 es\n#define A 1\n#line 1 1\n"));
+        assert!(!assembled.text.contains("#include"));
+        let mut files = assembled.files().to_vec();
+        assert_eq!(files.first().map(String::as_str), Some(EXTENSIONS));
+        files.sort_unstable();
+        files.dedup();
+        assert_eq!(files.len(), assembled.files().len());
+        for (number, file) in assembled.files().iter().enumerate() {
+            let start = format!("#line 1 {}\n", number + 1);
+            assert_eq!(assembled.text.matches(&start).count(), 1, "{file}");
+        }
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        assert_eq!(assemble("no/such.frag", "300 es", &[]), Err(MissingFile("no/such.frag".into())));
+    }
+
+    #[test]
+    fn driver_messages_name_the_file() {
+        let assembled =
+            Assembled { text: String::new(), files: vec!["defines".to_owned(), "a/b.frag".to_owned()] };
+        let named = |log| assembled.name_files(log);
+        assert_eq!(named("1:7(3): error: `x' undeclared\n\0"), "a/b.frag:7(3): error: `x' undeclared");
+        assert_eq!(named("ERROR: 1:7: 'x' : undeclared"), "a/b.frag:7: 'x' : undeclared");
+        assert_eq!(named("something else"), "something else");
+    }
+}

@@ -1,0 +1,542 @@
+//! The page in a real browser, which draws with the same rasterizer as the other tests.
+
+use std::env;
+use std::io::{BufRead as _, BufReader};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
+use serde_json::{Value, json};
+use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Frustum};
+use yoro_context::{Backend, Headless};
+use yoro_lab::metrics::{Channels, Quality};
+use yoro_lab::picture::rgb_image;
+use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
+use yoro_render::{PreparedScene, RenderSettings};
+
+use crate::browser::Browser;
+use crate::program::succeed;
+
+/// WebGL on Mesa, as the desktop's pictures are made.
+const GL: [&str; 3] = ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"];
+/// Size of each eye's image that is compared.
+const SIZE: [u32; 2] = [240, 160];
+
+/// The page's files on this machine, until this is dropped.
+struct Server {
+    child: Child,
+    address: String,
+}
+
+impl Server {
+    /// Serves what `cargo xtask test` has built; without that the test is to end.
+    fn start() -> Option<Server> {
+        let Some(xtask) = env::var_os("YORO_TEST_WEB") else {
+            let without = env::var_os("YORO_TEST_WITHOUT_WEB").is_some();
+            assert!(without, "run `cargo xtask test web::`, or set YORO_TEST_WITHOUT_WEB=1");
+            eprintln!("LEFT OUT: the page was not built");
+            return None;
+        };
+        let mut command = Command::new(xtask);
+        command.args(["web", "--serve", "--as-built", "--port", "0"]);
+        let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
+        let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let address = lines.map_while(Result::ok).find_map(|line| {
+            line.split_whitespace().find(|word| word.starts_with("http://")).map(str::to_owned)
+        });
+        Some(Server { child, address: address.expect("the server says where it is") })
+    }
+}
+
+impl Server {
+    fn stop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// A browser with the page.
+struct Page {
+    browser: Browser,
+    server: Server,
+}
+
+impl Page {
+    /// Opens the page with a fragment, at a window's width, and waits for its first picture; nothing where something is
+    /// missing. `before` is run before the page's own scripts.
+    fn open(fragment: &str, before: Option<&str>) -> Option<Page> {
+        let server = Server::start()?;
+        let mut browser = Browser::start_with(&GL)?;
+        browser.allow(&server.address);
+        if let Some(script) = before {
+            browser.run_before_pages(script);
+        }
+        browser.show(1000, "light");
+        let mut page = Page { browser, server };
+        page.go(fragment);
+        Some(page)
+    }
+
+    fn go(&mut self, fragment: &str) {
+        self.browser.go(&format!("{}{fragment}", self.server.address));
+        self.until("globalThis.yoro?.ready === true");
+    }
+
+    #[track_caller]
+    fn evaluate(&mut self, expression: &str) -> Value {
+        self.browser.evaluate(expression)
+    }
+
+    #[track_caller]
+    fn until(&mut self, condition: &str) {
+        let start = Instant::now();
+        while self.evaluate(condition) != json!(true) {
+            let message = "document.getElementById('message')?.textContent";
+            assert!(start.elapsed() < Duration::from_secs(90), "{condition}: {}", self.evaluate(message));
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    }
+
+    /// What the page says, if it does.
+    fn message(&mut self) -> Option<String> {
+        let said = "(() => { const m = document.getElementById('message'); return m.hidden ? null : m.textContent; })()";
+        self.evaluate(said).as_str().map(str::to_owned)
+    }
+
+    fn choose(&mut self, id: &str, value: &str) {
+        let element = format!("document.getElementById('{id}')");
+        self.evaluate(&format!(
+            "{element}.value = '{value}'; {element}.dispatchEvent(new Event('change')); 0"
+        ));
+    }
+
+    /// Both eyes, drawn with this size each: at once, before the page draws for its canvas.
+    fn eyes(&mut self, size: [u32; 2]) -> [RgbImage; 2] {
+        let read = format!(
+            "(() => {{ {}; return [0, 1].map((eye) => {{ let s = ''; \
+             for (const byte of yoro.page.readEye(eye)) s += String.fromCharCode(byte); return btoa(s); }}); }})()",
+            draw(size)
+        );
+        let texts = self.evaluate(&read);
+        [0, 1].map(|eye| rgb_image(&STANDARD.decode(texts[eye].as_str().unwrap()).unwrap(), size))
+    }
+
+    /// Drops files: names and contents.
+    fn drop_files(&mut self, files: &[(&str, Vec<u8>)]) {
+        let entries: Vec<_> =
+            files.iter().map(|(name, bytes)| json!([name, STANDARD.encode(bytes)])).collect();
+        let list = Value::from(entries);
+        self.evaluate(&format!(
+            "(async () => {{ const t = new DataTransfer(); for (const [name, text] of {list}) {{ \
+             const b = Uint8Array.from(atob(text), (c) => c.charCodeAt(0)); t.items.add(new File([b], name)); }} \
+             const e = document.getElementById('files'); e.files = t.files; yoro.taken = false; \
+             await yoro.take([...e.files].map((file) => ({{ name: file.name, file }}))); }})()"
+        ));
+    }
+}
+
+/// Half the width and all of the height of a canvas.
+fn draw(size: [u32; 2]) -> String {
+    format!("yoro.page.draw({}, {}, false)", 2 * size[0], size[1])
+}
+
+fn close(name: &str, here: &RgbImage, desktop: &RgbImage) {
+    let quality = Quality::of(here, desktop, Channels::Rgb).unwrap();
+    let difference: u64 =
+        here.as_raw().iter().zip(desktop.as_raw()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    let mean = difference as f64 / here.as_raw().len() as f64;
+    assert!(
+        quality.ssim_gaussian >= 0.99 && mean < 1.0,
+        "{name}: SSIM {}, {mean}/255",
+        quality.ssim_gaussian
+    );
+}
+
+#[test]
+fn every_method_shows_what_the_desktop_shows() {
+    let Some(mut page) = Page::open("#scene=prototype&viewpoint=1", None) else { return };
+    assert_eq!(page.message(), None);
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let settings = RenderSettings::default();
+    let scene = yoro_scenes::build("prototype", yoro_scenes::DEFAULT_SEED).unwrap();
+    let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
+    let options = StereoOptions { policy: None, ..StereoOptions::default() };
+    let pair = EyeOptions { size: SIZE, ..EyeOptions::default() }.pair(prepared.scene.viewpoints[1].pose());
+    let mut frame = StereoFrame::new(gl, SIZE).unwrap();
+    for method in Method::ALL.into_iter().filter(|method| *method != Method::Multiview) {
+        let mut made = stereo::create(gl, method, &settings, &options).unwrap();
+        made.render(&mut prepared.renderer, &prepared.scene, &pair, &mut frame).unwrap();
+        page.choose("method", method.name());
+        let eyes = page.eyes(SIZE);
+        for eye in Eye::BOTH {
+            let desktop = rgb_image(&frame.eye(eye).read_rgba8(0, [0, 0], SIZE), SIZE);
+            close(&format!("{}, {}", method.name(), eye.name()), &eyes[eye.index()], &desktop);
+        }
+        assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null, "{}", method.name());
+    }
+    page.browser.expect_silence();
+}
+
+#[test]
+fn a_link_sets_everything_and_the_page_lasts() {
+    let fragment =
+        "#viewpoint=2&method=hybrid&anti-aliasing=off&ipd=70&dominant=left&display=anaglyph&scale=0.5";
+    let Some(mut page) = Page::open(fragment, None) else { return };
+    let shown = "['viewpoint', 'method', 'anti-aliasing', 'ipd', 'dominant', 'display', 'scale'].map((id) => \
+                 document.getElementById(id).value).join()";
+    assert_eq!(page.evaluate(shown), "2,hybrid,off,70,left,anaglyph,0.5");
+    assert_eq!(page.message(), None);
+    // Walking is kept in the link.
+    page.evaluate("document.getElementById('canvas').focus()");
+    page.browser.hold("KeyW", Duration::from_millis(300));
+    page.until("location.hash.includes('at=')");
+    let fragment = page.evaluate("location.hash");
+    assert!(fragment.as_str().unwrap().contains("method=hybrid"), "{fragment}");
+
+    // Every display draws; turned and resized, as a phone is.
+    for display in ["side-by-side", "cross-eyed", "left", "right", "difference", "flicker", "anaglyph"] {
+        page.choose("display", display);
+        page.evaluate("yoro.page.draw(64, 48, false)");
+    }
+    for (width, height) in [(390, 844), (844, 390), (320, 500), (1000, 900)] {
+        page.browser.resize(width, height);
+        page.until("Math.abs(yoro.canvas.width - yoro.canvas.clientWidth * 0.5) <= 1");
+        let wide = page.evaluate("document.documentElement.scrollWidth");
+        assert!(wide.as_u64().unwrap() <= u64::from(width), "{wide} pixels wide in a window of {width}");
+    }
+
+    // A thousand frames hold what ten held.
+    let frames = |count: u32| {
+        format!(
+            "(() => {{ for (let i = 0; i < {count}; i++) {{ yoro.page.turn(0.01, 0); yoro.page.draw(32, 24, false); }} \
+                 return [...yoro.page.held]; }})()"
+        )
+    };
+    page.choose("method", "yoro");
+    let before = page.evaluate(&frames(10));
+    for _ in 0..10 {
+        assert_eq!(page.evaluate(&frames(100)), before);
+    }
+
+    // The context is lost, and comes back with the scene.
+    page.evaluate("yoro.lose = yoro.gl.getExtension('WEBGL_lose_context'); yoro.lose.loseContext(); 0");
+    page.until("yoro.page === null");
+    assert!(page.message().unwrap().contains("lost"));
+    page.evaluate("yoro.lose.restoreContext(); 0");
+    page.until("yoro.page !== null && document.getElementById('loading').hidden");
+    assert_eq!(page.message(), None);
+    page.evaluate(&draw([32, 24]));
+    assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null);
+    page.browser.expect_silence();
+
+    // In a viewer: turned by the sensors, and left again.
+    page.evaluate("document.getElementById('phone').click()");
+    page.until("yoro.busy?.name === 'phone'");
+    page.browser.resize(640, 300);
+    page.until("yoro.canvas.width === 640");
+    page.evaluate("document.getElementById('phone-leave').click()");
+    page.until("yoro.busy === null && document.fullscreenElement === null");
+    assert_eq!(page.message(), None);
+    let head = |page: &mut Page, angles: &str| {
+        let turned =
+            page.evaluate(&format!("import('./phone.js').then((phone) => phone.orientation({angles}))"));
+        let of = |i: usize| turned[i].as_f64().unwrap() as f32;
+        glam::Quat::from_xyzw(of(0), of(1), of(2), of(3)) * glam::Vec3::NEG_Z
+    };
+    // Held upright it looks ahead, lying on a table down, and on its side ahead again.
+    for (angles, ahead) in [
+        ("0, 90, 0, 0", glam::Vec3::NEG_Z),
+        ("0, 0, 0, 0", glam::Vec3::NEG_Y),
+        ("90, 90, 0, 0", glam::Vec3::NEG_X),
+        ("0, 0, -90, 90", glam::Vec3::X),
+    ] {
+        let looks = head(&mut page, angles);
+        assert!((looks - ahead).length() < 1e-5, "{angles}: {looks}");
+    }
+    page.browser.expect_silence();
+
+    // What a link says wrongly is told, and the rest is done.
+    page.go("?again#viewpoint=1&ipd=900&method=none&size=3");
+    let told = page.message().unwrap();
+    for part in ["ipd is “900”", "method is “none”", "“size”"] {
+        assert!(told.contains(part), "{told}");
+    }
+    assert_eq!(page.evaluate("document.getElementById('viewpoint').value"), "1");
+
+    // Loaded once, it needs no network.
+    page.until("navigator.serviceWorker.controller !== null");
+    page.until("caches.open('yoro').then((cache) => cache.match('yoro_web_bg.wasm')).then(Boolean)");
+    page.server.stop();
+    page.go("?offline#viewpoint=3");
+    assert_eq!((page.message(), page.evaluate("yoro.settings.viewpoint")), (None, json!(3)));
+}
+
+fn png(image: impl Into<DynamicImage>) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.into().write_to(&mut bytes, ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+const ROOM: &str = "mtllib room.mtl\nv -2 0 -4\nv 2 0 -4\nv 2 3 -4\nv -2 3 -4\nv -2 0 2\nv 2 0 2\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+                    usemtl wall\nf 1/1 2/2 3/3 4/4\nf 5/1 6/2 2/3 1/4\n";
+
+/// A GLB of one triangle.
+fn glb() -> Vec<u8> {
+    let floats: Vec<u8> =
+        [-1f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.5, 0.0].iter().flat_map(|f| f.to_le_bytes()).collect();
+    let json = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "byteLength": floats.len() }],
+        "bufferViews": [{ "buffer": 0, "byteLength": floats.len() }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [-1.0, 0.0, 0.0], "max": [1.0, 1.5, 0.0] }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "nodes": [{ "mesh": 0 }],
+        "scenes": [{ "nodes": [0] }],
+    });
+    let mut json = json.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut out = b"glTF".to_vec();
+    let word = |out: &mut Vec<u8>, n: usize| out.extend((n as u32).to_le_bytes());
+    word(&mut out, 2);
+    word(&mut out, 12 + 8 + json.len() + 8 + floats.len());
+    word(&mut out, json.len());
+    out.extend(b"JSON");
+    out.extend(json);
+    word(&mut out, floats.len());
+    out.extend(b"BIN\0");
+    out.extend(floats);
+    out
+}
+
+#[test]
+fn files_of_ones_own() {
+    let Some(mut page) = Page::open("", None) else { return };
+    let texture = png(RgbImage::from_fn(8, 8, |x, y| Rgb([(x * 30) as u8, (y * 30) as u8, 90])));
+    let mtl = b"newmtl wall\nKd 1 1 1\nmap_Kd bricks.png\n".to_vec();
+    page.drop_files(&[("room.obj", ROOM.into()), ("room.mtl", mtl), ("bricks.png", texture)]);
+    assert_eq!((page.message(), page.evaluate("yoro.facts.triangles")), (None, json!(4)));
+    page.evaluate(&draw([48, 32]));
+    page.drop_files(&[("one.glb", glb())]);
+    assert_eq!((page.message(), page.evaluate("yoro.facts.triangles")), (None, json!(1)));
+
+    // Pictures are as `yoro synthesize` makes them.
+    let size = [96u32, 64];
+    let color = RgbImage::from_fn(size[0], size[1], |x, y| {
+        Rgb([(x * 2) as u8, (y * 3) as u8, if x / 8 % 2 == y / 8 % 2 { 200 } else { 40 }])
+    });
+    let near = |x: u32, y: u32| (30..60).contains(&x) && (20..50).contains(&y);
+    let depth = GrayImage::from_fn(size[0], size[1], |x, y| Luma([if near(x, y) { 200 } else { 20 }]));
+    let files = [("view.png", png(color)), ("view-depth.png", png(depth))];
+    page.drop_files(&files);
+    assert_eq!(page.message(), None);
+    page.choose("picture-encoding", "disparity");
+    page.evaluate(
+        "document.getElementById('picture-disparity-scale').value = 12; \
+         document.getElementById('picture-options').dispatchEvent(new Event('change')); 0",
+    );
+    assert_eq!(page.message(), None);
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in &files {
+        std::fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    let options = "--depth-encoding disparity --disparity-scale 12";
+    succeed(
+        folder.path(),
+        &format!("synthesize --color view.png --depth view-depth.png --out left.png {options}"),
+    );
+    let desktop = image::open(folder.path().join("left.png")).unwrap().into_rgb8();
+    close("pictures", &page.eyes(size)[0], &desktop);
+
+    // Ten that are none: a sentence each, and what was there stays.
+    type Files<'a> = &'a [(&'a str, Vec<u8>)];
+    let gray = |w, h| png(GrayImage::new(w, h));
+    let broken: [(Files, &str); 10] = [
+        (&[("a.obj", Vec::new())], "a.obj"),
+        (&[("a.obj", b"v 1 2\nf 1 2 3\n".to_vec())], "a.obj"),
+        (&[("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n".to_vec())], "a.obj"),
+        (&[("a.glb", glb()[..30].to_vec())], "a.glb"),
+        (
+            &[(
+                "a.gltf",
+                b"{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"gone.bin\",\"byteLength\":9}]}"
+                    .to_vec(),
+            )],
+            "gone.bin",
+        ),
+        (&[("a.gltf", b"{".to_vec())], "a.gltf"),
+        (&[("a.png", gray(4, 4))], "One picture is not enough"),
+        (&[("a.png", gray(4, 4)), ("a-depth.png", gray(5, 4))], "4x4"),
+        (&[("a.png", b"no picture".to_vec()), ("a-depth.png", gray(4, 4))], "a.png is no picture"),
+        (&[("a.txt", b"text".to_vec())], "neither a model"),
+    ];
+    for (files, part) in broken {
+        page.drop_files(files);
+        let told = page.message().unwrap_or_default();
+        assert!(told.contains(part) && told.ends_with('.'), "{part}: {told}");
+        assert_eq!(page.evaluate("Boolean(yoro.source.color)"), json!(true), "{part}: the pictures stay");
+    }
+    page.browser.expect_silence();
+}
+
+#[test]
+fn a_measurement_is_reported() {
+    let Some(mut page) = Page::open("#display=left", None) else { return };
+    page.evaluate(
+        "document.getElementById('measure-size').append(new Option('64x48')); \
+         document.getElementById('measure-seconds').append(new Option('4', 4)); 0",
+    );
+    page.choose("measure-size", "64x48");
+    page.choose("measure-seconds", "4");
+    page.evaluate("document.getElementById('measure').click()");
+    page.until("yoro.busy !== null || yoro.measured !== undefined");
+    page.until("yoro.busy === null");
+    assert_eq!(page.message(), None);
+    let table = page.evaluate("document.querySelector('#measure-result table').innerText");
+    let table = table.as_str().unwrap();
+    assert!(
+        table.contains("yoro-gather") && table.contains("100 %") && table.contains("not told"),
+        "{table}"
+    );
+    page.browser.expect_silence();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("web.jsonl"), page.evaluate("yoro.measured").as_str().unwrap())
+        .unwrap();
+    drop(page);
+    succeed(folder.path(), "report web.jsonl");
+    let results = std::fs::read_to_string(folder.path().join("out/results.md")).unwrap();
+    for part in ["prototype", "yoro-gather", "shading-reprojection", "multiview"] {
+        assert!(results.contains(part), "{part}: {results}");
+    }
+}
+
+/// The Immersive Web Emulation Runtime's script; without it the test is to end.
+fn emulator() -> Option<String> {
+    let Some(path) = env::var_os("YORO_TEST_WEBXR") else {
+        let without = env::var_os("YORO_TEST_WITHOUT_WEBXR").is_some();
+        assert!(without, "run `cargo xtask test web::`, or set YORO_TEST_WITHOUT_WEBXR=1");
+        eprintln!("LEFT OUT: the WebXR emulator could not be fetched");
+        return None;
+    };
+    Some(std::fs::read_to_string(PathBuf::from(path)).unwrap())
+}
+
+/// A Quest 3 with eyes that see further outwards, and a framebuffer of its own, as real ones have.
+const HEADSET: &str = "
+    globalThis.headset = new IWER.XRDevice(IWER.metaQuest3, { stereoEnabled: true });
+    headset.installRuntime({ forceInstall: true });
+    const matrix = Object.getOwnPropertyDescriptor(XRView.prototype, 'projectionMatrix').get;
+    Object.defineProperty(XRView.prototype, 'projectionMatrix', { get() {
+        const m = Float32Array.from(matrix.call(this));
+        m[8] += this.eye === 'left' ? -0.15 : 0.15;
+        m[9] -= 0.125;
+        return m;
+    } });
+    Object.defineProperty(XRWebGLLayer.prototype, 'framebuffer', { get() {
+        if (!this.made) {
+            const gl = this.context;
+            this.made = gl.createFramebuffer();
+            gl.bindFramebuffer(gl.FRAMEBUFFER, this.made);
+            for (const [attachment, format] of [[gl.COLOR_ATTACHMENT0, gl.RGBA8], [gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT24]]) {
+                const buffer = gl.createRenderbuffer();
+                gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+                gl.renderbufferStorage(gl.RENDERBUFFER, format, this.framebufferWidth, this.framebufferHeight);
+                gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, buffer);
+            }
+            globalThis.layer = this;
+        }
+        return this.made;
+    } });
+    globalThis.readLayer = (eye) => {
+        const { context: gl, made, framebufferWidth: width, framebufferHeight: height } = layer;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, made);
+        const half = width / 2, bytes = new Uint8Array(half * height * 4);
+        gl.readPixels(eye * half, 0, half, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+        let text = '';
+        for (const byte of bytes) text += String.fromCharCode(byte);
+        return btoa(text);
+    };
+";
+
+#[test]
+fn a_headset_shows_both_eyes() {
+    let Some(emulator) = emulator() else { return };
+    let script = format!("{emulator}\n{HEADSET}");
+    let Some(mut page) = Page::open("#method=conventional", Some(&script)) else { return };
+    // The emulator's displays have the window's size.
+    page.browser.resize(400, 240);
+    page.until("!document.getElementById('headset').disabled");
+    let press = |page: &mut Page, button: &str| {
+        for value in [1, 0] {
+            let frames = page.evaluate("yoro.busy.frames").as_u64().unwrap();
+            page.evaluate(&format!("headset.controllers.right.updateButtonValue('{button}', {value}); 0"));
+            page.until(&format!("yoro.busy.frames > {}", frames + 1));
+        }
+    };
+    for visit in 0..2 {
+        page.evaluate("document.getElementById('headset').click()");
+        page.until("yoro.busy?.frames > 1");
+        assert_eq!(page.message(), None);
+        // Without the figures, which change.
+        press(&mut page, "thumbstick");
+        let expected = if visit == 0 { "conventional" } else { "instanced" };
+        assert_eq!(page.evaluate("yoro.settings.method"), expected);
+        let number = |value: &Value| value.as_f64().unwrap() as f32;
+        let views: Vec<f32> =
+            page.evaluate("[...yoro.busy.views]").as_array().unwrap().iter().map(number).collect();
+        let size: Vec<u64> =
+            page.evaluate("yoro.busy.size").as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+        let size = [size[0] as u32, size[1] as u32];
+        let desktop = headset_pictures(&views, size);
+        for eye in Eye::BOTH {
+            let read = format!("readLayer({})", eye.index());
+            let bytes = STANDARD.decode(page.evaluate(&read).as_str().unwrap()).unwrap();
+            let name = format!("visit {visit}, {}", eye.name());
+            close(&name, &rgb_image(&bytes, size), &desktop[eye.index()]);
+        }
+        if visit == 0 {
+            press(&mut page, "trigger");
+            assert_eq!(page.evaluate("yoro.settings.method"), "instanced");
+        }
+        page.evaluate("document.getElementById('headset').click()");
+        page.until("yoro.busy === null && document.getElementById('headset').textContent === 'Enter VR'");
+        assert_eq!(page.message(), None);
+    }
+    page.browser.expect_silence();
+}
+
+/// What the desktop renders for a headset's views at the scene's first viewpoint.
+fn headset_pictures(views: &[f32], size: [u32; 2]) -> [RgbImage; 2] {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let settings = RenderSettings::default();
+    let scene = yoro_scenes::build("prototype", yoro_scenes::DEFAULT_SEED).unwrap();
+    let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
+    let walker = yoro_web::Walker::new(prepared.scene.viewpoints[0].pose());
+    let (left, right) = views.split_at(yoro_web::VIEW_FLOATS);
+    let [left, right] = [left, right].map(|view| yoro_web::view(view).unwrap());
+    let outwards = |frustum: &Frustum| frustum.left + frustum.right;
+    assert!(outwards(&left.1) < -0.1 && outwards(&right.1) > 0.1, "{left:?}, {right:?}");
+    let pair = EyePair {
+        poses: [left.0, right.0].map(|pose| walker.locate(pose)),
+        frusta: [left.1, right.1],
+        depth: DepthRange { near: 0.1, ..DepthRange::PAPER },
+        size,
+        dominant: Eye::Right,
+    };
+    let options = StereoOptions { policy: None, ..StereoOptions::default() };
+    let mut method = stereo::create(gl, Method::Conventional, &settings, &options).unwrap();
+    let mut frame = StereoFrame::new(gl, size).unwrap();
+    method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut frame).unwrap();
+    Eye::BOTH.map(|eye| rgb_image(&frame.eye(eye).read_rgba8(0, [0, 0], size), size))
+}

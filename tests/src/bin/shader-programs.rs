@@ -1,0 +1,12 @@
+//! Prints the text of every shader program as JSON, for compilers elsewhere: `cargo xtask shader-cost`.
+
+use std::io;
+
+use yoro_context::{Backend, Headless};
+use yoro_tests::programs::{self, Variants};
+
+fn main() -> anyhow::Result<()> {
+    let headless = Headless::open(Backend::Egl)?;
+    programs::make(headless.gl(), Variants::Extreme)?;
+    Ok(serde_json::to_writer(io::stdout().lock(), &programs::texts(headless.gl())?)?)
+}

@@ -1,0 +1,247 @@
+//! Every shader program in every variant, made by the library as the application makes them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+
+use anyhow::anyhow;
+use glam::Vec3;
+use serde::Serialize;
+use yoro::gl::{Context, Program, ProgramRecipe, ShaderSource};
+use yoro::synthesis::{
+    self, Gather, GatherVariant, ImBufferSize, Outputs, PaperOptions, Pipeline, SynthesisOptions,
+};
+use yoro_lab::inpaint::{self, PatcherKind, PatcherOptions};
+use yoro_render::stereo::{self, AntiAliasing, Method, StereoOptions};
+use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer};
+use yoro_scene::{Scene, ShadingStyle};
+use yoro_shaders::{Assembled, MissingFile};
+
+use crate::scene;
+
+/// Which variants of the renderer's programs; of all others it is always every one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variants {
+    /// All combinations of maps, opacity, style, light and settings.
+    Every,
+    /// Under default settings, materials without maps and with all maps: between these lies what the others cost. By every
+    /// method in the realistic style only.
+    Extreme,
+}
+
+/// Makes all programs in a context, which remembers what they were made of ([`Context::program_recipes`]).
+///
+/// # Errors
+/// When the driver refuses one.
+pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
+    synthesis(gl)?;
+    rendering(gl, variants)?;
+    stereo(gl)?;
+    patchers(gl)?;
+    viewer(gl)
+}
+
+const STYLES: [ShadingStyle; 5] = [
+    ShadingStyle::Realistic,
+    ShadingStyle::Cartoon,
+    ShadingStyle::LowPoly,
+    ShadingStyle::Voxel,
+    ShadingStyle::Anime,
+];
+
+fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
+    let mut options = vec![];
+    for pipeline in Pipeline::ALL {
+        options.push(SynthesisOptions { pipeline, ..Default::default() });
+    }
+    for (strict, linear_interpolation) in [(false, false), (true, false), (true, true)] {
+        for (divisor, kernel_height) in [(1, 1), (4, 15)] {
+            let imbuffer = ImBufferSize::Divisor(divisor);
+            let paper = PaperOptions { imbuffer, linear_interpolation, kernel_height, strict };
+            options.push(SynthesisOptions { pipeline: Pipeline::Paper, paper, ..Default::default() });
+        }
+    }
+    for options in options {
+        for (depth, source_map) in [(false, false), (false, true), (true, false), (true, true)] {
+            synthesis::create(gl, &options, Outputs { depth, source_map, ..Outputs::default() })?;
+        }
+    }
+    // This driver would take one of them.
+    for variant in GatherVariant::ALL {
+        for depth in [false, true] {
+            Gather::with_variant(gl, Outputs { depth, ..Outputs::default() }, variant)?;
+        }
+    }
+    Ok(())
+}
+
+/// Compiles what a scene needs by every method that the driver has.
+fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> anyhow::Result<()> {
+    let mut renderer = Renderer::new(gl, settings, scene)?;
+    for method in Method::ALL {
+        match method.supported(gl.capabilities()) {
+            Ok(()) => stereo::create(gl, method, settings, &StereoOptions::default())?
+                .prepare(&mut renderer, scene)?,
+            Err(reason) => eprintln!("SKIPPED: {} is not compiled here: {reason}", method.name()),
+        }
+    }
+    Ok(())
+}
+
+/// Small shadow maps; their size is in no shader.
+fn settings() -> RenderSettings {
+    RenderSettings { shadow_map_size: 64, ..RenderSettings::default() }
+}
+
+/// Compiles what a scene needs under all settings that change a shader.
+fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Result<()> {
+    let scene = GpuScene::upload(gl, scene)?;
+    let settings = settings();
+    methods(gl, &settings, &scene)?;
+    if all_settings {
+        methods(gl, &RenderSettings { shadow_map_size: 0, ..settings.clone() }, &scene)?;
+        methods(gl, &RenderSettings { ssao: false, bloom: false, ..settings.clone() }, &scene)?;
+        methods(gl, &RenderSettings { ssao_half_size: true, ..settings }, &scene)?;
+    }
+    Ok(())
+}
+
+fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
+    let every = variants == Variants::Every;
+    for style in STYLES {
+        let mut scene = scene::every_material(style);
+        if every {
+            renderer(gl, scene.clone(), false)?;
+        }
+        // No map and all maps, in every kind of opacity, stand for the combinations under other settings.
+        scene::keep_plain_and_full(&mut scene);
+        if !every && style != ShadingStyle::Realistic {
+            Renderer::new(gl, &settings(), &GpuScene::upload(gl, scene)?)?;
+            continue;
+        }
+        renderer(gl, scene.clone(), every)?;
+        if every {
+            scene.sky.sun_color = Vec3::ZERO;
+            renderer(gl, scene, true)?;
+        }
+    }
+    Ok(())
+}
+
+fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
+    for defines in [vec![], vec![("CHROMATIC", String::new())]] {
+        let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
+        Program::new(gl, source, &defines)?;
+    }
+    Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
+    for define in [None, Some("ANAGLYPH"), Some("DIFFERENCE"), Some("WITH_DEPTH")] {
+        let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
+        Program::new(gl, ShaderSource::Screen("viewer/show.frag"), &defines)?;
+    }
+    DepthCopy::new(gl)?;
+    Program::new(gl, ShaderSource::Screen("openxr/transfer.frag"), &[])?;
+    let hidden = ShaderSource::Raster { vertex: "openxr/hidden.vert", fragment: "openxr/hidden.frag" };
+    Program::new(gl, hidden, &[])?;
+    Ok(())
+}
+
+fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
+    let settings = RenderSettings::default();
+    for anti_aliasing in [AntiAliasing::After, AntiAliasing::Before, AntiAliasing::Off] {
+        let options = StereoOptions { anti_aliasing, near_field: Some(1.0), ..StereoOptions::default() };
+        for method in Method::ALL.into_iter().filter(|m| m.supported(gl.capabilities()).is_ok()) {
+            stereo::create(gl, method, &settings, &options)?;
+        }
+    }
+    Ok(())
+}
+
+fn patchers(gl: &Rc<Context>) -> anyhow::Result<()> {
+    // The others have no shaders.
+    for kind in [PatcherKind::Paper, PatcherKind::Gather, PatcherKind::Median, PatcherKind::Xiao] {
+        inpaint::create(gl, kind, &PatcherOptions::default())?;
+    }
+    Ok(())
+}
+
+/// A program as a driver gets it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ProgramText {
+    /// The last stage's file, then the macros: `synthesis/gather/march.frag WRITE_DEPTH`.
+    pub name: String,
+    /// Vertex and fragment shader, or a compute shader.
+    pub stages: Vec<StageText>,
+}
+
+/// One stage of it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct StageText {
+    /// As [`yoro_shaders::files`] names it.
+    pub file: String,
+    /// GLSL ES 3.10 with includes and macros.
+    pub text: String,
+}
+
+/// What drivers with other extensions get instead: views in layers of an array where these have multiview, `discard` where
+/// they have no clip distances.
+const COUNTERPARTS: [(&str, &str); 3] =
+    [("CLIP_DISTANCE", "MULTIVIEW"), ("CLIP_DISTANCE", "SEAM_DISCARD"), ("HALF", "LAYER")];
+
+/// The programs that are made in `gl`, and their counterparts for other drivers; sorted by name.
+///
+/// # Errors
+/// When one has a file that does not exist.
+pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
+    let mut recipes: BTreeSet<ProgramRecipe> = BTreeSet::new();
+    for recipe in gl.program_recipes() {
+        for (from, to) in COUNTERPARTS {
+            if let Some(at) = recipe.defines.iter().position(|(name, _)| name == from) {
+                let mut counterpart = recipe.clone();
+                to.clone_into(&mut counterpart.defines[at].0);
+                recipes.insert(counterpart);
+            }
+        }
+        recipes.insert(recipe);
+    }
+    let mut texts = BTreeMap::new();
+    for recipe in recipes {
+        let text = text(recipe)?;
+        texts.insert(text.name.clone(), text);
+    }
+    Ok(texts.into_values().collect())
+}
+
+/// The files of all programs that are made in `gl`, the includes among them.
+///
+/// # Errors
+/// When one does not exist.
+pub fn files(gl: &Context) -> anyhow::Result<BTreeSet<String>> {
+    let mut files = BTreeSet::new();
+    for recipe in gl.program_recipes() {
+        for file in &recipe.files {
+            files.extend(assemble(file, &[])?.files().iter().cloned());
+        }
+    }
+    Ok(files)
+}
+
+fn assemble(file: &str, defines: &[(&str, String)]) -> anyhow::Result<Assembled> {
+    let missing = |MissingFile(file)| anyhow!("shader file {file} does not exist");
+    yoro_shaders::assemble(file, "310 es", defines).map_err(missing)
+}
+
+/// Macros that none of the files mentions are left out: they make no other program.
+fn text(recipe: ProgramRecipe) -> anyhow::Result<ProgramText> {
+    let bare = recipe.files.iter().map(|file| assemble(file, &[])).collect::<anyhow::Result<Vec<_>>>()?;
+    let mut defines = recipe.defines;
+    defines.retain(|(name, _)| bare.iter().any(|bare| bare.text.contains(name.as_str())));
+    let mut words: Vec<String> = recipe.files.last().cloned().into_iter().collect();
+    words.extend(defines.iter().map(|(name, value)| match value.as_str() {
+        "" => name.clone(),
+        value => format!("{name}={value}"),
+    }));
+    let defines: Vec<(&str, String)> =
+        defines.iter().map(|(name, value)| (name.as_str(), value.clone())).collect();
+    let stage = |file: String| Ok(StageText { text: assemble(&file, &defines)?.text, file });
+    let stages = recipe.files.into_iter().map(stage).collect::<anyhow::Result<_>>()?;
+    Ok(ProgramText { name: words.join(" "), stages })
+}

@@ -1,0 +1,72 @@
+//! Documents name files that exist.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Endings by which a word in backticks is taken for a file of this repository.
+const ENDINGS: [&str; 9] = [".rs", ".toml", ".md", ".frag", ".vert", ".comp", ".glsl", ".py", ".json"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()
+}
+
+/// All Markdown files but those of builds.
+fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() {
+            if !name.starts_with('.') && !["target", "out"].contains(&name.as_str()) {
+                documents(&path, found);
+            }
+        } else if name.ends_with(".md") {
+            found.push(path);
+        }
+    }
+}
+
+/// Where `](here)` leads, without anchors and without other sites.
+fn links(text: &str) -> impl Iterator<Item = &str> {
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target);
+    targets.filter(|target| !target.contains("://")).filter_map(|target| target.split('#').next())
+}
+
+/// Words in backticks that are paths from the root: they begin with one of its folders and end as a file does.
+fn paths(text: &str) -> impl Iterator<Item = &str> {
+    let folders = [
+        "app/",
+        "android/",
+        "docs/",
+        "experiments/",
+        "scenes/",
+        "shaders-glsl/",
+        "tests/",
+        "training/",
+        "xtask/",
+    ];
+    let words = text.split('`').skip(1).step_by(2);
+    words.filter(move |word| {
+        folders.iter().any(|folder| word.starts_with(folder))
+            && ENDINGS.iter().any(|ending| word.ends_with(ending))
+            && !word.contains(['*', '<', ' ', 'N'])
+    })
+}
+
+#[test]
+fn every_link_and_path_leads_somewhere() {
+    let mut files = Vec::new();
+    documents(root(), &mut files);
+    assert!(files.len() > 10, "the documents are gone");
+    let mut lost = Vec::new();
+    for file in &files {
+        let text = fs::read_to_string(file).unwrap();
+        let folder = file.parent().unwrap();
+        // What has changed names what was there before.
+        let history = file.ends_with("CHANGELOG.md");
+        let linked = links(&text).filter(|link| !link.is_empty() && !folder.join(link).exists());
+        let named = paths(&text).filter(|path| !history && !root().join(path).exists());
+        let name = file.strip_prefix(root()).unwrap().display();
+        lost.extend(linked.chain(named).map(|path| format!("{name}: {path}")));
+    }
+    assert!(lost.is_empty(), "these do not exist:\n{}", lost.join("\n"));
+}

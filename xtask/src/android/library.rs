@@ -1,0 +1,60 @@
+//! A cargo for libraries that others build into their Android applications.
+
+use std::fs;
+use std::process::Command;
+
+use anyhow::Context as _;
+
+use super::build::{Panic, build_std, link_flags, use_rust};
+use super::stand_in::{StandIn, make_libraries, make_unwinder};
+use super::target::Architecture;
+use super::toolchain::{self, Rust, Surroundings, Toolchain};
+use crate::folders::{root, target_folder};
+
+/// The oldest Android that a library is for (Android 11): the first whose C library can unwind, which the stand-in NDK,
+/// having no unwinder of its own, relies on.
+pub const API: u32 = 30;
+
+/// A cargo that compiles and links for Android with `--target` the architecture's triple. What it compiles can unwind.
+///
+/// # Errors
+/// When something is missing, with its remedy.
+pub fn cargo(architecture: Architecture) -> anyhow::Result<Command> {
+    let surroundings = Surroundings::here();
+    let (toolchain, _) = Toolchain::choose(&surroundings);
+    toolchain::ensure(&toolchain, &surroundings, true)?;
+    let mut flags = link_flags();
+    flags.push(format!("-Clink-arg=--target={}{API}", architecture.triple));
+    let rust = match &toolchain {
+        Toolchain::Google { ndk, .. } => {
+            let clang = ndk.join("toolchains/llvm/prebuilt/linux-x86_64/bin/clang");
+            flags.push(format!("-Clinker={}", clang.display()));
+            surroundings.rust()
+        }
+        Toolchain::StandIn => {
+            let stand_in = StandIn::make(&target_folder()?.join("android/stand-in"))?;
+            // Beside that of the application, which is for an older Android.
+            let folder = target_folder()?.join("android/capi/sysroot");
+            let libraries = folder.join("usr/lib");
+            fs::create_dir_all(&libraries)
+                .with_context(|| format!("{} cannot be made", libraries.display()))?;
+            make_libraries(&libraries, architecture, API)?;
+            make_unwinder(&libraries, architecture, "")?;
+            flags.push(format!("-Clinker={}", stand_in.clang().display()));
+            flags.extend(
+                ["-fuse-ld=lld".to_owned(), format!("--sysroot={}", folder.display())]
+                    .map(|a| format!("-Clink-arg={a}")),
+            );
+            Rust::with_source(&surroundings)
+        }
+    };
+    let rust = rust.context("no Rust can be found: put cargo and rustc into PATH")?;
+    let mut command = Command::new(rust.programs.join("cargo"));
+    command.current_dir(root()).env_remove("RUSTFLAGS");
+    if toolchain == Toolchain::StandIn {
+        build_std(&mut command, Panic::Unwind);
+    }
+    use_rust(&mut command, &rust)?;
+    command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
+    Ok(command)
+}

@@ -1,0 +1,48 @@
+//! What the manifest says beyond what cargo-apk can express.
+
+use anyhow::Context as _;
+
+/// Libraries of OpenXR runtimes that lie on a system partition. From target API level 31 on Android refuses to load such
+/// a library for an application that does not name it. Not required: each is on one maker's headsets only.
+pub const NATIVE_LIBRARIES: [&str; 2] = ["libopenxr.google.so", "libopenxr_forwardloader.oculus.so"];
+
+/// Properties of the application, by name and value: Android XR starts an OpenXR application in a space of its own only if
+/// it asks for that.
+pub const PROPERTIES: [(&str, &str); 1] =
+    [("android.window.PROPERTY_XR_ACTIVITY_START_MODE", "XR_ACTIVITY_START_MODE_FULL_SPACE_UNMANAGED")];
+
+/// The manifest that cargo-apk has written, with [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application.
+///
+/// # Errors
+/// When there is no application in it.
+pub fn complete(manifest: &str) -> anyhow::Result<String> {
+    const END: &str = "</application>";
+    let (before, after) = manifest
+        .split_once(END)
+        .context("cargo-apk has written a manifest without </application>: is it another version?")?;
+    let libraries = NATIVE_LIBRARIES
+        .map(|name| format!(r#"<uses-native-library android:name="{name}" android:required="false"/>"#));
+    let properties = PROPERTIES
+        .map(|(name, value)| format!(r#"<property android:name="{name}" android:value="{value}"/>"#));
+    Ok([before, &libraries.concat(), &properties.concat(), END, after].concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_added_is_in_the_application() {
+        let whole = complete("<manifest><application><activity/></application></manifest>").unwrap();
+        assert_eq!(
+            whole,
+            "<manifest><application><activity/>\
+             <uses-native-library android:name=\"libopenxr.google.so\" android:required=\"false\"/>\
+             <uses-native-library android:name=\"libopenxr_forwardloader.oculus.so\" android:required=\"false\"/>\
+             <property android:name=\"android.window.PROPERTY_XR_ACTIVITY_START_MODE\" \
+             android:value=\"XR_ACTIVITY_START_MODE_FULL_SPACE_UNMANAGED\"/>\
+             </application></manifest>"
+        );
+        assert!(complete("<manifest/>").unwrap_err().to_string().contains("</application>"));
+    }
+}

@@ -1,0 +1,86 @@
+//! hello_xr, Khronos's example of an OpenXR application, and the loader that it comes with, for the tests of the API layer.
+//!
+//! It comes from Debian's packages, unpacked beside [Monado](crate::monado), and runs with Monado's libraries. Debian's
+//! release that has Monado has an older hello_xr, which knows neither one view nor depth, so this one is that of Debian's
+//! development.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+
+use crate::folders::target_folder;
+use crate::monado;
+use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
+
+const RELEASE: &str = "sid";
+const PACKAGE: &str = "libopenxr-utils";
+/// Of all that it depends on, what Monado's folder does not have.
+const UNPACKED: [&str; 3] = ["libopenxr-utils_", "libopenxr-loader1_", "libjsoncpp"];
+const WITHOUT: [&str; 1] = ["./usr/share/*"];
+
+/// Sets it up; how it is used.
+///
+/// # Errors
+/// When it cannot be had on this machine.
+pub fn usage() -> anyhow::Result<String> {
+    let folder = make()?.display().to_string();
+    Ok(format!(
+        "export XDG_RUNTIME_DIR=$(mktemp -d)\n\
+         {folder}/monado-service &\n\
+         {folder}/hello_xr -g Vulkan2 -vc Mono\n"
+    ))
+}
+
+/// The folder with the programs `hello_xr` and `monado-service`: fetches and unpacks what is missing.
+///
+/// # Errors
+/// When it cannot be had on this machine.
+pub fn make() -> anyhow::Result<PathBuf> {
+    let monado = monado::make()?;
+    let folder = target_folder()?.join("hello-xr");
+    let (root, stamp) = (folder.join("root"), folder.join("stamp"));
+    let recipe = format!("{RELEASE} {PACKAGE}\n");
+    if !fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
+        if folder.exists() {
+            fs::remove_dir_all(&folder)
+                .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
+        }
+        eprintln!("fetching hello_xr for the tests: 40 MB, once");
+        let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
+        apt.update()?;
+        for package in apt.download(&[PACKAGE.to_owned()])? {
+            let name = package.file_name().unwrap_or_default().to_string_lossy();
+            if UNPACKED.iter().any(|start| name.starts_with(start)) {
+                unpack(&package, &root, &[], &WITHOUT)?;
+            }
+        }
+        apt.remove();
+    }
+    write_programs(&folder, &root, &monado)?;
+    fs::write(&stamp, recipe).with_context(|| format!("{} cannot be written", stamp.display()))?;
+    Ok(folder)
+}
+
+fn write_programs(folder: &Path, root: &Path, monado: &Path) -> anyhow::Result<()> {
+    let usr = root.join("usr");
+    let program = usr.join("bin/hello_xr");
+    if !program.is_file() {
+        bail!("{} is not where Debian's packages have it", program.display());
+    }
+    let drivers = monado.join("root/usr/share/vulkan/icd.d/lvp_icd.json");
+    let linker = monado::linker(&monado.join("root"), &[usr.join("lib/x86_64-linux-gnu")]);
+    let manifest = monado.join("root").join(monado::MANIFEST);
+    let hello = format!(
+        "# Khronos's example with the libraries that Monado has, and Monado as its OpenXR runtime.\n\
+         unset LD_LIBRARY_PATH\n\
+         export VK_DRIVER_FILES={} XR_RUNTIME_JSON={}\n\
+         exec {linker} {} \"$@\"\n",
+        quoted(&drivers),
+        quoted(&manifest),
+        quoted(&program),
+    );
+    write_launcher(&folder.join("hello_xr"), &hello)?;
+    let service = format!("exec {} \"$@\"\n", quoted(&monado.join("monado-service")));
+    write_launcher(&folder.join("monado-service"), &service)
+}

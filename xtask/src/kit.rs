@@ -1,0 +1,22 @@
+//! The shader kit: synthesis as shaders, their uniforms' layout and a header that fills them.
+
+use std::path::PathBuf;
+
+use anyhow::bail;
+
+use crate::cargo;
+use crate::folders::target_folder;
+
+/// Has it written to `target/kit`; the folder.
+///
+/// # Errors
+/// When the program that writes it does not compile, or the folder cannot be written.
+pub fn kit() -> anyhow::Result<PathBuf> {
+    let folder = target_folder()?.join("kit");
+    let path = folder.display().to_string();
+    if !cargo::succeeds(&["run", "--quiet", "--package", "yoro-c", "--example", "kit", "--", &path], &[]) {
+        bail!("the kit cannot be written: see above");
+    }
+    println!("{path}");
+    Ok(folder)
+}

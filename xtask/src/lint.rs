@@ -1,0 +1,67 @@
+//! What can be said about the source without running it.
+
+use anyhow::{Context as _, bail};
+use serde_json::Value;
+
+use crate::cargo;
+
+/// What others could take from a registry: the library's core and its shaders.
+const PUBLISHED: [&str; 2] = ["yoro-shaders", "yoro"];
+
+/// Looks at everything, even when something was found.
+///
+/// # Errors
+/// When something was found.
+pub fn lint() -> anyhow::Result<()> {
+    let mut checks: Vec<Vec<&str>> = vec![
+        vec!["fmt", "--all", "--check"],
+        vec!["clippy", "--quiet", "--workspace", "--all-targets", "--", "--deny", "warnings"],
+        vec!["doc", "--quiet", "--workspace", "--no-deps"],
+    ];
+    let metadata = cargo::output(&["metadata", "--no-deps", "--format-version", "1"])?;
+    let libraries = libraries(&metadata).context("cargo's metadata are not as expected")?;
+    for library in &libraries {
+        checks.push(vec!["check", "--quiet", "--package", library, "--lib", "--no-default-features"]);
+    }
+    // Without the lock file no registry is asked for packages that it does not have.
+    let mut package = vec!["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
+    package.extend(PUBLISHED.iter().flat_map(|name| ["--package", name]));
+    checks.push(package);
+    let failed: Vec<String> = checks
+        .iter()
+        .filter(|check| !cargo::succeeds(check, &[("RUSTDOCFLAGS", "--deny warnings")]))
+        .map(|check| format!("cargo {}", check.join(" ")))
+        .collect();
+    if !failed.is_empty() {
+        bail!("{} found something: see above", failed.join(", "));
+    }
+    println!("lint: nothing to say");
+    Ok(())
+}
+
+/// The packages that are libraries for others written in Rust.
+fn libraries(metadata: &str) -> Option<Vec<String>> {
+    let metadata: Value = serde_json::from_str(metadata).ok()?;
+    let is_library = |package: &&Value| {
+        let mut kinds = package["targets"].as_array().into_iter().flatten().map(|target| &target["kind"]);
+        kinds.any(|kind| kind.as_array().is_some_and(|kinds| kinds.iter().any(|kind| kind == "lib")))
+    };
+    let packages = metadata["packages"].as_array()?.iter().filter(is_library);
+    Some(packages.filter_map(|package| package["name"].as_str().map(str::to_owned)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn libraries_are_told_from_programs() {
+        let metadata = r#"{"packages": [
+            {"name": "yoro", "targets": [{"kind": ["test"]}, {"kind": ["lib"]}]},
+            {"name": "yoro-app", "targets": [{"kind": ["bin"]}]},
+            {"name": "yoro-android", "targets": [{"kind": ["cdylib"]}]}
+        ]}"#;
+        assert_eq!(libraries(metadata).unwrap(), ["yoro"]);
+        assert_eq!(libraries("{}"), None);
+    }
+}

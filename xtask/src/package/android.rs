@@ -1,0 +1,90 @@
+//! An AAR with prefab: the way in which Gradle hands native libraries to CMake and ndk-build.
+
+use std::fs;
+use std::io::{Cursor, Write as _};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use super::{VERSION, build};
+use crate::android::{ARCHITECTURES, Architecture, LIBRARY_API, library_cargo};
+use crate::folders::{root, target_folder};
+
+/// Soname and file: Android's packages know no versions of libraries.
+const LIBRARY: &str = "libyoro.so";
+
+/// Builds and packs `yoro-VERSION.aar`; the file.
+pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
+    let header = read(&root().join("app/capi/include/yoro.h"))?;
+    let mut files: Vec<(String, Vec<u8>)> = vec![
+        ("AndroidManifest.xml".into(), manifest().into()),
+        ("prefab/prefab.json".into(), prefab().into()),
+        ("prefab/modules/yoro/module.json".into(), module().into()),
+        ("prefab/modules/yoro/include/yoro.h".into(), header),
+    ];
+    let build_folder = target_folder()?.join("android/capi");
+    for architecture in ARCHITECTURES {
+        let cargo = library_cargo(architecture)?;
+        let built = build(cargo, Some(architecture.triple), LIBRARY, &build_folder)?;
+        let library = read(&built.shared)?;
+        let place = format!("prefab/modules/yoro/libs/android.{}", architecture.abi);
+        files.push((format!("{place}/abi.json"), abi(architecture).into()));
+        files.push((format!("{place}/{LIBRARY}"), library.clone()));
+        // Applications take libraries from here.
+        files.push((format!("jni/{}/{LIBRARY}", architecture.abi), library));
+    }
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, content) in files {
+        zip.start_file(name, SimpleFileOptions::default())?;
+        zip.write_all(&content)?;
+    }
+    let packed = folder.join(format!("yoro-{VERSION}.aar"));
+    crate::packages::write(&packed, zip.finish()?.into_inner())?;
+    println!("{}", packed.display());
+    Ok(packed)
+}
+
+fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
+}
+
+fn manifest() -> String {
+    format!(
+        "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\
+         <manifest xmlns:android=\"http://schemas.android.com/apk/res/android\" package=\"org.yoro.library\">\n\
+         \x20 <uses-sdk android:minSdkVersion=\"{LIBRARY_API}\"/>\n\
+         </manifest>\n"
+    )
+}
+
+fn prefab() -> String {
+    let text = serde_json::json!({
+        "schema_version": 2, "name": "yoro", "version": VERSION, "dependencies": []
+    });
+    format!("{text:#}\n")
+}
+
+fn module() -> String {
+    format!("{:#}\n", serde_json::json!({ "export_libraries": [], "library_name": "libyoro" }))
+}
+
+fn abi(architecture: Architecture) -> String {
+    let text = serde_json::json!({
+        "abi": architecture.abi, "api": LIBRARY_API, "ndk": 27, "stl": "none", "static": false
+    });
+    format!("{text:#}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prefab_is_told_the_version_and_the_level() {
+        assert!(prefab().contains(&format!("\"version\": \"{VERSION}\"")));
+        assert!(manifest().contains("minSdkVersion=\"30\""));
+        assert!(abi(ARCHITECTURES[0]).contains("\"api\": 30"));
+    }
+}

@@ -1,0 +1,124 @@
+//! What an engine that is not written in Rust builds in: archives of the C library for Linux, and an AAR for Android.
+
+mod android;
+mod linux;
+mod texts;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context as _, bail};
+use clap::ValueEnum;
+
+use crate::folders::{root, target_folder};
+
+/// Version of all packages.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// A stripped library is not larger, in bytes.
+const LARGEST: u64 = 1_000_000;
+
+/// For what a package is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Target {
+    /// Linux on this machine's processor, an archive
+    Linux,
+    /// Linux on arm64, an archive
+    LinuxAarch64,
+    /// Android on arm64 and x86_64, an AAR with prefab
+    Android,
+}
+
+/// Makes packages, or all of them when none is named; where they are.
+///
+/// # Errors
+/// When something is missing or does not compile, or the result is too large.
+pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
+    let targets = if targets.is_empty() { Target::value_variants() } else { targets };
+    let folder = target_folder()?.join("package");
+    fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+    let make = |target: &Target| match target {
+        Target::Linux => linux::native(&folder),
+        Target::LinuxAarch64 => linux::aarch64(&folder),
+        Target::Android => android::aar(&folder),
+    };
+    targets.iter().map(make).collect()
+}
+
+/// The library as cargo has built it.
+struct Built {
+    shared: PathBuf,
+    archive: PathBuf,
+    /// What the archive has to be linked with, such as `-lm`.
+    needs: Vec<String>,
+}
+
+/// Has `cargo` build the library. `folder` is where cargo puts things for this target.
+fn build(mut cargo: Command, target: Option<&str>, soname: &str, folder: &Path) -> anyhow::Result<Built> {
+    cargo.args(["rustc", "--package", "yoro-c", "--lib", "--profile", "capi"]);
+    cargo
+        .args(["--crate-type", "cdylib,staticlib"])
+        .args(target.iter().flat_map(|target| ["--target", target]));
+    cargo.args(["--", "--print", "native-static-libs", &format!("-Clink-arg=-Wl,-soname,{soname}")]);
+    cargo.current_dir(root()).env("CARGO_TARGET_DIR", folder);
+    eprintln!(
+        "$ cargo {}",
+        cargo.get_args().map(|argument| argument.to_string_lossy()).collect::<Vec<_>>().join(" ")
+    );
+    let output =
+        cargo.stdin(Stdio::null()).stdout(Stdio::inherit()).output().context("cargo cannot be started")?;
+    let told = String::from_utf8_lossy(&output.stderr);
+    eprint!("{told}");
+    if !output.status.success() {
+        bail!("the C library does not compile: see above");
+    }
+    let needs = needs(&told).context("rustc does not say what the archive needs")?;
+    let built = target.map_or(folder.to_owned(), |target| folder.join(target)).join("capi");
+    let shared = built.join("libyoro_c.so");
+    let size = fs::metadata(&shared).with_context(|| format!("{} is missing", shared.display()))?.len();
+    if size > LARGEST {
+        bail!("{} has {size} bytes: no more than {LARGEST} are allowed", shared.display());
+    }
+    println!("{}: {size} bytes", shared.display());
+    Ok(Built { shared, archive: built.join("libyoro_c.a"), needs })
+}
+
+/// What rustc notes about the libraries that a static one needs, each once.
+fn needs(told: &str) -> Option<Vec<String>> {
+    let line = told.lines().find_map(|line| line.trim().strip_prefix("note: native-static-libs:"))?;
+    let mut needs: Vec<String> = Vec::new();
+    for library in line.split_whitespace() {
+        if !needs.iter().any(|known| known == library) {
+            needs.push(library.to_owned());
+        }
+    }
+    Some(needs)
+}
+
+fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
+    make_parent(to)?;
+    fs::copy(from, to).with_context(|| format!("{} cannot be copied to {}", from.display(), to.display()))?;
+    Ok(())
+}
+
+fn write(to: &Path, text: &str) -> anyhow::Result<()> {
+    make_parent(to)?;
+    fs::write(to, text).with_context(|| format!("{} cannot be written", to.display()))
+}
+
+fn make_parent(path: &Path) -> anyhow::Result<()> {
+    let Some(parent) = path.parent() else { return Ok(()) };
+    fs::create_dir_all(parent).with_context(|| format!("{} cannot be made", parent.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_archive_needs_is_read_once() {
+        let told = "   Compiling x\nnote: link against\n\nnote: native-static-libs: -lgcc_s -lm -lm -lc\n";
+        assert_eq!(needs(told).unwrap(), ["-lgcc_s", "-lm", "-lc"]);
+        assert_eq!(needs("nothing"), None);
+    }
+}

@@ -1,0 +1,89 @@
+//! Files of the packages that build systems read.
+
+use super::VERSION;
+
+/// Programs that were linked with one version run with another of the same soname: those that differ in the last number
+/// while the first is 0.
+pub fn soname() -> String {
+    let mut parts = VERSION.split('.');
+    match (parts.next(), parts.next()) {
+        (Some("0"), Some(minor)) => format!("libyoro.so.0.{minor}"),
+        (major, _) => format!("libyoro.so.{}", major.unwrap_or_default()),
+    }
+}
+
+/// pkg-config's file, which finds its package wherever that was unpacked.
+pub fn pkg_config(needs: &[String]) -> String {
+    format!(
+        "prefix=${{pcfiledir}}/../..\n\
+         includedir=${{prefix}}/include\n\
+         libdir=${{prefix}}/lib\n\
+         \n\
+         Name: yoro\n\
+         Description: Render one eye, synthesize the other\n\
+         Version: {VERSION}\n\
+         Cflags: -I${{includedir}}\n\
+         Libs: -L${{libdir}} -lyoro\n\
+         Libs.private: {}\n",
+        needs.join(" ")
+    )
+}
+
+/// CMake's file: the targets yoro::yoro and yoro::static.
+pub fn cmake(needs: &[String]) -> String {
+    format!(
+        "get_filename_component(_yoro_prefix \"${{CMAKE_CURRENT_LIST_DIR}}/../../..\" ABSOLUTE)\n\
+         if(NOT TARGET yoro::yoro)\n\
+         \x20 add_library(yoro::yoro SHARED IMPORTED)\n\
+         \x20 set_target_properties(yoro::yoro PROPERTIES\n\
+         \x20   IMPORTED_LOCATION \"${{_yoro_prefix}}/lib/libyoro.so.{VERSION}\"\n\
+         \x20   IMPORTED_SONAME {}\n\
+         \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_yoro_prefix}}/include\")\n\
+         \x20 add_library(yoro::static STATIC IMPORTED)\n\
+         \x20 set_target_properties(yoro::static PROPERTIES\n\
+         \x20   IMPORTED_LOCATION \"${{_yoro_prefix}}/lib/libyoro.a\"\n\
+         \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_yoro_prefix}}/include\"\n\
+         \x20   INTERFACE_LINK_LIBRARIES \"{}\")\n\
+         endif()\n\
+         unset(_yoro_prefix)\n",
+        soname(),
+        needs.join(";")
+    )
+}
+
+/// Whether the package is what `find_package(yoro VERSION)` asks for.
+pub fn cmake_version() -> String {
+    let soname = soname();
+    let series = soname.trim_start_matches("libyoro.so.");
+    format!(
+        "set(PACKAGE_VERSION {VERSION})\n\
+         if(PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION)\n\
+         \x20 set(PACKAGE_VERSION_COMPATIBLE FALSE)\n\
+         elseif(NOT \"${{PACKAGE_FIND_VERSION}}.\" MATCHES \"^{}\\\\.\" AND PACKAGE_FIND_VERSION)\n\
+         \x20 set(PACKAGE_VERSION_COMPATIBLE FALSE)\n\
+         else()\n\
+         \x20 set(PACKAGE_VERSION_COMPATIBLE TRUE)\n\
+         \x20 if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)\n\
+         \x20   set(PACKAGE_VERSION_EXACT TRUE)\n\
+         \x20 endif()\n\
+         endif()\n",
+        series.replace('.', "\\\\.")
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_name_this_version() {
+        let needs = ["-lm".to_owned(), "-lc".to_owned()];
+        let series: Vec<&str> = VERSION.split('.').take(2).collect();
+        assert_eq!(soname(), format!("libyoro.so.{}", series.join(".")));
+        assert!(pkg_config(&needs).contains(&format!("\nVersion: {VERSION}\n")));
+        assert!(pkg_config(&needs).ends_with("Libs.private: -lm -lc\n"));
+        assert!(cmake(&needs).contains("INTERFACE_LINK_LIBRARIES \"-lm;-lc\""));
+        assert!(cmake(&needs).contains(&format!("IMPORTED_SONAME libyoro.so.{}\n", series.join("."))));
+        assert!(cmake_version().contains(&format!("MATCHES \"^{}\\\\.\"", series.join("\\\\."))));
+    }
+}

@@ -1,0 +1,219 @@
+//! Mesa's compilers for mobile GPUs, without the GPUs.
+//!
+//! Debian builds freedreno and panfrost for arm64 only. Their packages are unpacked beside the system, and qemu's user mode
+//! runs them; `mesa-drm-shim` plays the kernel's driver of a GPU that compiles shaders and draws nothing.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context as _, bail};
+use serde_json::Value;
+
+use super::gpus::{Compiler, Gpu};
+use crate::folders::target_folder;
+use crate::packages::{self, PrivateApt};
+
+const RELEASE: &str = "trixie";
+/// Mesa 26 knows newer GPUs than the release's own 25.0.
+const BACKPORTS: &str = "trixie-backports";
+const MESA: [&str; 4] = ["mesa-drm-shim", "libegl-mesa0", "libgbm1", "libgl1-mesa-dri"];
+const OTHERS: [&str; 5] = [
+    "libegl1:arm64",
+    "libgles2:arm64",
+    "python3-minimal:arm64",
+    "libpython3-stdlib:arm64",
+    // Static since this release.
+    "qemu-user:amd64",
+];
+/// Needed by nothing here, and large.
+const WITHOUT: [&str; 9] = [
+    "./usr/share/doc/*",
+    "./usr/share/man/*",
+    "./usr/share/locale/*",
+    "./usr/share/info/*",
+    "./usr/share/perl*",
+    "./usr/lib/*/perl*",
+    "./usr/lib/*/gconv/*",
+    "./var/*",
+    "./etc/*",
+];
+const QEMU: &str = "usr/bin/qemu-aarch64";
+const PYTHON: &str = "usr/bin/python3";
+const LIBRARIES: &str = "usr/lib/aarch64-linux-gnu";
+/// Mesa's drivers lack these, those of the GPUs' makers have them.
+const CLAIMED: &str = "+GL_OVR_multiview +GL_OVR_multiview2 +GL_EXT_clip_cull_distance";
+
+/// What one run for one GPU gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Mesa's own version: `26.1.6-1~bpo13+1`.
+    pub mesa: String,
+    /// In the order of the programs; fewer than programs when the compiler crashed.
+    pub programs: Vec<Said>,
+}
+
+/// What the driver says of one program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Said {
+    /// It compiles and links.
+    pub ok: bool,
+    /// Errors and warnings of compiler and linker.
+    pub log: String,
+    /// Statistics, one line for each compiled shader.
+    pub messages: Vec<String>,
+    /// Disassembled shaders.
+    pub listing: String,
+}
+
+/// Mesa for arm64 in a folder, and qemu.
+#[derive(Clone, Debug)]
+pub struct Compilers {
+    folder: PathBuf,
+}
+
+impl Compilers {
+    /// Fetches and unpacks them, unless what is there is complete.
+    ///
+    /// # Errors
+    /// When they cannot be had on this machine.
+    pub fn make() -> anyhow::Result<Self> {
+        if !cfg!(target_arch = "x86_64") {
+            bail!("they are fetched for x86_64 only");
+        }
+        let compilers = Self { folder: target_folder()?.join("shader-cost") };
+        let (folder, stamp) = (&compilers.folder, compilers.folder.join("stamp"));
+        let newest = MESA.map(|name| format!("{name}:arm64/{BACKPORTS}"));
+        let recipe = format!("{RELEASE} {} {} {}\n", newest.join(" "), OTHERS.join(" "), WITHOUT.join(" "));
+        if !fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
+            if folder.exists() {
+                fs::remove_dir_all(folder)
+                    .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
+            }
+            eprintln!("fetching Mesa's compilers for mobile GPUs: 140 MB, once");
+            let sources = packages::debian_sources(&[RELEASE, BACKPORTS])?;
+            let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], Some(&sources))?;
+            apt.update()?;
+            let others = OTHERS.map(str::to_owned);
+            for package in apt.download(&[newest.to_vec(), others.to_vec()].concat())? {
+                // qemu's package has a program of several megabytes for every processor that there is.
+                let is_qemu =
+                    package.file_name().is_some_and(|name| name.to_string_lossy().starts_with("qemu-user"));
+                let qemu = format!("./{QEMU}");
+                let only: &[&str] = if is_qemu { &[&qemu] } else { &[] };
+                packages::unpack(&package, &compilers.root(), only, &WITHOUT)?;
+            }
+            apt.remove();
+        }
+        for file in [QEMU, PYTHON] {
+            if !compilers.root().join(file).exists() {
+                bail!("{file} is not where Debian's packages have it");
+            }
+        }
+        fs::write(&stamp, recipe).with_context(|| format!("{} cannot be written", stamp.display()))?;
+        Ok(compilers)
+    }
+
+    fn root(&self) -> PathBuf {
+        self.folder.join("root")
+    }
+
+    /// Compiles programs, JSON as tests/src/programs.rs writes it.
+    ///
+    /// # Errors
+    /// When the compilers do not start or say what cannot be understood.
+    pub fn run(&self, gpu: &Gpu, programs: &Path) -> anyhow::Result<Run> {
+        let guest = self.folder.join("guest.py");
+        packages::write(&guest, include_str!("guest.py"))?;
+        let root = self.root();
+        let id = match gpu.compiler {
+            Compiler::Ir3 => "FD_GPU_ID",
+            Compiler::Bifrost | Compiler::Valhall => "PAN_GPU_ID",
+        };
+        let mut preload = std::ffi::OsString::from("LD_PRELOAD=");
+        preload.push(self.stand_in(gpu)?);
+        let mut command = Command::new(root.join(QEMU));
+        command.arg("-L").arg(&root);
+        // By way of qemu: nothing of this machine is to load it.
+        command.arg("-E").arg(preload);
+        command.arg(root.join(PYTHON)).args([&guest, programs]).stdin(Stdio::null());
+        command
+            // Variables such as LIBGL_ALWAYS_SOFTWARE would choose another driver.
+            .env_clear()
+            .env(id, gpu.id)
+            .env("PYTHONHOME", root.join("usr"))
+            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .env("FD_MESA_DEBUG", "shaderdb")
+            .env("IR3_SHADER_DEBUG", "vs,fs,cs,disasm")
+            .env("BIFROST_MESA_DEBUG", "shaderdb,shaders")
+            .env("PAN_MESA_DEBUG", "precompile")
+            .env("MESA_EXTENSION_OVERRIDE", CLAIMED)
+            .env("MESA_SHADER_CACHE_DISABLE", "true")
+            .env("GALLIUM_THREAD", "0")
+            .env("__EGL_VENDOR_LIBRARY_FILENAMES", root.join("usr/share/glvnd/egl_vendor.d/50_mesa.json"));
+        let output = command.output().context("qemu cannot be started")?;
+        let listing = String::from_utf8_lossy(&output.stderr);
+        let run = read(&String::from_utf8_lossy(&output.stdout), &listing);
+        run.with_context(|| {
+            let end: Vec<&str> = listing.lines().rev().take(3).collect();
+            format!("Mesa's compiler for {} does not work here: {}", gpu.title, end.join("; "))
+        })
+    }
+
+    /// The library that plays the kernel's driver.
+    fn stand_in(&self, gpu: &Gpu) -> anyhow::Result<PathBuf> {
+        let name = format!("lib{}_noop_drm_shim.so", gpu.compiler.driver());
+        let library = self.root().join(LIBRARIES).join(&name);
+        let Some(replacement) = gpu.replaces else { return Ok(library) };
+        let mut bytes =
+            fs::read(&library).with_context(|| format!("{} cannot be read", library.display()))?;
+        let replaced = replacement.apply(&mut bytes);
+        replaced.with_context(|| {
+            format!(
+                "Mesa's table of GPUs has no {} any more to be replaced by {}",
+                replacement.old_gpu, gpu.title
+            )
+        })?;
+        let own = self.folder.join(format!("{}-{name}", gpu.name));
+        packages::write(&own, bytes)?;
+        Ok(own)
+    }
+}
+
+/// What the guest has printed. None when it said nothing of a mobile GPU's driver.
+fn read(lines: &str, listings: &str) -> Option<Run> {
+    let mut values = lines.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let driver = values.next()?;
+    if driver["renderer"].as_str()?.contains("llvmpipe") {
+        return None;
+    }
+    let mesa = driver["version"].as_str()?.split_once("Mesa ")?.1.to_owned();
+    let mut listings = listings.split("# program ").skip(1);
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let programs = values.map(|value| Said {
+        ok: value["ok"] == true,
+        log: text(&value["log"]),
+        messages: value["messages"].as_array().into_iter().flatten().map(text).collect(),
+        listing: listings.next().unwrap_or_default().to_owned(),
+    });
+    Some(Run { mesa, programs: programs.collect() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn listings_are_given_to_their_programs() {
+        let lines = "{\"renderer\":\"FD650\",\"version\":\"OpenGL ES 3.2 Mesa 26.1.6-1\"}\n\
+                     {\"ok\":true,\"log\":\"\",\"messages\":[\"FRAG shader: 1 inst\"]}\n\
+                     {\"ok\":false,\"log\":\"0:1: no\",\"messages\":[]}\n";
+        let run = read(lines, "noise\n# program 0\nadd\n# program 1\n").unwrap();
+        assert_eq!(run.mesa, "26.1.6-1");
+        assert_eq!(run.programs.len(), 2);
+        assert!(run.programs[0].ok && run.programs[0].listing.contains("add"));
+        assert_eq!((run.programs[1].ok, run.programs[1].log.as_str()), (false, "0:1: no"));
+        assert_eq!(read(&lines.replace("FD650", "llvmpipe"), ""), None);
+        assert_eq!(read("", "Segmentation fault"), None);
+    }
+}

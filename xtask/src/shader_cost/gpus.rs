@@ -1,0 +1,151 @@
+//! The GPUs that Mesa compiles for, and how its stand-ins for kernel drivers are told to be one of them.
+
+use std::str::FromStr;
+
+use anyhow::Context as _;
+
+/// A family of compilers, which describe their results alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compiler {
+    /// Qualcomm's Adreno, Mesa's driver freedreno.
+    Ir3,
+    /// Arm's Mali-G51 to G78 before Valhall, Mesa's driver panfrost.
+    Bifrost,
+    /// Arm's Mali from G57 on, Mesa's driver panfrost.
+    Valhall,
+}
+
+impl Compiler {
+    /// The most waves that one core or its processor keeps in flight; Mesa counts Mali's in halves.
+    pub fn most_waves(self) -> u32 {
+        match self {
+            Self::Ir3 => 16,
+            Self::Bifrost | Self::Valhall => 2,
+        }
+    }
+
+    /// Mesa's driver.
+    pub fn driver(self) -> &'static str {
+        match self {
+            Self::Ir3 => "freedreno",
+            Self::Bifrost | Self::Valhall => "panfrost",
+        }
+    }
+}
+
+/// One that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gpu {
+    /// Its name on the command line and in the table.
+    pub name: &'static str,
+    /// What it is, for people.
+    pub title: &'static str,
+    pub compiler: Compiler,
+    /// What FD_GPU_ID or PAN_GPU_ID says.
+    pub id: &'static str,
+    /// The stand-in does not know it: one of its entries is replaced.
+    pub replaces: Option<Replacement>,
+}
+
+/// An entry of the table that Mesa's stand-in for the kernel's driver of Adreno GPUs has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    pub gpu: u32,
+    pub chip: u64,
+    /// Bytes of tile memory.
+    pub gmem: u32,
+}
+
+/// One entry in the place of another, of which the size of the tile memory does not matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Replacement {
+    pub old_gpu: u32,
+    pub old_chip: u64,
+    pub new: Entry,
+}
+
+impl Replacement {
+    /// Changes the library. None when it has no such entry.
+    pub fn apply(&self, library: &mut [u8]) -> Option<()> {
+        let Entry { gpu, chip, gmem } = self.new;
+        // Mesa 26: 64-bit chip, GPU, tile memory. Mesa 25: GPU, chip, tile memory.
+        let wide = |gpu: u32, chip: u64| [&chip.to_le_bytes()[..], &gpu.to_le_bytes()].concat();
+        let narrow = |gpu: u32, chip: u64| [gpu.to_le_bytes(), (chip as u32).to_le_bytes()].concat();
+        let (old, new, at) = [wide as fn(u32, u64) -> Vec<u8>, narrow].into_iter().find_map(|layout| {
+            let old = layout(self.old_gpu, self.old_chip);
+            let at = library.windows(old.len()).position(|window| window == old)?;
+            Some((old, layout(gpu, chip), at))
+        })?;
+        let gmem_at = at + old.len();
+        library.get_mut(at..gmem_at)?.copy_from_slice(&new);
+        library.get_mut(gmem_at..gmem_at + 4)?.copy_from_slice(&gmem.to_le_bytes());
+        Some(())
+    }
+}
+
+const QUEST_2: Replacement = Replacement {
+    old_gpu: 618,
+    old_chip: 0x0601_08ff,
+    new: Entry { gpu: 650, chip: 0x0605_00ff, gmem: 0x12_0000 },
+};
+const QUEST_3: Replacement = Replacement {
+    old_gpu: 730,
+    old_chip: 0x0703_0001,
+    new: Entry { gpu: 0, chip: 0x4305_0b00, gmem: 0x30_0000 },
+};
+
+const fn adreno(name: &'static str, title: &'static str, id: &'static str) -> Gpu {
+    Gpu { name, title, compiler: Compiler::Ir3, id, replaces: None }
+}
+
+/// Those that can be asked for.
+pub const GPUS: [Gpu; 11] = [
+    Gpu { replaces: Some(QUEST_2), ..adreno("a650", "Adreno 650, Quest 2", "650") },
+    Gpu { replaces: Some(QUEST_3), ..adreno("a740", "Adreno 740v3, Quest 3", "0") },
+    Gpu { name: "g52", title: "Mali-G52", compiler: Compiler::Bifrost, id: "7212", replaces: None },
+    Gpu { name: "g57", title: "Mali-G57", compiler: Compiler::Valhall, id: "9093", replaces: None },
+    Gpu { name: "g610", title: "Mali-G610", compiler: Compiler::Valhall, id: "a867", replaces: None },
+    adreno("a618", "Adreno 618", "618"),
+    adreno("a660", "Adreno 660, Snapdragon 888", "660"),
+    adreno("a730", "Adreno 730, Snapdragon 8 Gen 1", "730"),
+    adreno("a740p", "Adreno 740 of phones, Snapdragon 8 Gen 2", "740"),
+    adreno("a750", "Adreno 750, Snapdragon 8 Gen 3", "750"),
+    adreno("a830", "Adreno 830, Snapdragon 8 Elite", "830"),
+];
+
+/// Those that the committed table has.
+pub const IN_TABLE: usize = 5;
+
+impl FromStr for Gpu {
+    type Err = anyhow::Error;
+
+    fn from_str(name: &str) -> anyhow::Result<Self> {
+        let names = || GPUS.map(|gpu| gpu.name).join(", ");
+        let found = GPUS.into_iter().find(|gpu| gpu.name == name);
+        found.with_context(|| format!("no GPU is called {name}: choose of {}", names()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entry_of_the_stand_in_is_replaced_in_either_layout() {
+        let words = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+        let mut old = words(&[7, 618, 0x0601_08ff, 5, 7]);
+        QUEST_2.apply(&mut old).unwrap();
+        assert_eq!(old, words(&[7, 650, 0x0605_00ff, 0x12_0000, 7]));
+        let mut new = words(&[7, 0x0601_08ff, 0, 618, 5, 7]);
+        QUEST_2.apply(&mut new).unwrap();
+        assert_eq!(new, words(&[7, 0x0605_00ff, 0, 650, 0x12_0000, 7]));
+        assert_eq!(QUEST_2.apply(&mut words(&[1, 2, 3])), None);
+    }
+
+    #[test]
+    fn a_gpu_that_does_not_exist_is_refused_with_those_that_do() {
+        assert_eq!("g57".parse::<Gpu>().unwrap().id, "9093");
+        let error = "a100".parse::<Gpu>().unwrap_err().to_string();
+        assert!(error.contains("a100") && error.contains("a650, a740"), "{error}");
+    }
+}

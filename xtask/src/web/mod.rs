@@ -1,0 +1,125 @@
+//! The page: `app/web` compiled for browsers, and what it lies among, as files for any static host.
+
+mod emulator;
+mod serve;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context as _, bail};
+
+use crate::android::{Panic, Rust, Surroundings, anonymous_paths, build_std, use_rust};
+use crate::cargo::{announce, cargo};
+use crate::folders::{root, target_folder};
+
+pub use emulator::emulator;
+pub use serve::serve;
+
+const TRIPLE: &str = "wasm32-unknown-unknown";
+const MODULE: &str = "yoro_web";
+/// What may be transferred of the module, in bytes: phones load it over the air.
+const BUDGET: u64 = 2_000_000;
+
+/// Where the page lies when it is built.
+///
+/// # Errors
+/// When it is not built.
+pub fn built() -> anyhow::Result<PathBuf> {
+    let folder = target_folder()?.join("web");
+    if !folder.join("index.html").is_file() {
+        bail!("{} has no page: run cargo xtask web", folder.display());
+    }
+    Ok(folder)
+}
+
+/// Builds the page; its folder, `target/web`.
+///
+/// # Errors
+/// When something is missing or does not compile, or the module has become too large.
+pub fn build() -> anyhow::Result<PathBuf> {
+    let start = Instant::now();
+    let target = target_folder()?;
+    // Its profile has the name of the page's folder.
+    let module = compile(&Surroundings::here(), &target.join("wasm"))?;
+    let (folder, unfinished) = (target.join("web"), target.join("web.part"));
+    remove(&unfinished)?;
+    copy(&root().join("app/web/page"), &unfinished)?;
+    let (bytes, transferred) = bind(&module, &unfinished)?;
+    remove(&folder)?;
+    fs::rename(&unfinished, &folder).with_context(|| format!("{} cannot be written", folder.display()))?;
+    println!(
+        "{}: the module has {bytes} bytes, {transferred} as transferred (brotli), in {:.0} s",
+        folder.display(),
+        start.elapsed().as_secs_f64()
+    );
+    if transferred > BUDGET {
+        bail!("{transferred} bytes are more than the {BUDGET} that a phone is to load: leave something out");
+    }
+    Ok(folder)
+}
+
+/// Whether there is a Rust for it.
+pub fn can_be_built() -> bool {
+    Rust::for_target(&Surroundings::here(), TRIPLE).is_some()
+}
+
+/// Compiles the module; its file.
+fn compile(surroundings: &Surroundings, target: &Path) -> anyhow::Result<PathBuf> {
+    let (rust, with_std) = Rust::for_target(surroundings, TRIPLE).with_context(|| {
+        format!(
+            "no Rust can compile for browsers: rustup target add {TRIPLE}, or rustup component add rust-src, or \
+             apt-get install rustc-web cargo-web rust-web-src"
+        )
+    })?;
+    let arguments = ["build", "--package", "yoro-web", "--profile", "web", "--target", TRIPLE];
+    let mut command = Command::new(rust.programs.join("cargo"));
+    command.args(arguments).current_dir(root()).env("CARGO_TARGET_DIR", target).env_remove("RUSTFLAGS");
+    if with_std {
+        build_std(&mut command, Panic::Abort);
+    }
+    use_rust(&mut command, &rust)?;
+    command.env("CARGO_ENCODED_RUSTFLAGS", anonymous_paths().unwrap_or_default());
+    announce(&arguments);
+    if !command.status().context("cargo cannot be started")?.success() {
+        bail!("the page's module does not compile: see above");
+    }
+    Ok(target.join(TRIPLE).join("web").join(MODULE).with_extension("wasm"))
+}
+
+/// Makes the module ready for browsers; its bytes, and those that are transferred.
+fn bind(module: &Path, folder: &Path) -> anyhow::Result<(u64, u64)> {
+    let mut command = cargo();
+    command.args(["run", "--quiet", "--package", "yoro-web-bindgen", "--"]).arg(module).arg(folder);
+    let output =
+        command.stderr(std::process::Stdio::inherit()).output().context("cargo cannot be started")?;
+    if !output.status.success() {
+        bail!("the module cannot be made ready for browsers: see above");
+    }
+    let text = String::from_utf8_lossy(&output.stdout);
+    let mut numbers = text.split_whitespace().map(str::parse);
+    match (numbers.next(), numbers.next()) {
+        (Some(Ok(bytes)), Some(Ok(transferred))) => Ok((bytes, transferred)),
+        _ => bail!("yoro-web-bindgen says {text:?} instead of two numbers"),
+    }
+}
+
+fn remove(folder: &Path) -> anyhow::Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
+    }
+    Ok(())
+}
+
+/// Copies a folder of files.
+fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
+    fs::create_dir_all(to).with_context(|| format!("{} cannot be made", to.display()))?;
+    for entry in fs::read_dir(from).with_context(|| format!("{} cannot be read", from.display()))? {
+        let path = entry?.path();
+        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
+            fs::copy(&path, to.join(name)).with_context(|| format!("{} cannot be copied", path.display()))?;
+        }
+    }
+    Ok(())
+}
