@@ -31,6 +31,8 @@ pub struct Capabilities {
     pub version_string: String,
     /// Compute shaders, image stores: `paper` and `rowgroup` need them, `gather` does not.
     pub compute: bool,
+    /// Multisample textures, to be rendered to and read sample by sample: OpenGL ES 3.1, and the desktop.
+    pub multisample_textures: bool,
     /// Float colour buffers (HDR targets, EXT_color_buffer_float or half_float).
     pub float_render_targets: bool,
     /// KHR_debug groups.
@@ -116,6 +118,8 @@ impl Capabilities {
                 version: number,
                 vendor: gl.get_parameter_string(glow::VENDOR),
                 compute,
+                // WebGL has none.
+                multisample_textures: compute && cfg!(not(target_arch = "wasm32")),
                 float_render_targets: api == GlApi::Desktop
                     || number >= (3, 2)
                     || has("GL_EXT_color_buffer_float")

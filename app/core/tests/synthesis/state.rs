@@ -56,7 +56,7 @@ impl Lent {
     }
 
     fn source(&self) -> Source {
-        Source { color: self.color.raw(), depth: self.depth.raw() }
+        Source::new(self.color.raw(), self.depth.raw())
     }
 
     fn target(&self) -> Destination {

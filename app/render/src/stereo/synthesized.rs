@@ -109,7 +109,7 @@ impl Yoro {
             color = smooth.color(0);
         }
         self.other.resize(pair.size)?;
-        let source = Source { color: color.raw(), depth: self.targets.depth().raw() };
+        let source = Source::new(color.raw(), self.targets.depth().raw());
         self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.other))?;
         Ok(())
     }
