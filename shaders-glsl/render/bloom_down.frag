@@ -4,13 +4,20 @@
 
 uniform sampler2D source;
 uniform vec2 texel;  // of the target
+#ifdef DISPLAY_REFERRED
+uniform float exposure;
+#endif
 
 layout(location = 0) out vec4 out_color;
 
 void main() {
     vec2 uv = gl_FragCoord.xy * texel;
 #ifdef FIRST
+#ifdef DISPLAY_REFERRED
+    vec3 c = undo_tonemap(texture(source, uv).rgb) / exposure;
+#else
     vec3 c = hdr_decode(texture(source, uv).rgb);
+#endif
     float bright = max(c.r, max(c.g, c.b));
     // A knee, and a ceiling so that a single very bright pixel does not flicker from eye to eye.
     c *= max(bright - 1.0, 0.0) / max(bright, 1e-4);

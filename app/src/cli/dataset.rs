@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cli::args::{GlArgs, PatcherArgs, SynthesisArgs};
+use crate::cli::args::{GlArgs, PatcherArgs, RendererArgs, SynthesisArgs};
 use crate::cli::choices;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::terminal::progress_bar;
@@ -21,7 +21,7 @@ use yoro_lab::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_lab::inpaint::{Patcher, PatcherKind};
 use yoro_lab::interrupt;
 use yoro_lab::picture;
-use yoro_render::{PreparedScene, RenderSettings};
+use yoro_render::PreparedScene;
 use yoro_scene::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
 use yoro_scenes::{self, BUILTINS};
 
@@ -61,6 +61,8 @@ pub struct DatasetArgs {
     synthesis: SynthesisArgs,
     #[command(flatten)]
     patcher: PatcherArgs,
+    #[command(flatten)]
+    renderer: RendererArgs,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -225,7 +227,7 @@ impl<'a> Job<'a> {
         bar.set_message(format!("{}: preparing", self.name));
         stop(args)?;
         files::write(&self.folder.join(SETTINGS), format!("{:#}\n", self.settings).as_bytes())?;
-        let settings = RenderSettings::default();
+        let settings = args.renderer.settings()?;
         let scene: Scene = yoro_scenes::load(self.name, args.seed, args.style)?;
         let path = CameraPath::new(path.unwrap_or(&scene.viewpoints));
         let PreparedScene { scene, mut renderer } = PreparedScene::new(gl, scene, &settings)?;

@@ -169,7 +169,7 @@ pub fn run(args: &XrArgs) -> anyhow::Result<()> {
     let headless = args.gl.open()?;
     let gl = headless.gl();
     for method in &args.methods {
-        method.supported(gl.capabilities())?;
+        method.supported(gl.capabilities(), &settings.render_settings())?;
     }
     let mut viewer = Viewer::new(settings, &[])?;
     viewer.attach(gl.clone())?;

@@ -2,7 +2,7 @@
 
 use glow::HasContext;
 
-use super::GlError;
+use super::{Format, GlError};
 
 /// The two families of GL that run the shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,10 +48,36 @@ pub struct Capabilities {
     pub clip_distances: bool,
     /// Largest texture edge in pixels.
     pub max_texture_size: u32,
+    /// Numbers of samples above 1 that a pixel of a render target can have, largest first.
+    pub samples: Vec<u32>,
+    /// Multisample textures, which shaders read sample by sample: OpenGL ES 3.1 and the desktop.
+    pub multisample_textures: bool,
     /// Bytes of shared memory of a compute workgroup.
     pub max_compute_shared_memory: u32,
     /// Rendered by the CPU (llvmpipe, softpipe, SwiftShader): times are CPU times.
     pub software: bool,
+}
+
+/// Numbers of samples above 1 for colour and depth of the formats in use, largest first.
+///
+/// # Safety
+/// The context is current.
+unsafe fn samples(gl: &glow::Context) -> Vec<u32> {
+    // WebGL has four for all of them.
+    if cfg!(target_arch = "wasm32") {
+        return vec![4];
+    }
+    let of = |format: Format| {
+        // What GL does not write stays 0.
+        let mut counts = [0; 16];
+        let (target, format) = (glow::RENDERBUFFER, format.gl().0);
+        // SAFETY: formats that can be rendered to; at most as many values are written as there is room for.
+        unsafe { gl.get_internal_format_i32_slice(target, format, glow::SAMPLES, &mut counts) };
+        counts
+    };
+    let depth = [of(Format::Depth24), of(Format::Depth32F)];
+    let counts = of(Format::Rgba8).into_iter().filter(|n| *n > 1 && depth.iter().all(|d| d.contains(n)));
+    counts.map(|n| n as u32).collect()
 }
 
 /// The extension that gives OpenGL ES, or WebGL, timer queries.
@@ -135,6 +161,8 @@ impl Capabilities {
                 multiview: multiview_loaded && has("GL_OVR_multiview2"),
                 clip_distances: api == GlApi::Desktop || has("GL_EXT_clip_cull_distance"),
                 max_texture_size: limit(glow::MAX_TEXTURE_SIZE),
+                samples: samples(gl),
+                multisample_textures: api == GlApi::Desktop || number >= (3, 1),
                 max_compute_shared_memory: if compute {
                     limit(glow::MAX_COMPUTE_SHARED_MEMORY_SIZE)
                 } else {
@@ -145,6 +173,23 @@ impl Capabilities {
                 version_string,
             })
         }
+    }
+
+    /// Whether a pixel of a render target can have this many samples; one is what every target has.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] with the numbers that there are.
+    pub fn check_samples(&self, samples: u32) -> Result<(), GlError> {
+        if samples == 1 || self.samples.contains(&samples) {
+            return Ok(());
+        }
+        let there: Vec<_> = [&1].into_iter().chain(self.samples.iter().rev()).map(u32::to_string).collect();
+        Err(GlError::Unsupported(format!(
+            "{} ({}) cannot render with {samples} samples a pixel: choose one of {}",
+            self.renderer,
+            self.version_string,
+            there.join(", ")
+        )))
     }
 
     /// One line for people: driver, version, what is in use.
@@ -160,6 +205,7 @@ impl Capabilities {
         feature(self.timer_queries, "timer queries");
         feature(self.multiview, "multiview");
         feature(self.clip_distances, "clip distances");
+        feature(self.multisample_textures, "multisample textures");
         feature(self.max_anisotropy > 1.0, "anisotropic filtering");
         format!("{}, {} ({})", self.renderer, self.version_string, features.join(", "))
     }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
+use glam::{IVec2, IVec4, Mat4, Vec2, Vec3, Vec4};
 use glow::HasContext;
 use yoro_shaders::{Assembled, MissingFile};
 
@@ -147,6 +147,12 @@ impl Program {
         self.set(name, unit as i32)
     }
 
+    /// As [`Program::texture`], for a multisample texture.
+    pub fn texture_multisample(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
+        super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D_MULTISAMPLE, texture);
+        self.set(name, unit as i32)
+    }
+
     /// As [`Program::texture`], for a texture of this library: a 2-D one or an array.
     pub fn texture_of(&self, name: &str, unit: u32, texture: &Texture) -> &Program {
         texture.bind(unit);
@@ -192,6 +198,7 @@ uniform!(Vec2, |gl, l, v| gl.uniform_2_f32(Some(l), v.x, v.y));
 uniform!(Vec3, |gl, l, v| gl.uniform_3_f32(Some(l), v.x, v.y, v.z));
 uniform!(Vec4, |gl, l, v| gl.uniform_4_f32(Some(l), v.x, v.y, v.z, v.w));
 uniform!(Mat4, |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, v.as_ref()));
+uniform!(&[IVec4], |gl, l, v| gl.uniform_4_i32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[IVec2], |gl, l, v| gl.uniform_2_i32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[Vec3], |gl, l, v| gl.uniform_3_f32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[Vec4], |gl, l, v| gl.uniform_4_f32_slice(Some(l), bytemuck::cast_slice(v)));

@@ -8,6 +8,8 @@ use yoro::gl::{
     Blend, Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
 
+/// What of the bloom is added to the picture.
+pub const STRENGTH: f32 = 0.12;
 /// Levels of the pyramid; the first has half the view's size.
 const LEVELS: usize = 5;
 
@@ -46,7 +48,8 @@ impl BloomTargets {
 
 /// Spreads what is brighter than white over its surroundings.
 ///
-/// Reads scene-referred colour, writes the pyramid.
+/// Reads scene-referred colour, or with the define `DISPLAY_REFERRED` what tone mapping made of it; writes the pyramid,
+/// which is scene-referred.
 pub struct BloomPass {
     gl: Rc<Context>,
     first: Program,
@@ -55,7 +58,7 @@ pub struct BloomPass {
 }
 
 impl BloomPass {
-    /// Compiles the programs; `defines` are those of `include/hdr.glsl`.
+    /// Compiles the programs; `defines` are those of `include/hdr.glsl`, and `DISPLAY_REFERRED`.
     ///
     /// # Errors
     /// As [`Program::new`].
@@ -71,8 +74,9 @@ impl BloomPass {
         })
     }
 
-    /// Computes the bloom of `source`, whose filter must be linear.
-    pub fn run(&self, targets: &BloomTargets, source: &Texture) {
+    /// Computes the bloom of `source`, whose filter must be linear, and to which `exposure` was applied if it is
+    /// display-referred.
+    pub fn run(&self, targets: &BloomTargets, source: &Texture, exposure: f32) {
         let texel = |texture: &Texture| 1.0 / Vec2::from(texture.size().map(|n| n as f32));
         self.gl.pass("bloom", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
@@ -80,7 +84,11 @@ impl BloomPass {
             let mut program = &self.first;
             for level in &targets.levels {
                 level.bind();
-                program.bind().texture("source", 0, from.raw()).set("texel", texel(level.color(0)));
+                program
+                    .bind()
+                    .texture("source", 0, from.raw())
+                    .set("texel", texel(level.color(0)))
+                    .set("exposure", exposure);
                 self.gl.draw_screen();
                 from = level.color(0);
                 program = &self.down;

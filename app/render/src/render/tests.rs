@@ -7,7 +7,10 @@ use glam::Vec3;
 use super::*;
 use crate::fixture::quad;
 use yoro::eyes::{DepthRange, Frustum, Pose};
-use yoro::gl::{Program, ShaderSource};
+use bloom::BloomPass;
+use deferred::{first_renderable, hdr_format};
+use tonemap::TonemapPass;
+use yoro::gl::{Filter, Format, Program, ShaderSource};
 use yoro_context::{Backend, Headless};
 use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
@@ -262,7 +265,8 @@ fn targets_follow_the_size_and_nothing_leaks() {
         assert_eq!(picture.len(), 301 * 97 * 4);
         assert_eq!(rig.targets.size(), large.size);
         assert_eq!(rig.render(&small, Selection::All), first, "a repeated frame is identical");
-        fxaa.run(rig.targets.color(), [0, 0], &Destination::whole(&rig.targets.light.hdr));
+        let Images::Deferred(targets) = &rig.targets.images else { unreachable!() };
+        fxaa.run(targets.finish.color().color(0), [0, 0], &Destination::whole(targets.light.target()));
     }
     assert_eq!(gl.object_count(), objects);
     assert_eq!(gl.take_errors(), None);

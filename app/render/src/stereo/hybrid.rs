@@ -82,7 +82,7 @@ impl Hybrid {
             image: FinishTargets::new(gl, [1, 1], settings)?,
             hidden: Program::new(gl, ShaderSource::Screen("stereo/hidden.frag"), &[])?,
             far_depth: Program::new(gl, ShaderSource::Screen("stereo/far_depth.frag"), &[])?,
-            finish: Finish::new(gl, options.anti_aliasing != AntiAliasing::Off)?,
+            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
         })
     }
 

@@ -37,7 +37,7 @@ pub fn create(
     settings: &RenderSettings,
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
-    method.supported(gl.capabilities())?;
+    method.supported(gl.capabilities(), settings)?;
     Ok(match method {
         Method::Conventional => Box::new(Conventional::new(gl, settings, options)?),
         Method::Instanced => Box::new(SinglePass::instanced(gl, settings, options)?),

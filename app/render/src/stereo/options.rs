@@ -1,5 +1,6 @@
 //! The methods and their settings.
 
+use crate::render::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro::gl::{Capabilities, GlError};
 use yoro::synthesis::{NearFieldPolicy, Pipeline, SynthesisOptions};
@@ -49,17 +50,38 @@ impl Method {
         }
     }
 
+    /// What the forward renderer does not have for the method, if anything.
+    fn lacking_forward(self) -> Option<&'static str> {
+        match self {
+            Method::ShadingReprojection => Some("the g-buffer of both eyes"),
+            // Layers with several samples are EXT_multisampled_render_to_texture's, by
+            // GL_OVR_multiview_multisampled_render_to_texture.
+            Method::Multiview => Some("layers with one sample in each pixel"),
+            _ => None,
+        }
+    }
+
     /// Whether the method shows pixels of one eye to the other, which needs eyes that look in the same direction
     /// ([`yoro::eyes::EyePair::synthesis`]).
     pub fn needs_aligned_eyes(self) -> bool {
         matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Mono | Method::Yoro)
     }
 
-    /// Whether a driver can run the method; what a pipeline of [`Method::Yoro`] needs is its own to say.
+    /// Whether a driver can run the method with a renderer of these settings; what a pipeline of [`Method::Yoro`] needs
+    /// is its own to say.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] with what is missing and the remedy.
-    pub fn supported(self, capabilities: &Capabilities) -> Result<(), GlError> {
+    pub fn supported(self, capabilities: &Capabilities, settings: &RenderSettings) -> Result<(), GlError> {
+        settings.supported(capabilities)?;
+        if settings.is_forward()
+            && let Some(lacking) = self.lacking_forward()
+        {
+            return Err(GlError::Unsupported(format!(
+                "{} needs {lacking}: choose the deferred renderer, or another method",
+                self.name()
+            )));
+        }
         if self == Method::Multiview && !capabilities.multiview {
             return Err(GlError::Unsupported(format!(
                 "{} ({}) has no GL_OVR_multiview2; use instanced, or a driver that has it, such as Mesa 25",

@@ -48,7 +48,7 @@ impl SinglePass {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<SinglePass, GlError> {
-        Method::Multiview.supported(gl.capabilities())?;
+        Method::Multiview.supported(gl.capabilities(), settings)?;
         SinglePass::new(gl, Layout::Layered, settings, options)
     }
 
@@ -63,7 +63,7 @@ impl SinglePass {
             g_buffer: GBuffer::new(gl, layout, [1, 1], DepthConvention::Standard)?,
             light: LightTargets::new(gl, [1, 1], settings)?,
             image: FinishTargets::new(gl, [1, 1], settings)?,
-            finish: Finish::new(gl, options.anti_aliasing != AntiAliasing::Off)?,
+            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
         })
     }
 }
