@@ -28,6 +28,14 @@ uniform mat4 shadow_matrix;   // to 0..1
 uniform vec3 shadow_texel;    // width in texture coordinates, width in metres, depth bias
 #endif
 
+#ifdef STEREO
+// Lights and shadow map are relative to the first of two eyes; `position` is relative to the fragment's own.
+in vec3 v_from_first;
+#define LIT_POSITION v_from_first
+#else
+#define LIT_POSITION position
+#endif
+
 const float PI = 3.14159265;
 
 vec3 sky(vec3 direction) {
@@ -131,7 +139,7 @@ vec3 shade(Surface s, vec3 position, float occlusion) {
 #endif
 #ifdef SUN
 #ifdef SHADOWS
-    float visibility = sun_visibility(position, s.normal);
+    float visibility = sun_visibility(LIT_POSITION, s.normal);
 #else
     float visibility = 1.0;
 #endif
@@ -143,7 +151,7 @@ vec3 shade(Surface s, vec3 position, float occlusion) {
 #else
     for (int i = 0; i < light_count; ++i) {
 #endif
-        vec3 offset = light_positions[i].xyz - position;
+        vec3 offset = light_positions[i].xyz - LIT_POSITION;
         float d2 = dot(offset, offset);
         float fade = d2 * light_positions[i].w * light_positions[i].w;
         fade = max(1.0 - fade * fade, 0.0);

@@ -8,6 +8,7 @@ uniform float material_id;
 #endif
 #ifdef SEAM_DISCARD
 uniform float seam;  // first column of the right eye
+flat in int v_view;
 #endif
 
 layout(location = 0) out vec4 out_color;

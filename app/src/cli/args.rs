@@ -55,6 +55,25 @@ impl RendererArgs {
     }
 }
 
+/// The renderer, where it is a setting of the viewer.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct RendererSettingArgs {
+    /// How a view is rendered [default: deferred]
+    #[arg(long, value_parser = choices::renderer(), value_name = "RENDERER")]
+    renderer: Option<RendererKind>,
+    /// forward: samples in each pixel, 1, 2 or 4, as far as the driver has them [default: 4]
+    #[arg(long, value_parser = parse_msaa, value_name = "N")]
+    msaa: Option<u32>,
+}
+
+impl RendererSettingArgs {
+    /// As `key=value`.
+    pub fn settings(&self) -> impl Iterator<Item = String> {
+        let renderer = self.renderer.map(|renderer| format!("renderer={}", renderer.name()));
+        renderer.into_iter().chain(self.msaa.map(|samples| format!("msaa={samples}")))
+    }
+}
+
 /// The synthesis pipeline and its knobs.
 #[derive(clap::Args, Clone, Debug)]
 pub struct SynthesisArgs {

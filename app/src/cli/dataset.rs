@@ -21,7 +21,7 @@ use yoro_lab::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_lab::inpaint::{Patcher, PatcherKind};
 use yoro_lab::interrupt;
 use yoro_lab::picture;
-use yoro_render::PreparedScene;
+use yoro_render::{PreparedScene, RenderSettings};
 use yoro_scene::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
 use yoro_scenes::{self, BUILTINS};
 
@@ -85,6 +85,9 @@ struct Settings<'a> {
     depth: DepthConvention,
     patcher: Option<PatcherKind>,
     model: Option<&'a Path>,
+    /// Of the forward renderer alone: folders of the deferred one stay what they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    renderer: Option<String>,
     #[serde(flatten)]
     options: GroupOptions,
 }
@@ -206,6 +209,7 @@ impl<'a> Job<'a> {
             depth: args.eyes.pair(Pose::IDENTITY).depth.convention,
             patcher: args.patcher.patcher,
             model: args.patcher.model.as_deref(),
+            renderer: Some(args.renderer.settings()?).filter(RenderSettings::is_forward).map(|s| s.summary()),
             options: group_options(args),
         })?;
         check_settings(&folder, &settings)?;

@@ -19,8 +19,8 @@ use yoro_lab::bench::BlankFinder;
 use yoro_lab::interrupt;
 use yoro_lab::metrics::{Channels, Quality, error_map};
 use yoro_lab::picture;
-use yoro_render::stereo::{self, Method, StereoFrame};
 use yoro_render::PreparedScene;
+use yoro_render::stereo::{self, Method, StereoFrame};
 use yoro_scene::{CameraPath, ShadingStyle};
 
 /// A picture made from the two eyes.

@@ -174,7 +174,7 @@ fn parameters(args: &RunArgs, settings: &RenderSettings) -> Vec<Parameter> {
         ("seed", args.seed.to_string()),
     ];
     if settings.is_forward() {
-        parameters.push(("renderer", format!("forward, {} samples a pixel", settings.msaa)));
+        parameters.push(("renderer", settings.summary()));
     }
     for &pipeline in &args.pipelines {
         let o = args.stereo.options_of(pipeline);

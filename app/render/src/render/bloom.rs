@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 
 use yoro::gl::{
     Blend, Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
@@ -74,9 +74,31 @@ impl BloomPass {
         })
     }
 
-    /// Computes the bloom of `source`, whose filter must be linear, and to which `exposure` was applied if it is
-    /// display-referred.
-    pub fn run(&self, targets: &BloomTargets, source: &Texture, exposure: f32) {
+    /// Computes the bloom of `source`, whose filter must be linear.
+    pub fn run(&self, targets: &BloomTargets, source: &Texture) {
+        self.run_with(targets, source, |_| {});
+    }
+
+    /// As [`BloomPass::run`], of a display-referred source to which `exposure` was applied: of the rectangle with the lower
+    /// left corner `origin` and this size in pixels.
+    pub fn run_display_referred(
+        &self,
+        targets: &BloomTargets,
+        source: &Texture,
+        (origin, size): ([u32; 2], [u32; 2]),
+        exposure: f32,
+    ) {
+        let texel = 1.0 / Vec2::from(source.size().map(|n| n as f32));
+        let [corner, size] = [origin, size].map(|v| Vec2::from(v.map(|n| n as f32)) * texel);
+        self.run_with(targets, source, |program| {
+            program
+                .set("exposure", exposure)
+                .set("part", Vec4::new(corner.x, corner.y, size.x, size.y))
+                .set("inside", 0.5 * texel);
+        });
+    }
+
+    fn run_with(&self, targets: &BloomTargets, source: &Texture, set_first: impl Fn(&Program)) {
         let texel = |texture: &Texture| 1.0 / Vec2::from(texture.size().map(|n| n as f32));
         self.gl.pass("bloom", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
@@ -84,11 +106,8 @@ impl BloomPass {
             let mut program = &self.first;
             for level in &targets.levels {
                 level.bind();
-                program
-                    .bind()
-                    .texture("source", 0, from.raw())
-                    .set("texel", texel(level.color(0)))
-                    .set("exposure", exposure);
+                program.bind().texture("source", 0, from.raw()).set("texel", texel(level.color(0)));
+                set_first(program);
                 self.gl.draw_screen();
                 from = level.color(0);
                 program = &self.down;

@@ -248,7 +248,7 @@ impl Deferred {
         let exposure = self.settings.exposure;
         let mut glow = None;
         if let (Some(pass), Some(bloom)) = (&self.bloom, &targets.bloom) {
-            pass.run(bloom, light.hdr(), exposure);
+            pass.run(bloom, light.hdr());
             glow = Some(bloom.result());
         }
         self.tonemap.run(&targets.color, light.hdr(), glow, exposure);

@@ -50,7 +50,7 @@ pub struct ForwardTargets {
     /// Average colour, nearest depth.
     resolved: RenderTarget,
     bloom: Option<BloomTargets>,
-    /// Colour with bloom and outlines, if there are any.
+    /// Colour with bloom and outlines, if there are any: of one eye.
     developed: Option<RenderTarget>,
     pub kept: Kept,
 }
@@ -78,17 +78,17 @@ impl ForwardTargets {
         readable: bool,
     ) -> Result<ForwardTargets, GlError> {
         settings.supported(gl.capabilities())?;
+        let bloom = settings.bloom.then(|| BloomTargets::new(gl, size, hdr_format(gl)));
         let size = layout.texture_size(size);
-        let samples = (settings.samples() > 1).then(|| {
-            MultisampleTarget::new(gl, size, settings.samples(), Format::Rgba8, DEPTH, readable)
-        });
+        let samples = (settings.samples() > 1)
+            .then(|| MultisampleTarget::new(gl, size, settings.samples(), Format::Rgba8, DEPTH, readable));
         let formats = [(Format::Rgba8, Filter::Linear)];
         Ok(ForwardTargets {
             gl: gl.clone(),
             layout,
             samples: samples.transpose()?,
             resolved: RenderTarget::new(gl, size, &formats, Some(DEPTH))?,
-            bloom: settings.bloom.then(|| BloomTargets::new(gl, size, hdr_format(gl))).transpose()?,
+            bloom: bloom.transpose()?,
             developed: None,
             kept: Kept::default(),
         })
@@ -99,9 +99,9 @@ impl ForwardTargets {
     /// # Errors
     /// As [`ForwardTargets::new`].
     pub fn fit(&mut self, size: [u32; 2], is_developed: bool) -> Result<(), GlError> {
-        let size = self.layout.texture_size(size);
-        self.samples.as_mut().map_or(Ok(()), |t| t.resize(size))?;
-        self.resolved.resize(size)?;
+        let whole = self.layout.texture_size(size);
+        self.samples.as_mut().map_or(Ok(()), |t| t.resize(whole))?;
+        self.resolved.resize(whole)?;
         self.bloom.as_mut().map_or(Ok(()), |t| t.resize(size))?;
         match &mut self.developed {
             Some(_) if !is_developed => self.developed = None,
@@ -124,6 +124,16 @@ impl ForwardTargets {
     /// is cut out is undefined.
     pub fn color(&self) -> &RenderTarget {
         self.developed.as_ref().unwrap_or(&self.resolved)
+    }
+
+    /// Where an eye of `size` pixels is in [`ForwardTargets::color`]: its lower left corner.
+    pub fn origin(&self, size: [u32; 2], eye: Eye) -> [u32; 2] {
+        if self.developed.is_some() { [0, 0] } else { self.layout.origin(size, eye) }
+    }
+
+    /// Average colour and nearest depth before bloom and outlines.
+    pub fn resolved(&self) -> &RenderTarget {
+        &self.resolved
     }
 
     /// The nearest depth of each pixel's samples; without multisample textures (OpenGL ES 3.0) that of one of them.
@@ -306,7 +316,9 @@ impl Forward {
 
     /// Draws opaque surfaces, lit, where nothing in the targets hides them.
     pub fn draw(&self, targets: &ForwardTargets, light: &Illumination, views: &[View], part: &Part) {
-        let (Some(pass), Some(view)) = (&self.geometry[targets.layout.index()], views.first()) else { return };
+        let (Some(pass), Some(view)) = (&self.geometry[targets.layout.index()], views.first()) else {
+            return;
+        };
         targets.bind(targets.layout.texture_size(view.size));
         pass.programs().for_each(|program| light.set(program.bind()));
         match part {
@@ -381,18 +393,24 @@ impl Forward {
         });
     }
 
-    /// Adds bloom and outlines, where there are any. With `again` the bloom is that of the time before.
-    pub fn develop(&self, targets: &ForwardTargets, view: &View, again: bool) {
+    /// Adds bloom and outlines to an eye's image, where there are any. With `again` the bloom is that of the time before.
+    pub fn develop(&self, targets: &ForwardTargets, view: &View, eye: Eye, again: bool) {
         let (Some(program), Some(to)) = (&self.develop, &targets.developed) else { return };
         let source = targets.resolved.color(0);
+        let origin = targets.layout.origin(view.size, eye);
         let bloom = self.bloom.as_ref().zip(targets.bloom.as_ref());
         if let Some((pass, bloom)) = bloom.filter(|_| !again) {
-            pass.run(bloom, source, self.exposure);
+            pass.run_display_referred(bloom, source, (origin, view.size), self.exposure);
         }
         self.gl.pass("develop", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             to.bind();
-            program.bind().texture("source", 0, source.raw()).set("line_width", line_width(view));
+            program
+                .bind()
+                .texture("source", 0, source.raw())
+                .set("view_origin", IVec2::from(origin.map(|n| n as i32)))
+                .set("view_size", IVec2::from(view.size.map(|n| n as i32)))
+                .set("line_width", line_width(view));
             if let Some((_, bloom)) = bloom {
                 program
                     .texture("bloom", 1, bloom.result().raw())

@@ -117,7 +117,8 @@ mod tests {
         let lights = Lights::choose(&scene, pose.position, &[culler], 24);
         let tiles = LightTiles::new(&lights, Layout::Single, &[view]);
         let mask = |x: f32, y: f32| {
-            let at = (y * tiles.tiles_per_pixel.y) as usize * COLUMNS + (x * tiles.tiles_per_pixel.x) as usize;
+            let at =
+                (y * tiles.tiles_per_pixel.y) as usize * COLUMNS + (x * tiles.tiles_per_pixel.x) as usize;
             tiles.masks[at / 4][at % 4]
         };
         let mut known = 0;

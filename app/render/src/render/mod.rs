@@ -12,6 +12,8 @@ mod cluster;
 mod deferred;
 mod depth_copy;
 mod forward;
+#[cfg(test)]
+mod forward_tests;
 mod fxaa;
 mod g_buffer;
 mod geometry;
@@ -42,9 +44,9 @@ pub use fxaa::Fxaa;
 pub(crate) use g_buffer::{GBuffer, Layout, Seam};
 use light_tiles::LightTiles;
 pub(crate) use role::{Reprojection, Role, RoleKind};
+use scene::FREE_UNIT;
 pub use scene::GpuScene;
 pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings, RendererKind};
-use scene::FREE_UNIT;
 use shadow::ShadowMap;
 pub use transparent::DepthImage;
 use transparent::{Onto, TransparentPass};
@@ -76,14 +78,24 @@ impl ViewTargets {
         settings: &RenderSettings,
     ) -> Result<ViewTargets, GlError> {
         let images = match settings.renderer {
-            RendererKind::Deferred => {
-                Images::Deferred(DeferredTargets::new(gl, size, convention, settings)?)
-            }
+            RendererKind::Deferred => Images::Deferred(DeferredTargets::new(gl, size, convention, settings)?),
             RendererKind::Forward => {
                 Images::Forward(ForwardTargets::new(gl, Layout::Single, size, settings)?)
             }
         };
         Ok(ViewTargets { images })
+    }
+
+    /// Targets for both eyes at once, of a forward renderer.
+    ///
+    /// # Errors
+    /// As [`ViewTargets::new`].
+    pub(crate) fn of_both_eyes(
+        gl: &Rc<Context>,
+        layout: Layout,
+        settings: &RenderSettings,
+    ) -> Result<ViewTargets, GlError> {
+        Ok(ViewTargets { images: Images::Forward(ForwardTargets::new(gl, layout, [1, 1], settings)?) })
     }
 
     /// Says which samples are still needed when a view is rendered, to be read or to go on drawing
@@ -266,7 +278,7 @@ impl Renderer {
                 targets.fit(view.size, passes.develops())?;
                 self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
                 passes.resolve(targets, view, true);
-                passes.develop(targets, view, false);
+                passes.develop(targets, view, Eye::Left, false);
                 Ok(())
             }
             _ => Err(other_kind()),
@@ -300,9 +312,9 @@ impl Renderer {
         targets.fit(view.size, passes.develops())?;
         let culler = culler(view, Selection::All);
         self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
-        self.draw_transparent_forward(passes, targets, scene, view);
+        self.draw_transparent_forward(passes, targets, scene, &[*view]);
         passes.resolve(targets, view, depth);
-        passes.develop(targets, view, false);
+        passes.develop(targets, view, Eye::Left, false);
         Ok(())
     }
 
@@ -325,7 +337,7 @@ impl Renderer {
         };
         self.draw_after_synthesis(passes, targets, scene, view, near);
         passes.resolve(targets, view, depth);
-        passes.develop(targets, view, true);
+        passes.develop(targets, view, Eye::Left, true);
         Ok(())
     }
 
@@ -351,6 +363,107 @@ impl Renderer {
         self.draw_after_synthesis(passes, targets, scene, view, near);
         passes.resolve_to(targets, image, view, depth);
         Ok(())
+    }
+
+    /// Renders, with a forward renderer, what lies in a slice (near and far plane in metres) and the sky behind it: the
+    /// beginning of [`Renderer::render_near`], without bloom and outlines.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub(crate) fn render_far(
+        &self,
+        targets: &mut ViewTargets,
+        scene: &GpuScene,
+        view: &View,
+        slice: [f32; 2],
+    ) -> Result<(), GlError> {
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &mut targets.images) else {
+            return Err(other_kind());
+        };
+        targets.fit(view.size, false)?;
+        self.draw_forward(passes, targets, scene, &[*view], &Part::Slice(slice));
+        passes.resolve(targets, view, true);
+        Ok(())
+    }
+
+    /// Renders, with a forward renderer, what lies in a slice, over the part of another view whose lower left corner is
+    /// given; and transparent surfaces over both. With `depth` the targets have that of opaque surfaces afterwards.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub(crate) fn render_near(
+        &self,
+        targets: &mut ViewTargets,
+        scene: &GpuScene,
+        view: &View,
+        slice: Option<[f32; 2]>,
+        (far, crop): (&ViewTargets, [u32; 2]),
+        depth: bool,
+    ) -> Result<(), GlError> {
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets), Images::Forward(far)) =
+            (&self.passes, &mut targets.images, &far.images)
+        else {
+            return Err(other_kind());
+        };
+        targets.fit(view.size, passes.develops())?;
+        let views = std::slice::from_ref(view);
+        self.gl.pass("forward", || {
+            passes.load(targets, (far.resolved().color(0), far.depth()), crop, view);
+            if let Some(slice) = slice {
+                self.illuminate(Layout::Single, scene, views, view, |light| {
+                    passes.draw(targets, light, views, &Part::Slice(slice));
+                });
+            }
+        });
+        self.draw_transparent_forward(passes, targets, scene, views);
+        passes.resolve(targets, view, depth);
+        passes.develop(targets, view, Eye::Left, false);
+        Ok(())
+    }
+
+    /// Renders both eyes at once with a forward renderer: all of the scene, side by side in targets of such a layout. With
+    /// `depth` these have that of opaque surfaces afterwards. [`Renderer::develop_eye`] ends each eye.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub(crate) fn render_both(
+        &self,
+        targets: &mut ViewTargets,
+        scene: &GpuScene,
+        views: &[View; 2],
+        depth: bool,
+    ) -> Result<(), GlError> {
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &mut targets.images) else {
+            return Err(other_kind());
+        };
+        let view = &views[0];
+        targets.fit(view.size, passes.develops())?;
+        let whole = [view.depth.near, view.depth.far];
+        self.draw_forward(passes, targets, scene, views, &Part::Slice(whole));
+        self.draw_transparent_forward(passes, targets, scene, views);
+        passes.resolve(targets, view, depth);
+        Ok(())
+    }
+
+    /// The image of an eye that [`Renderer::render_both`] has rendered, with the lower left corner of the eye in it. It is
+    /// there until another eye is asked for.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for targets of another kind.
+    pub(crate) fn develop_eye<'a>(
+        &self,
+        targets: &'a ViewTargets,
+        view: &View,
+        eye: Eye,
+    ) -> Result<(&'a RenderTarget, [u32; 2]), GlError> {
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &targets.images) else {
+            return Err(other_kind());
+        };
+        passes.develop(targets, view, eye, false);
+        Ok((targets.color(), targets.origin(view.size, eye)))
     }
 
     /// Whether anything opaque may be seen in a slice of a view (near and far plane in metres).
@@ -419,28 +532,30 @@ impl Renderer {
         let Some(first) = views.first() else { return };
         self.gl.pass("forward", || {
             passes.clear(targets, first);
-            self.illuminate(targets.layout(), scene, views, |light| {
+            self.illuminate(targets.layout(), scene, views, first, |light| {
                 passes.draw(targets, light, views, part);
                 passes.draw_sky(targets, light, views);
             });
         });
     }
 
-    /// Calls `draw` with what lights these views in an image of this layout.
+    /// Calls `draw` with what lights these views in an image of this layout, for positions relative to one of them.
     fn illuminate(
         &self,
         layout: Layout,
         scene: &GpuScene,
         views: &[View],
+        from: &View,
         draw: impl FnOnce(&Illumination),
     ) {
         let lights = self.lights(scene, views);
+        let eye = from.pose.position;
         draw(&Illumination {
             scene,
             shadow: self.shadow.as_ref(),
-            lights: &lights,
             tiles: &LightTiles::new(&lights, layout, views),
-            eye: views.first().map_or(Vec3::ZERO, |view| view.pose.position),
+            lights: &lights.seen_from(eye),
+            eye,
             exposure: self.settings.exposure,
         });
     }
@@ -458,30 +573,32 @@ impl Renderer {
         if let Some(near) = near {
             let culler = culler(view, near);
             self.gl.pass("near objects", || {
-                self.illuminate(Layout::Single, scene, views, |light| {
+                self.illuminate(Layout::Single, scene, views, view, |light| {
                     passes.draw(targets, light, views, &Part::Selected(&culler));
                 });
             });
         }
-        self.draw_transparent_forward(passes, targets, scene, view);
+        self.draw_transparent_forward(passes, targets, scene, views);
     }
 
-    /// Draws transparent surfaces into forward targets of one view.
+    /// Draws the transparent surfaces of each view into forward targets.
     fn draw_transparent_forward(
         &self,
         passes: &Forward,
         targets: &ForwardTargets,
         scene: &GpuScene,
-        view: &View,
+        views: &[View],
     ) {
         if !scene.has_transparent() {
             return;
         }
-        passes.bind_eye(targets, view, Eye::Left);
-        self.illuminate(Layout::Single, scene, std::slice::from_ref(view), |light| {
-            let all = culler(view, Selection::All);
-            self.transparent.run(Onto::Bound, scene, view, &all, |program| light.set(program));
-        });
+        for (view, eye) in views.iter().zip(Eye::BOTH) {
+            passes.bind_eye(targets, view, eye);
+            self.illuminate(targets.layout(), scene, views, view, |light| {
+                let all = culler(view, Selection::All);
+                self.transparent.run(Onto::Bound, scene, view, &all, |program| light.set(program));
+            });
+        }
     }
 
     /// Draws the transparent part of a scene over a finished image of `view`, whose window depth is `depth`: of a deferred

@@ -83,6 +83,14 @@ impl RenderSettings {
         if self.is_forward() { self.msaa } else { 1 }
     }
 
+    /// The renderer in a few words: `forward, 4 samples a pixel`.
+    pub fn summary(&self) -> String {
+        match self.renderer {
+            RendererKind::Deferred => self.renderer.name().into(),
+            RendererKind::Forward => format!("{}, {} samples a pixel", self.renderer.name(), self.msaa),
+        }
+    }
+
     /// Whether a driver has as many samples as are asked for.
     ///
     /// # Errors
@@ -90,7 +98,9 @@ impl RenderSettings {
     pub fn supported(&self, capabilities: &Capabilities) -> Result<(), GlError> {
         let samples = self.samples();
         if !MSAA.contains(&samples) {
-            return Err(GlError::Unsupported(format!("there are no {samples} samples a pixel: choose 1, 2 or 4")));
+            return Err(GlError::Unsupported(format!(
+                "there are no {samples} samples a pixel: choose 1, 2 or 4"
+            )));
         }
         capabilities.check_samples(samples)
     }

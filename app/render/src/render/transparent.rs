@@ -117,14 +117,7 @@ impl TransparentPass {
 
     /// Draws what `culler` lets through and nothing hides. `light` sets what `include/shade.glsl` needs, for
     /// positions relative to the view's.
-    pub fn run(
-        &self,
-        onto: Onto,
-        scene: &GpuScene,
-        view: &View,
-        culler: &Culler,
-        light: impl Fn(&Program),
-    ) {
+    pub fn run(&self, onto: Onto, scene: &GpuScene, view: &View, culler: &Culler, light: impl Fn(&Program)) {
         let eye = view.pose.position;
         let mut order = self.order.borrow_mut();
         order.clear();

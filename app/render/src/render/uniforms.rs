@@ -42,8 +42,10 @@ pub fn set_view(program: &Program, view: &View) {
         .set("far_depth", view.depth.clear_value());
 }
 
-/// The point lights of one view, strongest first.
+/// The point lights of one view, or of both eyes, strongest first.
 pub struct Lights {
+    /// Where positions are relative to.
+    eye: Vec3,
     positions: [Vec4; MAX_POINT_LIGHTS],
     colors: [Vec4; MAX_POINT_LIGHTS],
     count: usize,
@@ -78,7 +80,13 @@ impl Lights {
             positions[k] = (lights[i].position - eye).extend(1.0 / lights[i].range.max(1e-3));
             colors[k] = lights[i].color.extend(0.0);
         }
-        Lights { positions, colors, count }
+        Lights { eye, positions, colors, count }
+    }
+
+    /// The same lights, relative to another eye.
+    pub fn seen_from(&self, eye: Vec3) -> Lights {
+        let shift = (self.eye - eye).extend(0.0);
+        Lights { eye, positions: self.positions.map(|p| p + shift), ..*self }
     }
 
     /// Centres relative to the eye, along the world's axes, and ranges in metres.
