@@ -52,6 +52,9 @@ pub struct Capabilities {
     pub samples: Vec<u32>,
     /// Multisample textures, which shaders read sample by sample: OpenGL ES 3.1 and the desktop.
     pub multisample_textures: bool,
+    /// Samples that exist in the tiles of a tile-based GPU alone, for colour and for depth:
+    /// GL_EXT_multisampled_render_to_texture and its second version.
+    pub tile_samples: bool,
     /// Bytes of shared memory of a compute workgroup.
     pub max_compute_shared_memory: u32,
     /// Rendered by the CPU (llvmpipe, softpipe, SwiftShader): times are CPU times.
@@ -162,6 +165,9 @@ impl Capabilities {
                 clip_distances: api == GlApi::Desktop || has("GL_EXT_clip_cull_distance"),
                 max_texture_size: limit(glow::MAX_TEXTURE_SIZE),
                 samples: samples(gl),
+                tile_samples: api == GlApi::Es
+                    && has("GL_EXT_multisampled_render_to_texture")
+                    && has("GL_EXT_multisampled_render_to_texture2"),
                 multisample_textures: api == GlApi::Desktop || number >= (3, 1),
                 max_compute_shared_memory: if compute {
                     limit(glow::MAX_COMPUTE_SHARED_MEMORY_SIZE)
@@ -206,6 +212,7 @@ impl Capabilities {
         feature(self.multiview, "multiview");
         feature(self.clip_distances, "clip distances");
         feature(self.multisample_textures, "multisample textures");
+        feature(self.tile_samples, "samples in tiles");
         feature(self.max_anisotropy > 1.0, "anisotropic filtering");
         format!("{}, {} ({})", self.renderer, self.version_string, features.join(", "))
     }

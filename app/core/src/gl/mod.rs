@@ -23,7 +23,7 @@ use glow::HasContext;
 pub use capabilities::{Capabilities, GlApi};
 pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
 pub use mesh::Mesh;
-pub use multisample::MultisampleTarget;
+pub use multisample::{MultisampleTarget, TileTarget};
 pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};

@@ -241,3 +241,93 @@ impl Drop for MultisampleTarget {
         self.gl.count(-1);
     }
 }
+
+/// A framebuffer around the textures of a render target, drawn into with several samples a pixel that a tile-based GPU
+/// keeps in its tiles and averages when it writes these out: 8 bytes a pixel, whatever the number of samples. They are gone
+/// as soon as another framebuffer is bound.
+pub struct TileTarget {
+    gl: Rc<Context>,
+    raw: glow::Framebuffer,
+    samples: u32,
+    /// Colour and depth.
+    textures: Option<[glow::Texture; 2]>,
+}
+
+impl TileTarget {
+    /// A framebuffer for this many samples, around nothing yet.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] without [`super::Capabilities::tile_samples`]; [`GlError::Object`] when the driver
+    /// refuses.
+    pub fn new(gl: &Rc<Context>, samples: u32) -> Result<TileTarget, GlError> {
+        let capabilities = gl.capabilities();
+        if !capabilities.tile_samples {
+            return Err(GlError::Unsupported(format!(
+                "{} has no GL_EXT_multisampled_render_to_texture2",
+                capabilities.renderer
+            )));
+        }
+        // SAFETY: plain creation.
+        let raw = unsafe { gl.raw().create_framebuffer() }
+            .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
+        gl.count(1);
+        Ok(TileTarget { gl: gl.clone(), raw, samples, textures: None })
+    }
+
+    /// Puts it around the first colour texture and the depth texture of a target; nothing is done if it is there.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] when the driver cannot render to these with so many samples.
+    pub fn fit(&mut self, target: &RenderTarget) -> Result<(), GlError> {
+        let textures = [target.color(0).raw(), target.depth().raw()];
+        if self.textures == Some(textures) {
+            return Ok(());
+        }
+        self.textures = None;
+        let gl = self.gl.raw();
+        // SAFETY: live textures; the entry point exists, as the capability says.
+        let status = unsafe {
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
+            for (attachment, raw) in
+                [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT].into_iter().zip(textures)
+            {
+                gl.framebuffer_texture_2d_multisample(
+                    glow::FRAMEBUFFER,
+                    attachment,
+                    glow::TEXTURE_2D,
+                    Some(raw),
+                    0,
+                    self.samples as i32,
+                );
+            }
+            gl.check_framebuffer_status(glow::FRAMEBUFFER)
+        };
+        if status != glow::FRAMEBUFFER_COMPLETE {
+            return Err(GlError::Unsupported(format!(
+                "the GL driver cannot keep {} samples a pixel in its tiles (status 0x{status:x})",
+                self.samples
+            )));
+        }
+        self.textures = Some(textures);
+        Ok(())
+    }
+
+    /// Binds the framebuffer and sets the viewport to its lower left part of this size in pixels.
+    pub fn bind(&self, size: [u32; 2]) {
+        self.gl.bind_framebuffer(Some(self.raw), [0, 0], size);
+    }
+
+    /// Gives up the depth, while the framebuffer is bound.
+    pub fn discard_depth(&self) {
+        // SAFETY: the framebuffer that is bound has the attachment.
+        unsafe { self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]) }
+    }
+}
+
+impl Drop for TileTarget {
+    fn drop(&mut self) {
+        // SAFETY: created in `new`, deleted once.
+        unsafe { self.gl.raw().delete_framebuffer(self.raw) };
+        self.gl.count(-1);
+    }
+}

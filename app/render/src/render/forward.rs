@@ -21,7 +21,7 @@ use super::uniforms::{Lights, nearer, set_view};
 use yoro::eyes::{Eye, View};
 use yoro::gl::{
     Context, DepthTest, Filter, Format, GlError, MultisampleTarget, Program, RasterState, RenderTarget,
-    ShaderSource, Texture,
+    ShaderSource, Texture, TileTarget,
 };
 use yoro_scene::ShadingStyle;
 
@@ -47,6 +47,10 @@ pub struct ForwardTargets {
     layout: Layout,
     /// Where there is more than one in a pixel.
     samples: Option<MultisampleTarget>,
+    /// Where samples can stay in tiles.
+    tile: Option<TileTarget>,
+    /// Whether they do in the frame that is drawn.
+    in_tile: bool,
     /// Average colour, nearest depth.
     resolved: RenderTarget,
     bloom: Option<BloomTargets>,
@@ -82,11 +86,15 @@ impl ForwardTargets {
         let size = layout.texture_size(size);
         let samples = (settings.samples() > 1)
             .then(|| MultisampleTarget::new(gl, size, settings.samples(), Format::Rgba8, DEPTH, readable));
+        let tile = (settings.samples() > 1 && gl.capabilities().tile_samples)
+            .then(|| TileTarget::new(gl, settings.samples()));
         let formats = [(Format::Rgba8, Filter::Linear)];
         Ok(ForwardTargets {
             gl: gl.clone(),
             layout,
             samples: samples.transpose()?,
+            tile: tile.transpose()?,
+            in_tile: false,
             resolved: RenderTarget::new(gl, size, &formats, Some(DEPTH))?,
             bloom: bloom.transpose()?,
             developed: None,
@@ -95,13 +103,20 @@ impl ForwardTargets {
     }
 
     /// Fits the targets to views of `size` pixels, which are developed or not; nothing is done when they fit already.
+    /// With `in_tile` no sample is needed once they are drawn, so that all of them may stay in tiles.
     ///
     /// # Errors
     /// As [`ForwardTargets::new`].
-    pub fn fit(&mut self, size: [u32; 2], is_developed: bool) -> Result<(), GlError> {
+    pub fn fit(&mut self, size: [u32; 2], is_developed: bool, in_tile: bool) -> Result<(), GlError> {
         let whole = self.layout.texture_size(size);
-        self.samples.as_mut().map_or(Ok(()), |t| t.resize(whole))?;
         self.resolved.resize(whole)?;
+        self.in_tile = false;
+        if in_tile && let Some(tile) = &mut self.tile {
+            self.in_tile = tile.fit(&self.resolved).is_ok();
+        }
+        if let Some(samples) = self.samples.as_mut().filter(|_| !self.in_tile) {
+            samples.resize(whole)?;
+        }
         self.bloom.as_mut().map_or(Ok(()), |t| t.resize(size))?;
         match &mut self.developed {
             Some(_) if !is_developed => self.developed = None,
@@ -136,7 +151,8 @@ impl ForwardTargets {
         &self.resolved
     }
 
-    /// The nearest depth of each pixel's samples; without multisample textures (OpenGL ES 3.0) that of one of them.
+    /// The nearest depth of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0), and
+    /// where samples stayed in tiles.
     pub fn depth(&self) -> &Texture {
         self.resolved.depth()
     }
@@ -153,9 +169,10 @@ impl ForwardTargets {
 
     /// Binds what is drawn into, with a viewport for an image of `size` pixels.
     fn bind(&self, size: [u32; 2]) {
-        match &self.samples {
-            Some(samples) => samples.bind(size),
-            None => self.gl.bind_framebuffer(Some(self.resolved.raw()), [0, 0], size),
+        match (&self.samples, &self.tile) {
+            (_, Some(tile)) if self.in_tile => tile.bind(size),
+            (Some(samples), _) => samples.bind(size),
+            (None, _) => self.gl.bind_framebuffer(Some(self.resolved.raw()), [0, 0], size),
         }
     }
 
@@ -279,6 +296,11 @@ impl Forward {
         Ok(())
     }
 
+    /// Whether samples are needed to end an image: outlines read them.
+    pub fn reads_samples(&self) -> bool {
+        self.ink
+    }
+
     /// Whether something is done to an image after its samples are averaged.
     pub fn develops(&self) -> bool {
         self.develop.is_some()
@@ -356,7 +378,11 @@ impl Forward {
     /// Averages the samples, and takes their nearest depth if `depth` is wanted; what [`ForwardTargets::kept`] does not
     /// name is given up.
     pub fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool) {
-        if targets.samples.is_some() {
+        if let Some(tile) = targets.tile.as_ref().filter(|_| targets.in_tile) {
+            if !depth {
+                tile.discard_depth();
+            }
+        } else if targets.samples.is_some() {
             self.resolve_to(targets, &targets.resolved, view, depth);
         }
     }

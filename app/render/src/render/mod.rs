@@ -127,7 +127,8 @@ impl ViewTargets {
     }
 
     /// Window depth in the view's convention. Deferred: 24 bits for standard, float for reversed depth. Forward: float,
-    /// the nearest of each pixel's samples; without multisample textures (OpenGL ES 3.0) that of one of them.
+    /// the nearest of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0), and after
+    /// [`Renderer::render_all`] where samples stay in tiles.
     pub fn depth(&self) -> &Texture {
         match &self.images {
             Images::Deferred(targets) => targets.g_buffer.target().depth(),
@@ -275,7 +276,7 @@ impl Renderer {
                 Ok(())
             }
             (Passes::Forward(passes), Images::Forward(targets)) => {
-                targets.fit(view.size, passes.develops())?;
+                targets.fit(view.size, passes.develops(), false)?;
                 self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
                 passes.resolve(targets, view, true);
                 passes.develop(targets, view, Eye::Left, false);
@@ -309,7 +310,7 @@ impl Renderer {
         let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &mut targets.images) else {
             return Err(other_kind());
         };
-        targets.fit(view.size, passes.develops())?;
+        targets.fit(view.size, passes.develops(), !passes.reads_samples())?;
         let culler = culler(view, Selection::All);
         self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
         self.draw_transparent_forward(passes, targets, scene, &[*view]);
@@ -337,7 +338,7 @@ impl Renderer {
         };
         self.draw_after_synthesis(passes, targets, scene, view, near);
         passes.resolve(targets, view, depth);
-        passes.develop(targets, view, Eye::Left, true);
+        passes.develop(targets, view, Eye::Left, near.is_none());
         Ok(())
     }
 
@@ -381,7 +382,7 @@ impl Renderer {
         let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &mut targets.images) else {
             return Err(other_kind());
         };
-        targets.fit(view.size, false)?;
+        targets.fit(view.size, false, false)?;
         self.draw_forward(passes, targets, scene, &[*view], &Part::Slice(slice));
         passes.resolve(targets, view, true);
         Ok(())
@@ -407,7 +408,7 @@ impl Renderer {
         else {
             return Err(other_kind());
         };
-        targets.fit(view.size, passes.develops())?;
+        targets.fit(view.size, passes.develops(), !passes.reads_samples())?;
         let views = std::slice::from_ref(view);
         self.gl.pass("forward", || {
             passes.load(targets, (far.resolved().color(0), far.depth()), crop, view);
@@ -440,7 +441,7 @@ impl Renderer {
             return Err(other_kind());
         };
         let view = &views[0];
-        targets.fit(view.size, passes.develops())?;
+        targets.fit(view.size, passes.develops(), !passes.reads_samples())?;
         let whole = [view.depth.near, view.depth.far];
         self.draw_forward(passes, targets, scene, views, &Part::Slice(whole));
         self.draw_transparent_forward(passes, targets, scene, views);
