@@ -16,11 +16,24 @@ uniform vec3 sun_direction;
 uniform vec3 sun_color;
 uniform vec4 light_positions[MAX_POINT_LIGHTS];  // w: 1 / range
 uniform vec4 light_colors[MAX_POINT_LIGHTS];
+#ifdef LIGHT_TILES
+uniform ivec4 light_tiles[LIGHT_TILES / 4];  // bit i: light i reaches into the tile; row by row from the bottom
+uniform vec2 tiles_per_pixel;
+#else
 uniform int light_count;
+#endif
 #ifdef SHADOWS
 uniform sampler2DShadow shadow_map;
 uniform mat4 shadow_matrix;   // to 0..1
 uniform vec3 shadow_texel;    // width in texture coordinates, width in metres, depth bias
+#endif
+
+#ifdef STEREO
+// Lights and shadow map are relative to the first of two eyes; `position` is relative to the fragment's own.
+in vec3 v_from_first;
+#define LIT_POSITION v_from_first
+#else
+#define LIT_POSITION position
 #endif
 
 const float PI = 3.14159265;
@@ -30,6 +43,16 @@ vec3 sky(vec3 direction) {
     low *= low;
     vec3 above = mix(zenith, horizon, low * low);
     return mix(above, ground, smoothstep(0.0, 0.35, -direction.y));
+}
+
+// What is seen where there is nothing.
+vec3 background(vec3 direction) {
+    vec3 color = sky(direction);
+#ifdef SUN
+    float disc = dot(direction, sun_direction);
+    color += sun_color * (smoothstep(0.9996, 0.9998, disc) * 2.0 + 0.08 * exp2(60.0 * (disc - 1.0)));
+#endif
+    return color;
 }
 
 // How a style distributes light between the terminator and the light. x: cosine times visibility.
@@ -81,6 +104,19 @@ float sun_visibility(vec3 position, vec3 normal) {
 }
 #endif
 
+#ifdef LIGHT_TILES
+int lights_here() {
+    ivec2 tile = ivec2(gl_FragCoord.xy * tiles_per_pixel);
+    int i = tile.y * LIGHT_TILE_COLUMNS + tile.x;
+    return light_tiles[i >> 2][i & 3];
+}
+
+// Number of the lowest bit, below 24, by the exponent of its value: findLSB wants ES 3.1.
+int lowest_bit(int bits) {
+    return (floatBitsToInt(float(bits & -bits)) >> 23) - 127;
+}
+#endif
+
 vec3 shade(Surface s, vec3 position, float occlusion) {
     vec3 to_eye = -normalize(position);
     float up = 0.5 * s.normal.y + 0.5;
@@ -103,14 +139,19 @@ vec3 shade(Surface s, vec3 position, float occlusion) {
 #endif
 #ifdef SUN
 #ifdef SHADOWS
-    float visibility = sun_visibility(position, s.normal);
+    float visibility = sun_visibility(LIT_POSITION, s.normal);
 #else
     float visibility = 1.0;
 #endif
     color += sun_color * reflected(s, to_eye, sun_direction, visibility);
 #endif
+#ifdef LIGHT_TILES
+    for (int left = lights_here(); left != 0; left &= left - 1) {
+        int i = lowest_bit(left);
+#else
     for (int i = 0; i < light_count; ++i) {
-        vec3 offset = light_positions[i].xyz - position;
+#endif
+        vec3 offset = light_positions[i].xyz - LIT_POSITION;
         float d2 = dot(offset, offset);
         float fade = d2 * light_positions[i].w * light_positions[i].w;
         fade = max(1.0 - fade * fade, 0.0);

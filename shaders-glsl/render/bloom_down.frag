@@ -4,13 +4,23 @@
 
 uniform sampler2D source;
 uniform vec2 texel;  // of the target
+#ifdef DISPLAY_REFERRED
+uniform float exposure;
+uniform vec4 part;    // of the source, by texture coordinates: lower left corner, size
+uniform vec2 inside;  // half a texel of the source: what is beside the part is never filtered in
+#endif
 
 layout(location = 0) out vec4 out_color;
 
 void main() {
     vec2 uv = gl_FragCoord.xy * texel;
 #ifdef FIRST
+#ifdef DISPLAY_REFERRED
+    uv = clamp(part.xy + uv * part.zw, part.xy + inside, part.xy + part.zw - inside);
+    vec3 c = undo_tonemap(texture(source, uv).rgb) / exposure;
+#else
     vec3 c = hdr_decode(texture(source, uv).rgb);
+#endif
     float bright = max(c.r, max(c.g, c.b));
     // A knee, and a ceiling so that a single very bright pixel does not flicker from eye to eye.
     c *= max(bright - 1.0, 0.0) / max(bright, 1e-4);

@@ -29,6 +29,9 @@ out float gl_ClipDistance[1];
 #ifdef SEAM_DISCARD
 flat out int v_view;
 #endif
+#if defined(STEREO) && defined(FORWARD)
+out vec3 v_from_first;  // relative to the first eye
+#endif
 
 out vec3 v_position;
 out vec3 v_normal;
@@ -38,6 +41,9 @@ void main() {
     v_position = position - EYE;
     v_normal = normal;
     v_uv = uv;
+#if defined(STEREO) && defined(FORWARD)
+    v_from_first = position - eyes[0];
+#endif
     gl_Position = EYE_TO_CLIP * vec4(v_position, 1.0);
 #ifdef CLIP_DISTANCE
     gl_ClipDistance[0] = dot(seams[VIEW], vec4(v_position, 1.0));

@@ -13,9 +13,6 @@ uniform G_SAMPLER emissive_map;
 #ifdef SSAO
 uniform sampler2D occlusion_map;
 #endif
-#ifdef STYLE_ANIME
-uniform int line_width;  // pixels
-#endif
 #ifdef NEAR_FIELD
 uniform sampler2D far_field;
 uniform ivec2 far_field_crop;
@@ -51,25 +48,9 @@ float occlusion(ivec2 p, float z) {
 #endif
 
 #ifdef STYLE_ANIME
-// 1 where surfaces part: another material, or an inverse distance that is not linear over the screen. Of two
-// surfaces the nearer one carries the line: it must stay with the outline that it draws when the pixels move to
-// the other eye.
-float ink(ivec2 p, float depth, float id) {
-    ivec2 last = g_size() - 1;
-    float c = inverse_distance.x + inverse_distance.y * depth;
-    float line = 0.0;
-    for (int i = 0; i < 2; ++i) {
-        ivec2 step = i == 0 ? ivec2(line_width, 0) : ivec2(0, line_width);
-        ivec2 q0 = max(p - step, ivec2(0)), q1 = min(p + step, last);
-        float d0 = G_TEXEL(depth_map, q0).x, d1 = G_TEXEL(depth_map, q1).x;
-        float bend = inverse_distance.y * (2.0 * depth - d0 - d1) / c;
-        line = max(line, smoothstep(0.03, 0.06, bend));
-        float i0 = G_TEXEL(emissive_map, q0).a, i1 = G_TEXEL(emissive_map, q1).a;
-        // Of two neighbours in one distance, the line is drawn on one side only.
-        line = max(line, i0 != id && abs(d0 - depth) * abs(inverse_distance.y) < 0.05 * c ? 0.8 : 0.0);
-    }
-    return line;
-}
+#define INK_DEPTH(p) G_TEXEL(depth_map, p).x
+#define INK_MATERIAL(p) G_TEXEL(emissive_map, p).a
+#include "include/ink.glsl"
 #endif
 
 vec3 lit(ivec2 p, float depth, vec3 ray) {
@@ -90,18 +71,9 @@ vec3 lit(ivec2 p, float depth, vec3 ray) {
 #endif
     vec3 color = shade(s, ray * z, ao);
 #ifdef STYLE_ANIME
-    color = mix(color, 0.04 * s.albedo, ink(p, depth, emissive.a));
+    color = mix(color, 0.04 * s.albedo, ink(p, g_size() - 1, depth, emissive.a));
 #endif
     return aerial(color, z);
-}
-
-vec3 background(vec3 direction) {
-    vec3 color = sky(direction);
-#ifdef SUN
-    float disc = dot(direction, sun_direction);
-    color += sun_color * (smoothstep(0.9996, 0.9998, disc) * 2.0 + 0.08 * exp2(60.0 * (disc - 1.0)));
-#endif
-    return color;
 }
 
 void main() {

@@ -1,27 +1,24 @@
-// Transparent surfaces over a finished, display-referred image.
-#include "include/material.glsl"
-#include "include/view.glsl"
+// Transparent surfaces over a display-referred image: a finished one, whose depth is a texture, or with DEPTH_BUFFER
+// the one that is being rendered, against its depth buffer.
+#include "include/surface.glsl"
+#ifndef DEPTH_BUFFER
 #include "include/g_buffer.glsl"
-#include "include/shade.glsl"
 
 uniform ivec2 depth_offset;    // from a pixel of the target to its pixel in the depth map
 uniform float nearer;          // +1: smaller depth is nearer, -1: larger
+#endif
 uniform float exposure;
 
 layout(location = 0) out vec4 out_color;
 
 void main() {
+#ifndef DEPTH_BUFFER
     float there = G_TEXEL(depth_map, ivec2(gl_FragCoord.xy) + depth_offset).x;
     if ((gl_FragCoord.z - there) * nearer >= 0.0) {
         discard;
     }
+#endif
     vec4 color = material_diffuse();
-    Surface s;
-    s.albedo = color.rgb;
-    s.emissive = material_emissive();
-    s.normal = material_normal();
-    s.roughness = gloss.x;
-    s.specular = material_specular();
-    vec3 c = aerial(shade(s, v_position, 1.0), length(v_position));
+    vec3 c = aerial(shade(material_surface(color.rgb), v_position, 1.0), length(v_position));
     out_color = vec4(tonemap(exposure * c), color.a);
 }

@@ -12,7 +12,7 @@ use yoro::synthesis::{
 };
 use yoro_lab::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoOptions};
-use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer};
+use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::{Scene, ShadingStyle};
 use yoro_shaders::{Assembled, MissingFile};
 
@@ -81,7 +81,7 @@ fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
 fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> anyhow::Result<()> {
     let mut renderer = Renderer::new(gl, settings, scene)?;
     for method in Method::ALL {
-        match method.supported(gl.capabilities()) {
+        match method.supported(gl.capabilities(), settings) {
             Ok(()) => stereo::create(gl, method, settings, &StereoOptions::default())?
                 .prepare(&mut renderer, scene)?,
             Err(reason) => eprintln!("SKIPPED: {} is not compiled here: {reason}", method.name()),
@@ -103,7 +103,13 @@ fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Resul
     if all_settings {
         methods(gl, &RenderSettings { shadow_map_size: 0, ..settings.clone() }, &scene)?;
         methods(gl, &RenderSettings { ssao: false, bloom: false, ..settings.clone() }, &scene)?;
-        methods(gl, &RenderSettings { ssao_half_size: true, ..settings }, &scene)?;
+        methods(gl, &RenderSettings { ssao_half_size: true, ..settings.clone() }, &scene)?;
+    }
+    let forward = RenderSettings { renderer: RendererKind::Forward, ..settings };
+    methods(gl, &forward, &scene)?;
+    if all_settings {
+        methods(gl, &RenderSettings { msaa: 1, ..forward.clone() }, &scene)?;
+        methods(gl, &RenderSettings { shadow_map_size: 0, bloom: false, ..forward }, &scene)?;
     }
     Ok(())
 }
@@ -118,7 +124,10 @@ fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         // No map and all maps, in every kind of opacity, stand for the combinations under other settings.
         scene::keep_plain_and_full(&mut scene);
         if !every && style != ShadingStyle::Realistic {
-            Renderer::new(gl, &settings(), &GpuScene::upload(gl, scene)?)?;
+            let scene = GpuScene::upload(gl, scene)?;
+            for renderer in RendererKind::ALL {
+                Renderer::new(gl, &RenderSettings { renderer, ..settings() }, &scene)?;
+            }
             continue;
         }
         renderer(gl, scene.clone(), every)?;
@@ -151,7 +160,8 @@ fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
     let settings = RenderSettings::default();
     for anti_aliasing in [AntiAliasing::After, AntiAliasing::Before, AntiAliasing::Off] {
         let options = StereoOptions { anti_aliasing, near_field: Some(1.0), ..StereoOptions::default() };
-        for method in Method::ALL.into_iter().filter(|m| m.supported(gl.capabilities()).is_ok()) {
+        let there = |m: &Method| m.supported(gl.capabilities(), &settings).is_ok();
+        for method in Method::ALL.into_iter().filter(there) {
             stereo::create(gl, method, &settings, &options)?;
         }
     }

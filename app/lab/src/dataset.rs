@@ -13,7 +13,7 @@ use yoro::gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
 };
 use yoro::synthesis::{Offline, SynthesisOptions};
-use yoro_render::{self as render, Fxaa, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+use yoro_render::{Fxaa, GpuScene, RenderSettings, Renderer, ViewTargets};
 
 /// Why an image group could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -159,12 +159,8 @@ impl GroupRenderer {
         scene: &GpuScene,
         view: &View,
     ) -> Result<Vec<u8>, GlError> {
-        renderer.render(&mut self.targets, scene, view, Selection::All)?;
+        renderer.render_all(&mut self.targets, scene, view, true)?;
         let mut color = self.targets.color_target();
-        if scene.has_transparent() {
-            let depth = render::DepthImage::whole(self.targets.depth());
-            renderer.draw_transparent(&Destination::whole(color), depth, scene, view)?;
-        }
         if let Some(fxaa) = &self.fxaa {
             self.smooth.resize(view.size)?;
             fxaa.run(color.color(0), [0, 0], &Destination::whole(&self.smooth));

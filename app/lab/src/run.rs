@@ -22,6 +22,8 @@ use yoro_viewer::telemetry::stats::{Summary, median};
 pub struct Plan {
     /// The eyes.
     pub eyes: EyeOptions,
+    /// The renderer's settings.
+    pub render: RenderSettings,
     /// Options of the conventional method, which the others are held against.
     pub conventional: StereoOptions,
     /// The others.
@@ -120,12 +122,12 @@ impl<'a> Field<'a> {
     ) -> anyhow::Result<Field<'a>> {
         bar.set_message(format!("{scene}: preparing"));
         interrupt::check()?;
-        let settings = RenderSettings::default();
+        let settings = &plan.render;
         let loaded = yoro_scenes::load(scene, plan.seed, None)?;
         let keys = spread(loaded.viewpoints.len(), plan.viewpoints);
         let pairs: Vec<EyePair> = keys.iter().map(|&k| plan.eyes.pair(loaded.viewpoints[k].pose())).collect();
-        let mut prepared = PreparedScene::new(gl, loaded, &settings)?;
-        let mut finder = BlankFinder::new(gl, &settings)?;
+        let mut prepared = PreparedScene::new(gl, loaded, settings)?;
+        let mut finder = BlankFinder::new(gl, settings)?;
         for (key, pair) in keys.iter().zip(&pairs) {
             ensure!(
                 !finder.is_blank(&mut prepared, pair)?,
@@ -141,7 +143,7 @@ impl<'a> Field<'a> {
         };
         let mut entrants = Vec::new();
         for candidate in [conventional].iter().chain(&plan.candidates) {
-            let entrant = Entrant::new(gl, candidate.method, &settings, &candidate.options)?;
+            let entrant = Entrant::new(gl, candidate.method, settings, &candidate.options)?;
             entrants.push(Timed {
                 name: candidate.name,
                 entrant,

@@ -13,5 +13,6 @@ pub mod stereo;
 
 pub use prepared::PreparedScene;
 pub use render::{
-    DepthCopy, DepthImage, Fxaa, GpuScene, MAX_POINT_LIGHTS, RenderSettings, Renderer, Selection, ViewTargets,
+    DepthCopy, DepthImage, Fxaa, GpuScene, MAX_POINT_LIGHTS, MSAA, RenderSettings, Renderer, RendererKind,
+    Selection, ViewTargets,
 };

@@ -12,6 +12,7 @@ use yoro::gl::Context;
 use yoro::synthesis::{ImBufferSize, PaperOptions, Pipeline, SynthesisOptions};
 use yoro_context::{Backend, ContextError, Headless};
 use yoro_lab::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
+use yoro_render::{MSAA, RenderSettings, RendererKind};
 use yoro_viewer::Settings;
 
 /// Where the GL context comes from.
@@ -28,6 +29,48 @@ impl GlArgs {
         let headless = Headless::open(self.backend)?;
         log::info!("{}", headless.gl().capabilities().summary());
         Ok(headless)
+    }
+}
+
+/// The renderer.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct RendererArgs {
+    /// How a view is rendered
+    #[arg(long, value_parser = choices::renderer(), default_value = RendererKind::default().name(), value_name = "RENDERER")]
+    renderer: RendererKind,
+    /// forward: samples in each pixel, 1, 2 or 4, as far as the driver has them [default: 4]
+    #[arg(long, value_parser = parse_msaa, value_name = "N")]
+    msaa: Option<u32>,
+}
+
+impl RendererArgs {
+    /// As the library takes them; everything else is as by default.
+    pub fn settings(&self) -> anyhow::Result<RenderSettings> {
+        ensure!(
+            self.msaa.is_none() || self.renderer == RendererKind::Forward,
+            "--msaa goes with --renderer forward only: give that, or leave it out"
+        );
+        let default = RenderSettings::default();
+        Ok(RenderSettings { renderer: self.renderer, msaa: self.msaa.unwrap_or(default.msaa), ..default })
+    }
+}
+
+/// The renderer, where it is a setting of the viewer.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct RendererSettingArgs {
+    /// How a view is rendered [default: deferred]
+    #[arg(long, value_parser = choices::renderer(), value_name = "RENDERER")]
+    renderer: Option<RendererKind>,
+    /// forward: samples in each pixel, 1, 2 or 4, as far as the driver has them [default: 4]
+    #[arg(long, value_parser = parse_msaa, value_name = "N")]
+    msaa: Option<u32>,
+}
+
+impl RendererSettingArgs {
+    /// As `key=value`.
+    pub fn settings(&self) -> impl Iterator<Item = String> {
+        let renderer = self.renderer.map(|renderer| format!("renderer={}", renderer.name()));
+        renderer.into_iter().chain(self.msaa.map(|samples| format!("msaa={samples}")))
     }
 }
 
@@ -126,6 +169,11 @@ pub fn parse_ipd(text: &str) -> Result<f32, String> {
     } else {
         Err(format!("give metres from 0 to {MAX_IPD}: {DEFAULT_IPD} is {:.0} mm", DEFAULT_IPD * 1e3))
     }
+}
+
+/// Parses a number of samples in a pixel.
+fn parse_msaa(text: &str) -> Result<u32, String> {
+    text.parse().ok().filter(|samples| MSAA.contains(samples)).ok_or_else(|| "give 1, 2 or 4".into())
 }
 
 /// Parses a finite number.

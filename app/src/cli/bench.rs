@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::{bail, ensure};
 
-use crate::cli::args::{GlArgs, parse_fov, parse_ipd};
+use crate::cli::args::{GlArgs, RendererArgs, parse_fov, parse_ipd};
 use crate::cli::choices;
 use crate::cli::eyes;
 use crate::cli::machine;
@@ -84,12 +84,14 @@ pub struct BenchArgs {
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
     #[command(flatten)]
+    renderer: RendererArgs,
+    #[command(flatten)]
     gl: GlArgs,
 }
 
 /// Measures, appends to the file of results, and prints a short table.
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
-    let choices = args.choices();
+    let choices = args.choices()?;
     yoro_scenes::check(&choices.scenes, choices.seed)?;
     let path = args.path.as_deref().map(yoro_scene::path::read).transpose()?;
     if path.is_none() {
@@ -137,7 +139,7 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
 }
 
 impl BenchArgs {
-    fn choices(&self) -> Choices {
+    fn choices(&self) -> anyhow::Result<Choices> {
         let of = |full, quick| if self.quick { quick } else { full };
         let eyes = EyeOptions {
             size: self.size.unwrap_or(if self.quick { [512; 2] } else { [1024; 2] }),
@@ -146,9 +148,10 @@ impl BenchArgs {
             dominant: self.dominant,
             ..EyeOptions::default()
         };
-        Choices {
+        Ok(Choices {
             quick: self.quick,
             eyes,
+            render: self.renderer.settings()?,
             rounds: self.rounds.unwrap_or(of(5, 2)),
             viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,
             sequence: self.frames.unwrap_or(of(30, 8)) as usize,
@@ -157,7 +160,7 @@ impl BenchArgs {
             seed: self.seed,
             object: self.object.clone(),
             max_triangles: self.max_triangles.map_or(of(13_104_000, 1_500_000) as usize, |n| n as usize),
-        }
+        })
     }
 
     fn suite_names(&self) -> Vec<String> {

@@ -5,6 +5,7 @@ use yoro::synthesis::{Edges, Pipeline};
 use yoro_context::Backend;
 use yoro_lab::bench::Suite;
 use yoro_lab::inpaint::PatcherKind;
+use yoro_render::RendererKind;
 use yoro_render::stereo::{AntiAliasing, Method};
 use yoro_scene::ShadingStyle;
 
@@ -73,6 +74,16 @@ pub fn anti_aliasing() -> impl TypedValueParser<Value = AntiAliasing> {
         AntiAliasing::After => "After synthesis, on each eye",
         AntiAliasing::Before => "Before synthesis, on the rendered eye only, as in the paper",
         AntiAliasing::Off => "Not at all",
+    })
+}
+
+/// `--renderer`.
+pub fn renderer() -> impl TypedValueParser<Value = RendererKind> {
+    choice(RendererKind::ALL, RendererKind::name, |renderer| match renderer {
+        RendererKind::Deferred => "G-buffer, ambient occlusion, edges smoothed afterwards",
+        RendererKind::Forward => {
+            "Surfaces lit as they are drawn, several samples in each pixel, no ambient occlusion"
+        }
     })
 }
 

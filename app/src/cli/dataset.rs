@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cli::args::{GlArgs, PatcherArgs, SynthesisArgs};
+use crate::cli::args::{GlArgs, PatcherArgs, RendererArgs, SynthesisArgs};
 use crate::cli::choices;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::terminal::progress_bar;
@@ -62,6 +62,8 @@ pub struct DatasetArgs {
     #[command(flatten)]
     patcher: PatcherArgs,
     #[command(flatten)]
+    renderer: RendererArgs,
+    #[command(flatten)]
     gl: GlArgs,
 }
 
@@ -83,6 +85,9 @@ struct Settings<'a> {
     depth: DepthConvention,
     patcher: Option<PatcherKind>,
     model: Option<&'a Path>,
+    /// Of the forward renderer alone: folders of the deferred one stay what they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    renderer: Option<String>,
     #[serde(flatten)]
     options: GroupOptions,
 }
@@ -204,6 +209,7 @@ impl<'a> Job<'a> {
             depth: args.eyes.pair(Pose::IDENTITY).depth.convention,
             patcher: args.patcher.patcher,
             model: args.patcher.model.as_deref(),
+            renderer: Some(args.renderer.settings()?).filter(RenderSettings::is_forward).map(|s| s.summary()),
             options: group_options(args),
         })?;
         check_settings(&folder, &settings)?;
@@ -225,7 +231,7 @@ impl<'a> Job<'a> {
         bar.set_message(format!("{}: preparing", self.name));
         stop(args)?;
         files::write(&self.folder.join(SETTINGS), format!("{:#}\n", self.settings).as_bytes())?;
-        let settings = RenderSettings::default();
+        let settings = args.renderer.settings()?;
         let scene: Scene = yoro_scenes::load(self.name, args.seed, args.style)?;
         let path = CameraPath::new(path.unwrap_or(&scene.viewpoints));
         let PreparedScene { scene, mut renderer } = PreparedScene::new(gl, scene, &settings)?;

@@ -9,7 +9,7 @@ use glam::Vec3;
 use image::RgbImage;
 use serde::Serialize;
 
-use crate::cli::args::GlArgs;
+use crate::cli::args::{GlArgs, RendererArgs};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs, StereoArgs};
 use crate::cli::terminal::progress_bar;
@@ -19,8 +19,8 @@ use yoro_lab::bench::BlankFinder;
 use yoro_lab::interrupt;
 use yoro_lab::metrics::{Channels, Quality, error_map};
 use yoro_lab::picture;
+use yoro_render::PreparedScene;
 use yoro_render::stereo::{self, Method, StereoFrame};
-use yoro_render::{PreparedScene, RenderSettings};
 use yoro_scene::{CameraPath, ShadingStyle};
 
 /// A picture made from the two eyes.
@@ -103,6 +103,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     stereo: StereoArgs,
     #[command(flatten)]
+    renderer: RendererArgs,
+    #[command(flatten)]
     gl: GlArgs,
 }
 
@@ -121,6 +123,7 @@ struct FrameReport {
 /// Renders and writes the pictures.
 pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
+    let settings = args.renderer.settings()?;
     let scene = yoro_scenes::load(&args.scene, args.seed, args.style)?;
     let path = CameraPath::new(&scene.viewpoints);
     let heads = match (eyes::viewpoint(args.position, args.target), args.frames) {
@@ -143,7 +146,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     log::info!("{}", args.eyes.distances(options.guard_band));
     let headless = args.gl.open()?;
     let gl = headless.gl();
-    let settings = RenderSettings::default();
+    args.method.supported(gl.capabilities(), &settings)?;
     let mut prepared = PreparedScene::new(gl, scene, &settings)?;
     warn_of_blank(gl, args, &mut prepared, &heads)?;
     let PreparedScene { scene, mut renderer } = prepared;
@@ -197,7 +200,7 @@ fn warn_of_blank(
     prepared: &mut PreparedScene,
     heads: &[Pose],
 ) -> anyhow::Result<()> {
-    let mut finder = BlankFinder::new(gl, &RenderSettings::default())?;
+    let mut finder = BlankFinder::new(gl, prepared.renderer.settings())?;
     let mut blank = 0;
     for &head in heads {
         interrupt::check()?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use image::RgbImage;
 
-use crate::cli::args::GlArgs;
+use crate::cli::args::{GlArgs, RendererArgs};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs, StereoArgs};
 use crate::cli::machine;
@@ -18,6 +18,7 @@ use yoro_lab::machine::Parameter;
 use yoro_lab::picture;
 use yoro_lab::report::RunReport;
 use yoro_lab::run::{Candidate, Plan};
+use yoro_render::RenderSettings;
 use yoro_render::stereo::Method;
 use yoro_scenes::{self, BUILTINS};
 
@@ -55,12 +56,15 @@ pub struct RunArgs {
     #[command(flatten)]
     stereo: StereoArgs,
     #[command(flatten)]
+    renderer: RendererArgs,
+    #[command(flatten)]
     gl: GlArgs,
 }
 
 /// Measures, writes the report and prints its table.
 pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
+    let settings = args.renderer.settings()?;
     let names: Vec<String> = match args.scenes.as_slice() {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
         given => given.to_vec(),
@@ -78,9 +82,9 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     let headless = args.gl.open()?;
     let gl = headless.gl();
     for method in &args.methods {
-        method.supported(gl.capabilities())?;
+        method.supported(gl.capabilities(), &settings)?;
     }
-    let plan = plan(args);
+    let plan = plan(args, &settings);
     let bar = progress_bar(names.len() as u64 * plan.steps());
     let mut scenes = Vec::new();
     for name in &names {
@@ -90,7 +94,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     let report = RunReport {
         title: "yoro: one render, two eyes".into(),
         machine: machine::describe(gl.capabilities()),
-        parameters: parameters(args),
+        parameters: parameters(args, &settings),
         timing_method: timing_method(args, gl),
         scenes,
     };
@@ -107,7 +111,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
 }
 
 /// The methods to be measured, each once.
-fn plan(args: &RunArgs) -> Plan {
+fn plan(args: &RunArgs, settings: &RenderSettings) -> Plan {
     let mut candidates = Vec::new();
     for (i, &method) in args.methods.iter().enumerate() {
         match method {
@@ -127,6 +131,7 @@ fn plan(args: &RunArgs) -> Plan {
     }
     Plan {
         eyes: args.eyes.options(),
+        render: settings.clone(),
         conventional: args.stereo.options_of(Pipeline::default()),
         candidates,
         viewpoints: args.viewpoints as usize,
@@ -156,7 +161,7 @@ fn write_pictures(args: &RunArgs, report: &RunReport) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn parameters(args: &RunArgs) -> Vec<Parameter> {
+fn parameters(args: &RunArgs, settings: &RenderSettings) -> Vec<Parameter> {
     let eyes = &args.eyes;
     let mut parameters = vec![
         ("size of each eye, pixels", format!("{} x {}", eyes.size[0], eyes.size[1])),
@@ -168,6 +173,9 @@ fn parameters(args: &RunArgs) -> Vec<Parameter> {
         ("viewpoints per scene", args.viewpoints.to_string()),
         ("seed", args.seed.to_string()),
     ];
+    if settings.is_forward() {
+        parameters.push(("renderer", settings.summary()));
+    }
     for &pipeline in &args.pipelines {
         let o = args.stereo.options_of(pipeline);
         let mut text = format!("guard band {:?}, anti-aliasing {:?}", o.guard_band, o.anti_aliasing);

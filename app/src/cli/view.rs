@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::bail;
 use glam::{EulerRot, Quat};
 
-use crate::cli::args::{self, GlArgs, SettingsArgs};
+use crate::cli::args::{self, GlArgs, RendererSettingArgs, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro::gl::{Destination, Filter, Format, RenderTarget};
 use yoro_files as files;
@@ -52,6 +52,8 @@ pub struct ViewArgs {
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
     late_yaw_degrees: f32,
     #[command(flatten)]
+    renderer: RendererSettingArgs,
+    #[command(flatten)]
     settings: SettingsArgs,
     /// Draw what is in view while the scene is being loaded
     #[arg(long)]
@@ -64,7 +66,7 @@ impl ViewArgs {
     fn resolve(&self) -> anyhow::Result<Settings> {
         let named = [("scene", &self.scene), ("viewer", &self.viewer), ("method", &self.method)];
         let named = named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
-        self.settings.resolve(named)
+        self.settings.resolve(named.chain(self.renderer.settings()))
     }
 
     fn head(&self) -> HeldHead {

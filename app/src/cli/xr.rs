@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use anyhow::{bail, ensure};
 use serde::Serialize;
 
-use crate::cli::args::{GlArgs, SettingsArgs};
+use crate::cli::args::{GlArgs, RendererSettingArgs, SettingsArgs};
 use crate::cli::choices;
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyePair};
@@ -51,6 +51,8 @@ pub struct XrArgs {
     #[arg(long)]
     mono: bool,
     #[command(flatten)]
+    renderer: RendererSettingArgs,
+    #[command(flatten)]
     settings: SettingsArgs,
     #[command(flatten)]
     gl: GlArgs,
@@ -60,7 +62,7 @@ impl XrArgs {
     fn resolve(&self) -> anyhow::Result<Settings> {
         let scene = self.scene.as_ref().map(|scene| format!("scene={scene}"));
         let method = self.methods.first().map(|method| format!("method={}", method.name()));
-        self.settings.resolve(scene.into_iter().chain(method))
+        self.settings.resolve(scene.into_iter().chain(method).chain(self.renderer.settings()))
     }
 
     fn find_runtime(&self) -> anyhow::Result<Runtime> {
@@ -169,7 +171,7 @@ pub fn run(args: &XrArgs) -> anyhow::Result<()> {
     let headless = args.gl.open()?;
     let gl = headless.gl();
     for method in &args.methods {
-        method.supported(gl.capabilities())?;
+        method.supported(gl.capabilities(), &settings.render_settings())?;
     }
     let mut viewer = Viewer::new(settings, &[])?;
     viewer.attach(gl.clone())?;

@@ -12,7 +12,7 @@ use toml::{Table, Value};
 use yoro::eyes::{DEFAULT_IPD, Eye, GuardBand, MAX_IPD};
 use yoro::synthesis::{ImBufferSize, NearFieldPolicy, PaperOptions, Pipeline, SynthesisOptions};
 use yoro_render::stereo::{AntiAliasing, Method, StereoOptions};
-use yoro_render::{MAX_POINT_LIGHTS, RenderSettings};
+use yoro_render::{MAX_POINT_LIGHTS, MSAA, RenderSettings, RendererKind};
 
 /// Lengths in millimetres that a side of a screen behind lenses can have.
 const PLAUSIBLE_SCREEN: std::ops::RangeInclusive<f32> = 30.0..=400.0;
@@ -206,9 +206,13 @@ pub struct Settings {
     pub chromatic: bool,
     /// Show the HUD.
     pub hud: bool,
+    /// How a view is rendered.
+    pub renderer: RendererKind,
+    /// Forward renderer: samples in each pixel, 1, 2 or 4.
+    pub msaa: u32,
     /// Edge of the sun's shadow map in texels, 0 for no shadows.
     pub shadow_map: u32,
-    /// Ambient occlusion.
+    /// Ambient occlusion; the forward renderer has none.
     pub ssao: Ssao,
     /// Glow around what is brighter than white.
     pub bloom: bool,
@@ -274,6 +278,8 @@ pub const KEYS: &[&str] = &[
     "timewarp",
     "chromatic",
     "hud",
+    "renderer",
+    "msaa",
     "shadow-map",
     "ssao",
     "bloom",
@@ -335,6 +341,8 @@ impl Default for Settings {
             timewarp: true,
             chromatic: false,
             hud: true,
+            renderer: RendererKind::default(),
+            msaa: RenderSettings::default().msaa,
             // Phones: half of what the desktop program takes by default.
             shadow_map: 2048,
             ssao: Ssao::Half,
@@ -486,6 +494,7 @@ impl Settings {
             "render-scale" => {
                 ((0.25..=2.0).contains(&self.render_scale), "give a factor from 0.25 to 2".into())
             }
+            "msaa" => (MSAA.contains(&self.msaa), "give 1, 2 or 4 samples".into()),
             "shadow-map" => (self.shadow_map <= 8192, "give texels from 0 to 8192".into()),
             "point-lights" => {
                 (self.point_lights <= MAX_POINT_LIGHTS, format!("give a number from 0 to {MAX_POINT_LIGHTS}"))
@@ -524,6 +533,8 @@ impl Settings {
     /// What the renderer takes.
     pub fn render_settings(&self) -> RenderSettings {
         RenderSettings {
+            renderer: self.renderer,
+            msaa: self.msaa,
             shadow_map_size: self.shadow_map,
             ssao: self.ssao != Ssao::Off,
             ssao_half_size: self.ssao == Ssao::Half,
@@ -712,6 +723,8 @@ mod tests {
         refused("method=fast", &["\"method\"", "fast", "conventional"]);
         refused("ipd=0.2", &["\"ipd\"", &MAX_IPD.to_string(), &DEFAULT_IPD.to_string()]);
         refused("split-disparity=0", &["\"split-disparity\"", "pixels"]);
+        refused("msaa=8", &["\"msaa\"", "1, 2 or 4"]);
+        refused("renderer=fast", &["\"renderer\"", "forward"]);
         refused("point-lights=25", &[&MAX_POINT_LIGHTS.to_string()]);
         refused("ipd=wide", &["\"ipd\"", "wide"]);
         refused("imbuffer=0", &["\"imbuffer\"", "64"]);

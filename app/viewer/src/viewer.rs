@@ -149,7 +149,7 @@ impl Viewer {
         if let Some(attached) = &self.attached
             && settings.method != self.settings.method
         {
-            settings.method.supported(attached.gl.capabilities())?;
+            settings.method.supported(attached.gl.capabilities(), &settings.render_settings())?;
         }
         let before = std::mem::replace(&mut self.settings, settings);
         let in_use = self.method.choice();

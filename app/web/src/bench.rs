@@ -6,6 +6,7 @@ use wasm_bindgen::prelude::*;
 use yoro::eyes::Eye;
 use yoro::gl::{PassTime, Profiling};
 use yoro::synthesis::Pipeline;
+use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, StereoFrame, StereoMethod};
 
 use crate::page::{Page, sentence};
@@ -41,7 +42,7 @@ impl Page {
         let frame = StereoFrame::new(&self.gl, size).map_err(sentence)?;
         let (mut names, mut entrants, mut unsupported) = (Vec::new(), Vec::new(), Vec::new());
         for method in Method::ALL {
-            match method.supported(self.gl.capabilities()) {
+            match method.supported(self.gl.capabilities(), &RenderSettings::default()) {
                 Err(reason) => unsupported.push((contender(method), reason.to_string())),
                 Ok(()) => {
                     names.push(contender(method));

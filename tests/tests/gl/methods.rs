@@ -7,7 +7,7 @@ use glam::Quat;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum};
 use yoro::gl::Context;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
-use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::{Scene, ShadingStyle};
 use yoro_tests::{on_every_backend, scene};
 
@@ -26,7 +26,11 @@ type Eyes = [Vec<u8>; 2];
 
 impl Stage {
     fn new(gl: &Rc<Context>, scene: Scene) -> anyhow::Result<Stage> {
-        let settings = RenderSettings { shadow_map_size: 512, ..RenderSettings::default() };
+        Stage::of(gl, scene, RendererKind::Deferred)
+    }
+
+    fn of(gl: &Rc<Context>, scene: Scene, renderer: RendererKind) -> anyhow::Result<Stage> {
+        let settings = RenderSettings { renderer, shadow_map_size: 512, ..RenderSettings::default() };
         let scene = GpuScene::upload(gl, scene)?;
         let renderer = Renderer::new(gl, &settings, &scene)?;
         Ok(Stage { gl: gl.clone(), settings, scene, renderer, frame: StereoFrame::new(gl, SIZE)? })
@@ -99,12 +103,14 @@ fn single_pass_stereo_equals_two_renders() {
     on_every_backend(|gl| {
         // Anti-aliasing makes several pixels of one whose edge is rounded otherwise.
         let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
-        for scene in scenes() {
-            let mut stage = Stage::new(gl, scene)?;
+        let small = scenes().swap_remove(0);
+        let deferred = scenes().into_iter().map(|scene| (scene, RendererKind::Deferred));
+        for (scene, renderer) in deferred.chain([(small, RendererKind::Forward)]) {
+            let mut stage = Stage::of(gl, scene, renderer)?;
             for (name, pair) in pairs(&stage) {
                 let expected = stage.render(Method::Conventional, &options, &pair)?;
                 for method in [Method::Instanced, Method::Multiview] {
-                    if let Err(reason) = method.supported(gl.capabilities()) {
+                    if let Err(reason) = method.supported(gl.capabilities(), &stage.settings) {
                         eprintln!("SKIPPED: {} is not tested here: {reason}", method.name());
                         continue;
                     }
@@ -126,18 +132,23 @@ fn single_pass_stereo_equals_two_renders() {
 fn what_a_driver_lacks_is_one_sentence() {
     on_every_backend(|gl| {
         for method in Method::ALL {
-            let made = stereo::create(gl, method, &RenderSettings::default(), &StereoOptions::default());
-            match method.supported(gl.capabilities()) {
-                Ok(()) => drop(made?),
-                Err(reason) => {
-                    let sentence = reason.to_string();
-                    ensure!(method == Method::Multiview, "{sentence}");
-                    ensure!(
-                        sentence.contains("GL_OVR_multiview2") && sentence.contains("instanced"),
-                        "{sentence}"
-                    );
-                    ensure!(made.err().is_some_and(|e| e.to_string() == sentence));
-                }
+            for renderer in RendererKind::ALL {
+                let settings = RenderSettings { renderer, ..RenderSettings::default() };
+                let made = stereo::create(gl, method, &settings, &StereoOptions::default());
+                let Err(reason) = method.supported(gl.capabilities(), &settings) else {
+                    made?;
+                    continue;
+                };
+                let sentence = reason.to_string();
+                let remedy = match (method, renderer) {
+                    (Method::Multiview, RendererKind::Deferred) => "GL_OVR_multiview2; use instanced",
+                    (Method::Multiview | Method::ShadingReprojection, RendererKind::Forward) => {
+                        "choose the deferred renderer"
+                    }
+                    _ => "nothing",
+                };
+                ensure!(sentence.contains(remedy), "{sentence}");
+                ensure!(made.err().is_some_and(|e| e.to_string() == sentence));
             }
         }
         Ok(())
@@ -149,14 +160,16 @@ fn what_a_driver_lacks_is_one_sentence() {
 fn hybrid_is_conventional_where_everything_is_near() {
     on_every_backend(|gl| {
         // The split lies beyond the far plane; or beyond all that there is.
-        let mut stage = Stage::new(gl, scenes().swap_remove(0))?;
-        for (threshold, pair) in [
-            (1e-3, stage.pair(Eye::Left, DepthConvention::Standard)),
-            (0.05, stage.pair(Eye::Right, DepthConvention::Reversed)),
-        ] {
-            let options = StereoOptions { split_disparity: threshold, ..StereoOptions::default() };
-            let expected = stage.render(Method::Conventional, &options, &pair)?;
-            ensure!(stage.render(Method::Hybrid, &options, &pair)? == expected, "threshold {threshold}");
+        for renderer in RendererKind::ALL {
+            let mut stage = Stage::of(gl, scenes().swap_remove(0), renderer)?;
+            for (threshold, pair) in [
+                (1e-3, stage.pair(Eye::Left, DepthConvention::Standard)),
+                (0.05, stage.pair(Eye::Right, DepthConvention::Reversed)),
+            ] {
+                let options = StereoOptions { split_disparity: threshold, ..StereoOptions::default() };
+                let expected = stage.render(Method::Conventional, &options, &pair)?;
+                ensure!(stage.render(Method::Hybrid, &options, &pair)? == expected, "threshold {threshold}");
+            }
         }
         Ok(())
     })
@@ -186,8 +199,10 @@ fn the_far_field_of_hybrid_is_the_same_for_both_eyes() {
 #[test]
 fn hybrid_is_near_conventional_with_the_split_in_the_midst() {
     on_every_backend(|gl| {
-        for scene in scenes() {
-            let mut stage = Stage::new(gl, scene)?;
+        let small = scenes().swap_remove(0);
+        let deferred = scenes().into_iter().map(|scene| (scene, RendererKind::Deferred));
+        for (scene, renderer) in deferred.chain([(small, RendererKind::Forward)]) {
+            let mut stage = Stage::of(gl, scene, renderer)?;
             for (name, pair) in pairs(&stage).into_iter().filter(|(name, _)| *name != "canted") {
                 // Squares and floor of the small scene lie on both sides of 3 metres, the room on both of 7.
                 let split = if is_small(&stage.scene) { 3.0 } else { 7.0 };

@@ -7,12 +7,12 @@ use yoro::gl::Context;
 use yoro::synthesis::{ImBufferSize, Pipeline};
 use yoro_context::Headless;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
-use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::ShadingStyle;
 use yoro_tests::{backends, scene};
 
 /// Every way to make a frame, by name.
-fn ways(gl: &Context) -> Vec<(&'static str, Method, StereoOptions)> {
+fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, StereoOptions)> {
     let of = StereoOptions::of_pipeline;
     let mut small_imbuffer = of(Pipeline::Paper);
     small_imbuffer.synthesis.paper.imbuffer = ImBufferSize::Divisor(4);
@@ -40,7 +40,7 @@ fn ways(gl: &Context) -> Vec<(&'static str, Method, StereoOptions)> {
         ("near field", Method::Yoro, near_field),
     ]
     .into_iter()
-    .filter(|(name, method, _)| match method.supported(gl.capabilities()) {
+    .filter(|(name, method, _)| match method.supported(gl.capabilities(), settings) {
         Ok(()) => true,
         Err(reason) => {
             eprintln!("SKIPPED: {name} is not tested here: {reason}");
@@ -51,11 +51,19 @@ fn ways(gl: &Context) -> Vec<(&'static str, Method, StereoOptions)> {
 }
 
 /// Few pixels and few programs: it is the number of frames that counts here.
-fn tiny(gl: &Rc<Context>) -> (GpuScene, RenderSettings) {
+fn tiny(gl: &Rc<Context>) -> GpuScene {
     let mut scene = scene::every_material(ShadingStyle::Realistic);
     scene::keep_plain_and_full(&mut scene);
-    let settings = RenderSettings { shadow_map_size: 64, ..RenderSettings::default() };
-    (GpuScene::upload(gl, scene).unwrap(), settings)
+    GpuScene::upload(gl, scene).unwrap()
+}
+
+/// Of both renderers.
+fn settings() -> [RenderSettings; 2] {
+    RendererKind::ALL.map(|renderer| RenderSettings {
+        renderer,
+        shadow_map_size: 64,
+        ..RenderSettings::default()
+    })
 }
 
 /// The eyes of a moving head.
@@ -71,22 +79,25 @@ fn a_hundred_frames_make_as_many_objects_as_ten() {
     for backend in backends() {
         let headless = Headless::open(backend).unwrap();
         let gl = headless.gl();
-        let (scene, settings) = tiny(gl);
-        let mut renderer = Renderer::new(gl, &settings, &scene).unwrap();
-        for (name, method, options) in ways(gl) {
-            let mut method = stereo::create(gl, method, &settings, &options).unwrap();
-            let mut frame = StereoFrame::new(gl, [32, 32]).unwrap();
-            let mut after_ten = 0;
-            for i in 0..100 {
-                method.render(&mut renderer, &scene, &pair(i, Eye::Right), &mut frame).unwrap();
-                if i == 9 {
-                    after_ten = gl.object_count();
+        let scene = tiny(gl);
+        for settings in settings() {
+            let mut renderer = Renderer::new(gl, &settings, &scene).unwrap();
+            for (name, method, options) in ways(gl, &settings) {
+                let mut method = stereo::create(gl, method, &settings, &options).unwrap();
+                let mut frame = StereoFrame::new(gl, [32, 32]).unwrap();
+                let mut after_ten = 0;
+                for i in 0..100 {
+                    method.render(&mut renderer, &scene, &pair(i, Eye::Right), &mut frame).unwrap();
+                    if i == 9 {
+                        after_ten = gl.object_count();
+                    }
                 }
+                let name = format!("{backend:?}, {name}, {}", settings.summary());
+                assert_eq!(gl.take_errors(), None, "{name}");
+                assert_eq!(gl.object_count(), after_ten, "{name}");
             }
-            assert_eq!(gl.take_errors(), None, "{backend:?}, {name}");
-            assert_eq!(gl.object_count(), after_ten, "{backend:?}, {name}");
         }
-        drop((renderer, scene));
+        drop(scene);
         assert_eq!(gl.object_count(), 0, "{backend:?}");
     }
 }
@@ -95,24 +106,27 @@ fn a_hundred_frames_make_as_many_objects_as_ten() {
 fn other_sizes_and_eyes_replace_objects() {
     let headless = Headless::open(backends()[0]).unwrap();
     let gl = headless.gl();
-    let (scene, settings) = tiny(gl);
-    let mut renderer = Renderer::new(gl, &settings, &scene).unwrap();
-    for (name, method, options) in ways(gl) {
-        let mut method = stereo::create(gl, method, &settings, &options).unwrap();
-        let mut frame = StereoFrame::new(gl, [32, 32]).unwrap();
-        let mut counts = Vec::new();
-        for round in 0..3 {
-            for (size, dominant) in [([32, 32], Eye::Left), ([50, 20], Eye::Right), ([17, 64], Eye::Left)] {
-                for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
-                    let mut pair = EyePair { size, ..pair(round, dominant) };
-                    pair.depth.convention = convention;
-                    pair.frusta = [Frustum::symmetric(1.2, size[0] as f32 / size[1] as f32); 2];
-                    method.render(&mut renderer, &scene, &pair, &mut frame).unwrap();
+    let scene = tiny(gl);
+    for settings in settings() {
+        let mut renderer = Renderer::new(gl, &settings, &scene).unwrap();
+        for (name, method, options) in ways(gl, &settings) {
+            let mut method = stereo::create(gl, method, &settings, &options).unwrap();
+            let mut frame = StereoFrame::new(gl, [32, 32]).unwrap();
+            let mut counts = Vec::new();
+            for round in 0..3 {
+                for (size, dominant) in [([32, 32], Eye::Left), ([50, 20], Eye::Right), ([17, 64], Eye::Left)]
+                {
+                    for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+                        let mut pair = EyePair { size, ..pair(round, dominant) };
+                        pair.depth.convention = convention;
+                        pair.frusta = [Frustum::symmetric(1.2, size[0] as f32 / size[1] as f32); 2];
+                        method.render(&mut renderer, &scene, &pair, &mut frame).unwrap();
+                    }
                 }
+                counts.push(gl.object_count());
             }
-            counts.push(gl.object_count());
+            assert_eq!(gl.take_errors(), None, "{name}");
+            assert!(counts.iter().all(|count| *count == counts[0]), "{name}: {counts:?}");
         }
-        assert_eq!(gl.take_errors(), None, "{name}");
-        assert!(counts.iter().all(|count| *count == counts[0]), "{name}: {counts:?}");
     }
 }

@@ -2,7 +2,7 @@
 
 use glow::HasContext;
 
-use super::GlError;
+use super::{Format, GlError};
 
 /// The two families of GL that run the shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +31,6 @@ pub struct Capabilities {
     pub version_string: String,
     /// Compute shaders, image stores: `paper` and `rowgroup` need them, `gather` does not.
     pub compute: bool,
-    /// Multisample textures, to be rendered to and read sample by sample: OpenGL ES 3.1, and the desktop.
-    pub multisample_textures: bool,
     /// Float colour buffers (HDR targets, EXT_color_buffer_float or half_float).
     pub float_render_targets: bool,
     /// KHR_debug groups.
@@ -50,10 +48,39 @@ pub struct Capabilities {
     pub clip_distances: bool,
     /// Largest texture edge in pixels.
     pub max_texture_size: u32,
+    /// Numbers of samples above 1 that a pixel of a render target can have, largest first.
+    pub samples: Vec<u32>,
+    /// Multisample textures, which shaders read sample by sample: OpenGL ES 3.1 and the desktop.
+    pub multisample_textures: bool,
+    /// Samples that exist in the tiles of a tile-based GPU alone, for colour and for depth:
+    /// GL_EXT_multisampled_render_to_texture and its second version.
+    pub tile_samples: bool,
     /// Bytes of shared memory of a compute workgroup.
     pub max_compute_shared_memory: u32,
     /// Rendered by the CPU (llvmpipe, softpipe, SwiftShader): times are CPU times.
     pub software: bool,
+}
+
+/// Numbers of samples above 1 for colour and depth of the formats in use, largest first.
+///
+/// # Safety
+/// The context is current.
+unsafe fn samples(gl: &glow::Context) -> Vec<u32> {
+    // WebGL has four for all of them.
+    if cfg!(target_arch = "wasm32") {
+        return vec![4];
+    }
+    let of = |format: Format| {
+        // What GL does not write stays 0.
+        let mut counts = [0; 16];
+        let (target, format) = (glow::RENDERBUFFER, format.gl().0);
+        // SAFETY: formats that can be rendered to; at most as many values are written as there is room for.
+        unsafe { gl.get_internal_format_i32_slice(target, format, glow::SAMPLES, &mut counts) };
+        counts
+    };
+    let depth = [of(Format::Depth24), of(Format::Depth32F)];
+    let counts = of(Format::Rgba8).into_iter().filter(|n| *n > 1 && depth.iter().all(|d| d.contains(n)));
+    counts.map(|n| n as u32).collect()
 }
 
 /// The extension that gives OpenGL ES, or WebGL, timer queries.
@@ -118,8 +145,6 @@ impl Capabilities {
                 version: number,
                 vendor: gl.get_parameter_string(glow::VENDOR),
                 compute,
-                // WebGL has none.
-                multisample_textures: compute && cfg!(not(target_arch = "wasm32")),
                 float_render_targets: api == GlApi::Desktop
                     || number >= (3, 2)
                     || has("GL_EXT_color_buffer_float")
@@ -139,6 +164,11 @@ impl Capabilities {
                 multiview: multiview_loaded && has("GL_OVR_multiview2"),
                 clip_distances: api == GlApi::Desktop || has("GL_EXT_clip_cull_distance"),
                 max_texture_size: limit(glow::MAX_TEXTURE_SIZE),
+                samples: samples(gl),
+                tile_samples: api == GlApi::Es
+                    && has("GL_EXT_multisampled_render_to_texture")
+                    && has("GL_EXT_multisampled_render_to_texture2"),
+                multisample_textures: api == GlApi::Desktop || number >= (3, 1),
                 max_compute_shared_memory: if compute {
                     limit(glow::MAX_COMPUTE_SHARED_MEMORY_SIZE)
                 } else {
@@ -149,6 +179,23 @@ impl Capabilities {
                 version_string,
             })
         }
+    }
+
+    /// Whether a pixel of a render target can have this many samples; one is what every target has.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] with the numbers that there are.
+    pub fn check_samples(&self, samples: u32) -> Result<(), GlError> {
+        if samples == 1 || self.samples.contains(&samples) {
+            return Ok(());
+        }
+        let there: Vec<_> = [&1].into_iter().chain(self.samples.iter().rev()).map(u32::to_string).collect();
+        Err(GlError::Unsupported(format!(
+            "{} ({}) cannot render with {samples} samples a pixel: choose one of {}",
+            self.renderer,
+            self.version_string,
+            there.join(", ")
+        )))
     }
 
     /// One line for people: driver, version, what is in use.
@@ -164,6 +211,8 @@ impl Capabilities {
         feature(self.timer_queries, "timer queries");
         feature(self.multiview, "multiview");
         feature(self.clip_distances, "clip distances");
+        feature(self.multisample_textures, "multisample textures");
+        feature(self.tile_samples, "samples in tiles");
         feature(self.max_anisotropy > 1.0, "anisotropic filtering");
         format!("{}, {} ({})", self.renderer, self.version_string, features.join(", "))
     }

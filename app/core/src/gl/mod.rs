@@ -6,6 +6,7 @@ mod capabilities;
 mod framebuffer;
 mod host;
 mod mesh;
+mod multisample;
 mod pixel_buffer;
 mod profiler;
 mod program;
@@ -22,6 +23,7 @@ use glow::HasContext;
 pub use capabilities::{Capabilities, GlApi};
 pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
 pub use mesh::Mesh;
+pub use multisample::{MultisampleTarget, TileTarget};
 pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};
@@ -191,7 +193,7 @@ impl Context {
         &self.capabilities
     }
 
-    /// Number of live textures, framebuffers, programs, buffers and vertex arrays of this library.
+    /// Number of live textures, renderbuffers, framebuffers, programs, buffers and vertex arrays of this library.
     pub fn object_count(&self) -> usize {
         self.objects.get()
     }

@@ -148,7 +148,7 @@ impl Program {
     }
 
     /// As [`Program::texture`], for a multisample texture.
-    pub fn multisample_texture(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
+    pub fn texture_multisample(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
         super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D_MULTISAMPLE, texture);
         self.set(name, unit as i32)
     }
@@ -199,6 +199,7 @@ uniform!(Vec2, |gl, l, v| gl.uniform_2_f32(Some(l), v.x, v.y));
 uniform!(Vec3, |gl, l, v| gl.uniform_3_f32(Some(l), v.x, v.y, v.z));
 uniform!(Vec4, |gl, l, v| gl.uniform_4_f32(Some(l), v.x, v.y, v.z, v.w));
 uniform!(Mat4, |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, v.as_ref()));
+uniform!(&[IVec4], |gl, l, v| gl.uniform_4_i32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[IVec2], |gl, l, v| gl.uniform_2_i32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[Vec3], |gl, l, v| gl.uniform_3_f32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[Vec4], |gl, l, v| gl.uniform_4_f32_slice(Some(l), bytemuck::cast_slice(v)));

@@ -13,6 +13,8 @@ pub enum DepthTest {
     Less,
     /// Larger passes and is written.
     Greater,
+    /// The depth that is there passes: with that of the far plane, where nothing was drawn.
+    Equal,
     /// Everything passes and is written.
     Always,
 }
@@ -57,6 +59,7 @@ impl Context {
             gl.depth_func(match state.depth {
                 DepthTest::Off | DepthTest::Less => glow::LESS,
                 DepthTest::Greater => glow::GREATER,
+                DepthTest::Equal => glow::EQUAL,
                 DepthTest::Always => glow::ALWAYS,
             });
             gl.depth_mask(true);
@@ -81,6 +84,27 @@ impl Context {
     pub fn mask_color(&self) {
         // SAFETY: no object is involved.
         unsafe { self.raw().color_mask(false, false, false, false) }
+    }
+
+    /// Keeps the next draws from writing depth, until the state is set again: for what is tested and blended.
+    pub fn mask_depth(&self) {
+        // SAFETY: no object is involved.
+        unsafe { self.raw().depth_mask(false) }
+    }
+
+    /// Whether the alpha of a fragment decides how many of its pixel's samples it covers, instead of being stored.
+    /// Comes after [`Context::set_raster_state`]; whoever turns it on turns it off again.
+    pub fn set_alpha_to_coverage(&self, on: bool) {
+        let gl = self.raw();
+        // SAFETY: a valid enum.
+        unsafe {
+            if on {
+                gl.enable(glow::SAMPLE_ALPHA_TO_COVERAGE)
+            } else {
+                gl.disable(glow::SAMPLE_ALPHA_TO_COVERAGE)
+            }
+            gl.color_mask(true, true, true, !on);
+        }
     }
 
     /// Maps the depth of the clip volume, -1 to 1, to another part of the depth buffer's 0 to 1 than all of it.
@@ -135,6 +159,13 @@ impl Context {
             gl.clear(glow::COLOR_BUFFER_BIT);
             gl.disable(glow::SCISSOR_TEST);
         }
+    }
+
+    /// Sets the viewport, in pixels from the lower left corner of the framebuffer that is bound.
+    pub fn set_viewport(&self, origin: [u32; 2], size: [u32; 2]) {
+        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
+        // SAFETY: sizes are not negative.
+        unsafe { self.raw().viewport(x, y, w, h) }
     }
 
     /// Binds a framebuffer of whatever origin (`None`: the window's) and sets the viewport, in pixels from its

@@ -95,12 +95,12 @@ impl Layers {
     /// Binds the program of the first pass and what it reads.
     fn bind_split(&self, source: Source, uniforms: &Uniforms) {
         let program = match (&self.split.samples, source.samples) {
-            (Some(program), Some(samples)) => program.bind().multisample_texture("sample_colors", 3, samples),
+            (Some(program), Some(samples)) => program.bind().texture_multisample("sample_colors", 3, samples),
             _ => self.split.resolved.bind(),
         };
         match self.edges {
             Edges::Multisample => {
-                program.multisample_texture("sample_depths", 0, source.depth);
+                program.texture_multisample("sample_depths", 0, source.depth);
                 program.set("stripes", self.stripes(uniforms.mirrored != 0));
             }
             _ => drop(program.texture("depth_map", 0, source.depth)),

@@ -230,7 +230,9 @@ pub trait Synthesis {
 pub struct SynthesisOptions {
     /// Which pipeline.
     pub pipeline: Pipeline,
-    /// What the source knows of its edges; all but [`Edges::Hard`] need [`Pipeline::Gather`].
+    /// What the source knows of its edges; all but [`Edges::Hard`] need [`Pipeline::Gather`]. The host's business, and in
+    /// no file.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub edges: Edges,
     /// Knobs of the paper's pipeline.
     pub paper: PaperOptions,

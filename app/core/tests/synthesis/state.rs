@@ -427,7 +427,8 @@ fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
         let active = raw.get_parameter_i32(glow::ACTIVE_TEXTURE) as u32;
         for unit in 0..8 {
             raw.active_texture(glow::TEXTURE0 + unit);
-            let multisample = capabilities.multisample_textures.then_some(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
+            let multisample =
+                capabilities.multisample_textures.then_some(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
             for name in [glow::TEXTURE_BINDING_2D, glow::SAMPLER_BINDING].into_iter().chain(multisample) {
                 all.push((format!("unit {unit}: 0x{name:x}"), vec![raw.get_parameter_i32(name)]));
             }
@@ -634,9 +635,8 @@ fn cost_of_preserving_state() {
         // So small an image that what remains is the calls.
         let lent = Lent::new(gl, [8, 8], Format::Rgba8);
         for options in ways() {
-            let [mut leave, mut preserve] = [GlState::Leave, GlState::Preserve].map(|gl_state| {
-                create(gl, &SynthesisOptions { gl_state, ..options }, OUTPUTS).unwrap()
-            });
+            let [mut leave, mut preserve] = [GlState::Leave, GlState::Preserve]
+                .map(|gl_state| create(gl, &SynthesisOptions { gl_state, ..options }, OUTPUTS).unwrap());
             let mut best = [f64::MAX; 3];
             for _ in 0..20 {
                 let synthesize = |synthesis: &mut Box<dyn Synthesis>| {

@@ -157,6 +157,8 @@ pub struct Choices {
     pub quick: bool,
     /// The eyes, as the suites do not vary them.
     pub eyes: EyeOptions,
+    /// The renderer's settings, as the suites do not vary them.
+    pub render: RenderSettings,
     /// Timed rounds.
     pub rounds: u32,
     /// Viewpoints per scene.
@@ -313,7 +315,7 @@ impl Choices {
         };
         let object =
             self.object.as_ref().map_or_else(|| "built-in".into(), |path| path.display().to_string());
-        [
+        let mut parameters = vec![
             ("size of each eye, pixels", format!("{} x {}", eyes.size[0], eyes.size[1])),
             ("vertical field of view, degrees", format!("{:.0}", eyes.fov_y.to_degrees())),
             ("IPD, metres", eyes.ipd.to_string()),
@@ -327,9 +329,11 @@ impl Choices {
             ("contenders", list(self.contenders.iter().map(|c| c.name()).collect())),
             ("object", object),
             ("largest scene, triangles", self.max_triangles.to_string()),
-        ]
-        .map(|(name, value)| Parameter { name: name.into(), value })
-        .to_vec()
+        ];
+        if self.render.is_forward() {
+            parameters.push(("renderer", self.render.summary()));
+        }
+        parameters.into_iter().map(|(name, value)| Parameter { name: name.into(), value }).collect()
     }
 }
 
@@ -381,7 +385,7 @@ impl Plan<'_> {
                     setting: Setting { suite, scene: scene_name(&scene), label: None, point: None },
                     source: Source::Named(scene.clone()),
                     style: None,
-                    render: RenderSettings::default(),
+                    render: choices.render.clone(),
                     eyes: choices.eyes,
                     imbuffer: 1,
                     bandwidth: BandwidthOptions::default(),

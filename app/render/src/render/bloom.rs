@@ -2,12 +2,14 @@
 
 use std::rc::Rc;
 
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 
 use yoro::gl::{
     Blend, Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
 
+/// What of the bloom is added to the picture.
+pub const STRENGTH: f32 = 0.12;
 /// Levels of the pyramid; the first has half the view's size.
 const LEVELS: usize = 5;
 
@@ -46,7 +48,8 @@ impl BloomTargets {
 
 /// Spreads what is brighter than white over its surroundings.
 ///
-/// Reads scene-referred colour, writes the pyramid.
+/// Reads scene-referred colour, or with the define `DISPLAY_REFERRED` what tone mapping made of it; writes the pyramid,
+/// which is scene-referred.
 pub struct BloomPass {
     gl: Rc<Context>,
     first: Program,
@@ -55,7 +58,7 @@ pub struct BloomPass {
 }
 
 impl BloomPass {
-    /// Compiles the programs; `defines` are those of `include/hdr.glsl`.
+    /// Compiles the programs; `defines` are those of `include/hdr.glsl`, and `DISPLAY_REFERRED`.
     ///
     /// # Errors
     /// As [`Program::new`].
@@ -73,6 +76,29 @@ impl BloomPass {
 
     /// Computes the bloom of `source`, whose filter must be linear.
     pub fn run(&self, targets: &BloomTargets, source: &Texture) {
+        self.run_with(targets, source, |_| {});
+    }
+
+    /// As [`BloomPass::run`], of a display-referred source to which `exposure` was applied: of the rectangle with the lower
+    /// left corner `origin` and this size in pixels.
+    pub fn run_display_referred(
+        &self,
+        targets: &BloomTargets,
+        source: &Texture,
+        (origin, size): ([u32; 2], [u32; 2]),
+        exposure: f32,
+    ) {
+        let texel = 1.0 / Vec2::from(source.size().map(|n| n as f32));
+        let [corner, size] = [origin, size].map(|v| Vec2::from(v.map(|n| n as f32)) * texel);
+        self.run_with(targets, source, |program| {
+            program
+                .set("exposure", exposure)
+                .set("part", Vec4::new(corner.x, corner.y, size.x, size.y))
+                .set("inside", 0.5 * texel);
+        });
+    }
+
+    fn run_with(&self, targets: &BloomTargets, source: &Texture, set_first: impl Fn(&Program)) {
         let texel = |texture: &Texture| 1.0 / Vec2::from(texture.size().map(|n| n as f32));
         self.gl.pass("bloom", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
@@ -81,6 +107,7 @@ impl BloomPass {
             for level in &targets.levels {
                 level.bind();
                 program.bind().texture("source", 0, from.raw()).set("texel", texel(level.color(0)));
+                set_first(program);
                 self.gl.draw_screen();
                 from = level.color(0);
                 program = &self.down;

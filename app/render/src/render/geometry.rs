@@ -1,4 +1,4 @@
-//! The g-buffer pass.
+//! The opaque triangles: into the g-buffer, or lit at once.
 
 use std::rc::Rc;
 
@@ -9,48 +9,75 @@ use super::g_buffer::{Layout, Seam};
 use super::scene::{Features, GpuScene};
 use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{DepthRange, Eye, View};
-use yoro::gl::{Blend, Context, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro::gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
 
-/// Draws the opaque triangles of a scene.
+/// Draws the opaque triangles of a scene into what is bound.
 ///
-/// Writes the g-buffer's three colour textures (12 bytes a pixel) and its depth; reads the material's maps.
+/// Writes the g-buffer's three colour textures (12 bytes a pixel), or display-referred colour (4 bytes a sample), and
+/// depth; reads the material's maps.
 pub struct GeometryPass {
     gl: Rc<Context>,
     layout: Layout,
+    /// What is cut out covers samples by its alpha.
+    alpha_to_coverage: bool,
     /// By [`Features::index`]; those that the scene uses.
     programs: [Option<Program>; Features::COMBINATIONS],
 }
 
 impl GeometryPass {
-    /// Compiles the variants that the scene's materials need.
+    /// Into the g-buffer: compiles the variants that the scene's materials need.
     ///
     /// # Errors
     /// As [`Program::new`].
-    pub fn new(gl: &Rc<Context>, scene: &GpuScene, layout: Layout) -> Result<GeometryPass, GlError> {
+    pub fn deferred(gl: &Rc<Context>, scene: &GpuScene, layout: Layout) -> Result<GeometryPass, GlError> {
+        GeometryPass::new(gl, scene, layout, "render/geometry.frag", &scene.style_defines(), false)
+    }
+
+    /// Lit at once: compiles the variants that the scene's materials need, with the defines of `render/forward.frag`.
+    /// With `multisample`, what is cut out covers samples by its alpha.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    pub fn forward(
+        gl: &Rc<Context>,
+        scene: &GpuScene,
+        layout: Layout,
+        defines: &[(&'static str, String)],
+        multisample: bool,
+    ) -> Result<GeometryPass, GlError> {
+        GeometryPass::new(gl, scene, layout, "render/forward.frag", defines, multisample)
+    }
+
+    fn new(
+        gl: &Rc<Context>,
+        scene: &GpuScene,
+        layout: Layout,
+        fragment: &str,
+        more_defines: &[(&'static str, String)],
+        alpha_to_coverage: bool,
+    ) -> Result<GeometryPass, GlError> {
         let mut programs = [const { None }; Features::COMBINATIONS];
         for (material, _) in scene.opaque() {
             let slot: &mut Option<Program> = &mut programs[material.features.index()];
             if slot.is_none() {
                 let mut defines = material.features.defines();
-                defines.extend(scene.style_defines());
+                defines.extend_from_slice(more_defines);
                 defines.extend(layout.defines().iter().map(|&name| (name, String::new())));
-                let source =
-                    ShaderSource::Raster { vertex: "render/geometry.vert", fragment: "render/geometry.frag" };
+                let source = ShaderSource::Raster { vertex: "render/geometry.vert", fragment };
                 *slot = Some(Program::new(gl, source, &defines)?);
             }
         }
-        Ok(GeometryPass { gl: gl.clone(), layout, programs })
+        Ok(GeometryPass { gl: gl.clone(), layout, alpha_to_coverage, programs })
     }
 
-    /// Clears a g-buffer.
-    pub fn clear(&self, target: &RenderTarget, view: &View) {
-        target.bind();
-        self.gl.clear(Some(view.depth.clear_value()));
+    /// Its programs, for uniforms that are the same in all of them.
+    pub fn programs(&self) -> impl Iterator<Item = &Program> {
+        self.programs.iter().flatten()
     }
 
-    /// Draws into a g-buffer of the pass's layout: of one view, or of both eyes, which are alike in size and depth.
+    /// Draws into a target of the pass's layout: of one view, or of both eyes, which are alike in size and depth.
     /// Only what lies in `slice` is drawn (near and far plane in metres), with the depth that it has in the views.
-    pub fn draw(&self, target: &RenderTarget, scene: &GpuScene, views: &[View], slice: [f32; 2]) {
+    pub fn draw(&self, scene: &GpuScene, views: &[View], slice: [f32; 2]) {
         let Some(first) = views.first() else { return };
         let range = first.depth;
         let sliced =
@@ -61,19 +88,18 @@ impl GeometryPass {
         let matrices: [Mat4; 2] = std::array::from_fn(|i| eye_to_clip(&sliced(of(i))));
         let cullers: [Culler; 2] =
             std::array::from_fn(|i| Culler::new(eyes[i], &matrices[i], Selection::All));
-        self.draw_culled(target, scene, views, &cullers[..views.len()], &matrices, window(&range, slice));
+        self.draw_culled(scene, views, &cullers[..views.len()], &matrices, window(&range, slice));
     }
 
     /// As [`GeometryPass::draw`] of one whole view, with a culler that also selects.
-    pub fn draw_selected(&self, target: &RenderTarget, scene: &GpuScene, view: &View, culler: &Culler) {
+    pub fn draw_selected(&self, scene: &GpuScene, view: &View, culler: &Culler) {
         let views = std::slice::from_ref(view);
         let matrix = eye_to_clip(view);
-        self.draw_culled(target, scene, views, std::slice::from_ref(culler), &[matrix; 2], [0.0, 1.0]);
+        self.draw_culled(scene, views, std::slice::from_ref(culler), &[matrix; 2], [0.0, 1.0]);
     }
 
     fn draw_culled(
         &self,
-        target: &RenderTarget,
         scene: &GpuScene,
         views: &[View],
         cullers: &[Culler],
@@ -86,7 +112,6 @@ impl GeometryPass {
         let seams = Eye::BOTH.map(|eye| Layout::seam_plane(&matrices[eye.index()], eye));
         let clip = self.layout == Layout::DoubleWide(Seam::ClipDistance);
         let depth = depth_test(first.depth.convention);
-        target.bind();
         self.gl.set_depth_window(depth_window);
         if clip {
             self.gl.set_clip_distance(true);
@@ -100,6 +125,9 @@ impl GeometryPass {
             }
             let state = RasterState { depth, blend: Blend::Off, cull: !material.double_sided };
             self.gl.set_raster_state(&state);
+            if self.alpha_to_coverage {
+                self.gl.set_alpha_to_coverage(material.features.contains(Features::CUTOUT));
+            }
             program.bind();
             if self.layout == Layout::Single {
                 program.set("eye", eyes[0]).set("eye_to_clip", matrices[0]);
@@ -115,6 +143,9 @@ impl GeometryPass {
         }
         if clip {
             self.gl.set_clip_distance(false);
+        }
+        if self.alpha_to_coverage {
+            self.gl.set_alpha_to_coverage(false);
         }
         self.gl.set_depth_window([0.0, 1.0]);
     }

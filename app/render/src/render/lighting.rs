@@ -39,6 +39,11 @@ pub fn shading_defines(
     defines
 }
 
+/// Width of ink outlines in pixels.
+pub fn line_width(view: &View) -> i32 {
+    (view.size[1] as f32 / 900.0).round().max(1.0) as i32
+}
+
 impl LightingPass {
     /// Compiles the variant for the scene's style and light, and views of a role.
     ///
@@ -78,7 +83,7 @@ impl LightingPass {
                 .texture_of("albedo_map", 1, g_buffer.color(0))
                 .texture_of("normal_map", 2, g_buffer.color(1))
                 .texture_of("emissive_map", 3, g_buffer.color(2))
-                .set("line_width", (view.size[1] as f32 / 900.0).round().max(1.0) as i32);
+                .set("line_width", line_width(view));
             if let Some(occlusion) = occlusion {
                 program.texture("occlusion_map", 4, occlusion.raw());
             }

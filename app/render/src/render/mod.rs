@@ -1,15 +1,23 @@
-//! One view of a scene: colour and depth, rendered the deferred way.
+//! One view of a scene: colour and depth, rendered the deferred way or the forward way.
 //!
-//! sun shadow map (once per scene) -> g-buffer -> ambient occlusion -> lighting -> bloom -> tone mapping. What
+//! Deferred: sun shadow map (once per scene) -> g-buffer -> ambient occlusion -> lighting -> bloom -> tone mapping. What
 //! belongs to the finished image of one eye comes after synthesis: [`Fxaa`] and the transparent surfaces
 //! ([`Renderer::draw_transparent`]).
+//!
+//! Forward, with several samples in each pixel: sun shadow map -> lit surfaces -> average of the samples -> bloom and
+//! outlines. What comes after synthesis is drawn into the same samples ([`Renderer::go_on`]).
 
 mod bloom;
 mod cluster;
+mod deferred;
 mod depth_copy;
+mod forward;
+#[cfg(test)]
+mod forward_tests;
 mod fxaa;
 mod g_buffer;
 mod geometry;
+mod light_tiles;
 mod lighting;
 mod role;
 mod scene;
@@ -24,165 +32,135 @@ mod uniforms;
 
 use std::rc::Rc;
 
-use bloom::{BloomPass, BloomTargets};
+use glam::Vec3;
+
 use cluster::Culler;
 pub use cluster::Selection;
+use deferred::{Deferred, DeferredTargets};
+pub(crate) use deferred::{FinishTargets, LightTargets};
 pub use depth_copy::DepthCopy;
+use forward::{Forward, ForwardTargets, Illumination, Kept, Part};
 pub use fxaa::Fxaa;
 pub(crate) use g_buffer::{GBuffer, Layout, Seam};
-use geometry::GeometryPass;
-use lighting::LightingPass;
+use light_tiles::LightTiles;
 pub(crate) use role::{Reprojection, Role, RoleKind};
+use scene::FREE_UNIT;
 pub use scene::GpuScene;
-pub use settings::{MAX_POINT_LIGHTS, RenderSettings};
+pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings, RendererKind};
 use shadow::ShadowMap;
-use ssao::{SsaoPass, SsaoTargets};
-use tonemap::TonemapPass;
 pub use transparent::DepthImage;
-use transparent::TransparentPass;
+use transparent::{Onto, TransparentPass};
 use uniforms::Lights;
 pub(crate) use uniforms::depth_test;
 
-use yoro::eyes::{DepthConvention, DepthRange, View};
-use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, View};
+use yoro::gl::{Context, Destination, GlError, RenderTarget, Texture};
 
-/// Scene-referred colour of one view, and what it is made with.
-pub(crate) struct LightTargets {
-    ssao: Option<SsaoTargets>,
-    hdr: RenderTarget,
-}
-
-impl LightTargets {
-    pub(crate) fn new(
-        gl: &Rc<Context>,
-        size: [u32; 2],
-        settings: &RenderSettings,
-    ) -> Result<LightTargets, GlError> {
-        Ok(LightTargets {
-            ssao: settings.ssao.then(|| SsaoTargets::new(gl, size, settings.ssao_scale())).transpose()?,
-            hdr: RenderTarget::new(gl, size, &[(hdr_format(gl), Filter::Linear)], None)?,
-        })
-    }
-
-    pub(crate) fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
-        self.ssao.as_mut().map_or(Ok(()), |t| t.resize(size))?;
-        self.hdr.resize(size)
-    }
-
-    /// Scene-referred colour, filtered linearly.
-    pub(crate) fn hdr(&self) -> &Texture {
-        self.hdr.color(0)
-    }
-}
-
-/// Display-referred colour of one view, and what it is made with.
-pub(crate) struct FinishTargets {
-    bloom: Option<BloomTargets>,
-    color: RenderTarget,
-}
-
-impl FinishTargets {
-    pub(crate) fn new(
-        gl: &Rc<Context>,
-        size: [u32; 2],
-        settings: &RenderSettings,
-    ) -> Result<FinishTargets, GlError> {
-        Ok(FinishTargets {
-            bloom: settings.bloom.then(|| BloomTargets::new(gl, size, hdr_format(gl))).transpose()?,
-            color: RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Linear)], None)?,
-        })
-    }
-
-    pub(crate) fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
-        self.bloom.as_mut().map_or(Ok(()), |t| t.resize(size))?;
-        self.color.resize(size)
-    }
-
-    /// Display-referred sRGB colour with luma in alpha, filtered linearly.
-    pub(crate) fn color(&self) -> &RenderTarget {
-        &self.color
-    }
-}
-
-/// The images of one view, from g-buffer to final colour.
+/// The images of one view, up to final colour.
 pub struct ViewTargets {
-    g_buffer: GBuffer,
-    light: LightTargets,
-    finish: FinishTargets,
+    images: Images,
+}
+
+enum Images {
+    Deferred(DeferredTargets),
+    Forward(ForwardTargets),
 }
 
 impl ViewTargets {
-    /// Targets for views of `size` pixels with the given depth.
+    /// Targets for views of `size` pixels with the given depth, for renderers of these settings.
     ///
     /// # Errors
-    /// As [`RenderTarget::new`].
+    /// As [`RenderTarget::new`]; [`GlError::Unsupported`] when the driver has not as many samples as the settings say.
     pub fn new(
         gl: &Rc<Context>,
         size: [u32; 2],
         convention: DepthConvention,
         settings: &RenderSettings,
     ) -> Result<ViewTargets, GlError> {
-        Ok(ViewTargets {
-            g_buffer: GBuffer::new(gl, Layout::Single, size, convention)?,
-            light: LightTargets::new(gl, size, settings)?,
-            finish: FinishTargets::new(gl, size, settings)?,
-        })
+        let images = match settings.renderer {
+            RendererKind::Deferred => Images::Deferred(DeferredTargets::new(gl, size, convention, settings)?),
+            RendererKind::Forward => {
+                Images::Forward(ForwardTargets::new(gl, Layout::Single, size, settings)?)
+            }
+        };
+        Ok(ViewTargets { images })
     }
 
-    /// Fits the targets to a view; nothing is done when they fit already.
+    /// Targets for both eyes at once, of a forward renderer.
     ///
     /// # Errors
-    /// As [`RenderTarget::new`].
-    pub fn fit(&mut self, view: &View) -> Result<(), GlError> {
-        self.g_buffer.fit(view.size, view.depth.convention)?;
-        self.light.resize(view.size)?;
-        self.finish.resize(view.size)
+    /// As [`ViewTargets::new`].
+    pub(crate) fn of_both_eyes(
+        gl: &Rc<Context>,
+        layout: Layout,
+        settings: &RenderSettings,
+    ) -> Result<ViewTargets, GlError> {
+        Ok(ViewTargets { images: Images::Forward(ForwardTargets::new(gl, layout, [1, 1], settings)?) })
+    }
+
+    /// Says which samples are still needed when a view is rendered, to be read or to go on drawing
+    /// ([`Renderer::go_on`]); at first none are. The others never leave the tiles of a tile-based GPU, as far as its driver
+    /// can help it. Means nothing to a deferred renderer.
+    pub fn keep_samples(&mut self, color: bool, depth: bool) {
+        if let Images::Forward(targets) = &mut self.images {
+            targets.kept = Kept { color, depth };
+        }
+    }
+
+    /// Makes [`ViewTargets::depth`] that of each pixel's first sample, as drivers resolve it, instead of the nearest one's:
+    /// for synthesis from what there is without multisample textures. Means nothing to a deferred renderer.
+    pub fn set_first_sample(&mut self, first: bool) {
+        if let Images::Forward(targets) = &mut self.images {
+            targets.first_sample = first;
+        }
     }
 
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
-        self.finish.color.size()
+        self.color_target().size()
     }
 
-    /// Display-referred sRGB colour with luma in alpha, filtered linearly.
+    /// Display-referred sRGB colour with luma in alpha, filtered linearly. With several samples in each pixel, alpha is
+    /// undefined where something is cut out by a texture.
     pub fn color(&self) -> &Texture {
-        self.finish.color.color(0)
+        self.color_target().color(0)
     }
 
     /// The framebuffer of [`ViewTargets::color`], to read it or to draw over it.
     pub fn color_target(&self) -> &RenderTarget {
-        &self.finish.color
+        match &self.images {
+            Images::Deferred(targets) => targets.finish.color(),
+            Images::Forward(targets) => targets.color(),
+        }
     }
 
-    /// Window depth in the view's convention: 24 bits for standard, float for reversed depth.
+    /// Window depth in the view's convention. Deferred: 24 bits for standard, float for reversed depth. Forward: float,
+    /// the nearest of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0), and after
+    /// [`Renderer::render_all`] where samples stay in tiles.
     pub fn depth(&self) -> &Texture {
-        self.g_buffer.target().depth()
+        match &self.images {
+            Images::Deferred(targets) => targets.g_buffer.target().depth(),
+            Images::Forward(targets) => targets.depth(),
+        }
     }
 
-    /// The g-buffer: albedo and roughness, normal and reflectance, emission and material, depth.
-    pub fn g_buffer(&self) -> &RenderTarget {
-        self.g_buffer.target()
+    /// The window depth of every sample, a `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples in float: of a
+    /// forward renderer with more than one, where there are such textures and they are kept
+    /// ([`ViewTargets::keep_samples`]). Opaque surfaces only, until [`Renderer::go_on`].
+    pub fn depth_samples(&self) -> Option<glow::Texture> {
+        match &self.images {
+            Images::Deferred(_) => None,
+            Images::Forward(targets) => targets.depth_samples(),
+        }
     }
-}
 
-/// EXT_color_buffer_half_float alone has half floats, but not the packed ones: the driver is asked by trying.
-fn hdr_format(gl: &Rc<Context>) -> Format {
-    if !gl.capabilities().float_render_targets {
-        return Format::Rgba8;
+    /// The colour of every sample, likewise. None where bloom or outlines are added to their average.
+    pub fn color_samples(&self) -> Option<glow::Texture> {
+        match &self.images {
+            Images::Deferred(_) => None,
+            Images::Forward(targets) => targets.color_samples(),
+        }
     }
-    first_renderable(gl, [Format::R11G11B10F, Format::Rgba16F])
-}
-
-/// The first format that the driver renders to, or the last.
-fn first_renderable<const N: usize>(gl: &Rc<Context>, formats: [Format; N]) -> Format {
-    let renders = |f: &Format| RenderTarget::new(gl, [1, 1], &[(*f, Filter::Linear)], None).is_ok();
-    formats.into_iter().find(renders).unwrap_or(formats[N - 1])
-}
-
-/// The passes that light views of one role.
-struct LightPasses {
-    ssao: Option<SsaoPass>,
-    lighting: LightingPass,
 }
 
 /// Renders views of one scene: its programs, made for the scene's style and materials, and the scene's shadow
@@ -193,47 +171,51 @@ pub struct Renderer {
     gl: Rc<Context>,
     settings: RenderSettings,
     scene_id: u64,
-    ssao_radius: f32,
     shadow: Option<ShadowMap>,
-    /// By [`Layout::index`].
-    geometry: [Option<GeometryPass>; Layout::COUNT],
-    /// By [`RoleKind::index`].
-    light: [Option<LightPasses>; RoleKind::COUNT],
-    bloom: Option<BloomPass>,
-    tonemap: TonemapPass,
+    passes: Passes,
     transparent: TransparentPass,
+}
+
+enum Passes {
+    Deferred(Deferred),
+    Forward(Forward),
+}
+
+/// What a renderer of one kind says to targets of the other.
+fn other_kind() -> GlError {
+    GlError::Unsupported(
+        "these targets were made for another kind of renderer: make both with the same settings".into(),
+    )
 }
 
 impl Renderer {
     /// Compiles the programs for a scene and draws its shadow map.
     ///
     /// # Errors
-    /// [`GlError`] when the driver refuses a program or a target.
+    /// [`GlError`] when the driver refuses a program or a target, or has not as many samples as the settings say.
     pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Renderer, GlError> {
+        let passes = match settings.renderer {
+            RendererKind::Deferred => Passes::Deferred(Deferred::new(gl, settings, scene)?),
+            RendererKind::Forward => Passes::Forward(Forward::new(gl, settings, scene)?),
+        };
+        Renderer::with(gl, settings, scene, passes)
+    }
+
+    fn with(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        scene: &GpuScene,
+        passes: Passes,
+    ) -> Result<Renderer, GlError> {
         let shadow = (scene.has_sun() && settings.shadow_map_size > 0)
             .then(|| ShadowMap::new(gl, scene, settings.shadow_map_size))
             .transpose()?;
-        let mut hdr = Vec::new();
-        if !gl.capabilities().float_render_targets {
-            hdr.push(("NO_FLOAT_TARGETS", String::new()));
-        }
-        // Half a metre around a small object would darken all of it.
-        let bounds = scene.bounds();
-        let ssao_radius = settings.ssao_radius.min(0.1 * (bounds.max - bounds.min).length().max(1e-3));
-        let bloom = settings.bloom.then(|| BloomPass::new(gl, &hdr)).transpose()?;
-        if settings.bloom {
-            hdr.push(("BLOOM", String::new()));
-        }
         let mut renderer = Renderer {
             gl: gl.clone(),
             settings: settings.clone(),
             scene_id: scene.id,
-            ssao_radius,
             shadow,
-            geometry: [const { None }; Layout::COUNT],
-            light: [const { None }; RoleKind::COUNT],
-            bloom,
-            tonemap: TonemapPass::new(gl, &hdr)?,
+            passes,
             transparent: TransparentPass::new(gl, scene, settings)?,
         };
         renderer.prepare(scene, Layout::Single, &[RoleKind::Whole])?;
@@ -255,10 +237,11 @@ impl Renderer {
         )))
     }
 
-    /// Compiles what views of these kinds need; nothing is done for what is there already.
+    /// Compiles what views of these kinds need; nothing is done for what is there already. A forward renderer has no
+    /// roles.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for another scene than the renderer was made for; as [`Program::new`].
+    /// [`GlError::Unsupported`] for another scene than the renderer was made for; as [`yoro::gl::Program::new`].
     pub(crate) fn prepare(
         &mut self,
         scene: &GpuScene,
@@ -266,57 +249,236 @@ impl Renderer {
         roles: &[RoleKind],
     ) -> Result<(), GlError> {
         self.belongs_to(scene)?;
-        let geometry = &mut self.geometry[layout.index()];
-        if geometry.is_none() {
-            *geometry = Some(GeometryPass::new(&self.gl, scene, layout)?);
-        }
-        if layout == Layout::Layered {
-            self.transparent.prepare_layered(scene, &self.settings)?;
-        }
-        for &role in roles {
-            let light = &mut self.light[role.index()];
-            if light.is_none() {
-                let (radius, scale) = (self.ssao_radius, self.settings.ssao_scale());
-                let ssao = self.settings.ssao.then(|| SsaoPass::new(&self.gl, radius, scale, role));
-                let lighting = LightingPass::new(&self.gl, scene, &self.settings, role)?;
-                *light = Some(LightPasses { ssao: ssao.transpose()?, lighting });
+        match &mut self.passes {
+            Passes::Deferred(passes) => {
+                if layout == Layout::Layered {
+                    self.transparent.prepare_layered(scene, &self.settings)?;
+                }
+                passes.prepare(scene, layout, roles)
             }
+            Passes::Forward(passes) => passes.prepare(scene, layout),
         }
-        Ok(())
     }
 
     /// Renders the opaque part of a scene: colour and depth in `targets`, which are fitted to the view. Where
     /// nothing is drawn, depth keeps its far value and colour is the sky.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for another scene than the renderer was made for; as [`RenderTarget::new`]
-    /// when the targets have to change their size.
+    /// [`GlError::Unsupported`] for another scene than the renderer was made for, or targets of another kind; as
+    /// [`RenderTarget::new`] when the targets have to change their size.
     pub fn render(
-        &mut self,
+        &self,
         targets: &mut ViewTargets,
         scene: &GpuScene,
         view: &View,
         selection: Selection,
     ) -> Result<(), GlError> {
         self.belongs_to(scene)?;
-        targets.fit(view)?;
-        let culler = Culler::new(view.pose.position, &uniforms::eye_to_clip(view), selection);
-        let g_buffer = targets.g_buffer.target();
-        if let Some(pass) = &self.geometry[Layout::Single.index()] {
-            self.gl.pass("g-buffer", || {
-                pass.clear(g_buffer, view);
-                pass.draw_selected(g_buffer, scene, view, &culler);
-            });
+        let culler = culler(view, selection);
+        match (&self.passes, &mut targets.images) {
+            (Passes::Deferred(passes), Images::Deferred(targets)) => {
+                targets.fit(view)?;
+                passes.draw_selected(&targets.g_buffer, scene, view, &culler);
+                self.light(&targets.light, &targets.g_buffer, scene, view, Role::Whole);
+                self.finish(&targets.finish, &targets.light);
+                Ok(())
+            }
+            (Passes::Forward(passes), Images::Forward(targets)) => {
+                targets.fit(view.size, passes.develops(), false)?;
+                self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
+                passes.resolve(targets, view, true);
+                passes.develop(targets, view, Eye::Left, false);
+                Ok(())
+            }
+            _ => Err(other_kind()),
         }
-        self.light(&targets.light, &targets.g_buffer, scene, view, Role::Whole);
-        self.finish(&targets.finish, &targets.light);
+    }
+
+    /// Renders all of a scene, transparent surfaces too. With `depth` the targets have that of the opaque ones
+    /// afterwards; without, a forward renderer does not spend anything on it.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_all(
+        &self,
+        targets: &mut ViewTargets,
+        scene: &GpuScene,
+        view: &View,
+        depth: bool,
+    ) -> Result<(), GlError> {
+        if !self.settings.is_forward() {
+            self.render(targets, scene, view, Selection::All)?;
+            if !scene.has_transparent() {
+                return Ok(());
+            }
+            let to = Destination::whole(targets.color_target());
+            return self.draw_transparent(&to, DepthImage::whole(targets.depth()), scene, view);
+        }
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &mut targets.images) else {
+            return Err(other_kind());
+        };
+        targets.fit(view.size, passes.develops(), !passes.reads_samples())?;
+        let culler = culler(view, Selection::All);
+        self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
+        self.draw_transparent_forward(passes, targets, scene, &[*view]);
+        passes.resolve(targets, view, depth);
+        passes.develop(targets, view, Eye::Left, false);
         Ok(())
+    }
+
+    /// Goes on with a view that a forward renderer has rendered, in the samples that were kept: near objects and
+    /// transparent surfaces, as they come after synthesis. Colour is renewed, and with `depth` the depth.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub(crate) fn go_on(
+        &self,
+        targets: &ViewTargets,
+        scene: &GpuScene,
+        view: &View,
+        near: Option<Selection>,
+        depth: bool,
+    ) -> Result<(), GlError> {
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &targets.images) else {
+            return Err(other_kind());
+        };
+        self.draw_after_synthesis(passes, targets, scene, view, near);
+        passes.resolve(targets, view, depth);
+        passes.develop(targets, view, Eye::Left, near.is_none());
+        Ok(())
+    }
+
+    /// As [`Renderer::go_on`], with an image that is not rendered: colour of 8 bits and float depth, of the view's size.
+    /// The targets are those of a view that is no smaller; what they hold is gone afterwards.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub(crate) fn go_on_with(
+        &self,
+        targets: &ViewTargets,
+        image: &RenderTarget,
+        scene: &GpuScene,
+        view: &View,
+        near: Option<Selection>,
+        depth: bool,
+    ) -> Result<(), GlError> {
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &targets.images) else {
+            return Err(other_kind());
+        };
+        self.gl.pass("load", || passes.load(targets, (image.color(0), image.depth()), [0, 0], view));
+        self.draw_after_synthesis(passes, targets, scene, view, near);
+        passes.resolve_to(targets, image, view, depth);
+        Ok(())
+    }
+
+    /// Renders, with a forward renderer, what lies in a slice (near and far plane in metres) and the sky behind it: the
+    /// beginning of [`Renderer::render_near`], without bloom and outlines.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub(crate) fn render_far(
+        &self,
+        targets: &mut ViewTargets,
+        scene: &GpuScene,
+        view: &View,
+        slice: [f32; 2],
+    ) -> Result<(), GlError> {
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &mut targets.images) else {
+            return Err(other_kind());
+        };
+        targets.fit(view.size, false, false)?;
+        self.draw_forward(passes, targets, scene, &[*view], &Part::Slice(slice));
+        passes.resolve(targets, view, true);
+        Ok(())
+    }
+
+    /// Renders, with a forward renderer, what lies in a slice, over the part of another view whose lower left corner is
+    /// given; and transparent surfaces over both. With `depth` the targets have that of opaque surfaces afterwards.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub(crate) fn render_near(
+        &self,
+        targets: &mut ViewTargets,
+        scene: &GpuScene,
+        view: &View,
+        slice: Option<[f32; 2]>,
+        (far, crop): (&ViewTargets, [u32; 2]),
+        depth: bool,
+    ) -> Result<(), GlError> {
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets), Images::Forward(far)) =
+            (&self.passes, &mut targets.images, &far.images)
+        else {
+            return Err(other_kind());
+        };
+        targets.fit(view.size, passes.develops(), !passes.reads_samples())?;
+        let views = std::slice::from_ref(view);
+        self.gl.pass("forward", || {
+            passes.load(targets, (far.resolved().color(0), far.depth()), crop, view);
+            if let Some(slice) = slice {
+                self.illuminate(Layout::Single, scene, views, view, |light| {
+                    passes.draw(targets, light, views, &Part::Slice(slice));
+                });
+            }
+        });
+        self.draw_transparent_forward(passes, targets, scene, views);
+        passes.resolve(targets, view, depth);
+        passes.develop(targets, view, Eye::Left, false);
+        Ok(())
+    }
+
+    /// Renders both eyes at once with a forward renderer: all of the scene, side by side in targets of such a layout. With
+    /// `depth` these have that of opaque surfaces afterwards. [`Renderer::develop_eye`] ends each eye.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub(crate) fn render_both(
+        &self,
+        targets: &mut ViewTargets,
+        scene: &GpuScene,
+        views: &[View; 2],
+        depth: bool,
+    ) -> Result<(), GlError> {
+        self.belongs_to(scene)?;
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &mut targets.images) else {
+            return Err(other_kind());
+        };
+        let view = &views[0];
+        targets.fit(view.size, passes.develops(), !passes.reads_samples())?;
+        let whole = [view.depth.near, view.depth.far];
+        self.draw_forward(passes, targets, scene, views, &Part::Slice(whole));
+        self.draw_transparent_forward(passes, targets, scene, views);
+        passes.resolve(targets, view, depth);
+        Ok(())
+    }
+
+    /// The image of an eye that [`Renderer::render_both`] has rendered, with the lower left corner of the eye in it. It is
+    /// there until another eye is asked for.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for targets of another kind.
+    pub(crate) fn develop_eye<'a>(
+        &self,
+        targets: &'a ViewTargets,
+        view: &View,
+        eye: Eye,
+    ) -> Result<(&'a RenderTarget, [u32; 2]), GlError> {
+        let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &targets.images) else {
+            return Err(other_kind());
+        };
+        passes.develop(targets, view, eye, false);
+        Ok((targets.color(), targets.origin(view.size, eye)))
     }
 
     /// Whether anything opaque may be seen in a slice of a view (near and far plane in metres).
     pub(crate) fn sees_any(&self, scene: &GpuScene, view: &View, [near, far]: [f32; 2]) -> bool {
         let view = View { depth: DepthRange { near, far, ..view.depth }, ..*view };
-        let culler = Culler::new(view.pose.position, &uniforms::eye_to_clip(&view), Selection::All);
+        let culler = culler(&view, Selection::All);
         scene.opaque().any(|(_, clusters)| clusters.iter().any(|c| culler.sees(&c.bounds)))
     }
 
@@ -330,16 +492,9 @@ impl Renderer {
         slice: Option<[f32; 2]>,
         mark: impl FnOnce(&RenderTarget),
     ) {
-        let (Some(pass), Some(view)) = (&self.geometry[g_buffer.layout().index()], views.first()) else {
-            return;
-        };
-        self.gl.pass("g-buffer", || {
-            pass.clear(g_buffer.target(), view);
-            mark(g_buffer.target());
-            if let Some(slice) = slice {
-                pass.draw(g_buffer.target(), scene, views, slice);
-            }
-        });
+        if let Passes::Deferred(passes) = &self.passes {
+            passes.draw(g_buffer, scene, views, slice, mark);
+        }
     }
 
     /// Lights a view of a g-buffer: ambient occlusion and scene-referred colour. The targets fit the view, and its
@@ -352,49 +507,136 @@ impl Renderer {
         view: &View,
         role: Role,
     ) {
-        let Some(passes) = &self.light[role.kind().index()] else { return };
-        let g_buffer = g_buffer.target();
-        let mut occlusion = None;
-        if let (Some(pass), Some(ssao)) = (&passes.ssao, &targets.ssao) {
-            pass.run(ssao, g_buffer, view, role);
-            occlusion = Some(ssao.result().color(0));
+        if let Passes::Deferred(passes) = &self.passes {
+            let (lights, shadow) = (self.lights(scene, std::slice::from_ref(view)), self.shadow.as_ref());
+            passes.light(targets, g_buffer, shadow, scene, view, &lights, role);
         }
-        let (lights, shadow) = (self.lights(scene, view), self.shadow.as_ref());
-        passes.lighting.run(&targets.hdr, g_buffer, occlusion, shadow, scene, view, &lights, role);
     }
 
     /// Bloom and tone mapping: scene-referred to display-referred colour.
     pub(crate) fn finish(&self, targets: &FinishTargets, light: &LightTargets) {
-        let mut glow = None;
-        if let (Some(pass), Some(bloom)) = (&self.bloom, &targets.bloom) {
-            pass.run(bloom, light.hdr());
-            glow = Some(bloom.result());
+        if let Passes::Deferred(passes) = &self.passes {
+            passes.finish(targets, light);
         }
-        self.tonemap.run(&targets.color, light.hdr(), glow, self.settings.exposure);
     }
 
-    fn lights(&self, scene: &GpuScene, view: &View) -> Lights {
-        let culler = Culler::new(view.pose.position, &uniforms::eye_to_clip(view), Selection::All);
-        Lights::choose(&scene.lights, view.pose.position, &culler, self.settings.point_lights)
+    /// The lights of some views, relative to the first.
+    fn lights(&self, scene: &GpuScene, views: &[View]) -> Lights {
+        let eye = views.first().map_or(Vec3::ZERO, |view| view.pose.position);
+        // One of each for an eye; what a single view does not use repeats the first.
+        let cullers: [Culler; 2] =
+            std::array::from_fn(|i| culler(views.get(i).unwrap_or(&views[0]), Selection::All));
+        Lights::choose(&scene.lights, eye, &cullers[..views.len()], self.settings.point_lights)
     }
 
-    /// Draws the transparent part of a scene over a finished image of `view`, whose window depth is `depth`.
+    /// Empties forward targets and draws a part of the scene, and the sky behind it.
+    fn draw_forward(
+        &self,
+        passes: &Forward,
+        targets: &ForwardTargets,
+        scene: &GpuScene,
+        views: &[View],
+        part: &Part,
+    ) {
+        let Some(first) = views.first() else { return };
+        self.gl.pass("forward", || {
+            passes.clear(targets, first);
+            self.illuminate(targets.layout(), scene, views, first, |light| {
+                passes.draw(targets, light, views, part);
+                passes.draw_sky(targets, light, views);
+            });
+        });
+    }
+
+    /// Calls `draw` with what lights these views in an image of this layout, for positions relative to one of them.
+    fn illuminate(
+        &self,
+        layout: Layout,
+        scene: &GpuScene,
+        views: &[View],
+        from: &View,
+        draw: impl FnOnce(&Illumination),
+    ) {
+        let lights = self.lights(scene, views);
+        let eye = from.pose.position;
+        draw(&Illumination {
+            scene,
+            shadow: self.shadow.as_ref(),
+            tiles: &LightTiles::new(&lights, layout, views),
+            lights: &lights.seen_from(eye),
+            eye,
+            exposure: self.settings.exposure,
+        });
+    }
+
+    /// Draws near objects and transparent surfaces into forward targets of one view.
+    fn draw_after_synthesis(
+        &self,
+        passes: &Forward,
+        targets: &ForwardTargets,
+        scene: &GpuScene,
+        view: &View,
+        near: Option<Selection>,
+    ) {
+        let views = std::slice::from_ref(view);
+        if let Some(near) = near {
+            let culler = culler(view, near);
+            self.gl.pass("near objects", || {
+                self.illuminate(Layout::Single, scene, views, view, |light| {
+                    passes.draw(targets, light, views, &Part::Selected(&culler));
+                });
+            });
+        }
+        self.draw_transparent_forward(passes, targets, scene, views);
+    }
+
+    /// Draws the transparent surfaces of each view into forward targets.
+    fn draw_transparent_forward(
+        &self,
+        passes: &Forward,
+        targets: &ForwardTargets,
+        scene: &GpuScene,
+        views: &[View],
+    ) {
+        if !scene.has_transparent() {
+            return;
+        }
+        for (view, eye) in views.iter().zip(Eye::BOTH) {
+            passes.bind_eye(targets, view, eye);
+            self.illuminate(targets.layout(), scene, views, view, |light| {
+                let all = culler(view, Selection::All);
+                self.transparent.run(Onto::Bound, scene, view, &all, |program| light.set(program));
+            });
+        }
+    }
+
+    /// Draws the transparent part of a scene over a finished image of `view`, whose window depth is `depth`: of a deferred
+    /// renderer, or one that is synthesized from its views.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for another scene than the renderer was made for.
     pub fn draw_transparent(
-        &mut self,
+        &self,
         to: &Destination,
         depth: DepthImage,
         scene: &GpuScene,
         view: &View,
     ) -> Result<(), GlError> {
         self.belongs_to(scene)?;
-        let culler = Culler::new(view.pose.position, &uniforms::eye_to_clip(view), Selection::All);
-        let lights = self.lights(scene, view);
-        let shadow = self.shadow.as_ref();
-        let exposure = self.settings.exposure;
-        self.transparent.run(to, depth, shadow, scene, view, &culler, &lights, exposure);
+        let lights = self.lights(scene, std::slice::from_ref(view));
+        let onto = Onto::Image(to, depth);
+        self.transparent.run(onto, scene, view, &culler(view, Selection::All), |program| {
+            program.set("exposure", self.settings.exposure);
+            if let Some(shadow) = &self.shadow {
+                shadow.set(program, FREE_UNIT + 1, view.pose.position);
+            }
+            lights.set(program, &scene.sky);
+        });
         Ok(())
     }
+}
+
+/// What a view sees of a selection.
+fn culler(view: &View, selection: Selection) -> Culler {
+    Culler::new(view.pose.position, &uniforms::eye_to_clip(view), selection)
 }

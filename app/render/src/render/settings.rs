@@ -1,15 +1,48 @@
 //! What the renderer does and how well.
 
+use yoro::gl::{Capabilities, GlError};
+
 /// The most point lights that light one view.
 pub const MAX_POINT_LIGHTS: usize = 24;
+
+/// Numbers of samples that a pixel of the forward renderer may have.
+pub const MSAA: [u32; 3] = [1, 2, 4];
+
+/// How a view is rendered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RendererKind {
+    /// G-buffer, ambient occlusion, lighting of each pixel, bloom, tone mapping; edges are smoothed afterwards, by FXAA.
+    #[default]
+    Deferred,
+    /// Surfaces are lit as they are drawn, with several samples in each pixel (MSAA); no ambient occlusion.
+    Forward,
+}
+
+impl RendererKind {
+    /// All of them, the default first.
+    pub const ALL: [RendererKind; 2] = [RendererKind::Deferred, RendererKind::Forward];
+
+    /// Its name on the command line and in settings.
+    pub fn name(self) -> &'static str {
+        match self {
+            RendererKind::Deferred => "deferred",
+            RendererKind::Forward => "forward",
+        }
+    }
+}
 
 /// What the renderer does and how well.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RenderSettings {
+    /// How a view is rendered.
+    pub renderer: RendererKind,
+    /// Samples in each pixel of the forward renderer: 1, or what the driver has of 2 and 4. The deferred one has one.
+    pub msaa: u32,
     /// Edge of the sun's shadow map in texels; 0 for no shadows.
     pub shadow_map_size: u32,
-    /// Ambient occlusion.
+    /// Ambient occlusion; the forward renderer has none.
     pub ssao: bool,
     /// Ambient occlusion at half the resolution: a quarter of the cost, softer at edges.
     pub ssao_half_size: bool,
@@ -26,6 +59,8 @@ pub struct RenderSettings {
 impl Default for RenderSettings {
     fn default() -> RenderSettings {
         RenderSettings {
+            renderer: RendererKind::default(),
+            msaa: 4,
             shadow_map_size: 4096,
             ssao: true,
             ssao_half_size: false,
@@ -38,6 +73,38 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
+    /// Whether the forward renderer is chosen.
+    pub fn is_forward(&self) -> bool {
+        self.renderer == RendererKind::Forward
+    }
+
+    /// Samples in each pixel of a rendered view.
+    pub fn samples(&self) -> u32 {
+        if self.is_forward() { self.msaa } else { 1 }
+    }
+
+    /// The renderer in a few words: `forward, 4 samples a pixel`.
+    pub fn summary(&self) -> String {
+        match self.renderer {
+            RendererKind::Deferred => self.renderer.name().into(),
+            RendererKind::Forward => format!("{}, {} samples a pixel", self.renderer.name(), self.msaa),
+        }
+    }
+
+    /// Whether a driver has as many samples as are asked for.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] with the numbers that there are.
+    pub fn supported(&self, capabilities: &Capabilities) -> Result<(), GlError> {
+        let samples = self.samples();
+        if !MSAA.contains(&samples) {
+            return Err(GlError::Unsupported(format!(
+                "there are no {samples} samples a pixel: choose 1, 2 or 4"
+            )));
+        }
+        capabilities.check_samples(samples)
+    }
+
     /// How many pixels share a texel of ambient occlusion, along each axis.
     pub(super) fn ssao_scale(&self) -> u32 {
         if self.ssao_half_size { 2 } else { 1 }

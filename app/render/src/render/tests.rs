@@ -6,14 +6,17 @@ use glam::Vec3;
 
 use super::*;
 use crate::fixture::quad;
+use bloom::BloomPass;
+use deferred::{first_renderable, hdr_format};
+use tonemap::TonemapPass;
 use yoro::eyes::{DepthRange, Frustum, Pose};
-use yoro::gl::{Program, ShaderSource};
+use yoro::gl::{Filter, Format, Program, ShaderSource};
 use yoro_context::{Backend, Headless};
 use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
 const SIZE: [u32; 2] = [144, 112];
 
-fn open() -> Headless {
+pub fn open() -> Headless {
     Headless::open(Backend::Egl).unwrap()
 }
 
@@ -27,13 +30,13 @@ fn cube(model: &mut Model, material: usize, center: Vec3, half: f32) {
     }
 }
 
-fn picture(size: u32, srgb: bool, texel: impl Fn(u32, u32) -> [u8; 4]) -> TextureImage {
+pub fn picture(size: u32, srgb: bool, texel: impl Fn(u32, u32) -> [u8; 4]) -> TextureImage {
     let rgba = (0..size * size).flat_map(|i| texel(i % size, i / size)).collect();
     TextureImage { name: format!("picture {size} {srgb}"), size: [size; 2], rgba, srgb, nearest: false }
 }
 
 /// Floor, cubes from one to twelve metres away, a row of fences, something that glows.
-fn scene(style: ShadingStyle) -> Scene {
+pub fn scene(style: ShadingStyle) -> Scene {
     let mut model = Model {
         textures: vec![
             picture(8, true, |x, y| [if (x + y) % 2 == 0 { 220 } else { 90 }, 140, 120, 255]),
@@ -76,7 +79,7 @@ fn scene(style: ShadingStyle) -> Scene {
 const EYE: Vec3 = Vec3::new(0.1, 1.3, 0.6);
 const TARGET: Vec3 = Vec3::new(0.0, 0.8, -4.0);
 
-fn view(convention: DepthConvention) -> View {
+pub fn view(convention: DepthConvention) -> View {
     View {
         pose: Pose::look_at(EYE, TARGET),
         frustum: Frustum::symmetric(1.1, SIZE[0] as f32 / SIZE[1] as f32),
@@ -86,40 +89,40 @@ fn view(convention: DepthConvention) -> View {
 }
 
 /// A small shadow map: tests run on CPU rasterizers.
-fn settings() -> RenderSettings {
+pub fn settings() -> RenderSettings {
     RenderSettings { shadow_map_size: 512, ..RenderSettings::default() }
 }
 
-struct Rig {
-    scene: GpuScene,
-    renderer: Renderer,
-    targets: ViewTargets,
+pub struct Rig {
+    pub scene: GpuScene,
+    pub renderer: Renderer,
+    pub targets: ViewTargets,
 }
 
 impl Rig {
-    fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Rig {
+    pub fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Rig {
         let scene = GpuScene::upload(gl, scene).unwrap();
         let renderer = Renderer::new(gl, settings, &scene).unwrap();
         let targets = ViewTargets::new(gl, SIZE, DepthConvention::Standard, settings).unwrap();
         Rig { scene, renderer, targets }
     }
 
-    fn render(&mut self, view: &View, selection: Selection) -> Vec<u8> {
+    pub fn render(&mut self, view: &View, selection: Selection) -> Vec<u8> {
         self.renderer.render(&mut self.targets, &self.scene, view, selection).unwrap();
         self.targets.color_target().read_rgba8(0, [0, 0], view.size)
     }
+}
 
-    /// Distance of each pixel along the axis, as rendered last.
-    fn depths(&self, gl: &Rc<Context>, view: &View) -> Vec<f32> {
-        let formats = [(Format::R32F, Filter::Nearest)];
-        let copy = RenderTarget::new(gl, view.size, &formats, None).unwrap();
-        gl.set_raster_state(&yoro::gl::RasterState::SCREEN);
-        copy.bind();
-        let program = Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
-        program.bind().texture("source", 0, self.targets.depth().raw());
-        gl.draw_screen();
-        copy.read_rgba32f(0, [0, 0], view.size).iter().map(|t| t[0]).collect()
-    }
+/// Window depth of each pixel, as rendered last.
+pub fn depths(gl: &Rc<Context>, targets: &ViewTargets, view: &View) -> Vec<f32> {
+    let formats = [(Format::R32F, Filter::Nearest)];
+    let copy = RenderTarget::new(gl, view.size, &formats, None).unwrap();
+    gl.set_raster_state(&yoro::gl::RasterState::SCREEN);
+    copy.bind();
+    let program = Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
+    program.bind().texture("source", 0, targets.depth().raw());
+    gl.draw_screen();
+    copy.read_rgba32f(0, [0, 0], view.size).iter().map(|t| t[0]).collect()
 }
 
 fn largest_difference(a: &[u8], b: &[u8]) -> u8 {
@@ -131,7 +134,7 @@ fn mean(pixels: &[u8], channel: usize) -> f32 {
     pixels.iter().skip(channel).step_by(4).map(|&v| v as f32).sum::<f32>() / (pixels.len() / 4) as f32
 }
 
-const STYLES: [ShadingStyle; 5] = [
+pub const STYLES: [ShadingStyle; 5] = [
     ShadingStyle::Realistic,
     ShadingStyle::Cartoon,
     ShadingStyle::LowPoly,
@@ -240,7 +243,7 @@ fn depth_is_what_the_view_says() {
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
         let view = View { pose: Pose { position: EYE, ..Pose::IDENTITY }, ..view(convention) };
         rig.render(&view, Selection::All);
-        let depths = rig.depths(gl, &view);
+        let depths = depths(gl, &rig.targets, &view);
         let row = &depths[SIZE[0] as usize * 50..][..SIZE[0] as usize];
         assert!((view.depth.distance(row[40]) - 2.5).abs() < 1e-3, "{convention:?}");
         assert_eq!(row[110], view.depth.clear_value(), "{convention:?}: nothing was drawn there");
@@ -262,7 +265,8 @@ fn targets_follow_the_size_and_nothing_leaks() {
         assert_eq!(picture.len(), 301 * 97 * 4);
         assert_eq!(rig.targets.size(), large.size);
         assert_eq!(rig.render(&small, Selection::All), first, "a repeated frame is identical");
-        fxaa.run(rig.targets.color(), [0, 0], &Destination::whole(&rig.targets.light.hdr));
+        let Images::Deferred(targets) = &rig.targets.images else { unreachable!() };
+        fxaa.run(targets.finish.color().color(0), [0, 0], &Destination::whole(targets.light.target()));
     }
     assert_eq!(gl.object_count(), objects);
     assert_eq!(gl.take_errors(), None);
@@ -279,9 +283,9 @@ fn nearer_and_farther_composite_to_the_whole() {
     let view = view(DepthConvention::Standard);
     let whole = rig.render(&view, Selection::All);
     let near = rig.render(&view, Selection::Nearer { from: EYE, distance: 3.0 });
-    let near_depth = rig.depths(gl, &view);
+    let near_depth = depths(gl, &rig.targets, &view);
     let far = rig.render(&view, Selection::Farther { from: EYE, distance: 3.0 });
-    let far_depth = rig.depths(gl, &view);
+    let far_depth = depths(gl, &rig.targets, &view);
     let drawn = near_depth.iter().filter(|&&d| d < 1.0).count();
     assert!(drawn > 500 && drawn < near_depth.len() - 500, "{drawn} pixels are near");
     let composite: Vec<u8> = (0..near_depth.len())

@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use super::bloom;
 use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
 /// Adds bloom, applies exposure and the tone curve, encodes as sRGB.
@@ -29,7 +30,7 @@ impl TonemapPass {
             target.bind();
             self.program.bind().texture("source", 0, source.raw()).set("exposure", exposure);
             if let Some(bloom) = bloom {
-                self.program.texture("bloom", 1, bloom.raw()).set("bloom_strength", 0.12);
+                self.program.texture("bloom", 1, bloom.raw()).set("bloom_strength", bloom::STRENGTH);
             }
             self.gl.draw_screen();
         });

@@ -1,31 +1,34 @@
 //! The forward pass for transparent surfaces.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use glam::IVec2;
 
 use super::cluster::Culler;
+use super::light_tiles::LightTiles;
 use super::lighting::shading_defines;
 use super::role::RoleKind;
 use super::scene::{FREE_UNIT, Features, GpuScene};
 use super::settings::RenderSettings;
-use super::shadow::ShadowMap;
-use super::uniforms::{Lights, eye_to_clip, set_view};
-use yoro::eyes::{DepthConvention, View};
+use super::uniforms::{depth_test, eye_to_clip, nearer};
+use yoro::eyes::View;
 use yoro::gl::{
     Blend, Context, DepthTest, Destination, GlError, Program, RasterState, ShaderSource, Texture,
 };
 
-/// Draws what is blended, from back to front, over a finished image.
+/// Draws what is blended, from back to front, over an image.
 ///
-/// Reads the window depth of what is there from a texture, so that it works on a rendered eye and on a
-/// synthesized one alike; blends into display-referred colour.
+/// Beside the deferred renderer it reads the window depth of what is there from a texture, so that it works on a
+/// rendered eye and on a synthesized one alike; beside the forward one it is tested against the depth of each sample.
+/// Blends into display-referred colour.
 pub struct TransparentPass {
     gl: Rc<Context>,
-    /// For depth in textures, and for depth in layers of array textures, once that is asked for.
+    /// Against depth in textures or in the depth buffer, as the renderer has it; and for depth in layers of array
+    /// textures, once that is asked for.
     programs: [Programs; 2],
     /// (distance, batch, cluster) of the blended clusters; allocated once.
-    order: Vec<(f32, u32, u32)>,
+    order: RefCell<Vec<(f32, u32, u32)>>,
 }
 
 /// By [`Features::index`]; those that the scene uses.
@@ -49,6 +52,15 @@ impl<'a> DepthImage<'a> {
     }
 }
 
+/// What transparent surfaces are drawn over.
+#[derive(Clone, Copy)]
+pub enum Onto<'a> {
+    /// An image whose depth is a texture.
+    Image(&'a Destination, DepthImage<'a>),
+    /// What is bound, with its depth buffer.
+    Bound,
+}
+
 /// What the scene's blended materials need.
 fn compile(
     gl: &Rc<Context>,
@@ -64,6 +76,10 @@ fn compile(
             let mut defines = features.defines();
             defines.extend(shading_defines(gl, scene, settings));
             defines.extend(layered.then(|| RoleKind::Layer.define()).flatten());
+            if settings.is_forward() {
+                defines.extend(LightTiles::defines());
+                defines.push(("DEPTH_BUFFER", String::new()));
+            }
             let source =
                 ShaderSource::Raster { vertex: "render/geometry.vert", fragment: "render/transparent.frag" };
             *slot = Some(Program::new(gl, source, &defines)?);
@@ -85,7 +101,7 @@ impl TransparentPass {
         let blended = scene.batches.iter().filter(|b| scene.materials[b.material].blended);
         let count = blended.map(|batch| batch.clusters.len()).sum();
         let programs = [compile(gl, scene, settings, false)?, [const { None }; Features::COMBINATIONS]];
-        Ok(TransparentPass { gl: gl.clone(), programs, order: Vec::with_capacity(count) })
+        Ok(TransparentPass { gl: gl.clone(), programs, order: RefCell::new(Vec::with_capacity(count)) })
     }
 
     /// Compiles the variants that read depth from layers; nothing is done when they are there.
@@ -99,78 +115,69 @@ impl TransparentPass {
         Ok(())
     }
 
-    /// Draws into `to` what `culler` lets through and nothing in `depth` hides.
-    #[allow(clippy::too_many_arguments, reason = "a pass names what it reads")]
-    pub fn run(
-        &mut self,
-        to: &Destination,
-        depth: DepthImage,
-        shadow: Option<&ShadowMap>,
-        scene: &GpuScene,
-        view: &View,
-        culler: &Culler,
-        lights: &Lights,
-        exposure: f32,
-    ) {
+    /// Draws what `culler` lets through and nothing hides. `light` sets what `include/shade.glsl` needs, for
+    /// positions relative to the view's.
+    pub fn run(&self, onto: Onto, scene: &GpuScene, view: &View, culler: &Culler, light: impl Fn(&Program)) {
         let eye = view.pose.position;
-        self.order.clear();
+        let mut order = self.order.borrow_mut();
+        order.clear();
         for (b, batch) in scene.batches.iter().enumerate() {
             if scene.materials[batch.material].blended {
                 let clusters = batch.clusters.clone().filter(|&c| culler.sees(&scene.clusters[c].bounds));
-                self.order.extend(
+                order.extend(
                     clusters.map(|c| {
                         (scene.clusters[c].bounds.center().distance_squared(eye), b as u32, c as u32)
                     }),
                 );
             }
         }
-        if self.order.is_empty() {
+        if order.is_empty() {
             return;
         }
-        back_to_front(&mut self.order);
+        back_to_front(&mut order);
+        let (depth, layer) = match onto {
+            Onto::Image(_, depth) => (DepthTest::Off, depth.layer),
+            Onto::Bound => (depth_test(view.depth.convention), None),
+        };
         self.gl.pass("transparent", || {
-            self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+            if let Onto::Image(to, _) = onto {
+                self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+            }
             scene.mesh.bind();
             let matrix = eye_to_clip(view);
-            let offset =
-                IVec2::from(depth.origin.map(|n| n as i32)) - IVec2::from(to.origin.map(|n| n as i32));
-            let nearer = match view.depth.convention {
-                DepthConvention::Standard => 1.0,
-                DepthConvention::Reversed => -1.0,
-            };
             let mut current = u32::MAX;
-            for &(_, batch, cluster) in &self.order {
+            for &(_, batch, cluster) in order.iter() {
                 let material = &scene.materials[scene.batches[batch as usize].material];
-                let programs = &self.programs[usize::from(depth.layer.is_some())];
+                let programs = &self.programs[usize::from(layer.is_some())];
                 let Some(program) = &programs[material.features.index()] else { continue };
                 if batch != current {
                     current = batch;
-                    self.gl.set_raster_state(&RasterState {
-                        depth: DepthTest::Off,
-                        blend: Blend::Over,
-                        cull: !material.double_sided,
-                    });
-                    program
-                        .bind()
-                        .set("eye", eye)
-                        .set("eye_to_clip", matrix)
-                        .set("exposure", exposure)
-                        .set("depth_offset", offset)
-                        .set("nearer", nearer)
-                        .set("view_layer", depth.layer.unwrap_or(0) as i32)
-                        .texture_of("depth_map", FREE_UNIT, depth.texture);
-                    if let Some(shadow) = shadow {
-                        shadow.set(program, FREE_UNIT + 1, eye);
+                    let cull = !material.double_sided;
+                    self.gl.set_raster_state(&RasterState { depth, blend: Blend::Over, cull });
+                    self.gl.mask_depth();
+                    program.bind().set("eye", eye).set("eye_to_clip", matrix);
+                    if let Onto::Image(to, depth) = onto {
+                        set_depth_image(program, to, depth, view);
                     }
-                    set_view(program, view);
-                    lights.set(program, &scene.sky);
+                    light(program);
                     scene.set_material(program, material);
                 }
                 let cluster = &scene.clusters[cluster as usize];
                 scene.mesh.draw(cluster.start as usize..cluster.end as usize, 1);
             }
+            self.gl.set_raster_state(&RasterState::SCREEN);
         });
     }
+}
+
+/// Sets what `render/transparent.frag` tests against.
+fn set_depth_image(program: &Program, to: &Destination, depth: DepthImage, view: &View) {
+    let offset = IVec2::from(depth.origin.map(|n| n as i32)) - IVec2::from(to.origin.map(|n| n as i32));
+    program
+        .set("depth_offset", offset)
+        .set("nearer", nearer(view.depth.convention))
+        .set("view_layer", depth.layer.unwrap_or(0) as i32)
+        .texture_of("depth_map", FREE_UNIT, depth.texture);
 }
 
 /// Sorts by distance, farthest first, without allocation.

@@ -21,6 +21,14 @@ pub fn depth_test(convention: DepthConvention) -> DepthTest {
     }
 }
 
+/// Times a depth: smaller is nearer.
+pub fn nearer(convention: DepthConvention) -> f32 {
+    match convention {
+        DepthConvention::Standard => 1.0,
+        DepthConvention::Reversed => -1.0,
+    }
+}
+
 /// Sets what `include/view.glsl` needs.
 pub fn set_view(program: &Program, view: &View) {
     let f = &view.frustum;
@@ -34,21 +42,23 @@ pub fn set_view(program: &Program, view: &View) {
         .set("far_depth", view.depth.clear_value());
 }
 
-/// The point lights of one view, strongest first.
+/// The point lights of one view, or of both eyes, strongest first.
 pub struct Lights {
+    /// Where positions are relative to.
+    eye: Vec3,
     positions: [Vec4; MAX_POINT_LIGHTS],
     colors: [Vec4; MAX_POINT_LIGHTS],
     count: usize,
 }
 
 impl Lights {
-    /// Chooses, of the lights that reach into the view, the `limit` strongest at the eye.
-    pub fn choose(lights: &[PointLight], eye: Vec3, culler: &Culler, limit: usize) -> Lights {
+    /// Chooses, of the lights that reach into any of the views, the `limit` strongest at the eye.
+    pub fn choose(lights: &[PointLight], eye: Vec3, cullers: &[Culler], limit: usize) -> Lights {
         let limit = limit.min(MAX_POINT_LIGHTS);
         let mut scores = [(0.0, 0); MAX_POINT_LIGHTS];
         let mut count = 0;
         for (i, light) in lights.iter().enumerate() {
-            if limit == 0 || !culler.sees_sphere(light.position, light.range) {
+            if limit == 0 || !cullers.iter().any(|c| c.sees_sphere(light.position, light.range)) {
                 continue;
             }
             let distance = light.position.distance_squared(eye);
@@ -70,7 +80,18 @@ impl Lights {
             positions[k] = (lights[i].position - eye).extend(1.0 / lights[i].range.max(1e-3));
             colors[k] = lights[i].color.extend(0.0);
         }
-        Lights { positions, colors, count }
+        Lights { eye, positions, colors, count }
+    }
+
+    /// The same lights, relative to another eye.
+    pub fn seen_from(&self, eye: Vec3) -> Lights {
+        let shift = (self.eye - eye).extend(0.0);
+        Lights { eye, positions: self.positions.map(|p| p + shift), ..*self }
+    }
+
+    /// Centres relative to the eye, along the world's axes, and ranges in metres.
+    pub fn spheres(&self) -> impl Iterator<Item = (Vec3, f32)> {
+        self.positions[..self.count].iter().map(|p| (p.truncate(), 1.0 / p.w))
     }
 
     /// Sets what `include/shade.glsl` needs of the sky and these lights.
@@ -110,12 +131,12 @@ mod tests {
         // Behind the eye; far and weak; then forty that grow stronger.
         let mut lights = vec![light(20.0, 1000.0), light(-100.0, 1.0)];
         lights.extend((0..40).map(|i| light(-5.0, 1.0 + i as f32)));
-        let chosen = Lights::choose(&lights, Vec3::ZERO, &culler, 16);
+        let chosen = Lights::choose(&lights, Vec3::ZERO, &[culler], 16);
         assert_eq!(chosen.count, 16);
         let strengths: Vec<_> = chosen.colors[..16].iter().map(|c| c.x).collect();
         assert_eq!(strengths, (0..16).map(|i| 40.0 - i as f32).collect::<Vec<_>>());
-        assert_eq!(Lights::choose(&lights, Vec3::ZERO, &culler, 100).count, MAX_POINT_LIGHTS);
-        assert_eq!(Lights::choose(&lights, Vec3::ZERO, &culler, 0).count, 0);
-        assert_eq!(Lights::choose(&lights[..2], Vec3::ZERO, &culler, 8).count, 1);
+        assert_eq!(Lights::choose(&lights, Vec3::ZERO, &[culler], 100).count, MAX_POINT_LIGHTS);
+        assert_eq!(Lights::choose(&lights, Vec3::ZERO, &[culler], 0).count, 0);
+        assert_eq!(Lights::choose(&lights[..2], Vec3::ZERO, &[culler], 8).count, 1);
     }
 }

@@ -5,13 +5,15 @@ use std::rc::Rc;
 use super::finish::Finish;
 use super::method::{EyeTarget, StereoError, StereoMethod};
 use super::options::{AntiAliasing, StereoOptions};
-use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, ViewTargets};
 use yoro::eyes::{DepthConvention, Eye, EyePair};
-use yoro::gl::{Context, GlError};
+use yoro::gl::{Context, GlError, Texture};
 
 /// Two full renders.
 pub struct Conventional {
     targets: ViewTargets,
+    /// Whether [`Conventional::depth`] is wanted.
+    keeps_depth: bool,
     finish: Finish,
 }
 
@@ -27,7 +29,8 @@ impl Conventional {
     ) -> Result<Conventional, GlError> {
         Ok(Conventional {
             targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
-            finish: Finish::new(gl, options.anti_aliasing != AntiAliasing::Off)?,
+            keeps_depth: false,
+            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
         })
     }
 
@@ -41,14 +44,20 @@ impl Conventional {
         to: &EyeTarget,
     ) -> Result<(), StereoError> {
         let view = pair.view(eye);
-        renderer.render(&mut self.targets, scene, &view, Selection::All)?;
-        let (color, depth) = (self.targets.color_target(), DepthImage::whole(self.targets.depth()));
-        Ok(self.finish.eye(renderer, scene, &view, color, depth, to)?)
+        renderer.render_all(&mut self.targets, scene, &view, self.keeps_depth || to.depth.is_some())?;
+        self.finish.color(self.targets.color_target(), [0, 0], &to.color);
+        Finish::depth(DepthImage::whole(self.targets.depth()), to);
+        Ok(())
     }
 
-    /// The targets that hold the eye that was rendered last.
-    pub(super) fn targets(&self) -> &ViewTargets {
-        &self.targets
+    /// With [`Conventional::depth`] after each frame.
+    pub(super) fn keeping_depth(self) -> Conventional {
+        Conventional { keeps_depth: true, ..self }
+    }
+
+    /// The depth of the eye that was rendered last.
+    pub(super) fn depth(&self) -> &Texture {
+        self.targets.depth()
     }
 }
 

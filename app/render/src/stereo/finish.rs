@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::method::EyeTarget;
-use crate::render::{DepthImage, Fxaa, GpuScene, Renderer};
+use crate::render::{DepthImage, Fxaa, GpuScene, RenderSettings, Renderer};
 use yoro::eyes::View;
 use yoro::gl::{Context, Destination, GlError, RenderTarget};
 
@@ -15,8 +15,15 @@ pub(super) struct Finish {
 }
 
 impl Finish {
-    pub(super) fn new(gl: &Rc<Context>, anti_alias: bool) -> Result<Finish, GlError> {
-        Ok(Finish { gl: gl.clone(), fxaa: anti_alias.then(|| Fxaa::new(gl)).transpose()? })
+    /// With anti-aliasing or without; images whose edges are smooth already, by several samples in each pixel, are always
+    /// copied.
+    pub(super) fn new(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        anti_alias: bool,
+    ) -> Result<Finish, GlError> {
+        let fxaa = anti_alias && settings.samples() == 1;
+        Ok(Finish { gl: gl.clone(), fxaa: fxaa.then(|| Fxaa::new(gl)).transpose()? })
     }
 
     /// Draws the transparent part of the scene over a rendered eye and fills `to` from it.

@@ -15,7 +15,7 @@ use crate::render::{
     DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings, Renderer, Role,
     RoleKind, depth_test,
 };
-use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, Pose, View};
+use yoro::eyes::{DepthConvention, Eye, EyePair, EyesError, GuardBand, Pose, View};
 use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
 /// The far field starts this much nearer than the near field ends, so that no crack opens where a surface that is
@@ -24,12 +24,27 @@ const OVERLAP: f32 = 0.95;
 
 /// What is drawn for each eye and what for both, as near and far plane in metres; `None` for nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Split {
-    near: Option<[f32; 2]>,
-    far: Option<[f32; 2]>,
+pub(super) struct Split {
+    pub(super) near: Option<[f32; 2]>,
+    pub(super) far: Option<[f32; 2]>,
 }
 
 impl Split {
+    /// As [`Split::new`], but all is near where nothing of the scene is far.
+    pub(super) fn of_scene(
+        pair: &EyePair,
+        threshold: f32,
+        renderer: &Renderer,
+        scene: &GpuScene,
+        far_view: &View,
+    ) -> Split {
+        let split = Split::new(pair, threshold);
+        match split.far.filter(|&slice| renderer.sees_any(scene, far_view, slice)) {
+            Some(_) => split,
+            None => Split { near: Some([pair.depth.near, pair.depth.far]), far: None },
+        }
+    }
+
     /// Splits where the disparity is `threshold` pixels: `z = f_px * IPD / threshold`.
     fn new(pair: &EyePair, threshold: f32) -> Split {
         let (near, far) = (pair.depth.near, pair.depth.far);
@@ -82,7 +97,7 @@ impl Hybrid {
             image: FinishTargets::new(gl, [1, 1], settings)?,
             hidden: Program::new(gl, ShaderSource::Screen("stereo/hidden.frag"), &[])?,
             far_depth: Program::new(gl, ShaderSource::Screen("stereo/far_depth.frag"), &[])?,
-            finish: Finish::new(gl, options.anti_aliasing != AntiAliasing::Off)?,
+            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
         })
     }
 
@@ -119,9 +134,15 @@ impl Hybrid {
     }
 }
 
+/// The far field's view: both frusta, from between the eyes.
+pub(super) fn far_view(pair: &EyePair) -> Result<View, EyesError> {
+    let union = pair.synthesis(GuardBand::None)?.source;
+    Ok(View { pose: Pose { position: pair.middle(), ..union.pose }, ..union })
+}
+
 /// Pixel of the far field that belongs to each eye's lower left pixel, to the nearest whole pixel: where frusta differ
 /// by a fraction, the far field is off by at most half a pixel, which is what it leaves out anyway.
-fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
+pub(super) fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
     Eye::BOTH.map(|eye| {
         let (frustum, size) = (&pair.frusta[eye.index()], far.size.map(|n| n as f32));
         let x = (frustum.left - far.frustum.left) / far.frustum.width() * size[0];
@@ -149,14 +170,9 @@ impl StereoMethod for Hybrid {
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        let union = pair.synthesis(GuardBand::None)?.source;
-        let far_view = View { pose: Pose { position: pair.middle(), ..union.pose }, ..union };
+        let far_view = far_view(pair)?;
         let crops = crops(pair, &far_view);
-        let mut split = Split::new(pair, self.threshold);
-        split.far = split.far.filter(|&slice| renderer.sees_any(scene, &far_view, slice));
-        if split.far.is_none() {
-            split.near = Some([pair.depth.near, pair.depth.far]);
-        }
+        let split = Split::of_scene(pair, self.threshold, renderer, scene, &far_view);
         self.light.resize(pair.size)?;
         self.image.resize(pair.size)?;
         for eye in Eye::BOTH {

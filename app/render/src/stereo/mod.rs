@@ -2,6 +2,8 @@
 
 mod conventional;
 mod finish;
+mod forward_hybrid;
+mod forward_single_pass;
 mod hybrid;
 mod method;
 mod mono;
@@ -19,6 +21,8 @@ use crate::render::RenderSettings;
 use yoro::gl::{Context, GlError};
 
 use conventional::Conventional;
+use forward_hybrid::ForwardHybrid;
+use forward_single_pass::ForwardSinglePass;
 use hybrid::Hybrid;
 pub use method::{DepthTarget, EyeTarget, StereoError, StereoFrame, StereoMethod};
 use mono::Mono;
@@ -37,11 +41,15 @@ pub fn create(
     settings: &RenderSettings,
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
-    method.supported(gl.capabilities())?;
+    method.supported(gl.capabilities(), settings)?;
     Ok(match method {
         Method::Conventional => Box::new(Conventional::new(gl, settings, options)?),
+        Method::Instanced if settings.is_forward() => {
+            Box::new(ForwardSinglePass::new(gl, settings, options)?)
+        }
         Method::Instanced => Box::new(SinglePass::instanced(gl, settings, options)?),
         Method::Multiview => Box::new(SinglePass::multiview(gl, settings, options)?),
+        Method::Hybrid if settings.is_forward() => Box::new(ForwardHybrid::new(gl, settings, options)?),
         Method::Hybrid => Box::new(Hybrid::new(gl, settings, options)?),
         Method::ShadingReprojection => Box::new(ShadingReprojection::new(gl, settings, options)?),
         Method::Mono => Box::new(Mono::new(gl, settings, options)?),

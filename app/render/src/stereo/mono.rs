@@ -5,9 +5,9 @@ use std::rc::Rc;
 use super::finish::Finish;
 use super::method::{EyeTarget, StereoError, StereoMethod};
 use super::options::{AntiAliasing, StereoOptions};
-use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, ViewTargets};
 use yoro::eyes::{DepthConvention, EyePair, GuardBand, View};
-use yoro::gl::{Context, Destination, GlError};
+use yoro::gl::{Context, GlError};
 
 /// One render from where the dominant eye is, in the union of both frusta; each eye gets its own part of it, which is
 /// the same image where the frusta are the same.
@@ -30,7 +30,7 @@ impl Mono {
         Ok(Mono {
             gl: gl.clone(),
             targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
-            finish: Finish::new(gl, options.anti_aliasing != AntiAliasing::Off)?,
+            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
         })
     }
 }
@@ -45,11 +45,9 @@ impl StereoMethod for Mono {
     ) -> Result<(), StereoError> {
         let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..*pair };
         let views = here.synthesis(GuardBand::None)?;
-        renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
+        let wants_depth = to.iter().any(|eye| eye.depth.is_some());
+        renderer.render_all(&mut self.targets, scene, &views.source, wants_depth)?;
         let (color, depth) = (self.targets.color_target(), DepthImage::whole(self.targets.depth()));
-        if scene.has_transparent() {
-            renderer.draw_transparent(&Destination::whole(color), depth, scene, &views.source)?;
-        }
         let [dominant, other] = [pair.dominant, pair.dominant.other()].map(|eye| &to[eye.index()]);
         let (crop, other_crop) = (views.dominant_crop, origin_in(&views.source, &views.target));
         self.finish.color(color, crop, &dominant.color);

@@ -1,8 +1,9 @@
 //! The methods and their settings.
 
+use crate::render::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro::gl::{Capabilities, GlError};
-use yoro::synthesis::{NearFieldPolicy, Pipeline, SynthesisOptions};
+use yoro::synthesis::{Edges, NearFieldPolicy, Pipeline, SynthesisOptions};
 
 /// A way to make both eyes of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -49,17 +50,38 @@ impl Method {
         }
     }
 
+    /// What the forward renderer does not have for the method, if anything.
+    fn lacking_forward(self) -> Option<&'static str> {
+        match self {
+            Method::ShadingReprojection => Some("the g-buffer of both eyes"),
+            // Layers with several samples are EXT_multisampled_render_to_texture's, by
+            // GL_OVR_multiview_multisampled_render_to_texture.
+            Method::Multiview => Some("layers with one sample in each pixel"),
+            _ => None,
+        }
+    }
+
     /// Whether the method shows pixels of one eye to the other, which needs eyes that look in the same direction
     /// ([`yoro::eyes::EyePair::synthesis`]).
     pub fn needs_aligned_eyes(self) -> bool {
         matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Mono | Method::Yoro)
     }
 
-    /// Whether a driver can run the method; what a pipeline of [`Method::Yoro`] needs is its own to say.
+    /// Whether a driver can run the method with a renderer of these settings; what a pipeline of [`Method::Yoro`] needs
+    /// is its own to say.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] with what is missing and the remedy.
-    pub fn supported(self, capabilities: &Capabilities) -> Result<(), GlError> {
+    pub fn supported(self, capabilities: &Capabilities, settings: &RenderSettings) -> Result<(), GlError> {
+        settings.supported(capabilities)?;
+        if settings.is_forward()
+            && let Some(lacking) = self.lacking_forward()
+        {
+            return Err(GlError::Unsupported(format!(
+                "{} needs {lacking}: choose the deferred renderer, or another method",
+                self.name()
+            )));
+        }
         if self == Method::Multiview && !capabilities.multiview {
             return Err(GlError::Unsupported(format!(
                 "{} ({}) has no GL_OVR_multiview2; use instanced, or a driver that has it, such as Mesa 25",
@@ -103,6 +125,8 @@ impl AntiAliasing {
 pub struct StereoOptions {
     /// Synthesis pipeline and its knobs.
     pub synthesis: SynthesisOptions,
+    /// What the synthesis takes the rendered eye's edges for; `None` for what fits the renderer: [`StereoOptions::edges`].
+    pub edges: Option<Edges>,
     /// How much wider the dominant eye is rendered.
     pub guard_band: GuardBand,
     /// When anti-aliasing runs.
@@ -120,6 +144,7 @@ impl Default for StereoOptions {
     fn default() -> StereoOptions {
         StereoOptions {
             synthesis: SynthesisOptions::default(),
+            edges: None,
             guard_band: GuardBand::Distance(1.0),
             anti_aliasing: AntiAliasing::default(),
             near_field: None,
@@ -130,6 +155,25 @@ impl Default for StereoOptions {
 }
 
 impl StereoOptions {
+    /// What the synthesis takes the edges of images with so many samples in a pixel for. By itself, of several samples,
+    /// all of them where shaders can read them, else the first one's depth; one surface a pixel for pipelines that know
+    /// no other.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for [`Edges::Multisample`] of one sample.
+    pub fn edges(&self, settings: &RenderSettings, capabilities: &Capabilities) -> Result<Edges, GlError> {
+        let single = settings.samples() == 1 || self.synthesis.pipeline != Pipeline::Gather;
+        match self.edges {
+            Some(Edges::Multisample) if settings.samples() == 1 => Err(GlError::Unsupported(
+                "multisample edges need several samples in each pixel: choose the forward renderer".into(),
+            )),
+            Some(edges) => Ok(edges),
+            None if single => Ok(Edges::Hard),
+            None if capabilities.multisample_textures => Ok(Edges::Multisample),
+            None => Ok(Edges::Sample),
+        }
+    }
+
     /// The default with another pipeline. The paper's pipeline comes as in the paper: no guard band,
     /// anti-aliasing before synthesis.
     pub fn of_pipeline(pipeline: Pipeline) -> StereoOptions {

@@ -54,7 +54,7 @@ impl ShadingReprojection {
             image: FinishTargets::new(gl, [1, 1], settings)?,
             disocclusion: RenderTarget::new(gl, [1, 1], &[(Format::Rg8, Filter::Linear)], None)?,
             find: Program::new(gl, ShaderSource::Screen("stereo/disocclusion.frag"), &[])?,
-            finish: Finish::new(gl, options.anti_aliasing != AntiAliasing::Off)?,
+            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
         })
     }
 

@@ -25,6 +25,11 @@ pub struct SinglePass {
     finish: Finish,
 }
 
+/// Both eyes side by side, as the driver keeps them apart best.
+pub(super) fn side_by_side(gl: &Context) -> Layout {
+    Layout::DoubleWide(if gl.capabilities().clip_distances { Seam::ClipDistance } else { Seam::Discard })
+}
+
 impl SinglePass {
     /// Single-pass stereo by instancing, with clip distances where the driver has them.
     ///
@@ -35,8 +40,7 @@ impl SinglePass {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<SinglePass, GlError> {
-        let seam = if gl.capabilities().clip_distances { Seam::ClipDistance } else { Seam::Discard };
-        SinglePass::new(gl, Layout::DoubleWide(seam), settings, options)
+        SinglePass::new(gl, side_by_side(gl), settings, options)
     }
 
     /// Single-pass stereo by multiview.
@@ -48,7 +52,7 @@ impl SinglePass {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<SinglePass, GlError> {
-        Method::Multiview.supported(gl.capabilities())?;
+        Method::Multiview.supported(gl.capabilities(), settings)?;
         SinglePass::new(gl, Layout::Layered, settings, options)
     }
 
@@ -63,7 +67,7 @@ impl SinglePass {
             g_buffer: GBuffer::new(gl, layout, [1, 1], DepthConvention::Standard)?,
             light: LightTargets::new(gl, [1, 1], settings)?,
             image: FinishTargets::new(gl, [1, 1], settings)?,
-            finish: Finish::new(gl, options.anti_aliasing != AntiAliasing::Off)?,
+            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
         })
     }
 }

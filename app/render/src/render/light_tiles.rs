@@ -1,0 +1,144 @@
+//! Which lights reach which part of an image, so that a surface is lit by those around it alone.
+
+use glam::{IVec4, Vec2, Vec3};
+
+use super::g_buffer::Layout;
+use super::uniforms::Lights;
+use yoro::eyes::{Eye, Frustum, View};
+use yoro::gl::Program;
+
+/// Tiles of an image: columns and rows. One number for each, in uniforms, fits every driver and every size.
+const COLUMNS: usize = 16;
+const ROWS: usize = 8;
+const COUNT: usize = COLUMNS * ROWS;
+
+/// For each tile of an image the lights that reach into its part of the view, at whatever distance.
+pub struct LightTiles {
+    /// Bit `i` is light `i` of [`Lights`]; four tiles in each, row by row from the bottom.
+    masks: [IVec4; COUNT / 4],
+    tiles_per_pixel: Vec2,
+}
+
+impl LightTiles {
+    /// The defines of `include/shade.glsl`.
+    pub fn defines() -> [(&'static str, String); 2] {
+        [("LIGHT_TILES", COUNT.to_string()), ("LIGHT_TILE_COLUMNS", COLUMNS.to_string())]
+    }
+
+    /// For an image of this layout, and the lights of its views; positions are relative to the first.
+    pub fn new(lights: &Lights, layout: Layout, views: &[View]) -> LightTiles {
+        let size = views.first().map_or([1, 1], |view| layout.texture_size(view.size)).map(|n| n as f32);
+        let tile = [size[0] / COLUMNS as f32, size[1] / ROWS as f32];
+        let mut masks = [IVec4::ZERO; COUNT / 4];
+        let first = views.first().map_or(Vec3::ZERO, |view| view.pose.position);
+        let columns = COLUMNS / layout.instances();
+        for (view, eye) in views.iter().zip(Eye::BOTH) {
+            let left = layout.origin(view.size, eye)[0] as f32;
+            let first_column = (left / tile[0]).round() as usize;
+            let to_view = view.pose.orientation.inverse();
+            for (i, (center, range)) in lights.spheres().enumerate() {
+                let center = to_view * (center + first - view.pose.position);
+                let reaches = Reach { center, range, frustum: view.frustum };
+                for row in (0..ROWS).filter(|&row| reaches.row(row, tile[1] / view.size[1] as f32)) {
+                    for column in (0..columns).filter(|&c| reaches.column(c, tile[0] / view.size[0] as f32)) {
+                        let at = row * COLUMNS + first_column + column;
+                        masks[at / 4][at % 4] |= 1 << i;
+                    }
+                }
+            }
+        }
+        LightTiles { masks, tiles_per_pixel: Vec2::new(1.0 / tile[0], 1.0 / tile[1]) }
+    }
+
+    /// Sets what `include/shade.glsl` needs.
+    pub fn set(&self, program: &Program) {
+        program.set("light_tiles", &self.masks[..]).set("tiles_per_pixel", self.tiles_per_pixel);
+    }
+}
+
+/// A light's sphere as an eye sees it.
+struct Reach {
+    /// In the eye's axes.
+    center: Vec3,
+    range: f32,
+    frustum: Frustum,
+}
+
+impl Reach {
+    /// Whether it reaches into a column of tiles that are `width` of the view wide.
+    fn column(&self, column: usize, width: f32) -> bool {
+        let tangent = |edge: usize| self.frustum.left + edge as f32 * width * self.frustum.width();
+        self.is_between(self.center.x, tangent(column), tangent(column + 1))
+    }
+
+    /// Whether it reaches into a row of tiles that are `height` of the view high.
+    fn row(&self, row: usize, height: f32) -> bool {
+        let tangent = |edge: usize| self.frustum.bottom + edge as f32 * height * self.frustum.height();
+        self.is_between(self.center.y, tangent(row), tangent(row + 1))
+    }
+
+    /// Whether it reaches between the planes through the eye at two tangents; `across` is its centre's coordinate.
+    fn is_between(&self, across: f32, low: f32, high: f32) -> bool {
+        // Distance of the centre from the plane, on the side of larger tangents.
+        let beyond = |tangent: f32| (across + tangent * self.center.z) / (1.0 + tangent * tangent).sqrt();
+        beyond(low) > -self.range && beyond(high) < self.range
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::cluster::{Culler, Selection};
+    use crate::render::uniforms::eye_to_clip;
+    use glam::Quat;
+    use yoro::eyes::{DepthRange, Pose};
+    use yoro_scene::PointLight;
+
+    /// Every point that a light reaches lies in a tile that knows it; far from all tiles know it.
+    #[test]
+    fn tiles_know_the_lights_that_reach_them() {
+        let pose = Pose { position: Vec3::new(2.0, 1.0, 5.0), orientation: Quat::from_rotation_y(0.7) };
+        let view = View {
+            pose,
+            frustum: Frustum { left: -1.0, right: 0.7, bottom: -0.5, top: 0.8 },
+            depth: DepthRange::PAPER,
+            size: [150, 90],
+        };
+        let local = [Vec3::new(-1.5, 0.4, -3.0), Vec3::new(0.5, 0.0, -8.0), Vec3::new(0.1, -0.3, 0.2)];
+        let scene: Vec<PointLight> = local
+            .iter()
+            .map(|&p| PointLight {
+                position: pose.position + pose.orientation * p,
+                color: Vec3::ONE,
+                range: 1.1,
+            })
+            .collect();
+        let culler = Culler::new(pose.position, &eye_to_clip(&view), Selection::All);
+        let lights = Lights::choose(&scene, pose.position, &[culler], 24);
+        let tiles = LightTiles::new(&lights, Layout::Single, &[view]);
+        let mask = |x: f32, y: f32| {
+            let at =
+                (y * tiles.tiles_per_pixel.y) as usize * COLUMNS + (x * tiles.tiles_per_pixel.x) as usize;
+            tiles.masks[at / 4][at % 4]
+        };
+        let mut known = 0;
+        for (i, (center, range)) in lights.spheres().enumerate() {
+            for step in 0..400 {
+                let angles = Vec2::new(step as f32 * 0.71, step as f32 * 0.173);
+                let ray = Vec3::new(angles.x.cos() * angles.y.sin(), angles.y.cos(), angles.x.sin());
+                let p = pose.orientation.inverse() * (center + ray.normalize() * range * 0.999);
+                let tangent = Vec2::new(p.x, p.y) / -p.z;
+                let f = view.frustum;
+                let at = (tangent - Vec2::new(f.left, f.bottom)) / Vec2::new(f.width(), f.height())
+                    * Vec2::new(150.0, 90.0);
+                if p.z < 0.0 && at.cmpge(Vec2::ZERO).all() && at.x < 150.0 && at.y < 90.0 {
+                    known += 1;
+                    assert!(mask(at.x, at.y) >> i & 1 == 1, "light {i} at {at}");
+                }
+            }
+        }
+        assert!(known > 300, "{known}");
+        let bits: u32 = tiles.masks.iter().flat_map(|m| m.to_array()).map(i32::count_ones).sum();
+        assert!(bits < 2 * COUNT as u32, "{bits} of {} tiles and lights", 3 * COUNT);
+    }
+}
