@@ -129,6 +129,9 @@ pub fn suite() -> impl TypedValueParser<Value = Suite> {
             "Frame time of every method with four lights: the paper's setting for single-pass instancing"
         }
         Suite::Resolution => "Frame time and quality of every method from 512 to 2048 pixels per eye",
+        Suite::AntiAliasing => {
+            "Quality and frame time by what edges are made of: one sample per pixel, FXAA, MSAA with each kind of depth"
+        }
         Suite::Flicker => "Flicker of the synthesized eye from frame to frame along a camera path",
         Suite::Bandwidth => {
             "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path"

@@ -11,7 +11,7 @@ use yoro::eyes::{
     DEFAULT_IPD, DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose,
     full_overlap_distance, minimum_object_distance,
 };
-use yoro::synthesis::{NearFieldPolicy, Pipeline};
+use yoro::synthesis::{Edges, NearFieldPolicy, Pipeline};
 use yoro_render::stereo::{AntiAliasing, StereoOptions};
 use yoro_scene::Viewpoint;
 
@@ -99,6 +99,10 @@ pub struct StereoArgs {
     /// When to anti-alias [default: after; paper: before]
     #[arg(long, value_parser = choices::anti_aliasing())]
     anti_aliasing: Option<AntiAliasing>,
+    /// What the synthesis takes the rendered eye's edges for [default: what fits the renderer: all samples of several,
+    /// hard edges of one]
+    #[arg(long, value_parser = choices::edges(Edges::ALL))]
+    edges: Option<Edges>,
     /// Hybrid near field: render objects nearer than this (metres) for both eyes
     #[arg(long, value_parser = parse_positive, value_name = "METRES")]
     near_field: Option<f32>,
@@ -122,6 +126,7 @@ impl StereoArgs {
         options.synthesis.paper = self.synthesis.options().paper;
         options.guard_band = self.guard_band.unwrap_or(options.guard_band);
         options.anti_aliasing = self.anti_aliasing.unwrap_or(options.anti_aliasing);
+        options.edges = self.edges;
         options.near_field = self.near_field;
         options.policy = (!self.no_switch).then(NearFieldPolicy::default);
         options.split_disparity = self.split_disparity;

@@ -97,7 +97,7 @@ pub struct SynthesizeArgs {
     #[arg(long, value_name = "FILE|FOLDER")]
     source_out: Option<PathBuf>,
     /// What pixels on silhouettes show: one surface, or a mixture of two
-    #[arg(long, value_parser = choices::edges(), default_value = Edges::Hard.name())]
+    #[arg(long, value_parser = choices::edges([Edges::Hard, Edges::Nearest, Edges::Sample]), default_value = Edges::Hard.name())]
     edges: Edges,
     #[command(flatten)]
     synthesis: SynthesisArgs,

@@ -522,6 +522,7 @@ impl Settings {
         };
         StereoOptions {
             synthesis: SynthesisOptions { paper, ..pipeline.synthesis },
+            edges: None,
             guard_band: self.guard_band.unwrap_or(pipeline.guard_band),
             anti_aliasing: self.anti_aliasing.unwrap_or(pipeline.anti_aliasing),
             near_field: self.near_field,

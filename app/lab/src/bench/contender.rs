@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::inpaint::PatcherKind;
-use yoro::synthesis::Pipeline;
+use yoro::synthesis::{Edges, Pipeline};
 use yoro_render::stereo::{Method, StereoOptions};
 
 /// What is measured against what: a stereo method, for synthesis with its pipeline; or a patcher.
@@ -13,6 +13,8 @@ pub enum Contender {
     Method(Method),
     /// The dominant eye rendered, the other synthesized by this pipeline.
     Yoro(Pipeline),
+    /// The pipeline gather, told these of the rendered eye's edges.
+    Edges(Edges),
     /// The paper's pipeline without interpolation between ImBuffer entries.
     PaperNearest,
     /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as its text says.
@@ -30,7 +32,13 @@ impl Contender {
     /// Every contender, in the order of tables.
     pub fn all() -> Vec<Contender> {
         let variants = [Contender::PaperNearest, Contender::PaperStrict];
-        Contender::methods().into_iter().chain(variants).chain(Contender::patchers()).collect()
+        let edges = Contender::edges();
+        Contender::methods().into_iter().chain(variants).chain(edges).chain(Contender::patchers()).collect()
+    }
+
+    /// Synthesis with everything that it can be told of the rendered eye's edges.
+    pub fn edges() -> Vec<Contender> {
+        Edges::ALL.map(Contender::Edges).to_vec()
     }
 
     /// The stereo methods, synthesis with each of its pipelines.
@@ -55,6 +63,7 @@ impl Contender {
         match self {
             Contender::Method(method) => method.name().into(),
             Contender::Yoro(pipeline) => format!("yoro-{}", pipeline.name()),
+            Contender::Edges(edges) => format!("yoro-edges-{}", edges.name()),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
             Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
@@ -72,11 +81,15 @@ impl Contender {
         let (method, pipeline) = match self {
             Contender::Method(method) => (method, Pipeline::default()),
             Contender::Yoro(pipeline) => (Method::Yoro, pipeline),
+            Contender::Edges(_) => (Method::Yoro, Pipeline::Gather),
             Contender::PaperNearest | Contender::PaperStrict => (Method::Yoro, Pipeline::Paper),
             Contender::Patcher(_) => return None,
         };
         let mut options = StereoOptions::of_pipeline(pipeline);
         options.policy = None;
+        if let Contender::Edges(edges) = self {
+            options.edges = Some(edges);
+        }
         let paper = &mut options.synthesis.paper;
         paper.linear_interpolation &= self != Contender::PaperNearest;
         paper.strict |= self == Contender::PaperStrict;

@@ -285,7 +285,10 @@ impl<'a> Runner<'a> {
     /// Saves the other eye as a contender shows it in the first view, for the report, in the suites that are about
     /// pictures.
     fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
-        if ![Suite::Scenes, Suite::Patchers].iter().any(|suite| suite.name() == job.setting.suite) {
+        if ![Suite::Scenes, Suite::AntiAliasing, Suite::Patchers]
+            .iter()
+            .any(|suite| suite.name() == job.setting.suite)
+        {
             return Ok(());
         }
         let name = match contender {
@@ -457,6 +460,7 @@ impl<'a> Runner<'a> {
             if job.imbuffer > 1 {
                 options.synthesis.paper.imbuffer = ImBufferSize::Divisor(job.imbuffer);
             }
+            options.anti_aliasing = job.anti_aliasing.unwrap_or(options.anti_aliasing);
             let before = self.gl.texture_bytes();
             let ready = Entrant::new(self.gl, method, &job.render, &options).map_err(anyhow::Error::from);
             let ready = ready.and_then(|mut entrant| {

@@ -10,8 +10,9 @@ use super::record::Setting;
 use super::scenes::LazyObject;
 use crate::machine::Parameter;
 use yoro::eyes::EyeOptions;
-use yoro::synthesis::Pipeline;
-use yoro_render::RenderSettings;
+use yoro::synthesis::{Edges, Pipeline};
+use yoro_render::stereo::AntiAliasing;
+use yoro_render::{RenderSettings, RendererKind};
 use yoro_scene::ShadingStyle;
 use yoro_scenes::BUILTINS;
 
@@ -36,6 +37,8 @@ pub enum Suite {
     Lights,
     /// Frame time and quality of every method from 512 to 2048 pixels per eye
     Resolution,
+    /// Quality and frame time by what edges are made of: one sample per pixel, FXAA, MSAA with each kind of depth
+    AntiAliasing,
     /// Flicker of the synthesized eye from frame to frame along a camera path
     Flicker,
     /// Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path
@@ -46,7 +49,7 @@ pub enum Suite {
 
 impl Suite {
     /// All suites, in the order of the paper.
-    pub const ALL: [Suite; 11] = [
+    pub const ALL: [Suite; 12] = [
         Suite::Scenes,
         Suite::Complexity,
         Suite::Styles,
@@ -56,6 +59,7 @@ impl Suite {
         Suite::Imbuffer,
         Suite::Lights,
         Suite::Resolution,
+        Suite::AntiAliasing,
         Suite::Flicker,
         Suite::Bandwidth,
     ];
@@ -72,6 +76,7 @@ impl Suite {
             Suite::Imbuffer => "imbuffer",
             Suite::Lights => "lights",
             Suite::Resolution => "resolution",
+            Suite::AntiAliasing => "anti-aliasing",
             Suite::Flicker => "flicker",
             Suite::Bandwidth => "bandwidth",
             Suite::All => "all",
@@ -126,6 +131,8 @@ pub struct Job {
     pub render: RenderSettings,
     /// The eyes.
     pub eyes: EyeOptions,
+    /// When everyone anti-aliases; none where each does as its kind does.
+    pub anti_aliasing: Option<AntiAliasing>,
     /// Divisor of the ImBuffer's resolution.
     pub imbuffer: u32,
     /// Quantizers of coded sequences.
@@ -185,6 +192,12 @@ const QUICK_SCENES: [&str; 1] = ["prototype"];
 const SIZES: [usize; 2] = [9, 5];
 /// Lights of the suite `lights`: the paper has fewer than five.
 const FEW_LIGHTS: usize = 4;
+/// Settings of the suite `anti-aliasing`.
+const SMOOTHING: [(&str, RendererKind, AntiAliasing); 3] = [
+    ("one sample", RendererKind::Deferred, AntiAliasing::Off),
+    ("FXAA", RendererKind::Deferred, AntiAliasing::After),
+    ("MSAA", RendererKind::Forward, AntiAliasing::After),
+];
 /// Frames of the suite `flicker`.
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
 
@@ -235,6 +248,23 @@ impl Choices {
                 job.setting.point = Some(lights as f64);
             }),
             Suite::Resolution => self.resolution(plan(both, all)),
+            Suite::AntiAliasing => {
+                let baselines = vec![Contender::CONVENTIONAL, Contender::MONO];
+                let contenders = [baselines, Contender::edges()].concat();
+                plan(both, contenders).over(
+                    self.scenes(&every),
+                    SMOOTHING,
+                    |job, (label, renderer, anti_aliasing)| {
+                        job.setting.label = Some(label.to_owned());
+                        job.render.renderer = renderer;
+                        job.anti_aliasing = Some(anti_aliasing);
+                        // Without samples there is one thing to say of edges.
+                        let says_more =
+                            |c: &Contender| matches!(c, Contender::Edges(edges) if *edges != Edges::Hard);
+                        job.contenders.retain(|c| renderer == RendererKind::Forward || !says_more(c));
+                    },
+                )
+            }
             Suite::Flicker => plan(Measure::Flicker, synthesis()).over(self.varied(), [()], |job, ()| {
                 job.frames = FLICKER_FRAMES[usize::from(self.quick)];
             }),
@@ -387,6 +417,7 @@ impl Plan<'_> {
                     style: None,
                     render: choices.render.clone(),
                     eyes: choices.eyes,
+                    anti_aliasing: None,
                     imbuffer: 1,
                     bandwidth: BandwidthOptions::default(),
                     measure: self.measure,

@@ -176,6 +176,11 @@ fn write_results(path: &Path, header: &Header) {
     for (style, psnr) in [("realistic", 33.0), ("cartoon", 35.0), ("anime", 31.0)] {
         append(w, &setting("styles", "talk", Some(style), None), "Chat", 117_000, 1, |_| qualities(psnr));
     }
+    for (label, psnr) in [("one sample", 29.0), ("FXAA", 31.0), ("MSAA", 34.0)] {
+        append(w, &setting("anti-aliasing", "talk", Some(label), None), "Chat", 117_000, 1, |round| {
+            both(80.0, psnr, round)
+        });
+    }
     for point in [50.0, 55.0, 60.0, 65.0, 70.0, 75.0] {
         append(w, &setting("ipd", "talk", None, Some(point)), "Chat", 117_000, 1, |_| {
             qualities(40.0 - point / 10.0)
@@ -324,6 +329,7 @@ fn every_section_has_its_place_and_no_row_is_silently_empty() {
         "patchers",
         "imbuffer",
         "resolution",
+        "anti-aliasing",
         "flicker",
         "bandwidth",
         "new-suite",

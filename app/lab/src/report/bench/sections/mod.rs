@@ -1,5 +1,6 @@
 //! What is shown of each suite, a file for each experiment: figures with the paper's curves beside ours, and tables.
 
+mod anti_aliasing;
 mod bandwidth;
 mod cells;
 mod complexity;
@@ -28,7 +29,7 @@ type MakeSection = fn(&Suite) -> Section;
 
 /// Suites by name in the paper's order, with what makes their sections. One suite can have several: the paper
 /// looks at frame time, quality and overhead of the same eight scenes in three places.
-const ORDER: [(&str, MakeSection); 13] = [
+const ORDER: [(&str, MakeSection); 14] = [
     ("scenes", frame_time::section),
     ("complexity", complexity::section),
     ("scenes", quality::section),
@@ -40,6 +41,7 @@ const ORDER: [(&str, MakeSection); 13] = [
     ("patchers", patchers::section),
     ("imbuffer", imbuffer::section),
     ("resolution", resolution::section),
+    ("anti-aliasing", anti_aliasing::section),
     ("flicker", flicker::section),
     ("bandwidth", bandwidth::section),
 ];
