@@ -119,7 +119,10 @@ impl Page {
     #[wasm_bindgen(getter)]
     pub fn methods(&self) -> String {
         let entry = |method: Method| {
-            let reason = method.supported(self.gl.capabilities(), &RenderSettings::default()).err().map(|error| error.to_string());
+            let reason = method
+                .supported(self.gl.capabilities(), &RenderSettings::default())
+                .err()
+                .map(|error| error.to_string());
             serde_json::json!({ "name": method.name(), "reason": reason })
         };
         serde_json::Value::from_iter(Method::ALL.map(entry)).to_string()
