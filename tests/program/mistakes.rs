@@ -122,6 +122,10 @@ fn options_out_of_range() {
         ("render", &["<SCENE>"]),
         ("rendr prototype", &["rendr", "render"]),
         ("synthesize --color color.png --depth depth.png --out o.png --near 5 --far 1", &["--near 5"]),
+        (
+            "synthesize --color color.png --depth depth.png --out o.png --pipeline rowgroup --edges nearest",
+            &["one sample per pixel", "gather"],
+        ),
         ("synthesize --color color.png --depth depth.png --out o.png --depth-gamma 0", &["--depth-gamma"]),
     ] {
         run(at, line).refuses(naming);

@@ -1,7 +1,8 @@
-//! What the tests in `tests/tests` share: contexts, a small scene, golden images, all shader programs.
+//! What the tests in `tests/tests` share: contexts, a small scene, golden images, all shader programs, multisample textures.
 
 pub mod golden;
 pub mod programs;
+pub mod samples;
 pub mod scene;
 
 use std::rc::Rc;

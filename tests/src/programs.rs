@@ -8,7 +8,7 @@ use glam::Vec3;
 use serde::Serialize;
 use yoro::gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro::synthesis::{
-    self, Gather, GatherVariant, ImBufferSize, Outputs, PaperOptions, Pipeline, SynthesisOptions,
+    self, Edges, Gather, GatherVariant, ImBufferSize, Outputs, PaperOptions, Pipeline, SynthesisOptions,
 };
 use yoro_lab::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoOptions};
@@ -52,6 +52,9 @@ fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
     let mut options = vec![];
     for pipeline in Pipeline::ALL {
         options.push(SynthesisOptions { pipeline, ..Default::default() });
+    }
+    for edges in Edges::ALL {
+        options.push(SynthesisOptions { edges, ..Default::default() });
     }
     for (strict, linear_interpolation) in [(false, false), (true, false), (true, true)] {
         for (divisor, kernel_height) in [(1, 1), (4, 15)] {

@@ -261,10 +261,8 @@ impl Gl {
             let name = NonZeroU32::new(name).map(glow::NativeTexture);
             name.ok_or_else(|| Failure::value(format!("{what} is 0: give the name of a texture")))
         };
-        let source = Source {
-            color: texture(images.color_texture, "color_texture")?,
-            depth: texture(images.depth_texture, "depth_texture")?,
-        };
+        let color = texture(images.color_texture, "color_texture")?;
+        let source = Source::new(color, texture(images.depth_texture, "depth_texture")?);
         let limit = self.context.capabilities().max_texture_size;
         if images.x > limit || images.y > limit {
             return Err(Failure::value(format!(

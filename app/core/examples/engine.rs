@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let other = engine.create_image(views.target.size)?;
     // A texture that is known by its GL name alone is `glow::NativeTexture(name)`.
-    let textures = Source { color: source.color, depth: source.depth };
+    let textures = Source::new(source.color, source.depth);
     let target =
         Destination { framebuffer: Some(other.framebuffer), origin: [0, 0], size: views.target.size };
     synthesis.synthesize(textures, &views.warp, &target)?;

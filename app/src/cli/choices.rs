@@ -1,7 +1,7 @@
 //! Values that go by a name on the command line, with a line of help for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use yoro::synthesis::Pipeline;
+use yoro::synthesis::{Edges, Pipeline};
 use yoro_context::Backend;
 use yoro_lab::bench::Suite;
 use yoro_lab::inpaint::PatcherKind;
@@ -37,6 +37,17 @@ pub fn pipeline() -> impl TypedValueParser<Value = Pipeline> {
         Pipeline::Gather => "Fragment shaders that march along the source row",
         Pipeline::Rowgroup => "One compute workgroup per row",
         Pipeline::Paper => "Algorithms 1 to 3 of the paper",
+    })
+}
+
+/// `--edges`, of images: what has one depth per pixel.
+pub fn edges() -> impl TypedValueParser<Value = Edges> {
+    choice([Edges::Hard, Edges::Nearest, Edges::Sample], Edges::name, |edges| match edges {
+        Edges::Nearest => {
+            "Anti-aliased colour, and the depth of each pixel's nearest sample: the better of the two"
+        }
+        Edges::Sample => "Anti-aliased colour, and the depth of each pixel's first or middle sample",
+        _ => "One surface per pixel: colour that was not anti-aliased, or was filtered afterwards",
     })
 }
 

@@ -8,10 +8,14 @@ use image::{GrayImage, Luma};
 use crate::cli::args::{
     GlArgs, PatcherArgs, SynthesisArgs, parse_finite, parse_fov, parse_ipd, parse_positive,
 };
+use crate::cli::choices;
 use crate::cli::outputs;
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DEFAULT_IPD, DepthConvention, DepthRange, Eye, Warp};
-use yoro::synthesis::{Nearness, Offline, SourceMapEntry, StoredDepth, StoredDepthError, SynthesizedImage};
+use yoro::synthesis::{
+    Edges, Nearness, Offline, SourceMapEntry, StoredDepth, StoredDepthError, SynthesisOptions,
+    SynthesizedImage,
+};
 use yoro_files as files;
 use yoro_lab::inpaint::{Patcher, Reprojected};
 use yoro_lab::interrupt;
@@ -92,6 +96,9 @@ pub struct SynthesizeArgs {
     /// Also write the column in the colour image that each pixel comes from, as EXR
     #[arg(long, value_name = "FILE|FOLDER")]
     source_out: Option<PathBuf>,
+    /// What pixels on silhouettes show: one surface, or a mixture of two
+    #[arg(long, value_parser = choices::edges(), default_value = Edges::Hard.name())]
+    edges: Edges,
     #[command(flatten)]
     synthesis: SynthesisArgs,
     #[command(flatten)]
@@ -160,7 +167,8 @@ pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
     let inputs = jobs.iter().flat_map(|job| [job.color.as_path(), job.depth.as_path()]);
     outputs::check(inputs, jobs.iter().flat_map(|job| job.outputs(args.dominant)))?;
     let headless = args.gl.open()?;
-    let mut offline = Offline::new(headless.gl(), &args.synthesis.options())?;
+    let options = SynthesisOptions { edges: args.edges, ..args.synthesis.options() };
+    let mut offline = Offline::new(headless.gl(), &options)?;
     let mut patcher = args.patcher.create(headless.gl())?;
     let bar = progress_bar(jobs.len() as u64);
     let mut written = Vec::new();

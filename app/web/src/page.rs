@@ -373,7 +373,7 @@ impl Page {
         let bytes: Vec<u8> = nearness.values.iter().flat_map(|v| v.to_ne_bytes()).collect();
         own.depth.upload(&bytes);
         self.frame.resize(own.pair.size).map_err(sentence)?;
-        let source = Source { color: own.color.raw(), depth: own.depth.raw() };
+        let source = Source::new(own.color.raw(), own.depth.raw());
         let targets = own.options.source.targets();
         for &(eye, share) in targets {
             let to = Destination::whole(self.frame.eye(eye));

@@ -1,6 +1,7 @@
 //! The library on a real GL context: golden images, shader variants and costs, GL objects; scenes on Vulkan.
 
 mod golden;
+mod layers;
 mod methods;
 mod objects;
 mod refusals;

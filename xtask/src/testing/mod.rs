@@ -25,7 +25,7 @@ use equipment::{Equipment, Preparation, Wanted};
 use plan::{Job, Times, plan};
 use runner::{Jobs, News};
 use summary::Summary;
-use transcript::{Outcome, shown};
+use transcript::{Line, Outcome, Reading, shown};
 
 /// What the tests of documentation are called among programs.
 const DOCUMENTATION: &str = "documentation";
@@ -56,7 +56,7 @@ impl Options {
 /// Runs all tests of the workspace, or those whose names contain one of the filters, and sums up.
 ///
 /// # Errors
-/// When a test fails or does not compile, or nothing is to be run.
+/// When a test fails twice or does not compile, or nothing is to be run.
 pub fn test(options: &Options) -> anyhow::Result<()> {
     let mut summary = Summary::begin();
     let (programs, equipment) = prepare(options, &mut summary)?;
@@ -78,6 +78,11 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
     let start = Instant::now();
     for (jobs, workers) in [(plan.together, processors), (plan.alone, 1)] {
         runner::run(&tests, jobs, workers, |news| tests.tell(news, chosen, &mut summary, &mut times));
+    }
+    let again = tests.again(&summary);
+    if !again.is_empty() {
+        println!("\nwhat failed, a second time and alone:");
+        runner::run(&tests, again, 1, |news| tests.tell_again(news, &mut summary));
     }
     summary.phase("running the tests", start.elapsed());
     if let Err(error) = fs::write(&times_file, times.to_text()) {
@@ -109,6 +114,9 @@ fn prepare(options: &Options, summary: &mut Summary) -> anyhow::Result<(Vec<Prog
         Ok((programs, preparation.finish(summary)?))
     })
 }
+
+/// More failures than this are no accident.
+const AGAIN: usize = 8;
 
 /// How chosen tests are run, and what is told of them.
 struct Tests<'a> {
@@ -146,17 +154,44 @@ impl Tests<'_> {
             let (count, seconds) = (summary.count(), result.seconds);
             println!("[{count:4}/{chosen}] {word:7} {seconds:6.2} s  {program} {}", result.name);
         }
-        let failed = reading.results.iter().any(|result| result.outcome == Outcome::Failed);
-        if failed {
-            print!("{}", shown(&lines));
-        } else {
-            // Tests say so where they were told to do without something.
-            let is_told = |text: &str| text.contains("LEFT OUT: ") || text.contains("SKIPPED: ");
-            lines.iter().filter(|line| is_told(&line.text)).for_each(|line| println!("    {}", line.text));
+        // Tests say so where they were told to do without something, many of them the same.
+        let is_told = |text: &str| text.contains("LEFT OUT: ") || text.contains("SKIPPED: ");
+        lines.iter().filter(|line| is_told(&line.text)).for_each(|line| summary.left_out(line.text.trim()));
+        show_failure(&reading, &lines);
+    }
+
+    /// The tests that failed, each in a process of its own; none if there are many.
+    fn again(&self, summary: &Summary) -> Vec<Job> {
+        let failures = summary.failures();
+        let jobs = self.programs.iter().enumerate().flat_map(|(binary, (program, names))| {
+            let failed = |name: &&String| failures.contains(&format!("{} {name}", program.label));
+            names.iter().filter(failed).map(move |name| Job::Tests { binary, names: vec![name.clone()] })
+        });
+        if failures.len() > AGAIN { Vec::new() } else { jobs.collect() }
+    }
+
+    /// Prints what became of a test in its second run.
+    fn tell_again(&self, news: News<Job>, summary: &mut Summary) {
+        let News::Ended { job, reading, lines, .. } = news else { return };
+        for result in &reading.results {
+            let full = format!("{} {}", self.program(&job), result.name);
+            let passed = result.outcome == Outcome::Passed;
+            println!("{:7} {:6.2} s  {full}", if passed { "ok" } else { "FAILED" }, result.seconds);
+            if passed {
+                summary.unsteady(&full);
+            }
         }
-        if let Some(trouble) = &reading.trouble {
-            println!("    {trouble}");
-        }
+        show_failure(&reading, &lines);
+    }
+}
+
+/// Prints what a process of tests printed, if one of them failed.
+fn show_failure(reading: &Reading, lines: &[Line]) {
+    if reading.results.iter().any(|result| result.outcome == Outcome::Failed) {
+        print!("{}", shown(lines));
+    }
+    if let Some(trouble) = &reading.trouble {
+        println!("    {trouble}");
     }
 }
 
@@ -212,6 +247,9 @@ fn conclude(summary: &Summary, equipment: &Equipment, options: &Options) -> anyh
     }
     if options.bless {
         println!("golden images renewed: look at `git diff --stat tests/golden` and at the pictures");
+    }
+    for name in summary.flaky() {
+        println!("FLAKY: {name} failed and passed alone: what it printed is above");
     }
     if !summary.failures().is_empty() {
         bail!("these tests failed: {}", summary.failures().join(", "));

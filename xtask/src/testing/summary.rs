@@ -18,6 +18,10 @@ pub struct Summary {
     tests: Vec<(f64, String)>,
     ignored: usize,
     failures: Vec<String>,
+    /// Failed beside others, passed alone.
+    flaky: Vec<String>,
+    /// What tests had to do without, and how often it was said.
+    left_out: BTreeMap<String, usize>,
 }
 
 /// A part of the time.
@@ -47,6 +51,8 @@ impl Summary {
             tests: Vec::new(),
             ignored: 0,
             failures: Vec::new(),
+            flaky: Vec::new(),
+            left_out: BTreeMap::new(),
         }
     }
 
@@ -90,6 +96,22 @@ impl Summary {
         program.processor += processor;
     }
 
+    /// A test says what it has to do without.
+    pub fn left_out(&mut self, text: &str) {
+        *self.left_out.entry(text.to_owned()).or_default() += 1;
+    }
+
+    /// A test that had failed has passed now: no failure, and told of.
+    pub fn unsteady(&mut self, full: &str) {
+        self.failures.retain(|failure| failure != full);
+        self.flaky.push(full.to_owned());
+    }
+
+    /// The names of those that failed and passed in their second run.
+    pub fn flaky(&self) -> &[String] {
+        &self.flaky
+    }
+
     /// How many tests have ended.
     pub fn count(&self) -> usize {
         self.tests.len() + self.ignored
@@ -124,6 +146,12 @@ impl fmt::Display for Summary {
         tests.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (seconds, name) in tests.into_iter().take(SLOWEST) {
             writeln!(f, "{seconds:46.1}  {name}")?;
+        }
+        if !self.left_out.is_empty() {
+            writeln!(f, "\ntests said")?;
+        }
+        for (text, count) in &self.left_out {
+            writeln!(f, "  {count:4} x  {text}")?;
         }
         let failed = self.failures.len();
         writeln!(
@@ -165,5 +193,18 @@ mod tests {
         let slowest: Vec<_> = text.lines().skip_while(|line| !line.starts_with("slowest")).skip(1).collect();
         assert!(slowest[0].ends_with("100.0  yoro-app::program xr::bad"), "{text}");
         assert!(slowest[9].ends_with("3.0  yoro test3") && slowest[10].is_empty(), "{text}");
+    }
+
+    #[test]
+    fn a_test_that_passes_alone_is_flaky_and_what_is_said_often_is_told_once() {
+        let mut summary = Summary::begin();
+        for name in ["a", "b"] {
+            summary.test("yoro", name, Outcome::Failed, 1.0);
+            summary.left_out("SKIPPED: no GPU");
+        }
+        summary.unsteady("yoro a");
+        assert_eq!((summary.failures(), summary.flaky()), (&["yoro b".into()][..], &["yoro a".into()][..]));
+        let text = summary.to_string();
+        assert!(text.contains("\ntests said\n     2 x  SKIPPED: no GPU\n\n1 passed, 1 failed"), "{text}");
     }
 }

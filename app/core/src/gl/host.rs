@@ -7,7 +7,9 @@ use glow::HasContext;
 use super::{Capabilities, Context, GlApi, GlError};
 
 /// Texture units in use, counted from 0.
-const UNITS: usize = 3;
+const UNITS: usize = 5;
+/// The unit of the source's colour.
+const COLOR_UNIT: u32 = 1;
 /// Draw buffers in use: colour and, where it is written, the source map.
 const DRAW_BUFFERS: usize = 2;
 /// EXT_depth_bounds_test.
@@ -36,6 +38,7 @@ pub(super) struct Host {
     encoding: bool,
     polygon_mode: bool,
     images: bool,
+    multisample_textures: bool,
     nearest: glow::Sampler,
     linear: glow::Sampler,
 }
@@ -112,6 +115,7 @@ impl Host {
             encoding,
             polygon_mode: desktop,
             images: capabilities.compute,
+            multisample_textures: capabilities.multisample_textures,
             nearest: sampler(glow::NEAREST)?,
             linear: sampler(glow::LINEAR)?,
         })
@@ -146,6 +150,8 @@ pub(crate) struct HostState {
     vertex_array: Option<glow::VertexArray>,
     active_unit: u32,
     textures: [Option<glow::Texture>; UNITS],
+    /// Where there are such textures.
+    multisample_textures: [Option<glow::Texture>; UNITS],
     samplers: [Option<glow::Sampler>; UNITS],
     image: Option<ImageUnit>,
 }
@@ -188,8 +194,9 @@ impl Context {
             if host.polygon_mode {
                 gl.polygon_mode(glow::FRONT_AND_BACK, glow::FILL);
             }
-            for (unit, sampler) in [host.nearest, host.linear, host.nearest].into_iter().enumerate() {
-                gl.bind_sampler(unit as u32, Some(sampler));
+            for unit in 0..UNITS as u32 {
+                let sampler = if unit == COLOR_UNIT { host.linear } else { host.nearest };
+                gl.bind_sampler(unit, Some(sampler));
             }
         }
     }
@@ -239,6 +246,7 @@ impl Context {
                 vertex_array: gl.get_parameter_vertex_array(glow::VERTEX_ARRAY_BINDING),
                 active_unit: integer(glow::ACTIVE_TEXTURE) as u32,
                 textures: [None; UNITS],
+                multisample_textures: [None; UNITS],
                 samplers: [None; UNITS],
                 image: None,
             };
@@ -262,6 +270,10 @@ impl Context {
             for unit in 0..UNITS {
                 gl.active_texture(glow::TEXTURE0 + unit as u32);
                 state.textures[unit] = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D);
+                if host.multisample_textures {
+                    state.multisample_textures[unit] =
+                        gl.get_parameter_texture(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
+                }
                 state.samplers[unit] = gl.get_parameter_sampler(glow::SAMPLER_BINDING);
             }
             gl.active_texture(state.active_unit);
@@ -317,6 +329,9 @@ impl Context {
             for unit in 0..UNITS {
                 gl.active_texture(glow::TEXTURE0 + unit as u32);
                 gl.bind_texture(glow::TEXTURE_2D, state.textures[unit]);
+                if host.multisample_textures {
+                    gl.bind_texture(glow::TEXTURE_2D_MULTISAMPLE, state.multisample_textures[unit]);
+                }
                 gl.bind_sampler(unit as u32, state.samplers[unit]);
             }
             gl.active_texture(state.active_unit);

@@ -194,6 +194,7 @@ uniform!(i32, |gl, l, v| gl.uniform_1_i32(Some(l), v));
 uniform!(u32, |gl, l, v| gl.uniform_1_u32(Some(l), v));
 uniform!(bool, |gl, l, v| gl.uniform_1_i32(Some(l), v as i32));
 uniform!(IVec2, |gl, l, v| gl.uniform_2_i32(Some(l), v.x, v.y));
+uniform!(IVec4, |gl, l, v| gl.uniform_4_i32(Some(l), v.x, v.y, v.z, v.w));
 uniform!(Vec2, |gl, l, v| gl.uniform_2_f32(Some(l), v.x, v.y));
 uniform!(Vec3, |gl, l, v| gl.uniform_3_f32(Some(l), v.x, v.y, v.z));
 uniform!(Vec4, |gl, l, v| gl.uniform_4_f32(Some(l), v.x, v.y, v.z, v.w));

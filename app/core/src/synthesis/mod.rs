@@ -6,10 +6,12 @@
 //! | pipeline | passes | needs |
 //! |---|---|---|
 //! | [`Gather`] | tile bounds, tile spans, march: fragment shaders | ES 3.0 |
+//! | [`Layers`] | [`Gather`] of anti-aliased sources: split, tile bounds, tile spans, march: fragment shaders | ES 3.0, multisample depth ES 3.1 |
 //! | [`Rowgroup`] | scatter by one workgroup a row (compute), resolve | ES 3.1 |
 //! | [`Paper`] | Algorithms 1 to 3: fragment, compute per row, fragment | ES 3.1 |
 
 mod gather;
+mod layers;
 mod near_field;
 mod offline;
 mod paper;
@@ -26,6 +28,7 @@ use crate::gl::{Context, Destination, GlError, Program};
 pub use gather::Gather;
 #[doc(hidden)]
 pub use gather::GatherVariant;
+pub use layers::Layers;
 pub use near_field::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
@@ -72,6 +75,46 @@ impl Pipeline {
     }
 }
 
+/// What the source knows of its edges, where a pixel shows more than one surface, and with it what its depth is.
+///
+/// | | source | synthesized eye |
+/// |---|---|---|
+/// | [`Edges::Hard`] | one sample per pixel | one surface per pixel; silhouettes blended by where they cross it |
+/// | [`Edges::Nearest`], [`Edges::Sample`] | resolved colour, one depth per pixel | anti-aliased; the share of each surface is estimated from colour and depth around |
+/// | [`Edges::Multisample`] | resolved colour, depth of all samples | anti-aliased; with the samples' colours, too, nothing is estimated |
+///
+/// Depth that was averaged over samples belongs to no surface, and gives halos by each of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Edges {
+    /// One sample per pixel: every pixel shows one surface.
+    #[default]
+    Hard,
+    /// Resolved (anti-aliased) colour; depth of each pixel's nearest sample.
+    Nearest,
+    /// Resolved colour; depth of each pixel's first sample, as drivers resolve it, or of its middle.
+    Sample,
+    /// Depth of every sample, in a multisample texture of 2 or 4 samples in the standard pattern; colour resolved, and
+    /// optionally of every sample, too ([`Source::samples`]). Needs OpenGL ES 3.1.
+    Multisample,
+}
+
+impl Edges {
+    /// All of them, the default first.
+    pub const ALL: [Edges; 4] = [Edges::Hard, Edges::Nearest, Edges::Sample, Edges::Multisample];
+
+    /// Its name in settings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Edges::Hard => "hard",
+            Edges::Nearest => "nearest",
+            Edges::Sample => "sample",
+            Edges::Multisample => "multisample",
+        }
+    }
+}
+
 /// What a pipeline writes besides colour, and how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outputs {
@@ -96,14 +139,25 @@ impl Outputs {
     }
 }
 
-/// The rendered eye: GL names of two 2-D textures of the same size, without samples. Filters, wrapping, compare mode
-/// and sampler objects are the pipelines' own, whatever the textures have.
+/// The rendered eye: GL names of 2-D textures of the same size. Filters, wrapping, compare mode and sampler objects are
+/// the pipelines' own, whatever the textures have.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
-    /// Colour, in any filterable format and any encoding; all four channels are carried over.
+    /// Colour, in any filterable format and any encoding; all four channels are carried over. Other than with
+    /// [`Edges::Hard`] it is resolved, and lies between 0 and 1.
     pub color: glow::Texture,
-    /// Depth: a depth texture, a depth-stencil texture whose depth is sampled, or a float texture.
+    /// Depth: a depth texture, a depth-stencil texture whose depth is sampled, or a float texture; with
+    /// [`Edges::Multisample`] a multisample texture.
     pub depth: glow::Texture,
+    /// With [`Edges::Multisample`], the multisample texture that the colour was resolved from, if it is still there.
+    pub samples: Option<glow::Texture>,
+}
+
+impl Source {
+    /// A source without colours of samples.
+    pub fn new(color: glow::Texture, depth: glow::Texture) -> Source {
+        Source { color, depth, samples: None }
+    }
 }
 
 /// What a call does to the context's state; the table is with [`Synthesis`].
@@ -130,13 +184,14 @@ pub enum GlState {
 /// | vertex array | one without attributes | changed |
 /// | draw and read framebuffer | the target's | changed |
 /// | viewport (all of a viewport array, which `Preserve` gives back as the first) | the target's rectangle | changed |
-/// | 2-D texture of units 0 to 2 | depth, colour, intermediate | changed |
-/// | sampler object of units 0 to 2 | yoro's own | none |
-/// | active unit | 0 to 2 | changed |
+/// | 2-D texture of units 0 to 2, of 0 to 4 other than with [`Edges::Hard`] | depth, colour, intermediate | changed |
+/// | multisample texture of units 0 and 3, with [`Edges::Multisample`] | depth, colour | changed |
+/// | sampler object of units 0 to 4 | yoro's own | none |
+/// | active unit | 0 to 4 | changed |
 /// | image unit 0 ([`Rowgroup`], [`Paper`]) | intermediate | changed |
 /// | scissor, stencil and depth test, face culling | off; depth test on for the target with [`Outputs::depth`] | off |
 /// | depth function, depth mask, depth range | `ALWAYS`, on, 0 to 1 | so |
-/// | blending and colour mask, of draw buffer 0 and, with [`Outputs::source_map`], 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | so |
+/// | blending and colour mask, of draw buffer 0 and, with [`Outputs::source_map`] or other than with [`Edges::Hard`], 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | so |
 /// | dithering, polygon offset for filling, rasterizer discard, primitive restart (fixed index) | off | off |
 /// | alpha to coverage, sample coverage; sample mask (ES 3.1) | off | off |
 /// | clip distances (`EXT_clip_cull_distance`, desktop), depth bounds test (`EXT_depth_bounds_test`) | off | off |
@@ -175,6 +230,10 @@ pub trait Synthesis {
 pub struct SynthesisOptions {
     /// Which pipeline.
     pub pipeline: Pipeline,
+    /// What the source knows of its edges; all but [`Edges::Hard`] need [`Pipeline::Gather`]. The host's business, and in
+    /// no file.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub edges: Edges,
     /// Knobs of the paper's pipeline.
     pub paper: PaperOptions,
     /// What becomes of the host's GL state: the host's business, and in no file.
@@ -186,22 +245,35 @@ pub struct SynthesisOptions {
 /// [`GlState::Preserve`].
 ///
 /// # Errors
-/// [`GlError::Unsupported`] for a compute pipeline without OpenGL ES 3.1.
+/// [`GlError::Unsupported`] for a compute pipeline or [`Edges::Multisample`] without OpenGL ES 3.1, and for other edges than
+/// hard ones with another pipeline than [`Pipeline::Gather`].
 pub fn create(
     gl: &Rc<Context>,
     options: &SynthesisOptions,
     outputs: Outputs,
 ) -> Result<Box<dyn Synthesis>, GlError> {
     let pipeline = || -> Result<Box<dyn Synthesis>, GlError> {
-        Ok(match options.pipeline {
-            Pipeline::Gather => Box::new(Gather::new(gl, outputs)?),
-            Pipeline::Rowgroup => Box::new(Rowgroup::new(gl, outputs)?),
-            Pipeline::Paper => Box::new(Paper::new(gl, outputs, options.paper)?),
+        Ok(match (options.pipeline, options.edges) {
+            (Pipeline::Gather, Edges::Hard) => Box::new(Gather::new(gl, outputs)?),
+            (Pipeline::Gather, edges) => Box::new(Layers::new(gl, outputs, edges)?),
+            (Pipeline::Rowgroup, Edges::Hard) => Box::new(Rowgroup::new(gl, outputs)?),
+            (Pipeline::Paper, Edges::Hard) => Box::new(Paper::new(gl, outputs, options.paper)?),
+            (other, edges) => {
+                return Err(GlError::Unsupported(format!(
+                    "the pipeline {} takes one sample per pixel, not {} depth; choose the pipeline gather, or hard edges",
+                    other.name(),
+                    edges.name()
+                )));
+            }
         })
+    };
+    let draw_buffers = match options.edges {
+        Edges::Hard => outputs.draw_buffers(),
+        _ => layers::DRAW_BUFFERS,
     };
     match options.gl_state {
         GlState::Leave => pipeline(),
-        GlState::Preserve => Ok(Box::new(Preserving::new(gl, outputs.draw_buffers(), pipeline)?)),
+        GlState::Preserve => Ok(Box::new(Preserving::new(gl, draw_buffers, pipeline)?)),
     }
 }
 

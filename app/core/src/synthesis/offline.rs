@@ -61,17 +61,10 @@ impl Offline {
     /// [`GlError::TooLarge`] for images beyond the driver's limit.
     pub fn run(&mut self, rgba: &[u8], depth: &[f32], warp: &Warp) -> Result<SynthesizedImage, GlError> {
         let size = warp.source_size;
-        let source = Source {
-            color: upload(&self.gl, &mut self.color, size, Format::Rgba8, Filter::Linear, rgba)?,
-            depth: upload(
-                &self.gl,
-                &mut self.depth,
-                size,
-                Format::R32F,
-                Filter::Nearest,
-                bytemuck::cast_slice(depth),
-            )?,
-        };
+        let color = upload(&self.gl, &mut self.color, size, Format::Rgba8, Filter::Linear, rgba)?;
+        let depth = bytemuck::cast_slice(depth);
+        let depth = upload(&self.gl, &mut self.depth, size, Format::R32F, Filter::Nearest, depth)?;
+        let source = Source::new(color, depth);
         self.target.resize(warp.target_size)?;
         let target = Destination::whole(&self.target);
         self.pipeline.synthesize(source, warp, &target)?;

@@ -13,6 +13,12 @@ const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: false };
 /// GL_DEPTH_BOUNDS_TEST_EXT.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
 
+/// Every pipeline that takes textures without samples.
+fn ways() -> Vec<SynthesisOptions> {
+    let anti_aliased = SynthesisOptions { edges: Edges::Nearest, ..SynthesisOptions::default() };
+    Pipeline::ALL.map(options).into_iter().chain([anti_aliased]).collect()
+}
+
 fn warp(size: [u32; 2]) -> Warp {
     let eyes = pair(size, Eye::Right, 0.063, DepthConvention::Standard);
     eyes.synthesis(GuardBand::Pixels(9)).unwrap().warp
@@ -56,7 +62,7 @@ impl Lent {
     }
 
     fn source(&self) -> Source {
-        Source { color: self.color.raw(), depth: self.depth.raw() }
+        Source::new(self.color.raw(), self.depth.raw())
     }
 
     fn target(&self) -> Destination {
@@ -421,7 +427,9 @@ fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
         let active = raw.get_parameter_i32(glow::ACTIVE_TEXTURE) as u32;
         for unit in 0..8 {
             raw.active_texture(glow::TEXTURE0 + unit);
-            for name in [glow::TEXTURE_BINDING_2D, glow::SAMPLER_BINDING] {
+            let multisample =
+                capabilities.multisample_textures.then_some(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
+            for name in [glow::TEXTURE_BINDING_2D, glow::SAMPLER_BINDING].into_iter().chain(multisample) {
                 all.push((format!("unit {unit}: 0x{name:x}"), vec![raw.get_parameter_i32(name)]));
             }
         }
@@ -433,7 +441,7 @@ fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
 #[test]
 fn pictures_do_not_depend_on_the_hosts_state() {
     on_every_backend(|gl| {
-        for pipeline in Pipeline::ALL {
+        for options in ways() {
             let lent = Lent::new(gl, [97, 31], Format::Rgba8);
             clean(gl);
             let run = |options: &SynthesisOptions| {
@@ -442,7 +450,7 @@ fn pictures_do_not_depend_on_the_hosts_state() {
                     .synthesize(lent.source(), &lent.warp, &lent.target())
                     .unwrap();
             };
-            run(&options(pipeline));
+            run(&options);
             let want = lent.picture(gl);
             assert!(want.0.iter().any(|v| *v > 200) && want.2.iter().any(|v| *v != want.2[0]), "a picture");
 
@@ -451,9 +459,9 @@ fn pictures_do_not_depend_on_the_hosts_state() {
                 lent.target.bind();
                 gl.clear(Some(0.5));
                 hostile.set(gl);
-                run(&SynthesisOptions { gl_state, ..options(pipeline) });
+                run(&SynthesisOptions { gl_state, ..options });
                 assert_eq!(gl.take_errors(), None);
-                assert!(lent.picture(gl) == want, "{pipeline:?}, {gl_state:?}");
+                assert!(lent.picture(gl) == want, "{options:?}, {gl_state:?}");
             }
             hostile.delete(gl);
         }
@@ -467,12 +475,12 @@ fn images_in_memory_do_not_depend_on_the_hosts_state() {
         let warp = warp([61, 20]);
         let (rgba, depth) =
             scene(warp.source_size, pair([61, 20], Eye::Right, 0.063, DepthConvention::Standard).depth, 3);
-        for pipeline in Pipeline::ALL {
-            let want = Offline::new(gl, &options(pipeline)).unwrap().run(&rgba, &depth, &warp).unwrap();
+        for options in ways() {
+            let want = Offline::new(gl, &options).unwrap().run(&rgba, &depth, &warp).unwrap();
             let hostile = Hostile::new(gl);
             hostile.set(gl);
-            let got = Offline::new(gl, &options(pipeline)).unwrap().run(&rgba, &depth, &warp).unwrap();
-            assert!(got == want, "{pipeline:?}");
+            let got = Offline::new(gl, &options).unwrap().run(&rgba, &depth, &warp).unwrap();
+            assert!(got == want, "{options:?}");
             hostile.delete(gl);
         }
     });
@@ -481,7 +489,7 @@ fn images_in_memory_do_not_depend_on_the_hosts_state() {
 #[test]
 fn the_hosts_state_is_preserved() {
     on_every_backend(|gl| {
-        for pipeline in Pipeline::ALL {
+        for options in ways() {
             let (small, large) =
                 (Lent::new(gl, [48, 16], Format::Rgba8), Lent::new(gl, [97, 31], Format::Rgba8));
             let hostile = Hostile::new(gl);
@@ -491,19 +499,19 @@ fn the_hosts_state_is_preserved() {
                     hostile.set(gl);
                 }
                 let before = snapshot(gl);
-                let options = SynthesisOptions { gl_state: GlState::Preserve, ..options(pipeline) };
+                let options = SynthesisOptions { gl_state: GlState::Preserve, ..options };
                 let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-                assert_eq!(snapshot(gl), before, "{pipeline:?}: create");
+                assert_eq!(snapshot(gl), before, "{options:?}: create");
                 synthesis.prepare(&small.warp).unwrap();
-                assert_eq!(snapshot(gl), before, "{pipeline:?}: prepare");
+                assert_eq!(snapshot(gl), before, "{options:?}: prepare");
                 // The second one allocates, and the third does not.
                 for lent in [&small, &large, &large] {
                     synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-                    assert_eq!(snapshot(gl), before, "{pipeline:?}: synthesize");
+                    assert_eq!(snapshot(gl), before, "{options:?}: synthesize");
                 }
                 let beyond = Warp { target_size: [u32::MAX; 2], source_size: [u32::MAX; 2], ..small.warp };
                 assert!(synthesis.prepare(&beyond).is_err());
-                assert_eq!(snapshot(gl), before, "{pipeline:?}: a call that fails");
+                assert_eq!(snapshot(gl), before, "{options:?}: a call that fails");
             }
             // The colour masks of single draw buffers, by what they let through.
             let raw = gl.raw();
@@ -516,29 +524,64 @@ fn the_hosts_state_is_preserved() {
                 (0..2).for_each(|i| raw.clear_buffer_f32_slice(glow::COLOR, i, &[1.0; 4]));
             }
             let pixel = |i| target.read_rgba8(i, [0, 0], [1, 1]);
-            assert_eq!(pixel(0), [0, 255, 0, 255], "{pipeline:?}");
+            assert_eq!(pixel(0), [0, 255, 0, 255], "{options:?}");
             if gl.capabilities().api == GlApi::Desktop || gl.capabilities().version >= (3, 2) {
-                assert_eq!(pixel(1), [255, 0, 0, 255], "{pipeline:?}");
+                assert_eq!(pixel(1), [255, 0, 0, 255], "{options:?}");
             }
             hostile.delete(gl);
         }
     });
 }
 
+/// What the samples hold does not matter here.
+#[test]
+fn the_hosts_state_is_preserved_with_multisample_textures() {
+    on_every_backend(|gl| {
+        let lent = Lent::new(gl, [48, 16], Format::Rgba8);
+        let texture = |format: Format| {
+            let [w, h] = lent.warp.source_size.map(|n| n as i32);
+            // SAFETY: a new texture.
+            unsafe {
+                let texture = gl.raw().create_texture().unwrap();
+                gl.raw().bind_texture(glow::TEXTURE_2D_MULTISAMPLE, Some(texture));
+                let internal = format.gl().0;
+                gl.raw().tex_storage_2d_multisample(glow::TEXTURE_2D_MULTISAMPLE, 4, internal, w, h, true);
+                texture
+            }
+        };
+        let [depth, samples] = [Format::Depth32F, Format::Rgba8].map(texture);
+        clean(gl);
+        let options = SynthesisOptions {
+            edges: Edges::Multisample,
+            gl_state: GlState::Preserve,
+            ..SynthesisOptions::default()
+        };
+        let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
+        let before = snapshot(gl);
+        for samples in [None, Some(samples)] {
+            let source = Source { color: lent.color.raw(), depth, samples };
+            synthesis.synthesize(source, &lent.warp, &lent.target()).unwrap();
+            assert_eq!(snapshot(gl), before);
+        }
+        // SAFETY: created above.
+        unsafe { [depth, samples].map(|texture| gl.raw().delete_texture(texture)) };
+    });
+}
+
 #[test]
 fn no_sampler_is_left_behind() {
     on_every_backend(|gl| {
-        for pipeline in Pipeline::ALL {
+        for options in ways() {
             let lent = Lent::new(gl, [33, 9], Format::Rgba8);
-            let mut synthesis = create(gl, &options(pipeline), OUTPUTS).unwrap();
+            let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
             synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-            for unit in 0..3 {
+            for unit in 0..8 {
                 // SAFETY: queries of a unit that exists.
                 let sampler = unsafe {
                     gl.raw().active_texture(glow::TEXTURE0 + unit);
                     gl.raw().get_parameter_sampler(glow::SAMPLER_BINDING)
                 };
-                assert_eq!(sampler, None, "{pipeline:?}, unit {unit}");
+                assert_eq!(sampler, None, "{options:?}, unit {unit}");
             }
         }
     });
@@ -549,7 +592,7 @@ fn no_sampler_is_left_behind() {
 #[test]
 fn srgb_is_encoded_where_asked_for() {
     on_every_backend(|gl| {
-        for pipeline in Pipeline::ALL {
+        for options in ways() {
             let mut lent = Lent::new(gl, [64, 16], Format::Srgb8Alpha8);
             lent.warp = pair([64, 16], Eye::Right, 0.0, DepthConvention::Standard)
                 .synthesis(GuardBand::Pixels(9))
@@ -558,7 +601,7 @@ fn srgb_is_encoded_where_asked_for() {
             let hostile = Hostile::new(gl);
             let [encoded, stored] = [true, false].map(|srgb| {
                 hostile.set(gl);
-                let mut synthesis = create(gl, &options(pipeline), Outputs { srgb, ..OUTPUTS }).unwrap();
+                let mut synthesis = create(gl, &options, Outputs { srgb, ..OUTPUTS }).unwrap();
                 synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
                 lent.picture(gl).0
             });
@@ -566,9 +609,9 @@ fn srgb_is_encoded_where_asked_for() {
             for y in 0..16 {
                 let given = &lent.rgba[y * 73 * 4 + 9 * 4..][..64 * 4];
                 let got = &encoded[y * 64 * 4..][..64 * 4];
-                assert!(given.iter().zip(got).all(|(a, b)| a.abs_diff(*b) <= 1), "{pipeline:?}, row {y}");
+                assert!(given.iter().zip(got).all(|(a, b)| a.abs_diff(*b) <= 1), "{options:?}, row {y}");
             }
-            assert_ne!(encoded, stored, "{pipeline:?}: encoding can be switched in both contexts");
+            assert_ne!(encoded, stored, "{options:?}: encoding can be switched in both contexts");
         }
     });
 }
@@ -591,10 +634,9 @@ fn cost_of_preserving_state() {
     on_every_backend(|gl| {
         // So small an image that what remains is the calls.
         let lent = Lent::new(gl, [8, 8], Format::Rgba8);
-        for pipeline in Pipeline::ALL {
-            let [mut leave, mut preserve] = [GlState::Leave, GlState::Preserve].map(|gl_state| {
-                create(gl, &SynthesisOptions { gl_state, ..options(pipeline) }, OUTPUTS).unwrap()
-            });
+        for options in ways() {
+            let [mut leave, mut preserve] = [GlState::Leave, GlState::Preserve]
+                .map(|gl_state| create(gl, &SynthesisOptions { gl_state, ..options }, OUTPUTS).unwrap());
             let mut best = [f64::MAX; 3];
             for _ in 0..20 {
                 let synthesize = |synthesis: &mut Box<dyn Synthesis>| {

@@ -462,7 +462,7 @@ fn gl_srgb(gl: &Rc<Context>, picture: &Picture) -> Vec<u8> {
     let ([color, depth], target) = gl_images(gl, picture, gl::Format::Srgb8Alpha8);
     let outputs = Outputs { srgb: true, ..Outputs::default() };
     let mut gather = synthesis::create(gl, &SynthesisOptions::default(), outputs).unwrap();
-    let source = synthesis::Source { color: color.raw(), depth: depth.raw() };
+    let source = synthesis::Source::new(color.raw(), depth.raw());
     gather.synthesize(source, &picture.warp, &Destination::whole(&target)).unwrap();
     target.read_rgba8(0, [0, 0], picture.warp.target_size)
 }
@@ -673,7 +673,7 @@ fn cost_of_the_passes() {
         // SAFETY: the device outlives it, and everything is executed.
         let mut gather = unsafe { Gather::new(&gpu.host(), &options).unwrap() };
         let (source, target) = gl_images(context, &picture, gl::Format::Rgba8);
-        let textures = synthesis::Source { color: source[0].raw(), depth: source[1].raw() };
+        let textures = synthesis::Source::new(source[0].raw(), source[1].raw());
         let mut on_gl = synthesis::create(context, &SynthesisOptions::default(), Outputs::default()).unwrap();
         for _ in 0..21 {
             context.take_pass_times();

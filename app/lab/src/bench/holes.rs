@@ -40,7 +40,7 @@ impl HoleFinder {
         let views = pair.synthesis(GuardBand::None)?;
         prepared.renderer.render(&mut self.targets, &prepared.scene, &views.source, Selection::All)?;
         self.map.resize(pair.size)?;
-        let source = Source { color: self.targets.color().raw(), depth: self.targets.depth().raw() };
+        let source = Source::new(self.targets.color().raw(), self.targets.depth().raw());
         self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.map))?;
         let entries = self.map.read_u32(1, [0, 0], pair.size);
         let rows = entries.chunks_exact(pair.size[0] as usize).rev();

@@ -57,6 +57,8 @@ pub struct ForwardTargets {
     /// Colour with bloom and outlines, if there are any: of one eye.
     developed: Option<RenderTarget>,
     pub kept: Kept,
+    /// The first sample's depth is wanted, not the nearest.
+    pub first_sample: bool,
 }
 
 impl ForwardTargets {
@@ -99,6 +101,7 @@ impl ForwardTargets {
             bloom: bloom.transpose()?,
             developed: None,
             kept: Kept::default(),
+            first_sample: false,
         })
     }
 
@@ -398,14 +401,15 @@ impl Forward {
             return;
         };
         let Kept { color, depth: kept_depth } = targets.kept;
-        let reads_depth = self.ink || depth && targets.is_readable();
+        let nearest = depth && targets.is_readable() && !targets.first_sample;
+        let reads_depth = self.ink || nearest;
         self.gl.pass("resolve", || {
             samples.resolve_color(to);
-            if depth && !targets.is_readable() {
+            if depth && !nearest {
                 samples.resolve_depth(to);
             }
             samples.discard(!(color || self.ink), !(kept_depth || reads_depth));
-            if let (true, Some(program), Some(map)) = (depth, &self.nearest, samples.depth()) {
+            if let (true, Some(program), Some(map)) = (nearest, &self.nearest, samples.depth()) {
                 to.bind();
                 self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
                 self.gl.mask_color();

@@ -110,6 +110,14 @@ impl ViewTargets {
         }
     }
 
+    /// Makes [`ViewTargets::depth`] that of each pixel's first sample, as drivers resolve it, instead of the nearest one's:
+    /// for synthesis from what there is without multisample textures. Means nothing to a deferred renderer.
+    pub fn set_first_sample(&mut self, first: bool) {
+        if let Images::Forward(targets) = &mut self.images {
+            targets.first_sample = first;
+        }
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.color_target().size()

@@ -3,7 +3,7 @@
 use crate::render::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro::gl::{Capabilities, GlError};
-use yoro::synthesis::{NearFieldPolicy, Pipeline, SynthesisOptions};
+use yoro::synthesis::{Edges, NearFieldPolicy, Pipeline, SynthesisOptions};
 
 /// A way to make both eyes of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -125,6 +125,8 @@ impl AntiAliasing {
 pub struct StereoOptions {
     /// Synthesis pipeline and its knobs.
     pub synthesis: SynthesisOptions,
+    /// What the synthesis takes the rendered eye's edges for; `None` for what fits the renderer: [`StereoOptions::edges`].
+    pub edges: Option<Edges>,
     /// How much wider the dominant eye is rendered.
     pub guard_band: GuardBand,
     /// When anti-aliasing runs.
@@ -142,6 +144,7 @@ impl Default for StereoOptions {
     fn default() -> StereoOptions {
         StereoOptions {
             synthesis: SynthesisOptions::default(),
+            edges: None,
             guard_band: GuardBand::Distance(1.0),
             anti_aliasing: AntiAliasing::default(),
             near_field: None,
@@ -152,6 +155,25 @@ impl Default for StereoOptions {
 }
 
 impl StereoOptions {
+    /// What the synthesis takes the edges of images with so many samples in a pixel for. By itself, of several samples,
+    /// all of them where shaders can read them, else the first one's depth; one surface a pixel for pipelines that know
+    /// no other.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for [`Edges::Multisample`] of one sample.
+    pub fn edges(&self, settings: &RenderSettings, capabilities: &Capabilities) -> Result<Edges, GlError> {
+        let single = settings.samples() == 1 || self.synthesis.pipeline != Pipeline::Gather;
+        match self.edges {
+            Some(Edges::Multisample) if settings.samples() == 1 => Err(GlError::Unsupported(
+                "multisample edges need several samples in each pixel: choose the forward renderer".into(),
+            )),
+            Some(edges) => Ok(edges),
+            None if single => Ok(Edges::Hard),
+            None if capabilities.multisample_textures => Ok(Edges::Multisample),
+            None => Ok(Edges::Sample),
+        }
+    }
+
     /// The default with another pipeline. The paper's pipeline comes as in the paper: no guard band,
     /// anti-aliasing before synthesis.
     pub fn of_pipeline(pipeline: Pipeline) -> StereoOptions {

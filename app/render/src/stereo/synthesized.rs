@@ -10,11 +10,14 @@ use super::options::{AntiAliasing, StereoOptions};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
 use yoro::eyes::{DepthConvention, EyePair, SynthesisViews};
 use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
-use yoro::synthesis::{self, FrameMode, NearFieldPolicy, Outputs, Source, Synthesis};
+use yoro::synthesis::{
+    self, Edges, FrameMode, NearFieldPolicy, Outputs, Source, Synthesis, SynthesisOptions,
+};
 
 /// One render (with a guard band), one synthesis; near objects and mostly near frames as [`StereoOptions`] say.
 pub struct Yoro {
     options: StereoOptions,
+    edges: Edges,
     targets: ViewTargets,
     synthesis: Box<dyn Synthesis>,
     /// The synthesized eye before transparent objects and anti-aliasing: colour and depth.
@@ -76,10 +79,15 @@ impl Yoro {
                 conventional: Conventional::new(gl, settings, options)?.keeping_depth(),
             })
         });
+        let edges = options.edges(settings, gl.capabilities())?;
+        let mut source = targets()?;
+        source.set_first_sample(edges == Edges::Sample);
+        let synthesis = SynthesisOptions { edges, ..options.synthesis };
         Ok(Yoro {
             options: *options,
-            targets: targets()?,
-            synthesis: synthesis::create(gl, &options.synthesis, outputs)?,
+            edges,
+            targets: source,
+            synthesis: synthesis::create(gl, &synthesis, outputs)?,
             other: layer(gl)?,
             smooth: smooth.transpose()?,
             before: Finish::new(gl, settings, options.anti_aliasing == AntiAliasing::Before)?,
@@ -103,7 +111,7 @@ impl Yoro {
             None => Selection::All,
         };
         let goes_on = scene.has_transparent() || self.options.near_field.is_some();
-        self.targets.keep_samples(goes_on, goes_on);
+        self.targets.keep_samples(goes_on, goes_on || self.edges == Edges::Multisample);
         renderer.render(&mut self.targets, scene, &views.source, selection)?;
         let mut color = self.targets.color();
         if let Some(smooth) = &mut self.smooth {
@@ -112,7 +120,12 @@ impl Yoro {
             color = smooth.color(0);
         }
         self.other.resize(pair.size)?;
-        let source = Source { color: color.raw(), depth: self.targets.depth().raw() };
+        let depth = self.targets.depth_samples().filter(|_| self.edges == Edges::Multisample);
+        let source = Source {
+            color: color.raw(),
+            depth: depth.unwrap_or(self.targets.depth().raw()),
+            samples: self.targets.color_samples(),
+        };
         self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.other))?;
         Ok(())
     }

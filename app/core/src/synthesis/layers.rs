@@ -1,0 +1,162 @@
+//! The gather pipeline for anti-aliased sources: four fragment passes.
+
+use std::rc::Rc;
+
+use glam::{IVec4, Vec4Swizzles as _};
+use glow::HasContext as _;
+
+use super::{Edges, Outputs, Source, Synthesis, Uniforms, draw_target, output_defines, tiles};
+use crate::eyes::Warp;
+use crate::gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
+
+/// Colour attachments of the targets: of the split pass two.
+pub(super) const DRAW_BUFFERS: u32 = 2;
+
+/// Samples from left to right, in the standard patterns of 2 and 4 samples (Vulkan's `standardSampleLocations`): each
+/// stands for the stripes of the pixel that are nearest.
+const STANDARD_2: IVec4 = IVec4::new(1, 1, 0, 0);
+const STANDARD_4: IVec4 = IVec4::new(2, 0, 3, 1);
+
+/// Split, tile bounds, tile spans, march over layers.
+///
+/// The split pass finds the one or two surfaces that each source pixel shows: 8 bytes per pixel of the source are
+/// written and read again. The march composes what of them covers a target pixel, front to back, so that the
+/// synthesized eye is as anti-aliased as the rendered one.
+pub struct Layers {
+    gl: Rc<Context>,
+    outputs: Outputs,
+    edges: Edges,
+    split: Split,
+    bounds: Program,
+    spans: Program,
+    march: Program,
+    /// Layers, colour of the backs.
+    layers: RenderTarget,
+    tile_map: RenderTarget,
+    span_map: RenderTarget,
+}
+
+/// The first pass, for what the source has.
+struct Split {
+    resolved: Program,
+    /// For sources with the samples' colours.
+    samples: Option<Program>,
+}
+
+impl Layers {
+    /// Compiles the passes.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for [`Edges::Hard`], which are [`super::Gather`]'s, and for [`Edges::Multisample`] without
+    /// OpenGL ES 3.1; [`GlError::Shader`] when the driver refuses a shader.
+    pub fn new(gl: &Rc<Context>, outputs: Outputs, edges: Edges) -> Result<Layers, GlError> {
+        let define = match edges {
+            Edges::Hard => {
+                return Err(GlError::Unsupported(
+                    "hard edges have no layers; use the gather pipeline".into(),
+                ));
+            }
+            Edges::Nearest => None,
+            Edges::Sample => Some("FIRST_SAMPLE"),
+            Edges::Multisample => Some("MULTISAMPLE"),
+        };
+        if edges == Edges::Multisample && !gl.capabilities().multisample_textures {
+            return Err(GlError::Unsupported(format!(
+                "{} has no multisample textures (OpenGL ES 3.1); hand over resolved colour and the nearest depth",
+                gl.capabilities().renderer
+            )));
+        }
+        let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
+        let edge_defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
+        let of_samples = [edge_defines.clone(), vec![("SAMPLE_COLORS", String::new())]].concat();
+        let march = [edge_defines.clone(), output_defines(outputs)].concat();
+        let split = "synthesis/layers/split.frag";
+        let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);
+        // Backs are stored as the source's colour is: unmixing is right in the space of the resolve.
+        let back = if outputs.srgb { Format::Srgb8Alpha8 } else { Format::Rgba8 };
+        let layers = [(Format::R32Ui, Filter::Nearest), (back, Filter::Nearest)];
+        Ok(Layers {
+            gl: gl.clone(),
+            outputs,
+            edges,
+            split: Split {
+                resolved: program(split, &edge_defines)?,
+                samples: (edges == Edges::Multisample).then(|| program(split, &of_samples)).transpose()?,
+            },
+            bounds: program("synthesis/layers/tiles.frag", &[])?,
+            spans: program("synthesis/gather/spans.frag", &[])?,
+            march: program("synthesis/layers/march.frag", &march)?,
+            layers: RenderTarget::new(gl, [1, 1], &layers, None)?,
+            tile_map: map()?,
+            span_map: map()?,
+        })
+    }
+
+    /// Binds the program of the first pass and what it reads.
+    fn bind_split(&self, source: Source, uniforms: &Uniforms) {
+        let program = match (&self.split.samples, source.samples) {
+            (Some(program), Some(samples)) => program.bind().texture_multisample("sample_colors", 3, samples),
+            _ => self.split.resolved.bind(),
+        };
+        match self.edges {
+            Edges::Multisample => {
+                program.texture_multisample("sample_depths", 0, source.depth);
+                program.set("stripes", self.stripes(uniforms.mirrored != 0));
+            }
+            _ => drop(program.texture("depth_map", 0, source.depth)),
+        }
+        program.texture("color_map", 1, source.color);
+        uniforms.set(program);
+    }
+
+    /// Samples of the multisample texture that was bound last, to unit 0, from left to right in forward columns.
+    fn stripes(&self, mirrored: bool) -> IVec4 {
+        // SAFETY: a query of a texture that is bound to the active unit.
+        let samples = unsafe {
+            self.gl.raw().get_tex_level_parameter_i32(glow::TEXTURE_2D_MULTISAMPLE, 0, glow::TEXTURE_SAMPLES)
+        };
+        let stripes = if samples == 2 { STANDARD_2 } else { STANDARD_4 };
+        if mirrored { stripes.wzyx() } else { stripes }
+    }
+}
+
+impl Synthesis for Layers {
+    fn prepare(&mut self, warp: &Warp) -> Result<(), GlError> {
+        self.layers.resize(warp.source_size)?;
+        self.tile_map.resize(tiles(warp.source_size))?;
+        self.span_map.resize(tiles([warp.target_size[0], warp.source_size[1]]))
+    }
+
+    fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError> {
+        self.gl.set_first_unit();
+        self.prepare(warp)?;
+        self.gl.begin_synthesis(DRAW_BUFFERS, self.outputs.srgb);
+        let gl = &self.gl;
+        let uniforms = Uniforms::new(warp, target.origin);
+        gl.pass("layers split", || {
+            self.layers.bind();
+            self.bind_split(source, &uniforms);
+            gl.draw_screen();
+        });
+        let [layers, backs] = [0, 1].map(|i| self.layers.color(i).raw());
+        gl.pass("layers tiles", || {
+            self.tile_map.bind();
+            uniforms.set(self.bounds.bind().texture("layer_map", 2, layers));
+            gl.draw_screen();
+        });
+        gl.pass("layers spans", || {
+            self.span_map.bind();
+            uniforms.set(self.spans.bind().texture("tile_map", 2, self.tile_map.color(0).raw()));
+            gl.draw_screen();
+        });
+        gl.pass("layers march", || {
+            let program = self.march.bind().texture("color_map", 1, source.color);
+            program.texture("span_map", 2, self.span_map.color(0).raw());
+            program.texture("layer_map", 3, layers).texture("back_map", 4, backs);
+            uniforms.set(program);
+            draw_target(gl, target, self.outputs);
+        });
+        gl.end_synthesis();
+        Ok(())
+    }
+}

@@ -1,0 +1,268 @@
+#version 310 es
+// Gather over layers, pass 4: the target pixel is a box that is laid over the displaced source row.
+//
+// Surfaces of neighbouring pixels that are displaced alike are linked: between their middles they cover the box by the
+// stripes of their masks. Where a surface ends, its stripes fade out; a back layer is taken to go on behind its front.
+// From the nearest candidate on, each adds to what the ones before leave uncovered, and what remains is a
+// disocclusion, filled from its background side.
+
+#include "include/layers.glsl"
+
+TEXTURE(2) uniform highp usampler2D span_map;
+TEXTURE(3) uniform highp usampler2D layer_map;
+TEXTURE(4) uniform sampler2D back_map;
+
+layout(location = 0) out vec4 color;
+#ifdef SOURCE_MAP
+layout(location = 1) out uint source_entry;
+#endif
+
+// The uncovered rest of a pixel below which nothing more is looked for.
+const float REST = 0.01;
+
+uint layer_bits(int column, int row) {
+    return texelFetch(layer_map, ivec2(column, row), 0).r;
+}
+
+Layer layer_at(int column, int row) {
+    uint bits = layer_bits(column, row);
+    if (is_full(bits)) {
+        return Layer(full_front(bits), 1e9, false, vec4(1.0));
+    }
+    vec2 both = split_displacements(bits);
+    uint code = bits >> 28;
+#ifdef MULTISAMPLE
+    vec4 mask = vec4((uvec4(code) >> uvec4(0, 1, 2, 3)) & 1u);
+#else
+    float share = texelFetch(back_map, ivec2(column, row), 0).a;
+    vec4 mask = code == FROM_LEFT ? clamp(4.0 * share - STRIPES, 0.0, 1.0)
+        : code == FROM_RIGHT ? clamp(4.0 * share - STRIPES.wzyx, 0.0, 1.0) : vec4(share);
+#endif
+    return Layer(both.x, both.y, true, mask);
+}
+
+// Share of each stripe right of a place in the pixel, 0 to 1.
+vec4 right_of(float place) {
+    return clamp(STRIPES + 1.0 - 4.0 * place, 0.0, 1.0);
+}
+
+float covered(vec4 mask, vec4 stripes) {
+    return 0.25 * dot(mask, stripes);
+}
+
+// Colour of a layer's front and back, by their weights.
+vec4 weighted(int column, int row, float of_front, float of_back) {
+    vec4 mixture = texelFetch(color_map, in_image(ivec2(column, row)), 0);
+    vec4 behind = texelFetch(back_map, ivec2(column, row), 0);
+    float share = behind.a;
+    behind.a = mixture.a;
+    vec4 front = share < 1.0 ? clamp((mixture - (1.0 - share) * behind) / max(share, 0.01), 0.0, 1.0) : mixture;
+    return of_front * front + of_back * behind;
+}
+
+// A place where the background of a hole begins.
+struct Edge {
+    // Column of the source's image; negative for none.
+    int column;
+    bool back;
+    float reach;
+    // Share of the pixel that it stands for.
+    float weight;
+};
+
+// What is seen: column and displacement.
+struct Seen {
+    float rest;
+    float column;
+    float reach;
+};
+
+// A surface covers a share of what is uncovered. What covers the middle of the pixel's coverage is what is seen there.
+float cover(inout Seen seen, float share, float column, float reach) {
+    float taken = seen.rest * share;
+    bool passes = seen.rest > 0.5 && seen.rest - taken <= 0.5;
+    seen.column = passes ? column : seen.column;
+    seen.reach = passes ? reach : seen.reach;
+    seen.rest -= taken;
+    return taken;
+}
+
+void main() {
+    float last = float(source_size.x - 1);
+    int row = int(clamp(gl_FragCoord.y - first_row, 0.0, float(source_size.y - 1)));
+    // Displacements count from the far plane's: so does the target column. A hundredth is in `farthest` for rounding.
+    float t = origins.x * gl_FragCoord.x + origins.y - farthest + 0.01;
+    vec2 place = span_place.xy * gl_FragCoord.xy + span_place.zw;
+    uint span = textureLod(span_map, place, 0.0).r;
+    float x = clamp(floor(t - uintBitsToFloat(span) - 1.01), 0.0, last);
+    float limit = min(x + span_steps(span) + 2.0, last);
+    int sense = mirrored ? -1 : 1;
+    int column = source_column(int(x));
+
+    Seen seen = Seen(1.0, 0.0, 0.0);
+    color = vec4(0.0);
+    // Nearly every pixel shows a single surface, linked all the way from where the search begins.
+    uint bits = layer_bits(column, row);
+    float front = full_front(bits);
+    float at = x + front - t;
+    bool plain = is_full(bits) && at <= 0.0;
+    while (plain && x < limit) {
+        bits = layer_bits(column + sense, row);
+        float following = full_front(bits);
+        plain = is_full(bits) && abs(following - front) < LINK;
+        float then = x + 1.0 + following - t;
+        if (plain && then > 0.0) {
+            float g = -at / (then - at);
+            cover(seen, 1.0, x + g, mix(front, following, g));
+            color = color_at(x + g, row);
+            limit = x;
+        } else if (plain) {
+            x += 1.0;
+            column += sense;
+            front = following;
+            at = then;
+        }
+    }
+    Layer here = layer_at(column, row);
+    Edge edge = Edge(-1, false, 1e9, 1.0);
+    Edge second = edge;
+    // Left of everything it is the border of the image.
+    if (x == 0.0) {
+        if (here.front > t) {
+            edge = Edge(column, false, here.front, 1.0);
+        }
+        if (here.split && here.back < edge.reach && here.back > t) {
+            edge = Edge(column, true, here.back, 1.0);
+        }
+    }
+    // What the pixel's back is linked to at the left: a front, or a back.
+    bool on_front = false;
+    bool on_back = false;
+    if (x > 0.0 && here.split && seen.rest > REST) {
+        Layer before = layer_at(column - sense, row);
+        on_front = abs(before.front - here.back) < LINK;
+        on_back = before.split && abs(before.back - here.back) < LINK;
+    }
+    while (x < limit && seen.rest > REST) {
+        Layer next = layer_at(column + sense, row);
+        // Where the four surfaces land, relative to the pixel.
+        float a = x + here.front - t;
+        float b = x + 1.0 + next.front - t;
+        float c = x + here.back - t;
+        float d = x + 1.0 + next.back - t;
+        bool front_front = abs(next.front - here.front) < LINK;
+        bool front_back = next.split && abs(next.back - here.front) < LINK;
+        bool back_front = here.split && abs(next.front - here.back) < LINK;
+        bool back_back = here.split && next.split && abs(next.back - here.back) < LINK;
+        // Of the fronts and the backs of this column and the next.
+        vec2 fronts = vec2(0.0);
+        vec2 backs = vec2(0.0);
+        if (front_front && a <= 0.0 && b > 0.0) {
+            float g = -a / (b - a);
+            vec4 right = right_of(g);
+            vec2 shares = vec2(covered(here.mask, right), covered(next.mask, 1.0 - right));
+            float share = shares.x + shares.y;
+            fronts = cover(seen, share, x + g, mix(here.front, next.front, g)) * shares / max(share, 1e-6);
+        }
+        // A front that begins or ends here, before a farther surface.
+        if (!front_front && (next.front > here.front || next.split) && !back_front && b > 0.0 && b < 1.0) {
+            float share = covered(next.mask, 1.0 - right_of(1.0 - b));
+            fronts.y += cover(seen, share, x + 1.0, next.front);
+        }
+        if (!front_front && (next.front < here.front || here.split) && !front_back && a <= 0.0 && a > -1.0) {
+            fronts.x += cover(seen, covered(here.mask, right_of(-a)), x, here.front);
+        }
+        // What goes on behind a front covers all.
+        if (front_back && a <= 0.0 && d > 0.0 && seen.rest > REST) {
+            float g = -a / (d - a);
+            float taken = cover(seen, 1.0, x + g, here.front);
+            fronts.x += taken * (1.0 - g);
+            backs.y += taken * g;
+        }
+        if (back_front && c <= 0.0 && b > 0.0 && seen.rest > REST) {
+            float g = -c / (b - c);
+            float taken = cover(seen, 1.0, x + g, next.front);
+            backs.x += taken * (1.0 - g);
+            fronts.y += taken * g;
+        }
+        if (back_back && c <= 0.0 && d > 0.0 && seen.rest > REST) {
+            float g = -c / (d - c);
+            float taken = cover(seen, 1.0, x + g, here.back);
+            backs += taken * vec2(1.0 - g, g);
+        }
+        bool ends = here.split && !back_front && !back_back;
+        // A back that no neighbour continues: its samples only.
+        if (ends && !on_front && !on_back && abs(c) < 1.0 && seen.rest > REST) {
+            vec4 stripes = c <= 0.0 ? right_of(-c) : 1.0 - right_of(1.0 - c);
+            backs.x += cover(seen, covered(1.0 - here.mask, stripes), x, here.back);
+        }
+        // Disocclusion edges. A sliver of background that no neighbour continues stands for its share of the pixel
+        // only; the rest of the hole is the next farthest edge's.
+        bool at_back = ends && next.front > here.back && c <= 0.0;
+        bool at_front = !here.split && !front_front && !front_back && next.front > here.front && a <= 0.0;
+        if ((at_back || at_front) && seen.rest > REST) {
+            float reach = at_back ? here.back : here.front;
+            float away = at_back ? -c : -a;
+            float weight = at_back && !on_front ? 1.0 - covered(here.mask, vec4(1.0)) : 1.0;
+            Edge found = Edge(column, at_back, reach, weight);
+            if (weight == 1.0 && away < 0.5) {
+                float taken = cover(seen, 1.0, x, reach);
+                backs.x += at_back ? taken : 0.0;
+                fronts.x += at_back ? 0.0 : taken;
+            }
+            if (reach < edge.reach) {
+                if (weight < 1.0) {
+                    second = edge;
+                }
+                edge = found;
+            } else if (reach < second.reach) {
+                second = found;
+            }
+        }
+        if (max(fronts.x, backs.x) > 0.0) {
+            color += weighted(column, row, fronts.x, backs.x);
+        }
+        if (max(fronts.y, backs.y) > 0.0) {
+            color += weighted(column + sense, row, fronts.y, backs.y);
+        }
+        on_front = front_back;
+        on_back = back_back;
+        here = next;
+        column += sense;
+        x += 1.0;
+    }
+    bool hole = seen.rest > 0.5;
+    if (seen.rest > REST) {
+        if (edge.column < 0) {
+            // Right of everything.
+            edge = Edge(column, here.split, here.split ? here.back : here.front, 1.0);
+        }
+        float edge_x = float(source_column(edge.column));
+        float away = abs(t - edge_x - edge.reach);
+        float spread = 0.5 * clamp(away, 1.0, 12.0);
+        vec4 sum = vec4(0.0);
+        float weights = 0.0;
+        for (int i = -2; i <= 2; ++i) {
+            int at = clamp(row + int(roundEven(float(i) * spread)), 0, source_size.y - 1);
+            Layer layer = layer_at(edge.column, at);
+            bool front = i == 0 ? !edge.back : layer.front <= edge.reach + 1.0;
+            bool behind = i == 0 ? edge.back : !front && layer.split && layer.back <= edge.reach + 1.0;
+            float weight = i == 0 ? 2.0 : front ? 1.0 : behind ? 1.0 - covered(layer.mask, vec4(1.0)) : 0.0;
+            sum += weighted(edge.column, at, front ? weight : 0.0, front ? 0.0 : weight);
+            weights += weight;
+        }
+        vec4 fill = sum / weights;
+        if (second.column >= 0 && edge.weight < 1.0) {
+            vec2 one = second.back ? vec2(0.0, 1.0) : vec2(1.0, 0.0);
+            fill = mix(weighted(second.column, row, one.x, one.y), fill, edge.weight);
+        }
+        hole = hole && away >= 0.5;
+        color += cover(seen, 1.0, edge_x, edge.reach) * fill;
+    }
+#ifdef WRITE_DEPTH
+    gl_FragDepth = clamp((far_displacement + seen.reach - law.x) / law.y, 0.0, 1.0);
+#endif
+#ifdef SOURCE_MAP
+    source_entry = uint(seen.column * FIXED + 0.5) | (hole ? HOLE : 0u);
+#endif
+}
