@@ -103,6 +103,12 @@ fn options_out_of_range() {
         ("render prototype --size 8x8", &["--size", "16 to 4096"]),
         ("render prototype --size 100000x100000", &["--size", "16 to 4096"]),
         ("render prototype --size big", &["--size", "1024x1024"]),
+        ("render prototype --msaa 4", &["--msaa goes with --renderer forward"]),
+        ("render prototype --renderer forward --msaa 3", &["give 1, 2 or 4"]),
+        (
+            "render prototype --renderer forward --method shading-reprojection",
+            &["shading-reprojection", "choose the deferred renderer"],
+        ),
         ("render prototype --near 10 --far 5", &["--near 10 must be less than --far 5"]),
         ("render prototype --near 0", &["--near"]),
         ("render prototype --far nan", &["--far"]),

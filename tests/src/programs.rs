@@ -207,6 +207,10 @@ pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
     let mut recipes: BTreeSet<ProgramRecipe> = BTreeSet::new();
     for recipe in gl.program_recipes() {
         for (from, to) in COUNTERPARTS {
+            // The forward renderer has no layers.
+            if to == "MULTIVIEW" && recipe.defines.iter().any(|(name, _)| name == "FORWARD") {
+                continue;
+            }
             if let Some(at) = recipe.defines.iter().position(|(name, _)| name == from) {
                 let mut counterpart = recipe.clone();
                 to.clone_into(&mut counterpart.defines[at].0);

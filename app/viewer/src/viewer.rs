@@ -146,10 +146,12 @@ impl Viewer {
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         // What may fail by a mistake in the settings comes first.
         let source = self.other_scene(&settings, folders)?;
+        let (render, method_differs) = (settings.render_settings(), settings.method != self.settings.method);
         if let Some(attached) = &self.attached
-            && settings.method != self.settings.method
+            && (method_differs || render != self.settings.render_settings())
         {
-            settings.method.supported(attached.gl.capabilities(), &settings.render_settings())?;
+            let method = if method_differs { settings.method } else { self.method.method() };
+            method.supported(attached.gl.capabilities(), &render)?;
         }
         let before = std::mem::replace(&mut self.settings, settings);
         let in_use = self.method.choice();

@@ -129,9 +129,9 @@ fn without_multisample_textures_only_depth_at_edges_differs() {
         let view = view(DepthConvention::Reversed);
         let [(color, depth), (expected_color, expected_depth)] = [false, true].map(|readable| {
             let passes = Forward::build(gl, &settings, &scene, readable).unwrap();
-            let renderer = Renderer::with(gl, &settings, &scene, Passes::Forward(passes)).unwrap();
+            let renderer = Renderer::with(gl, &settings, &scene, Passes::Forward(Box::new(passes))).unwrap();
             let images = ForwardTargets::build(gl, Layout::Single, [1, 1], &settings, readable).unwrap();
-            let mut targets = ViewTargets { images: Images::Forward(images) };
+            let mut targets = ViewTargets { images: Images::Forward(Box::new(images)) };
             targets.keep_samples(true, true);
             renderer.render(&mut targets, &scene, &view, Selection::All).unwrap();
             assert_eq!(targets.depth_samples().is_some(), readable);

@@ -62,8 +62,8 @@ pub struct ViewTargets {
 }
 
 enum Images {
-    Deferred(DeferredTargets),
-    Forward(ForwardTargets),
+    Deferred(Box<DeferredTargets>),
+    Forward(Box<ForwardTargets>),
 }
 
 impl ViewTargets {
@@ -78,9 +78,11 @@ impl ViewTargets {
         settings: &RenderSettings,
     ) -> Result<ViewTargets, GlError> {
         let images = match settings.renderer {
-            RendererKind::Deferred => Images::Deferred(DeferredTargets::new(gl, size, convention, settings)?),
+            RendererKind::Deferred => {
+                Images::Deferred(Box::new(DeferredTargets::new(gl, size, convention, settings)?))
+            }
             RendererKind::Forward => {
-                Images::Forward(ForwardTargets::new(gl, Layout::Single, size, settings)?)
+                Images::Forward(Box::new(ForwardTargets::new(gl, Layout::Single, size, settings)?))
             }
         };
         Ok(ViewTargets { images })
@@ -95,7 +97,8 @@ impl ViewTargets {
         layout: Layout,
         settings: &RenderSettings,
     ) -> Result<ViewTargets, GlError> {
-        Ok(ViewTargets { images: Images::Forward(ForwardTargets::new(gl, layout, [1, 1], settings)?) })
+        let targets = ForwardTargets::new(gl, layout, [1, 1], settings)?;
+        Ok(ViewTargets { images: Images::Forward(Box::new(targets)) })
     }
 
     /// Says which samples are still needed when a view is rendered, to be read or to go on drawing
@@ -177,8 +180,8 @@ pub struct Renderer {
 }
 
 enum Passes {
-    Deferred(Deferred),
-    Forward(Forward),
+    Deferred(Box<Deferred>),
+    Forward(Box<Forward>),
 }
 
 /// What a renderer of one kind says to targets of the other.
@@ -195,8 +198,8 @@ impl Renderer {
     /// [`GlError`] when the driver refuses a program or a target, or has not as many samples as the settings say.
     pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Renderer, GlError> {
         let passes = match settings.renderer {
-            RendererKind::Deferred => Passes::Deferred(Deferred::new(gl, settings, scene)?),
-            RendererKind::Forward => Passes::Forward(Forward::new(gl, settings, scene)?),
+            RendererKind::Deferred => Passes::Deferred(Box::new(Deferred::new(gl, settings, scene)?)),
+            RendererKind::Forward => Passes::Forward(Box::new(Forward::new(gl, settings, scene)?)),
         };
         Renderer::with(gl, settings, scene, passes)
     }
