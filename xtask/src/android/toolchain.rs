@@ -121,6 +121,18 @@ impl Rust {
         prebuilt.or_else(|| Some((Self::with_source(surroundings)?, true)))
     }
 
+    /// LLVM's linker for WebAssembly: the one that comes with this Rust or with the user's, else the system's. Debian's
+    /// Rust has none of its own.
+    pub fn wasm_linker(&self, surroundings: &Surroundings) -> Option<PathBuf> {
+        let own = [Some(self), surroundings.rust.as_ref()].into_iter().flatten().find_map(Self::rust_lld);
+        own.or_else(|| find_program("wasm-ld"))
+    }
+
+    fn rust_lld(&self) -> Option<PathBuf> {
+        let hosts = fs::read_dir(self.sysroot.join("lib/rustlib")).ok()?;
+        hosts.flatten().map(|host| host.path().join("bin/rust-lld")).find(|file| file.is_file())
+    }
+
     /// A Rust that can compile std for Android: the user's own, where it has std's source, or Debian's.
     pub fn with_source(surroundings: &Surroundings) -> Option<Self> {
         let debian = || Self::at("/usr/bin".into());

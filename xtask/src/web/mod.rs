@@ -60,9 +60,10 @@ pub fn build() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Whether there is a Rust for it.
+/// Whether there are a Rust and a linker for it.
 pub fn can_be_built() -> bool {
-    Rust::for_target(&Surroundings::here(), TRIPLE).is_some()
+    let here = Surroundings::here();
+    Rust::for_target(&here, TRIPLE).is_some_and(|(rust, _)| rust.wasm_linker(&here).is_some())
 }
 
 /// Compiles the module; its file.
@@ -80,6 +81,9 @@ fn compile(surroundings: &Surroundings, target: &Path) -> anyhow::Result<PathBuf
         build_std(&mut command, Panic::Abort);
     }
     use_rust(&mut command, &rust)?;
+    let linker =
+        rust.wasm_linker(surroundings).context("there is no linker for WebAssembly: apt-get install lld")?;
+    command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     command.env("CARGO_ENCODED_RUSTFLAGS", anonymous_paths().unwrap_or_default());
     announce(&arguments);
     if !command.status().context("cargo cannot be started")?.success() {
