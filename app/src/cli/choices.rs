@@ -40,14 +40,15 @@ pub fn pipeline() -> impl TypedValueParser<Value = Pipeline> {
     })
 }
 
-/// `--edges`, of images: what has one depth per pixel.
-pub fn edges() -> impl TypedValueParser<Value = Edges> {
-    choice([Edges::Hard, Edges::Nearest, Edges::Sample], Edges::name, |edges| match edges {
+/// `--edges`, as far as there are these.
+pub fn edges(values: impl IntoIterator<Item = Edges>) -> impl TypedValueParser<Value = Edges> {
+    choice(values, Edges::name, |edges| match edges {
         Edges::Nearest => {
             "Anti-aliased colour, and the depth of each pixel's nearest sample: the better of the two"
         }
         Edges::Sample => "Anti-aliased colour, and the depth of each pixel's first or middle sample",
-        _ => "One surface per pixel: colour that was not anti-aliased, or was filtered afterwards",
+        Edges::Multisample => "Anti-aliased colour, and the depth of every sample, of the forward renderer",
+        Edges::Hard => "One surface per pixel: colour that was not anti-aliased, or was filtered afterwards",
     })
 }
 
