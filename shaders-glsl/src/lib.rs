@@ -60,6 +60,7 @@ static FILES: &[(&str, &str)] = embed![
     "render/nearest_depth.frag",
     "render/shadow.frag",
     "render/sky.frag",
+    "render/soften.frag",
     "render/ssao.frag",
     "render/ssao_blur.frag",
     "render/tonemap.frag",

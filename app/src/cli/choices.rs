@@ -40,13 +40,15 @@ pub fn pipeline() -> impl TypedValueParser<Value = Pipeline> {
     })
 }
 
-/// `--edges`: those that there are where it is asked.
+/// `--edges`, as far as there are these.
 pub fn edges(values: impl IntoIterator<Item = Edges>) -> impl TypedValueParser<Value = Edges> {
     choice(values, Edges::name, |edges| match edges {
-        Edges::Hard => "One surface per pixel: colour that was not anti-aliased, or was filtered afterwards",
-        Edges::Nearest => "Anti-aliased colour, and the depth of each pixel's nearest sample: the better of the two",
+        Edges::Nearest => {
+            "Anti-aliased colour, and the depth of each pixel's nearest sample: the better of the two"
+        }
         Edges::Sample => "Anti-aliased colour, and the depth of each pixel's first or middle sample",
-        Edges::Multisample => "Anti-aliased colour, and the depth of all samples",
+        Edges::Multisample => "Anti-aliased colour, and the depth of every sample, of the forward renderer",
+        Edges::Hard => "One surface per pixel: colour that was not anti-aliased, or was filtered afterwards",
     })
 }
 

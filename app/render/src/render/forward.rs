@@ -228,6 +228,8 @@ pub struct Forward {
     geometry: [Option<GeometryPass>; Layout::COUNT],
     sky: Program,
     load: Program,
+    /// Where there is more than one sample.
+    soften: Option<Program>,
     /// Where samples can be read.
     nearest: Option<Program>,
     bloom: Option<BloomPass>,
@@ -271,6 +273,7 @@ impl Forward {
         let develop = (ink || settings.bloom)
             .then(|| Program::new(gl, ShaderSource::Screen("render/develop.frag"), &developed));
         let bloom = settings.bloom.then(|| BloomPass::new(gl, &[name("DISPLAY_REFERRED")]));
+        let soften = (samples > 1).then(|| Program::new(gl, ShaderSource::Screen("render/soften.frag"), &[]));
         Ok(Forward {
             gl: gl.clone(),
             samples,
@@ -280,6 +283,7 @@ impl Forward {
             geometry: [const { None }; Layout::COUNT],
             sky,
             load: Program::new(gl, ShaderSource::Screen("render/load.frag"), &[])?,
+            soften: soften.transpose()?,
             nearest: nearest.transpose()?,
             bloom: bloom.transpose()?,
             develop: develop.transpose()?,
@@ -326,6 +330,22 @@ impl Forward {
     ) {
         targets.bind(view.size);
         self.copy((color, depth), crop);
+    }
+
+    /// Makes the edges soft against which the rest is tested, after [`Forward::load`] of an image whose own edges are.
+    pub fn soften(&self, targets: &ForwardTargets, depth: &Texture, crop: [u32; 2], view: &View) {
+        let Some(program) = &self.soften else { return };
+        targets.bind(view.size);
+        self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+        self.gl.set_alpha_to_coverage(true);
+        self.gl.mask_color();
+        program
+            .bind()
+            .texture("depth_map", 0, depth.raw())
+            .set("offset", IVec2::from(crop.map(|n| n as i32)));
+        set_view(program, view);
+        self.gl.draw_screen();
+        self.gl.set_alpha_to_coverage(false);
     }
 
     /// Fills what is bound by colour and depth of an image, from pixel `crop` on.

@@ -215,6 +215,50 @@ fn a_synthesized_eye_goes_on_as_an_image() {
     assert_eq!(gl.take_errors(), None);
 }
 
+/// An image has one depth in a pixel: at an edge half of the nearer pixel lets see what is drawn behind.
+#[test]
+fn what_is_drawn_over_an_image_meets_soft_edges() {
+    let head = open();
+    let gl = head.gl();
+    let pane = [Vec3::new(-9.0, -9.0, -6.0), Vec3::new(18.0, 0.0, 0.0), Vec3::new(0.0, 18.0, 0.0)];
+    let glass = (Vec3::new(0.1, 0.5, 0.2), Alpha::Blend(0.5), pane);
+    let scene = flat(&[(BRIGHT, Alpha::Opaque, SLANTED), (DARK, Alpha::Opaque, WALL), glass]);
+    let scene = GpuScene::upload(gl, scene).unwrap();
+    for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+        let view = straight_on(convention);
+        let [(_, image), (renderer, targets)] = [1, 4].map(|samples| {
+            let settings = with_samples(samples);
+            let renderer = Renderer::new(gl, &settings, &scene).unwrap();
+            let mut targets = ViewTargets::new(gl, SIZE, convention, &settings).unwrap();
+            renderer.render(&mut targets, &scene, &view, Selection::All).unwrap();
+            (renderer, targets)
+        });
+        let Images::Forward(image) = &image.images else { unreachable!() };
+        let before = image.resolved().read_rgba8(0, [0, 0], SIZE);
+        renderer.go_on_with(&targets, image.resolved(), &scene, &view, None, false).unwrap();
+        let after = image.resolved().read_rgba8(0, [0, 0], SIZE);
+        let (bright, dark) = (pixel(&before, 2, 32).to_vec(), pixel(&before, 93, 32).to_vec());
+        let through = pixel(&after, 93, 32);
+        // Half of what the pane, of display colour 2 through - dark, does to the bright surface.
+        let half = |i: usize| {
+            let of = |p: &[u8]| f32::from(p[i]);
+            0.75 * of(&bright) + 0.25 * (2.0 * of(through) - of(&dark))
+        };
+        for y in 0..SIZE[1] {
+            let changed = |x: &u32| {
+                pixel(&before, *x, y)[..3] == bright[..3] && pixel(&after, *x, y)[..3] != bright[..3]
+            };
+            let soft: Vec<u32> = (0..SIZE[0]).filter(changed).collect();
+            assert!((1..=2).contains(&soft.len()), "row {y}: {soft:?}");
+            for x in soft {
+                let pixel = pixel(&after, x, y);
+                assert!((0..3).all(|i| (f32::from(pixel[i]) - half(i)).abs() < 3.0), "{pixel:?} at {x}, {y}");
+            }
+        }
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
 const EYE_FAR: Vec3 = Vec3::splat(1e4);
 
 /// Posts of leaves: half of the picture's columns are cut out.

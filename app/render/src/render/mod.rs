@@ -371,7 +371,10 @@ impl Renderer {
         let (Passes::Forward(passes), Images::Forward(targets)) = (&self.passes, &targets.images) else {
             return Err(other_kind());
         };
-        self.gl.pass("load", || passes.load(targets, (image.color(0), image.depth()), [0, 0], view));
+        self.gl.pass("load", || {
+            passes.load(targets, (image.color(0), image.depth()), [0, 0], view);
+            passes.soften(targets, image.depth(), [0, 0], view);
+        });
         self.draw_after_synthesis(passes, targets, scene, view, near);
         passes.resolve_to(targets, image, view, depth);
         Ok(())
