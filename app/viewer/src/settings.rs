@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toml::{Table, Value};
 
 use yoro::eyes::{DEFAULT_IPD, Eye, GuardBand, MAX_IPD};
-use yoro::synthesis::{ImBufferSize, NearFieldPolicy, PaperOptions, Pipeline, SynthesisOptions};
+use yoro::synthesis::{Edges, ImBufferSize, NearFieldPolicy, PaperOptions, Pipeline, SynthesisOptions};
 use yoro_render::stereo::{AntiAliasing, Method, StereoOptions};
 use yoro_render::{MAX_POINT_LIGHTS, MSAA, RenderSettings, RendererKind};
 
@@ -178,6 +178,9 @@ pub struct Settings {
     /// When anti-aliasing runs; by default as the pipeline needs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anti_aliasing: Option<AntiAliasing>,
+    /// What the synthesis takes the rendered eye's edges for; by default what fits the renderer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub edges: Option<Edges>,
     /// Render objects nearer than this (metres) for both eyes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub near_field: Option<f32>,
@@ -266,6 +269,7 @@ pub const KEYS: &[&str] = &[
     "strict",
     "guard-band",
     "anti-aliasing",
+    "edges",
     "near-field",
     "switch",
     "split-disparity",
@@ -303,6 +307,7 @@ pub const KEYS: &[&str] = &[
 const OPTIONAL: &[&str] = &[
     "guard-band",
     "anti-aliasing",
+    "edges",
     "near-field",
     "screen",
     "ipd",
@@ -329,6 +334,7 @@ impl Default for Settings {
             strict: paper.strict,
             guard_band: None,
             anti_aliasing: None,
+            edges: None,
             near_field: None,
             switch: true,
             split_disparity: stereo.split_disparity,
@@ -522,7 +528,7 @@ impl Settings {
         };
         StereoOptions {
             synthesis: SynthesisOptions { paper, ..pipeline.synthesis },
-            edges: None,
+            edges: self.edges,
             guard_band: self.guard_band.unwrap_or(pipeline.guard_band),
             anti_aliasing: self.anti_aliasing.unwrap_or(pipeline.anti_aliasing),
             near_field: self.near_field,
@@ -634,6 +640,7 @@ mod tests {
         let full = with(&[
             "guard-band=40px",
             "anti-aliasing=off",
+            "edges=nearest",
             "near-field=1",
             "screen=158x71mm",
             "ipd=0.06",
@@ -695,6 +702,7 @@ mod tests {
             "strict=true",
             "guard-band=40px",
             "anti-aliasing=off",
+            "edges=nearest",
             "near-field=1",
             "switch=false",
             "split-disparity=2.5",

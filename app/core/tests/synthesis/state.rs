@@ -655,7 +655,7 @@ fn cost_of_preserving_state() {
             println!(
                 "{}, {}: {:.1} us a call, {:.1} us with the state preserved; to save and restore alone {:.1} us",
                 gl.capabilities().version_string,
-                pipeline.name(),
+                options.pipeline.name(),
                 best[0],
                 best[1],
                 best[2]
