@@ -33,14 +33,17 @@ struct Layer {
     vec4 mask;
 };
 
+// Displacement of the near plane relative to the far plane's: none where the eyes are in one place.
+float reach() {
+    return max(near_displacement - far_displacement, 1e-6);
+}
+
 uint pack_full(float front) {
-    float range = near_displacement - far_displacement;
-    return (FULL << 28) | uint(clamp(front / range, 0.0, 1.0) * FULL_STEPS);
+    return (FULL << 28) | uint(clamp(front / reach(), 0.0, 1.0) * FULL_STEPS);
 }
 
 uint pack_split(float front, float back, uint mask) {
-    float range = near_displacement - far_displacement;
-    uvec2 steps = uvec2(clamp(vec2(front, back) / range, 0.0, 1.0) * SPLIT_STEPS + 0.5);
+    uvec2 steps = uvec2(clamp(vec2(front, back) / reach(), 0.0, 1.0) * SPLIT_STEPS + 0.5);
     return (mask << 28) | (steps.y << 14) | steps.x;
 }
 
@@ -49,11 +52,10 @@ bool is_full(uint layer) {
 }
 
 float full_front(uint layer) {
-    return float(layer & 0xfffffffu) * ((near_displacement - far_displacement) / FULL_STEPS);
+    return float(layer & 0xfffffffu) * (reach() / FULL_STEPS);
 }
 
 // Front and back.
 vec2 split_displacements(uint layer) {
-    float step = (near_displacement - far_displacement) / SPLIT_STEPS;
-    return vec2(uvec2(layer, layer >> 14) & 0x3fffu) * step;
+    return vec2(uvec2(layer, layer >> 14) & 0x3fffu) * (reach() / SPLIT_STEPS);
 }

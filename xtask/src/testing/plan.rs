@@ -8,8 +8,13 @@ use super::binaries::{Binary, Program};
 /// Tests that must not run beside others, by a part of `program name`, and why.
 ///
 /// Almost none have to: each has folders of its own, ports are pipes, and time is measured in processor time or is simulated.
-const ALONE: [(&str, &str); 1] =
-    [("yoro-app::program memory::", "with a second large scene a small machine would have no room for both")];
+const ALONE: [(&str, &str); 2] = [
+    ("yoro-app::program memory::", "with a second large scene a small machine would have no room for both"),
+    (
+        "yoro-android-host::apk the_arm64_library",
+        "in qemu beside others, the first frames take longer than a minute",
+    ),
+];
 
 /// Longer than this a test has a process for itself, in seconds.
 const LONG: f64 = 1.0;

@@ -246,7 +246,9 @@ impl EyePair {
         }
         // In this form NaN fails, too.
         let ordered = |f: &Frustum| f.width() > 0.0 && f.height() > 0.0;
-        let planes = range.near > 0.0 && range.near < range.far;
+        // Twice the planes' product stands in projections.
+        let product = if range.far.is_finite() { range.near * range.far } else { range.near };
+        let planes = range.near > 0.0 && range.near < range.far && (2.0 * product).is_finite();
         if !self.frusta.iter().all(ordered) || !planes || self.size.contains(&0) {
             return Err(EyesError::Empty);
         }
@@ -488,7 +490,8 @@ mod tests {
     #[test]
     fn values_that_are_no_numbers_are_refused() {
         type Spoil = fn(&mut EyePair);
-        let spoilt: [(Spoil, EyesError); 8] = [
+        let spoilt: [(Spoil, EyesError); 9] = [
+            (|p| (p.depth.near, p.depth.far) = (f32::MAX, f32::INFINITY), EyesError::Empty),
             (|p| p.depth.near = f32::NAN, EyesError::Empty),
             (|p| p.depth.far = f32::NAN, EyesError::Empty),
             (|p| p.depth.near = f32::INFINITY, EyesError::Empty),

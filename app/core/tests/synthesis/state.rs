@@ -564,7 +564,7 @@ fn the_hosts_state_is_preserved_with_multisample_textures() {
             assert_eq!(snapshot(gl), before);
         }
         // SAFETY: created above.
-        unsafe { [depth, samples].map(|texture| gl.raw().delete_texture(texture)) };
+        unsafe { [depth, samples].into_iter().for_each(|texture| gl.raw().delete_texture(texture)) };
     });
 }
 

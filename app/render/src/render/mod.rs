@@ -102,7 +102,7 @@ impl ViewTargets {
     }
 
     /// Says which samples are still needed when a view is rendered, to be read or to go on drawing
-    /// ([`Renderer::go_on`]); at first none are. The others never leave the tiles of a tile-based GPU, as far as its driver
+    /// (as transparent objects do after synthesis); at first none are. The others never leave the tiles of a tile-based GPU, as far as its driver
     /// can help it. Means nothing to a deferred renderer.
     pub fn keep_samples(&mut self, color: bool, depth: bool) {
         if let Images::Forward(targets) = &mut self.images {
@@ -149,7 +149,7 @@ impl ViewTargets {
 
     /// The window depth of every sample, a `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples in float: of a
     /// forward renderer with more than one, where there are such textures and they are kept
-    /// ([`ViewTargets::keep_samples`]). Opaque surfaces only, until [`Renderer::go_on`].
+    /// ([`ViewTargets::keep_samples`]). Opaque surfaces only, until transparent ones are drawn after synthesis.
     pub fn depth_samples(&self) -> Option<glow::Texture> {
         match &self.images {
             Images::Deferred(_) => None,
