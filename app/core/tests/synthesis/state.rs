@@ -609,7 +609,10 @@ fn srgb_is_encoded_where_asked_for() {
             for y in 0..16 {
                 let given = &lent.rgba[y * 73 * 4 + 9 * 4..][..64 * 4];
                 let got = &encoded[y * 64 * 4..][..64 * 4];
-                assert!(given.iter().zip(got).all(|(a, b)| a.abs_diff(*b) <= 1), "{options:?}, row {y}");
+                assert!(
+                    given.iter().zip(got).all(|(a, b)| a.abs_diff(*b) <= 1),
+                    "{options:?}, row {y}: {given:?} became {got:?}"
+                );
             }
             assert_ne!(encoded, stored, "{options:?}: encoding can be switched in both contexts");
         }
