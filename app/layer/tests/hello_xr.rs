@@ -151,17 +151,18 @@ fn monado_gets_two_views_of_one_that_hello_xr_renders() {
     let Some(programs) = programs() else { return };
     let monado = Monado::start(programs);
     // hello_xr draws a cube at the origin of LOCAL space, which Monado puts where its swaying head is when a session begins:
-    // around the eyes in most runs, beside them in others. Two runs are of one world when what both render agrees.
+    // around the eyes, where it is not seen, or beside them. Only runs that have it in the same place compare.
+    let compare = |run: &Run| {
+        let [mono_left, mono_right] = ["left", "right"].map(|eye| picture(&run.mono, eye));
+        let [left, right] = ["left", "right"].map(|eye| picture(&run.stereo, eye));
+        [psnr(&mono_right, &right), psnr(&mono_left, &left), psnr(&mono_right, &left)]
+    };
+    let agrees = |[own, made, same]: [f64; 3]| own > 35.0 && made > same + 6.0;
     let tries = (0..TRIES).map(|i| run_both(&monado, &monado.folder.path().join(i.to_string())));
-    let mut last = None;
-    for run in tries {
-        let own = psnr(&picture(&run.mono, "right"), &picture(&run.stereo, "right"));
-        last = Some((run, own));
-        if own > 35.0 {
-            break;
-        }
-    }
-    let (Run { one, two, mono, stereo }, own) = last.unwrap();
+    let mut compared = tries.map(|run| (compare(&run), run));
+    let first = compared.next().unwrap();
+    let found = if agrees(first.0) { None } else { compared.find(|(db, _)| agrees(*db)) };
+    let ([own, made, same], Run { one, two, .. }) = found.unwrap_or(first);
     for log in [&one, &two] {
         assert!(log.contains("->XR_SESSION_STATE_FOCUSED"), "{log}");
         assert!(!log.contains("VUID-"), "{log}");
@@ -178,8 +179,6 @@ fn monado_gets_two_views_of_one_that_hello_xr_renders() {
     // The union of both frusta and the guard band beside Monado's 320 columns, not the estimate.
     assert!(one.contains("dimensions Width=331 Height=240"), "{one}");
 
-    let real = picture(&stereo, "left");
-    let (made, same) = (psnr(&picture(&mono, "left"), &real), psnr(&picture(&mono, "right"), &real));
     println!(
         "the dominant eye: {own:.2} dB; synthesized: {made:.2} dB; the same image for both eyes: {same:.2} dB"
     );

@@ -233,8 +233,9 @@ void main() {
     }
     bool hole = seen.rest > 0.5;
     if (seen.rest > REST) {
-        if (edge.column < 0) {
-            // Right of everything.
+        bool beyond = edge.column < 0;
+        if (beyond) {
+            // Right of everything, or the last column itself.
             edge = Edge(column, here.split, here.split ? here.back : here.front, 1.0);
         }
         float edge_x = float(source_column(edge.column));
@@ -242,7 +243,8 @@ void main() {
         float spread = 0.5 * clamp(away, 1.0, 12.0);
         vec4 sum = vec4(0.0);
         float weights = 0.0;
-        for (int i = -2; i <= 2; ++i) {
+        int rows = beyond && away < 0.5 ? 0 : 2;
+        for (int i = -rows; i <= rows; ++i) {
             int at = clamp(row + int(roundEven(float(i) * spread)), 0, source_size.y - 1);
             Layer layer = layer_at(edge.column, at);
             bool front = i == 0 ? !edge.back : layer.front <= edge.reach + 1.0;

@@ -423,6 +423,7 @@ fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Co
     }
     let mut hole = out.rest > 0.5;
     if out.rest > 0.01 {
+        let beyond = edge.is_none();
         let edge = edge.unwrap_or(Candidate {
             x,
             back: here.back.is_some(),
@@ -431,7 +432,8 @@ fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Co
         });
         let away = (t - edge.x as f64 - edge.reach).abs();
         let spread = 0.5 * away.clamp(1.0, 12.0);
-        let taps: Vec<(f64, Color)> = (-2..=2)
+        let rows = if beyond && away < 0.5 { 0 } else { 2 };
+        let taps: Vec<(f64, Color)> = (-rows..=rows)
             .filter_map(|i| {
                 let layer = layers.at(edge.x, y + (f64::from(i) * spread).round_ties_even() as i64);
                 let middle = if i == 0 { 2.0 } else { 1.0 };
