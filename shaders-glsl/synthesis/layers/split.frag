@@ -21,7 +21,7 @@ vec4 color_of(ivec2 pixel) {
 
 // Displacement relative to the far plane's.
 float above_far(float depth) {
-    return law.x + law.y * depth - far_displacement;
+    return displacement(depth) - far_displacement;
 }
 
 // How far estimates of front and back are from their mixture is shared among both, so that they mix to it.

@@ -10,6 +10,8 @@ use super::{Capabilities, Context, GlApi, GlError};
 const UNITS: usize = 5;
 /// The unit of the source's colour.
 const COLOR_UNIT: u32 = 1;
+/// Units with multisample textures: the source's depth and colour.
+const MULTISAMPLE_UNITS: [u32; 2] = [0, 3];
 /// Draw buffers in use: colour and, where it is written, the source map.
 const DRAW_BUFFERS: usize = 2;
 /// EXT_depth_bounds_test.
@@ -38,7 +40,6 @@ pub(super) struct Host {
     encoding: bool,
     polygon_mode: bool,
     images: bool,
-    multisample_textures: bool,
     nearest: glow::Sampler,
     linear: glow::Sampler,
 }
@@ -115,7 +116,6 @@ impl Host {
             encoding,
             polygon_mode: desktop,
             images: capabilities.compute,
-            multisample_textures: capabilities.multisample_textures,
             nearest: sampler(glow::NEAREST)?,
             linear: sampler(glow::LINEAR)?,
         })
@@ -151,7 +151,7 @@ pub(crate) struct HostState {
     active_unit: u32,
     textures: [Option<glow::Texture>; UNITS],
     /// Where there are such textures.
-    multisample_textures: [Option<glow::Texture>; UNITS],
+    multisample_textures: [Option<glow::Texture>; MULTISAMPLE_UNITS.len()],
     samplers: [Option<glow::Sampler>; UNITS],
     image: Option<ImageUnit>,
 }
@@ -246,7 +246,7 @@ impl Context {
                 vertex_array: gl.get_parameter_vertex_array(glow::VERTEX_ARRAY_BINDING),
                 active_unit: integer(glow::ACTIVE_TEXTURE) as u32,
                 textures: [None; UNITS],
-                multisample_textures: [None; UNITS],
+                multisample_textures: [None; MULTISAMPLE_UNITS.len()],
                 samplers: [None; UNITS],
                 image: None,
             };
@@ -270,11 +270,13 @@ impl Context {
             for unit in 0..UNITS {
                 gl.active_texture(glow::TEXTURE0 + unit as u32);
                 state.textures[unit] = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D);
-                if host.multisample_textures {
-                    state.multisample_textures[unit] =
-                        gl.get_parameter_texture(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
-                }
                 state.samplers[unit] = gl.get_parameter_sampler(glow::SAMPLER_BINDING);
+            }
+            if self.capabilities().multisample_textures {
+                for (unit, texture) in MULTISAMPLE_UNITS.into_iter().zip(&mut state.multisample_textures) {
+                    gl.active_texture(glow::TEXTURE0 + unit);
+                    *texture = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
+                }
             }
             gl.active_texture(state.active_unit);
             state.image = host.images.then(|| {
@@ -329,10 +331,13 @@ impl Context {
             for unit in 0..UNITS {
                 gl.active_texture(glow::TEXTURE0 + unit as u32);
                 gl.bind_texture(glow::TEXTURE_2D, state.textures[unit]);
-                if host.multisample_textures {
-                    gl.bind_texture(glow::TEXTURE_2D_MULTISAMPLE, state.multisample_textures[unit]);
-                }
                 gl.bind_sampler(unit as u32, state.samplers[unit]);
+            }
+            if self.capabilities().multisample_textures {
+                for (unit, texture) in MULTISAMPLE_UNITS.into_iter().zip(state.multisample_textures) {
+                    gl.active_texture(glow::TEXTURE0 + unit);
+                    gl.bind_texture(glow::TEXTURE_2D_MULTISAMPLE, texture);
+                }
             }
             gl.active_texture(state.active_unit);
             if let Some(image) = &state.image {
