@@ -33,6 +33,7 @@ static FILES: &[(&str, &str)] = embed![
     "include/reprojection.glsl",
     "include/role.glsl",
     "include/shade.glsl",
+    "include/span.glsl",
     "include/surface.glsl",
     "include/tiles.glsl",
     "include/uniforms.glsl",

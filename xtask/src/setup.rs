@@ -57,6 +57,15 @@ const VALIDATION: Need = Need {
     apt: &["vulkan-validationlayers"],
 };
 const VULKAN_NEEDS: [&Need; 3] = [&VULKAN, &VULKAN_DRIVER, &VALIDATION];
+/// What the samples in C are compiled with, without which their tests are skipped.
+const HEADERS: [Need; 2] = [
+    Need { what: "Vulkan's headers", any_of: &["libvulkan.so"], apt: &["libvulkan-dev"] },
+    Need {
+        what: "headers of OpenGL ES",
+        any_of: &["libGLESv2.so"],
+        apt: &["libgles-dev", "libegl-dev"],
+    },
+];
 /// Debian's package of glslangValidator.
 const GLSLANG: &[&str] = &["glslang-tools"];
 
@@ -120,14 +129,16 @@ pub fn browser(install: bool) -> Option<PathBuf> {
     })
 }
 
-/// Installs what tests and shaders of Vulkan need, which no program of the project does; whether the tests can be run.
+/// Installs what tests and shaders of Vulkan need, and tests in C, which no program of the project does; whether the tests
+/// of Vulkan can be run.
 pub fn vulkan() -> bool {
-    let missing = || -> Vec<&Need> {
+    let missing = |needs: &mut dyn Iterator<Item = &'static Need>| -> Vec<&Need> {
         let folders = library_folders();
-        VULKAN_NEEDS.into_iter().filter(|need| !need.is_in(&folders)).collect()
+        needs.filter(|need| !need.is_in(&folders)).collect()
     };
-    let mut absent: Vec<&str> = missing().iter().map(|need| need.what).collect();
-    let mut groups: Vec<&[&str]> = missing().iter().map(|need| need.apt).collect();
+    let all = missing(&mut VULKAN_NEEDS.into_iter().chain(&HEADERS));
+    let mut absent: Vec<&str> = all.iter().map(|need| need.what).collect();
+    let mut groups: Vec<&[&str]> = all.iter().map(|need| need.apt).collect();
     if glslang().is_none() {
         absent.push("glslangValidator");
         groups.push(GLSLANG);
@@ -143,7 +154,7 @@ pub fn vulkan() -> bool {
     if let Err(error) = installed {
         eprintln!("warning: tests of Vulkan need {}; {error:#}", absent.join(", "));
     }
-    missing().is_empty()
+    missing(&mut VULKAN_NEEDS.into_iter()).is_empty()
 }
 
 /// The compiler of Vulkan's shaders.

@@ -4,231 +4,18 @@
  *   vulkan [FILE.png]
  *
  * writes both eyes side by side, the synthesized left eye on the left, and prints how close it is to the same eye
- * rendered. All that has to do with yoro is in `main`, steps 1 to 5; the rest stands for an engine. Vulkan 1.1 and no
- * extension is needed; this engine itself uses Vulkan 1.3 to be short.
+ * rendered. Everything that has to do with yoro is here, steps 1 to 5; engine_vulkan.h stands for an engine. yoro needs
+ * Vulkan 1.1 and no extension.
  */
-#include <vulkan/vulkan.h>
-#include <yoro.h>
-
-#include "picture.h"
-#include "room_spv.h" /* room.vert and room.frag, by glslangValidator -V */
-
-enum { SIZE = 512 };
-
-static VkPhysicalDevice gpu;
-static VkDevice device;
-static VkCommandBuffer commands;
-
-static void check(VkResult result, const char *what) {
-  if (result == VK_SUCCESS) return;
-  fprintf(stderr, "vulkan: %s: error %d\n", what, (int)result);
-  exit(1);
-}
+#include "engine_vulkan.h"
 
 static void on_error(void *user, YoroResult result, const char *sentence) {
   (void)user;
   fprintf(stderr, "yoro (%s): %s\n", yoro_result_text(result), sentence);
 }
 
-static uint32_t memory_type(uint32_t allowed, VkMemoryPropertyFlags flags) {
-  VkPhysicalDeviceMemoryProperties all;
-  vkGetPhysicalDeviceMemoryProperties(gpu, &all);
-  for (uint32_t i = 0; i < all.memoryTypeCount; ++i)
-    if ((allowed >> i & 1) && (all.memoryTypes[i].propertyFlags & flags) == flags) return i;
-  check(VK_ERROR_FEATURE_NOT_PRESENT, "no memory of this kind");
-  return 0;
-}
-
-static VkDeviceMemory allocate(VkMemoryRequirements needs, VkMemoryPropertyFlags flags) {
-  VkMemoryAllocateInfo info = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, NULL, needs.size,
-                               memory_type(needs.memoryTypeBits, flags)};
-  VkDeviceMemory memory;
-  check(vkAllocateMemory(device, &info, NULL, &memory), "vkAllocateMemory");
-  return memory;
-}
-
-/* What the engine renders to and yoro reads from or writes to. */
-typedef struct {
-  VkImage color, depth;
-  VkImageView color_view, depth_view;
-  VkExtent2D size;
-} Image;
-
-static void make_plane(VkFormat format, VkImageUsageFlags usage, VkImageAspectFlags aspect, VkExtent2D size,
-                       VkImage *image, VkImageView *view) {
-  VkImageCreateInfo info;
-  memset(&info, 0, sizeof info);
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-  info.imageType = VK_IMAGE_TYPE_2D;
-  info.format = format;
-  info.extent.width = size.width, info.extent.height = size.height, info.extent.depth = 1;
-  info.mipLevels = info.arrayLayers = 1;
-  info.samples = VK_SAMPLE_COUNT_1_BIT;
-  info.usage = usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-  check(vkCreateImage(device, &info, NULL, image), "vkCreateImage");
-  VkMemoryRequirements needs;
-  vkGetImageMemoryRequirements(device, *image, &needs);
-  check(vkBindImageMemory(device, *image, allocate(needs, 0), 0), "vkBindImageMemory");
-  VkImageViewCreateInfo view_info;
-  memset(&view_info, 0, sizeof view_info);
-  view_info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-  view_info.image = *image;
-  view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
-  view_info.format = format;
-  view_info.subresourceRange.aspectMask = aspect;
-  view_info.subresourceRange.levelCount = view_info.subresourceRange.layerCount = 1;
-  check(vkCreateImageView(device, &view_info, NULL, view), "vkCreateImageView");
-}
-
-static Image make_image(uint32_t width, uint32_t height) {
-  Image image;
-  image.size.width = width, image.size.height = height;
-  make_plane(VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_IMAGE_ASPECT_COLOR_BIT, image.size,
-             &image.color, &image.color_view);
-  make_plane(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT, image.size,
-             &image.depth, &image.depth_view);
-  return image;
-}
-
-static VkShaderModule make_shader(const uint32_t *words, size_t bytes) {
-  VkShaderModuleCreateInfo info = {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, NULL, 0, bytes, words};
-  VkShaderModule shader;
-  check(vkCreateShaderModule(device, &info, NULL, &shader), "vkCreateShaderModule");
-  return shader;
-}
-
-/* The scene: one triangle over the viewport, projection and view as push constants. */
-static VkPipelineLayout layout;
-static VkPipeline make_scene(void) {
-  VkPushConstantRange range = {VK_SHADER_STAGE_FRAGMENT_BIT, 0, 128};
-  VkPipelineLayoutCreateInfo layout_info = {VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, NULL, 0, 0, NULL, 1, &range};
-  check(vkCreatePipelineLayout(device, &layout_info, NULL, &layout), "vkCreatePipelineLayout");
-  VkPipelineShaderStageCreateInfo stages[2];
-  memset(stages, 0, sizeof stages);
-  for (int i = 0; i < 2; ++i) {
-    stages[i].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    stages[i].stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT;
-    stages[i].module = i ? make_shader(room_frag, sizeof room_frag) : make_shader(room_vert, sizeof room_vert);
-    stages[i].pName = "main";
-  }
-  VkPipelineVertexInputStateCreateInfo vertices;
-  VkPipelineInputAssemblyStateCreateInfo assembly;
-  VkPipelineViewportStateCreateInfo viewport;
-  VkPipelineRasterizationStateCreateInfo raster;
-  VkPipelineMultisampleStateCreateInfo samples;
-  VkPipelineDepthStencilStateCreateInfo depth;
-  VkPipelineColorBlendAttachmentState attachment;
-  VkPipelineColorBlendStateCreateInfo blend;
-  VkPipelineDynamicStateCreateInfo dynamic;
-  VkPipelineRenderingCreateInfo rendering;
-  VkGraphicsPipelineCreateInfo info;
-  memset(&vertices, 0, sizeof vertices), memset(&assembly, 0, sizeof assembly);
-  memset(&viewport, 0, sizeof viewport), memset(&raster, 0, sizeof raster), memset(&samples, 0, sizeof samples);
-  memset(&depth, 0, sizeof depth), memset(&attachment, 0, sizeof attachment), memset(&blend, 0, sizeof blend);
-  memset(&dynamic, 0, sizeof dynamic), memset(&rendering, 0, sizeof rendering), memset(&info, 0, sizeof info);
-  static const VkDynamicState states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  static const VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
-  vertices.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-  viewport.viewportCount = viewport.scissorCount = 1;
-  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-  raster.lineWidth = 1.0f;
-  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
-  depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
-  attachment.colorWriteMask = 15;
-  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-  blend.attachmentCount = 1, blend.pAttachments = &attachment;
-  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-  dynamic.dynamicStateCount = 2, dynamic.pDynamicStates = states;
-  rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-  rendering.colorAttachmentCount = 1, rendering.pColorAttachmentFormats = &format;
-  rendering.depthAttachmentFormat = VK_FORMAT_D32_SFLOAT;
-  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, info.pNext = &rendering;
-  info.stageCount = 2, info.pStages = stages, info.pVertexInputState = &vertices;
-  info.pInputAssemblyState = &assembly, info.pViewportState = &viewport, info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples, info.pDepthStencilState = &depth, info.pColorBlendState = &blend;
-  info.pDynamicState = &dynamic, info.layout = layout;
-  VkPipeline pipeline;
-  check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline), "vkCreateGraphicsPipelines");
-  return pipeline;
-}
-
-static void to_attachment(VkImage image, VkImageAspectFlags aspect, VkImageLayout new_layout) {
-  VkImageMemoryBarrier barrier = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER, NULL, 0, VK_ACCESS_MEMORY_WRITE_BIT,
-                                  VK_IMAGE_LAYOUT_UNDEFINED, new_layout, VK_QUEUE_FAMILY_IGNORED,
-                                  VK_QUEUE_FAMILY_IGNORED, image, {aspect, 0, 1, 0, 1}};
-  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, 0, 0, NULL, 0,
-                       NULL, 1, &barrier);
-}
-
-/* Leaves colour and depth as attachments. */
-static void draw(VkPipeline scene, const YoroView *view, const Image *image) {
-  to_attachment(image->color, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-  to_attachment(image->depth, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-  VkRenderingAttachmentInfo color, depth;
-  VkRenderingInfo info;
-  memset(&color, 0, sizeof color), memset(&depth, 0, sizeof depth), memset(&info, 0, sizeof info);
-  color.sType = depth.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  color.imageView = image->color_view, color.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  depth.imageView = image->depth_view, depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-  color.storeOp = depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  color.loadOp = depth.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-  info.renderArea.extent = image->size, info.layerCount = 1;
-  info.colorAttachmentCount = 1, info.pColorAttachments = &color, info.pDepthAttachment = &depth;
-  vkCmdBeginRendering(commands, &info);
-  VkViewport viewport = {0, 0, (float)image->size.width, (float)image->size.height, 0, 1};
-  vkCmdSetViewport(commands, 0, 1, &viewport);
-  vkCmdSetScissor(commands, 0, 1, &info.renderArea);
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, scene);
-  vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, 64, view->projection);
-  vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 64, 64, view->view);
-  vkCmdDraw(commands, 3, 1, 0, 0);
-  vkCmdEndRendering(commands);
-}
-
-/* Copies SIZE x SIZE pixels of a colour attachment into a buffer. */
-static void read_back(const Image *image, uint32_t x, uint32_t y, VkBuffer buffer, VkDeviceSize offset, uint32_t row) {
-  VkImageMemoryBarrier barrier = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER, NULL, VK_ACCESS_MEMORY_WRITE_BIT,
-                                  VK_ACCESS_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_QUEUE_FAMILY_IGNORED,
-                                  VK_QUEUE_FAMILY_IGNORED, image->color, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0,
-                       NULL, 1, &barrier);
-  VkBufferImageCopy copy = {offset, row, SIZE, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, {(int)x, (int)y, 0}, {SIZE, SIZE, 1}};
-  vkCmdCopyImageToBuffer(commands, image->color, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &copy);
-}
-
 int main(int argc, char **argv) {
-  /* The engine's own start: an instance, the first device, queue family 0, and Vulkan 1.3's dynamic rendering. */
-  VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO, NULL, "sample", 1, NULL, 0, VK_API_VERSION_1_3};
-  VkInstanceCreateInfo instance_info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, NULL, 0, &application, 0, NULL, 0, NULL};
-  VkInstance instance;
-  check(vkCreateInstance(&instance_info, NULL, &instance), "vkCreateInstance");
-  uint32_t one = 1;
-  vkEnumeratePhysicalDevices(instance, &one, &gpu);
-  if (!one) check(VK_ERROR_INITIALIZATION_FAILED, "no device");
-  float priority = 1.0f;
-  VkDeviceQueueCreateInfo queue_info = {VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, NULL, 0, 0, 1, &priority};
-  VkPhysicalDeviceVulkan13Features features;
-  memset(&features, 0, sizeof features);
-  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  features.dynamicRendering = VK_TRUE;
-  VkDeviceCreateInfo device_info = {VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features, 0, 1, &queue_info, 0, NULL, 0, NULL,
-                                    NULL};
-  check(vkCreateDevice(gpu, &device_info, NULL, &device), "vkCreateDevice");
-  VkCommandPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, NULL, 0, 0};
-  VkCommandPool pool;
-  check(vkCreateCommandPool(device, &pool_info, NULL, &pool), "vkCreateCommandPool");
-  VkCommandBufferAllocateInfo commands_info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, NULL, pool,
-                                               VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-  check(vkAllocateCommandBuffers(device, &commands_info, &commands), "vkAllocateCommandBuffers");
-  VkPipeline scene = make_scene();
+  engine_start();
 
   /* 1. Where the eyes are. With OpenXR, poses and angles are those of xrLocateViews, copied. */
   YoroEyes eyes;
@@ -286,22 +73,26 @@ int main(int argc, char **argv) {
       VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
   /* What the target held is not needed. */
   const YoroVkState nothing = {VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, 0};
-  YoroVkSource read = {sizeof read, views.source.width, views.source.height, 0,
-                       {source.color, VK_FORMAT_R8G8B8A8_UNORM, 0, as_color, as_color},
-                       {source.depth, VK_FORMAT_D32_SFLOAT, 0, as_depth, as_depth}};
-  YoroVkTarget written = {sizeof written, SIZE, SIZE, 0,
-                          {other.color, VK_FORMAT_R8G8B8A8_UNORM, 0, nothing, as_color},
-                          {other.depth, VK_FORMAT_D32_SFLOAT, 0, nothing, as_depth}};
+  const YoroVkImage color_read = {source.color, VK_FORMAT_R8G8B8A8_UNORM, 0, as_color, as_color};
+  const YoroVkImage depth_read = {source.depth, VK_FORMAT_D32_SFLOAT, 0, as_depth, as_depth};
+  const YoroVkImage color_written = {other.color, VK_FORMAT_R8G8B8A8_UNORM, 0, nothing, as_color};
+  const YoroVkImage depth_written = {other.depth, VK_FORMAT_D32_SFLOAT, 0, nothing, as_depth};
+  YoroVkSource read;
+  YoroVkTarget written;
   YoroVkFrame frame;
-  memset(&frame, 0, sizeof frame);
+  memset(&read, 0, sizeof read), memset(&written, 0, sizeof written), memset(&frame, 0, sizeof frame);
+  read.struct_size = sizeof read;
+  read.width = source.size.width, read.height = source.size.height;
+  read.color = color_read, read.depth = depth_read;
+  written.struct_size = sizeof written;
+  written.width = written.height = SIZE;
+  written.color = color_written, written.depth = depth_written;
   frame.struct_size = sizeof frame;
   if (yoro_vk_register_source(yoro, &read, &frame.source) != YORO_OK) return 1;
   if (yoro_vk_register_target(yoro, &written, &frame.target) != YORO_OK) return 1;
 
   /* 4. Each frame: the engine records the opaque objects of one eye. The image is wider than the eye's: it is the crop. */
-  VkCommandBufferBeginInfo begin = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, NULL, 0, NULL};
-  vkBeginCommandBuffer(commands, &begin);
-  draw(scene, &views.source, &source);
+  engine_draw(&views.source, &source);
 
   /* 5. The other eye, recorded behind it. Transparent objects are drawn into both afterwards, against each eye's depth. */
   if (yoro_vk_record(yoro, commands, &views.warp, &frame) != YORO_OK) return 1;
@@ -309,29 +100,8 @@ int main(int argc, char **argv) {
   /* Worth doing once in every engine: the same eye rendered. A wrong sign, a flipped row or a misread depth costs more
    * than 10 dB. */
   Image truth = make_image(SIZE, SIZE);
-  draw(scene, &views.synthesized, &truth);
-  VkBufferCreateInfo buffer_info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, NULL, 0, 3 * 4 * SIZE * SIZE,
-                                    VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_SHARING_MODE_EXCLUSIVE, 0, NULL};
-  VkBuffer buffer;
-  check(vkCreateBuffer(device, &buffer_info, NULL, &buffer), "vkCreateBuffer");
-  VkMemoryRequirements needs;
-  vkGetBufferMemoryRequirements(device, buffer, &needs);
-  VkDeviceMemory memory =
-      allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-  vkBindBufferMemory(device, buffer, memory, 0);
-  read_back(&other, 0, 0, buffer, 0, 2 * SIZE);
-  read_back(&source, views.crop_x, views.crop_y, buffer, 4 * SIZE, 2 * SIZE);
-  read_back(&truth, 0, 0, buffer, 2 * 4 * SIZE * SIZE, SIZE);
-  vkEndCommandBuffer(commands);
-  VkQueue queue;
-  vkGetDeviceQueue(device, 0, 0, &queue);
-  VkSubmitInfo submit = {VK_STRUCTURE_TYPE_SUBMIT_INFO, NULL, 0, NULL, NULL, 1, &commands, 0, NULL};
-  check(vkQueueSubmit(queue, 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit");
-  check(vkDeviceWaitIdle(device), "vkDeviceWaitIdle");
-
-  void *mapped = NULL;
-  check(vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
-  const uint8_t *pixels = (const uint8_t *)mapped;
+  engine_draw(&views.synthesized, &truth);
+  const uint8_t *pixels = engine_finish(&other, &source, views.crop_x, views.crop_y, &truth);
   Picture pair = {2 * SIZE, SIZE, pixels, 2 * SIZE}, expected = {SIZE, SIZE, pixels + 2 * 4 * SIZE * SIZE, SIZE};
   Picture left = {SIZE, SIZE, pixels, 2 * SIZE}, right = {SIZE, SIZE, pixels + 4 * SIZE, 2 * SIZE};
   printf("synthesized: %.2f dB, SSIM %.4f\n", picture_psnr(&left, &expected), picture_ssim(&left, &expected));

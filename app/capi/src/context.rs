@@ -237,7 +237,7 @@ mod tests {
             outputs: 0,
             state: YORO_GL_STATE_LEAVE,
             check: 0,
-            reserved: 0,
+            edges: 0,
             loader: Some(load),
             messages: YoroMessages { callback: Some(count), user: (&raw mut sentences).cast() },
         };

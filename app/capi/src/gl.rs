@@ -7,7 +7,7 @@ use std::rc::Rc;
 use glow::HasContext;
 use yoro::eyes::Warp;
 use yoro::gl::{Context, Destination, GlApi};
-use yoro::synthesis::{self, GlState, Outputs, Pipeline, Source, Synthesis, SynthesisOptions};
+use yoro::synthesis::{self, Edges, GlState, Outputs, Pipeline, Source, Synthesis, SynthesisOptions};
 
 use crate::context::{
     Api, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, create, enter,
@@ -18,7 +18,7 @@ use crate::result::{
 };
 use crate::types::{
     YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YORO_PIPELINE_GATHER, YORO_PIPELINE_PAPER, YORO_PIPELINE_ROWGROUP,
-    YoroOutputFlags, YoroPipeline,
+    YoroEdges, YoroOutputFlags, YoroPipeline, edges,
 };
 use crate::versioned::{self, versioned};
 use crate::views::YoroWarp;
@@ -50,8 +50,9 @@ pub struct YoroGlInfo {
     /// 1: each call looks whether textures and framebuffer are as they must be, and whether GL has errors, which it takes.
     /// Costs a wait for the driver: for development. 0: such mistakes are undefined, as in GL.
     pub check: u32,
-    /// Zero.
-    pub reserved: u32,
+    /// What the source knows of its edges; 0 is YORO_EDGES_HARD. The others need YORO_PIPELINE_GATHER, and
+    /// YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
+    pub edges: YoroEdges,
     /// Entry points.
     pub loader: YoroGlLoader,
     /// Where the sentences of errors go, those of later calls, too.
@@ -86,9 +87,11 @@ pub struct YoroGlImages {
     /// sizeof(YoroGlImages).
     pub struct_size: u32,
     /// The rendered eye: name of a GL_TEXTURE_2D of the source's size and any filterable format, without samples. All four
-    /// channels are carried over, in whatever encoding. Filters and sampler objects do not matter.
+    /// channels are carried over, in whatever encoding. Filters and sampler objects do not matter. Other than with
+    /// YORO_EDGES_HARD it is resolved, and lies between 0 and 1.
     pub color_texture: u32,
-    /// Its depth: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or red float format.
+    /// Its depth: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or red float format;
+    /// with YORO_EDGES_MULTISAMPLE of a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
     pub depth_texture: u32,
     /// The framebuffer to draw into, 0 for the window's. It has neither of the textures; its first colour attachment is
     /// written, and with YORO_OUTPUT_DEPTH its depth attachment.
@@ -97,6 +100,9 @@ pub struct YoroGlImages {
     pub x: u32,
     /// Row of the framebuffer where it begins, from the lowest.
     pub y: u32,
+    /// With YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, where it is
+    /// still there; otherwise 0.
+    pub sample_color_texture: u32,
 }
 
 versioned!(YoroGlImages);
@@ -165,6 +171,7 @@ pub(crate) struct Gl {
     context: Rc<Context>,
     synthesis: Box<dyn Synthesis>,
     pipeline: YoroPipeline,
+    edges: Edges,
     outputs: Outputs,
     check: bool,
 }
@@ -192,7 +199,7 @@ impl Gl {
                 )));
             }
         };
-        let outputs = outputs(info.outputs)?;
+        let (outputs, edges) = (outputs(info.outputs)?, edges(info.edges)?);
         if info.check > 1 {
             return Err(Failure::value(format!("check is {}: give 0 or 1", info.check)));
         }
@@ -207,9 +214,9 @@ impl Gl {
             check_current(load)?;
             Context::with_loader(glow::Context::from_loader_function_cstr(load), load)?
         };
-        let options = SynthesisOptions { pipeline, gl_state, ..SynthesisOptions::default() };
+        let options = SynthesisOptions { pipeline, gl_state, edges, ..SynthesisOptions::default() };
         let synthesis = synthesis::create(&context, &options, outputs)?;
-        Ok(Gl { context, synthesis, pipeline: info.pipeline, outputs, check: info.check == 1 })
+        Ok(Gl { context, synthesis, pipeline: info.pipeline, edges, outputs, check: info.check == 1 })
     }
 
     pub(crate) fn capabilities(&self) -> YoroCapabilities {
@@ -262,7 +269,14 @@ impl Gl {
             name.ok_or_else(|| Failure::value(format!("{what} is 0: give the name of a texture")))
         };
         let color = texture(images.color_texture, "color_texture")?;
-        let source = Source::new(color, texture(images.depth_texture, "depth_texture")?);
+        let depth = texture(images.depth_texture, "depth_texture")?;
+        let samples = NonZeroU32::new(images.sample_color_texture).map(glow::NativeTexture);
+        if samples.is_some() && self.edges != Edges::Multisample {
+            return Err(Failure::value(
+                "sample_color_texture is for YORO_EDGES_MULTISAMPLE alone: leave it 0, or choose these",
+            ));
+        }
+        let source = Source { samples, ..Source::new(color, depth) };
         let limit = self.context.capabilities().max_texture_size;
         if images.x > limit || images.y > limit {
             return Err(Failure::value(format!(
@@ -299,12 +313,16 @@ impl Gl {
                 format!("GL already has errors from before the call ({errors}): look for them in the engine"),
             ));
         }
-        self.check_texture(source.color, "color_texture", warp.source_size, |kind| {
-            kind.depth == 0 && kind.color_type != glow::INT && kind.color_type != glow::UNSIGNED_INT
-        })?;
-        self.check_texture(source.depth, "depth_texture", warp.source_size, |kind| {
-            kind.depth > 0 || kind.color_type == glow::FLOAT
-        })?;
+        let is_color = |level: Level| {
+            level.depth == 0 && level.color_type != glow::INT && level.color_type != glow::UNSIGNED_INT
+        };
+        let is_depth = |level: Level| level.depth > 0 || level.color_type == glow::FLOAT;
+        let of_depth = if self.edges == Edges::Multisample { &SAMPLES } else { &PLAIN };
+        self.check_texture(source.color, "color_texture", &PLAIN, warp.source_size, is_color)?;
+        self.check_texture(source.depth, "depth_texture", of_depth, warp.source_size, is_depth)?;
+        if let Some(samples) = source.samples {
+            self.check_texture(samples, "sample_color_texture", &SAMPLES, warp.source_size, is_color)?;
+        }
         // SAFETY: queries and bindings; an unknown name is refused by GL with an error, which is taken.
         let (is_known, status, attached) = unsafe {
             let bound = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
@@ -339,8 +357,12 @@ impl Gl {
         if self.outputs.depth && depth_kind == glow::NONE {
             return wrong("the framebuffer has no depth attachment, which YORO_OUTPUT_DEPTH writes".into());
         }
-        for (texture, what) in [(source.color, "color_texture"), (source.depth, "depth_texture")] {
-            if [color, depth].contains(&Some(texture)) {
+        for (texture, what) in [
+            (Some(source.color), "color_texture"),
+            (Some(source.depth), "depth_texture"),
+            (source.samples, "sample_color_texture"),
+        ] {
+            if texture.is_some() && [color, depth].contains(&texture) {
                 return wrong(format!(
                     "{what} is attached to the framebuffer: nothing can be drawn into what is read, give the \
                      framebuffer textures of its own"
@@ -348,7 +370,7 @@ impl Gl {
             }
         }
         let end = [0, 1].map(|i| target.origin[i].saturating_add(target.size[i]));
-        let first_level = color.and_then(|texture| self.level(texture));
+        let first_level = color.and_then(|texture| self.level(texture, &PLAIN));
         match first_level.map(|level| level.size) {
             Some([width, height]) if width > 0 && (end[0] > width || end[1] > height) => wrong(format!(
                 "the rectangle ends at column {} and row {}, beyond the framebuffer's {width}x{height} pixels: see x \
@@ -361,24 +383,23 @@ impl Gl {
 
     /// What the first level of a texture is, with nothing in it where that cannot be asked for: since OpenGL ES 3.1. None
     /// for a texture of another target.
-    fn level(&self, texture: glow::Texture) -> Option<Level> {
+    fn level(&self, texture: glow::Texture, kind: &Kind) -> Option<Level> {
         let gl = self.context.raw();
         // SAFETY: queries; a texture of another target is refused by GL with an error, which is taken.
         unsafe {
-            let bound = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D);
-            gl.bind_texture(glow::TEXTURE_2D, Some(texture));
-            let is_plain = self.context.take_errors().is_none();
-            let asked = is_plain && self.context.capabilities().compute;
-            let ask =
-                |name| if asked { gl.get_tex_level_parameter_i32(glow::TEXTURE_2D, 0, name) } else { 0 };
+            let bound = gl.get_parameter_texture(kind.binding);
+            gl.bind_texture(kind.target, Some(texture));
+            let is_such = self.context.take_errors().is_none();
+            let asked = is_such && self.context.capabilities().compute;
+            let ask = |name| if asked { gl.get_tex_level_parameter_i32(kind.target, 0, name) } else { 0 };
             let level = Level {
                 asked,
                 size: [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT].map(|name| ask(name) as u32),
                 color_type: ask(glow::TEXTURE_RED_TYPE) as u32,
                 depth: ask(glow::TEXTURE_DEPTH_SIZE),
             };
-            gl.bind_texture(glow::TEXTURE_2D, bound);
-            is_plain.then_some(level)
+            gl.bind_texture(kind.target, bound);
+            is_such.then_some(level)
         }
     }
 
@@ -386,6 +407,7 @@ impl Gl {
         &self,
         texture: glow::Texture,
         what: &str,
+        kind: &Kind,
         size: [u32; 2],
         fits: impl FnOnce(Level) -> bool,
     ) -> Result<(), Failure> {
@@ -395,8 +417,8 @@ impl Gl {
         if !unsafe { gl.is_texture(texture) } {
             return wrong(format!("{what} is {}, no texture of this GL context", texture.0));
         }
-        let Some(level) = self.level(texture) else {
-            return wrong(format!("{what} is no GL_TEXTURE_2D: give one layer without samples"));
+        let Some(level) = self.level(texture, kind) else {
+            return wrong(format!("{what} is no {}", kind.sentence));
         };
         if level.asked && level.size != size {
             let ([w, h], [x, y]) = (level.size, size);
@@ -410,6 +432,25 @@ impl Gl {
         Ok(())
     }
 }
+
+/// A kind of texture.
+struct Kind {
+    target: u32,
+    binding: u32,
+    /// Its name, and what to do where it is another.
+    sentence: &'static str,
+}
+
+const PLAIN: Kind = Kind {
+    target: glow::TEXTURE_2D,
+    binding: glow::TEXTURE_BINDING_2D,
+    sentence: "GL_TEXTURE_2D: give one layer without samples",
+};
+const SAMPLES: Kind = Kind {
+    target: glow::TEXTURE_2D_MULTISAMPLE,
+    binding: glow::TEXTURE_BINDING_2D_MULTISAMPLE,
+    sentence: "GL_TEXTURE_2D_MULTISAMPLE: give one with samples, or other YORO_EDGES_",
+};
 
 /// The first level of a texture.
 struct Level {

@@ -1,6 +1,7 @@
 //! Versions, and the small types that the structures are made of.
 
 use yoro::eyes::{DepthConvention, Eye};
+use yoro::synthesis::Edges;
 
 use crate::result::Failure;
 
@@ -64,6 +65,29 @@ pub const YORO_PIPELINE_GATHER: YoroPipeline = 0;
 pub const YORO_PIPELINE_ROWGROUP: YoroPipeline = 1;
 /// Compute shaders: Algorithms 1 to 3 of the paper.
 pub const YORO_PIPELINE_PAPER: YoroPipeline = 2;
+
+/// What the rendered eye knows of its edges, where a pixel shows more than one surface, and with it what its depth is. Depth
+/// that was averaged over samples belongs to no surface, and gives halos.
+pub type YoroEdges = u32;
+/// One sample per pixel, of colour and depth.
+pub const YORO_EDGES_HARD: YoroEdges = 0;
+/// Colour resolved from several samples, depth of the nearest of them.
+pub const YORO_EDGES_NEAREST: YoroEdges = 1;
+/// Colour resolved from several samples, depth of the first of them: what a driver leaves that resolves depth by itself.
+pub const YORO_EDGES_SAMPLE: YoroEdges = 2;
+/// Colour resolved from 2 or 4 samples, depth of all of them and, where it is still there, the colour of all of them, in the
+/// standard places. The best of the four.
+pub const YORO_EDGES_MULTISAMPLE: YoroEdges = 3;
+
+pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
+    match edges {
+        YORO_EDGES_HARD => Ok(Edges::Hard),
+        YORO_EDGES_NEAREST => Ok(Edges::Nearest),
+        YORO_EDGES_SAMPLE => Ok(Edges::Sample),
+        YORO_EDGES_MULTISAMPLE => Ok(Edges::Multisample),
+        other => Err(Failure::value(format!("{other} is no kind of edges: give a YORO_EDGES_ constant"))),
+    }
+}
 
 /// Bits of what is written besides colour, and how.
 pub type YoroOutputFlags = u32;

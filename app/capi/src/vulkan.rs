@@ -12,9 +12,9 @@ use crate::context::{Api, YORO_API_VULKAN, YoroCapabilities, YoroContext, create
 use crate::result::{
     Failure, YORO_ERROR_API, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_MEMORY,
     YORO_ERROR_NO_CONTEXT, YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE,
-    YORO_ERROR_UNSUPPORTED, YoroMessages, YoroResult,
+    YORO_ERROR_UNSUPPORTED, YORO_ERROR_VALUE, YoroMessages, YoroResult,
 };
-use crate::types::YORO_PIPELINE_GATHER;
+use crate::types::{YORO_PIPELINE_GATHER, YoroEdges, edges};
 use crate::versioned::{self, versioned};
 use crate::views::YoroWarp;
 
@@ -55,6 +55,10 @@ pub struct YoroVkInfo {
     pub max_target_width: u32,
     /// Largest height of a synthesized image.
     pub max_target_height: u32,
+    /// What sources know of their edges; 0 is YORO_EDGES_HARD.
+    pub edges: YoroEdges,
+    /// With YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise not looked at.
+    pub samples: u32,
     /// Zero.
     pub reserved: u32,
     /// A cache for pipelines, or VK_NULL_HANDLE.
@@ -77,7 +81,7 @@ pub struct YoroVkState {
     pub access: vk::AccessFlags,
 }
 
-/// One layer of a 2-D image: mip level 0, without multisampling.
+/// One layer of a 2-D image: mip level 0, without multisampling where nothing else is said.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkImage {
@@ -100,16 +104,21 @@ pub struct YoroVkImage {
 pub struct YoroVkSource {
     /// sizeof(YoroVkSource).
     pub struct_size: u32,
-    /// Width of both images in pixels; what is rendered may be a part of them.
+    /// Width of the images in pixels; what is rendered may be a part of them.
     pub width: u32,
-    /// Height of both images in pixels.
+    /// Height of the images in pixels.
     pub height: u32,
     /// Zero.
     pub reserved: u32,
-    /// Colour of the rendered eye, of any format that can be filtered. All four channels are carried over.
+    /// Colour of the rendered eye, of any format that can be filtered. All four channels are carried over. Other than with
+    /// YORO_EDGES_HARD it is resolved, and lies between 0 and 1.
     pub color: YoroVkImage,
-    /// Its depth: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT.
+    /// Its depth: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT; with
+    /// YORO_EDGES_MULTISAMPLE of YoroVkInfo's samples.
     pub depth: YoroVkImage,
+    /// With YORO_EDGES_MULTISAMPLE, what the colour was resolved from, of as many samples, where it is still there; otherwise
+    /// its image is VK_NULL_HANDLE.
+    pub sample_color: YoroVkImage,
 }
 
 versioned!(YoroVkSource);
@@ -207,6 +216,10 @@ pub unsafe extern "C" fn yoro_vk_register_source(
             let images = SourceImages {
                 color: source.color.checked("color", true)?,
                 depth: source.depth.checked("depth", true)?,
+                sample_color: match source.sample_color.image == vk::Image::null() {
+                    true => None,
+                    false => Some(source.sample_color.checked("sample_color", true)?),
+                },
                 size: [source.width, source.height],
             };
             id.write(vulkan.gather.register_source(&images)?.to_raw());
@@ -280,7 +293,7 @@ pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: Y
     }
 }
 
-/// Records the synthesis of the other eye: barriers and three draws into the target's rectangle of warp's target size, all of
+/// Records the synthesis of the other eye: barriers, and three draws or, other than with YORO_EDGES_HARD, four into the target's rectangle of warp's target size, all of
 /// which is overwritten. Record it after the opaque objects of the rendered eye, before transparent objects and effects
 /// that are drawn for each eye. Nothing is allocated, compiled, submitted or waited for.
 ///
@@ -350,7 +363,6 @@ pub(crate) struct Vulkan {
     writes_depth: bool,
     instance: Instance,
     physical_device: vk::PhysicalDevice,
-    buffer_bytes: u64,
 }
 
 impl Vulkan {
@@ -419,16 +431,14 @@ impl Vulkan {
             depth_format: writes_depth.then_some(info.depth_format),
             max_source_size: [info.max_source_width, info.max_source_height],
             max_target_size: [info.max_target_width, info.max_target_height],
+            edges: edges(info.edges)?,
+            samples: info.samples,
             timed_frames: 0,
             pipeline_cache: info.pipeline_cache,
         };
         // SAFETY: promised by the caller.
         let gather = unsafe { Gather::new(&host, &options) }?;
-        // Four bytes for each tile of 16 x 8 pixels, of the source and of the target over the source's rows.
-        let columns = info.max_source_width.div_ceil(16) + info.max_target_width.div_ceil(16);
-        let buffer_bytes = 4 * u64::from(columns) * u64::from(info.max_source_height.div_ceil(8));
-        let physical_device = info.physical_device;
-        Ok(Vulkan { gather, writes_depth, instance, physical_device, buffer_bytes })
+        Ok(Vulkan { gather, writes_depth, instance, physical_device: info.physical_device })
     }
 
     pub(crate) fn capabilities(&self) -> YoroCapabilities {
@@ -443,7 +453,7 @@ impl Vulkan {
             compute: 1,
             software: (properties.device_type == vk::PhysicalDeviceType::CPU).into(),
             max_image_size: properties.limits.max_image_dimension2_d,
-            buffer_bytes: self.buffer_bytes,
+            buffer_bytes: self.gather.buffer_bytes(),
             device: [0; 128],
         };
         if let Ok(name) = properties.device_name_as_c_str() {
@@ -505,7 +515,10 @@ impl From<VulkanError> for Failure {
             VulkanError::OutOfMemory { .. } => YORO_ERROR_MEMORY,
             VulkanError::DeviceLost { .. } => YORO_ERROR_DEVICE_LOST,
             VulkanError::Format { .. } | VulkanError::OtherFormat { .. } => YORO_ERROR_FORMAT,
-            VulkanError::QueueFamily(_) | VulkanError::DynamicRendering => YORO_ERROR_UNSUPPORTED,
+            VulkanError::QueueFamily(_) | VulkanError::DynamicRendering | VulkanError::Samples(_) => {
+                YORO_ERROR_UNSUPPORTED
+            }
+            VulkanError::SampleColors => YORO_ERROR_VALUE,
             VulkanError::Size { .. } | VulkanError::Rectangle { .. } => YORO_ERROR_TOO_LARGE,
             VulkanError::NotRegistered => YORO_ERROR_NOT_REGISTERED,
             _ => YORO_ERROR_DRIVER,

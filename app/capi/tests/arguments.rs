@@ -402,6 +402,7 @@ fn a_context_that_cannot_be_has_its_code() {
     assert_eq!(create(&YoroGlInfo { outputs: 8, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { state: 2, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { check: 2, ..info }), YORO_ERROR_VALUE);
+    assert_eq!(create(&YoroGlInfo { edges: 4, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { loader: None, ..info }), YORO_ERROR_NULL);
     assert_eq!(create(&YoroGlInfo { loader: Some(load_nothing), ..info }), YORO_ERROR_NO_CONTEXT);
     assert_eq!(create(&info), YORO_ERROR_NO_CONTEXT);
@@ -417,6 +418,8 @@ fn a_context_that_cannot_be_has_its_code() {
     for pipeline in [YORO_PIPELINE_GATHER, YORO_PIPELINE_ROWGROUP, YORO_PIPELINE_PAPER] {
         assert_eq!(create(&YoroGlInfo { pipeline, outputs: YORO_OUTPUT_DEPTH, ..info }), YORO_OK);
     }
+    let rowgroup = YoroGlInfo { pipeline: YORO_PIPELINE_ROWGROUP, ..info };
+    assert_eq!(create(&YoroGlInfo { edges: YORO_EDGES_NEAREST, ..rowgroup }), YORO_ERROR_UNSUPPORTED);
 }
 
 /// A texture of one level.
@@ -430,6 +433,9 @@ unsafe fn texture(gl: &glow::Context, target: u32, format: u32, [w, h]: [u32; 2]
         gl.bind_texture(target, Some(texture));
         match target {
             glow::TEXTURE_2D => gl.tex_storage_2d(target, 1, format, w as i32, h as i32),
+            glow::TEXTURE_2D_MULTISAMPLE => {
+                gl.tex_storage_2d_multisample(target, 4, format, w as i32, h as i32, true);
+            }
             _ => gl.tex_storage_3d(target, 1, format, w as i32, h as i32, 2),
         }
         gl.bind_texture(target, None);
@@ -546,4 +552,53 @@ fn images_that_do_not_fit_have_their_codes() {
         .unwrap();
     // SAFETY: made above, destroyed once.
     assert_eq!(unsafe { yoro_destroy(context) }, YORO_OK);
+}
+
+#[test]
+fn anti_aliased_images_that_do_not_fit_have_their_codes() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl().raw();
+    let views = views_of(&good_eyes()).unwrap();
+    let (size, target_size) = ([views.source.width, views.source.height], [160, 120]);
+    let made = |target, format, size| {
+        // SAFETY: the context is current.
+        unsafe { texture(gl, target, format, size) }
+    };
+    let color = made(glow::TEXTURE_2D, glow::RGBA8, size);
+    let depth = made(glow::TEXTURE_2D, glow::DEPTH_COMPONENT24, size);
+    let sample_color = made(glow::TEXTURE_2D_MULTISAMPLE, glow::RGBA8, size);
+    let sample_depth = made(glow::TEXTURE_2D_MULTISAMPLE, glow::DEPTH_COMPONENT24, size);
+    let small = made(glow::TEXTURE_2D_MULTISAMPLE, glow::RGBA8, [8, 8]);
+    let target = made(glow::TEXTURE_2D, glow::RGBA8, target_size);
+    // SAFETY: the context is current and the texture is its own.
+    let target = unsafe { framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, target)]) };
+    // Edges, depth and colour of samples, code.
+    let table = [
+        (YORO_EDGES_NEAREST, depth, 0, YORO_OK),
+        (YORO_EDGES_SAMPLE, depth, 0, YORO_OK),
+        (YORO_EDGES_MULTISAMPLE, sample_depth, 0, YORO_OK),
+        (YORO_EDGES_MULTISAMPLE, sample_depth, sample_color, YORO_OK),
+        (YORO_EDGES_NEAREST, sample_depth, 0, YORO_ERROR_FORMAT),
+        (YORO_EDGES_MULTISAMPLE, depth, 0, YORO_ERROR_FORMAT),
+        (YORO_EDGES_MULTISAMPLE, sample_depth, color, YORO_ERROR_FORMAT),
+        (YORO_EDGES_MULTISAMPLE, sample_depth, small, YORO_ERROR_FORMAT),
+        (YORO_EDGES_MULTISAMPLE, sample_depth, sample_depth, YORO_ERROR_FORMAT),
+        (YORO_EDGES_HARD, depth, sample_color, YORO_ERROR_VALUE),
+    ];
+    for (i, (edges, depth_texture, sample_color_texture, expected)) in table.into_iter().enumerate() {
+        let mut noted = Vec::new();
+        let info = YoroGlInfo { edges, ..gl_info(&mut noted) };
+        let mut context = null_mut();
+        let mut images: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
+        (images.color_texture, images.depth_texture, images.framebuffer) = (color, depth_texture, target);
+        images.sample_color_texture = sample_color_texture;
+        // SAFETY: whole structures, a context that is alive and current, and checks are on.
+        unsafe {
+            assert_eq!(yoro_gl_create(&info, &mut context), YORO_OK);
+            let code = yoro_gl_synthesize(context, &views.warp, &images);
+            assert_eq!(yoro_destroy(context), YORO_OK);
+            assert_eq!(code, expected, "row {i}: {noted:?}");
+        }
+        assert_eq!(headless.gl().take_errors(), None, "row {i}");
+    }
 }

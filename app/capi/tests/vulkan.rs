@@ -140,6 +140,8 @@ fn what_cannot_be_has_its_code() {
         (&|i| i.depth_format = vk::Format::R8G8B8A8_UNORM, YORO_ERROR_FORMAT),
         (&|i| i.max_source_width = 0, YORO_ERROR_TOO_LARGE),
         (&|i| i.max_target_height = u32::MAX, YORO_ERROR_TOO_LARGE),
+        (&|i| i.edges = 4, YORO_ERROR_VALUE),
+        (&|i| (i.edges, i.samples) = (YORO_EDGES_MULTISAMPLE, 3), YORO_ERROR_UNSUPPORTED),
     ];
     for (i, (change, expected)) in table.iter().enumerate() {
         let mut wrong = info;
@@ -158,6 +160,15 @@ fn what_cannot_be_has_its_code() {
     assert_eq!(unsafe { yoro_capabilities(context, &mut capabilities) }, YORO_OK);
     assert_eq!((capabilities.api, capabilities.buffer_bytes), (YORO_API_VULKAN, 4 * (16 + 10) * 16));
     assert!(capabilities.device[0] != 0);
+    for (edges, samples) in [(YORO_EDGES_NEAREST, 0), (YORO_EDGES_SAMPLE, 9), (YORO_EDGES_MULTISAMPLE, 4)] {
+        let anti_aliased = create(&YoroVkInfo { edges, samples, ..info }).unwrap();
+        // SAFETY: alive until the last line, and a whole structure.
+        unsafe {
+            assert_eq!(yoro_capabilities(anti_aliased, &mut capabilities), YORO_OK);
+            assert_eq!(capabilities.buffer_bytes, 4 * (16 + 10) * 16 + 8 * 256 * 128);
+            assert_eq!(yoro_destroy(anti_aliased), YORO_OK);
+        }
+    }
 
     let color = gpu.image(vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::COLOR_ATTACHMENT, [256, 128]);
     let depth = gpu.image(vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT, [256, 128]);
@@ -178,6 +189,8 @@ fn what_cannot_be_has_its_code() {
         (&|s| s.depth.format = vk::Format::R8G8B8A8_UNORM, YORO_ERROR_FORMAT),
         (&|s| s.depth.before = discarded, YORO_ERROR_VALUE),
         (&|s| s.color.after = discarded, YORO_ERROR_VALUE),
+        // Colour of samples, for hard edges.
+        (&|s| s.sample_color = color, YORO_ERROR_VALUE),
     ];
     for (i, (change, expected)) in sources.iter().enumerate() {
         let mut wrong = source;

@@ -69,6 +69,7 @@ fn main() -> Result<()> {
         let source = gather.register_source(&SourceImages {
             color: layer(&color, COLOR, uploaded, ImageState::SAMPLED),
             depth: layer(&depth, DEPTH, uploaded, ImageState::SAMPLED),
+            sample_color: None,
             size: source_size,
         })?;
         let target = gather.register_target(&TargetImages {

@@ -251,6 +251,7 @@ impl Synthesizer {
             gather.register_source(&SourceImages {
                 color: layer_image(job.color, ImageState::COLOR_ATTACHMENT, ImageState::COLOR_ATTACHMENT),
                 depth: layer_image(job.depth, ImageState::DEPTH_ATTACHMENT, ImageState::DEPTH_ATTACHMENT),
+                sample_color: None,
                 size: job.color.size,
             })
         };

@@ -7,8 +7,7 @@
 // the text: there all pixels take the long way.
 
 #include "include/march.glsl"
-
-TEXTURE(3) uniform highp usampler2D span_map;
+#include "include/span.glsl"
 
 layout(location = 0) out vec4 color;
 #ifdef SOURCE_MAP
@@ -22,15 +21,6 @@ const float SHORT_STEPS = 8.0;
 
 int source_row() {
     return int(clamp(gl_FragCoord.y - first_row, 0.0, float(source_size.y - 1)));
-}
-
-uint pixel_span() {
-    vec2 place = span_place.xy * gl_FragCoord.xy + span_place.zw;
-    if (PART) {
-        ivec2 last = (ivec2(target_size.x, source_size.y) - 1) / TILE;
-        return texelFetch(span_map, clamp(ivec2(place), ivec2(0), last), 0).r;
-    }
-    return textureLod(span_map, place, 0.0).r;
 }
 
 #ifdef SHORT_WAY

@@ -7,10 +7,10 @@
 // disocclusion, filled from its background side.
 
 #include "include/layers.glsl"
+#include "include/span.glsl"
 
-TEXTURE(2) uniform highp usampler2D span_map;
-TEXTURE(3) uniform highp usampler2D layer_map;
-TEXTURE(4) uniform sampler2D back_map;
+TEXTURE(4) uniform highp usampler2D layer_map;
+TEXTURE(5) uniform sampler2D back_map;
 
 layout(location = 0) out vec4 color;
 #ifdef SOURCE_MAP
@@ -92,8 +92,7 @@ void main() {
     int row = int(clamp(gl_FragCoord.y - first_row, 0.0, float(source_size.y - 1)));
     // Displacements count from the far plane's: so does the target column. A hundredth is in `farthest` for rounding.
     float t = origins.x * gl_FragCoord.x + origins.y - farthest + 0.01;
-    vec2 place = span_place.xy * gl_FragCoord.xy + span_place.zw;
-    uint span = textureLod(span_map, place, 0.0).r;
+    uint span = pixel_span();
     float x = clamp(floor(t - uintBitsToFloat(span) - 1.01), 0.0, last);
     float limit = min(x + span_steps(span) + 2.0, last);
     int sense = mirrored ? -1 : 1;

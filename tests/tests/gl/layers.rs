@@ -22,7 +22,7 @@ fn distance_squared(a: Color, b: Color) -> f64 {
 }
 
 /// A picture in forward columns; reads beyond its borders give what is there.
-struct Image<T> {
+pub struct Image<T> {
     size: [usize; 2],
     values: Vec<T>,
 }
@@ -33,7 +33,7 @@ impl<T: Copy> Image<T> {
         Image { size, values: (0..w * h).map(|i| value(i % w, i / w)).collect() }
     }
 
-    fn at(&self, x: i64, y: i64) -> T {
+    pub fn at(&self, x: i64, y: i64) -> T {
         let [w, h] = self.size.map(|n| n as i64);
         self.values[(y.clamp(0, h - 1) * w + x.clamp(0, w - 1)) as usize]
     }
@@ -47,7 +47,7 @@ struct Back {
 
 /// What a pixel shows; displacements in pixels.
 #[derive(Clone, Copy, Debug)]
-struct Layer {
+pub struct Layer {
     front: f64,
     color: Color,
     mask: [f64; 4],
@@ -55,6 +55,10 @@ struct Layer {
 }
 
 impl Layer {
+    pub fn is_split(&self) -> bool {
+        self.back.is_some()
+    }
+
     fn share(&self) -> f64 {
         self.mask.iter().sum::<f64>() / 4.0
     }
@@ -69,7 +73,7 @@ const RING: [(i64, i64); 8] = [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, -
 const NEXT: [(i64, i64); 4] = [(-2, 0), (2, 0), (0, -2), (0, 2)];
 
 /// Colours and displacements of the four stripes of each pixel.
-struct Pixels {
+pub struct Pixels {
     colors: Image<[Color; 4]>,
     reaches: Image<[f64; 4]>,
     resolved: Image<Color>,
@@ -88,7 +92,7 @@ fn surfaces(reaches: [f64; 4]) -> ([bool; 4], f64, Option<f64>) {
     (front, mean(front), (front != [true; 4]).then(|| mean(behind)))
 }
 
-fn multisample_layers(pixels: &Pixels, with_colors: bool) -> Image<Layer> {
+pub fn multisample_layers(pixels: &Pixels, with_colors: bool) -> Image<Layer> {
     Image::of(pixels.colors.size, |x, y| {
         let (x, y) = (x as i64, y as i64);
         let (in_front, front, back) = surfaces(pixels.reaches.at(x, y));
@@ -248,7 +252,7 @@ fn resolved_layers(reach: &Image<f64>, resolved: &Image<Color>, first_sample: bo
 
 /// Where the search for each target tile begins, in displacement, and how many columns it goes on: as the tile passes
 /// find it, with their sixteenths of a pixel.
-fn spans(layers: &Image<Layer>, width: usize, range: [f64; 2]) -> Image<Option<(f64, i64)>> {
+pub fn spans(layers: &Image<Layer>, width: usize, range: [f64; 2]) -> Image<Option<(f64, i64)>> {
     let [far, near] = range;
     let [w, h] = layers.size;
     let tiles = [w.div_ceil(TILE[0]), h.div_ceil(TILE[1])];
@@ -303,21 +307,32 @@ struct Candidate {
     weight: f64,
 }
 
+/// Texels that the shader fetches for a pixel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Fetches {
+    /// Of the layers.
+    pub layers: u32,
+    /// Of colour: the filtered one of a single surface, or two for each layer that takes part.
+    pub colors: u32,
+}
+
 /// Front-to-back composition of what covers a target pixel.
 struct Composition {
     color: Color,
     rest: f64,
+    fetches: Fetches,
 }
 
 impl Composition {
     fn add(&mut self, share: f64, color: Color) {
+        self.fetches.colors += 2 * u32::from(share > 0.0);
         self.color = mix(&[(1.0, self.color), (self.rest * share, color)]);
         self.rest *= 1.0 - share;
     }
 }
 
-/// Colour of target pixel (t, y), and whether more than half of it is filled from beside the hole.
-fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Color, bool) {
+/// Colour of target pixel (t, y), whether more than half of it is filled from beside the hole, and what that fetches.
+pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Color, bool, Fetches) {
     let last = layers.size[0] as i64 - 1;
     let (mut x, limit) = match span {
         Some((reach, steps)) => {
@@ -325,9 +340,12 @@ fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Co
             (x, (x + steps + 2).min(last))
         }
         // Beyond a border.
-        None => return (layers.at(if t < layers.size[0] as f64 / 2.0 { 0 } else { last }, y).color, true),
+        None => {
+            let border = if t < layers.size[0] as f64 / 2.0 { 0 } else { last };
+            return (layers.at(border, y).color, true, Fetches { layers: 2, colors: 1 });
+        }
     };
-    let mut out = Composition { color: [0.0; 3], rest: 1.0 };
+    let mut out = Composition { color: [0.0; 3], rest: 1.0, fetches: Fetches { layers: 2, colors: 0 } };
     let (mut edge, mut second): (Option<Candidate>, Option<Candidate>) = (None, None);
     let mut here = layers.at(x, y);
     if x == 0 {
@@ -341,8 +359,15 @@ fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Co
     let linked = |a: f64, b: f64| a < 1e8 && b < 1e8 && (a - b).abs() < LINK;
     let mut on_front = x > 0 && linked(before.front, here.reach());
     let mut on_back = x > 0 && linked(before.reach(), here.reach());
+    // The shader's short way: single surfaces, linked from the first column on.
+    let mut plain = here.back.is_none() && x as f64 + here.front <= t;
     while x < limit && out.rest > 0.01 {
         let next = layers.at(x + 1, y);
+        let goes_on = plain && next.back.is_none() && linked(here.front, next.front);
+        // The long way fetches again what has ended the short one, and the layer before a split one.
+        let again = u32::from(plain && !goes_on) + u32::from(plain && !goes_on && here.back.is_some());
+        out.fetches.layers += 1 + again;
+        plain = goes_on;
         let (a, b) = (x as f64 + here.front - t, (x + 1) as f64 + next.front - t);
         let (c, d) = (x as f64 + here.reach() - t, (x + 1) as f64 + next.reach() - t);
         let front_front = linked(here.front, next.front);
@@ -355,6 +380,8 @@ fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Co
             let share = of_here + of_next;
             if share > 0.0 {
                 out.add(share, mix(&[(of_here / share, here.color), (of_next / share, next.color)]));
+                // Both columns, or both at once.
+                out.fetches.colors = if plain { 1 } else { out.fetches.colors + 2 };
             }
         }
         let rises = next.front > here.front || next.back.is_some();
@@ -455,12 +482,14 @@ fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Co
         }
         hole = hole && away >= 0.5;
         out.add(1.0, fill);
+        out.fetches.layers += 2 * rows as u32 + 1;
+        out.fetches.colors += 4 * rows as u32;
     }
-    (out.color, hole)
+    (out.color, hole, out.fetches)
 }
 
 /// Slanted rectangles before a slanted background, seen by four samples of each pixel.
-fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
+pub fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
     // Left, right, bottom, top in fractions of the picture, distance in metres, colour.
     const SHAPES: [([f64; 4], f64, [u8; 3]); 5] = [
         ([0.11, 0.34, 0.13, 0.71], 0.9, [220, 60, 40]),
@@ -503,7 +532,7 @@ fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
 }
 
 /// The samples as the plain version sees them: forward columns, stripes from left to right, displacements.
-fn forward(samples: &Samples, warp: &Warp) -> (Pixels, [f64; 2]) {
+pub fn forward(samples: &Samples, warp: &Warp) -> (Pixels, [f64; 2]) {
     let mirrored = warp.target_eye == Eye::Right;
     let size = samples.size.map(|n| n as usize);
     let law = warp.law;
@@ -613,7 +642,7 @@ fn agrees(gl: &Rc<Context>, given: Given, dominant: Eye, convention: DepthConven
     for y in 0..h {
         for t in 0..w {
             let span = spans.at((t / TILE[0]) as i64, (y / TILE[1]) as i64);
-            let (color, hole) = march(&layers, t as f64, y as i64, span);
+            let (color, hole, _) = march(&layers, t as f64, y as i64, span);
             let at = y * w + if warp.target_eye == Eye::Right { w - 1 - t } else { t };
             let got = &rgba[4 * at..];
             let error = (0..3).map(|c| (f64::from(got[c]) - 255.0 * color[c]).abs()).fold(0.0, f64::max);

@@ -7,4 +7,6 @@ mod objects;
 mod refusals;
 mod shader_cost;
 mod shaders;
+mod supersampled;
 mod vulkan;
+mod vulkan_layers;

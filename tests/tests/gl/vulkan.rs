@@ -2,7 +2,7 @@
 
 #[path = "../../../app/core/tests/vulkan/harness.rs"]
 #[expect(dead_code, reason = "shared with the core's tests, which use all of it")]
-mod harness;
+pub mod harness;
 
 use image::RgbImage;
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
@@ -71,6 +71,7 @@ fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
             .register_source(&SourceImages {
                 color: image(&color, WRITTEN, ImageState::SAMPLED),
                 depth: image(&depth, WRITTEN, ImageState::SAMPLED),
+                sample_color: None,
                 size: warp.source_size,
             })
             .unwrap();

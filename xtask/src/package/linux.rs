@@ -7,7 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use super::texts::{cmake, cmake_version, pkg_config, soname};
+use super::texts::{cmake, cmake_version, pkg_config, soname, with_links};
 use super::{Built, VERSION, build, copy, write};
 use crate::android::{ARM64_TRIPLE, arm64_cargo};
 use crate::cargo::cargo;
@@ -51,10 +51,14 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
         let name = entry.context("app/capi/examples cannot be read")?.file_name();
         copy(&examples.join(&name), &content.join("share/yoro/examples").join(&name))?;
     }
-    for document in ["LICENSE-APACHE", "LICENSE-MIT", "docs/library.md"] {
+    let documents = content.join("share/doc/yoro");
+    for document in ["LICENSE-APACHE", "LICENSE-MIT", "docs/integration-mistakes.png"] {
         let name = Path::new(document).file_name().unwrap_or_default();
-        copy(&root().join(document), &content.join("share/doc/yoro").join(name))?;
+        copy(&root().join(document), &documents.join(name))?;
     }
+    let manual = root().join("docs/library.md");
+    let text = fs::read_to_string(&manual).with_context(|| format!("{} cannot be read", manual.display()))?;
+    write(&documents.join("library.md"), &with_links(&text, packaged))?;
     let packed = folder.join(format!("{name}.tar.xz"));
     let unfinished = folder.join(format!("{name}.tar.xz.tmp"));
     let mut tar = Command::new("tar");
@@ -67,6 +71,16 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     Ok(packed)
 }
 
+/// Where a link of docs/library.md leads in a package; None for what is in none.
+fn packaged(target: &str) -> Option<String> {
+    let stays = target.starts_with('#') || target == "integration-mistakes.png";
+    let example = target.strip_prefix("../app/capi/examples/").map(|file| format!("../../yoro/examples/{file}"));
+    match target {
+        "../app/capi/include/yoro.h" => Some("../../../include/yoro.h".into()),
+        _ => example.or_else(|| stays.then(|| target.to_owned())),
+    }
+}
+
 fn run(command: &mut Command) -> anyhow::Result<()> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command.output().with_context(|| format!("{program} cannot be started: install it"))?;
@@ -74,4 +88,26 @@ fn run(command: &mut Command) -> anyhow::Result<()> {
         bail!("{program} failed: {}", String::from_utf8_lossy(&output.stderr).trim());
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_link_of_the_packages_document_leads_into_the_package() {
+        let text = fs::read_to_string(root().join("docs/library.md")).unwrap();
+        let mut kept = Vec::new();
+        let packed = with_links(&text, |target| packaged(target).inspect(|to| kept.push(to.clone())));
+        let links = packed.matches("](").count();
+        assert_eq!(links, kept.len());
+        let here = |file: &str| root().join(file).is_file();
+        for target in kept.iter().filter(|target| !target.starts_with('#')) {
+            let from = target
+                .replace("../../../include/", "app/capi/include/")
+                .replace("../../yoro/examples/", "app/capi/examples/");
+            assert!(here(&from) || here(&format!("docs/{target}")), "{target}");
+        }
+        assert!(kept.iter().any(|target| target.ends_with("vulkan.c")));
+    }
 }

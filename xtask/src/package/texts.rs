@@ -71,9 +71,38 @@ pub fn cmake_version() -> String {
     )
 }
 
+/// Markdown with other targets of its links, and without links where there is none.
+pub fn with_links(text: &str, mut target: impl FnMut(&str) -> Option<String>) -> String {
+    let (mut out, mut rest) = (String::new(), text);
+    while let Some((before, label, link, after)) = next_link(rest) {
+        out.push_str(before);
+        match target(link) {
+            Some(target) => out.push_str(&format!("[{label}]({target})")),
+            None => out.push_str(label),
+        }
+        rest = after;
+    }
+    out + rest
+}
+
+/// What stands before the first link, its text, its target, and what stands after it.
+fn next_link(text: &str) -> Option<(&str, &str, &str, &str)> {
+    let middle = text.find("](")?;
+    let start = text[..middle].rfind('[')?;
+    let end = middle + text[middle..].find(')')?;
+    Some((&text[..start], &text[start + 1..middle], &text[middle + 2..end], &text[end + 1..]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn links_are_led_elsewhere_or_end() {
+        let text = "See [a](x.md), `b[0]`, [c](y.md#z) and ![d](p.png).";
+        let led = with_links(text, |target| target.ends_with("png").then(|| format!("q/{target}")));
+        assert_eq!(led, "See a, `b[0]`, c and ![d](q/p.png).");
+    }
 
     #[test]
     fn texts_name_this_version() {

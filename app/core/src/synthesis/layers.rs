@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use glam::{IVec4, Vec4Swizzles as _};
+use glam::IVec4;
 use glow::HasContext as _;
 
 use super::{Edges, Outputs, Source, Synthesis, Uniforms, draw_target, output_defines, tiles};
@@ -101,7 +101,7 @@ impl Layers {
         match self.edges {
             Edges::Multisample => {
                 program.texture_multisample("sample_depths", 0, source.depth);
-                program.set("stripes", self.stripes(uniforms.mirrored != 0));
+                program.set("from_left", self.from_left());
             }
             _ => drop(program.texture("depth_map", 0, source.depth)),
         }
@@ -109,14 +109,13 @@ impl Layers {
         uniforms.set(program);
     }
 
-    /// Samples of the multisample texture that was bound last, to unit 0, from left to right in forward columns.
-    fn stripes(&self, mirrored: bool) -> IVec4 {
+    /// Samples of the multisample texture that was bound last, to unit 0, from left to right.
+    fn from_left(&self) -> IVec4 {
         // SAFETY: a query of a texture that is bound to the active unit.
         let samples = unsafe {
             self.gl.raw().get_tex_level_parameter_i32(glow::TEXTURE_2D_MULTISAMPLE, 0, glow::TEXTURE_SAMPLES)
         };
-        let stripes = if samples == 2 { STANDARD_2 } else { STANDARD_4 };
-        if mirrored { stripes.wzyx() } else { stripes }
+        if samples == 2 { STANDARD_2 } else { STANDARD_4 }
     }
 }
 

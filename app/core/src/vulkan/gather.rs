@@ -1,4 +1,4 @@
-//! The three fragment passes.
+//! The fragment passes.
 
 use std::ffi::CStr;
 use std::sync::Arc;
@@ -12,14 +12,15 @@ use super::{
     VulkanError, shaders,
 };
 use crate::eyes::Warp;
-use crate::synthesis::{Places, Uniforms, tiles};
+use crate::synthesis::{Edges, Places, Uniforms, tiles};
 
 /// Format of the intermediate maps, which every device samples and renders to.
 const MAP_FORMAT: vk::Format = vk::Format::R32_UINT;
-/// Bindings of the descriptor set, as `TEXTURE` in the shaders counts them: depth, colour, tile map, span map.
-const TEXTURES: usize = 4;
-/// Timestamps of a frame: before the first pass, and after each.
-const STAMPS: u32 = 4;
+/// Bindings of the descriptor set, as `TEXTURE` in the shaders counts them: depth, colour, tile map, span map; layers and
+/// colour of their backs, but for hard edges; colour of the samples, where the source has them.
+const TEXTURES: usize = 7;
+/// Timestamps of a frame: before the first pass, and after each of four.
+const STAMPS: u32 = 5;
 
 /// How the shaders are written for a kind of device; see [`crate::synthesis::GatherVariant`].
 #[doc(hidden)]
@@ -31,7 +32,8 @@ pub enum GatherVariant {
     ShortWay,
 }
 
-/// Tile bounds, tile spans, march, as [`crate::synthesis::Gather`].
+/// Tile bounds, tile spans, march, as [`crate::synthesis::Gather`]; of anti-aliased sources the split into layers before
+/// them, as [`crate::synthesis::Layers`].
 ///
 /// Its methods are called from one thread at a time, and what it records is executed in the order of recording by
 /// queues of one family, one after the other: all frames share the intermediate buffers, which barriers guard.
@@ -43,6 +45,8 @@ pub struct Gather {
     rendering: Rendering,
     set_layout: vk::DescriptorSetLayout,
     pipeline_layout: vk::PipelineLayout,
+    /// None for hard edges.
+    split: Option<Split>,
     /// Whole sources and parts of them, as `PART` in the shaders.
     bounds: [vk::Pipeline; 2],
     spans: vk::Pipeline,
@@ -62,23 +66,44 @@ pub struct Gather {
 /// How a pass begins and ends.
 enum Rendering {
     Dynamic { begin: vk::PFN_vkCmdBeginRendering, end: vk::PFN_vkCmdEndRendering },
-    Passes { map: vk::RenderPass, target: vk::RenderPass },
+    Passes { map: vk::RenderPass, layers: vk::RenderPass, target: vk::RenderPass },
+}
+
+/// What a pass draws into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Into {
+    /// One 32-bit integer a tile.
+    Map,
+    /// Two colour attachments: what each pixel of the source shows, and the colour of what is behind.
+    Layers,
+    Target,
+}
+
+/// The first pass of anti-aliased sources; pipelines for whole sources and parts of them.
+struct Split {
+    resolved: [vk::Pipeline; 2],
+    /// For sources with the samples' colours.
+    samples: Option<[vk::Pipeline; 2]>,
+    layers: Map,
 }
 
 /// What passes draw into: views for dynamic rendering, a framebuffer of them for render passes.
 #[derive(Clone, Copy)]
 struct Attachments {
-    color: vk::ImageView,
+    /// The second one of [`Into::Layers`] alone.
+    colors: [vk::ImageView; 2],
     depth: Option<vk::ImageView>,
     framebuffer: vk::Framebuffer,
 }
 
-/// An intermediate buffer: one 32-bit integer a tile.
+/// What one pass leaves for the next ones.
 struct Map {
-    image: vk::Image,
+    images: Vec<vk::Image>,
     attachments: Attachments,
-    /// Width and height in tiles.
+    /// Width and height in tiles, of layers in pixels.
     size: [u32; 2],
+    /// Memory that its texels take.
+    bytes: u64,
 }
 
 struct Source {
@@ -171,6 +196,9 @@ impl Gather {
         if let Some(format) = options.depth_format {
             renders(format, vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT, "a target's depth")?;
         }
+        if options.edges == Edges::Multisample {
+            check_samples(options.samples, &properties.limits)?;
+        }
 
         let device = Arc::new(host.device.clone());
         let mut objects = Objects::new(&device);
@@ -187,15 +215,29 @@ impl Gather {
             options,
         };
         let depth = options.depth_format.is_some();
-        let bounds = making.pipelines(shaders::TILES, false)?;
-        let spans = making.pipeline(shaders::SPANS, false, false)?;
-        let march = making.pipelines(shaders::march(variant, depth), true)?;
+        let bounds = making.pipelines(shaders::tiles(options.edges), Into::Map)?;
+        let spans = making.pipeline(shaders::SPANS, Into::Map, false)?;
+        let march = making.pipelines(shaders::march(options.edges, variant, depth), Into::Target)?;
+        let resolved = shaders::split(options.edges)
+            .map(|shader| making.pipelines(shader, Into::Layers))
+            .transpose()?;
+        let samples = (options.edges == Edges::Multisample)
+            .then(|| making.pipelines(shaders::SPLIT_SAMPLES, Into::Layers))
+            .transpose()?;
         drop(making);
         // SAFETY: a valid physical device.
         let memory = unsafe { instance.get_physical_device_memory_properties(physical_device) };
         let [source, target] = [options.max_source_size, options.max_target_size];
-        let tile_map = Map::new(&mut objects, &rendering, &memory, tiles(source))?;
-        let span_map = Map::new(&mut objects, &rendering, &memory, tiles([target[0], source[1]]))?;
+        let mut map = |into, size| {
+            let formats = into_formats(into, options);
+            Map::new(&mut objects, &rendering, &memory, into, formats.as_slice(), size)
+        };
+        let tile_map = map(Into::Map, tiles(source))?;
+        let span_map = map(Into::Map, tiles([target[0], source[1]]))?;
+        let split = match resolved {
+            Some(resolved) => Some(Split { resolved, samples, layers: map(Into::Layers, source)? }),
+            None => None,
+        };
         let timer = Timer::new(&mut objects, options.timed_frames, family, &properties.limits)?;
         // SAFETY: promised by the caller.
         let labels = unsafe { Labels::new(host) };
@@ -207,6 +249,7 @@ impl Gather {
             rendering,
             set_layout,
             pipeline_layout,
+            split,
             bounds,
             spans,
             march,
@@ -245,6 +288,9 @@ impl Gather {
             return Err(VulkanError::Format { format: depth.format, role: "a source's depth" });
         }
         check(depth.format, sampled, "a source's depth")?;
+        if images.sample_color.is_some() && self.options.edges != Edges::Multisample {
+            return Err(VulkanError::SampleColors);
+        }
 
         let mut objects = Objects::new(&self.device);
         let color_aspect = vk::ImageAspectFlags::COLOR;
@@ -256,6 +302,12 @@ impl Gather {
                 objects.view(depth.image, depth.format, depth_aspect, depth.layer)?,
             ]
         };
+        let samples = images.sample_color.as_ref();
+        let sample_view = samples.map(|samples| {
+            // SAFETY: promised by the caller.
+            unsafe { objects.view(samples.image, samples.format, color_aspect, samples.layer) }
+        });
+        let sample_view = sample_view.transpose()?;
         let sizes = [vk::DescriptorPoolSize {
             ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
             descriptor_count: TEXTURES as u32,
@@ -274,20 +326,28 @@ impl Gather {
         result.result().map_err(|result| VulkanError::new("vkAllocateDescriptorSets", result))?;
         let texture =
             |view, layout| [vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)];
-        let map = |map: &Map| texture(map.attachments.color, ImageState::SAMPLED.layout);
+        let map = |map: &Map, i: usize| texture(map.attachments.colors[i], ImageState::SAMPLED.layout);
+        let layers = |i| self.split.as_ref().map(|split| map(&split.layers, i));
+        // What is not written is in no shader of these edges.
         let textures: [_; TEXTURES] = [
-            texture(depth_view, sampled_state(depth).layout),
-            texture(color_view, sampled_state(color).layout),
-            map(&self.tile_map),
-            map(&self.span_map),
+            Some(texture(depth_view, sampled_state(depth).layout)),
+            Some(texture(color_view, sampled_state(color).layout)),
+            Some(map(&self.tile_map, 0)),
+            Some(map(&self.span_map, 0)),
+            layers(0),
+            layers(1),
+            sample_view.zip(samples).map(|(view, image)| texture(view, sampled_state(image).layout)),
         ];
-        let writes: [_; TEXTURES] = std::array::from_fn(|binding| {
-            vk::WriteDescriptorSet::default()
-                .dst_set(set)
-                .dst_binding(binding as u32)
-                .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
-                .image_info(&textures[binding])
+        let written = textures.iter().enumerate().filter_map(|(binding, texture)| {
+            Some(
+                vk::WriteDescriptorSet::default()
+                    .dst_set(set)
+                    .dst_binding(binding as u32)
+                    .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+                    .image_info(texture.as_ref()?),
+            )
         });
+        let writes: Vec<_> = written.collect();
         // SAFETY: live views, and a set that nothing uses yet.
         unsafe { self.device.update_descriptor_sets(&writes, &[]) };
         let id = SourceId(self.next_id());
@@ -323,16 +383,10 @@ impl Gather {
         };
         let color = view(&images.color)?;
         let depth = images.depth.as_ref().map(view).transpose()?;
-        let framebuffer = match self.rendering {
-            Rendering::Dynamic { .. } => vk::Framebuffer::null(),
-            Rendering::Passes { target, .. } => {
-                let views = [color, depth.unwrap_or_default()];
-                let views = if depth.is_some() { &views[..] } else { &views[..1] };
-                // SAFETY: views of the formats that the render pass has.
-                unsafe { objects.framebuffer(target, views, images.size)? }
-            }
+        // SAFETY: live views of the formats that the render pass has.
+        let attachments = unsafe {
+            self.rendering.attachments(&mut objects, Into::Target, &[color], depth, images.size)?
         };
-        let attachments = Attachments { color, depth, framebuffer };
         let id = TargetId(self.next_id());
         self.targets.push(Target { id, images: *images, attachments, _objects: objects });
         Ok(id)
@@ -403,7 +457,14 @@ impl Gather {
             },
         );
         let device = &*self.device;
-        let (color, depth) = (&source.images.color, &source.images.depth);
+        let read = [
+            Some(&source.images.color),
+            Some(&source.images.depth),
+            source.images.sample_color.as_ref(),
+        ];
+        let read = || read.into_iter().flatten();
+        let split = self.split.as_ref();
+        let maps = [split.map(|split| &split.layers), Some(&self.tile_map), Some(&self.span_map)];
         let drawn = [Some((&target.images.color, ImageState::COLOR_ATTACHMENT))]
             .into_iter()
             .chain([target.images.depth.as_ref().map(|depth| (depth, ImageState::DEPTH_ATTACHMENT))])
@@ -413,13 +474,13 @@ impl Gather {
         unsafe {
             self.timer.as_ref().inspect(|timer| timer.begin(device, commands));
             let mut barriers = Barriers::new();
-            for image in [color, depth] {
+            for image in read() {
                 barriers.image(image, image.before, sampled_state(image));
             }
             for (image, state) in drawn.clone() {
                 barriers.image(image, image.before, state);
             }
-            for map in [&self.tile_map, &self.span_map] {
+            for map in maps.into_iter().flatten() {
                 // The frame before has read it.
                 let read = ImageState { layout: vk::ImageLayout::UNDEFINED, ..ImageState::SAMPLED };
                 barriers.map(map, read, ImageState::COLOR_ATTACHMENT);
@@ -432,34 +493,37 @@ impl Gather {
             device.cmd_push_constants(commands, layout, stage, 0, bytes);
 
             let variant = usize::from(!whole);
+            let split = split.map(|split| {
+                let samples = split.samples.filter(|_| source.images.sample_color.is_some());
+                samples.unwrap_or(split.resolved)[variant]
+            });
             let passes = [
-                (c"gather tiles", self.bounds[variant], &self.tile_map.attachments, [0, 0], tile_size),
-                (c"gather spans", self.spans, &self.span_map.attachments, [0, 0], span_size),
-                (
-                    c"gather march",
-                    self.march[variant],
-                    &target.attachments,
-                    frame.target_origin,
-                    warp.target_size,
-                ),
+                (c"yoro split", split, maps[0], [0, 0], warp.source_size),
+                (c"yoro tiles", Some(self.bounds[variant]), maps[1], [0, 0], tile_size),
+                (c"yoro spans", Some(self.spans), maps[2], [0, 0], span_size),
+                (c"yoro march", Some(self.march[variant]), None, frame.target_origin, warp.target_size),
             ];
-            for (i, (name, pipeline, attachments, origin, size)) in passes.into_iter().enumerate() {
-                self.labels.as_ref().inspect(|labels| labels.begin(commands, name));
-                self.rendering.begin(device, commands, attachments, i == 2, area(origin, size));
-                device.cmd_bind_pipeline(commands, point, pipeline);
-                device.cmd_draw(commands, 3, 1, 0, 0);
-                self.rendering.end(device, commands);
-                if let Some(map) = [&self.tile_map, &self.span_map].get(i) {
-                    let mut barriers = Barriers::new();
-                    barriers.map(map, ImageState::COLOR_ATTACHMENT, ImageState::SAMPLED);
-                    barriers.record(device, commands);
+            for (i, (name, pipeline, map, origin, size)) in passes.into_iter().enumerate() {
+                if let Some(pipeline) = pipeline {
+                    self.labels.as_ref().inspect(|labels| labels.begin(commands, name));
+                    let into = [Into::Layers, Into::Map, Into::Map, Into::Target][i];
+                    let attachments = map.map_or(&target.attachments, |map| &map.attachments);
+                    self.rendering.begin(device, commands, attachments, into, area(origin, size));
+                    device.cmd_bind_pipeline(commands, point, pipeline);
+                    device.cmd_draw(commands, 3, 1, 0, 0);
+                    self.rendering.end(device, commands);
+                    if let Some(map) = map {
+                        let mut barriers = Barriers::new();
+                        barriers.map(map, ImageState::COLOR_ATTACHMENT, ImageState::SAMPLED);
+                        barriers.record(device, commands);
+                    }
+                    self.labels.as_ref().inspect(|labels| labels.end(commands));
                 }
                 self.timer.as_ref().inspect(|timer| timer.stamp(device, commands, i as u32 + 1));
-                self.labels.as_ref().inspect(|labels| labels.end(commands));
             }
 
             let mut barriers = Barriers::new();
-            for image in [color, depth] {
+            for image in read() {
                 barriers.image(image, sampled_state(image), image.after);
             }
             for (image, state) in drawn {
@@ -471,6 +535,12 @@ impl Gather {
             timer.recorded += 1;
         }
         Ok(())
+    }
+
+    /// Bytes of the intermediate buffers.
+    pub fn buffer_bytes(&self) -> u64 {
+        let layers = self.split.as_ref().map_or(0, |split| split.layers.bytes);
+        layers + self.tile_map.bytes + self.span_map.bytes
     }
 
     /// What the passes took in the frame that was recorded [`Options::timed_frames`] calls of [`Gather::record`] ago,
@@ -524,6 +594,35 @@ fn check_format(
     }
 }
 
+fn check_samples(samples: u32, limits: &vk::PhysicalDeviceLimits) -> Result<(), VulkanError> {
+    let fits = matches!(samples, 2 | 4)
+        && limits.sampled_image_depth_sample_counts.contains(vk::SampleCountFlags::from_raw(samples));
+    if fits { Ok(()) } else { Err(VulkanError::Samples(samples)) }
+}
+
+/// Formats of the colour attachments of a pass.
+fn into_formats(into: Into, options: &Options) -> Vec<vk::Format> {
+    match into {
+        Into::Map => vec![MAP_FORMAT],
+        Into::Layers => vec![MAP_FORMAT, back_format(options.color_format)],
+        Into::Target => vec![options.color_format],
+    }
+}
+
+/// Backs are stored as colour is, since unmixing is right in the space of the resolve, with the share of the front in
+/// alpha, for which ten-bit formats have no room.
+fn back_format(color: vk::Format) -> vk::Format {
+    match color {
+        vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32 => {
+            vk::Format::R8G8B8A8_SRGB
+        }
+        vk::Format::R8G8B8A8_UNORM | vk::Format::B8G8R8A8_UNORM | vk::Format::A8B8G8R8_UNORM_PACK32 => {
+            vk::Format::R8G8B8A8_UNORM
+        }
+        _ => vk::Format::R16G16B16A16_SFLOAT,
+    }
+}
+
 /// All that a format has.
 fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
     match format {
@@ -559,7 +658,7 @@ fn area([x, y]: [u32; 2], [width, height]: [u32; 2]) -> vk::Rect2D {
     vk::Rect2D { offset: vk::Offset2D { x: x as i32, y: y as i32 }, extent: vk::Extent2D { width, height } }
 }
 
-/// Four textures; depth and maps are fetched as they are, colour is filtered.
+/// Depth, maps and samples are fetched as they are, colour is filtered.
 fn set_layout(objects: &mut Objects) -> Result<vk::DescriptorSetLayout, VulkanError> {
     let mut sampler = |filter| {
         let edge = vk::SamplerAddressMode::CLAMP_TO_EDGE;
@@ -574,7 +673,8 @@ fn set_layout(objects: &mut Objects) -> Result<vk::DescriptorSetLayout, VulkanEr
         objects.keep("vkCreateSampler", sampler, Object::Sampler).map(|sampler| [sampler])
     };
     let (nearest, linear) = (sampler(vk::Filter::NEAREST)?, sampler(vk::Filter::LINEAR)?);
-    let samplers: [_; TEXTURES] = [&nearest, &linear, &nearest, &nearest];
+    let samplers: [_; TEXTURES] =
+        std::array::from_fn(|binding| if binding == 1 { &linear } else { &nearest });
     let bindings: [_; TEXTURES] = std::array::from_fn(|binding| {
         vk::DescriptorSetLayoutBinding::default()
             .binding(binding as u32)
@@ -616,21 +716,18 @@ struct Making<'a> {
 
 impl Making<'_> {
     /// For whole sources and for parts of them.
-    fn pipelines(&mut self, fragment: &[u8], to_target: bool) -> Result<[vk::Pipeline; 2], VulkanError> {
-        Ok([self.pipeline(fragment, to_target, false)?, self.pipeline(fragment, to_target, true)?])
+    fn pipelines(&mut self, fragment: &[u8], into: Into) -> Result<[vk::Pipeline; 2], VulkanError> {
+        Ok([self.pipeline(fragment, into, false)?, self.pipeline(fragment, into, true)?])
     }
 
-    /// A pass over the whole viewport, into a map or into the target.
-    fn pipeline(
-        &mut self,
-        fragment: &[u8],
-        to_target: bool,
-        part: bool,
-    ) -> Result<vk::Pipeline, VulkanError> {
+    /// A pass over the whole viewport.
+    fn pipeline(&mut self, fragment: &[u8], into: Into, part: bool) -> Result<vk::Pipeline, VulkanError> {
         let (vertex, fragment) = (self.shaders.shader(shaders::SCREEN)?, self.shaders.shader(fragment)?);
-        let part = u32::from(part).to_ne_bytes();
-        let entries = [vk::SpecializationMapEntry { constant_id: 0, offset: 0, size: part.len() }];
-        let constants = vk::SpecializationInfo::default().map_entries(&entries).data(&part);
+        // `PART`, `TWO_SAMPLES`.
+        let values = [part, self.options.samples == 2].map(u32::from);
+        let entries = [0, 1].map(|id| vk::SpecializationMapEntry { constant_id: id, offset: 4 * id, size: 4 });
+        let constants =
+            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::bytes_of(&values));
         let stage = |stage, module| {
             vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module).name(c"main")
         };
@@ -645,14 +742,15 @@ impl Making<'_> {
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
         let multisample = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let depth_format = self.options.depth_format.filter(|_| to_target);
+        let depth_format = self.options.depth_format.filter(|_| into == Into::Target);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(depth_format.is_some())
             .depth_write_enable(depth_format.is_some())
             .depth_compare_op(vk::CompareOp::ALWAYS);
-        let blend =
-            [vk::PipelineColorBlendAttachmentState::default()
-                .color_write_mask(vk::ColorComponentFlags::RGBA)];
+        let formats = into_formats(into, self.options);
+        let all = vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        let blend = vec![all; formats.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blend);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
@@ -667,13 +765,12 @@ impl Making<'_> {
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(self.layout);
-        let formats = [if to_target { self.options.color_format } else { MAP_FORMAT }];
         let mut attachments = vk::PipelineRenderingCreateInfo::default()
             .color_attachment_formats(&formats)
             .depth_attachment_format(depth_format.unwrap_or_default());
         let info = match *self.rendering {
             Rendering::Dynamic { .. } => info.push_next(&mut attachments),
-            Rendering::Passes { map, target } => info.render_pass(if to_target { target } else { map }),
+            Rendering::Passes { .. } => info.render_pass(self.rendering.render_pass(into)),
         };
         let device = self.objects.device();
         // SAFETY: a valid description of live objects.
@@ -714,10 +811,46 @@ impl Rendering {
                 })
             };
         }
+        let mut pass = |into, depth| render_pass(objects, &into_formats(into, options), depth);
         Ok(Rendering::Passes {
-            map: render_pass(objects, MAP_FORMAT, None)?,
-            target: render_pass(objects, options.color_format, options.depth_format)?,
+            map: pass(Into::Map, None)?,
+            layers: pass(Into::Layers, None)?,
+            target: pass(Into::Target, options.depth_format)?,
         })
+    }
+
+    /// Null for dynamic rendering.
+    fn render_pass(&self, into: Into) -> vk::RenderPass {
+        match (self, into) {
+            (Rendering::Dynamic { .. }, _) => vk::RenderPass::null(),
+            (Rendering::Passes { map, .. }, Into::Map) => *map,
+            (Rendering::Passes { layers, .. }, Into::Layers) => *layers,
+            (Rendering::Passes { target, .. }, Into::Target) => *target,
+        }
+    }
+
+    /// Views as something to draw into.
+    ///
+    /// # Safety
+    /// They are live and of the pass's formats.
+    unsafe fn attachments(
+        &self,
+        objects: &mut Objects,
+        into: Into,
+        colors: &[vk::ImageView],
+        depth: Option<vk::ImageView>,
+        size: [u32; 2],
+    ) -> Result<Attachments, VulkanError> {
+        let framebuffer = match self {
+            Rendering::Dynamic { .. } => vk::Framebuffer::null(),
+            Rendering::Passes { .. } => {
+                let views: Vec<_> = colors.iter().copied().chain(depth).collect();
+                // SAFETY: promised by the caller.
+                unsafe { objects.framebuffer(self.render_pass(into), &views, size)? }
+            }
+        };
+        let color = |i: usize| colors.get(i).copied().unwrap_or_default();
+        Ok(Attachments { colors: [color(0), color(1)], depth, framebuffer })
     }
 
     /// # Safety
@@ -727,7 +860,7 @@ impl Rendering {
         device: &ash::Device,
         commands: vk::CommandBuffer,
         attachments: &Attachments,
-        to_target: bool,
+        into: Into,
         area: vk::Rect2D,
     ) {
         // SAFETY: promised by the caller; no attachment is cleared, so that no clear values are given.
@@ -741,7 +874,9 @@ impl Rendering {
                             .load_op(vk::AttachmentLoadOp::DONT_CARE)
                             .store_op(vk::AttachmentStoreOp::STORE)
                     };
-                    let color = [attachment(attachments.color, ImageState::COLOR_ATTACHMENT.layout)];
+                    let colors =
+                        attachments.colors.map(|view| attachment(view, ImageState::COLOR_ATTACHMENT.layout));
+                    let count = if into == Into::Layers { 2 } else { 1 };
                     let depth = attachment(
                         attachments.depth.unwrap_or_default(),
                         ImageState::DEPTH_ATTACHMENT.layout,
@@ -749,13 +884,13 @@ impl Rendering {
                     let info = vk::RenderingInfo::default()
                         .render_area(area)
                         .layer_count(1)
-                        .color_attachments(&color)
+                        .color_attachments(&colors[..count])
                         .depth_attachment(&depth);
                     begin(commands, &info);
                 }
-                Rendering::Passes { map, target } => {
+                Rendering::Passes { .. } => {
                     let info = vk::RenderPassBeginInfo::default()
-                        .render_pass(if to_target { target } else { map })
+                        .render_pass(self.render_pass(into))
                         .framebuffer(attachments.framebuffer)
                         .render_area(area);
                     device.cmd_begin_render_pass(commands, &info, vk::SubpassContents::INLINE);
@@ -790,7 +925,7 @@ impl Rendering {
 /// A render pass that changes no layouts and keeps stencil.
 fn render_pass(
     objects: &mut Objects,
-    color: vk::Format,
+    colors: &[vk::Format],
     depth: Option<vk::Format>,
 ) -> Result<vk::RenderPass, VulkanError> {
     let attachment = |format, layout| {
@@ -805,18 +940,20 @@ fn render_pass(
             .final_layout(layout)
     };
     let layouts = [ImageState::COLOR_ATTACHMENT.layout, ImageState::DEPTH_ATTACHMENT.layout];
-    let attachments = [attachment(color, layouts[0]), attachment(depth.unwrap_or_default(), layouts[1])];
-    let color_reference = [vk::AttachmentReference { attachment: 0, layout: layouts[0] }];
-    let depth_reference = vk::AttachmentReference { attachment: 1, layout: layouts[1] };
-    let subpass = vk::SubpassDescription::default()
+    let color_attachments = colors.iter().map(|format| attachment(*format, layouts[0]));
+    let attachments: Vec<_> =
+        color_attachments.chain(depth.map(|format| attachment(format, layouts[1]))).collect();
+    let reference = |attachment: usize, layout| vk::AttachmentReference { attachment: attachment as u32, layout };
+    let color_references: Vec<_> = (0..colors.len()).map(|i| reference(i, layouts[0])).collect();
+    let depth_reference = reference(colors.len(), layouts[1]);
+    let mut subpass = vk::SubpassDescription::default()
         .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
-        .color_attachments(&color_reference);
-    let (subpass, attachments) = match depth {
-        Some(_) => (subpass.depth_stencil_attachment(&depth_reference), &attachments[..]),
-        None => (subpass, &attachments[..1]),
-    };
+        .color_attachments(&color_references);
+    if depth.is_some() {
+        subpass = subpass.depth_stencil_attachment(&depth_reference);
+    }
     let subpasses = [subpass];
-    let info = vk::RenderPassCreateInfo::default().attachments(attachments).subpasses(&subpasses);
+    let info = vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses);
     // SAFETY: a valid description.
     let render_pass = unsafe { objects.device().create_render_pass(&info, None) };
     objects.keep("vkCreateRenderPass", render_pass, Object::RenderPass)
@@ -827,51 +964,64 @@ impl Map {
         objects: &mut Objects,
         rendering: &Rendering,
         memory: &vk::PhysicalDeviceMemoryProperties,
+        into: Into,
+        formats: &[vk::Format],
         size: [u32; 2],
     ) -> Result<Map, VulkanError> {
-        let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
-            .format(MAP_FORMAT)
-            .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
-            .mip_levels(1)
-            .array_layers(1)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED);
-        // SAFETY: a valid description; R32_UINT has these uses on every device.
-        let image = unsafe { objects.device().create_image(&info, None) };
-        let image = objects.keep("vkCreateImage", image, Object::Image)?;
-        // SAFETY: a live image.
-        let needed = unsafe { objects.device().get_image_memory_requirements(image) };
-        let usable = |i: &u32| needed.memory_type_bits >> i & 1 != 0;
-        let local = |i: &u32| {
-            memory.memory_types[*i as usize].property_flags.contains(vk::MemoryPropertyFlags::DEVICE_LOCAL)
-        };
-        let types = || (0..memory.memory_type_count).filter(usable);
-        let memory_type = types().find(local).or_else(|| types().next()).unwrap_or_default();
-        let info =
-            vk::MemoryAllocateInfo::default().allocation_size(needed.size).memory_type_index(memory_type);
-        // SAFETY: a valid description.
-        let memory = unsafe { objects.device().allocate_memory(&info, None) };
-        let memory = objects.keep("vkAllocateMemory", memory, Object::Memory)?;
-        // SAFETY: new memory of the image's size and type.
-        unsafe { objects.device().bind_image_memory(image, memory, 0) }
-            .map_err(|result| VulkanError::new("vkBindImageMemory", result))?;
-        // SAFETY: a live image with one layer; its view fits the render pass.
-        let attachments = unsafe {
-            let color = objects.view(image, MAP_FORMAT, vk::ImageAspectFlags::COLOR, 0)?;
-            let framebuffer = match *rendering {
-                Rendering::Dynamic { .. } => vk::Framebuffer::null(),
-                Rendering::Passes { map, .. } => objects.framebuffer(map, &[color], size)?,
-            };
-            Attachments { color, depth: None, framebuffer }
-        };
-        Ok(Map { image, attachments, size })
+        let (mut images, mut views) = (Vec::new(), Vec::new());
+        for &format in formats {
+            let image = image(objects, memory, format, size)?;
+            images.push(image);
+            // SAFETY: a live image with one layer.
+            views.push(unsafe { objects.view(image, format, vk::ImageAspectFlags::COLOR, 0)? });
+        }
+        // SAFETY: live views of the pass's formats.
+        let attachments = unsafe { rendering.attachments(objects, into, &views, None, size)? };
+        let texel = |format: &vk::Format| if *format == vk::Format::R16G16B16A16_SFLOAT { 8 } else { 4 };
+        let texels = u64::from(size[0]) * u64::from(size[1]);
+        Ok(Map { images, attachments, size, bytes: texels * formats.iter().map(texel).sum::<u64>() })
     }
 }
 
-/// Barriers that are recorded with one command: at most both source images, both target images and both maps.
+/// A colour image with memory of its own, to be rendered to and sampled.
+fn image(
+    objects: &mut Objects,
+    memory: &vk::PhysicalDeviceMemoryProperties,
+    format: vk::Format,
+    size: [u32; 2],
+) -> Result<vk::Image, VulkanError> {
+    let info = vk::ImageCreateInfo::default()
+        .image_type(vk::ImageType::TYPE_2D)
+        .format(format)
+        .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
+        .mip_levels(1)
+        .array_layers(1)
+        .samples(vk::SampleCountFlags::TYPE_1)
+        .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED);
+    // SAFETY: a valid description; the formats of maps have these uses on every device.
+    let image = unsafe { objects.device().create_image(&info, None) };
+    let image = objects.keep("vkCreateImage", image, Object::Image)?;
+    // SAFETY: a live image.
+    let needed = unsafe { objects.device().get_image_memory_requirements(image) };
+    let usable = |i: &u32| needed.memory_type_bits >> i & 1 != 0;
+    let local = |i: &u32| {
+        memory.memory_types[*i as usize].property_flags.contains(vk::MemoryPropertyFlags::DEVICE_LOCAL)
+    };
+    let types = || (0..memory.memory_type_count).filter(usable);
+    let memory_type = types().find(local).or_else(|| types().next()).unwrap_or_default();
+    let info = vk::MemoryAllocateInfo::default().allocation_size(needed.size).memory_type_index(memory_type);
+    // SAFETY: a valid description.
+    let memory = unsafe { objects.device().allocate_memory(&info, None) };
+    let memory = objects.keep("vkAllocateMemory", memory, Object::Memory)?;
+    // SAFETY: new memory of the image's size and type.
+    unsafe { objects.device().bind_image_memory(image, memory, 0) }
+        .map_err(|result| VulkanError::new("vkBindImageMemory", result))?;
+    Ok(image)
+}
+
+/// Barriers that are recorded with one command: at most three source images, both target images, and four of maps.
 struct Barriers {
-    list: [vk::ImageMemoryBarrier<'static>; 6],
+    list: [vk::ImageMemoryBarrier<'static>; 9],
     count: usize,
     before: vk::PipelineStageFlags,
     after: vk::PipelineStageFlags,
@@ -888,7 +1038,9 @@ impl Barriers {
     }
 
     fn map(&mut self, map: &Map, from: ImageState, to: ImageState) {
-        self.add(map.image, range(vk::ImageAspectFlags::COLOR, 0), from, to);
+        for &image in &map.images {
+            self.add(image, range(vk::ImageAspectFlags::COLOR, 0), from, to);
+        }
     }
 
     fn add(&mut self, image: vk::Image, range: vk::ImageSubresourceRange, from: ImageState, to: ImageState) {
@@ -998,7 +1150,7 @@ impl Timer {
             let ticks = stamps[pass + 1].wrapping_sub(stamps[pass]) & self.mask;
             Duration::from_nanos((ticks as f64 * self.period) as u64)
         };
-        Ok(Some(PassTimes { tiles: time(0), spans: time(1), march: time(2) }))
+        Ok(Some(PassTimes { split: time(0), tiles: time(1), spans: time(2), march: time(3) }))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The gather pipeline on Vulkan: recorded into the caller's command buffer.
 //!
-//! [`Gather`] has the passes of [`crate::synthesis::Gather`], from the same shaders. Everything is allocated and
+//! [`Gather`] has the passes of [`crate::synthesis::Gather`] and, for anti-aliased sources, of
+//! [`crate::synthesis::Layers`], from the same shaders. Everything is allocated and
 //! compiled in [`Gather::new`], [`Gather::register_source`] and [`Gather::register_target`]; [`Gather::record`] only
 //! records: it allocates nothing, submits nothing and waits for nothing.
 //!
@@ -33,6 +34,7 @@
 //!     gather.register_source(&SourceImages {
 //!         color: image(color, vk::Format::R8G8B8A8_SRGB, ImageState::COLOR_ATTACHMENT),
 //!         depth: image(depth, vk::Format::D32_SFLOAT, ImageState::DEPTH_ATTACHMENT),
+//!         sample_color: None,
 //!         size: views.source.size,
 //!     })?
 //! };
@@ -59,6 +61,8 @@ mod shaders;
 
 pub use ash;
 use ash::vk;
+
+use crate::synthesis::Edges;
 
 pub use gather::Gather;
 #[doc(hidden)]
@@ -129,6 +133,12 @@ pub enum VulkanError {
         /// The largest.
         limit: [u32; 2],
     },
+    /// The device cannot sample depth of so many samples, or they are neither 2 nor 4.
+    #[error("a source's depth of {0} samples cannot be used; give 2 or 4, what the device can sample")]
+    Samples(u32),
+    /// A source has the colour of its samples, which only [`Edges::Multisample`] takes.
+    #[error("colour of samples is for `Edges::Multisample` alone; leave out `sample_color`")]
+    SampleColors,
     /// A rectangle reaches beyond its image.
     #[error(
         "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
@@ -196,6 +206,10 @@ pub struct Options {
     pub max_source_size: [u32; 2],
     /// The largest target, in pixels.
     pub max_target_size: [u32; 2],
+    /// What sources know of their edges, and with it what their depth is; docs/library.md says which to choose.
+    pub edges: Edges,
+    /// Samples in each pixel of a source's depth, 2 or 4, in the standard places, for [`Edges::Multisample`].
+    pub samples: u32,
     /// After how many frames [`Gather::pass_times`] tells what one took: no fewer than are in flight. 0 for no times.
     pub timed_frames: u32,
     /// A cache for the pipelines, or null.
@@ -203,13 +217,15 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// R8G8B8A8_UNORM without depth, 2048 x 2048 pixels, no times, no cache.
+    /// R8G8B8A8_UNORM without depth, 2048 x 2048 pixels, hard edges, no times, no cache.
     fn default() -> Options {
         Options {
             color_format: vk::Format::R8G8B8A8_UNORM,
             depth_format: None,
             max_source_size: [2048; 2],
             max_target_size: [2048; 2],
+            edges: Edges::Hard,
+            samples: 4,
             timed_frames: 0,
             pipeline_cache: vk::PipelineCache::null(),
         }
@@ -266,10 +282,10 @@ impl ImageState {
     };
 }
 
-/// One layer of an image, mip level 0, without multisampling.
+/// One layer of an image, mip level 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerImage {
-    /// A 2-D image. Its usage includes SAMPLED for a source, COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
+    /// A 2-D image, without multisampling where nothing else is said. Its usage includes SAMPLED for a source, COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
     pub image: vk::Image,
     /// Format of the view that is made of it: the image's, or a compatible one if it is MUTABLE_FORMAT.
     pub format: vk::Format,
@@ -285,12 +301,15 @@ pub struct LayerImage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceImages {
     /// Colour in any format that can be filtered: R8G8B8A8_UNORM or _SRGB, A2B10G10R10_UNORM, R16G16B16A16_SFLOAT and
-    /// so on. All four channels are carried over; what is sampled as sRGB belongs into an sRGB target.
+    /// so on. All four channels are carried over; what is sampled as sRGB belongs into an sRGB target. Other than with
+    /// [`Edges::Hard`] it is resolved, and lies between 0 and 1.
     pub color: LayerImage,
     /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, or R32_SFLOAT. The stencil aspect is not
-    /// read.
+    /// read. With [`Edges::Multisample`] of [`Options::samples`] samples.
     pub depth: LayerImage,
-    /// Width and height of both images in pixels; the source is a rectangle of them.
+    /// With [`Edges::Multisample`], what the colour was resolved from, of as many samples, if it is still there.
+    pub sample_color: Option<LayerImage>,
+    /// Width and height of the images in pixels; the source is a rectangle of them.
     pub size: [u32; 2],
 }
 
@@ -347,6 +366,8 @@ pub struct Frame {
 /// What one frame's passes took on the GPU ([`Gather::pass_times`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PassTimes {
+    /// What each pixel of the source shows; none with [`Edges::Hard`].
+    pub split: std::time::Duration,
     /// Bounds of the displacements in each tile.
     pub tiles: std::time::Duration,
     /// Where to search for each tile of the target.

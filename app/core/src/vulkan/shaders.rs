@@ -7,18 +7,42 @@ use ash::vk;
 use super::VulkanError;
 use super::gather::GatherVariant;
 use super::objects::{Object, Objects};
+use crate::synthesis::Edges;
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
-pub(super) const TILES: &[u8] = include_bytes!("spirv/tiles.spv");
 pub(super) const SPANS: &[u8] = include_bytes!("spirv/spans.spv");
+/// The first pass for depth and colour of all samples.
+pub(super) const SPLIT_SAMPLES: &[u8] = include_bytes!("spirv/split-samples.spv");
+
+/// The first pass for resolved colour; none of hard edges.
+pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
+    match edges {
+        Edges::Hard => None,
+        Edges::Nearest => Some(include_bytes!("spirv/split-nearest.spv")),
+        Edges::Sample => Some(include_bytes!("spirv/split-sample.spv")),
+        Edges::Multisample => Some(include_bytes!("spirv/split-multisample.spv")),
+    }
+}
+
+/// Bounds of tiles.
+pub(super) fn tiles(edges: Edges) -> &'static [u8] {
+    match edges {
+        Edges::Hard => include_bytes!("spirv/tiles.spv"),
+        _ => include_bytes!("spirv/layer-tiles.spv"),
+    }
+}
 
 /// The last pass.
-pub(super) fn march(variant: GatherVariant, depth: bool) -> &'static [u8] {
-    match (variant, depth) {
-        (GatherVariant::Software, false) => include_bytes!("spirv/march.spv"),
-        (GatherVariant::Software, true) => include_bytes!("spirv/march-depth.spv"),
-        (GatherVariant::ShortWay, false) => include_bytes!("spirv/march-short.spv"),
-        (GatherVariant::ShortWay, true) => include_bytes!("spirv/march-short-depth.spv"),
+pub(super) fn march(edges: Edges, variant: GatherVariant, depth: bool) -> &'static [u8] {
+    match (edges, variant, depth) {
+        (Edges::Hard, GatherVariant::Software, false) => include_bytes!("spirv/march.spv"),
+        (Edges::Hard, GatherVariant::Software, true) => include_bytes!("spirv/march-depth.spv"),
+        (Edges::Hard, GatherVariant::ShortWay, false) => include_bytes!("spirv/march-short.spv"),
+        (Edges::Hard, GatherVariant::ShortWay, true) => include_bytes!("spirv/march-short-depth.spv"),
+        (Edges::Multisample, _, false) => include_bytes!("spirv/layer-march-multisample.spv"),
+        (Edges::Multisample, _, true) => include_bytes!("spirv/layer-march-multisample-depth.spv"),
+        (_, _, false) => include_bytes!("spirv/layer-march.spv"),
+        (_, _, true) => include_bytes!("spirv/layer-march-depth.spv"),
     }
 }
 
@@ -43,13 +67,24 @@ mod tests {
     type Module = (&'static str, &'static str, &'static [&'static str]);
 
     const MARCH: &str = "synthesis/gather/march.frag";
-    const MODULES: [Module; 7] = [
+    const LAYER_MARCH: &str = "synthesis/layers/march.frag";
+    const SPLIT: &str = "synthesis/layers/split.frag";
+    const MODULES: [Module; 16] = [
+        ("layer-march", LAYER_MARCH, &[]),
+        ("layer-march-depth", LAYER_MARCH, &["WRITE_DEPTH"]),
+        ("layer-march-multisample", LAYER_MARCH, &["MULTISAMPLE"]),
+        ("layer-march-multisample-depth", LAYER_MARCH, &["MULTISAMPLE", "WRITE_DEPTH"]),
+        ("layer-tiles", "synthesis/layers/tiles.frag", &[]),
         ("march", MARCH, &["TEXTURE_GATHER"]),
         ("march-depth", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH"]),
         ("march-short", MARCH, &["TEXTURE_GATHER", "SHORT_WAY"]),
         ("march-short-depth", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH"]),
         ("screen", "screen.vert", &[]),
         ("spans", "synthesis/gather/spans.frag", &[]),
+        ("split-multisample", SPLIT, &["MULTISAMPLE"]),
+        ("split-nearest", SPLIT, &[]),
+        ("split-sample", SPLIT, &["FIRST_SAMPLE"]),
+        ("split-samples", SPLIT, &["MULTISAMPLE", "SAMPLE_COLORS"]),
         ("tiles", "synthesis/gather/tiles.frag", &["TEXTURE_GATHER"]),
     ];
     const GLSLANG: &str = "glslangValidator";

@@ -118,6 +118,7 @@ fn everything(gpu: &Gpu, host: &Host) -> Result<(), VulkanError> {
         let source = gather.register_source(&SourceImages {
             color: color.layer(0, before, after),
             depth: depth.layer(0, before, after),
+            sample_color: None,
             size: warp.source_size,
         })?;
         let target = gather.register_target(&TargetImages {
@@ -219,6 +220,7 @@ fn a_format_that_the_device_lacks_is_refused() {
             let mut source = SourceImages {
                 color: color.layer(0, sampled, sampled),
                 depth: depth.layer(0, sampled, sampled),
+                sample_color: None,
                 size: warp.source_size,
             };
             gather.register_source(&source).unwrap();

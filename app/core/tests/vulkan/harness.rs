@@ -262,22 +262,37 @@ impl Gpu {
 
     /// An image that can be rendered to, sampled and copied.
     pub fn image(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Image<'_> {
+        let copied = vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
+        self.image_of(format, size, layers, vk::SampleCountFlags::TYPE_1, copied)
+    }
+
+    /// An image of several samples, that can be rendered to and sampled.
+    pub fn multisampled(&self, format: vk::Format, size: [u32; 2], samples: u32) -> Image<'_> {
+        let samples = vk::SampleCountFlags::from_raw(samples);
+        self.image_of(format, size, 1, samples, vk::ImageUsageFlags::empty())
+    }
+
+    fn image_of(
+        &self,
+        format: vk::Format,
+        size: [u32; 2],
+        layers: u32,
+        samples: vk::SampleCountFlags,
+        copied: vk::ImageUsageFlags,
+    ) -> Image<'_> {
         let attachment = match is_depth(format) {
             true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             false if format == vk::Format::R32_SFLOAT => vk::ImageUsageFlags::empty(),
             false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
         };
-        let usage = attachment
-            | vk::ImageUsageFlags::SAMPLED
-            | vk::ImageUsageFlags::TRANSFER_SRC
-            | vk::ImageUsageFlags::TRANSFER_DST;
+        let usage = attachment | vk::ImageUsageFlags::SAMPLED | copied;
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
             .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
             .mip_levels(1)
             .array_layers(layers)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(samples)
             .usage(usage);
         // SAFETY: an image with memory of its own.
         unsafe {

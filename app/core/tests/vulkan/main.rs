@@ -219,6 +219,7 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
             .register_source(&SourceImages {
                 color: image(&color, setup.source_layer, setup.states[0]),
                 depth: image(&depth, setup.source_layer, setup.states[1]),
+                sample_color: None,
                 size: source_image,
             })
             .unwrap();
@@ -544,7 +545,7 @@ fn frames_follow_one_another() {
                 });
                 let ids = images.each_ref().map(|(color, depth, target)| {
                     let [color, depth] = [color, depth].map(|image| image.layer(0, sampled, sampled));
-                    let source = SourceImages { color, depth, size: warp.source_size };
+                    let source = SourceImages { color, depth, sample_color: None, size: warp.source_size };
                     let color = target.layer(0, drawn, drawn);
                     let target = TargetImages { color, depth: None, size: warp.target_size };
                     (gather.register_source(&source).unwrap(), gather.register_target(&target).unwrap())
@@ -601,7 +602,12 @@ fn mistakes_are_refused() {
             let target = gpu.image(setup.target, warp.target_size, 1);
             let sampled = |image: &Image| image.layer(0, ImageState::SAMPLED, ImageState::SAMPLED);
             let source =
-                SourceImages { color: sampled(&color), depth: sampled(&depth), size: warp.source_size };
+                SourceImages {
+                    color: sampled(&color),
+                    depth: sampled(&depth),
+                    sample_color: None,
+                    size: warp.source_size,
+                };
             let no_depth = SourceImages { depth: sampled(&color), ..source };
             let refused = gather.register_source(&no_depth).unwrap_err();
             assert!(

@@ -265,9 +265,14 @@ impl Choices {
                     },
                 )
             }
-            Suite::Flicker => plan(Measure::Flicker, synthesis()).over(self.varied(), [()], |job, ()| {
-                job.frames = FLICKER_FRAMES[usize::from(self.quick)];
-            }),
+            Suite::Flicker => {
+                // With samples at the edges it matters what the synthesis is told of them, and one pipeline is.
+                let told = || [vec![Contender::MONO], Contender::edges()].concat();
+                let contenders = if self.render.is_forward() { told() } else { synthesis() };
+                plan(Measure::Flicker, contenders).over(self.varied(), [()], |job, ()| {
+                    job.frames = FLICKER_FRAMES[usize::from(self.quick)];
+                })
+            }
             Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
             Suite::All => {
                 let each = Suite::ALL.map(|suite| self.jobs(suite, object));
