@@ -616,6 +616,29 @@ typedef uint32_t YoroGlState;
 #define YORO_GL_STATE_PRESERVE 1
 
 /**
+ * What the rendered eye knows of its edges, where a pixel shows more than one surface, and with it what its depth is. Depth
+ * that was averaged over samples belongs to no surface, and gives halos.
+ */
+typedef uint32_t YoroEdges;
+/**
+ * One sample per pixel, of colour and depth.
+ */
+#define YORO_EDGES_HARD 0
+/**
+ * Colour resolved from several samples, depth of the nearest of them.
+ */
+#define YORO_EDGES_NEAREST 1
+/**
+ * Colour resolved from several samples, depth of the first of them: what a driver leaves that resolves depth by itself.
+ */
+#define YORO_EDGES_SAMPLE 2
+/**
+ * Colour resolved from 2 or 4 samples, depth of all of them and, where it is still there, the colour of all of them, in the
+ * standard places. The best of the four.
+ */
+#define YORO_EDGES_MULTISAMPLE 3
+
+/**
  * An entry point, whatever its own type is.
  */
 typedef void (*YoroGlProc)(void);
@@ -651,9 +674,10 @@ typedef struct {
    */
   uint32_t check;
   /**
-   * Zero.
+   * What the source knows of its edges; 0 is YORO_EDGES_HARD. The others need YORO_PIPELINE_GATHER, and
+   * YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
    */
-  uint32_t reserved;
+  YoroEdges edges;
   /**
    * Entry points.
    */
@@ -674,11 +698,13 @@ typedef struct {
   uint32_t struct_size;
   /**
    * The rendered eye: name of a GL_TEXTURE_2D of the source's size and any filterable format, without samples. All four
-   * channels are carried over, in whatever encoding. Filters and sampler objects do not matter.
+   * channels are carried over, in whatever encoding. Filters and sampler objects do not matter. Other than with
+   * YORO_EDGES_HARD it is resolved, and lies between 0 and 1.
    */
   uint32_t color_texture;
   /**
-   * Its depth: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or red float format.
+   * Its depth: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or red float format;
+   * with YORO_EDGES_MULTISAMPLE of a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
    */
   uint32_t depth_texture;
   /**
@@ -694,6 +720,11 @@ typedef struct {
    * Row of the framebuffer where it begins, from the lowest.
    */
   uint32_t y;
+  /**
+   * With YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, where it is
+   * still there; otherwise 0.
+   */
+  uint32_t sample_color_texture;
 } YoroGlImages;
 
 #if defined(VK_VERSION_1_1)
@@ -763,6 +794,14 @@ typedef struct {
    */
   uint32_t max_target_height;
   /**
+   * What sources know of their edges; 0 is YORO_EDGES_HARD.
+   */
+  YoroEdges edges;
+  /**
+   * With YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise not looked at.
+   */
+  uint32_t samples;
+  /**
    * Zero.
    */
   uint32_t reserved;
@@ -799,7 +838,7 @@ typedef struct {
 
 #if defined(VK_VERSION_1_1)
 /**
- * One layer of a 2-D image: mip level 0, without multisampling.
+ * One layer of a 2-D image: mip level 0, without multisampling where nothing else is said.
  */
 typedef struct {
   /**
@@ -836,11 +875,11 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Width of both images in pixels; what is rendered may be a part of them.
+   * Width of the images in pixels; what is rendered may be a part of them.
    */
   uint32_t width;
   /**
-   * Height of both images in pixels.
+   * Height of the images in pixels.
    */
   uint32_t height;
   /**
@@ -848,13 +887,20 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * Colour of the rendered eye, of any format that can be filtered. All four channels are carried over.
+   * Colour of the rendered eye, of any format that can be filtered. All four channels are carried over. Other than with
+   * YORO_EDGES_HARD it is resolved, and lies between 0 and 1.
    */
   YoroVkImage color;
   /**
-   * Its depth: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT.
+   * Its depth: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT; with
+   * YORO_EDGES_MULTISAMPLE of YoroVkInfo's samples.
    */
   YoroVkImage depth;
+  /**
+   * With YORO_EDGES_MULTISAMPLE, what the colour was resolved from, of as many samples, where it is still there; otherwise
+   * its image is VK_NULL_HANDLE.
+   */
+  YoroVkImage sample_color;
 } YoroVkSource;
 #endif
 
@@ -1135,7 +1181,7 @@ YoroResult yoro_vk_release_target(YoroContext *context, YoroVkTargetId id);
 
 #if defined(VK_VERSION_1_1)
 /**
- * Records the synthesis of the other eye: barriers and three draws into the target's rectangle of warp's target size, all of
+ * Records the synthesis of the other eye: barriers, and three draws or, other than with YORO_EDGES_HARD, four into the target's rectangle of warp's target size, all of
  * which is overwritten. Record it after the opaque objects of the rendered eye, before transparent objects and effects
  * that are drawn for each eye. Nothing is allocated, compiled, submitted or waited for.
  *

@@ -4,6 +4,7 @@ use std::ffi::{CStr, c_void};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
 
+use yoro::synthesis::Edges;
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{Frame, Gather, Host, ImageState, Options, SourceImages, TargetImages, VulkanError};
 
@@ -105,20 +106,22 @@ failing! {
 }
 
 /// Everything that calls Vulkan, once.
-fn everything(gpu: &Gpu, host: &Host) -> Result<(), VulkanError> {
+fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     let (warp, setup) = (warps()[0].0, Setup::PLAIN);
     let color = gpu.image(setup.color, warp.source_size, 1);
-    let depth = gpu.image(setup.depth, warp.source_size, 1);
+    let samples = if edges == Edges::Multisample { 4 } else { 1 };
+    let sample_color = gpu.multisampled(setup.color, warp.source_size, samples);
+    let depth = gpu.multisampled(vk::Format::D32_SFLOAT, warp.source_size, samples);
     let target = gpu.image(setup.target, warp.target_size, 1);
     let (before, after) = (ImageState::DISCARDED, ImageState::SAMPLED);
-    let options = Options { timed_frames: 1, ..setup.options(&[warp]) };
+    let options = Options { timed_frames: 1, edges, ..setup.options(&[warp]) };
     // SAFETY: valid handles; everything is executed before it is dropped.
     unsafe {
         let mut gather = Gather::new(host, &options)?;
         let source = gather.register_source(&SourceImages {
             color: color.layer(0, before, after),
             depth: depth.layer(0, before, after),
-            sample_color: None,
+            sample_color: (samples > 1).then(|| sample_color.layer(0, before, after)),
             size: warp.source_size,
         })?;
         let target = gather.register_target(&TargetImages {
@@ -149,17 +152,18 @@ fn every_failure_comes_back_as_an_error() {
             ash::Device::load_with(load, real.handle())
         };
         let host = Host { device: &device, ..host };
+        // Anti-aliased sources take the same ways, some of them more often.
         let failures = [
-            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
-            vk::Result::ERROR_OUT_OF_HOST_MEMORY,
-            vk::Result::ERROR_DEVICE_LOST,
+            (vk::Result::ERROR_OUT_OF_DEVICE_MEMORY, Edges::Multisample),
+            (vk::Result::ERROR_OUT_OF_HOST_MEMORY, Edges::Hard),
+            (vk::Result::ERROR_DEVICE_LOST, Edges::Hard),
         ];
-        for failure in failures {
+        for (failure, edges) in failures {
             let mut calls = 0;
             loop {
                 FAILURE.store(failure.as_raw(), Ordering::SeqCst);
                 LEFT.store(calls, Ordering::SeqCst);
-                let result = everything(gpu, &host);
+                let result = everything(gpu, &host, edges);
                 LEFT.store(usize::MAX, Ordering::SeqCst);
                 if FAILURE.load(Ordering::SeqCst) != 0 {
                     assert_eq!(result, Ok(()));
