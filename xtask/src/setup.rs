@@ -60,11 +60,7 @@ const VULKAN_NEEDS: [&Need; 3] = [&VULKAN, &VULKAN_DRIVER, &VALIDATION];
 /// What the samples in C are compiled with, without which their tests are skipped.
 const HEADERS: [Need; 2] = [
     Need { what: "Vulkan's headers", any_of: &["libvulkan.so"], apt: &["libvulkan-dev"] },
-    Need {
-        what: "headers of OpenGL ES",
-        any_of: &["libGLESv2.so"],
-        apt: &["libgles-dev", "libegl-dev"],
-    },
+    Need { what: "headers of OpenGL ES", any_of: &["libGLESv2.so"], apt: &["libgles-dev", "libegl-dev"] },
 ];
 /// Debian's package of glslangValidator.
 const GLSLANG: &[&str] = &["glslang-tools"];

@@ -89,9 +89,7 @@ fn synthesized(
 }
 
 fn quality(image: &RgbImage, truth: &RgbImage) -> anyhow::Result<[f64; 2]> {
-    let inside = |image: &RgbImage| {
-        imageops::crop_imm(image, BORDER, 0, SIZE - 2 * BORDER, SIZE).to_image()
-    };
+    let inside = |image: &RgbImage| imageops::crop_imm(image, BORDER, 0, SIZE - 2 * BORDER, SIZE).to_image();
     let quality = Quality::of(&inside(image), &inside(truth), Channels::Rgb)?;
     Ok([quality.psnr.0, quality.ssim_gaussian])
 }
@@ -168,7 +166,8 @@ fn quality_from_known_samples() {
             if means.len() == i {
                 means.push((label, [0.0; 2]));
             }
-            means[i].1 = [means[i].1[0] + db / SCENES.len() as f64, means[i].1[1] + ssim / SCENES.len() as f64];
+            means[i].1 =
+                [means[i].1[0] + db / SCENES.len() as f64, means[i].1[1] + ssim / SCENES.len() as f64];
         }
     }
     for (label, [db, ssim]) in &means {

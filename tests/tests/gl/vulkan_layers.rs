@@ -21,8 +21,12 @@ const COLOR: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// What is told of the edges, and whether the samples' colours are handed over.
-const GIVEN: [(Edges, bool); 4] =
-    [(Edges::Nearest, false), (Edges::Sample, false), (Edges::Multisample, false), (Edges::Multisample, true)];
+const GIVEN: [(Edges, bool); 4] = [
+    (Edges::Nearest, false),
+    (Edges::Sample, false),
+    (Edges::Multisample, false),
+    (Edges::Multisample, true),
+];
 
 const VERTICES: &str = "#version 450
 void main() {
@@ -80,7 +84,9 @@ impl<'a> Drawn<'a> {
         unsafe {
             let module = |name, text| {
                 let words = compile(work.path(), name, text);
-                device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&words), None).unwrap()
+                device
+                    .create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&words), None)
+                    .unwrap()
             };
             let modules = [module("fill.vert", VERTICES), module("fill.frag", FILL)];
             let sampler = device.create_sampler(&vk::SamplerCreateInfo::default(), None).unwrap();
@@ -99,7 +105,8 @@ impl<'a> Drawn<'a> {
             let sets = device.allocate_descriptor_sets(&info).unwrap();
             let mut views = Vec::new();
             let mut view = |image: &Image, aspect| {
-                let range = vk::ImageSubresourceRange::default().aspect_mask(aspect).level_count(1).layer_count(1);
+                let range =
+                    vk::ImageSubresourceRange::default().aspect_mask(aspect).level_count(1).layer_count(1);
                 let info = vk::ImageViewCreateInfo::default().image(image.raw).format(image.format);
                 let info = info.view_type(vk::ImageViewType::TYPE_2D).subresource_range(range);
                 views.push(device.create_image_view(&info, None).unwrap());
@@ -184,8 +191,8 @@ unsafe fn pipeline(
         .depth_test_enable(true)
         .depth_write_enable(true)
         .depth_compare_op(vk::CompareOp::ALWAYS);
-    let blend = [vk::PipelineColorBlendAttachmentState::default()
-        .color_write_mask(vk::ColorComponentFlags::RGBA)];
+    let blend =
+        [vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA)];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blend);
     let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
@@ -210,8 +217,7 @@ unsafe fn pipeline(
 }
 
 fn on_opengl(gl: &Rc<Context>, samples: &Samples, edges: Edges, colors: bool, warp: &Warp) -> Vec<u8> {
-    let target =
-        RenderTarget::new(gl, warp.target_size, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
+    let target = RenderTarget::new(gl, warp.target_size, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
     let multisampled = Multisampled::new(gl, samples).unwrap();
     let single = Texture::new(gl, samples.size, Format::R32F, Filter::Nearest).unwrap();
     let source = match edges {
@@ -308,7 +314,8 @@ fn anti_aliased_sources_are_those_of_opengl() {
                     for largest in [warp.source_size, warp.source_size.map(|n| n + 40)] {
                         let got = on_vulkan(gpu, &host, &samples, given, &warp, largest);
                         let pixels = got.chunks_exact(4).zip(want.chunks_exact(4));
-                        let differs = |(a, b): &(&[u8], &[u8])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1);
+                        let differs =
+                            |(a, b): &(&[u8], &[u8])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1);
                         let different = pixels.filter(differs).count();
                         assert!(
                             different * 1000 <= got.len() / 4,

@@ -74,7 +74,8 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
 /// Where a link of docs/library.md leads in a package; None for what is in none.
 fn packaged(target: &str) -> Option<String> {
     let stays = target.starts_with('#') || target == "integration-mistakes.png";
-    let example = target.strip_prefix("../app/capi/examples/").map(|file| format!("../../yoro/examples/{file}"));
+    let example =
+        target.strip_prefix("../app/capi/examples/").map(|file| format!("../../yoro/examples/{file}"));
     match target {
         "../app/capi/include/yoro.h" => Some("../../../include/yoro.h".into()),
         _ => example.or_else(|| stays.then(|| target.to_owned())),

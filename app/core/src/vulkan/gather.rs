@@ -218,9 +218,8 @@ impl Gather {
         let bounds = making.pipelines(shaders::tiles(options.edges), Into::Map)?;
         let spans = making.pipeline(shaders::SPANS, Into::Map, false)?;
         let march = making.pipelines(shaders::march(options.edges, variant, depth), Into::Target)?;
-        let resolved = shaders::split(options.edges)
-            .map(|shader| making.pipelines(shader, Into::Layers))
-            .transpose()?;
+        let resolved =
+            shaders::split(options.edges).map(|shader| making.pipelines(shader, Into::Layers)).transpose()?;
         let samples = (options.edges == Edges::Multisample)
             .then(|| making.pipelines(shaders::SPLIT_SAMPLES, Into::Layers))
             .transpose()?;
@@ -384,9 +383,8 @@ impl Gather {
         let color = view(&images.color)?;
         let depth = images.depth.as_ref().map(view).transpose()?;
         // SAFETY: live views of the formats that the render pass has.
-        let attachments = unsafe {
-            self.rendering.attachments(&mut objects, Into::Target, &[color], depth, images.size)?
-        };
+        let attachments =
+            unsafe { self.rendering.attachments(&mut objects, Into::Target, &[color], depth, images.size)? };
         let id = TargetId(self.next_id());
         self.targets.push(Target { id, images: *images, attachments, _objects: objects });
         Ok(id)
@@ -457,11 +455,8 @@ impl Gather {
             },
         );
         let device = &*self.device;
-        let read = [
-            Some(&source.images.color),
-            Some(&source.images.depth),
-            source.images.sample_color.as_ref(),
-        ];
+        let read =
+            [Some(&source.images.color), Some(&source.images.depth), source.images.sample_color.as_ref()];
         let read = || read.into_iter().flatten();
         let split = self.split.as_ref();
         let maps = [split.map(|split| &split.layers), Some(&self.tile_map), Some(&self.span_map)];
@@ -725,7 +720,8 @@ impl Making<'_> {
         let (vertex, fragment) = (self.shaders.shader(shaders::SCREEN)?, self.shaders.shader(fragment)?);
         // `PART`, `TWO_SAMPLES`.
         let values = [part, self.options.samples == 2].map(u32::from);
-        let entries = [0, 1].map(|id| vk::SpecializationMapEntry { constant_id: id, offset: 4 * id, size: 4 });
+        let entries =
+            [0, 1].map(|id| vk::SpecializationMapEntry { constant_id: id, offset: 4 * id, size: 4 });
         let constants =
             vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::bytes_of(&values));
         let stage = |stage, module| {
@@ -748,8 +744,8 @@ impl Making<'_> {
             .depth_write_enable(depth_format.is_some())
             .depth_compare_op(vk::CompareOp::ALWAYS);
         let formats = into_formats(into, self.options);
-        let all = vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        let all =
+            vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
         let blend = vec![all; formats.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blend);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
@@ -943,7 +939,8 @@ fn render_pass(
     let color_attachments = colors.iter().map(|format| attachment(*format, layouts[0]));
     let attachments: Vec<_> =
         color_attachments.chain(depth.map(|format| attachment(format, layouts[1]))).collect();
-    let reference = |attachment: usize, layout| vk::AttachmentReference { attachment: attachment as u32, layout };
+    let reference =
+        |attachment: usize, layout| vk::AttachmentReference { attachment: attachment as u32, layout };
     let color_references: Vec<_> = (0..colors.len()).map(|i| reference(i, layouts[0])).collect();
     let depth_reference = reference(colors.len(), layouts[1]);
     let mut subpass = vk::SubpassDescription::default()

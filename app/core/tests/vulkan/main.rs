@@ -601,13 +601,12 @@ fn mistakes_are_refused() {
             let depth = gpu.image(setup.depth, warp.source_size, 1);
             let target = gpu.image(setup.target, warp.target_size, 1);
             let sampled = |image: &Image| image.layer(0, ImageState::SAMPLED, ImageState::SAMPLED);
-            let source =
-                SourceImages {
-                    color: sampled(&color),
-                    depth: sampled(&depth),
-                    sample_color: None,
-                    size: warp.source_size,
-                };
+            let source = SourceImages {
+                color: sampled(&color),
+                depth: sampled(&depth),
+                sample_color: None,
+                size: warp.source_size,
+            };
             let no_depth = SourceImages { depth: sampled(&color), ..source };
             let refused = gather.register_source(&no_depth).unwrap_err();
             assert!(
