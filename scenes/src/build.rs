@@ -42,6 +42,18 @@ pub fn placed(position: Vec3, yaw: f32) -> Affine3A {
 /// coordinates in metres.
 pub type SurfacePoint = (Vec3, Vec2);
 
+/// How much of a scene is there while it is built.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Pictures; a scene begins with them.
+    pub textures: usize,
+    /// Triangles.
+    pub triangles: usize,
+}
+
+/// Triangles from one [`Progress`] to the next.
+pub const WATCHED_STEP: usize = 1 << 10;
+
 /// Collects the geometry of one scene.
 ///
 /// Positions given to the shapes are in metres in the frame of the current transform ([`SceneBuilder::within`]).
@@ -62,6 +74,8 @@ pub struct SceneBuilder {
     mirrored: bool,
     smooth: bool,
     uv_offset: Vec2,
+    progress: Progress,
+    watch: Option<Box<dyn FnMut(Progress)>>,
 }
 
 struct Group {
@@ -96,12 +110,27 @@ impl SceneBuilder {
             mirrored: false,
             smooth: true,
             uv_offset: Vec2::ZERO,
+            progress: Progress::default(),
+            watch: None,
+        }
+    }
+
+    /// An empty scene; `watch` is told after each texture, and now and then while there are more and more triangles.
+    pub fn watched(watch: impl FnMut(Progress) + 'static) -> SceneBuilder {
+        SceneBuilder { watch: Some(Box::new(watch)), ..SceneBuilder::new() }
+    }
+
+    fn tell(&mut self) {
+        if let Some(watch) = &mut self.watch {
+            watch(self.progress);
         }
     }
 
     /// Adds a picture; the result goes into the maps of a [`Material`].
     pub fn texture(&mut self, image: TextureImage) -> usize {
         self.textures.push(image);
+        self.progress.textures += 1;
+        self.tell();
         self.textures.len() - 1
     }
 
@@ -172,28 +201,37 @@ impl SceneBuilder {
 
     /// Triangles so far.
     pub fn triangle_count(&self) -> usize {
-        self.groups.iter().map(|g| g.indices.len()).sum::<usize>() / 3
+        self.progress.triangles
     }
 
-    /// The finished model: one part for each object and material, objects in the order they were first drawn.
-    pub fn finish(mut self) -> Model {
-        self.groups.sort_by_key(|g| (g.object, g.material));
-        let mut indices = Vec::with_capacity(self.groups.iter().map(|g| g.indices.len()).sum());
-        let mut parts = Vec::with_capacity(self.groups.len());
-        for group in std::mem::take(&mut self.groups) {
+    /// Counts triangles that a scene adds to its finished model itself.
+    pub fn count(&mut self, triangles: usize) {
+        self.progress.triangles += triangles;
+        self.tell();
+    }
+
+    /// The finished model: one part for each object and material, objects in the order they were first drawn. Nothing
+    /// of it is left here.
+    pub fn finish(&mut self) -> Model {
+        let empty = SceneBuilder { progress: self.progress, watch: self.watch.take(), ..SceneBuilder::new() };
+        let mut done = std::mem::replace(self, empty);
+        done.groups.sort_by_key(|g| (g.object, g.material));
+        let mut indices = Vec::with_capacity(done.groups.iter().map(|g| g.indices.len()).sum());
+        let mut parts = Vec::with_capacity(done.groups.len());
+        for group in done.groups {
             if group.indices.is_empty() {
                 continue;
             }
             let start = indices.len();
             indices.extend_from_slice(&group.indices);
             parts.push(Part {
-                name: self.objects[group.object].clone(),
+                name: done.objects[group.object].clone(),
                 material: group.material,
                 indices: start..indices.len(),
             });
         }
-        self.vertices.shrink_to_fit();
-        Model { vertices: self.vertices, indices, parts, materials: self.materials, textures: self.textures }
+        done.vertices.shrink_to_fit();
+        Model { vertices: done.vertices, indices, parts, materials: done.materials, textures: done.textures }
     }
 
     /// Adds a vertex; `uv` is used as it is. Returns its index for [`SceneBuilder::triangle`].
@@ -221,6 +259,10 @@ impl SceneBuilder {
         };
         let corners = if self.mirrored { [a, c, b] } else { [a, b, c] };
         self.groups[group].indices.extend_from_slice(&corners);
+        self.progress.triangles += 1;
+        if self.progress.triangles.is_multiple_of(WATCHED_STEP) {
+            self.tell();
+        }
     }
 
     fn current_group(&mut self) -> usize {

@@ -62,8 +62,7 @@ struct Palette {
 }
 
 /// Generates the scene.
-pub fn build(seed: u64) -> Scene {
-    let mut b = SceneBuilder::new();
+pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
     let p = palette(&mut b, seed);
     let rng = &mut random(seed, "conference");
     shell(&mut b, &p);

@@ -11,6 +11,8 @@ use std::path::Path;
 
 use yoro_scene::{Scene, SceneError, ShadingStyle};
 
+use build::{Progress, SceneBuilder};
+
 mod atrium;
 pub mod build;
 mod conference;
@@ -38,8 +40,8 @@ pub struct Builtin {
     pub style: ShadingStyle,
     /// Number of triangles, in thousands, rounded; the exact number depends on the seed.
     pub kilo_triangles: u32,
-    /// Generates it.
-    pub build: fn(seed: u64) -> Scene,
+    /// Generates it, with an empty builder.
+    pub build: fn(seed: u64, builder: SceneBuilder) -> Scene,
 }
 
 impl Builtin {
@@ -138,8 +140,24 @@ fn names() -> String {
 /// # Errors
 /// [`UnknownScene`], which lists the names there are.
 pub fn build(name: &str, seed: u64) -> Result<Scene, UnknownScene> {
+    build_with(name, seed, SceneBuilder::new())
+}
+
+/// As [`fn@build`], and tells of it while it takes.
+///
+/// # Errors
+/// As [`fn@build`].
+pub fn build_watched(
+    name: &str,
+    seed: u64,
+    watch: impl FnMut(Progress) + 'static,
+) -> Result<Scene, UnknownScene> {
+    build_with(name, seed, SceneBuilder::watched(watch))
+}
+
+fn build_with(name: &str, seed: u64, builder: SceneBuilder) -> Result<Scene, UnknownScene> {
     let builtin = BUILTINS.iter().find(|b| b.name == name);
-    builtin.map(|b| (b.build)(seed)).ok_or_else(|| UnknownScene { name: name.into() })
+    builtin.map(|b| (b.build)(seed, builder)).ok_or_else(|| UnknownScene { name: name.into() })
 }
 
 /// Why there is no scene.
@@ -181,6 +199,8 @@ pub fn check(names: &[String], seed: u64) -> Result<(), LoadError> {
 
 #[cfg(test)]
 mod tests {
+    use std::cell::RefCell;
+    use std::rc::Rc;
     use std::sync::LazyLock;
 
     use glam::Vec3;
@@ -190,7 +210,7 @@ mod tests {
 
     /// The scenes with the default seed, generated once for all tests.
     static SCENES: LazyLock<Vec<Scene>> =
-        LazyLock::new(|| BUILTINS.iter().map(|b| (b.build)(DEFAULT_SEED)).collect());
+        LazyLock::new(|| BUILTINS.iter().map(|b| build(b.name, DEFAULT_SEED).unwrap()).collect());
 
     fn each(check: impl Fn(&Builtin, &Scene)) {
         BUILTINS.iter().zip(SCENES.iter()).for_each(|(builtin, scene)| check(builtin, scene));
@@ -295,7 +315,13 @@ mod tests {
     #[test]
     fn same_seed_same_scene() {
         each(|builtin, a| {
-            let b = (builtin.build)(DEFAULT_SEED);
+            let told = Rc::new(RefCell::new(Vec::new()));
+            let heard = told.clone();
+            let b = build_watched(builtin.name, DEFAULT_SEED, move |p| heard.borrow_mut().push(p)).unwrap();
+            assert!(told.borrow().is_sorted_by_key(|p| (p.textures, p.triangles)), "{}", builtin.name);
+            let last = *told.borrow().last().unwrap();
+            assert_eq!(last.textures, b.model.textures.len(), "{}", builtin.name);
+            assert!(b.model.triangle_count() - last.triangles < build::WATCHED_STEP, "{}", builtin.name);
             assert!(a.model == b.model, "{}", builtin.name);
             assert!(
                 a.lights == b.lights && a.sky == b.sky && a.viewpoints == b.viewpoints,
@@ -303,7 +329,7 @@ mod tests {
                 builtin.name
             );
             drop(b);
-            let c = (builtin.build)(DEFAULT_SEED + 1);
+            let c = build(builtin.name, DEFAULT_SEED + 1).unwrap();
             assert!(a.model != c.model, "{}: the seed changes nothing", builtin.name);
             assert!(builtin.triangles().contains(&c.model.triangle_count()), "{}", builtin.name);
         });

@@ -566,9 +566,8 @@ fn furniture(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
 }
 
 /// The scene; see [`super::BUILTINS`].
-pub fn build(seed: u64) -> Scene {
+pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let mut rng = random(seed, "prototype");
-    let mut s = SceneBuilder::new();
     s.set_smooth(false);
     let p = palette(&mut s, rng.random::<u32>() >> 8);
     enclosure(&mut s, &p);

@@ -58,8 +58,7 @@ struct Palette {
 }
 
 /// Generates the scene.
-pub fn build(seed: u64) -> Scene {
-    let mut b = SceneBuilder::new();
+pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
     let p = palette(&mut b, seed);
     let mut lights = Vec::new();
     ground(&mut b, &p, &mut random(seed, "ground"));

@@ -995,9 +995,8 @@ fn confetti(s: &mut SceneBuilder, walk: &[Vec3], rng: &mut Pcg32) {
 }
 
 /// The scene; see [`super::BUILTINS`].
-pub fn build(seed: u64) -> Scene {
+pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let mut rng = random(seed, "stage");
-    let mut s = SceneBuilder::new();
     let noise = rng.random::<u32>() >> 8;
     let p = palette(&mut s);
     let mut lights = vec![

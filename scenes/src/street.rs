@@ -65,8 +65,7 @@ struct Palette {
 }
 
 /// Generates the scene.
-pub fn build(seed: u64) -> Scene {
-    let mut b = SceneBuilder::new();
+pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
     let p = palette(&mut b, seed);
     ground(&mut b, &p, &mut random(seed, "cobbles"));
     houses(&mut b, &p, seed);

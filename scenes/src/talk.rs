@@ -956,9 +956,8 @@ fn garden(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
 }
 
 /// The scene; see [`super::BUILTINS`].
-pub fn build(seed: u64) -> Scene {
+pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let mut rng = random(seed, "talk");
-    let mut s = SceneBuilder::new();
     let noise = rng.random::<u32>() >> 8;
     let p = palette(&mut s, noise);
     room(&mut s, &p, noise);

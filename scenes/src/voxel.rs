@@ -778,18 +778,16 @@ fn mesh_chunk(w: &World, chunk: IVec2, directions: &[Direction; 6]) -> Mesh {
     mesh
 }
 
-fn add_chunks(model: &mut Model, world: &World, materials: &[usize]) {
+/// Adds the chunks that lie in a row.
+fn add_chunks(model: &mut Model, world: &World, materials: &[usize], row: i32) {
     let directions = directions();
-    let across = SPAN / CHUNK;
-    let meshes: Vec<(IVec2, Mesh)> = (0..across * across)
+    let meshes: Vec<(IVec2, Mesh)> = (0..SPAN / CHUNK)
         .into_par_iter()
         .map(|i| {
-            let chunk = ivec2(i / across, i % across);
+            let chunk = ivec2(row, i);
             (chunk, mesh_chunk(world, chunk, &directions))
         })
         .collect();
-    model.vertices.reserve_exact(meshes.iter().map(|(_, m)| m.vertices.len()).sum());
-    model.indices.reserve_exact(meshes.iter().flat_map(|(_, m)| &m.indices).map(Vec::len).sum());
     for (chunk, mesh) in meshes {
         let base = model.vertices.len() as u32;
         model.vertices.extend_from_slice(&mesh.vertices);
@@ -895,7 +893,7 @@ fn lamp_post(s: &mut SceneBuilder, wood: usize, iron: usize, glow: usize, foot: 
 }
 
 /// The scene; see [`super::BUILTINS`].
-pub fn build(seed: u64) -> Scene {
+pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let mut rng = random(seed, "voxel");
     let noise_seed = rng.random::<u32>() >> 8;
     let mut w = terrain(noise_seed);
@@ -913,7 +911,6 @@ pub fn build(seed: u64) -> Scene {
     }
     woods(&mut w, &mut rng);
 
-    let mut s = SceneBuilder::new();
     let mut materials: Vec<usize> = BLOCKS
         .iter()
         .map(|&block| {
@@ -1026,7 +1023,13 @@ pub fn build(seed: u64) -> Scene {
 
     let viewpoints = walk(&w);
     let mut model = s.finish();
-    add_chunks(&mut model, &w, &materials);
+    for row in 0..SPAN / CHUNK {
+        let before = model.triangle_count();
+        add_chunks(&mut model, &w, &materials, row);
+        s.count(model.triangle_count() - before);
+    }
+    model.vertices.shrink_to_fit();
+    model.indices.shrink_to_fit();
     Scene {
         name: "voxel".into(),
         model,
