@@ -9,7 +9,7 @@
 mod input;
 
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
 
 pub use input::*;
@@ -68,10 +68,13 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     if path.is_dir() {
         return Err(FileError::IsFolder { path: path.into() });
     }
-    fs::read(path).map_err(|source| match source.kind() {
+    let mut bytes = Vec::new();
+    let read = open(path).and_then(|mut input| input.read_to_end(&mut bytes));
+    read.map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => FileError::Missing { path: path.into() },
         _ => FileError::Read { path: path.into(), source },
-    })
+    })?;
+    Ok(bytes)
 }
 
 /// Makes the folder `path` and its parents where they do not exist yet.
