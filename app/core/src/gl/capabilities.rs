@@ -42,7 +42,7 @@ pub struct Capabilities {
     /// And while both eyes are drawn at once, too: GL_EXT_multiview_timer_query. Without it GL_OVR_multiview leaves
     /// their results undefined.
     pub multiview_timer_queries: bool,
-    /// GL_OVR_multiview2 and its entry point ([`super::Context::with_loader`]).
+    /// GL_OVR_multiview2 and, outside of browsers, its entry point ([`super::Context::with_loader`]).
     pub multiview: bool,
     /// gl_ClipDistance: GL_EXT_clip_cull_distance on ES, core on the desktop.
     pub clip_distances: bool,

@@ -103,7 +103,7 @@ impl RenderTarget {
         depth_format: Option<(Format, Filter)>,
         multiview: bool,
     ) -> Result<RenderTarget, GlError> {
-        if multiview && gl.framebuffer_texture_multiview.is_none() {
+        if multiview && !gl.capabilities().multiview {
             return Err(GlError::Unsupported("this GL context has no GL_OVR_multiview2".into()));
         }
         let framebuffer = || -> Result<_, GlError> {
@@ -185,11 +185,9 @@ impl RenderTarget {
         let raw = texture.raw();
         // SAFETY: a live texture of the kind that the call takes, and a bound framebuffer.
         unsafe {
-            match self.gl.framebuffer_texture_multiview.filter(|_| self.multiview) {
-                // Browsers have no entry points to be loaded.
-                #[cfg(not(target_arch = "wasm32"))]
-                Some(attach) => attach(glow::FRAMEBUFFER, attachment, raw.0.get(), 0, 0, 2),
-                _ => {
+            match self.multiview {
+                true => self.gl.framebuffer_texture_layers(attachment, raw),
+                false => {
                     let (target, gl) = (glow::FRAMEBUFFER, self.gl.raw());
                     gl.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, Some(raw), 0);
                 }

@@ -104,6 +104,8 @@ const QUERY_COUNTER_BITS: u32 = 0x8864;
 /// A GL context with what is known of it. Shared by everything that lives in it.
 pub struct Context {
     raw: glow::Context,
+    /// Browsers have it without an entry point.
+    #[cfg(not(target_arch = "wasm32"))]
     framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
     capabilities: Capabilities,
     host: host::Host,
@@ -161,8 +163,8 @@ impl Context {
     }
 
     fn with_entry_points(raw: glow::Context, entry_points: EntryPoints) -> Result<Rc<Context>, GlError> {
-        let framebuffer_texture_multiview = entry_points.framebuffer_texture_multiview;
-        let has_multiview = framebuffer_texture_multiview.is_some();
+        let has_multiview =
+            cfg!(target_arch = "wasm32") || entry_points.framebuffer_texture_multiview.is_some();
         let capabilities = Capabilities::query(&raw, has_multiview, || entry_points.counts_time())?;
         let host = host::Host::new(&raw, &capabilities, entry_points.indexed)?;
         // SAFETY: plain creation.
@@ -172,7 +174,8 @@ impl Context {
         let recipes = RefCell::default();
         Ok(Rc::new(Context {
             raw,
-            framebuffer_texture_multiview,
+            #[cfg(not(target_arch = "wasm32"))]
+            framebuffer_texture_multiview: entry_points.framebuffer_texture_multiview,
             capabilities,
             host,
             profiler,
@@ -259,7 +262,7 @@ impl Context {
     /// no pass times.
     fn draws_both_eyes(&self) {
         if !self.capabilities.multiview_timer_queries {
-            self.profiler.borrow_mut().make_undefined();
+            self.profiler.borrow_mut().make_undefined(&self.raw);
         }
     }
 
@@ -267,6 +270,29 @@ impl Context {
     pub fn finish(&self) {
         // SAFETY: no arguments.
         unsafe { self.raw.finish() }
+    }
+
+    /// Attaches an array texture's first two layers to the framebuffer that is bound, to be drawn to at once.
+    ///
+    /// # Safety
+    /// There is multiview; the texture is an array with two layers.
+    #[cfg(not(target_arch = "wasm32"))]
+    unsafe fn framebuffer_texture_layers(&self, attachment: u32, texture: glow::Texture) {
+        if let Some(attach) = self.framebuffer_texture_multiview {
+            // SAFETY: the caller's texture fits the call.
+            unsafe { attach(glow::FRAMEBUFFER, attachment, texture.0.get(), 0, 0, 2) }
+        }
+    }
+
+    /// As above.
+    ///
+    /// # Safety
+    /// As above.
+    #[cfg(target_arch = "wasm32")]
+    unsafe fn framebuffer_texture_layers(&self, attachment: u32, texture: glow::Texture) {
+        let (gl, target) = (&self.raw, glow::FRAMEBUFFER);
+        // SAFETY: the caller's texture fits the call.
+        unsafe { gl.framebuffer_texture_multiview_ovr(target, attachment, Some(texture), 0, 0, 2) }
     }
 
     /// Draws one triangle that covers the viewport; shaders make it from gl_VertexID

@@ -53,8 +53,6 @@ pub(super) struct Profiler {
     api: GlApi,
     depth: usize,
     started: Option<Instant>,
-    /// The result of the query that is active will be undefined.
-    undefined: bool,
     records: Vec<(&'static str, Record)>,
     /// Records of frames whose results are not read yet, oldest first.
     frames: VecDeque<Vec<(&'static str, Record)>>,
@@ -71,7 +69,6 @@ impl Profiler {
             api: capabilities.api,
             depth: 0,
             started: None,
-            undefined: false,
             records: Vec::with_capacity(64),
             frames: VecDeque::with_capacity(FRAMES_LATE + 4),
             disturbed: 0,
@@ -113,9 +110,17 @@ impl Profiler {
         }
     }
 
-    /// What is drawn in this pass leaves the result of its query undefined.
-    pub(super) fn make_undefined(&mut self) {
-        self.undefined = self.depth > 0;
+    /// What is drawn in this pass would leave the result of its query undefined, and WebGL would not even draw it: ends
+    /// the query.
+    pub(super) fn make_undefined(&mut self, gl: &glow::Context) {
+        if self.depth > 0
+            && let Some((_, record)) = self.records.last_mut()
+            && let Record::Query(query) = *record
+        {
+            // SAFETY: ends the query that `begin` started.
+            unsafe { gl.end_query(glow::TIME_ELAPSED) };
+            *record = Record::Undefined(query);
+        }
     }
 
     pub(super) fn end(&mut self, gl: &glow::Context) {
@@ -123,16 +128,10 @@ impl Profiler {
         if !self.is_on() || self.depth > 0 {
             return;
         }
-        let undefined = std::mem::take(&mut self.undefined);
         // SAFETY: ends the query that `begin` started.
         unsafe {
             match self.records.last_mut() {
-                Some((_, record @ Record::Query(_))) => {
-                    gl.end_query(glow::TIME_ELAPSED);
-                    if let (Record::Query(query), true) = (&*record, undefined) {
-                        *record = Record::Undefined(*query);
-                    }
-                }
+                Some((_, Record::Query(_))) => gl.end_query(glow::TIME_ELAPSED),
                 Some((_, Record::Clock(time))) => {
                     gl.finish();
                     *time = self.started.take().map_or(Duration::ZERO, |t| t.elapsed());
@@ -260,12 +259,12 @@ mod tests {
             for name in ["first", "second"] {
                 profiler.begin(gl.raw(), name);
                 if frame % 2 == 0 && name == "first" {
-                    profiler.make_undefined();
+                    profiler.make_undefined(gl.raw());
                 }
                 profiler.end(gl.raw());
             }
             // Outside of a pass nothing is timed.
-            profiler.make_undefined();
+            profiler.make_undefined(gl.raw());
             gl.finish();
             told += profiler.end_frame(gl.raw(), &mut times);
         }
