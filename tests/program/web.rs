@@ -11,11 +11,12 @@ use base64::engine::general_purpose::STANDARD;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use serde_json::{Value, json};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Frustum};
+use yoro::synthesis::Edges;
 use yoro_context::{Backend, Headless};
 use yoro_lab::metrics::{Channels, Quality};
-use yoro_lab::picture::rgb_image;
+use yoro_lab::picture::{DepthImage, rgb_image, save_depth};
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
-use yoro_render::{PreparedScene, RenderSettings};
+use yoro_render::{PreparedScene, RenderSettings, RendererKind};
 
 use crate::browser::Browser;
 use crate::program::succeed;
@@ -167,41 +168,75 @@ fn every_method_shows_what_the_desktop_shows() {
     assert_eq!(page.message(), None);
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let settings = RenderSettings::default();
-    let scene = yoro_scenes::build("prototype", yoro_scenes::DEFAULT_SEED).unwrap();
-    let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
-    let options = StereoOptions { policy: None, ..StereoOptions::default() };
-    let pair = EyeOptions { size: SIZE, ..EyeOptions::default() }.pair(prepared.scene.viewpoints[1].pose());
     let mut frame = StereoFrame::new(gl, SIZE).unwrap();
-    for method in Method::ALL.into_iter().filter(|method| *method != Method::Multiview) {
-        let mut made = stereo::create(gl, method, &settings, &options).unwrap();
-        made.render(&mut prepared.renderer, &prepared.scene, &pair, &mut frame).unwrap();
-        page.choose("method", method.name());
-        let eyes = page.eyes(SIZE);
-        for eye in Eye::BOTH {
-            let desktop = rgb_image(&frame.eye(eye).read_rgba8(0, [0, 0], SIZE), SIZE);
-            close(&format!("{}, {}", method.name(), eye.name()), &eyes[eye.index()], &desktop);
+    for renderer in RendererKind::ALL {
+        let settings = RenderSettings { renderer, ..RenderSettings::default() };
+        let scene = yoro_scenes::build("prototype", yoro_scenes::DEFAULT_SEED).unwrap();
+        let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
+        let pose = prepared.scene.viewpoints[1].pose();
+        let pair = EyeOptions { size: SIZE, ..EyeOptions::default() }.pair(pose);
+        // WebGL has no multisample textures.
+        let edges = settings.is_forward().then_some(Edges::Sample);
+        let options = StereoOptions { policy: None, edges, ..StereoOptions::default() };
+        page.choose("renderer", renderer.name());
+        assert_eq!(page.evaluate("yoro.page.renderer"), settings.summary());
+        let mut compared = 0;
+        for method in Method::ALL.into_iter().filter(|method| *method != Method::Multiview) {
+            let name = format!("{}, {}", renderer.name(), method.name());
+            let offered = format!("!document.querySelector('#method [value={}]').disabled", method.name());
+            let supported = method.supported(gl.capabilities(), &settings).is_ok();
+            assert_eq!(page.evaluate(&offered), json!(supported), "{name}");
+            if !supported {
+                continue;
+            }
+            let mut made = stereo::create(gl, method, &settings, &options).unwrap();
+            made.render(&mut prepared.renderer, &prepared.scene, &pair, &mut frame).unwrap();
+            page.choose("method", method.name());
+            assert_eq!(page.message(), None, "{name}");
+            let eyes = page.eyes(SIZE);
+            for eye in Eye::BOTH {
+                let desktop = rgb_image(&frame.eye(eye).read_rgba8(0, [0, 0], SIZE), SIZE);
+                close(&format!("{name}, {}", eye.name()), &eyes[eye.index()], &desktop);
+            }
+            assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null, "{name}");
+            compared += 1;
         }
-        assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null, "{}", method.name());
+        assert!(compared >= 5, "{}: {compared} methods", renderer.name());
     }
     page.browser.expect_silence();
 }
 
 #[test]
 fn a_link_sets_everything_and_the_page_lasts() {
-    let fragment =
-        "#viewpoint=2&method=hybrid&anti-aliasing=off&ipd=70&dominant=left&display=anaglyph&scale=0.5";
+    let fragment = "#viewpoint=2&method=hybrid&renderer=forward&anti-aliasing=off&ipd=70&dominant=left&display=anaglyph&scale=0.5";
     let Some(mut page) = Page::open(fragment, None) else { return };
-    let shown = "['viewpoint', 'method', 'anti-aliasing', 'ipd', 'dominant', 'display', 'scale'].map((id) => \
+    let shown = "['viewpoint', 'method', 'renderer', 'anti-aliasing', 'ipd', 'dominant', 'display', 'scale'].map((id) => \
                  document.getElementById(id).value).join()";
-    assert_eq!(page.evaluate(shown), "2,hybrid,off,70,left,anaglyph,0.5");
+    assert_eq!(page.evaluate(shown), "2,hybrid,forward,off,70,left,anaglyph,0.5");
     assert_eq!(page.message(), None);
+    page.until("performance.getEntriesByName('first-picture').length === 1");
+    let first = page.evaluate("performance.getEntriesByName('first-picture')[0].startTime");
+    eprintln!("first picture after {:.0} ms", first.as_f64().unwrap());
     // Walking is kept in the link.
     page.evaluate("document.getElementById('canvas').focus()");
     page.browser.hold("KeyW", Duration::from_millis(300));
     page.until("location.hash.includes('at=')");
     let fragment = page.evaluate("location.hash");
     assert!(fragment.as_str().unwrap().contains("method=hybrid"), "{fragment}");
+
+    // Each renderer comes with its own anti-aliasing; what it cannot do is refused, and what was chosen before stays.
+    for (renderer, smoothing) in [("deferred", "after"), ("forward", "msaa")] {
+        page.choose("renderer", renderer);
+        assert_eq!(page.evaluate("yoro.settings['anti-aliasing']"), smoothing);
+    }
+    page.until("location.hash.includes('renderer=forward') && !location.hash.includes('anti-aliasing')");
+    page.choose("renderer", "deferred");
+    page.choose("method", "shading-reprojection");
+    page.choose("renderer", "forward");
+    assert!(page.message().unwrap().contains("g-buffer"));
+    assert_eq!(page.evaluate("yoro.page.renderer"), "deferred");
+    page.evaluate(&draw([64, 48]));
+    assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null);
 
     // Every display draws; turned and resized, as a phone is.
     for display in ["side-by-side", "cross-eyed", "left", "right", "difference", "flicker", "anaglyph"] {
@@ -215,6 +250,20 @@ fn a_link_sets_everything_and_the_page_lasts() {
         assert!(wide.as_u64().unwrap() <= u64::from(width), "{wide} pixels wide in a window of {width}");
     }
 
+    // While a scene is generated it is told how far that is.
+    let told = page.evaluate(
+        "(async () => { const bar = document.getElementById('progress'), seen = []; \
+         const watch = new MutationObserver(() => seen.push(bar.position)); watch.observe(bar, { attributes: true }); \
+         await yoro.showSource({ builtin: 'conference' }); watch.disconnect(); return seen; })()",
+    );
+    let told: Vec<f64> = told.as_array().unwrap().iter().map(|part| part.as_f64().unwrap()).collect();
+    let parts: Vec<f64> = told.into_iter().filter(|part| *part >= 0.0).collect();
+    assert!(
+        parts.len() > 5 && parts.is_sorted() && parts[0] < 0.5 && parts[parts.len() - 1] > 0.9,
+        "{parts:?}"
+    );
+    page.evaluate("yoro.showSource({ builtin: 'prototype' })");
+
     // A thousand frames hold what ten held.
     let frames = |count: u32| {
         format!(
@@ -223,9 +272,12 @@ fn a_link_sets_everything_and_the_page_lasts() {
         )
     };
     page.choose("method", "yoro");
-    let before = page.evaluate(&frames(10));
-    for _ in 0..10 {
-        assert_eq!(page.evaluate(&frames(100)), before);
+    for renderer in ["forward", "deferred"] {
+        page.choose("renderer", renderer);
+        let before = page.evaluate(&frames(10));
+        for _ in 0..5 {
+            assert_eq!(page.evaluate(&frames(100)), before);
+        }
     }
 
     // The context is lost, and comes back with the scene.
@@ -266,9 +318,9 @@ fn a_link_sets_everything_and_the_page_lasts() {
     page.browser.expect_silence();
 
     // What a link says wrongly is told, and the rest is done.
-    page.go("?again#viewpoint=1&ipd=900&method=none&size=3");
+    page.go("?again#viewpoint=1&ipd=900&method=none&size=3&anti-aliasing=msaa");
     let told = page.message().unwrap();
-    for part in ["ipd is “900”", "method is “none”", "“size”"] {
+    for part in ["ipd is “900”", "method is “none”", "“size”", "anti-aliasing is “msaa”"] {
         assert!(told.contains(part), "{told}");
     }
     assert_eq!(page.evaluate("document.getElementById('viewpoint').value"), "1");
@@ -336,27 +388,41 @@ fn files_of_ones_own() {
         Rgb([(x * 2) as u8, (y * 3) as u8, if x / 8 % 2 == y / 8 % 2 { 200 } else { 40 }])
     });
     let near = |x: u32, y: u32| (30..60).contains(&x) && (20..50).contains(&y);
-    let depth = GrayImage::from_fn(size[0], size[1], |x, y| Luma([if near(x, y) { 200 } else { 20 }]));
-    let files = [("view.png", png(color)), ("view-depth.png", png(depth))];
-    page.drop_files(&files);
-    assert_eq!(page.message(), None);
-    page.choose("picture-encoding", "disparity");
-    page.evaluate(
-        "document.getElementById('picture-disparity-scale').value = 12; \
-         document.getElementById('picture-options').dispatchEvent(new Event('change')); 0",
-    );
-    assert_eq!(page.message(), None);
     let folder = tempfile::tempdir().unwrap();
-    for (name, bytes) in &files {
-        std::fs::write(folder.path().join(name), bytes).unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let gray = GrayImage::from_fn(size[0], size[1], |x, y| Luma([if near(x, y) { 200 } else { 20 }]));
+    gray.save(path("depth.png")).unwrap();
+    let metres = DepthImage::from_fn(size[0], size[1], |x, y| Luma([if near(x, y) { 0.7 } else { 4.0 }]));
+    save_depth(&path("metres.exr"), &metres).unwrap();
+    // A distance that 8 bits do not have.
+    let tenths = DepthImage::from_fn(size[0], size[1], |x, y| Luma([if near(x, y) { 0.0713 } else { 0.4 }]));
+    save_depth(&path("tenths-depth.png"), &tenths).unwrap();
+    color.save(path("view.png")).unwrap();
+    for (depth, encoding, key, value, edges) in [
+        ("depth.png", "disparity", "disparity-scale", "12", "hard"),
+        ("metres.exr", "metres", "metres-at-white", "3", "hard"),
+        ("tenths-depth.png", "metres", "metres-at-white", "10", "sample"),
+    ] {
+        let files = ["view.png", depth].map(|name| (name, std::fs::read(path(name)).unwrap()));
+        page.drop_files(&files);
+        assert_eq!(page.message(), None, "{depth}");
+        assert_eq!(page.evaluate("yoro.source.depth.name"), depth);
+        page.choose("picture-edges", edges);
+        page.choose("picture-encoding", encoding);
+        page.evaluate(&format!(
+            "document.getElementById('picture-{key}').value = {value}; \
+             document.getElementById('picture-options').dispatchEvent(new Event('change')); 0"
+        ));
+        assert_eq!(page.message(), None, "{depth}");
+        let options = format!("--depth-encoding {encoding} --{key} {value} --edges {edges}");
+        succeed(
+            folder.path(),
+            &format!("synthesize --color view.png --depth {depth} --out left.png {options}"),
+        );
+        let desktop = image::open(path("left.png")).unwrap().into_rgb8();
+        assert_ne!(desktop, color, "{depth}: something moves");
+        close(depth, &page.eyes(size)[0], &desktop);
     }
-    let options = "--depth-encoding disparity --disparity-scale 12";
-    succeed(
-        folder.path(),
-        &format!("synthesize --color view.png --depth view-depth.png --out left.png {options}"),
-    );
-    let desktop = image::open(folder.path().join("left.png")).unwrap().into_rgb8();
-    close("pictures", &page.eyes(size)[0], &desktop);
 
     // Ten that are none: a sentence each, and what was there stays.
     type Files<'a> = &'a [(&'a str, Vec<u8>)];
@@ -377,7 +443,7 @@ fn files_of_ones_own() {
         (&[("a.gltf", b"{".to_vec())], "a.gltf"),
         (&[("a.png", gray(4, 4))], "One picture is not enough"),
         (&[("a.png", gray(4, 4)), ("a-depth.png", gray(5, 4))], "4x4"),
-        (&[("a.png", b"no picture".to_vec()), ("a-depth.png", gray(4, 4))], "a.png is no picture"),
+        (&[("a.png", b"no picture".to_vec()), ("a-depth.png", gray(4, 4))], "a.png is not a picture"),
         (&[("a.txt", b"text".to_vec())], "neither a model"),
     ];
     for (files, part) in broken {
@@ -391,7 +457,7 @@ fn files_of_ones_own() {
 
 #[test]
 fn a_measurement_is_reported() {
-    let Some(mut page) = Page::open("#display=left", None) else { return };
+    let Some(mut page) = Page::open("#display=left&renderer=forward", None) else { return };
     page.evaluate(
         "document.getElementById('measure-size').append(new Option('64x48')); \
          document.getElementById('measure-seconds').append(new Option('4', 4)); 0",

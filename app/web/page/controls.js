@@ -6,7 +6,7 @@ const METRES_PER_SECOND = 1.6;
 const TURN_PER_SECOND = 1.2;
 
 const moves = {
-  KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyE: [0, -1, 0], KeyQ: [0, 1, 0],
+  KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyQ: [0, -1, 0], KeyE: [0, 1, 0],
   ArrowUp: [0, 0, 1], ArrowDown: [0, 0, -1],
 };
 const turns = { ArrowLeft: 1, ArrowRight: -1 };

@@ -2,7 +2,8 @@
 
 const element = (id) => document.getElementById(id);
 const MODEL = /\.(obj|gltf|glb)$/i;
-const PICTURE = /\.(png|jpe?g|bmp|tga)$/i;
+const PICTURE = /\.(png|jpe?g|bmp|tga|exr)$/i;
+const EXR = /\.exr$/i;
 const DEPTH = /depth|disp|z[-_. ]?(buffer|map)/i;
 /** More than a browser's module can hold, in bytes. */
 const MAX_BYTES = 1.5e9;
@@ -41,18 +42,23 @@ export function understand(files) {
   }
   const pictures = files.filter(({ name }) => PICTURE.test(name));
   if (pictures.length === 2) {
-    const depth = pictures.find(({ name }) => DEPTH.test(name)) ?? pictures[1];
-    return { color: pictures.find((picture) => picture !== depth), depth };
+    const depth = pictures.find(({ name }) => DEPTH.test(name)) ?? pictures.find(({ name }) => EXR.test(name)) ?? pictures[1];
+    const color = pictures.find((picture) => picture !== depth);
+    if (color.name === depth.name) throw new Error(`Both pictures are called ${depth.name}: rename the one with the depth.`);
+    return { color, depth };
   }
   if (pictures.length) {
     throw new Error(`${pictures.length === 1 ? 'One picture is' : `${pictures.length} pictures are`} not enough to go by: drop two, colour and depth, the one with “depth” in its name.`);
   }
   const names = files.map(({ name }) => name).slice(0, 3).join(', ') || 'nothing';
-  throw new Error(`There is neither a model (OBJ, glTF, GLB) nor a pair of pictures (PNG, JPEG) among the files: ${names}.`);
+  throw new Error(`There is neither a model (OBJ, glTF, GLB) nor a pair of pictures (PNG, JPEG, EXR) among the files: ${names}.`);
 }
 
 function options() {
-  const keys = ['source', 'encoding', 'near', 'far', 'metres-at-white', 'disparity-offset', 'disparity-scale', 'gamma', 'fov-y-degrees'];
+  const keys = [
+    'source', 'encoding', 'near', 'far', 'metres-at-white', 'disparity-offset', 'disparity-scale', 'gamma', 'fov-y-degrees',
+    'edges',
+  ];
   const entries = keys.map((key) => {
     const input = element(`picture-${key}`);
     return [key, input.type === 'number' ? input.valueAsNumber : input.value];

@@ -1,23 +1,34 @@
 // Settings in the address's fragment: what is as by default is left out.
 
 export const defaults = {
-  scene: 'prototype', viewpoint: 0, method: 'yoro', 'anti-aliasing': 'after', ipd: 63, dominant: 'right',
-  display: 'side-by-side', scale: 1, at: null,
+  scene: 'prototype', viewpoint: 0, method: 'yoro', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 63,
+  dominant: 'right', display: 'side-by-side', scale: 1, at: null,
+};
+
+/** The anti-aliasing that each renderer has, its default first. */
+export const antiAliasing = {
+  deferred: ['after', 'before', 'off'],
+  forward: ['msaa', 'after', 'before', 'off'],
 };
 
 const allowed = {
-  'anti-aliasing': ['after', 'before', 'off'],
+  renderer: Object.keys(antiAliasing),
   dominant: ['right', 'left'],
   display: ['side-by-side', 'cross-eyed', 'anaglyph', 'left', 'right', 'difference', 'flicker'],
   scale: ['1', '0.75', '0.5'],
 };
 
-/** The settings of a fragment, and a sentence for each part that is none. `known`: names of scenes and methods. */
+/** The settings of a fragment, and a sentence for each part that is none. `known`: the names of scenes, and of the methods
+ * of each renderer. */
 export function parse(fragment, known) {
-  const settings = { ...defaults };
+  const fields = new URLSearchParams(fragment.replace(/^#/, ''));
+  const renderer = allowed.renderer.find((name) => name === fields.get('renderer')) ?? defaults.renderer;
+  const settings = { ...defaults, 'anti-aliasing': antiAliasing[renderer][0] };
   const faults = [];
-  const lists = { ...allowed, ...known };
-  for (const [key, value] of new URLSearchParams(fragment.replace(/^#/, ''))) {
+  const lists = {
+    ...allowed, 'anti-aliasing': antiAliasing[renderer], scene: known.scenes, method: known.methods[renderer],
+  };
+  for (const [key, value] of fields) {
     const number = Number(value);
     if (!(key in defaults)) {
       faults.push(`The link has a setting “${key}” that this page does not know; it was left out.`);
@@ -39,9 +50,10 @@ export function parse(fragment, known) {
 /** The fragment of settings. */
 export function format(settings) {
   const fields = new URLSearchParams();
+  const usual = { ...defaults, 'anti-aliasing': antiAliasing[settings.renderer][0] };
   for (const [key, value] of Object.entries(settings)) {
     if (key === 'at' && value) fields.set(key, value.map((n) => +n.toFixed(4)).join(','));
-    else if (value !== null && value !== defaults[key]) fields.set(key, value);
+    else if (value !== null && value !== usual[key]) fields.set(key, value);
   }
   return `#${fields}`.replaceAll('%2C', ',');
 }

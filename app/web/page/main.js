@@ -2,7 +2,7 @@
 
 import init, { Page, builtinScenes } from './yoro_web.js';
 import { listen } from './controls.js';
-import { defaults, format, parse } from './link.js';
+import { antiAliasing, defaults, format, parse } from './link.js';
 import { offerMeasure } from './measure.js';
 import { offerFiles } from './files.js';
 import { offerPhone } from './phone.js';
@@ -12,6 +12,10 @@ const element = (id) => document.getElementById(id);
 const canvas = element('canvas');
 /** Pixels of the canvas that are drawn at most. */
 const MAX_PIXELS = 4e6;
+/** The settings that have an element of their name. */
+const choices = [
+  'scene', 'viewpoint', 'method', 'renderer', 'anti-aliasing', 'dominant', 'display', 'scale', 'ipd',
+];
 
 /** What the parts of the page share. */
 const app = {
@@ -51,9 +55,13 @@ export function sentence(error) {
   return error.message ?? String(error);
 }
 
-function loading(text) {
+/** What is being waited for; with `part`, from 0 to 1, and `count` where it is known how far that is. */
+function loading(text, part = null, count = '') {
   element('loading').hidden = !text;
-  element('loading-text').textContent = text ?? '';
+  if (element('loading-text').textContent !== text) element('loading-text').textContent = text ?? '';
+  element('loading-count').textContent = count;
+  if (part === null) element('progress').removeAttribute('value');
+  else element('progress').value = part;
 }
 
 let drawn = false;
@@ -92,11 +100,33 @@ function frame(now) {
       truth = real;
       drawn = true;
       legend();
+      if (app.facts && !noted) noteFirst();
     }
     if (moving || flicker) changedLater();
   } catch (error) {
     say(sentence(error));
   }
+}
+
+let noted = false;
+
+/** Notes when the first picture was there, in ms since the page was asked for. */
+function noteFirst() {
+  noted = true;
+  const { gl } = app;
+  const done = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  const look = () => {
+    const state = gl.clientWaitSync(done, 0, 0);
+    if (state === gl.TIMEOUT_EXPIRED) {
+      setTimeout(look);
+      return;
+    }
+    gl.deleteSync(done);
+    const { startTime } = performance.mark('first-picture');
+    element('gpu').textContent += `; first picture after ${(startTime / 1000).toFixed(1)} s`;
+  };
+  setTimeout(look);
 }
 
 function changedLater() {
@@ -139,17 +169,33 @@ function keep() {
   keeping = setTimeout(() => history.replaceState(null, '', format(app.settings)), 300);
 }
 
+const methods = {};
+let offered = null;
+
+/** Offers what there is with a renderer. */
+function offerRenderer(renderer) {
+  offered = renderer;
+  element('method').replaceChildren(...methods[renderer].map(({ name, reason }) => {
+    const option = new Option(reason ? `${name} (not here)` : name, name);
+    option.disabled = Boolean(reason);
+    option.title = reason ?? '';
+    return option;
+  }));
+  for (const option of element('anti-aliasing').options) option.disabled = !antiAliasing[renderer].includes(option.value);
+}
+
 /** Gives the module the settings, and the elements their values. */
 function apply() {
   const { settings } = app;
-  for (const key of ['scene', 'viewpoint', 'method', 'anti-aliasing', 'dominant', 'display', 'scale', 'ipd']) {
-    element(key).value = String(settings[key]);
-  }
+  if (offered !== settings.renderer) offerRenderer(settings.renderer);
+  for (const key of choices) element(key).value = String(settings[key]);
   element('ipd-value').textContent = settings.ipd;
   if (!app.page) return;
+  const smoothing = settings['anti-aliasing'];
   app.page.configure(JSON.stringify({
-    method: settings.method, 'anti-aliasing': settings['anti-aliasing'], ipd: settings.ipd / 1000,
-    dominant: settings.dominant, display: settings.display,
+    method: settings.method, renderer: settings.renderer, ipd: settings.ipd / 1000, dominant: settings.dominant,
+    display: settings.display,
+    ...(smoothing === 'msaa' ? { msaa: 4 } : { 'anti-aliasing': smoothing, msaa: 1 }),
   }));
   keep();
   changed();
@@ -166,6 +212,14 @@ function step(what) {
 }
 
 let job = null;
+
+/** How far a scene is: at first textures, then triangles, of which it is known how many there will be. */
+function generating(doing, name, { textures, triangles }) {
+  const { kiloTriangles } = scenes.find((scene) => scene.name === name);
+  const kilo = Math.round(triangles / 1000);
+  if (kilo) loading(doing, Math.min(kilo / kiloTriangles, 1), `${kilo} of ${kiloTriangles} thousand triangles`);
+  else loading(doing, null, `${textures} textures`);
+}
 
 /** Loads and shows a source, from its viewpoint of the settings; what was shown stays until then. */
 async function showSource(source, { keepPlace = false } = {}) {
@@ -186,11 +240,15 @@ async function showSource(source, { keepPlace = false } = {}) {
     changed();
     return;
   }
-  loading(source.builtin ? `Generating ${source.builtin}` : `Loading ${source.main}`);
+  const doing = source.builtin ? `Generating ${source.builtin}` : `Loading ${source.main}`;
+  loading(doing);
   const worker = new Worker('worker.js', { type: 'module' });
   job = worker;
   const answer = await new Promise((resolve) => {
-    worker.onmessage = ({ data }) => resolve(data);
+    worker.onmessage = ({ data }) => {
+      if (data.bytes || data.error) resolve(data);
+      else if (job === worker) generating(doing, source.builtin, data);
+    };
     worker.onerror = (event) => resolve({ error: `The scene could not be made (${event.message ?? 'the worker did not start'}).` });
     worker.postMessage({ ...source, module: app.module });
   });
@@ -257,9 +315,9 @@ function attach() {
 
 function listenToElements() {
   const numbers = ['viewpoint', 'scale', 'ipd'];
-  for (const key of ['scene', 'viewpoint', 'method', 'anti-aliasing', 'dominant', 'display', 'scale', 'ipd']) {
+  for (const key of choices) {
     element(key).addEventListener(key === 'ipd' ? 'input' : 'change', ({ target }) => {
-      const before = app.settings[key];
+      const before = { ...app.settings };
       const value = numbers.includes(key) ? Number(target.value) : target.value;
       if (!app.page) return;
       clear();
@@ -268,6 +326,7 @@ function listenToElements() {
         return;
       }
       app.settings[key] = value;
+      if (key === 'renderer') [app.settings['anti-aliasing']] = antiAliasing[value];
       if (key === 'viewpoint') {
         app.settings.at = null;
         app.page.goTo(value);
@@ -275,7 +334,7 @@ function listenToElements() {
       try {
         apply();
       } catch (error) {
-        app.settings[key] = before;
+        app.settings = before;
         apply();
         say(sentence(error));
       }
@@ -322,10 +381,14 @@ function listenToElements() {
   });
 }
 
-let known = {};
+let scenes = [];
 
 function readLink() {
-  const { settings, faults } = parse(location.hash, known);
+  const here = (list) => list.filter(({ reason }) => !reason).map(({ name }) => name);
+  const { settings, faults } = parse(location.hash, {
+    scenes: here(scenes),
+    methods: Object.fromEntries(Object.entries(methods).map(([renderer, list]) => [renderer, here(list)])),
+  });
   app.settings = settings;
   if (faults.length) say(faults.join(' '));
 }
@@ -342,23 +405,15 @@ async function start() {
     return;
   }
   if (!attach()) return;
-  const scenes = JSON.parse(builtinScenes());
+  scenes = JSON.parse(builtinScenes());
   element('scene').replaceChildren(...scenes.map(({ name, title, kiloTriangles }) => {
     const option = new Option(`${name}, ${kiloTriangles}k triangles`, name);
     option.title = title;
     return option;
   }));
-  const methods = JSON.parse(app.page.methods);
-  element('method').replaceChildren(...methods.map(({ name, reason }) => {
-    const option = new Option(reason ? `${name} (not here)` : name, name);
-    option.disabled = Boolean(reason);
-    option.title = reason ?? '';
-    return option;
-  }));
-  known = {
-    scene: scenes.map(({ name }) => name),
-    method: methods.filter(({ reason }) => !reason).map(({ name }) => name),
-  };
+  for (const renderer of Object.keys(antiAliasing)) {
+    methods[renderer] = JSON.parse(app.page.methods(JSON.stringify({ renderer })));
+  }
   element('gpu').textContent = `${app.page.gpu}; ${app.page.glVersion}`;
   controls = listen(canvas, {
     turn: (left, up) => { app.page?.turn(left, up); },

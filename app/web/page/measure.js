@@ -125,6 +125,7 @@ function lines(app, size, seconds, result) {
     'size per eye, pixels': size.join('x'),
     'IPD, mm': String(app.settings.ipd),
     'dominant eye': app.settings.dominant,
+    'renderer': app.page.renderer,
     'anti-aliasing': app.settings['anti-aliasing'],
     'seconds': String(seconds),
     'browser': navigator.userAgent,
@@ -168,7 +169,7 @@ function show(app, size, result, run) {
   const figure = (values, digits, unit = '') => (values.length ? `${median(values).toFixed(digits)}${unit}` : 'not told');
   const table = document.createElement('table');
   const caption = table.createCaption();
-  caption.textContent = `${app.page.gpu}: ${app.facts.name}, ${size.join('x')} pixels of each eye, ${records.length / facts.contenders.length} rounds`;
+  caption.textContent = `${app.page.gpu}: ${app.facts.name}, ${size.join('x')} pixels of each eye, ${app.page.renderer}, ${records.length / facts.contenders.length} rounds`;
   const head = table.createTHead().insertRow();
   for (const text of ['Method', 'Of two renders', 'Frame, ms', 'GPU, ms']) head.append(cell('th', text, 'col'));
   const body = table.createTBody();

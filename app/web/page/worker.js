@@ -6,7 +6,7 @@ onmessage = async ({ data }) => {
   try {
     await init({ module_or_path: data.module });
     const bytes = data.builtin
-      ? buildScene(data.builtin)
+      ? buildScene(data.builtin, (textures, triangles) => postMessage({ textures, triangles }))
       : loadScene(data.main, data.files.map((file) => file.name), data.files.map((file) => new Uint8Array(file.bytes)));
     postMessage({ bytes, warnings: takeWarnings() }, [bytes.buffer]);
   } catch (error) {

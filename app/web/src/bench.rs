@@ -6,7 +6,6 @@ use wasm_bindgen::prelude::*;
 use yoro::eyes::Eye;
 use yoro::gl::{PassTime, Profiling};
 use yoro::synthesis::Pipeline;
-use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, StereoFrame, StereoMethod};
 
 use crate::page::{Page, sentence};
@@ -40,13 +39,14 @@ impl Page {
         self.bench = None;
         let size = [width, height];
         let frame = StereoFrame::new(&self.gl, size).map_err(sentence)?;
+        let render = self.settings.render_settings();
         let (mut names, mut entrants, mut unsupported) = (Vec::new(), Vec::new(), Vec::new());
         for method in Method::ALL {
-            match method.supported(self.gl.capabilities(), &RenderSettings::default()) {
+            match method.supported(self.gl.capabilities(), &render) {
                 Err(reason) => unsupported.push((contender(method), reason.to_string())),
                 Ok(()) => {
                     names.push(contender(method));
-                    entrants.push(self.create(method).map_err(sentence)?);
+                    entrants.push(self.settings.create(&self.gl, method).map_err(sentence)?);
                 }
             }
         }

@@ -6,9 +6,9 @@ use wasm_bindgen::prelude::*;
 use web_sys::WebGl2RenderingContext;
 use yoro::eyes::{Eye, Pose};
 use yoro::gl::{Context, Destination, Filter, Format, GlError, Texture};
-use yoro::synthesis::{self, Outputs, Source, Synthesis, SynthesisOptions};
+use yoro::synthesis::{self, Edges, Outputs, Source, Synthesis, SynthesisOptions};
 use yoro_render::stereo::{self, Method, StereoFrame, StereoMethod};
-use yoro_render::{PreparedScene, RenderSettings};
+use yoro_render::{PreparedScene, Renderer};
 use yoro_scene::Scene;
 use yoro_scenes::BUILTINS;
 
@@ -115,17 +115,24 @@ impl Page {
         vec![self.gl.object_count() as f64, self.gl.texture_bytes() as f64 / f64::from(1 << 20)]
     }
 
-    /// The methods as JSON: `[{"name", "reason"}]`, with the reason where the browser cannot do it.
-    #[wasm_bindgen(getter)]
-    pub fn methods(&self) -> String {
+    /// The methods with the renderer of these choices, JSON as [`Page::configure`] takes it, as JSON: `[{"name",
+    /// "reason"}]`, with the reason where browser or renderer cannot do it.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn methods(&self, json: &str) -> Result<String, JsError> {
+        let render = Settings::parse(json).map_err(|text| JsError::new(&text))?.render_settings();
         let entry = |method: Method| {
-            let reason = method
-                .supported(self.gl.capabilities(), &RenderSettings::default())
-                .err()
-                .map(|error| error.to_string());
-            serde_json::json!({ "name": method.name(), "reason": reason })
+            let supported = method.supported(self.gl.capabilities(), &render);
+            serde_json::json!({ "name": method.name(), "reason": supported.err().map(|error| error.to_string()) })
         };
-        serde_json::Value::from_iter(Method::ALL.map(entry)).to_string()
+        Ok(serde_json::Value::from_iter(Method::ALL.map(entry)).to_string())
+    }
+
+    /// The renderer in a few words: `forward, 4 samples a pixel`.
+    #[wasm_bindgen(getter)]
+    pub fn renderer(&self) -> String {
+        self.settings.render_settings().summary()
     }
 
     /// Takes over the page's choices, as JSON.
@@ -135,7 +142,10 @@ impl Page {
     pub fn configure(&mut self, json: &str) -> Result<(), JsError> {
         let settings = Settings::parse(json).map_err(|text| JsError::new(&text))?;
         let before = std::mem::replace(&mut self.settings, settings);
-        let same = settings.method == before.method && settings.anti_aliasing == before.anti_aliasing;
+        let same = self.method.is_some()
+            && settings.method == before.method
+            && settings.stereo_options() == before.stereo_options()
+            && settings.render_settings() == before.render_settings();
         let made = match (&self.scene, same) {
             (Some(_), false) => self.make().map_err(sentence),
             _ if self.own.is_some() && settings.ipd != before.ipd => self.synthesize_pictures(),
@@ -144,15 +154,17 @@ impl Page {
         made.inspect_err(|_| self.settings = before)
     }
 
-    /// Compiles the method for the scene, if there is one.
+    /// Compiles renderer and method for the scene, if there is one.
     fn make(&mut self) -> Result<(), GlError> {
         (self.method, self.truth, self.headset) = (None, None, None);
-        self.method = Some(self.create(self.settings.method)?);
+        let settings = self.settings.render_settings();
+        if let Some(prepared) = &mut self.scene
+            && *prepared.renderer.settings() != settings
+        {
+            prepared.renderer = Renderer::new(&self.gl, &settings, &prepared.scene)?;
+        }
+        self.method = Some(self.settings.create(&self.gl, self.settings.method)?);
         Ok(())
-    }
-
-    pub(crate) fn create(&self, method: Method) -> Result<Box<dyn StereoMethod>, GlError> {
-        stereo::create(&self.gl, method, &RenderSettings::default(), &self.settings.stereo_options())
     }
 
     /// Shows a scene as [`crate::work`] packs it, from its first viewpoint; what it says of it is JSON: `{"name",
@@ -172,7 +184,8 @@ impl Page {
             "lights": scene.lights.len(),
             "viewpoints": scene.viewpoints.len(),
         });
-        let prepared = PreparedScene::new(&self.gl, scene, &RenderSettings::default()).map_err(sentence)?;
+        let prepared = PreparedScene::new(&self.gl, scene, &self.settings.render_settings());
+        let prepared = prepared.map_err(sentence)?;
         self.scene = Some(prepared);
         self.make().map_err(sentence)?;
         self.go_to(0);
@@ -194,15 +207,18 @@ impl Page {
         options: &str,
     ) -> Result<Vec<u32>, JsError> {
         let options = parse_options(options)?;
-        let pair = PicturePair::decode((color_name, color), (depth_name, depth)).map_err(sentence)?;
+        let files = [(color_name, color), (depth_name, depth)];
+        yoro_files::provide(files.map(|(name, bytes)| (name.into(), bytes.to_vec())));
+        let pair = PicturePair::load(color_name.as_ref(), depth_name.as_ref());
+        yoro_files::provide([]);
+        let pair = pair.map_err(sentence)?;
         pair.nearness(&options, self.settings.ipd).map_err(sentence)?;
         let size = pair.size;
         let texture = |format, filter| Texture::new(&self.gl, size, format, filter).map_err(sentence);
         let own = Own {
             color: texture(Format::Rgba8, Filter::Linear)?,
             depth: texture(Format::R32F, Filter::Nearest)?,
-            pipeline: synthesis::create(&self.gl, &SynthesisOptions::default(), Outputs::default())
-                .map_err(sentence)?,
+            pipeline: self.pipeline(options.edges).map_err(sentence)?,
             pair,
             options,
         };
@@ -220,11 +236,17 @@ impl Page {
     #[wasm_bindgen(js_name = setPictureOptions)]
     pub fn set_picture_options(&mut self, options: &str) -> Result<(), JsError> {
         let options = parse_options(options)?;
+        let edges = options.edges;
+        let differs = self.own.as_ref().is_some_and(|own| own.options.edges != edges);
+        let pipeline = differs.then(|| self.pipeline(edges)).transpose().map_err(sentence)?;
         let Some(own) = &mut self.own else { return Ok(()) };
         let before = std::mem::replace(&mut own.options, options);
+        if let Some(pipeline) = pipeline {
+            own.pipeline = pipeline;
+        }
         let made = self.synthesize_pictures();
         if let (Err(_), Some(own)) = (&made, &mut self.own) {
-            own.options = before;
+            own.options = PictureOptions { edges, ..before };
         }
         made
     }
@@ -323,16 +345,8 @@ impl Page {
         method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame)?;
         if display.needs_truth() {
             if self.truth.is_none() {
-                let options = self.settings.stereo_options();
-                self.truth = Some(Truth {
-                    method: stereo::create(
-                        &self.gl,
-                        Method::Conventional,
-                        &RenderSettings::default(),
-                        &options,
-                    )?,
-                    frame: StereoFrame::new(&self.gl, size)?,
-                });
+                let method = self.settings.create(&self.gl, Method::Conventional)?;
+                self.truth = Some(Truth { method, frame: StereoFrame::new(&self.gl, size)? });
             }
             if let Some(real) = &mut self.truth {
                 real.method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut real.frame)?;
@@ -364,6 +378,12 @@ impl Page {
             Display::Difference => self.show.difference(image(other), real, &first),
             Display::Flicker => self.show.image(if truth { real } else { image(other) }, &first),
         }
+    }
+
+    /// What makes the eyes of pictures with such silhouettes.
+    fn pipeline(&self, edges: Edges) -> Result<Box<dyn Synthesis>, GlError> {
+        let options = SynthesisOptions { edges, ..SynthesisOptions::default() };
+        synthesis::create(&self.gl, &options, Outputs::default())
     }
 
     /// Makes the eyes of the pictures.

@@ -1,14 +1,11 @@
 //! A colour and a depth picture of somebody's own: the other eye, with the depth settings of `yoro synthesize`.
 
-use std::io::Cursor;
+use std::path::Path;
 
-use image::{DynamicImage, ImageReader};
 use serde::Deserialize;
 use yoro::eyes::{DepthConvention, DepthRange, Eye};
-use yoro::synthesis::{Nearness, StoredDepth, StoredDepthError};
-
-/// Longest edge of a picture in pixels.
-const MAX_EDGE: u32 = 8192;
+use yoro::synthesis::{Edges, Nearness, StoredDepth, StoredDepthError};
+use yoro_pictures::{DepthSamples, load_color, load_depth};
 
 /// What the values of the depth picture mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -19,7 +16,7 @@ pub enum Encoding {
     StandardZ,
     /// Depth buffer, 1 near to 0 far.
     ReversedZ,
-    /// Distance, times [`PictureOptions::metres_at_white`].
+    /// Distance: metres in an EXR file, elsewhere times [`PictureOptions::metres_at_white`].
     Metres,
     /// Pixels: [`PictureOptions::disparity_offset`] and [`PictureOptions::disparity_scale`].
     Disparity,
@@ -63,7 +60,7 @@ pub struct PictureOptions {
     pub near: f32,
     /// Far plane in metres.
     pub far: f32,
-    /// Distance of the largest value in metres.
+    /// Distance in metres of the largest value of a file of integers.
     pub metres_at_white: f32,
     /// Pixels at value 0.
     pub disparity_offset: f64,
@@ -71,6 +68,8 @@ pub struct PictureOptions {
     pub disparity_scale: f64,
     /// Vertical field of view in degrees.
     pub fov_y_degrees: f64,
+    /// What pixels on silhouettes show.
+    pub edges: Edges,
 }
 
 impl Default for PictureOptions {
@@ -85,6 +84,7 @@ impl Default for PictureOptions {
             disparity_offset: 0.0,
             disparity_scale: 1.0,
             fov_y_degrees: 60.0,
+            edges: Edges::default(),
         }
     }
 }
@@ -95,30 +95,12 @@ pub enum PictureError {
     /// An option.
     #[error("{0}")]
     Option(String),
-    /// No picture.
-    #[error("{name} is no picture that can be read ({reason}): give a PNG, or a JPEG for colour")]
-    Unreadable {
-        /// The file.
-        name: String,
-        /// The decoder's reason.
-        reason: String,
-    },
-    /// Larger than any GPU takes.
-    #[error("{name} has {width}x{height} pixels, {MAX_EDGE}x{MAX_EDGE} at most: scale it down")]
-    TooLarge {
-        /// The file.
-        name: String,
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-    },
+    /// No picture, or none of the kind that is needed.
+    #[error(transparent)]
+    File(#[from] yoro_pictures::PictureError),
     /// They do not belong together.
     #[error("the colour picture is {}x{} pixels and the depth picture {}x{}: both must have one size", .0[0], .0[1], .1[0], .1[1])]
     Sizes([u32; 2], [u32; 2]),
-    /// Colour instead of depth.
-    #[error("{0} is a colour picture: depth has equal red, green and blue")]
-    NotGrey(String),
     /// Values that mean nothing.
     #[error("the depth picture does not fit its encoding: {0}")]
     Values(#[from] StoredDepthError),
@@ -131,47 +113,28 @@ pub struct PicturePair {
     pub size: [u32; 2],
     /// Colour, 4 bytes a pixel.
     pub rgba: Vec<u8>,
-    /// Depth as stored, 0 to 1.
+    /// Depth as stored.
     stored: Vec<f32>,
-}
-
-fn decode(name: &str, bytes: &[u8]) -> Result<DynamicImage, PictureError> {
-    let unreadable = |reason: String| PictureError::Unreadable { name: name.into(), reason };
-    let reader = || {
-        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
-        reader.map_err(|error| unreadable(error.to_string()))
-    };
-    let size = reader()?.into_dimensions().map_err(|error| unreadable(error.to_string()))?;
-    if size.0.max(size.1) > MAX_EDGE {
-        return Err(PictureError::TooLarge { name: name.into(), width: size.0, height: size.1 });
-    }
-    reader()?.decode().map_err(|error| unreadable(error.to_string()))
+    samples: DepthSamples,
 }
 
 impl PicturePair {
-    /// Decodes two files.
+    /// Decodes two files, as `yoro synthesize` does.
     ///
     /// # Errors
     /// [`PictureError`].
-    pub fn decode(color: (&str, &[u8]), depth: (&str, &[u8])) -> Result<PicturePair, PictureError> {
-        let (color, (name, depth)) =
-            (decode(color.0, color.1)?.into_rgba8(), (depth.0, decode(depth.0, depth.1)?));
-        let (size, depth_size) = (color.dimensions().into(), [depth.width(), depth.height()]);
+    pub fn load(color: &Path, depth: &Path) -> Result<PicturePair, PictureError> {
+        let (color, depth) = (load_color(color)?, load_depth(depth)?);
+        let (size, depth_size) = (color.dimensions().into(), depth.image.dimensions().into());
         if size != depth_size {
             return Err(PictureError::Sizes(size, depth_size));
         }
-        if depth.color().has_color()
-            && depth.to_rgb16().pixels().any(|p| p.0[0] != p.0[1] || p.0[0] != p.0[2])
-        {
-            return Err(PictureError::NotGrey(name.into()));
-        }
-        let depth = match depth.color().has_color() {
-            // Of equal channels the first is the grey, to the bit.
-            true => depth.to_rgb16().rows().rev().flatten().map(|p| p.0[0]).collect::<Vec<_>>(),
-            false => depth.into_luma16().rows().rev().flatten().map(|p| p.0[0]).collect(),
-        };
-        let rgba = color.rows().rev().flatten().flat_map(|p| [p.0[0], p.0[1], p.0[2], 255]).collect();
-        Ok(PicturePair { size, rgba, stored: depth.into_iter().map(|v| f32::from(v) / 65535.0).collect() })
+        Ok(PicturePair {
+            size,
+            rgba: color.rows().rev().flatten().flat_map(|p| [p.0[0], p.0[1], p.0[2], 255]).collect(),
+            stored: depth.image.rows().rev().flatten().map(|p| p.0[0]).collect(),
+            samples: depth.samples,
+        })
     }
 
     /// What the depth stands for, for eyes `ipd` metres apart.
@@ -205,7 +168,12 @@ impl PicturePair {
         let encoding = match options.encoding {
             Encoding::StandardZ => StoredDepth::Window(range(DepthConvention::Standard)),
             Encoding::ReversedZ => StoredDepth::Window(range(DepthConvention::Reversed)),
-            Encoding::Metres => StoredDepth::Distance { unit: options.metres_at_white },
+            Encoding::Metres => StoredDepth::Distance {
+                unit: match self.samples {
+                    DepthSamples::Normalized { .. } => options.metres_at_white,
+                    DepthSamples::Float => 1.0,
+                },
+            },
             Encoding::Disparity => {
                 StoredDepth::Disparity { offset: options.disparity_offset, scale: options.disparity_scale }
             }
@@ -218,22 +186,18 @@ impl PicturePair {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::{GrayImage, ImageFormat, Luma, Rgb, RgbImage};
-
-    fn png(image: impl Into<DynamicImage>) -> Vec<u8> {
-        let mut bytes = Cursor::new(Vec::new());
-        image.into().write_to(&mut bytes, ImageFormat::Png).unwrap();
-        bytes.into_inner()
-    }
-
-    fn color(w: u32, h: u32) -> Vec<u8> {
-        png(RgbImage::from_fn(w, h, |x, y| Rgb([x as u8, y as u8, 7])))
-    }
+    use image::{GrayImage, Luma, Rgb, RgbImage};
+    use yoro_pictures::{DepthImage, save_color, save_depth, save_gray};
 
     #[test]
     fn a_pair_is_decoded_from_the_bottom() {
-        let depth = png(GrayImage::from_fn(4, 2, |x, y| Luma([if y == 1 { 255 } else { x as u8 }])));
-        let pair = PicturePair::decode(("c.png", &color(4, 2)), ("d.png", &depth)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let [color, gray, metres, taller] =
+            ["c.png", "d.png", "d.exr", "e.png"].map(|name| folder.path().join(name));
+        save_color(&color, &RgbImage::from_fn(4, 2, |x, y| Rgb([x as u8, y as u8, 7]))).unwrap();
+        let depth = GrayImage::from_fn(4, 2, |x, y| Luma([if y == 1 { 255 } else { x as u8 }]));
+        save_gray(&gray, &depth).unwrap();
+        let pair = PicturePair::load(&color, &gray).unwrap();
         assert_eq!(pair.size, [4, 2]);
         assert_eq!(pair.rgba[..8], [0, 1, 7, 255, 1, 1, 7, 255]);
         assert_eq!(pair.stored[..4], [1.0; 4]);
@@ -249,15 +213,15 @@ mod tests {
         ] {
             assert!(pair.nearness(&wrong, 0.063).is_err(), "{wrong:?}");
         }
-    }
 
-    #[test]
-    fn files_that_are_none() {
-        let (good, gray) = (color(4, 2), png(GrayImage::new(4, 3)));
-        let error = |c: &[u8], d: &[u8]| PicturePair::decode(("c", c), ("d", d)).unwrap_err().to_string();
-        assert!(error(&good, &gray).contains("4x2") && error(&good, &gray).contains("4x3"));
-        assert!(error(&good, b"text").starts_with("d is no picture"));
-        assert!(error(&good[..40], &gray).starts_with("c is no picture"));
-        assert!(error(&good, &good).contains("colour picture"));
+        // Metres are metres, whatever white is elsewhere.
+        save_depth(&metres, &DepthImage::from_pixel(4, 2, Luma([2.0]))).unwrap();
+        let pair = PicturePair::load(&color, &metres).unwrap();
+        let options = PictureOptions { encoding: Encoding::Metres, metres_at_white: 9.0, ..options };
+        assert_eq!(pair.nearness(&options, 0.063).unwrap().values, [0.5; 8]);
+
+        save_gray(&taller, &GrayImage::new(4, 3)).unwrap();
+        let error = PicturePair::load(&color, &taller).unwrap_err().to_string();
+        assert!(error.contains("4x2") && error.contains("4x3"), "{error}");
     }
 }

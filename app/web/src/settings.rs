@@ -1,8 +1,12 @@
 //! What the page lets people choose.
 
+use std::rc::Rc;
+
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DEFAULT_IPD, DepthRange, Eye, EyeOptions, EyePair, MAX_IPD, Pose};
-use yoro_render::stereo::{AntiAliasing, Method, StereoOptions};
+use yoro::gl::{Context, GlError};
+use yoro_render::stereo::{self, AntiAliasing, Method, StereoMethod, StereoOptions};
+use yoro_render::{RenderSettings, RendererKind};
 
 /// How two images are shown on a flat screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,7 +47,11 @@ impl Display {
 pub struct Settings {
     /// How both eyes are made.
     pub method: Method,
-    /// When anti-aliasing runs.
+    /// How a view is rendered.
+    pub renderer: RendererKind,
+    /// Samples in each pixel of the forward renderer.
+    pub msaa: u32,
+    /// When anti-aliasing of images with one sample a pixel runs.
     pub anti_aliasing: AntiAliasing,
     /// Distance between the eyes in metres.
     pub ipd: f32,
@@ -55,8 +63,11 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
+        let RenderSettings { renderer, msaa, .. } = RenderSettings::default();
         Settings {
             method: Method::Yoro,
+            renderer,
+            msaa,
             anti_aliasing: AntiAliasing::After,
             ipd: DEFAULT_IPD,
             dominant: Eye::Right,
@@ -79,10 +90,23 @@ impl Settings {
         Ok(settings)
     }
 
+    /// As the desktop's.
+    pub fn render_settings(&self) -> RenderSettings {
+        RenderSettings { renderer: self.renderer, msaa: self.msaa, ..RenderSettings::default() }
+    }
+
     /// As the desktop's, but that no frame is rendered twice because much of it is near: finding that out would have
     /// the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
         StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
+    }
+
+    /// A method, made for these choices.
+    ///
+    /// # Errors
+    /// As [`stereo::create`].
+    pub fn create(&self, gl: &Rc<Context>, method: Method) -> Result<Box<dyn StereoMethod>, GlError> {
+        stereo::create(gl, method, &self.render_settings(), &self.stereo_options())
     }
 
     /// Both eyes of a head, with images of `size` pixels.
@@ -108,7 +132,16 @@ mod tests {
         let settings = Settings::parse(json).unwrap();
         assert_eq!((settings.method, settings.dominant), (Method::ShadingReprojection, Eye::Left));
         assert_eq!(settings.anti_aliasing, AntiAliasing::After);
-        for wrong in [r#"{"ipd":0.09}"#, r#"{"method":"none"}"#, r#"{"colour":"red"}"#, r#"{"ipd":null}"#] {
+        assert_eq!(settings.render_settings(), RenderSettings::default());
+        let forward = Settings::parse(r#"{"renderer":"forward","msaa":1}"#).unwrap();
+        assert_eq!(forward.render_settings().summary(), "forward, 1 samples a pixel");
+        for wrong in [
+            r#"{"ipd":0.09}"#,
+            r#"{"method":"none"}"#,
+            r#"{"renderer":"ray"}"#,
+            r#"{"colour":"red"}"#,
+            r#"{"ipd":null}"#,
+        ] {
             let error = Settings::parse(wrong).unwrap_err();
             assert!(error.ends_with('.'), "{error}");
         }

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use js_sys::{Array, Uint8Array};
+use js_sys::{Array, Function, Uint8Array};
 use wasm_bindgen::prelude::*;
 use yoro_scene::Scene;
+use yoro_scenes::build::Progress;
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
 
 use crate::page::sentence;
@@ -63,13 +64,18 @@ pub fn builtin_scenes() -> String {
     serde_json::Value::from_iter(scenes.iter().map(entry)).to_string()
 }
 
-/// Generates a built-in scene.
+/// Generates a built-in scene. `progress` is called now and then with the number of textures and of triangles so far.
 ///
 /// # Errors
 /// A sentence for a name that there is not.
 #[wasm_bindgen(js_name = buildScene)]
-pub fn build_scene(name: &str) -> Result<Vec<u8>, JsError> {
-    pack(&yoro_scenes::build(name, DEFAULT_SEED).map_err(sentence)?)
+pub fn build_scene(name: &str, progress: Function) -> Result<Vec<u8>, JsError> {
+    let watch = move |done: Progress| {
+        let [textures, triangles] = [done.textures, done.triangles].map(|n| JsValue::from(n as f64));
+        // What it throws would be the worker's own mistake.
+        let _ = progress.call2(&JsValue::NULL, &textures, &triangles);
+    };
+    pack(&yoro_scenes::build_watched(name, DEFAULT_SEED, watch).map_err(sentence)?)
 }
 
 /// Loads the scene of `main`, the name of one of the files: `names` and `contents` (`Uint8Array`s) are these files.

@@ -60,7 +60,7 @@ impl Page {
         };
         let fits = !self.settings.method.needs_aligned_eyes() || pair.synthesis(GuardBand::None).is_ok();
         if !fits && self.headset.as_ref().is_some_and(|headset| headset.substitute.is_none()) {
-            let made = self.create(Method::Conventional).map_err(sentence)?;
+            let made = self.settings.create(&self.gl, Method::Conventional).map_err(sentence)?;
             if let Some(headset) = &mut self.headset {
                 headset.substitute = Some(made);
             }
