@@ -23,6 +23,8 @@ use crate::program::succeed;
 
 /// WebGL on Mesa, as the desktop's pictures are made.
 const GL: [&str; 3] = ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"];
+/// WebGL on SwiftShader, which has OVR_multiview2 as the browsers of headsets have it.
+const MULTIVIEW: [&str; 3] = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 /// Size of each eye's image that is compared.
 const SIZE: [u32; 2] = [240, 160];
 
@@ -75,8 +77,13 @@ impl Page {
     /// Opens the page with a fragment, at a window's width, and waits for its first picture; nothing where something is
     /// missing. `before` is run before the page's own scripts.
     fn open(fragment: &str, before: Option<&str>) -> Option<Page> {
+        Page::open_with(&GL, fragment, before)
+    }
+
+    /// As [`Page::open`], in a browser with these options.
+    fn open_with(gl: &[&str], fragment: &str, before: Option<&str>) -> Option<Page> {
         let server = Server::start()?;
-        let mut browser = Browser::start_with(&GL)?;
+        let mut browser = Browser::start_with(gl)?;
         browser.allow(&server.address);
         if let Some(script) = before {
             browser.run_before_pages(script);
@@ -150,6 +157,17 @@ fn draw(size: [u32; 2]) -> String {
     format!("yoro.page.draw({}, {}, false)", 2 * size[0], size[1])
 }
 
+/// Chooses a display, draws, and adds up what is on the canvas.
+fn sum(display: &str) -> String {
+    format!(
+        "(() => {{ const e = document.getElementById('display'); e.value = '{display}'; \
+         e.dispatchEvent(new Event('change')); yoro.page.draw(64, 48, false); \
+         const bytes = new Uint8Array(64 * 48 * 4), {{ gl }} = yoro; \
+         gl.readPixels(0, 0, 64, 48, gl.RGBA, gl.UNSIGNED_BYTE, bytes); \
+         return bytes.reduce((sum, byte, i) => sum + (i % 4 === 3 ? 0 : byte), 0); }})()"
+    )
+}
+
 fn close(name: &str, here: &RgbImage, desktop: &RgbImage) {
     let quality = Quality::of(here, desktop, Channels::Rgb).unwrap();
     let difference: u64 =
@@ -203,6 +221,24 @@ fn every_method_shows_what_the_desktop_shows() {
         }
         assert!(compared >= 5, "{}: {compared} methods", renderer.name());
     }
+    page.browser.expect_silence();
+}
+
+#[test]
+fn multiview_shows_what_two_renders_show() {
+    let Some(mut page) = Page::open_with(&MULTIVIEW, "#method=multiview", None) else { return };
+    if page.evaluate("yoro.gl.getExtension('OVR_multiview2') !== null") != json!(true) {
+        eprintln!("SKIPPED: this Chromium has no OVR_multiview2");
+        return;
+    }
+    assert_eq!((page.message(), page.evaluate("yoro.settings.method")), (None, json!("multiview")));
+    let both = page.eyes(SIZE);
+    page.choose("method", "conventional");
+    let expected = page.eyes(SIZE);
+    for eye in Eye::BOTH {
+        close(eye.name(), &both[eye.index()], &expected[eye.index()]);
+    }
+    assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null);
     page.browser.expect_silence();
 }
 
@@ -423,6 +459,11 @@ fn files_of_ones_own() {
         assert_ne!(desktop, color, "{depth}: something moves");
         close(depth, &page.eyes(size)[0], &desktop);
     }
+
+    // Nothing can be said of how wrong they are: the eye itself is shown.
+    let synthesized = page.evaluate(&sum("left"));
+    assert!(synthesized.as_u64().unwrap() > 0);
+    assert_eq!(page.evaluate(&sum("difference")), synthesized);
 
     // Ten that are none: a sentence each, and what was there stays.
     type Files<'a> = &'a [(&'a str, Vec<u8>)];

@@ -407,7 +407,7 @@ async function start() {
   if (!attach()) return;
   scenes = JSON.parse(builtinScenes());
   element('scene').replaceChildren(...scenes.map(({ name, title, kiloTriangles }) => {
-    const option = new Option(`${name}, ${kiloTriangles}k triangles`, name);
+    const option = new Option(`${name} (${kiloTriangles}k)`, name);
     option.title = title;
     return option;
   }));

@@ -196,7 +196,7 @@ function show(app, size, result, run) {
       : 'GPU: not told. This browser hides timer queries (EXT_disjoint_timer_query_webgl2), or the CPU renders.',
     'A phone slows down as it warms up; the methods take turns, so that their ratio changes less than their times.',
   ];
-  element('measure-result').replaceChildren(table, passes, ...notes.map((text) => {
+  element('measure-result').replaceChildren(table, ...(facts.timerQueries ? [passes] : []), ...notes.map((text) => {
     const note = cell('p', text);
     note.className = 'note';
     return note;

@@ -317,8 +317,13 @@ fn part(origin: [u32; 2], size: [u32; 2]) -> Destination {
 impl Page {
     fn draw_frame(&mut self, [width, height]: [u32; 2], truth: bool) -> Result<(), stereo::StereoError> {
         let canvas = [width, height];
-        let display = self.settings.display;
+        let mut display = self.settings.display;
         if let Some(own) = &self.own {
+            // There is no truth to hold them against.
+            if display.needs_truth() {
+                let synthesized = own.options.source.targets()[0].0;
+                display = if synthesized == Eye::Left { Display::Left } else { Display::Right };
+            }
             // Whole, with black beside it.
             let half = if display.is_split() { [(width / 2).max(1), height] } else { canvas };
             let [w, h] = own.pair.size.map(|n| n as f32);
