@@ -429,8 +429,9 @@ async function start() {
   await showSource({ builtin: app.settings.scene }, { keepPlace: true });
   if (faults) say(faults);
   app.ready = true;
+  // Loaded once, the page works without a network, where browsers allow that: over https and on this machine. What is kept
+  // for that is fetched once more, which is not to delay the first picture.
+  if ('serviceWorker' in navigator) navigator.serviceWorker.register('offline.js').catch(() => {});
 }
 
-// Loaded once, the page works without a network, where browsers allow that: over https and on this machine.
-if ('serviceWorker' in navigator) navigator.serviceWorker.register('offline.js').catch(() => {});
 start();
