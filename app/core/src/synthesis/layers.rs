@@ -101,7 +101,7 @@ impl Layers {
         match self.edges {
             Edges::Multisample => {
                 program.texture_multisample("sample_depths", 0, source.depth);
-                program.set("from_left", self.from_left());
+                program.set("from_left", self.left_to_right());
             }
             _ => drop(program.texture("depth_map", 0, source.depth)),
         }
@@ -110,7 +110,7 @@ impl Layers {
     }
 
     /// Samples of the multisample texture that was bound last, to unit 0, from left to right.
-    fn from_left(&self) -> IVec4 {
+    fn left_to_right(&self) -> IVec4 {
         // SAFETY: a query of a texture that is bound to the active unit.
         let samples = unsafe {
             self.gl.raw().get_tex_level_parameter_i32(glow::TEXTURE_2D_MULTISAMPLE, 0, glow::TEXTURE_SAMPLES)
