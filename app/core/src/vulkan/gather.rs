@@ -810,12 +810,15 @@ impl Rendering {
         let mut pass = |into, depth| render_pass(objects, &into_formats(into, options), depth);
         Ok(Rendering::Passes {
             map: pass(Into::Map, None)?,
-            layers: pass(Into::Layers, None)?,
+            layers: match options.edges {
+                Edges::Hard => vk::RenderPass::null(),
+                _ => pass(Into::Layers, None)?,
+            },
             target: pass(Into::Target, options.depth_format)?,
         })
     }
 
-    /// Null for dynamic rendering.
+    /// Null for dynamic rendering, and that of the layers for hard edges, which have none.
     fn render_pass(&self, into: Into) -> vk::RenderPass {
         match (self, into) {
             (Rendering::Dynamic { .. }, _) => vk::RenderPass::null(),

@@ -1,9 +1,9 @@
 //! The gather pipeline on Vulkan: recorded into the caller's command buffer.
 //!
 //! [`Gather`] has the passes of [`crate::synthesis::Gather`] and, for anti-aliased sources, of
-//! [`crate::synthesis::Layers`], from the same shaders. Everything is allocated and
-//! compiled in [`Gather::new`], [`Gather::register_source`] and [`Gather::register_target`]; [`Gather::record`] only
-//! records: it allocates nothing, submits nothing and waits for nothing.
+//! [`crate::synthesis::Layers`], from the same shaders. Everything is allocated and compiled in [`Gather::new`],
+//! [`Gather::register_source`] and [`Gather::register_target`]; [`Gather::record`] only records: it allocates nothing,
+//! submits nothing and waits for nothing.
 //!
 //! Images are in Vulkan's own orientation, row 0 at the top, source and target alike. A
 //! [`Warp`](crate::eyes::Warp) is taken as [`EyePair::synthesis`](crate::eyes::EyePair::synthesis) gives it; its rows,
@@ -285,7 +285,8 @@ impl ImageState {
 /// One layer of an image, mip level 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerImage {
-    /// A 2-D image, without multisampling where nothing else is said. Its usage includes SAMPLED for a source, COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
+    /// A 2-D image, without multisampling where nothing else is said. Its usage includes SAMPLED for a source,
+    /// COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
     pub image: vk::Image,
     /// Format of the view that is made of it: the image's, or a compatible one if it is MUTABLE_FORMAT.
     pub format: vk::Format,
