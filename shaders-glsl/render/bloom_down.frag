@@ -4,10 +4,13 @@
 
 uniform sampler2D source;
 uniform vec2 texel;  // of the target
+#if defined(FIRST) && !defined(DISPLAY_REFERRED)
+uniform vec2 columns;  // middles of the first and last of the source that shine, by texture coordinates
+#endif
 #ifdef DISPLAY_REFERRED
 uniform float exposure;
 uniform vec4 part;    // of the source, by texture coordinates: lower left corner, size
-uniform vec2 inside;  // half a texel of the source: what is beside the part is never filtered in
+uniform vec4 bounds;  // middles of the corners' texels of what shines: what is beside it is never filtered in
 #endif
 
 layout(location = 0) out vec4 out_color;
@@ -16,10 +19,10 @@ void main() {
     vec2 uv = gl_FragCoord.xy * texel;
 #ifdef FIRST
 #ifdef DISPLAY_REFERRED
-    uv = clamp(part.xy + uv * part.zw, part.xy + inside, part.xy + part.zw - inside);
+    uv = clamp(part.xy + uv * part.zw, bounds.xy, bounds.zw);
     vec3 c = undo_tonemap(texture(source, uv).rgb) / exposure;
 #else
-    vec3 c = hdr_decode(texture(source, uv).rgb);
+    vec3 c = hdr_decode(texture(source, vec2(clamp(uv.x, columns.x, columns.y), uv.y)).rgb);
 #endif
     float bright = max(c.r, max(c.g, c.b));
     // A knee, and a ceiling so that a single very bright pixel does not flicker from eye to eye.

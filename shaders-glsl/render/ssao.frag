@@ -8,6 +8,7 @@
 uniform G_SAMPLER normal_map;
 uniform vec4 kernel[SAMPLES / 2];  // points of a spiral in the unit disc
 uniform vec3 radius;               // metres, pixels at distance 1, most pixels
+uniform ivec2 columns;             // the eye's first and last: what lies beside them reaches its own side only
 
 layout(location = 0) out vec4 out_occlusion;
 
@@ -25,10 +26,12 @@ float occlusion(ivec2 p, ivec2 size, float z) {
     float r2 = radius.x * radius.x;
     float bias = 0.01 * radius.x + 0.002 * z;
     float sum = 0.0;
+    ivec2 lowest = ivec2(min(columns.x, p.x), 0);
+    ivec2 highest = ivec2(max(columns.y, p.x), size.y - 1);
     for (int i = 0; i < SAMPLES; ++i) {
         vec4 pair = kernel[i / 2];
         vec2 offset = rotation * ((i & 1) == 0 ? pair.xy : pair.zw);
-        ivec2 q = clamp(p + ivec2(floor(offset + 0.5)), ivec2(0), size - 1);
+        ivec2 q = clamp(p + ivec2(floor(offset + 0.5)), lowest, highest);
         vec3 v = view_ray((vec2(q) + 0.5) * texel) * axis_distance(G_TEXEL(depth_map, q).x) - position;
         float vv = dot(v, v);
         float f = max(r2 - vv, 0.0) / r2;

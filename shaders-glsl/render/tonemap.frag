@@ -3,6 +3,7 @@
 #include "include/hdr.glsl"
 
 uniform sampler2D source;
+uniform ivec2 columns;  // first and last of the source that are there
 uniform float exposure;
 #ifdef BLOOM
 uniform sampler2D bloom;
@@ -12,7 +13,8 @@ uniform float bloom_strength;
 layout(location = 0) out vec4 out_color;
 
 void main() {
-    vec3 c = hdr_decode(texelFetch(source, ivec2(gl_FragCoord.xy), 0).rgb);
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec3 c = hdr_decode(texelFetch(source, ivec2(clamp(p.x, columns.x, columns.y), p.y), 0).rgb);
 #ifdef BLOOM
     c += bloom_strength * texture(bloom, gl_FragCoord.xy / vec2(textureSize(source, 0))).rgb;
 #endif

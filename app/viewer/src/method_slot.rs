@@ -9,7 +9,7 @@ use crate::settings::Settings;
 use yoro::eyes::{EyePair, EyesError, GuardBand};
 use yoro::gl::{Context, GlError};
 use yoro::synthesis::{ImBufferSize, Pipeline};
-use yoro_render::stereo::{self, EyeTarget, Method, StereoMethod, StereoOptions};
+use yoro_render::stereo::{self, EyeTarget, GuardBandUse, Method, StereoMethod, StereoOptions};
 
 /// The place of the one method.
 pub(crate) struct MethodSlot {
@@ -200,6 +200,11 @@ impl MethodSlot {
         let method = if self.unfit.is_some() { &mut self.substitute } else { &mut self.made };
         let method = method.as_mut().ok_or(ViewerError::NoContext)?;
         Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)
+    }
+
+    /// As [`StereoMethod::guard_band`]; none while both eyes are rendered in the method's place.
+    pub fn guard_band(&self) -> Option<GuardBandUse> {
+        self.made.as_ref().filter(|_| self.unfit.is_none())?.guard_band()
     }
 
     /// Lets the controller judge a frame; true when the method has to be made again for another ImBuffer, which the

@@ -6,6 +6,7 @@ use crate::questionnaire::Questionnaire;
 use crate::settings::Settings;
 use crate::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 use yoro::gl::PassTime;
+use yoro_render::stereo::GuardBandUse;
 
 /// What is counted and asked from the time that a scene comes into view to the end of the session.
 #[derive(Default)]
@@ -54,6 +55,11 @@ impl Tally {
     pub fn frame(&mut self, now_ns: i64, refresh_hz: f32, passes: &[PassTime], timed: u32) -> u32 {
         self.telemetry.gpu(passes, timed);
         self.telemetry.frame(now_ns, refresh_hz)
+    }
+
+    /// As [`Telemetry::guard_band`].
+    pub fn guard_band(&mut self, used: GuardBandUse) {
+        self.telemetry.guard_band(used);
     }
 
     /// Whether a second has passed since the last line.

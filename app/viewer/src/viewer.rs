@@ -365,7 +365,11 @@ impl Viewer {
             }
             return Ok(());
         };
-        self.method.render(gl, &self.settings, shown, pair, to)
+        self.method.render(gl, &self.settings, shown, pair, to)?;
+        if let Some(used) = self.method.guard_band() {
+            self.tally.guard_band(used);
+        }
+        Ok(())
     }
 
     /// The HUD as it should be seen in this frame, if at all.

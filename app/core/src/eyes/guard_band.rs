@@ -15,9 +15,14 @@ pub enum GuardBand {
     Distance(f32),
     /// A number of pixels, up to [`GuardBand::MAX_PIXELS`].
     Pixels(u32),
+    /// As [`GuardBand::Distance`]; whoever renders may leave out those of its columns that the other eye does not
+    /// see at the moment.
+    Auto(f32),
 }
 
 impl GuardBand {
+    /// [`GuardBand::Auto`] as `auto` alone says it: complete from 1 m.
+    pub const AUTO: GuardBand = GuardBand::Auto(1.0);
     /// The widest band.
     pub const MAX_PIXELS: u32 = 1024;
     /// Distances in metres from which a band can be complete.
@@ -27,7 +32,7 @@ impl GuardBand {
     pub fn is_valid(&self) -> bool {
         match self {
             GuardBand::None => true,
-            GuardBand::Distance(z) => GuardBand::DISTANCES.contains(z),
+            GuardBand::Distance(z) | GuardBand::Auto(z) => GuardBand::DISTANCES.contains(z),
             GuardBand::Pixels(n) => *n <= GuardBand::MAX_PIXELS,
         }
     }
@@ -37,25 +42,33 @@ impl GuardBand {
         match self {
             GuardBand::None => 0,
             GuardBand::Pixels(n) => n,
-            GuardBand::Distance(z) => (focal_length * ipd / z - 1e-3).ceil().max(0.0) as u32,
+            GuardBand::Distance(z) | GuardBand::Auto(z) => {
+                (focal_length * ipd / z - 1e-3).ceil().max(0.0) as u32
+            }
         }
     }
 }
 
 /// A text that is no [`GuardBand`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("give none, pixels such as 40px, or metres such as 1.0")]
+#[error(
+    "give none, pixels such as 40px, metres such as 1.0, or auto, which may have metres such as auto:0.5"
+)]
 pub struct ParseGuardBandError;
 
-/// `none`, pixels (`40px`) up to [`GuardBand::MAX_PIXELS`], or metres (`1.0`) within [`GuardBand::DISTANCES`].
+/// `none`, pixels (`40px`) up to [`GuardBand::MAX_PIXELS`], metres (`1.0`) within [`GuardBand::DISTANCES`], or `auto`,
+/// with metres `auto:0.5`.
 impl FromStr for GuardBand {
     type Err = ParseGuardBandError;
 
     fn from_str(text: &str) -> Result<GuardBand, ParseGuardBandError> {
-        match (text, text.strip_suffix("px")) {
-            ("none", _) => Some(GuardBand::None),
-            (_, Some(pixels)) => pixels.parse().ok().map(GuardBand::Pixels),
-            (metres, None) => metres.parse().ok().map(GuardBand::Distance),
+        let metres = |text: &str| text.parse().ok();
+        match (text, text.strip_suffix("px"), text.strip_prefix("auto:")) {
+            ("none", ..) => Some(GuardBand::None),
+            ("auto", ..) => Some(GuardBand::AUTO),
+            (_, Some(pixels), _) => pixels.parse().ok().map(GuardBand::Pixels),
+            (_, _, Some(text)) => metres(text).map(GuardBand::Auto),
+            (text, None, None) => metres(text).map(GuardBand::Distance),
         }
         .filter(GuardBand::is_valid)
         .ok_or(ParseGuardBandError)
@@ -65,10 +78,12 @@ impl FromStr for GuardBand {
 /// As [`FromStr`] reads it.
 impl Display for GuardBand {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
+        match *self {
             GuardBand::None => f.write_str("none"),
             GuardBand::Pixels(n) => write!(f, "{n}px"),
             GuardBand::Distance(z) => write!(f, "{z}"),
+            GuardBand::AUTO => f.write_str("auto"),
+            GuardBand::Auto(z) => write!(f, "auto:{z}"),
         }
     }
 }

@@ -328,7 +328,7 @@ impl EyePair {
             target_eye,
             convention: range.convention,
         };
-        Ok(SynthesisViews { source, target: t, dominant_crop: [left, bottom], warp })
+        Ok(SynthesisViews { source, target: t, dominant_crop: [left, bottom], guard_columns: guard, warp })
     }
 }
 
@@ -341,6 +341,8 @@ pub struct SynthesisViews {
     pub target: View,
     /// Lower left corner, in pixels of the source image, of the dominant eye's own image.
     pub dominant_crop: [u32; 2],
+    /// Columns of the guard band: the source's first on the left for a synthesized left eye, its last for a right eye.
+    pub guard_columns: u32,
     /// How the source's pixels move.
     pub warp: Warp,
 }

@@ -25,12 +25,13 @@ impl Destination {
 }
 
 impl Context {
-    /// Copies a rectangle of colour to one of the same size. Bits stay what they are, unless just one of the two
+    /// Copies a rectangle of colour to another, of the same size or stretched without filtering. Bits stay what they are, unless just one of the two
     /// is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
         let gl = self.raw();
         let [x, y] = from.origin.map(|n| n as i32);
-        let ([tx, ty], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
+        let [w, h] = from.size.map(|n| n as i32);
+        let ([tx, ty], [tw, th]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
         let buffer = if from.framebuffer.is_some() { glow::COLOR_ATTACHMENT0 } else { glow::BACK };
         // SAFETY: both framebuffers are live; GL clips rectangles that do not fit.
         unsafe {
@@ -39,7 +40,7 @@ impl Context {
             gl.read_buffer(buffer);
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, to.framebuffer);
             let (mask, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
-            gl.blit_framebuffer(x, y, x + w, y + h, tx, ty, tx + w, ty + h, mask, filter);
+            gl.blit_framebuffer(x, y, x + w, y + h, tx, ty, tx + tw, ty + th, mask, filter);
         }
     }
 }

@@ -113,6 +113,8 @@ pub struct Context {
     objects: Cell<usize>,
     texture_bytes: Cell<usize>,
     recipes: RefCell<BTreeSet<ProgramRecipe>>,
+    /// Of [`Context::within_columns`].
+    columns: Cell<Option<[u32; 2]>>,
     empty_vertex_array: glow::VertexArray,
 }
 
@@ -182,6 +184,7 @@ impl Context {
             objects: Cell::new(0),
             texture_bytes: Cell::new(0),
             recipes,
+            columns: Cell::new(None),
             empty_vertex_array,
         }))
     }

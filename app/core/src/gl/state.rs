@@ -4,6 +4,9 @@ use glow::HasContext;
 
 use super::Context;
 
+/// More rows than any framebuffer has.
+const TALLEST: i32 = 1 << 20;
+
 /// Which depth passes the depth test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthTest {
@@ -49,7 +52,8 @@ impl RasterState {
 }
 
 impl Context {
-    /// Sets depth test, blending and culling; scissor and stencil tests and dithering are off, everything is written.
+    /// Sets depth test, blending and culling; stencil test and dithering are off, everything is written. The scissor test
+    /// is off but within [`Context::within_columns`].
     pub fn set_raster_state(&self, state: &RasterState) {
         let gl = self.raw();
         // SAFETY: state calls with valid enums.
@@ -73,10 +77,27 @@ impl Context {
                 }
             }
             toggle(glow::CULL_FACE, state.cull);
-            gl.disable(glow::SCISSOR_TEST);
+            toggle(glow::SCISSOR_TEST, self.columns.get().is_some());
+            if let Some([first, end]) = self.columns.get() {
+                gl.scissor(first as i32, 0, end.saturating_sub(first) as i32, TALLEST);
+            }
             gl.disable(glow::STENCIL_TEST);
             gl.disable(glow::DITHER);
         }
+    }
+
+    /// Draws only within some columns of whatever framebuffer is bound, `[first, end]` from the left, as far as `body` sets
+    /// its state by [`Context::set_raster_state`]; `None` for all columns. Clearing is not bounded.
+    pub fn within_columns<R>(&self, columns: Option<[u32; 2]>, body: impl FnOnce() -> R) -> R {
+        let before = self.columns.replace(columns);
+        let result = body();
+        self.columns.set(before);
+        result
+    }
+
+    /// The columns that draws are bounded to now, by [`Context::within_columns`].
+    pub fn columns(&self) -> Option<[u32; 2]> {
+        self.columns.get()
     }
 
     /// Keeps the next draws from writing colour, until the state is set again: for programs that write depth alone into a

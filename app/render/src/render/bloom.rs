@@ -74,27 +74,35 @@ impl BloomPass {
         })
     }
 
-    /// Computes the bloom of `source`, whose filter must be linear.
-    pub fn run(&self, targets: &BloomTargets, source: &Texture) {
-        self.run_with(targets, source, |_| {});
+    /// Computes the bloom of columns `[first, end]` of `source`, whose filter must be linear; they are repeated beyond.
+    pub fn run(&self, targets: &BloomTargets, source: &Texture, [first, end]: [u32; 2]) {
+        let width = source.size()[0] as f32;
+        let columns = Vec2::new(first as f32 + 0.5, end as f32 - 0.5) / width;
+        self.run_with(targets, source, |program| {
+            program.set("columns", columns);
+        });
     }
 
     /// As [`BloomPass::run`], of a display-referred source to which `exposure` was applied: of the rectangle with the lower
-    /// left corner `origin` and this size in pixels.
+    /// left corner `origin` and this size in pixels, and there of columns `[first, end]`.
     pub fn run_display_referred(
         &self,
         targets: &BloomTargets,
         source: &Texture,
         (origin, size): ([u32; 2], [u32; 2]),
+        [first, end]: [u32; 2],
         exposure: f32,
     ) {
         let texel = 1.0 / Vec2::from(source.size().map(|n| n as f32));
-        let [corner, size] = [origin, size].map(|v| Vec2::from(v.map(|n| n as f32)) * texel);
+        let [corner, extent] = [origin, size].map(|v| Vec2::from(v.map(|n| n as f32)) * texel);
+        let [low, high] = [[origin[0] + first, origin[1]], [origin[0] + end, origin[1] + size[1]]]
+            .map(|v| Vec2::from(v.map(|n| n as f32)) * texel);
+        let (low, high) = (low + 0.5 * texel, high - 0.5 * texel);
         self.run_with(targets, source, |program| {
             program
                 .set("exposure", exposure)
-                .set("part", Vec4::new(corner.x, corner.y, size.x, size.y))
-                .set("inside", 0.5 * texel);
+                .set("part", Vec4::new(corner.x, corner.y, extent.x, extent.y))
+                .set("bounds", Vec4::new(low.x, low.y, high.x, high.y));
         });
     }
 

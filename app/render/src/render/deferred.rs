@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use super::Columns;
 use super::bloom::{BloomPass, BloomTargets};
 use super::cluster::Culler;
 use super::g_buffer::{GBuffer, Layout};
@@ -21,6 +22,8 @@ use yoro::gl::{Context, Filter, Format, GlError, RenderTarget, Texture};
 pub struct LightTargets {
     ssao: Option<SsaoTargets>,
     hdr: RenderTarget,
+    /// Which columns are lit; all if none.
+    pub columns: Option<Columns>,
 }
 
 impl LightTargets {
@@ -28,12 +31,19 @@ impl LightTargets {
         Ok(LightTargets {
             ssao: settings.ssao.then(|| SsaoTargets::new(gl, size, settings.ssao_scale())).transpose()?,
             hdr: RenderTarget::new(gl, size, &[(hdr_format(gl), Filter::Linear)], None)?,
+            columns: None,
         })
     }
 
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
         self.ssao.as_mut().map_or(Ok(()), |t| t.resize(size))?;
         self.hdr.resize(size)
+    }
+
+    /// Which columns are lit, and the eye's own.
+    fn lit_columns(&self) -> Columns {
+        let all = [0, self.hdr.size()[0]];
+        self.columns.unwrap_or(Columns { drawn: all, eye: all })
     }
 
     /// Scene-referred colour, filtered linearly.
@@ -237,7 +247,7 @@ impl Deferred {
         let g_buffer = g_buffer.target();
         let mut occlusion = None;
         if let (Some(pass), Some(ssao)) = (&passes.ssao, &targets.ssao) {
-            pass.run(ssao, g_buffer, view, role);
+            pass.run(ssao, g_buffer, view, targets.lit_columns().eye, role);
             occlusion = Some(ssao.result().color(0));
         }
         passes.lighting.run(&targets.hdr, g_buffer, occlusion, shadow, scene, view, lights, role);
@@ -246,11 +256,12 @@ impl Deferred {
     /// As [`super::Renderer::finish`].
     pub fn finish(&self, targets: &FinishTargets, light: &LightTargets) {
         let exposure = self.settings.exposure;
+        let Columns { drawn, eye } = light.lit_columns();
         let mut glow = None;
         if let (Some(pass), Some(bloom)) = (&self.bloom, &targets.bloom) {
-            pass.run(bloom, light.hdr());
+            pass.run(bloom, light.hdr(), eye);
             glow = Some(bloom.result());
         }
-        self.tonemap.run(&targets.color, light.hdr(), glow, exposure);
+        self.tonemap.run(&targets.color, (light.hdr(), drawn), glow, exposure);
     }
 }

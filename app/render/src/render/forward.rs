@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use glam::{IVec2, Vec2, Vec3};
 
+use super::Columns;
 use super::bloom::{self, BloomPass, BloomTargets};
 use super::cluster::Culler;
 use super::deferred::hdr_format;
@@ -20,8 +21,8 @@ use super::shadow::ShadowMap;
 use super::uniforms::{Lights, nearer, set_view};
 use yoro::eyes::{Eye, View};
 use yoro::gl::{
-    Context, DepthTest, Filter, Format, GlError, MultisampleTarget, Program, RasterState, RenderTarget,
-    ShaderSource, Texture, TileTarget,
+    Context, DepthTest, Destination, Filter, Format, GlError, MultisampleTarget, Program, RasterState,
+    RenderTarget, ShaderSource, Texture, TileTarget,
 };
 use yoro_scene::ShadingStyle;
 
@@ -59,6 +60,10 @@ pub struct ForwardTargets {
     pub kept: Kept,
     /// The first sample's depth is wanted, not the nearest.
     pub first_sample: bool,
+    /// Which columns are drawn; all if none.
+    pub columns: Option<Columns>,
+    /// One of them, on its way to those that are not.
+    column: Option<RenderTarget>,
 }
 
 impl ForwardTargets {
@@ -102,6 +107,8 @@ impl ForwardTargets {
             developed: None,
             kept: Kept::default(),
             first_sample: false,
+            columns: None,
+            column: None,
         })
     }
 
@@ -130,6 +137,36 @@ impl ForwardTargets {
             }
             None => {}
         }
+        Ok(())
+    }
+
+    /// Fills the resolved colour left of the columns `[first, end]` with the first of them, and right of them with the last.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`].
+    pub fn repeat_columns(&mut self, [first, end]: [u32; 2]) -> Result<(), GlError> {
+        let [width, height] = self.resolved.size();
+        if self.column.is_none() {
+            let formats = [(Format::Rgba8, Filter::Nearest)];
+            self.column = Some(RenderTarget::new(&self.gl, [1, height], &formats, None)?);
+        }
+        let Some(column) = &mut self.column else { return Ok(()) };
+        column.resize([1, height])?;
+        let column = Destination::whole(column);
+        let part = |x: u32, width: u32| Destination {
+            origin: [x, 0],
+            size: [width, height],
+            ..Destination::whole(&self.resolved)
+        };
+        self.gl.pass("repeat", || {
+            for (from, to, columns) in [(first, 0, first), (end - 1, end, width - end)] {
+                if columns > 0 {
+                    // OpenGL ES copies nothing within one image.
+                    self.gl.copy(&part(from, 1), &column);
+                    self.gl.copy(&column, &part(to, columns));
+                }
+            }
+        });
         Ok(())
     }
 
@@ -450,7 +487,8 @@ impl Forward {
         let origin = targets.layout.origin(view.size, eye);
         let bloom = self.bloom.as_ref().zip(targets.bloom.as_ref());
         if let Some((pass, bloom)) = bloom.filter(|_| !again) {
-            pass.run_display_referred(bloom, source, (origin, view.size), self.exposure);
+            let columns = targets.columns.map_or([0, view.size[0]], |columns| columns.eye);
+            pass.run_display_referred(bloom, source, (origin, view.size), columns, self.exposure);
         }
         self.gl.pass("develop", || {
             self.gl.set_raster_state(&RasterState::SCREEN);

@@ -53,8 +53,18 @@ use transparent::{Onto, TransparentPass};
 use uniforms::Lights;
 pub(crate) use uniforms::depth_test;
 
-use yoro::eyes::{DepthConvention, DepthRange, Eye, View};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, Frustum, View};
 use yoro::gl::{Context, Destination, GlError, RenderTarget, Texture};
+
+/// The columns of a view that is wider than its eye, each `[first, end]` from the left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Columns {
+    /// Those that are drawn. In the others depth is the far plane's, and colour that of the nearest column that is drawn.
+    pub drawn: [u32; 2],
+    /// The eye's own. Ambient occlusion and bloom do not reach into them from beside, so that the eye's image does not
+    /// depend on what is drawn there.
+    pub eye: [u32; 2],
+}
 
 /// The images of one view, up to final colour.
 pub struct ViewTargets {
@@ -99,6 +109,22 @@ impl ViewTargets {
     ) -> Result<ViewTargets, GlError> {
         let targets = ForwardTargets::new(gl, layout, [1, 1], settings)?;
         Ok(ViewTargets { images: Images::Forward(Box::new(targets)) })
+    }
+
+    /// Says which columns of a view [`Renderer::render`] draws and which are the eye's; at first all of them, `None`. The
+    /// images have the view's size all the same.
+    pub fn set_columns(&mut self, columns: Option<Columns>) {
+        match &mut self.images {
+            Images::Deferred(targets) => targets.light.columns = columns,
+            Images::Forward(targets) => targets.columns = columns,
+        }
+    }
+
+    fn columns(&self) -> Option<Columns> {
+        match &self.images {
+            Images::Deferred(targets) => targets.light.columns,
+            Images::Forward(targets) => targets.columns,
+        }
     }
 
     /// Says which samples are still needed when a view is rendered, to be read or to go on drawing
@@ -277,19 +303,29 @@ impl Renderer {
         selection: Selection,
     ) -> Result<(), GlError> {
         self.belongs_to(scene)?;
-        let culler = culler(view, selection);
+        // All columns need no bound.
+        let drawn =
+            targets.columns().map(|columns| columns.drawn).filter(|drawn| *drawn != [0, view.size[0]]);
+        let culler = culler(&drawn.map_or(*view, |drawn| of_columns(view, drawn)), selection);
         match (&self.passes, &mut targets.images) {
             (Passes::Deferred(passes), Images::Deferred(targets)) => {
                 targets.fit(view)?;
-                passes.draw_selected(&targets.g_buffer, scene, view, &culler);
-                self.light(&targets.light, &targets.g_buffer, scene, view, Role::Whole);
+                self.gl.within_columns(drawn, || {
+                    passes.draw_selected(&targets.g_buffer, scene, view, &culler);
+                    self.light(&targets.light, &targets.g_buffer, scene, view, Role::Whole);
+                });
                 self.finish(&targets.finish, &targets.light);
                 Ok(())
             }
             (Passes::Forward(passes), Images::Forward(targets)) => {
                 targets.fit(view.size, passes.develops(), false)?;
-                self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
+                self.gl.within_columns(drawn, || {
+                    self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
+                });
                 passes.resolve(targets, view, true);
+                if let Some(drawn) = drawn {
+                    targets.repeat_columns(drawn)?;
+                }
                 passes.develop(targets, view, Eye::Left, false);
                 Ok(())
             }
@@ -639,6 +675,18 @@ impl Renderer {
             lights.set(program, &scene.sky);
         });
         Ok(())
+    }
+}
+
+/// The part of a view that some of its columns show, `[first, end]` from the left.
+fn of_columns(view: &View, [first, end]: [u32; 2]) -> View {
+    let tangent = view.frustum.width() / view.size[0] as f32;
+    let left = view.frustum.left + first as f32 * tangent;
+    let right = view.frustum.left + end as f32 * tangent;
+    View {
+        frustum: Frustum { left, right, ..view.frustum },
+        size: [end.saturating_sub(first), view.size[1]],
+        ..*view
     }
 }
 

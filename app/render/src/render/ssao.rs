@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 use std::rc::Rc;
 
-use glam::{Vec3, Vec4};
+use glam::{IVec2, Vec3, Vec4};
 
 use super::role::{Role, RoleKind};
 use super::uniforms::set_view;
@@ -12,6 +12,8 @@ use yoro::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTar
 
 /// Samples per pixel; even.
 const SAMPLES: usize = 12;
+/// Texels that are computed beside the columns that are wanted.
+const BESIDE: u32 = 3;
 /// Turns of the spiral on which they lie, without a common divisor with their number.
 const TURNS: f32 = 5.0;
 
@@ -91,9 +93,21 @@ impl SsaoPass {
         })
     }
 
-    /// Computes the occlusion of the pixels that the role lights; the others' is undefined.
-    pub fn run(&self, targets: &SsaoTargets, g_buffer: &RenderTarget, view: &View, role: Role) {
-        self.gl.pass("ssao", || {
+    /// Computes the occlusion of the pixels that the role lights; the others' is undefined. What lies beside the columns
+    /// `[first, end]` of the eye occludes nothing in them.
+    pub fn run(
+        &self,
+        targets: &SsaoTargets,
+        g_buffer: &RenderTarget,
+        view: &View,
+        eye: [u32; 2],
+        role: Role,
+    ) {
+        // The blur reads two texels to each side, and lighting one more.
+        let columns = self.gl.columns().map(|[first, end]| {
+            [(first / targets.scale).saturating_sub(BESIDE), end.div_ceil(targets.scale) + BESIDE]
+        });
+        let pass = || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             let height = view.size[1] as f32;
             let pixels_at_1_m = self.radius * height / view.frustum.height();
@@ -103,6 +117,7 @@ impl SsaoPass {
                 .texture_of("depth_map", 0, g_buffer.depth())
                 .texture_of("normal_map", 1, g_buffer.color(1))
                 .set("kernel", &self.kernel[..])
+                .set("columns", IVec2::new(eye[0] as i32, eye[1] as i32 - 1))
                 .set("radius", Vec3::new(self.radius, pixels_at_1_m, 0.12 * height));
             set_view(&self.sample, view);
             role.set(&self.sample, view);
@@ -110,6 +125,7 @@ impl SsaoPass {
             targets.blurred.bind();
             self.blur.bind().texture("occlusion_map", 0, targets.raw.color(0).raw());
             self.gl.draw_screen();
-        });
+        };
+        self.gl.pass("ssao", || self.gl.within_columns(columns, pass));
     }
 }

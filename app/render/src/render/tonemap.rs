@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use glam::IVec2;
+
 use super::bloom;
 use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
@@ -23,12 +25,22 @@ impl TonemapPass {
         Ok(TonemapPass { gl: gl.clone(), program })
     }
 
-    /// Writes `target`.
-    pub fn run(&self, target: &RenderTarget, source: &Texture, bloom: Option<&Texture>, exposure: f32) {
+    /// Writes all of `target`. Of the source only columns `[first, end]` are there; they are repeated beyond.
+    pub fn run(
+        &self,
+        target: &RenderTarget,
+        (source, [first, end]): (&Texture, [u32; 2]),
+        bloom: Option<&Texture>,
+        exposure: f32,
+    ) {
         self.gl.pass("tonemap", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             target.bind();
-            self.program.bind().texture("source", 0, source.raw()).set("exposure", exposure);
+            self.program
+                .bind()
+                .texture("source", 0, source.raw())
+                .set("columns", IVec2::new(first as i32, end as i32 - 1))
+                .set("exposure", exposure);
             if let Some(bloom) = bloom {
                 self.program.texture("bloom", 1, bloom.raw()).set("bloom_strength", bloom::STRENGTH);
             }

@@ -42,7 +42,7 @@ impl ForwardSinglePass {
 }
 
 impl StereoMethod for ForwardSinglePass {
-    fn prepare(&self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
+    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
         Ok(renderer.prepare(scene, self.layout, &[])?)
     }
 

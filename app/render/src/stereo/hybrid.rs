@@ -157,7 +157,7 @@ pub(super) fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
 }
 
 impl StereoMethod for Hybrid {
-    fn prepare(&self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
+    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
         let roles = [RoleKind::Whole, RoleKind::NearField, RoleKind::FarField];
         Ok(renderer.prepare(scene, Layout::Single, &roles)?)
     }

@@ -70,6 +70,17 @@ pub struct DepthTarget<'a> {
     pub copy: &'a DepthCopy,
 }
 
+/// How much of its guard band a method with [`yoro::eyes::GuardBand::Auto`] drew in a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GuardBandUse {
+    /// Columns that were drawn.
+    pub columns: u32,
+    /// Columns that the band has at most.
+    pub most: u32,
+    /// Pixels at the other eye's border that show something which lies in the band but was not drawn; they were filled.
+    pub undrawn: u32,
+}
+
 /// A method with its own programs and targets.
 pub trait StereoMethod {
     /// Compiles what the method needs for the materials of a scene, so that its first frame of that scene does not
@@ -77,8 +88,14 @@ pub trait StereoMethod {
     ///
     /// # Errors
     /// [`StereoError`] when GL refuses.
-    fn prepare(&self, _renderer: &mut Renderer, _scene: &GpuScene) -> Result<(), StereoError> {
+    fn prepare(&mut self, _renderer: &mut Renderer, _scene: &GpuScene) -> Result<(), StereoError> {
         Ok(())
+    }
+
+    /// The use of the guard band as far as it is known by now, which is some frames late. None for methods and settings
+    /// that always draw all of it.
+    fn guard_band(&self) -> Option<GuardBandUse> {
+        None
     }
 
     /// Renders both eyes of a frame to wherever they are wanted, by [`Eye::index`].

@@ -85,7 +85,7 @@ impl ShadingReprojection {
 }
 
 impl StereoMethod for ShadingReprojection {
-    fn prepare(&self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
+    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
         Ok(renderer.prepare(scene, Layout::Single, &[RoleKind::Whole, RoleKind::Reprojected])?)
     }
 

@@ -73,7 +73,7 @@ impl SinglePass {
 }
 
 impl StereoMethod for SinglePass {
-    fn prepare(&self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
+    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
         let role = Role::of_eye(self.layout, [1, 1], Eye::Left).kind();
         Ok(renderer.prepare(scene, self.layout, &[role])?)
     }

@@ -6,8 +6,8 @@ use glam::Vec3;
 
 use super::*;
 use crate::fixture::quad;
-use crate::render::{GpuScene, Layout, Renderer, Seam};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose};
+use crate::render::{GpuScene, Layout, Renderer, RendererKind, Seam};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
 use yoro_context::{Backend, Headless};
 use yoro_scene::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
 
@@ -212,4 +212,78 @@ fn mono_shows_each_eye_its_own_part_of_the_view() {
             assert!(equal > 0.99, "{dominant:?} dominant, {eye:?}: {equal}");
         }
     }
+}
+
+/// A band that would be complete from 20 cm, of which the posts' scene needs a quarter.
+fn auto_band() -> StereoOptions {
+    StereoOptions { guard_band: GuardBand::Auto(0.2), ..StereoOptions::default() }
+}
+
+#[test]
+fn a_band_as_wide_as_it_must_be_gives_the_picture_of_a_whole_one() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    // With ambient occlusion and bloom, which reach far.
+    let deferred = RenderSettings { shadow_map_size: 256, ..RenderSettings::default() };
+    let forward = RenderSettings { renderer: RendererKind::Forward, ..deferred.clone() };
+    for settings in [deferred, forward] {
+        let mut rig = Rig::new(gl, &settings);
+        for dominant in Eye::BOTH {
+            let mut asymmetric = pair(dominant, DepthConvention::Reversed);
+            asymmetric.frusta[0].left *= 1.2;
+            asymmetric.frusta[1].right *= 1.2;
+            for pair in [pair(dominant, DepthConvention::Standard), asymmetric.evened()] {
+                let mut method = Yoro::new(gl, &settings, &auto_band()).unwrap();
+                let [whole, part] = [(); 2].map(|()| rig.render(&mut method, &pair));
+                let looked = method.guard_band().unwrap();
+                assert!(looked.columns == looked.most && looked.most > 30, "{looked:?}");
+                rig.render(&mut method, &pair);
+                let used = method.guard_band().unwrap();
+                assert!(used.columns > 3 && used.columns < 20 && used.undrawn == 0, "{used:?}");
+                let [rendered, other] = [dominant, dominant.other()].map(Eye::index);
+                assert!(whole[rendered] == part[rendered], "{:?}, {dominant:?}", settings.renderer);
+                let share = equal_share(&whole[other], &part[other]);
+                assert!(share > 0.999, "{:?}, {dominant:?}: {share}", settings.renderer);
+            }
+        }
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn what_comes_to_the_border_is_filled_counted_and_drawn_from_the_next_frame_on() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut far = scene();
+    far.model.parts.truncate(2);
+    let mut near = far.clone();
+    // A board at 40 cm, that reaches across the left border of both eyes.
+    let corner = Vec3::new(-0.6, -0.5, -0.4);
+    quad(&mut near.model, 2, corner, Vec3::X * 0.5, Vec3::Y);
+    for renderer in [RendererKind::Deferred, RendererKind::Forward] {
+        let settings = RenderSettings { renderer, ..local() };
+        let mut rigs = [far.clone(), near.clone()].map(|scene| {
+            let scene = GpuScene::upload(gl, scene).unwrap();
+            let renderer = Renderer::new(gl, &settings, &scene).unwrap();
+            Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() }
+        });
+        let pair = pair(Eye::Right, DepthConvention::Standard);
+        let mut method = Yoro::new(gl, &settings, &auto_band()).unwrap();
+        for _ in 0..3 {
+            rigs[0].render(&mut method, &pair);
+        }
+        let narrow = method.guard_band().unwrap();
+        assert!(narrow.columns < 10 && narrow.undrawn == 0, "{narrow:?}");
+        let [filled, _] = rigs[1].render(&mut method, &pair);
+        let [drawn, _] = rigs[1].render(&mut method, &pair);
+        let used = method.guard_band().unwrap();
+        assert!(used.columns < 10 && used.undrawn > 500, "{renderer:?}: {used:?}");
+        rigs[1].render(&mut method, &pair);
+        let used = method.guard_band().unwrap();
+        assert!(used.columns == used.most && used.undrawn == 0, "{renderer:?}: {used:?}");
+        // The board goes on to the border, as it does where it was drawn.
+        let share = equal_share(&filled, &drawn);
+        assert!(share > 0.95, "{renderer:?}: {share} of the picture as it should be");
+    }
+    assert_eq!(gl.take_errors(), None);
 }

@@ -7,6 +7,7 @@ use super::power::CurrentNormalizer;
 use super::process::{ProcessSample, cpu_load};
 use super::summary::{SessionSummary, Totals};
 use yoro::gl::PassTime;
+use yoro_render::stereo::GuardBandUse;
 
 /// Length of a period in nanoseconds.
 const PERIOD_NS: i64 = 1_000_000_000;
@@ -37,6 +38,14 @@ struct Stage {
     nanoseconds: u64,
 }
 
+/// Use of the guard band by some frames.
+#[derive(Clone, Copy, Debug, Default)]
+struct GuardBandSum {
+    frames: u32,
+    columns: u64,
+    undrawn: u64,
+}
+
 /// Collects frames and device states.
 pub struct Telemetry {
     begin_ns: Option<i64>,
@@ -44,6 +53,7 @@ pub struct Telemetry {
     second: FrameStatistics,
     stages: Vec<Stage>,
     timed_frames: u32,
+    guard_band: Option<GuardBandSum>,
     process: ProcessSample,
     process_ns: Option<i64>,
     normalizer: CurrentNormalizer,
@@ -58,6 +68,7 @@ impl Default for Telemetry {
             second: FrameStatistics::with_capacity(FRAMES),
             stages: Vec::with_capacity(32),
             timed_frames: 0,
+            guard_band: None,
             process: ProcessSample::default(),
             process_ns: None,
             normalizer: CurrentNormalizer::default(),
@@ -88,6 +99,14 @@ impl Telemetry {
                 None => self.stages.push(Stage { name: pass.name, nanoseconds }),
             }
         }
+    }
+
+    /// Adds what a frame drew of a guard band that sets its own width.
+    pub fn guard_band(&mut self, used: GuardBandUse) {
+        let sum = self.guard_band.get_or_insert_default();
+        sum.frames += 1;
+        sum.columns += u64::from(used.columns);
+        sum.undrawn += u64::from(used.undrawn);
     }
 
     /// Frames stop; the time until the next one is not counted.
@@ -122,6 +141,7 @@ impl Telemetry {
             .map(|s| StageTime { name: s.name.replace(' ', "-"), milliseconds: milliseconds(s.nanoseconds) })
             .collect();
         self.timed_frames = 0;
+        let guard_band = self.guard_band.take();
         let optional = |value: Option<f32>| value.filter(|v| v.is_finite()).map(f64::from);
         Line {
             time_s: self.seconds(now_ns),
@@ -153,6 +173,8 @@ impl Telemetry {
             status: device.status,
             run: viewer.run.clone(),
             performance: device.performance.map(str::to_owned),
+            guard_columns: guard_band.map(|sum| sum.columns as f64 / f64::from(sum.frames)),
+            undrawn: guard_band.map(|sum| sum.undrawn),
         }
     }
 

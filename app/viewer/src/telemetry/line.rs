@@ -86,6 +86,10 @@ pub struct Line {
     pub run: Option<String>,
     /// What the device was asked for: [`DeviceState::performance`](super::DeviceState::performance).
     pub performance: Option<String>,
+    /// Columns of the guard band that were drawn per frame; missing where it does not set its own width.
+    pub guard_columns: Option<f64>,
+    /// Pixels at the other eye's border that lay in the guard band but were not drawn, in this second; they were filled.
+    pub undrawn: Option<u64>,
 }
 
 /// One key of the line and the value that it stands for.
@@ -129,7 +133,7 @@ macro_rules! number {
             decimals: $decimals,
             unit: $unit,
             came_later: false,
-            get: |line| line.$field.map_or(Value::Missing, |value| Value::$kind(value.into())),
+            get: |line| line.$field.map_or(Value::Missing, |value| Value::$kind(value as _)),
             set: |line, text| number(text).map(|value| line.$field = value).is_some(),
         }
     };
@@ -221,6 +225,8 @@ pub const LINE_KEYS: &[LineKey] = &[
     },
     LineKey { came_later: true, ..optional_name!("run", run) },
     LineKey { came_later: true, ..optional_name!("perf", performance) },
+    LineKey { came_later: true, ..number!("guard", Real, guard_columns, 1, "") },
+    LineKey { came_later: true, ..number!("undrawn", Integer, undrawn, 0, "") },
 ];
 
 impl LineKey {
@@ -366,6 +372,8 @@ mod tests {
             status: Some(BatteryStatus::Discharging),
             run: Some("first".into()),
             performance: Some("sustained".into()),
+            guard_columns: Some(17.5),
+            undrawn: Some(0),
             ..Line::default()
         }
     }
@@ -374,7 +382,7 @@ mod tests {
     fn a_line_as_people_read_it() {
         assert_eq!(
             example().to_string(),
-            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained"
+            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained,guard=17.5,undrawn=0"
         );
         assert_eq!(example().to_string().parse(), Ok(example()));
     }
@@ -409,7 +417,7 @@ mod tests {
         };
         let text = line.to_string();
         let expected = "v=1,t=3600.0s,method=yoro,pipeline=gather,scene=prototype,FPS=60.0/60,Stale=4000000000,frame=16.68ms,p99=17.00ms,App=6.10ms(geometry=1.250,gather-march=0.500),CPU=141.1%,RSS=212.4MB,mA_raw=-9223372036854775808,mA=-512.0,mV=-1,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=-3.0C,thermal=6,headroom=0.42,scale=0.80,imbuffer=4,frames=72,status=not-charging,run=";
-        assert_eq!(text, format!("{expected}{},perf=sustained", "r".repeat(64)));
+        assert_eq!(text, format!("{expected}{},perf=sustained,guard=17.5,undrawn=0", "r".repeat(64)));
         let read: Line = text.parse().unwrap();
         assert_eq!(read.to_string(), text);
         assert_eq!((read.current_raw, read.stale, read.status), (line.current_raw, line.stale, line.status));
@@ -440,6 +448,8 @@ mod tests {
             ("plug", 0.0),
             ("scale", 0.8),
             ("frames", 72.0),
+            ("guard", 17.5),
+            ("undrawn", 0.0),
         ];
         assert_eq!(numbers, expected);
     }
@@ -448,7 +458,7 @@ mod tests {
     fn nothing_known_is_na_and_not_zero() {
         let empty = Line { method: "yoro".into(), scene: "x".into(), ..Line::default() };
         let text = empty.to_string();
-        assert_eq!(text.matches("na").count(), 24, "{text}");
+        assert_eq!(text.matches("na").count(), 26, "{text}");
         assert_eq!(text.parse(), Ok(empty));
     }
 
@@ -464,7 +474,8 @@ mod tests {
         let text = example().to_string();
         let (early, _) = text.split_once(",frames=").unwrap();
         let read: Line = early.parse().unwrap();
-        assert_eq!(read, Line { frames: None, status: None, run: None, performance: None, ..example() });
+        let early = Line { frames: None, status: None, run: None, performance: None, ..example() };
+        assert_eq!(read, Line { guard_columns: None, undrawn: None, ..early });
         assert!(text.replace("discharging", "disch").parse::<Line>().is_err());
     }
 

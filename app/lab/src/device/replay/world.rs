@@ -437,6 +437,8 @@ impl World {
             status: Some(status),
             run: None,
             performance: None,
+            guard_columns: None,
+            undrawn: None,
         }
     }
 

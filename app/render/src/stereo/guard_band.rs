@@ -1,0 +1,275 @@
+//! A guard band as wide as it must be: how much of it is seen, measured, and how much is drawn, decided.
+
+use std::rc::Rc;
+
+use glam::Vec2;
+
+use super::method::GuardBandUse;
+use yoro::eyes::{Eye, EyePair, Pose, SynthesisViews};
+use yoro::gl::{
+    Context, Filter, Format, GlError, PixelBuffer, Program, RasterState, RenderTarget, ShaderSource, Texture,
+};
+
+/// Texels of the image that is read back; `stereo/border_need.frag`.
+const CELLS: [u32; 2] = [4, 64];
+const BYTES: usize = (CELLS[0] * CELLS[1] * 4) as usize;
+/// The head may turn by so much (radians) before all of the band is looked at again.
+const TURN: f32 = 1.0 * std::f32::consts::PI / 180.0;
+/// It may move by so much of the distance between the eyes.
+const MOVE: f32 = 0.5;
+/// All of the band is looked at once in so many frames: things move by themselves, too.
+const LOOK_EVERY: u32 = 30;
+/// Columns that are drawn beyond what is seen: filters of the renderer read so far to each side.
+const SPARE: u32 = 4;
+
+/// The eyes' geometry as far as a width in columns depends on it. Another one begins anew.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Geometry {
+    size: [u32; 2],
+    guard_columns: u32,
+    dominant: Eye,
+    focal_length: f32,
+    ipd: f32,
+}
+
+/// What a frame showed of the band.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Need {
+    /// Columns that are seen, or may be after as much motion as is allowed for.
+    columns: u32,
+    /// Pixels that were seen and not drawn.
+    undrawn: u32,
+}
+
+/// How many columns of the band to draw. All of them in a look: at first, after some motion, when something nearer
+/// comes to the border, and once in a while. Between looks as many as the last two found necessary.
+#[derive(Debug, Default)]
+struct Width {
+    look: Option<Look>,
+    columns: u32,
+    /// What the look before the last one found.
+    before: u32,
+}
+
+/// When all of the band was drawn last.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    geometry: Geometry,
+    pose: Pose,
+    frames: u32,
+    /// What was found; none until it is read back.
+    found: Option<u32>,
+}
+
+impl Width {
+    /// Columns to draw in a frame, from what the frame before found.
+    fn next(&mut self, measured: Option<Need>, geometry: Geometry, pose: Pose) -> u32 {
+        let full = geometry.guard_columns;
+        let Some(look) = self.look.as_mut().filter(|look| look.geometry == geometry) else {
+            self.before = 0;
+            return self.look_again(geometry, pose);
+        };
+        look.frames += 1;
+        let Some(need) = measured else { return full };
+        match look.found {
+            None => {
+                let found = (need.columns + SPARE).min(full);
+                self.columns = found.max(self.before);
+                self.before = found;
+                look.found = Some(found);
+            }
+            Some(_) if need.undrawn > 0 || need.columns > self.columns => {
+                return self.look_again(geometry, pose);
+            }
+            Some(_) => {}
+        }
+        let moved = (pose.position - look.pose.position).length() > MOVE * geometry.ipd
+            || pose.orientation.angle_between(look.pose.orientation) > TURN;
+        if moved || look.frames >= LOOK_EVERY {
+            return self.look_again(geometry, pose);
+        }
+        self.columns
+    }
+
+    fn look_again(&mut self, geometry: Geometry, pose: Pose) -> u32 {
+        self.look = Some(Look { geometry, pose, frames: 0, found: None });
+        self.columns = geometry.guard_columns;
+        geometry.guard_columns
+    }
+}
+
+/// Decides and measures.
+pub(super) struct AutoGuardBand {
+    gl: Rc<Context>,
+    program: Program,
+    cells: RenderTarget,
+    buffer: PixelBuffer,
+    pending: bool,
+    width: Width,
+    drawn: u32,
+    last: GuardBandUse,
+}
+
+impl AutoGuardBand {
+    pub(super) fn new(gl: &Rc<Context>) -> Result<AutoGuardBand, GlError> {
+        Ok(AutoGuardBand {
+            gl: gl.clone(),
+            program: Program::new(gl, ShaderSource::Screen("stereo/border_need.frag"), &[])?,
+            cells: RenderTarget::new(gl, CELLS, &[(Format::Rgba8, Filter::Nearest)], None)?,
+            buffer: PixelBuffer::new(gl, BYTES)?,
+            pending: false,
+            width: Width::default(),
+            drawn: 0,
+            last: GuardBandUse::default(),
+        })
+    }
+
+    /// How many columns of the guard band to leave out of a frame: the outermost ones.
+    pub(super) fn left_out(&mut self, pair: &EyePair, views: &SynthesisViews) -> u32 {
+        let geometry = Geometry {
+            size: views.source.size,
+            guard_columns: views.guard_columns,
+            dominant: pair.dominant,
+            focal_length: pair.focal_length_pixels(),
+            ipd: pair.ipd(),
+        };
+        let need = self.take();
+        self.last = GuardBandUse {
+            columns: self.drawn,
+            most: views.guard_columns,
+            undrawn: need.map_or(0, |need| need.undrawn),
+        };
+        self.drawn = self.width.next(need, geometry, pair.poses[pair.dominant.index()]);
+        views.guard_columns - self.drawn
+    }
+
+    /// Starts to measure what of the band a frame's depth shows.
+    pub(super) fn measure(&mut self, depth: &Texture, pair: &EyePair, views: &SynthesisViews) {
+        let (warp, guard) = (&views.warp, views.guard_columns as f32);
+        // In forward columns, which begin with the guard band; a surface at infinity moves in by nothing.
+        let (sense, before) = match warp.target_eye {
+            Eye::Left => (1.0, 0.0),
+            Eye::Right => (-1.0, warp.target_size[0] as f32 - warp.source_size[0] as f32),
+        };
+        let law = Vec2::new(before + sense * warp.law.offset as f32 + guard, sense * warp.law.scale as f32);
+        let motion = Vec2::new(pair.focal_length_pixels() * TURN, MOVE);
+        let inside = (motion.x + motion.y * guard).ceil() as u32;
+        let end = (views.guard_columns + inside).min(views.source.size[0]);
+        self.gl.pass("border need", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            self.cells.bind();
+            self.program
+                .bind()
+                .texture("depth_map", 0, depth.raw())
+                .set("mirrored", warp.target_eye == Eye::Right)
+                .set("guard", views.guard_columns as i32)
+                .set("first", (views.guard_columns - self.drawn) as i32)
+                .set("end", end as i32)
+                .set("law", law)
+                .set("motion", motion);
+            self.gl.draw_screen();
+            self.cells.read_into(&self.buffer);
+        });
+        self.pending = true;
+    }
+
+    /// The frame before the last [`AutoGuardBand::left_out`].
+    pub(super) fn last(&self) -> GuardBandUse {
+        self.last
+    }
+
+    fn take(&mut self) -> Option<Need> {
+        if !std::mem::take(&mut self.pending) {
+            return None;
+        }
+        let mut cells = [0u8; BYTES];
+        self.buffer.read(&mut cells);
+        let mut need = Need::default();
+        for cell in cells.chunks_exact(4) {
+            need.columns = need.columns.max(u32::from(u16::from_le_bytes([cell[0], cell[1]])));
+            need.undrawn += u32::from(u16::from_le_bytes([cell[2], cell[3]]));
+        }
+        Some(need)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Quat, Vec3};
+
+    const GEOMETRY: Geometry = Geometry {
+        size: [1080, 1024],
+        guard_columns: 56,
+        dominant: Eye::Right,
+        focal_length: 886.8,
+        ipd: 0.063,
+    };
+
+    fn needs(columns: u32) -> Option<Need> {
+        Some(Need { columns, undrawn: 0 })
+    }
+
+    /// Widths of frames at one place, the first of which nothing was measured before.
+    fn widths(width: &mut Width, pose: Pose, found: &[u32]) -> Vec<u32> {
+        found.iter().map(|&columns| width.next(needs(columns), GEOMETRY, pose)).collect()
+    }
+
+    #[test]
+    fn the_first_frame_is_a_look_and_the_next_as_wide_as_it_found() {
+        let mut width = Width::default();
+        assert_eq!(width.next(None, GEOMETRY, Pose::IDENTITY), 56);
+        assert_eq!(widths(&mut width, Pose::IDENTITY, &[10, 10, 7]), [14, 14, 14]);
+    }
+
+    #[test]
+    fn what_comes_nearer_is_looked_at_and_drawn() {
+        let mut width = Width::default();
+        width.next(None, GEOMETRY, Pose::IDENTITY);
+        assert_eq!(widths(&mut width, Pose::IDENTITY, &[10, 15, 30, 30]), [14, 56, 34, 34]);
+        // Never more than there are.
+        assert_eq!(widths(&mut width, Pose::IDENTITY, &[90, 90]), [56, 56]);
+        let undrawn = Some(Need { columns: 3, undrawn: 1 });
+        let mut width = Width::default();
+        width.next(None, GEOMETRY, Pose::IDENTITY);
+        widths(&mut width, Pose::IDENTITY, &[10]);
+        assert_eq!(width.next(undrawn, GEOMETRY, Pose::IDENTITY), 56);
+    }
+
+    #[test]
+    fn it_narrows_after_two_looks_that_agree() {
+        let mut width = Width::default();
+        width.next(None, GEOMETRY, Pose::IDENTITY);
+        widths(&mut width, Pose::IDENTITY, &[40]);
+        let away = |i: f32| Pose { position: Vec3::X * i, ..Pose::IDENTITY };
+        assert_eq!(widths(&mut width, away(1.0), &[40, 10]), [56, 44]);
+        assert_eq!(widths(&mut width, away(2.0), &[10, 10]), [56, 14]);
+    }
+
+    #[test]
+    fn motion_of_the_head_and_time_make_it_look() {
+        let mut width = Width::default();
+        width.next(None, GEOMETRY, Pose::IDENTITY);
+        widths(&mut width, Pose::IDENTITY, &[10]);
+        let turned = |angle: f32| Pose { orientation: Quat::from_rotation_y(angle), ..Pose::IDENTITY };
+        let moved = |by: f32| Pose { position: Vec3::Z * by, ..Pose::IDENTITY };
+        for near in [turned(0.5 * TURN), moved(0.9 * MOVE * GEOMETRY.ipd)] {
+            assert_eq!(widths(&mut width, near, &[10]), [14]);
+        }
+        for far in [turned(2.0 * TURN), moved(1.1 * MOVE * GEOMETRY.ipd)] {
+            assert_eq!(widths(&mut width, far, &[10, 10]), [56, 14]);
+        }
+        let still = widths(&mut width, moved(1.1 * MOVE * GEOMETRY.ipd), &[10; 2 * LOOK_EVERY as usize]);
+        assert_eq!(still.iter().filter(|columns| **columns == 56).count(), 2, "{still:?}");
+    }
+
+    #[test]
+    fn other_eyes_begin_anew_and_without_a_measurement_all_is_drawn() {
+        let mut width = Width::default();
+        width.next(None, GEOMETRY, Pose::IDENTITY);
+        assert_eq!(width.next(None, GEOMETRY, Pose::IDENTITY), 56);
+        widths(&mut width, Pose::IDENTITY, &[10]);
+        let other = Geometry { guard_columns: 112, focal_length: 2.0 * GEOMETRY.focal_length, ..GEOMETRY };
+        assert_eq!(width.next(needs(10), other, Pose::IDENTITY), 112);
+    }
+}
