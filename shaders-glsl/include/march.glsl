@@ -39,6 +39,7 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
     float a = b;
     float depth = next;
     while (shift < limit && !found) {
+        COUNT_TRIP(1)
         a = b;
         depth = next;
         int here = column;

@@ -74,6 +74,9 @@ fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
             Gather::with_variant(gl, Outputs { depth, ..Outputs::default() }, variant)?;
         }
     }
+    // What of the march every pixel runs, for the executed cost.
+    let alone = ["TEXTURE_GATHER", "SHORT_WAY", "SHORT_WAY_ALONE"].map(|name| (name, String::new()));
+    Program::new(gl, ShaderSource::Screen("synthesis/gather/march.frag"), &alone)?;
     Ok(())
 }
 

@@ -178,7 +178,7 @@ impl<'a> Field<'a> {
                 interrupt::check()?;
                 let at = (turn + i + round as usize) % count;
                 let timed = &mut self.entrants[at];
-                let time = timed.entrant.render(&mut self.prepared, pair, &mut self.frame)?;
+                let time = timed.entrant.render_settled(&mut self.prepared, pair, &mut self.frame)?;
                 timed.milliseconds.push(time.wall.as_secs_f64() * 1e3);
                 if round == 0 {
                     images[at] = Eye::BOTH.map(|eye| picture::eye_image(&self.frame, eye));

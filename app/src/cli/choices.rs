@@ -134,8 +134,12 @@ pub fn suite() -> impl TypedValueParser<Value = Suite> {
             "Quality and frame time by what edges are made of: one sample per pixel, FXAA, MSAA with each kind of depth"
         }
         Suite::Flicker => "Flicker of the synthesized eye from frame to frame along a camera path",
+        Suite::GuardBand => "Width, frame time and quality at the border by guard band, along a camera path",
         Suite::Bandwidth => {
             "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path"
+        }
+        Suite::ShaderCost => {
+            "Estimate of what the synthesis takes on three mobile GPUs that need not be here"
         }
         Suite::All => "All of them, one after the other",
     })

@@ -54,6 +54,7 @@ void main() {
     float b = shift + law.y * depths.y;
     // On to the first pair that crosses the pixel, or has a silhouette within a pixel of it.
     for (float limit = x + SHORT_STEPS; x < limit && b <= 0.0 && max(b, -1.0) >= a; x += 1.0) {
+        COUNT_TRIP(0)
         shift += 1.0;
         at.x += columns.x;
         float next = PART ? depth_beyond(x + 2.0, source_row()) : textureLod(depth_map, at, 0.0).r;
@@ -68,13 +69,21 @@ void main() {
     at.y = PART ? (float(source_origin.y + source_row()) + 0.5) * texel.y : at.y;
     color = textureLod(color_map, at, 0.0);
     float middle = 0.5 * float(source_size.x - 1);
-    if (!(a <= 0.0 && b > 0.0 && stretch < MAX_STRETCH && abs(surface.source - middle) <= middle)) {
+    bool done = a <= 0.0 && b > 0.0 && stretch < MAX_STRETCH && abs(surface.source - middle) <= middle;
+#ifdef SHORT_WAY_ALONE
+    // For measuring: what every pixel runs.
+    done = true;
+#endif
+    if (!done) {
         color = march(origin, source_row(), span_steps(span), x, a, depths.x, surface);
     }
 #else
     int row = source_row();
     float depth = depth_at(int(clamp(x, 0.0, float(source_size.x - 1))), row);
     color = march(origin, row, span_steps(span), x, x - origin + law.y * depth, depth, surface);
+#endif
+#ifdef COUNT_TRIPS
+    color = vec4(vec3(trips) / 255.0, done ? 0.0 : 1.0);
 #endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = surface.depth;

@@ -74,7 +74,22 @@ impl Gather {
         outputs: Outputs,
         variant: GatherVariant,
     ) -> Result<Gather, GlError> {
-        let variant: Vec<_> = variant.defines().iter().map(|&name| (name, String::new())).collect();
+        Gather::with_defines(gl, outputs, variant.defines())
+    }
+
+    /// What GPUs run, with counts for colours: in the target's red, green and blue how often a pixel runs the loops of the
+    /// short way, of the long way and of the fill (of 255, and no more than that), in alpha whether it goes the long way.
+    ///
+    /// # Errors
+    /// As [`Gather::with_variant`].
+    #[doc(hidden)]
+    pub fn counting(gl: &Rc<Context>) -> Result<Gather, GlError> {
+        let defines = [GatherVariant::ShortWay.defines(), &["COUNT_TRIPS"]].concat();
+        Gather::with_defines(gl, Outputs::default(), &defines)
+    }
+
+    fn with_defines(gl: &Rc<Context>, outputs: Outputs, variant: &[&'static str]) -> Result<Gather, GlError> {
+        let variant: Vec<_> = variant.iter().map(|&name| (name, String::new())).collect();
         let march: Vec<_> = output_defines(outputs).into_iter().chain(variant.clone()).collect();
         let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
         let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::inpaint::PatcherKind;
+use yoro::eyes::GuardBand;
 use yoro::synthesis::{Edges, Pipeline};
 use yoro_render::stereo::{Method, StereoOptions};
 
@@ -15,12 +16,42 @@ pub enum Contender {
     Yoro(Pipeline),
     /// The pipeline gather, told these of the rendered eye's edges.
     Edges(Edges),
+    /// The pipeline gather with this guard band.
+    Band(Band),
     /// The paper's pipeline without interpolation between ImBuffer entries.
     PaperNearest,
     /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as its text says.
     PaperStrict,
     /// A patcher on the reprojected image that all patchers get.
     Patcher(PatcherKind),
+}
+
+/// The guard bands of the suite `guard-band`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Band {
+    /// [`GuardBand::None`].
+    None,
+    /// Complete from 1 m.
+    OneMetre,
+    /// Complete from half a metre.
+    HalfMetre,
+    /// [`GuardBand::AUTO`].
+    Auto,
+}
+
+impl Band {
+    /// All of them.
+    pub const ALL: [Band; 4] = [Band::None, Band::OneMetre, Band::HalfMetre, Band::Auto];
+
+    /// The band.
+    pub fn guard_band(self) -> GuardBand {
+        match self {
+            Band::None => GuardBand::None,
+            Band::OneMetre => GuardBand::Distance(1.0),
+            Band::HalfMetre => GuardBand::Distance(0.5),
+            Band::Auto => GuardBand::AUTO,
+        }
+    }
 }
 
 impl Contender {
@@ -32,13 +63,18 @@ impl Contender {
     /// Every contender, in the order of tables.
     pub fn all() -> Vec<Contender> {
         let variants = [Contender::PaperNearest, Contender::PaperStrict];
-        let edges = Contender::edges();
-        Contender::methods().into_iter().chain(variants).chain(edges).chain(Contender::patchers()).collect()
+        let told = Contender::edges().into_iter().chain(Contender::bands());
+        Contender::methods().into_iter().chain(variants).chain(told).chain(Contender::patchers()).collect()
     }
 
     /// Synthesis with everything that it can be told of the rendered eye's edges.
     pub fn edges() -> Vec<Contender> {
         Edges::ALL.map(Contender::Edges).to_vec()
+    }
+
+    /// Synthesis with each guard band.
+    pub fn bands() -> Vec<Contender> {
+        Band::ALL.map(Contender::Band).to_vec()
     }
 
     /// The stereo methods, synthesis with each of its pipelines.
@@ -64,6 +100,7 @@ impl Contender {
             Contender::Method(method) => method.name().into(),
             Contender::Yoro(pipeline) => format!("yoro-{}", pipeline.name()),
             Contender::Edges(edges) => format!("yoro-edges-{}", edges.name()),
+            Contender::Band(band) => format!("yoro-guard-{}", band.guard_band()),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
             Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
@@ -81,7 +118,7 @@ impl Contender {
         let (method, pipeline) = match self {
             Contender::Method(method) => (method, Pipeline::default()),
             Contender::Yoro(pipeline) => (Method::Yoro, pipeline),
-            Contender::Edges(_) => (Method::Yoro, Pipeline::Gather),
+            Contender::Edges(_) | Contender::Band(_) => (Method::Yoro, Pipeline::Gather),
             Contender::PaperNearest | Contender::PaperStrict => (Method::Yoro, Pipeline::Paper),
             Contender::Patcher(_) => return None,
         };
@@ -89,6 +126,9 @@ impl Contender {
         options.policy = None;
         if let Contender::Edges(edges) = self {
             options.edges = Some(edges);
+        }
+        if let Contender::Band(band) = self {
+            options.guard_band = band.guard_band();
         }
         let paper = &mut options.synthesis.paper;
         paper.linear_interpolation &= self != Contender::PaperNearest;

@@ -6,7 +6,9 @@ use std::time::{Duration, Instant};
 use super::process;
 use yoro::eyes::EyePair;
 use yoro::gl::{Context, GlError, Profiling};
-use yoro_render::stereo::{self, Method, StereoError, StereoFrame, StereoMethod, StereoOptions};
+use yoro_render::stereo::{
+    self, GuardBandUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
+};
 use yoro_render::{PreparedScene, RenderSettings};
 
 /// A stereo method with its programs and targets, to be measured.
@@ -38,6 +40,21 @@ impl Entrant {
         Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)? })
     }
 
+    /// Renders a frame as the second of two alike, and waits for it: in the first a method may look how wide its guard
+    /// band has to be at this place, which a viewer's frames know from those before.
+    ///
+    /// # Errors
+    /// As [`StereoMethod::render`].
+    pub fn render_settled(
+        &mut self,
+        prepared: &mut PreparedScene,
+        pair: &EyePair,
+        frame: &mut StereoFrame,
+    ) -> Result<FrameTime, StereoError> {
+        self.render(prepared, pair, frame)?;
+        self.render(prepared, pair, frame)
+    }
+
     /// Renders a frame and waits for it.
     ///
     /// # Errors
@@ -54,7 +71,12 @@ impl Entrant {
         Ok(FrameTime { wall: start.elapsed(), cpu: process::cpu_time().saturating_sub(cpu) })
     }
 
-    /// Renders a frame with a timer around each pass: names in the order in which they first ran, and
+    /// As [`StereoMethod::guard_band`].
+    pub fn guard_band(&self) -> Option<GuardBandUse> {
+        self.method.guard_band()
+    }
+
+    /// Renders a frame, settled, with a timer around each pass: names in the order in which they first ran, and
     /// milliseconds; a pass that runs more than once in a frame counts as one. Empty where the driver cannot tell
     /// ([`Context::take_pass_times`]).
     ///
@@ -66,6 +88,7 @@ impl Entrant {
         pair: &EyePair,
         frame: &mut StereoFrame,
     ) -> Result<Vec<(&'static str, f64)>, StereoError> {
+        self.render(prepared, pair, frame)?;
         self.gl.set_profiling(Profiling::Auto);
         let rendered = self.method.render(&mut prepared.renderer, &prepared.scene, pair, frame);
         let passes = self.gl.take_pass_times();

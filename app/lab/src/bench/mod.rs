@@ -14,6 +14,7 @@ mod coder;
 mod coder;
 mod contender;
 mod entrant;
+mod executed;
 mod holes;
 mod measured;
 mod pictures;

@@ -104,6 +104,40 @@ pub mod metric {
     /// Their counterparts of the ground truth, measured for `conventional`.
     pub const CHANGES: [&str; 4] = [CHANGE, CHANGE_HOLES, CHANGE_EDGES, CHANGE_REST];
 
+    /// Columns of the guard band that were drawn in a frame.
+    pub const GUARD_COLUMNS: &str = "guard_columns";
+    /// Pixels that lay in the guard band and were seen, but were not drawn, in a frame.
+    pub const UNDRAWN: &str = "undrawn";
+    /// PSNR of red, green and blue in dB in the columns at the other eye's outer border that a guard band is for.
+    pub const BORDER_PSNR: &str = "border_psnr";
+
+    /// Trips of the loop of the march's short way for a pixel.
+    pub const TRIPS_PIXEL: &str = "trips_pixel";
+    /// The same for a wave.
+    pub const TRIPS_WAVE: &str = "trips_wave";
+    /// Share of the pixels that go the long way, 0 to 1.
+    pub const GOES_ON_PIXEL: &str = "goes_on_pixel";
+    /// Share of the waves of which a pixel does.
+    pub const GOES_ON_WAVE: &str = "goes_on_wave";
+    /// Trips of the loop of the march's long way for a wave.
+    pub const LONG_TRIPS_WAVE: &str = "long_trips_wave";
+    /// Estimated issue slots for each pixel of the first pass of `gather`.
+    pub const SLOTS_TILES: &str = "slots_tiles";
+    /// The same of the second pass.
+    pub const SLOTS_SPANS: &str = "slots_spans";
+    /// The same of the third.
+    pub const SLOTS_MARCH: &str = "slots_march";
+    /// The same of all three.
+    pub const SLOTS: &str = "slots";
+    /// Estimated texture instructions for each pixel.
+    pub const FETCHES: &str = "fetches";
+    /// Estimated time of the issue slots alone, in ms.
+    pub const ALU_MS: &str = "alu_ms";
+    /// Estimated time of the texture instructions alone, in ms.
+    pub const FETCH_MS: &str = "fetch_ms";
+    /// Estimated time of the bytes alone, in ms.
+    pub const MEMORY_MS: &str = "memory_ms";
+
     /// Time of a patcher alone in ms, by the wall clock, on an image that lies where the patcher works.
     pub const PATCH_MS: &str = "patch_ms";
     /// Upload and readback around that, in ms; 0 for patchers on the CPU.

@@ -8,20 +8,22 @@ use image::RgbImage;
 use indicatif::ProgressBar;
 
 use super::blank::BlankFinder;
-use super::contender::Contender;
+use super::contender::{Band, Contender};
 use super::entrant::{Entrant, FrameTime};
+use super::executed::{Device, Meter};
 use super::holes::HoleFinder;
 use super::pictures::picture_folder;
 use super::record::{Measurement, Record, Results, RoundEnd, Unsupported, Writer, metric};
 use super::scenes::LazyObject;
 use super::suite::{Choices, Job, Measure, Source, Suite};
-use super::views::Views;
+use super::views::{self, Views};
 use super::{bandwidth, process};
 use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use crate::inpaint::{self, Patcher, PatcherOptions};
 use crate::interrupt;
-use crate::metrics::{Comparison, FlickerMeter};
+use crate::metrics::{Channels, Comparison, FlickerMeter, psnr};
 use crate::picture;
+use yoro::eyes::{Eye, EyePair};
 use yoro::gl::Context;
 use yoro::synthesis::ImBufferSize;
 use yoro_render::stereo::StereoFrame;
@@ -114,8 +116,10 @@ impl<'a> Runner<'a> {
         let measured = match job.measure {
             Measure::Frames { .. } => self.frames(job, &mut prepared, done),
             Measure::Flicker => self.flicker(job, &mut prepared),
+            Measure::GuardBand => self.guard_band(job, &mut prepared),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Bandwidth => self.bandwidth(job, &mut prepared),
+            Measure::Executed(device) => self.executed(job, &device, &mut prepared),
         };
         self.prepared = Some((SceneKey::of(job), prepared));
         measured
@@ -137,9 +141,13 @@ impl<'a> Runner<'a> {
         }
         let mut finder = BlankFinder::new(self.gl, &job.render)?;
         let views = match job.measure {
-            Measure::Frames { .. } | Measure::Patchers => Views::spread(job, prepared)?,
+            Measure::Frames { .. } | Measure::Patchers | Measure::Executed(_) => {
+                Views::spread(job, prepared)?
+            }
             // Of a path that shows something at its start, a frame may look past it.
-            Measure::Flicker | Measure::Bandwidth => Views::along_path(job, prepared)?.first(),
+            Measure::Flicker | Measure::GuardBand | Measure::Bandwidth => {
+                Views::along_path(job, prepared, views::STEP)?.first()
+            }
         };
         for (name, pair) in views.names.iter().zip(&views.pairs) {
             ensure!(
@@ -246,7 +254,7 @@ impl<'a> Runner<'a> {
             for turn in 0..count {
                 interrupt::check()?;
                 let at = (turn + i + round as usize) % count;
-                let time = field.entrants[at].1.render(prepared, pair, &mut field.frame)?;
+                let time = field.entrants[at].1.render_settled(prepared, pair, &mut field.frame)?;
                 if let Some(measurements) = &mut times {
                     measurements[at].push(metric::FRAME_MS, milliseconds(time.wall));
                     measurements[at].push(metric::CPU_MS, milliseconds(time.cpu));
@@ -321,7 +329,7 @@ impl<'a> Runner<'a> {
     }
 
     fn flicker(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
-        let views = Views::along_path(job, prepared)?;
+        let views = Views::along_path(job, prepared, views::STEP)?;
         let mut field = self.field(job, prepared, &views, false)?;
         let mut finder = HoleFinder::new(self.gl, &job.render)?;
         let mut measurements = field.measurements(job, 0);
@@ -349,8 +357,41 @@ impl<'a> Runner<'a> {
         self.finish_round(job, 0, field.first, measurements)
     }
 
+    /// Every contender's frames in their order, each once, as a viewer renders them. A frame's use of the band is known
+    /// with the frame after it.
+    fn guard_band(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
+        let views = Views::along_path(job, prepared, views::HEADSET_STEP)?;
+        let mut field = self.field(job, prepared, &views, true)?;
+        let mut measurements = field.measurements(job, 0);
+        self.bar.set_message(job.setting.to_string());
+        let count = field.entrants.len();
+        for (i, pair) in views.pairs.iter().enumerate() {
+            let mut images = vec![RgbImage::default(); count];
+            for turn in 0..count {
+                interrupt::check()?;
+                let at = (turn + i) % count;
+                let entrant = &mut field.entrants[at].1;
+                let time = entrant.render(prepared, pair, &mut field.frame)?;
+                measurements[at].push(metric::FRAME_MS, milliseconds(time.wall));
+                if let Some(used) = entrant.guard_band().filter(|_| i > 0) {
+                    measurements[at].push(metric::GUARD_COLUMNS, f64::from(used.columns));
+                    measurements[at].push(metric::UNDRAWN, f64::from(used.undrawn));
+                }
+                images[at] = picture::eye_image(&field.frame, pair.dominant.other());
+                self.bar.inc(1);
+            }
+            let truth = border(&images[0], pair)?;
+            for at in 1..count {
+                measurements[at].push(metric::PSNR, psnr(&images[at], &images[0], Channels::Rgb)?.0);
+                let border = psnr(&border(&images[at], pair)?, &truth, Channels::Rgb)?;
+                measurements[at].push(metric::BORDER_PSNR, border.0);
+            }
+        }
+        self.finish_round(job, 0, field.first, measurements)
+    }
+
     fn bandwidth(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
-        let views = Views::along_path(job, prepared)?;
+        let views = Views::along_path(job, prepared, views::STEP)?;
         self.bar.set_message(job.setting.to_string());
         let bar = &self.bar;
         let mut step = || -> anyhow::Result<()> {
@@ -370,6 +411,26 @@ impl<'a> Runner<'a> {
         };
         let measurements = streams.into_iter().map(measurement).collect();
         self.finish_round(job, 0, vec![Record::Scene(facts)], measurements)
+    }
+
+    fn executed(&mut self, job: &Job, device: &Device, prepared: &mut PreparedScene) -> anyhow::Result<()> {
+        let views = Views::spread(job, prepared)?;
+        let mut meter = Meter::new(self.gl, &job.render)?;
+        let mut measurement = Measurement {
+            setting: job.setting.clone(),
+            contender: device.name.to_owned(),
+            round: 0,
+            values: Default::default(),
+        };
+        self.bar.set_message(job.setting.to_string());
+        for pair in &views.pairs {
+            interrupt::check()?;
+            for (name, value) in meter.measure(device, prepared, pair)? {
+                measurement.push(name, value);
+            }
+            self.bar.inc(1);
+        }
+        self.finish_round(job, 0, vec![Record::Scene(views.facts(job, prepared))], vec![measurement])
     }
 
     fn patchers(&mut self, job: &Job, prepared: &mut PreparedScene, done: u32) -> anyhow::Result<()> {
@@ -529,6 +590,17 @@ impl<'a> Runner<'a> {
         self.writer.append(records, RoundEnd { setting: job.setting.clone(), round })?;
         Ok(())
     }
+}
+
+/// The columns at the outer border of the eye that is not dominant for which surfaces at half a metre need a guard band:
+/// the widest that is measured.
+fn border(image: &RgbImage, pair: &EyePair) -> anyhow::Result<RgbImage> {
+    let width = pair.synthesis(Band::HalfMetre.guard_band())?.guard_columns.min(image.width());
+    let left = match pair.dominant.other() {
+        Eye::Left => 0,
+        Eye::Right => image.width() - width,
+    };
+    Ok(image::imageops::crop_imm(image, left, 0, width, image.height()).to_image())
 }
 
 impl SceneKey {

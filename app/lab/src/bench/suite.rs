@@ -6,6 +6,7 @@ use anyhow::ensure;
 
 use super::bandwidth::{self, BandwidthOptions};
 use super::contender::Contender;
+use super::executed::{DEVICES, Device};
 use super::record::Setting;
 use super::scenes::LazyObject;
 use crate::machine::Parameter;
@@ -41,15 +42,19 @@ pub enum Suite {
     AntiAliasing,
     /// Flicker of the synthesized eye from frame to frame along a camera path
     Flicker,
+    /// Width, frame time and quality at the border by guard band, along a camera path
+    GuardBand,
     /// Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path
     Bandwidth,
+    /// Estimate of what the synthesis takes on three mobile GPUs that need not be here
+    ShaderCost,
     /// All of them, one after the other
     All,
 }
 
 impl Suite {
     /// All suites, in the order of the paper.
-    pub const ALL: [Suite; 12] = [
+    pub const ALL: [Suite; 14] = [
         Suite::Scenes,
         Suite::Complexity,
         Suite::Styles,
@@ -61,7 +66,9 @@ impl Suite {
         Suite::Resolution,
         Suite::AntiAliasing,
         Suite::Flicker,
+        Suite::GuardBand,
         Suite::Bandwidth,
+        Suite::ShaderCost,
     ];
 
     /// Its name on the command line and in files.
@@ -78,14 +85,16 @@ impl Suite {
             Suite::Resolution => "resolution",
             Suite::AntiAliasing => "anti-aliasing",
             Suite::Flicker => "flicker",
+            Suite::GuardBand => "guard-band",
             Suite::Bandwidth => "bandwidth",
+            Suite::ShaderCost => "shader-cost",
             Suite::All => "all",
         }
     }
 }
 
 /// What is taken of a setting.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
     /// Frames at viewpoints.
     Frames {
@@ -96,10 +105,14 @@ pub enum Measure {
     },
     /// Flicker along a piece of the camera path.
     Flicker,
+    /// Use of the guard band along a piece of the camera path.
+    GuardBand,
     /// Patchers on reprojected images.
     Patchers,
     /// Coded sequences along a piece of the camera path.
     Bandwidth,
+    /// An estimate for a GPU that need not be here.
+    Executed(Device),
 }
 
 /// Where a scene comes from.
@@ -153,6 +166,9 @@ impl Job {
         if self.measure == Measure::Bandwidth {
             return bandwidth::steps(self.frames, &self.bandwidth);
         }
+        if let Measure::Executed(_) = self.measure {
+            return self.frames as u64;
+        }
         (u64::from(self.rounds) * self.frames as u64 + 1) * self.contenders.len() as u64
     }
 }
@@ -200,6 +216,8 @@ const SMOOTHING: [(&str, RendererKind, AntiAliasing); 3] = [
 ];
 /// Frames of the suite `flicker`.
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
+/// Frames of the suite `guard-band`.
+const GUARD_BAND_FRAMES: [usize; 2] = [36, 6];
 
 impl Choices {
     /// The settings of a suite, in the order in which they are measured: those that share a scene follow each
@@ -273,7 +291,23 @@ impl Choices {
                     job.frames = FLICKER_FRAMES[usize::from(self.quick)];
                 })
             }
+            Suite::GuardBand => {
+                let contenders = [vec![Contender::MONO], Contender::bands()].concat();
+                plan(Measure::GuardBand, contenders).over(self.scenes(&every), [()], |job, ()| {
+                    job.frames = GUARD_BAND_FRAMES[usize::from(self.quick)];
+                })
+            }
             Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
+            Suite::ShaderCost => {
+                let measure = Measure::Executed(DEVICES[0]);
+                plan(measure, Vec::new()).over(self.scenes(&every), DEVICES, |job, device| {
+                    // GPUs take part, not methods.
+                    job.contenders.clear();
+                    job.measure = Measure::Executed(device);
+                    job.eyes.size = device.size;
+                    job.setting.label = Some(device.name.to_owned());
+                })
+            }
             Suite::All => {
                 let each = Suite::ALL.map(|suite| self.jobs(suite, object));
                 Ok(each.into_iter().collect::<anyhow::Result<Vec<_>>>()?.concat())

@@ -11,7 +11,7 @@ use yoro_viewer::telemetry::stats::median;
 /// A column: heading, metric, decimals, how its values become one.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
 
-const COLUMNS: [Column; 11] = [
+const COLUMNS: [Column; 18] = [
     ("frame ms", metric::FRAME_MS, 1, median),
     ("CPU ms", metric::CPU_MS, 1, median),
     ("GPU ms", metric::GPU_MS, 2, median),
@@ -20,6 +20,13 @@ const COLUMNS: [Column; 11] = [
     ("SSIM", metric::SSIM, 4, mean),
     ("FLIP", metric::FLIP, 4, mean),
     ("flicker", metric::FLICKER, 2, mean),
+    ("border dB", metric::BORDER_PSNR, 2, mean),
+    ("guard", metric::GUARD_COLUMNS, 1, mean),
+    ("undrawn", metric::UNDRAWN, 1, mean),
+    ("slots", metric::SLOTS, 0, mean),
+    ("ALU ms", metric::ALU_MS, 2, mean),
+    ("fetch ms", metric::FETCH_MS, 2, mean),
+    ("memory ms", metric::MEMORY_MS, 2, mean),
     ("kbit/s", bandwidth::metric::KBIT_S, 0, mean),
     ("dominant", bandwidth::metric::PSNR_DOMINANT, 2, mean),
     ("other dB", bandwidth::metric::PSNR_OTHER, 2, mean),

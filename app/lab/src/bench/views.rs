@@ -10,7 +10,9 @@ use yoro_scene::CameraPath;
 use yoro_scenes::BUILTINS;
 
 /// Distance in metres between the frames of a sequence: walking pace, 30 frames a second.
-const STEP: f32 = 0.045;
+pub(super) const STEP: f32 = 0.045;
+/// The same at a headset's 72 frames a second.
+pub(super) const HEADSET_STEP: f32 = 0.01875;
 
 /// `wanted` of `count` indices, evenly spread from the first.
 pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
@@ -32,8 +34,8 @@ impl Views {
         Views::new(job, keys.into_iter().map(|k| (format!("viewpoint {k}"), viewpoints[k].pose())).collect())
     }
 
-    /// Frames at walking pace from the middle of the camera path on.
-    pub fn along_path(job: &Job, prepared: &PreparedScene) -> anyhow::Result<Views> {
+    /// Frames from the middle of the camera path on, `step` metres apart.
+    pub fn along_path(job: &Job, prepared: &PreparedScene, step: f32) -> anyhow::Result<Views> {
         let path = CameraPath::new(&prepared.scene.viewpoints);
         if path.keys().len() < 2 {
             bail!(
@@ -44,7 +46,7 @@ impl Views {
         }
         let length: f32 = path.poses(500).windows(2).map(|w| w[0].position.distance(w[1].position)).sum();
         // A path that only turns takes twenty seconds.
-        let step = if length > STEP { STEP / length } else { 1.0 / 600.0 };
+        let step = if length > STEP { step / length } else { step / (600.0 * STEP) };
         let pose = |i: usize| (format!("frame {i}"), path.pose(0.5 + i as f32 * step));
         Views::new(job, (0..job.frames).map(pose).collect())
     }
