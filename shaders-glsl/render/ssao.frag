@@ -8,7 +8,7 @@
 uniform G_SAMPLER normal_map;
 uniform vec4 kernel[SAMPLES / 2];  // points of a spiral in the unit disc
 uniform vec3 radius;               // metres, pixels at distance 1, most pixels
-uniform ivec2 columns;             // the eye's first and last: what lies beside them reaches its own side only
+uniform ivec2 columns;             // first and last that are always drawn: what lies beside them does not reach in
 
 layout(location = 0) out vec4 out_occlusion;
 

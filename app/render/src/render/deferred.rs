@@ -40,10 +40,10 @@ impl LightTargets {
         self.hdr.resize(size)
     }
 
-    /// Which columns are lit, and the eye's own.
+    /// Which columns are lit.
     fn lit_columns(&self) -> Columns {
         let all = [0, self.hdr.size()[0]];
-        self.columns.unwrap_or(Columns { drawn: all, eye: all })
+        self.columns.unwrap_or(Columns { drawn: all, always: all })
     }
 
     /// Scene-referred colour, filtered linearly.
@@ -247,7 +247,7 @@ impl Deferred {
         let g_buffer = g_buffer.target();
         let mut occlusion = None;
         if let (Some(pass), Some(ssao)) = (&passes.ssao, &targets.ssao) {
-            pass.run(ssao, g_buffer, view, targets.lit_columns().eye, role);
+            pass.run(ssao, g_buffer, view, targets.lit_columns().always, role);
             occlusion = Some(ssao.result().color(0));
         }
         passes.lighting.run(&targets.hdr, g_buffer, occlusion, shadow, scene, view, lights, role);
@@ -256,10 +256,10 @@ impl Deferred {
     /// As [`super::Renderer::finish`].
     pub fn finish(&self, targets: &FinishTargets, light: &LightTargets) {
         let exposure = self.settings.exposure;
-        let Columns { drawn, eye } = light.lit_columns();
+        let Columns { drawn, always } = light.lit_columns();
         let mut glow = None;
         if let (Some(pass), Some(bloom)) = (&self.bloom, &targets.bloom) {
-            pass.run(bloom, light.hdr(), eye);
+            pass.run(bloom, light.hdr(), always);
             glow = Some(bloom.result());
         }
         self.tonemap.run(&targets.color, (light.hdr(), drawn), glow, exposure);

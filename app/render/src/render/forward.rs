@@ -487,7 +487,7 @@ impl Forward {
         let origin = targets.layout.origin(view.size, eye);
         let bloom = self.bloom.as_ref().zip(targets.bloom.as_ref());
         if let Some((pass, bloom)) = bloom.filter(|_| !again) {
-            let columns = targets.columns.map_or([0, view.size[0]], |columns| columns.eye);
+            let columns = targets.columns.map_or([0, view.size[0]], |columns| columns.always);
             pass.run_display_referred(bloom, source, (origin, view.size), columns, self.exposure);
         }
         self.gl.pass("develop", || {

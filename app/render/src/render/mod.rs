@@ -56,14 +56,14 @@ pub(crate) use uniforms::depth_test;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Frustum, View};
 use yoro::gl::{Context, Destination, GlError, RenderTarget, Texture};
 
-/// The columns of a view that is wider than its eye, each `[first, end]` from the left.
+/// Columns of a view of which not all are needed, each `[first, end]` from the left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
     /// Those that are drawn. In the others depth is the far plane's, and colour that of the nearest column that is drawn.
     pub drawn: [u32; 2],
-    /// The eye's own. Ambient occlusion and bloom do not reach into them from beside, so that the eye's image does not
-    /// depend on what is drawn there.
-    pub eye: [u32; 2],
+    /// Those that are drawn in every frame. Ambient occlusion and bloom do not reach into them from beside, so that they
+    /// do not depend on what is drawn there.
+    pub always: [u32; 2],
 }
 
 /// The images of one view, up to final colour.
@@ -111,8 +111,7 @@ impl ViewTargets {
         Ok(ViewTargets { images: Images::Forward(Box::new(targets)) })
     }
 
-    /// Says which columns of a view [`Renderer::render`] draws and which are the eye's; at first all of them, `None`. The
-    /// images have the view's size all the same.
+    /// Says which columns of a view [`Renderer::render`] draws; at first all of them, `None`. The images have the view's size all the same.
     pub fn set_columns(&mut self, columns: Option<Columns>) {
         match &mut self.images {
             Images::Deferred(targets) => targets.light.columns = columns,

@@ -94,13 +94,13 @@ impl SsaoPass {
     }
 
     /// Computes the occlusion of the pixels that the role lights; the others' is undefined. What lies beside the columns
-    /// `[first, end]` of the eye occludes nothing in them.
+    /// `[first, end]` that are always drawn occludes nothing in them.
     pub fn run(
         &self,
         targets: &SsaoTargets,
         g_buffer: &RenderTarget,
         view: &View,
-        eye: [u32; 2],
+        always: [u32; 2],
         role: Role,
     ) {
         // The blur reads two texels to each side, and lighting one more.
@@ -117,7 +117,7 @@ impl SsaoPass {
                 .texture_of("depth_map", 0, g_buffer.depth())
                 .texture_of("normal_map", 1, g_buffer.color(1))
                 .set("kernel", &self.kernel[..])
-                .set("columns", IVec2::new(eye[0] as i32, eye[1] as i32 - 1))
+                .set("columns", IVec2::new(always[0] as i32, always[1] as i32 - 1))
                 .set("radius", Vec3::new(self.radius, pixels_at_1_m, 0.12 * height));
             set_view(&self.sample, view);
             role.set(&self.sample, view);

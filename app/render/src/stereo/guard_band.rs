@@ -5,6 +5,7 @@ use std::rc::Rc;
 use glam::Vec2;
 
 use super::method::GuardBandUse;
+use crate::render::Columns;
 use yoro::eyes::{Eye, EyePair, Pose, SynthesisViews};
 use yoro::gl::{
     Context, Filter, Format, GlError, PixelBuffer, Program, RasterState, RenderTarget, ShaderSource, Texture,
@@ -19,6 +20,9 @@ const TURN: f32 = 1.0 * std::f32::consts::PI / 180.0;
 const MOVE: f32 = 0.5;
 /// All of the band is looked at once in so many frames: things move by themselves, too.
 const LOOK_EVERY: u32 = 30;
+/// This part of the band is drawn in every frame: what reaches far, ambient occlusion and bloom, stops there, and must not
+/// stop anywhere else in the next frame.
+const LEAST: u32 = 4;
 /// Columns that are drawn beyond what is seen: filters of the renderer read so far to each side.
 const SPARE: u32 = 4;
 
@@ -73,7 +77,7 @@ impl Width {
         let Some(need) = measured else { return full };
         match look.found {
             None => {
-                let found = (need.columns + SPARE).min(full);
+                let found = (need.columns + SPARE).max(least(full)).min(full);
                 self.columns = found.max(self.before);
                 self.before = found;
                 look.found = Some(found);
@@ -96,6 +100,11 @@ impl Width {
         self.columns = geometry.guard_columns;
         geometry.guard_columns
     }
+}
+
+/// Columns of a band that are drawn in every frame.
+pub(super) fn least(guard_columns: u32) -> u32 {
+    guard_columns.div_ceil(LEAST)
 }
 
 /// Decides and measures.
@@ -124,8 +133,8 @@ impl AutoGuardBand {
         })
     }
 
-    /// How many columns of the guard band to leave out of a frame: the outermost ones.
-    pub(super) fn left_out(&mut self, pair: &EyePair, views: &SynthesisViews) -> u32 {
+    /// The columns of the source to draw in a frame.
+    pub(super) fn columns(&mut self, pair: &EyePair, views: &SynthesisViews) -> Columns {
         let geometry = Geometry {
             size: views.source.size,
             guard_columns: views.guard_columns,
@@ -140,7 +149,12 @@ impl AutoGuardBand {
             undrawn: need.map_or(0, |need| need.undrawn),
         };
         self.drawn = self.width.next(need, geometry, pair.poses[pair.dominant.index()]);
-        views.guard_columns - self.drawn
+        let without = |left_out: u32| match views.warp.target_eye {
+            Eye::Left => [left_out, views.source.size[0]],
+            Eye::Right => [0, views.source.size[0] - left_out],
+        };
+        let guard = views.guard_columns;
+        Columns { drawn: without(guard - self.drawn), always: without(guard - least(guard)) }
     }
 
     /// Starts to measure what of the band a frame's depth shows.
@@ -173,7 +187,7 @@ impl AutoGuardBand {
         self.pending = true;
     }
 
-    /// The frame before the last [`AutoGuardBand::left_out`].
+    /// The frame before the last [`AutoGuardBand::columns`].
     pub(super) fn last(&self) -> GuardBandUse {
         self.last
     }
@@ -234,6 +248,14 @@ mod tests {
         width.next(None, GEOMETRY, Pose::IDENTITY);
         widths(&mut width, Pose::IDENTITY, &[10]);
         assert_eq!(width.next(undrawn, GEOMETRY, Pose::IDENTITY), 56);
+    }
+
+    #[test]
+    fn a_part_is_always_drawn() {
+        let mut width = Width::default();
+        width.next(None, GEOMETRY, Pose::IDENTITY);
+        assert_eq!(widths(&mut width, Pose::IDENTITY, &[0, 0]), [14, 14]);
+        assert_eq!([0, 1, 4, 5, 56].map(least), [0, 1, 1, 2, 14]);
     }
 
     #[test]

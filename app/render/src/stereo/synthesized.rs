@@ -8,8 +8,8 @@ use super::guard_band::AutoGuardBand;
 use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
 use super::near_field::{Composite, NearFraction};
 use super::options::{AntiAliasing, StereoOptions};
-use crate::render::{Columns, DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
-use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, SynthesisViews};
+use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
 use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro::synthesis::{
     self, Edges, FrameMode, NearFieldPolicy, Outputs, Source, Synthesis, SynthesisOptions,
@@ -152,13 +152,8 @@ impl Yoro {
         };
         let goes_on = self.goes_on(scene);
         self.make_synthesizer(depth)?;
-        let left_out = self.auto_guard_band.as_mut().map_or(0, |auto| auto.left_out(pair, views));
-        let eye = [0, pair.size[0]].map(|column| views.dominant_crop[0] + column);
-        let drawn = match views.warp.target_eye {
-            Eye::Left => [left_out, views.source.size[0]],
-            Eye::Right => [0, views.source.size[0] - left_out],
-        };
-        self.targets.set_columns(Some(Columns { drawn, eye }));
+        let columns = self.auto_guard_band.as_mut().map(|auto| auto.columns(pair, views));
+        self.targets.set_columns(columns);
         self.targets.keep_samples(goes_on, goes_on || self.edges == Edges::Multisample);
         renderer.render(&mut self.targets, scene, &views.source, selection)?;
         let mut color = self.targets.color();
