@@ -17,8 +17,10 @@ pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
 pub const SYSTEM: u64 = 1;
 
 /// Every extension that the stub can offer, with its version.
-pub const EXTENSIONS: [(&str, u32); 11] = [
+pub const EXTENSIONS: [(&str, u32); 13] = [
     ("XR_KHR_opengl_es_enable", 8),
+    ("XR_KHR_vulkan_enable", 8),
+    ("XR_KHR_vulkan_enable2", 2),
     ("XR_MNDX_egl_enable", 2),
     ("XR_KHR_android_create_instance", 3),
     ("XR_KHR_composition_layer_depth", 6),

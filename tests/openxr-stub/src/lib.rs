@@ -2,12 +2,14 @@
 //!
 //! The library is negotiated with like any runtime. Its headset is scripted ([`script`]): frusta, canted views, a
 //! changing IPD, states, losses, controllers, and results instead of calls. Time is virtual: `xrWaitFrame` does not
-//! wait for a display, and each frame is one period later than the last. Swapchain images are real GL textures, made in the application's
-//! context. What the application does is checked against the specification and written to a log ([`log`]); what is
+//! wait for a display, and each frame is one period later than the last. Swapchain images are real ones, made in the application's
+//! GL context or on its Vulkan device. What the application does is checked against the specification and written to a log ([`log`]); what is
 //! forbidden is a [`log::Entry::Violation`].
 //!
-//! Nothing is composed and nothing is shown. Only what an application on OpenGL ES needs is there; the functions of other
-//! extensions are not offered.
+//! Nothing is composed and nothing is shown. Only what an application on OpenGL ES needs is there, and on Vulkan what one needs
+//! that makes its device itself; the functions of other extensions are not offered.
+//!
+//! Tests that link it as a Rust library begin with a script ([`begin`]), as often as they like.
 
 mod action;
 mod extension;
@@ -21,6 +23,8 @@ mod space;
 mod swapchain;
 mod table;
 mod world;
+
+pub use world::{begin, is_inside};
 
 use openxr_sys as sys;
 

@@ -18,7 +18,7 @@ pub struct Script {
     pub missing_extensions: Vec<String>,
     /// No headset is connected: `xrGetSystem` says so this many times.
     pub unavailable: u32,
-    /// Formats of swapchains as GL numbers, the preferred one first.
+    /// Formats of swapchains as GL or Vulkan numbers, the preferred one first.
     pub formats: Vec<i64>,
     /// `PRIMARY_STEREO` is offered.
     pub stereo: bool,

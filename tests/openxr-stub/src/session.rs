@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use openxr_sys as sys;
 use sys::Handle;
 
-use crate::graphics::Graphics;
+use crate::graphics::{self, Graphics};
 use crate::instance::{check_system, fill};
 use crate::log::Entry;
 use crate::script::State;
@@ -27,7 +27,7 @@ pub struct Session {
     exiting: bool,
     pub frames: FrameCalls,
     pub attached: bool,
-    pub graphics: Graphics,
+    pub graphics: Box<dyn Graphics>,
 }
 
 /// Frames between `xrWaitFrame` and `xrEndFrame`.
@@ -113,6 +113,24 @@ pub unsafe extern "system" fn get_graphics_requirements(
     })
 }
 
+/// Of Vulkan nothing else is offered: the application makes instance and device itself, as it likes.
+pub unsafe extern "system" fn get_vulkan_graphics_requirements(
+    instance: sys::Instance,
+    system: sys::SystemId,
+    requirements: *mut sys::GraphicsRequirementsVulkanKHR,
+) -> sys::Result {
+    enter("xrGetVulkanGraphicsRequirementsKHR", |world| {
+        let instance = world.instance(instance)?;
+        check_system(system)?;
+        instance.requirements_asked = true;
+        // SAFETY: as the caller says.
+        let requirements = unsafe { &mut *requirements };
+        requirements.min_api_version_supported = sys::Version::new(1, 0, 0);
+        requirements.max_api_version_supported = sys::Version::new(1, 4, 0);
+        DONE
+    })
+}
+
 pub unsafe extern "system" fn create_session(
     instance: sys::Instance,
     info: *const sys::SessionCreateInfo,
@@ -133,7 +151,7 @@ pub unsafe extern "system" fn create_session(
             ));
         }
         // SAFETY: a chain of structures.
-        let (binding, graphics) = unsafe { Graphics::bind(info.next, &known.extensions) }?;
+        let (binding, graphics) = unsafe { graphics::bind(info.next, &known.extensions) }?;
         let handle = world.new_handle();
         world.log.write(&Entry::Session { binding: binding.into() });
         let known = world.instance(instance)?;

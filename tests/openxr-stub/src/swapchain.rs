@@ -1,4 +1,4 @@
-//! Swapchains: textures of the application's context.
+//! Swapchains: images in the application's graphics.
 
 use std::collections::VecDeque;
 
@@ -26,7 +26,8 @@ pub struct Swapchain {
 
 impl Swapchain {
     pub fn is_depth(&self) -> bool {
-        matches!(self.format, 0x81A5 | 0x81A6 | 0x8CAC | 0x88F0 | 0x8CAD)
+        // As GL numbers them, then as Vulkan does.
+        matches!(self.format, 0x81A5 | 0x81A6 | 0x8CAC | 0x88F0 | 0x8CAD | 124 | 126 | 129 | 130)
     }
 
     /// The texture that is shown.
@@ -106,7 +107,7 @@ pub unsafe extern "system" fn create_swapchain(
         let size = [info.width, info.height];
         let graphics = &mut world.session(session)?.graphics;
         let textures: Option<Vec<_>> =
-            (0..IMAGES).map(|_| graphics.texture(info.format as u32, size, info.array_size)).collect();
+            (0..IMAGES).map(|_| graphics.texture(info)).collect();
         let textures = textures.ok_or(sys::Result::ERROR_OUT_OF_MEMORY)?;
         let handle = world.new_handle();
         world.log.write(&Entry::Swapchain {
@@ -156,15 +157,28 @@ pub unsafe extern "system" fn enumerate_swapchain_images(
 ) -> sys::Result {
     enter("xrEnumerateSwapchainImages", |world| {
         let textures = world.swapchain(swapchain)?.textures.clone();
-        let images = images.cast::<sys::SwapchainImageOpenGLESKHR>();
+        let wanted = world.its_session()?.graphics.image_type();
+        let vulkan = wanted == sys::SwapchainImageVulkanKHR::TYPE;
+        let size = match vulkan {
+            true => size_of::<sys::SwapchainImageVulkanKHR>(),
+            false => size_of::<sys::SwapchainImageOpenGLESKHR>(),
+        };
         for i in 0..capacity.min(textures.len() as u32) as usize {
-            // SAFETY: the array has that many structures.
-            if unsafe { (*images.add(i)).ty } != sys::SwapchainImageOpenGLESKHR::TYPE {
+            // SAFETY: the array has that many structures, of this size if they are of this type.
+            if unsafe { (*images.byte_add(i * size)).ty } != wanted {
                 return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, "the images' type is wrong"));
             }
         }
-        // SAFETY: as the caller says.
-        unsafe { fill(capacity, count, images, &textures, |to, from| to.image = from.raw.0.get()) }
+        // SAFETY: as the caller says, and of the type that was checked.
+        unsafe {
+            if vulkan {
+                let images = images.cast::<sys::SwapchainImageVulkanKHR>();
+                fill(capacity, count, images, &textures, |to, from| to.image = from.raw)
+            } else {
+                let images = images.cast::<sys::SwapchainImageOpenGLESKHR>();
+                fill(capacity, count, images, &textures, |to, from| to.image = from.raw as u32)
+            }
+        }
     })
 }
 

@@ -94,6 +94,10 @@ fn find(name: &str) -> Option<(pfn::VoidFunction, Option<&'static str>)> {
         "xrStopHapticFeedback" StopHapticFeedback action::stop_haptic_feedback;
         "xrGetOpenGLESGraphicsRequirementsKHR" GetOpenGLESGraphicsRequirementsKHR
             session::get_graphics_requirements, "XR_KHR_opengl_es_enable";
+        "xrGetVulkanGraphicsRequirementsKHR" GetVulkanGraphicsRequirementsKHR
+            session::get_vulkan_graphics_requirements, "XR_KHR_vulkan_enable";
+        "xrGetVulkanGraphicsRequirements2KHR" GetVulkanGraphicsRequirements2KHR
+            session::get_vulkan_graphics_requirements, "XR_KHR_vulkan_enable2";
         "xrEnumerateDisplayRefreshRatesFB" EnumerateDisplayRefreshRatesFB
             extension::enumerate_display_refresh_rates, "XR_FB_display_refresh_rate";
         "xrGetDisplayRefreshRateFB" GetDisplayRefreshRateFB

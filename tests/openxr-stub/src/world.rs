@@ -1,5 +1,6 @@
 //! All that the stub knows, and how calls get at it.
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
@@ -88,10 +89,32 @@ pub enum Event {
 
 static WORLD: Mutex<Option<World>> = Mutex::new(None);
 
+thread_local! {
+    static IS_INSIDE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this thread is in a call of the runtime: what it allocates there is not the caller's.
+pub fn is_inside() -> bool {
+    IS_INSIDE.get()
+}
+
+/// Forgets all that there was, and goes on with this script in place of the file's.
+pub fn begin(script: Script) {
+    *WORLD.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(World::new(script));
+    crate::frame::IS_BLANK.store(true, Ordering::Relaxed);
+}
+
 /// Every call comes through here: it is counted, may fail as the script says, and is logged where it is forbidden.
 pub fn enter(call: &str, work: impl FnOnce(&mut World) -> Answer) -> sys::Result {
+    IS_INSIDE.set(true);
+    let result = entered(call, work);
+    IS_INSIDE.set(false);
+    result
+}
+
+fn entered(call: &str, work: impl FnOnce(&mut World) -> Answer) -> sys::Result {
     let mut guard = WORLD.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let world = guard.get_or_insert_with(World::new);
+    let world = guard.get_or_insert_with(|| World::new(Script::load()));
     let nth = world.calls.entry(call.into()).or_insert(0);
     *nth += 1;
     let nth = *nth;
@@ -118,8 +141,7 @@ pub fn enter(call: &str, work: impl FnOnce(&mut World) -> Answer) -> sys::Result
 }
 
 impl World {
-    fn new() -> World {
-        let script = Script::load();
+    fn new(script: Script) -> World {
         World {
             log: Log::open(script.log.as_deref()),
             calls: BTreeMap::new(),

@@ -1,11 +1,13 @@
 //! OpenGL ES in the application's context.
 
 use std::ffi::{CStr, CString, c_void};
+use std::num::NonZeroU32;
 use std::ptr;
 
 use glow::HasContext as _;
 use openxr_sys as sys;
 
+use super::{Graphics, Texture};
 use crate::script::POISON;
 use crate::world::{Refusal, forbidden};
 
@@ -17,7 +19,7 @@ type MakeCurrent =
     unsafe extern "system" fn(*const c_void, *const c_void, *const c_void, *const c_void) -> u32;
 
 /// The context that a session is bound to.
-pub struct Graphics {
+pub struct Gles {
     /// Functions of GL, from the first time that they are needed.
     gl: Option<glow::Context>,
     get_proc_address: GetProcAddress,
@@ -28,7 +30,7 @@ pub struct Graphics {
 }
 
 // SAFETY: it is only used on threads that have made the context current, which can be only one at a time.
-unsafe impl Send for Graphics {}
+unsafe impl Send for Gles {}
 
 /// The binding of `XR_KHR_opengl_es_enable`, which the crate of the types has on Android only.
 #[repr(C)]
@@ -40,67 +42,45 @@ struct AndroidBinding {
     context: *const c_void,
 }
 
-/// A texture of a swapchain: of an array where there are several layers.
-#[derive(Clone, Copy)]
-pub struct Texture {
-    pub raw: glow::Texture,
-    pub layers: u32,
+/// Name, display and context, if the structure is a binding of them.
+///
+/// # Safety
+/// The structure is of the type that it says.
+pub unsafe fn binding(
+    structure: &sys::BaseInStructure,
+    enabled: impl Fn(&str) -> bool,
+) -> Result<Option<(&'static str, *const c_void, *const c_void)>, Refusal> {
+    let start: *const sys::BaseInStructure = structure;
+    let (name, display, context) = match structure.ty {
+        sys::StructureType::GRAPHICS_BINDING_EGL_MNDX if enabled("XR_MNDX_egl_enable") => {
+            // SAFETY: of this type.
+            let binding = unsafe { &*start.cast::<sys::GraphicsBindingEGLMNDX>() };
+            if binding.get_proc_address.is_none() {
+                return Err(forbidden(
+                    sys::Result::ERROR_VALIDATION_FAILURE,
+                    "the binding has no getProcAddress",
+                ));
+            }
+            ("egl", binding.display as *const c_void, binding.context as *const c_void)
+        }
+        sys::StructureType::GRAPHICS_BINDING_OPENGL_ES_ANDROID_KHR => {
+            // SAFETY: of this type.
+            let binding = unsafe { &*start.cast::<AndroidBinding>() };
+            ("android", binding.display, binding.context)
+        }
+        _ => return Ok(None),
+    };
+    if display.is_null() || context.is_null() {
+        return Err(forbidden(
+            sys::Result::ERROR_GRAPHICS_DEVICE_INVALID,
+            "display or context is null",
+        ));
+    }
+    Ok(Some((name, display, context)))
 }
 
-impl Graphics {
-    /// The graphics binding in a chain of structures, and its name.
-    ///
-    /// # Safety
-    /// `next` begins a chain of structures of the types that they say.
-    pub unsafe fn bind(
-        next: *const c_void,
-        extensions: &[String],
-    ) -> Result<(&'static str, Graphics), Refusal> {
-        let enabled = |name: &str| extensions.iter().any(|extension| extension == name);
-        if !enabled("XR_KHR_opengl_es_enable") {
-            return Err(forbidden(
-                sys::Result::ERROR_GRAPHICS_DEVICE_INVALID,
-                "XR_KHR_opengl_es_enable is not enabled",
-            ));
-        }
-        let mut next = next.cast::<sys::BaseInStructure>();
-        while !next.is_null() {
-            // SAFETY: as the caller says.
-            let structure = unsafe { &*next };
-            let found = match structure.ty {
-                sys::StructureType::GRAPHICS_BINDING_EGL_MNDX if enabled("XR_MNDX_egl_enable") => {
-                    // SAFETY: of this type.
-                    let binding = unsafe { &*next.cast::<sys::GraphicsBindingEGLMNDX>() };
-                    if binding.get_proc_address.is_none() {
-                        return Err(forbidden(
-                            sys::Result::ERROR_VALIDATION_FAILURE,
-                            "the binding has no getProcAddress",
-                        ));
-                    }
-                    Some(("egl", binding.display as *const c_void, binding.context as *const c_void))
-                }
-                sys::StructureType::GRAPHICS_BINDING_OPENGL_ES_ANDROID_KHR => {
-                    // SAFETY: of this type.
-                    let binding = unsafe { &*next.cast::<AndroidBinding>() };
-                    Some(("android", binding.display, binding.context))
-                }
-                _ => None,
-            };
-            if let Some((name, display, context)) = found {
-                if display.is_null() || context.is_null() {
-                    return Err(forbidden(
-                        sys::Result::ERROR_GRAPHICS_DEVICE_INVALID,
-                        "display or context is null",
-                    ));
-                }
-                return Ok((name, Graphics::new(display, context)?));
-            }
-            next = structure.next;
-        }
-        Err(forbidden(sys::Result::ERROR_GRAPHICS_DEVICE_INVALID, "there is no graphics binding"))
-    }
-
-    fn new(display: *const c_void, context: *const c_void) -> Result<Graphics, Refusal> {
+impl Gles {
+    pub fn new(display: *const c_void, context: *const c_void) -> Result<Gles, Refusal> {
         // SAFETY: the application uses this library already.
         let library = EGL_LIBRARIES.iter().find_map(|name| unsafe { libloading::Library::new(name).ok() });
         let library = library.ok_or(sys::Result::ERROR_RUNTIME_FAILURE)?;
@@ -116,20 +96,7 @@ impl Graphics {
         let (Ok(get_proc_address), Ok(get_current_context), Ok(make_current)) = functions else {
             return Err(sys::Result::ERROR_RUNTIME_FAILURE.into());
         };
-        Ok(Graphics { gl: None, get_proc_address, get_current_context, make_current, display, context })
-    }
-
-    /// The session's context is current on this thread.
-    pub fn is_current(&self) -> bool {
-        // SAFETY: always allowed.
-        let current = unsafe { (self.get_current_context)() };
-        !current.is_null() && current == self.context
-    }
-
-    /// Makes no context current.
-    pub fn unbind(&self) {
-        // SAFETY: the display is the application's.
-        unsafe { (self.make_current)(self.display, ptr::null(), ptr::null(), ptr::null()) };
+        Ok(Gles { gl: None, get_proc_address, get_current_context, make_current, display, context })
     }
 
     /// GL's functions; the context must be current.
@@ -144,41 +111,6 @@ impl Graphics {
                 })
             }
         })
-    }
-
-    /// A new texture.
-    pub fn texture(&mut self, format: u32, [width, height]: [u32; 2], layers: u32) -> Option<Texture> {
-        let gl = self.gl();
-        let (target, binding) = if layers > 1 {
-            (glow::TEXTURE_2D_ARRAY, glow::TEXTURE_BINDING_2D_ARRAY)
-        } else {
-            (glow::TEXTURE_2D, glow::TEXTURE_BINDING_2D)
-        };
-        // SAFETY: plain GL calls; the application's binding is put back.
-        unsafe {
-            let before = gl.get_parameter_texture(binding);
-            let texture = gl.create_texture().ok()?;
-            gl.bind_texture(target, Some(texture));
-            if layers > 1 {
-                gl.tex_storage_3d(target, 1, format, width as i32, height as i32, layers as i32);
-            } else {
-                gl.tex_storage_2d(target, 1, format, width as i32, height as i32);
-            }
-            let error = gl.get_error();
-            gl.bind_texture(target, before);
-            (error == glow::NO_ERROR).then_some(Texture { raw: texture, layers })
-        }
-    }
-
-    /// Deletes textures, where that is possible.
-    pub fn delete(&mut self, textures: &[Texture]) {
-        if self.is_current() {
-            let gl = self.gl();
-            for texture in textures {
-                // SAFETY: made in this context.
-                unsafe { gl.delete_texture(texture.raw) };
-            }
-        }
     }
 
     /// Runs with a layer of a texture as the framebuffer's colour; the application's state is put back.
@@ -199,7 +131,7 @@ impl Graphics {
             let framebuffer = gl.create_framebuffer().ok()?;
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
             let color = glow::COLOR_ATTACHMENT0;
-            let raw = Some(texture.raw);
+            let raw = name(texture);
             if texture.layers > 1 {
                 gl.framebuffer_texture_layer(glow::FRAMEBUFFER, color, raw, 0, layer as i32);
             } else {
@@ -213,9 +145,65 @@ impl Graphics {
             result
         }
     }
+}
 
-    /// Fills every layer with [`POISON`].
-    pub fn poison(&mut self, texture: Texture) {
+/// The texture's name in GL.
+fn name(texture: Texture) -> Option<glow::Texture> {
+    u32::try_from(texture.raw).ok().and_then(NonZeroU32::new).map(glow::NativeTexture)
+}
+
+impl Graphics for Gles {
+    fn is_current(&self) -> bool {
+        // SAFETY: always allowed.
+        let current = unsafe { (self.get_current_context)() };
+        !current.is_null() && current == self.context
+    }
+
+    fn unbind(&self) {
+        // SAFETY: the display is the application's.
+        unsafe { (self.make_current)(self.display, ptr::null(), ptr::null(), ptr::null()) };
+    }
+
+    fn image_type(&self) -> sys::StructureType {
+        sys::SwapchainImageOpenGLESKHR::TYPE
+    }
+
+    fn texture(&mut self, info: &sys::SwapchainCreateInfo) -> Option<Texture> {
+        let (format, layers) = (info.format as u32, info.array_size);
+        let (width, height) = (info.width, info.height);
+        let gl = self.gl();
+        let (target, binding) = if layers > 1 {
+            (glow::TEXTURE_2D_ARRAY, glow::TEXTURE_BINDING_2D_ARRAY)
+        } else {
+            (glow::TEXTURE_2D, glow::TEXTURE_BINDING_2D)
+        };
+        // SAFETY: plain GL calls; the application's binding is put back.
+        unsafe {
+            let before = gl.get_parameter_texture(binding);
+            let texture = gl.create_texture().ok()?;
+            gl.bind_texture(target, Some(texture));
+            if layers > 1 {
+                gl.tex_storage_3d(target, 1, format, width as i32, height as i32, layers as i32);
+            } else {
+                gl.tex_storage_2d(target, 1, format, width as i32, height as i32);
+            }
+            let error = gl.get_error();
+            gl.bind_texture(target, before);
+            (error == glow::NO_ERROR).then_some(Texture { raw: texture.0.get().into(), layers })
+        }
+    }
+
+    fn delete(&mut self, textures: &[Texture]) {
+        if self.is_current() {
+            let gl = self.gl();
+            for texture in textures {
+                // SAFETY: made in this context.
+                unsafe { name(*texture).map(|name| gl.delete_texture(name)) };
+            }
+        }
+    }
+
+    fn poison(&mut self, texture: Texture) {
         for layer in 0..texture.layers {
             self.with_layer(texture, layer, |gl| {
                 // SAFETY: plain GL calls; the state that restricts a clear is put back.
@@ -234,8 +222,7 @@ impl Graphics {
         }
     }
 
-    /// The bytes of a rectangle, four a pixel, the lowest row first, as they are stored.
-    pub fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
+    fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
         let [x, y, width, height] = rect;
         self.with_layer(texture, layer, |gl| {
             let mut pixels = vec![0; (width * height * 4) as usize];

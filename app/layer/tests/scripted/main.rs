@@ -1,0 +1,476 @@
+//! The layer between a scripted application and the simulated runtime, on Vulkan, under the validation layer.
+
+#[path = "../../../core/tests/vulkan/harness.rs"]
+#[expect(dead_code, reason = "shared with the core's tests, which use all of it")]
+mod harness;
+
+mod client;
+mod scene;
+mod world;
+
+use openxr_sys as sys;
+use sys::{Handle as _, ViewConfigurationType as ViewsOf};
+use yoro::eyes::{DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
+use yoro::vulkan::ash::vk;
+use yoro::vulkan::{Frame, Gather, ImageState, Options, SourceImages, TargetImages};
+use yoro_openxr_stub::log;
+use yoro_openxr_stub::script::{At, Event, Fault, Script, State, What};
+
+use client::{Chain, Client, DEPTH, Failure, Layer, Outcome, Part, Planes, Submitted, VULKAN, View};
+use harness::{Gpu, READ, WRITTEN};
+use world::{Seen, allocations, script, watched, with_gpu};
+
+const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
+const D32: vk::Format = vk::Format::D32_SFLOAT;
+
+/// What an application does, frame by frame.
+#[derive(Clone, Copy, Debug)]
+struct Habits {
+    /// The name that it gives itself.
+    name: &'static str,
+    /// Images' size by the recommended one.
+    scale: f32,
+    /// Pixels of the swapchains around the rectangle that is rendered to.
+    margin: [u32; 2],
+    /// Layers of the swapchains, and the one that is rendered to.
+    layers: [u32; 2],
+    formats: [vk::Format; 2],
+    planes: Planes,
+    /// Along one side of a pixel.
+    samples: u32,
+    submits_depth: bool,
+    frames: u32,
+}
+
+impl Habits {
+    const PLAIN: Habits = Habits {
+        name: "right",
+        scale: 1.0,
+        margin: [0; 2],
+        layers: [1, 0],
+        formats: [SRGB, D32],
+        planes: Planes::PLAIN,
+        samples: 1,
+        submits_depth: true,
+        frames: 3,
+    };
+
+    fn dominant(&self) -> Eye {
+        if self.name == "left" { Eye::Left } else { Eye::Right }
+    }
+}
+
+/// The swapchains of an application with one view.
+struct Chains {
+    color: Chain,
+    depth: Chain,
+    part: Part,
+}
+
+impl Chains {
+    fn new(client: &Client, habits: &Habits) -> Outcome<Chains> {
+        let size = client.sizes()?[0].map(|n| (n as f32 * habits.scale) as u32);
+        let whole = [0, 1].map(|i| size[i] + 2 * habits.margin[i]);
+        let [layers, layer] = habits.layers;
+        let [color, depth] = habits.formats;
+        let (color, depth) = (client.chain(color, whole, layers)?, client.chain(depth, whole, layers)?);
+        let part = Part { chain: color.handle, origin: habits.margin, size, layer };
+        Ok(Chains { color, depth, part })
+    }
+
+    fn depth_part(&self) -> Part {
+        Part { chain: self.depth.handle, ..self.part }
+    }
+}
+
+/// Renders a view to the swapchains; what is to be submitted.
+fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View) -> Outcome<Submitted> {
+    client.paint(view, chains.part.size, habits.samples, habits.formats, habits.planes);
+    let painted = client.painted.as_ref().unwrap();
+    let image = client.acquire(&chains.color)?;
+    client.copy(&painted.color, image, chains.part);
+    let mut depth = None;
+    if habits.submits_depth {
+        let image = client.acquire(&chains.depth)?;
+        client.copy(&painted.depth, image, chains.depth_part());
+        client.release(&chains.depth)?;
+        depth = Some((chains.depth_part(), habits.planes));
+    }
+    client.release(&chains.color)?;
+    Ok(Submitted { view, color: chains.part, depth })
+}
+
+/// One frame; whether anything was to be rendered.
+fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<bool> {
+    client.poll()?;
+    let frame = client.begin_frame()?;
+    if !frame.should_render {
+        client.end_frame(frame, &[])?;
+        return Ok(false);
+    }
+    let view = client.locate(frame)?[0].unwrap();
+    let submitted = render(client, chains, habits, view)?;
+    client.end_frame(frame, &[Layer::Projection(vec![submitted])])?;
+    Ok(true)
+}
+
+/// Frames until so many were rendered.
+fn frames(client: &mut Client, chains: &Chains, habits: &Habits, count: u32) -> Outcome<()> {
+    let mut rendered = 0;
+    while rendered < count {
+        rendered += u32::from(frame(client, chains, habits)?);
+    }
+    Ok(())
+}
+
+/// A whole run of an application that renders one view.
+fn run<'a>(gpu: &'a Gpu, habits: &Habits) -> Outcome<Client<'a>> {
+    let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH])?;
+    client.create_session()?;
+    client.poll()?;
+    let chains = Chains::new(&client, habits)?;
+    frames(&mut client, &chains, habits, habits.frames)?;
+    client.destroy_session()?;
+    Ok(client)
+}
+
+fn pose_of(view: &log::View) -> Pose {
+    Pose { position: view.position.into(), orientation: glam::Quat::from_array(view.orientation) }
+}
+
+fn frustum_of(view: &log::View) -> Frustum {
+    let [left, right, up, down] = view.fov_degrees.map(f32::to_radians);
+    Frustum::from_fov(left, right, up, down)
+}
+
+/// In dB, over red, green and blue.
+fn psnr(a: &[u8], b: &[u8]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let color = |i: &usize| i % 4 != 3;
+    let squares = (0..a.len()).filter(color).map(|i| f64::from(a[i].abs_diff(b[i])).powi(2));
+    10.0 * (255f64.powi(2) * a.len() as f64 * 0.75 / squares.sum::<f64>()).log10()
+}
+
+/// What the eye whose view was submitted to the runtime sees.
+fn truth(view: &log::View, samples: u32) -> Vec<u8> {
+    let [.., width, height] = view.image.rect.map(|n| n as u32);
+    scene::render(pose_of(view), frustum_of(view), [width, height], samples).rgba
+}
+
+/// Both eyes must be what is seen from where the runtime was told that they are.
+fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
+    let views = seen.views();
+    assert_eq!(views.len(), 2, "{what}");
+    let (own, other) = (habits.dominant().index(), habits.dominant().other().index());
+    let [own, other] = [own, other].map(|eye| psnr(&seen.picture(eye), &truth(&views[eye], habits.samples)));
+    println!("{what}: the dominant eye {own:.1} dB, the synthesized one {other:.1} dB");
+    assert!(own > 45.0, "{what}: the dominant eye's image is none of that eye: {own} dB");
+    assert!(other > 31.0, "{what}: the other eye's image is none of that eye: {other} dB");
+}
+
+/// The synthesized eye must be what the core makes of the same source for the submitted views.
+fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habits, what: &str) {
+    let views = seen.views();
+    let painted = client.painted.as_ref().unwrap();
+    let [.., width, height] = views[0].image.rect.map(|n| n as u32);
+    let eyes = EyePair {
+        poses: [0, 1].map(|i| pose_of(&views[i])),
+        frusta: [0, 1].map(|i| frustum_of(&views[i])),
+        depth: DepthRange::from_distances(habits.planes.near, habits.planes.far),
+        size: [width, height],
+        dominant: habits.dominant(),
+    };
+    let plan = eyes.synthesis(GuardBand::Pixels(16)).unwrap();
+    assert_eq!(plan.source.size, painted.picture.size, "{what}");
+    let options = Options {
+        color_format: habits.formats[0],
+        max_source_size: plan.warp.source_size,
+        max_target_size: plan.warp.target_size,
+        ..Options::default()
+    };
+    let target = gpu.image(habits.formats[0], plan.warp.target_size, 1);
+    // SAFETY: the images live until the commands have ended.
+    unsafe {
+        let mut gather = Gather::new(&gpu.host(), &options).unwrap();
+        let source = SourceImages {
+            color: painted.color.layer(0, READ, READ),
+            depth: painted.depth.layer(0, READ, READ),
+            sample_color: None,
+            size: painted.picture.size,
+        };
+        let source = gather.register_source(&source).unwrap();
+        let color = target.layer(0, ImageState::DISCARDED, WRITTEN);
+        let target = TargetImages { color, depth: None, size: plan.warp.target_size };
+        let target = gather.register_target(&target).unwrap();
+        let frame = Frame { source, source_origin: [0; 2], target, target_origin: [0; 2] };
+        gpu.run(|commands| gather.record(commands, &frame, &plan.warp).unwrap());
+    }
+    let (want, got) = (target.read_rgba8(0, WRITTEN), seen.picture(habits.dominant().other().index()));
+    let differs = |(a, b): &(&[u8], &[u8])| (0..3).any(|i| a[i].abs_diff(b[i]) > 2);
+    let different = want.chunks_exact(4).zip(got.chunks_exact(4)).filter(differs).count();
+    // A pixel at a silhouette may fall to the other side: angles are rounded on their way.
+    assert!(different * 200 <= want.len() / 4, "{what}: {different} pixels are not the core's");
+}
+
+/// The views' poses and fields of view must be the runtime's own eyes.
+fn assert_own_eyes(seen: &Seen, script: &Script, pixels: f32, what: &str) {
+    for (i, view) in seen.views().iter().enumerate() {
+        let side = [-1.0, 1.0][i];
+        let distance = (pose_of(view).position - glam::Vec3::X * side * 0.0315).length();
+        assert!(distance < 1e-4, "{what}: eye {i} is at {:?}", view.position);
+        for (got, want) in view.fov_degrees.iter().zip(script.eyes[i].fov_degrees) {
+            // As tangents; a pixel of the headset's is about 0.017 of them.
+            let error = got.to_radians().tan() - want.to_radians().tan();
+            assert!(error.abs() < 1e-3 + 0.02 * pixels, "{what}: eye {i} sees {:?}", view.fov_degrees);
+        }
+    }
+}
+
+#[test]
+fn one_view_becomes_the_two_that_the_runtime_asks_for() {
+    let plain = Habits::PLAIN;
+    let depth = |near, far, min, max| Habits { planes: Planes { near, far, min, max }, ..plain };
+    let cases = [
+        ("plain", plain),
+        ("the left eye rendered", Habits { name: "left", ..plain }),
+        ("one layer of an array", Habits { layers: [2, 1], ..plain }),
+        ("a part of the image", Habits { margin: [13, 7], layers: [3, 2], ..plain }),
+        ("another size", Habits { scale: 1.31, ..plain }),
+        ("a smaller size", Habits { scale: 0.77, margin: [1, 2], ..plain }),
+        ("resolved samples", Habits { samples: 2, ..plain }),
+        ("16 bits of depth", Habits { formats: [SRGB, vk::Format::D16_UNORM], ..plain }),
+        ("depth with stencil", Habits { formats: [SRGB, vk::Format::D32_SFLOAT_S8_UINT], ..plain }),
+        ("linear colour", Habits { formats: [vk::Format::R8G8B8A8_UNORM, D32], ..plain }),
+        ("near and far swapped", depth(100.0, 0.1, 0.0, 1.0)),
+        ("infinite far", depth(0.1, f32::INFINITY, 0.0, 1.0)),
+        ("infinite near", depth(f32::INFINITY, 0.05, 0.0, 1.0)),
+        ("a part of the depth's range", depth(0.1, 50.0, 0.25, 0.75)),
+        ("a part of it, swapped", depth(f32::INFINITY, 0.1, 0.5, 1.0)),
+    ];
+    with_gpu(|gpu| {
+        for (what, habits) in cases {
+            let mut client = None;
+            let script = script();
+            let seen = watched(script.clone(), || client = Some(run(gpu, &habits).unwrap()));
+            assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+            assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+            let pixels = if habits.scale == 1.0 { 0.0 } else { 1.0 / habits.scale };
+            assert_own_eyes(&seen, &script, pixels, what);
+            assert_seen(&seen, &habits, what);
+            if habits.scale == 1.0 && (habits.planes.min, habits.planes.max) == (0.0, 1.0) {
+                assert_synthesized(gpu, &seen, client.as_ref().unwrap(), &habits, what);
+            }
+        }
+    });
+}
+
+/// A headset's eyes as they may be: turned outwards, and with frusta of different heights.
+#[test]
+fn canted_and_unlike_eyes_are_served_by_parallel_ones() {
+    with_gpu(|gpu| {
+        for name in ["left", "right"] {
+            let habits = Habits { name, ..Habits::PLAIN };
+            let mut canted = script();
+            canted.eyes.iter_mut().for_each(|eye| eye.cant_degrees = 5.0);
+            let mut unlike = script();
+            unlike.eyes[1].fov_degrees = [-40.0, 50.0, 44.0, -53.0];
+            for (what, script) in [("canted", canted), ("unlike", unlike)] {
+                let seen = watched(script.clone(), || drop(run(gpu, &habits).unwrap()));
+                assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+                assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+                assert_seen(&seen, &habits, what);
+                // Nothing that the runtime's own eye sees is missing, to a pixel.
+                for (i, view) in seen.views().iter().enumerate() {
+                    let eye = script.eyes[i];
+                    let turn = [1.0, -1.0][i] * eye.cant_degrees.to_radians();
+                    let frustum = frustum_of(view);
+                    let [left, right, up, down] = eye.fov_degrees.map(|angle| angle.to_radians().tan());
+                    for (x, y) in [(left, up), (left, down), (right, up), (right, down)] {
+                        let ray = glam::Quat::from_rotation_y(turn) * glam::Vec3::new(x, y, -1.0);
+                        let (x, y) = (ray.x / -ray.z, ray.y / -ray.z);
+                        let inside = x > frustum.left - 0.02
+                            && x < frustum.right + 0.02
+                            && y > frustum.bottom - 0.02
+                            && y < frustum.top + 0.02;
+                        assert!(inside, "{what}: eye {i} does not see {x}, {y}: {frustum:?}");
+                    }
+                }
+            }
+        }
+    });
+}
+
+/// Whatever the application shows besides stays as it is, and where it is.
+#[test]
+fn other_layers_keep_their_places() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+            client.create_session().unwrap();
+            client.poll().unwrap();
+            let chains = Chains::new(&client, &habits).unwrap();
+            let panel = client.chain(SRGB, [32, 16], 1).unwrap();
+            frames(&mut client, &chains, &habits, 1).unwrap();
+            let frame = client.begin_frame().unwrap();
+            let view = client.locate(frame).unwrap()[0].unwrap();
+            let submitted = render(&mut client, &chains, &habits, view).unwrap();
+            client.acquire(&panel).unwrap();
+            client.release(&panel).unwrap();
+            let part = |x| Part { chain: panel.handle, origin: [x, 0], size: [8, 16], layer: 0 };
+            let layers = [
+                Layer::Quad(part(0)),
+                Layer::Projection(vec![submitted]),
+                Layer::Quad(part(8)),
+                // What is not synthesized is shown nevertheless.
+                Layer::Projection(vec![Submitted { depth: None, ..submitted }]),
+                Layer::Quad(part(16)),
+            ];
+            client.end_frame(frame, &layers).unwrap();
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        let frames = seen.frames();
+        let found: Vec<_> = frames.last().unwrap().iter().map(|layer| match layer {
+            log::Layer::Projection { views } if views[0].image == views[1].image => "the same twice".into(),
+            log::Layer::Projection { views } => format!("{} views", views.len()),
+            log::Layer::Quad { image, .. } => format!("quad {}", image.rect[0]),
+            log::Layer::Other { .. } => "other".into(),
+        }).collect();
+        assert_eq!(found, ["quad 0", "2 views", "quad 8", "the same twice", "quad 16"]);
+        assert_eq!(seen.said("submits more than one projection layer"), 1, "{}", seen.said);
+    });
+}
+
+/// An application that renders both views itself gets the runtime's own, and its layers and depth arrive as they are.
+#[test]
+fn stereo_passes_through() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+            client.views = ViewsOf::PRIMARY_STEREO;
+            assert_eq!(client.sizes().unwrap(), [[128, 128]; 2]);
+            client.create_session().unwrap();
+            client.poll().unwrap();
+            let chains = [Chains::new(&client, &habits).unwrap(), Chains::new(&client, &habits).unwrap()];
+            for _ in 0..3 {
+                client.poll().unwrap();
+                let frame = client.begin_frame().unwrap();
+                let views = client.locate(frame).unwrap();
+                let mut submitted = Vec::new();
+                for (chains, view) in chains.iter().zip(views) {
+                    submitted.push(render(&mut client, chains, &habits, view.unwrap()).unwrap());
+                }
+                client.end_frame(frame, &[Layer::Projection(submitted)]).unwrap();
+            }
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert!(seen.views().iter().all(|view| view.depth.is_some()));
+        assert_own_eyes(&seen, &script(), 0.0, "stereo");
+        for (i, view) in seen.views().iter().enumerate() {
+            assert!(psnr(&seen.picture(i), &truth(view, 1)) > 45.0);
+        }
+        assert_eq!(seen.said("passed through: it begins its session with PRIMARY_STEREO"), 1, "{}", seen.said);
+        assert_eq!(seen.counts(), [[0; 2]; 0]);
+    });
+}
+
+/// One view is offered where the setting says, and in place of a runtime's own; not on a runtime that has no two.
+#[test]
+fn one_view_is_offered_where_there_are_two() {
+    use ViewsOf as V;
+    let cases = [
+        ("right", true, vec![V::PRIMARY_MONO, V::PRIMARY_STEREO]),
+        ("last", true, vec![V::PRIMARY_STEREO, V::PRIMARY_MONO]),
+        ("only", true, vec![V::PRIMARY_MONO]),
+        ("only", false, vec![V::PRIMARY_MONO]),
+    ];
+    with_gpu(|gpu| {
+        for (name, stereo, want) in cases {
+            for mono in [true, false] {
+                let want = if stereo || mono { want.clone() } else { vec![] };
+                watched(Script { stereo, mono, ..script() }, || {
+                    let client = Client::new(gpu, name, &[VULKAN, DEPTH]).unwrap();
+                    assert_eq!(client.configurations().unwrap(), want);
+                    if want.contains(&V::PRIMARY_MONO) {
+                        // As wide as both eyes if it is the layer's, as the runtime says if it is its own.
+                        assert_eq!(client.sizes().unwrap()[0][0] > 128, stereo, "{name}");
+                    }
+                });
+            }
+        }
+    });
+}
+
+/// The layer offers depth where the runtime does not take it, and keeps it to itself.
+#[test]
+fn a_runtime_without_depth_will_do() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let missing_extensions = vec![DEPTH.to_str().unwrap().to_owned()];
+        let seen = watched(Script { missing_extensions, ..script() }, || drop(run(gpu, &habits).unwrap()));
+        // That it was asked for depth is all that the runtime complains about.
+        assert!(
+            matches!(&seen.violations()[..], [log::Entry::Violation { call, .. }] if call == "xrCreateInstance"),
+            "{:?}",
+            seen.violations()
+        );
+        assert_eq!(seen.counts(), [[3, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "without depth");
+        assert!(seen.views().iter().all(|view| view.depth.is_none()));
+    });
+}
+
+/// What cannot be synthesized is shown to both eyes as it is; the reason is told once, and the frames are counted.
+#[test]
+fn what_cannot_be_synthesized_is_shown_as_it_is() {
+    type Spoil = fn(&Client, &Chains, Submitted) -> Outcome<Submitted>;
+    let cases: [(&str, Habits, Spoil); 6] = [
+        ("it submits no depth", Habits { submits_depth: false, ..Habits::PLAIN }, |_, _, s| Ok(s)),
+        ("have different sizes or rectangles", Habits { margin: [4, 4], ..Habits::PLAIN }, |_, _, s| {
+            let depth = s.depth.map(|(part, planes)| (Part { origin: [3, 4], ..part }, planes));
+            Ok(Submitted { depth, ..s })
+        }),
+        ("out of order", Habits::PLAIN, |_, _, s| {
+            let depth = s.depth.map(|(part, planes)| (part, Planes { min: 0.5, max: 0.5, ..planes }));
+            Ok(Submitted { depth, ..s })
+        }),
+        ("near", Habits::PLAIN, |_, _, s| {
+            let depth = s.depth.map(|(part, planes)| (part, Planes { near: 0.0, ..planes }));
+            Ok(Submitted { depth, ..s })
+        }),
+        ("depth is in a swapchain that cannot be read", Habits::PLAIN, |_, _, s| {
+            let other = Part { chain: sys::Swapchain::NULL, ..s.color };
+            Ok(Submitted { depth: s.depth.map(|(_, planes)| (other, planes)), ..s })
+        }),
+        ("the same image for both eyes", Habits { submits_depth: false, layers: [2, 1], ..Habits::PLAIN }, |_, _, s| Ok(s)),
+    ];
+    with_gpu(|gpu| {
+        for (reason, habits, spoil) in cases {
+            let seen = watched(script(), || {
+                let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+                client.create_session().unwrap();
+                client.poll().unwrap();
+                let chains = Chains::new(&client, &habits).unwrap();
+                frame(&mut client, &chains, &habits).unwrap();
+                for _ in 0..3 {
+                    let frame = client.begin_frame().unwrap();
+                    let view = client.locate(frame).unwrap()[0].unwrap();
+                    let submitted = render(&mut client, &chains, &habits, view).unwrap();
+                    let submitted = spoil(&client, &chains, submitted).unwrap();
+                    client.end_frame(frame, &[Layer::Projection(vec![submitted])]).unwrap();
+                }
+                client.destroy_session().unwrap();
+            });
+            assert!(seen.violations().is_empty(), "{reason}: {:?}", seen.violations());
+            assert_eq!(seen.said("the same image for both eyes"), 1, "{reason}: {}", seen.said);
+            assert_eq!(seen.said(reason), 1, "{reason}: {}", seen.said);
+            assert_eq!(seen.counts(), [[0, 3]], "{reason}: {}", seen.said);
+            let views = seen.views();
+            assert_eq!((&views[0].image, views[0].position), (&views[1].image, views[1].position), "{reason}");
+            assert!(psnr(&seen.picture(0), &truth(&views[0], 1)) > 45.0, "{reason}");
+        }
+    });
+}

@@ -1,0 +1,190 @@
+//! The simulated runtime, and what can be seen of a run: its log, its pictures, and what the layer says.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::fs::{self, File};
+use std::io::{Read as _, Seek as _};
+use std::os::fd::{AsRawFd as _, FromRawFd as _, OwnedFd};
+use std::path::Path;
+use std::sync::Once;
+
+use image::RgbaImage;
+use tempfile::TempDir;
+use yoro_openxr_stub::log::{self, Entry, Layer, View};
+use yoro_openxr_stub::script::{Pictures, Script};
+
+use crate::harness::{self, Gpu, Rendering};
+
+/// Counts what this thread allocates outside the simulated runtime.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: the system's allocator does it all.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if !yoro_openxr_stub::is_inside() {
+            ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        }
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+pub fn allocations() -> usize {
+    ALLOCATIONS.get()
+}
+
+/// Settings by the names that applications give themselves.
+const SETTINGS: &str = "guard_band = '16px'\n\
+    [application.left]\ndominant = 'left'\n\
+    [application.only]\noffer = 'only'\n\
+    [application.last]\noffer = 'last'\n";
+
+/// Runs a test body on a device, with settings of its own.
+pub fn with_gpu(body: impl FnOnce(&Gpu)) {
+    static SETTLED: Once = Once::new();
+    SETTLED.call_once(|| {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("layer-settings");
+        fs::create_dir_all(folder.join("yoro")).unwrap();
+        fs::write(folder.join("yoro/layer.toml"), SETTINGS).unwrap();
+        // SAFETY: Vulkan, which starts threads that may look at the environment, is not loaded yet.
+        unsafe { std::env::set_var("XDG_CONFIG_HOME", &folder) };
+    });
+    harness::with_gpu(Rendering::RenderPasses, body);
+}
+
+/// The formats of a runtime on Vulkan: R8G8B8A8_SRGB, _UNORM, B8G8R8A8_SRGB, _UNORM, and depth in 16, 32 and 32+8 bits.
+const FORMATS: [i64; 7] = [43, 37, 50, 44, 124, 126, 130];
+
+/// A headset as they are, with Vulkan.
+pub fn script() -> Script {
+    Script { formats: FORMATS.into(), ..Script::default() }.asymmetric()
+}
+
+/// What could be seen of a run.
+pub struct Seen {
+    pub log: Vec<Entry>,
+    /// What the layer has said.
+    pub said: String,
+    folder: TempDir,
+}
+
+/// What is written to the standard error output, instead of being shown.
+struct Overheard {
+    shown: OwnedFd,
+    file: File,
+}
+
+impl Overheard {
+    fn begin() -> Overheard {
+        let file = tempfile::tempfile().unwrap();
+        // SAFETY: plain calls on descriptors that are open; the copy is nobody else's.
+        unsafe {
+            let shown = libc::dup(2);
+            assert!(shown >= 0 && libc::dup2(file.as_raw_fd(), 2) == 2);
+            Overheard { shown: OwnedFd::from_raw_fd(shown), file }
+        }
+    }
+
+    fn text(&mut self) -> String {
+        let mut text = String::new();
+        self.file.rewind().unwrap();
+        self.file.read_to_string(&mut text).unwrap();
+        text
+    }
+}
+
+impl Drop for Overheard {
+    fn drop(&mut self) {
+        // SAFETY: both descriptors are open.
+        unsafe { libc::dup2(self.shown.as_raw_fd(), 2) };
+        if std::thread::panicking() {
+            println!("{}", self.text());
+        }
+    }
+}
+
+/// Runs an application on a runtime that follows a script.
+pub fn watched(mut script: Script, application: impl FnOnce()) -> Seen {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("log");
+    script.log = Some(log.clone());
+    script.pictures.get_or_insert(Pictures { folder: folder.path().into(), from: 0 });
+    yoro_openxr_stub::begin(script);
+    let mut overheard = Overheard::begin();
+    application();
+    let said = overheard.text();
+    drop(overheard);
+    Seen { log: log::read(&log), said, folder }
+}
+
+impl Seen {
+    /// What was submitted in each frame that was not empty.
+    pub fn frames(&self) -> Vec<&Vec<Layer>> {
+        let layers = self.log.iter().filter_map(|entry| match entry {
+            Entry::Frame { layers, .. } if !layers.is_empty() => Some(layers),
+            _ => None,
+        });
+        layers.collect()
+    }
+
+    /// The views of the last frame's projection layer.
+    pub fn views(&self) -> &[View] {
+        let frames = self.frames();
+        let layers = frames.last().expect("there are frames").iter();
+        let views = layers.filter_map(|layer| match layer {
+            Layer::Projection { views } => Some(views.as_slice()),
+            _ => None,
+        });
+        views.last().expect("there is a projection layer")
+    }
+
+    /// What the runtime got last for an eye, rows from the bottom.
+    pub fn picture(&self, eye: usize) -> Vec<u8> {
+        let path = self.folder.path().join(format!("view-{eye}.png"));
+        let picture: RgbaImage = image::open(path).unwrap().into_rgba8();
+        image::imageops::flip_vertical(&picture).into_raw()
+    }
+
+    /// What the runtime says that the specification forbids. A layer may ask for functions of extensions that are not
+    /// enabled: how else would it know.
+    pub fn violations(&self) -> Vec<&Entry> {
+        let is_one = |entry: &&Entry| matches!(entry, Entry::Violation { call, .. } if call != "xrGetInstanceProcAddr");
+        self.log.iter().filter(is_one).collect()
+    }
+
+    /// How often each function of the runtime was called.
+    pub fn calls(&self) -> std::collections::BTreeMap<String, u32> {
+        let counts = self.log.iter().rev().find_map(|entry| match entry {
+            Entry::Calls { counts } => Some(counts.clone()),
+            _ => None,
+        });
+        counts.unwrap_or_default()
+    }
+
+    /// Synthesized and not, as the layer counts them at the end of each session.
+    pub fn counts(&self) -> Vec<[u64; 2]> {
+        let ends = self.said.lines().filter_map(|line| {
+            let (_, counts) = line.split_once("session ended after ")?.1.split_once(" frames: ")?;
+            let (synthesized, rest) = counts.split_once(" synthesized, ")?;
+            Some([synthesized.parse().ok()?, rest.strip_suffix(" not")?.parse().ok()?])
+        });
+        ends.collect()
+    }
+
+    /// How often a text is in what the layer has said.
+    pub fn said(&self, text: &str) -> usize {
+        self.said.matches(text).count()
+    }
+}

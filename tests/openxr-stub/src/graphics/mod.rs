@@ -1,0 +1,81 @@
+//! The application's graphics: OpenGL ES in its context, or Vulkan on its device.
+
+mod gles;
+mod vulkan;
+
+use std::ffi::c_void;
+
+use openxr_sys as sys;
+
+use crate::world::{Refusal, forbidden};
+
+/// The extensions with which an application tells its graphics.
+pub const OPENGL_ES: &str = "XR_KHR_opengl_es_enable";
+pub const VULKAN: [&str; 2] = ["XR_KHR_vulkan_enable", "XR_KHR_vulkan_enable2"];
+
+/// An image of a swapchain: a GL texture's name or a VkImage, of an array where there are several layers.
+#[derive(Clone, Copy)]
+pub struct Texture {
+    pub raw: u64,
+    pub layers: u32,
+}
+
+/// What a session is bound to.
+pub trait Graphics: Send {
+    /// The runtime may use it on this thread.
+    fn is_current(&self) -> bool;
+
+    /// Leaves no context current, where there are contexts.
+    fn unbind(&self);
+
+    /// The structure in which an image is told to the application.
+    fn image_type(&self) -> sys::StructureType;
+
+    /// A new image of a swapchain.
+    fn texture(&mut self, info: &sys::SwapchainCreateInfo) -> Option<Texture>;
+
+    /// Deletes textures, where that is possible.
+    fn delete(&mut self, textures: &[Texture]);
+
+    /// Fills every layer with [`POISON`](crate::script::POISON).
+    fn poison(&mut self, texture: Texture);
+
+    /// The bytes of a rectangle of colour, four a pixel as RGBA, the lowest row first, as they are stored.
+    fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>>;
+}
+
+/// The graphics binding in a chain of structures, and its name.
+///
+/// # Safety
+/// `next` begins a chain of structures of the types that they say.
+pub unsafe fn bind(
+    next: *const c_void,
+    extensions: &[String],
+) -> Result<(&'static str, Box<dyn Graphics>), Refusal> {
+    let enabled = |name: &str| extensions.iter().any(|extension| extension == name);
+    let vulkan = VULKAN.into_iter().any(enabled);
+    if !enabled(OPENGL_ES) && !vulkan {
+        return Err(forbidden(
+            sys::Result::ERROR_GRAPHICS_DEVICE_INVALID,
+            "no extension for graphics is enabled",
+        ));
+    }
+    let mut next = next.cast::<sys::BaseInStructure>();
+    while !next.is_null() {
+        // SAFETY: as the caller says.
+        let structure = unsafe { &*next };
+        if enabled(OPENGL_ES) {
+            // SAFETY: of the type that it says.
+            if let Some((name, display, context)) = unsafe { gles::binding(structure, &enabled) }? {
+                return Ok((name, Box::new(gles::Gles::new(display, context)?)));
+            }
+        }
+        if vulkan && structure.ty == sys::GraphicsBindingVulkanKHR::TYPE {
+            // SAFETY: of this type.
+            let binding = unsafe { &*next.cast::<sys::GraphicsBindingVulkanKHR>() };
+            return Ok(("vulkan", Box::new(vulkan::Vulkan::new(binding)?)));
+        }
+        next = structure.next;
+    }
+    Err(forbidden(sys::Result::ERROR_GRAPHICS_DEVICE_INVALID, "there is no graphics binding"))
+}
