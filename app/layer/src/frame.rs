@@ -82,8 +82,13 @@ pub unsafe fn end_frame(session: &Session, info: &sys::FrameEndInfo) -> sys::Res
         // SAFETY: promised by the caller.
         unsafe { frames.capture_stereo(session, pointers) };
     }
+    let mut released = Ok(());
     for swapchain in lock(&session.swapchains).iter() {
-        swapchain.pass_on_release();
+        released = released.and(swapchain.pass_on_release());
+    }
+    // What xrReleaseSwapchainImage would have returned to the application, it returns now.
+    if let Err(error) = released {
+        return error;
     }
     if !session.is_mono() {
         // SAFETY: the application's own.
@@ -330,8 +335,11 @@ impl Frames {
             },
             None => Err(Reason::NoVulkan),
         };
-        // Released even if nothing is in it: it is not shown then.
-        release(session, handle)?;
+        // Released even if nothing is in it: it is not shown then. What cannot be released is of no use any more.
+        if let Err(reason) = release(session, handle) {
+            self.drop_target(session);
+            return Err(reason);
+        }
         result?;
         let eye = |eye: Eye, sub_image| sys::CompositionLayerProjectionView {
             ty: sys::CompositionLayerProjectionView::TYPE,
@@ -353,16 +361,20 @@ impl Frames {
             target.content.format == color.format && size[0] >= color.size[0] && size[1] >= color.size[1]
         };
         if !self.target.as_ref().is_some_and(fits) {
-            if let Some(old) = self.target.take() {
-                if let Some(synthesizer) = &mut self.synthesizer {
-                    synthesizer.forget(&old.content.images);
-                }
-                // SAFETY: the layer's own, whose images no command uses any more.
-                unsafe { (session.instance.next.destroy_swapchain)(old.handle) };
-            }
+            self.drop_target(session);
             self.target = Some(Target::new(session, color)?);
         }
         self.target.as_mut().ok_or(Reason::NoVulkan)
+    }
+
+    fn drop_target(&mut self, session: &Session) {
+        if let Some(old) = self.target.take() {
+            if let Some(synthesizer) = &mut self.synthesizer {
+                synthesizer.forget(&old.content.images);
+            }
+            // SAFETY: the layer's own, whose images no command uses any more.
+            unsafe { (session.instance.next.destroy_swapchain)(old.handle) };
+        }
     }
 
     fn fall_back(&mut self, session: &Session, reason: Reason) {

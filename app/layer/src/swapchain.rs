@@ -98,7 +98,9 @@ impl Swapchain {
         index: *mut u32,
     ) -> sys::Result {
         let mut state = lock(&self.state);
-        self.give_up(&mut state);
+        if let Err(error) = self.give_up(&mut state) {
+            return error;
+        }
         // SAFETY: promised by the caller.
         let result = unsafe { (self.next().acquire_swapchain_image)(self.handle, info, index) };
         if check(result).is_ok() {
@@ -114,7 +116,9 @@ impl Swapchain {
     /// As the specification says.
     pub unsafe fn wait(&self, info: *const sys::SwapchainImageWaitInfo) -> sys::Result {
         // Waiting may take long, and locks nothing: the specification lets the application wait from one thread at a time.
-        self.give_up(&mut lock(&self.state));
+        if let Err(error) = self.pass_on_release() {
+            return error;
+        }
         // SAFETY: promised by the caller.
         let result = unsafe { (self.next().wait_swapchain_image)(self.handle, info) };
         if result == sys::Result::SUCCESS {
@@ -151,19 +155,22 @@ impl Swapchain {
     }
 
     /// Passes on a release that was kept back.
-    pub fn pass_on_release(&self) {
-        self.give_up(&mut lock(&self.state));
+    ///
+    /// # Errors
+    /// What the runtime returns: the application has not heard of it yet.
+    pub fn pass_on_release(&self) -> XrResult<()> {
+        self.give_up(&mut lock(&self.state))
     }
 
-    fn give_up(&self, state: &mut State) {
+    fn give_up(&self, state: &mut State) -> XrResult<()> {
         if state.held.take().is_some() {
             let info = sys::SwapchainImageReleaseInfo {
                 ty: sys::SwapchainImageReleaseInfo::TYPE,
                 next: std::ptr::null(),
             };
-            // SAFETY: a live swapchain, with an image that was waited for. What it fails with, the application's next call
-            // fails with, too.
-            unsafe { (self.next().release_swapchain_image)(self.handle, &info) };
+            // SAFETY: a live swapchain, with an image that was waited for.
+            check(unsafe { (self.next().release_swapchain_image)(self.handle, &info) })?;
         }
+        Ok(())
     }
 }

@@ -302,12 +302,13 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
 }
 
 fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: bool) -> Result<Image, Refusal> {
+    let ahead = world.script.acquires_ahead;
     let swapchain = world.swapchain(image.swapchain)?;
     let refuse = |what: String| Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, what));
     if swapchain.is_depth() != depth {
         return refuse(format!("the swapchain's format {:#x} is of the other kind", swapchain.format));
     }
-    if !swapchain.acquired.is_empty() {
+    if !ahead && !swapchain.acquired.is_empty() {
         return refuse("an image of the swapchain is still acquired".into());
     }
     if swapchain.released.is_none() {

@@ -57,6 +57,9 @@ pub struct Script {
     pub visibility_mask: bool,
     /// Some runtimes leave another context current, or none: after every call that may, none is.
     pub unbind_context: bool,
+    /// The application may have images for later frames while it submits one; if not, one that it has is one that it has
+    /// forgotten to release.
+    pub acquires_ahead: bool,
     /// Images are filled with [`POISON`] when they are acquired, so that what was not drawn is seen.
     pub poison: bool,
     /// Pictures of the submitted views are written as PNG.
@@ -209,6 +212,7 @@ impl Default for Script {
             inputs: Vec::new(),
             visibility_mask: false,
             unbind_context: false,
+            acquires_ahead: false,
             poison: false,
             pictures: None,
         }

@@ -106,8 +106,7 @@ pub unsafe extern "system" fn create_swapchain(
         }
         let size = [info.width, info.height];
         let graphics = &mut world.session(session)?.graphics;
-        let textures: Option<Vec<_>> =
-            (0..IMAGES).map(|_| graphics.texture(info)).collect();
+        let textures: Option<Vec<_>> = (0..IMAGES).map(|_| graphics.texture(info)).collect();
         let textures = textures.ok_or(sys::Result::ERROR_OUT_OF_MEMORY)?;
         let handle = world.new_handle();
         world.log.write(&Entry::Swapchain {

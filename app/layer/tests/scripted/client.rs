@@ -503,13 +503,11 @@ impl<'a> Client<'a> {
             view_state_flags: sys::ViewStateFlags::EMPTY,
         };
         let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
-        let mut views =
-            [sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov }; 2];
+        let mut views = [sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov }; 2];
         let mut count = 0;
         let call = self.xr.locate_views;
         // SAFETY: complete structures, and room for as many as is said.
-        let result =
-            unsafe { call(self.session, &info, &mut state, 2, &mut count, views.as_mut_ptr()) };
+        let result = unsafe { call(self.session, &info, &mut state, 2, &mut count, views.as_mut_ptr()) };
         check("xrLocateViews", result)?;
         let mut located = [None; 2];
         for (place, view) in located.iter_mut().zip(&views[..count as usize]) {
@@ -558,7 +556,14 @@ impl<'a> Client<'a> {
     }
 
     /// Renders what the view sees, if that is not what was rendered last.
-    pub fn paint(&mut self, view: View, size: [u32; 2], samples: u32, formats: [vk::Format; 2], planes: Planes) {
+    pub fn paint(
+        &mut self,
+        view: View,
+        size: [u32; 2],
+        samples: u32,
+        formats: [vk::Format; 2],
+        planes: Planes,
+    ) {
         let same = |old: &Painted| {
             old.view == view
                 && (old.samples, old.planes) == (samples, planes)
@@ -583,8 +588,8 @@ impl<'a> Client<'a> {
             true => (ImageState::DEPTH_ATTACHMENT, vk::ImageAspectFlags::DEPTH),
             false => (ImageState::COLOR_ATTACHMENT, vk::ImageAspectFlags::COLOR),
         };
-        let stencil = from.format == vk::Format::D32_SFLOAT_S8_UINT
-            || from.format == vk::Format::D24_UNORM_S8_UINT;
+        let stencil =
+            from.format == vk::Format::D32_SFLOAT_S8_UINT || from.format == vk::Format::D24_UNORM_S8_UINT;
         let all = if stencil { aspect_mask | vk::ImageAspectFlags::STENCIL } else { aspect_mask };
         let layers = |base_array_layer| vk::ImageSubresourceLayers {
             aspect_mask,
@@ -714,7 +719,8 @@ impl<'a> Client<'a> {
     pub fn destroy_session(&mut self) -> Outcome<()> {
         self.running = false;
         // SAFETY: used no more.
-        let result = unsafe { (self.xr.destroy_session)(std::mem::replace(&mut self.session, sys::Session::NULL)) };
+        let result =
+            unsafe { (self.xr.destroy_session)(std::mem::replace(&mut self.session, sys::Session::NULL)) };
         check("xrDestroySession", result).map(|_| ())
     }
 }

@@ -331,12 +331,19 @@ fn other_layers_keep_their_places() {
         });
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
         let frames = seen.frames();
-        let found: Vec<_> = frames.last().unwrap().iter().map(|layer| match layer {
-            log::Layer::Projection { views } if views[0].image == views[1].image => "the same twice".into(),
-            log::Layer::Projection { views } => format!("{} views", views.len()),
-            log::Layer::Quad { image, .. } => format!("quad {}", image.rect[0]),
-            log::Layer::Other { .. } => "other".into(),
-        }).collect();
+        let found: Vec<_> = frames
+            .last()
+            .unwrap()
+            .iter()
+            .map(|layer| match layer {
+                log::Layer::Projection { views } if views[0].image == views[1].image => {
+                    "the same twice".into()
+                }
+                log::Layer::Projection { views } => format!("{} views", views.len()),
+                log::Layer::Quad { image, .. } => format!("quad {}", image.rect[0]),
+                log::Layer::Other { .. } => "other".into(),
+            })
+            .collect();
         assert_eq!(found, ["quad 0", "2 views", "quad 8", "the same twice", "quad 16"]);
         assert_eq!(seen.said("submits more than one projection layer"), 1, "{}", seen.said);
     });
@@ -372,7 +379,12 @@ fn stereo_passes_through() {
         for (i, view) in seen.views().iter().enumerate() {
             assert!(psnr(&seen.picture(i), &truth(view, 1)) > 45.0);
         }
-        assert_eq!(seen.said("passed through: it begins its session with PRIMARY_STEREO"), 1, "{}", seen.said);
+        assert_eq!(
+            seen.said("passed through: it begins its session with PRIMARY_STEREO"),
+            1,
+            "{}",
+            seen.said
+        );
         assert_eq!(seen.counts(), [[0; 2]; 0]);
     });
 }
@@ -445,7 +457,11 @@ fn what_cannot_be_synthesized_is_shown_as_it_is() {
             let other = Part { chain: sys::Swapchain::NULL, ..s.color };
             Ok(Submitted { depth: s.depth.map(|(_, planes)| (other, planes)), ..s })
         }),
-        ("the same image for both eyes", Habits { submits_depth: false, layers: [2, 1], ..Habits::PLAIN }, |_, _, s| Ok(s)),
+        (
+            "the same image for both eyes",
+            Habits { submits_depth: false, layers: [2, 1], ..Habits::PLAIN },
+            |_, _, s| Ok(s),
+        ),
     ];
     with_gpu(|gpu| {
         for (reason, habits, spoil) in cases {
@@ -469,8 +485,192 @@ fn what_cannot_be_synthesized_is_shown_as_it_is() {
             assert_eq!(seen.said(reason), 1, "{reason}: {}", seen.said);
             assert_eq!(seen.counts(), [[0, 3]], "{reason}: {}", seen.said);
             let views = seen.views();
-            assert_eq!((&views[0].image, views[0].position), (&views[1].image, views[1].position), "{reason}");
+            assert_eq!(
+                (&views[0].image, views[0].position),
+                (&views[1].image, views[1].position),
+                "{reason}"
+            );
             assert!(psnr(&seen.picture(0), &truth(&views[0], 1)) > 45.0, "{reason}");
         }
+    });
+}
+
+/// Runs an application that has a session, swapchains, and one view; what it does with them is told.
+fn with_session(
+    gpu: &Gpu,
+    habits: &Habits,
+    work: impl FnOnce(&mut Client, &Chains) -> Outcome<()>,
+) -> Outcome<()> {
+    let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH])?;
+    client.create_session()?;
+    client.poll()?;
+    let chains = Chains::new(&client, habits)?;
+    frame(&mut client, &chains, habits)?;
+    work(&mut client, &chains)?;
+    client.destroy_session()
+}
+
+/// The next frame is waited for before the last one ends, and images are released before their frame begins.
+#[test]
+fn frames_overlap() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let pipelined = |client: &mut Client, chains: &Chains| {
+                let mut now = client.begin_frame()?;
+                for _ in 0..5 {
+                    let view = client.locate(now)?[0].unwrap();
+                    let submitted = render(client, chains, &habits, view)?;
+                    let next = client.wait_frame()?;
+                    client.end_frame(now, &[Layer::Projection(vec![submitted])])?;
+                    client.begin_waited()?;
+                    now = next;
+                }
+                let view = client.locate(now)?[0].unwrap();
+                client.end_frame(now, &[])?;
+                let early = render(client, chains, &habits, view)?;
+                let frame = client.begin_frame()?;
+                client.end_frame(frame, &[Layer::Projection(vec![early])])
+            };
+            with_session(gpu, &habits, pipelined).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[6, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "overlapping frames");
+    });
+}
+
+/// Where the runtime has an image before the frame ends, the layer cannot read it: because the application has acquired the
+/// next one meanwhile, or because it shows an old one again.
+#[test]
+fn what_the_runtime_has_already_is_shown_as_it_is() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(Script { acquires_ahead: true, ..script() }, || {
+            let work = |client: &mut Client, chains: &Chains| {
+                let begun = client.begin_frame()?;
+                let view = client.locate(begun)?[0].unwrap();
+                let submitted = render(client, chains, &habits, view)?;
+                let ahead = client.acquire(&chains.color)?;
+                client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                let begun = client.begin_frame()?;
+                client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                let painted = client.painted.as_ref().unwrap();
+                client.copy(&painted.color, ahead, chains.part);
+                client.release(&chains.color)?;
+                frames(client, chains, &habits, 2)
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[2, 2]], "{}", seen.said);
+        assert_eq!(seen.said("was not released since the last frame"), 1, "{}", seen.said);
+        assert_seen(&seen, &habits, "afterwards");
+    });
+}
+
+#[test]
+fn swapchains_are_made_anew_at_other_sizes() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let work = |client: &mut Client, chains: &Chains| {
+                frames(client, chains, &habits, 2)?;
+                for (scale, format) in
+                    [(1.5, SRGB), (0.5, SRGB), (0.5, vk::Format::B8G8R8A8_UNORM), (1.0, SRGB)]
+                {
+                    let habits = Habits { scale, formats: [format, D32], ..habits };
+                    let chains = Chains::new(client, &habits)?;
+                    frames(client, &chains, &habits, 2)?;
+                    client.destroy_chain(chains.color)?;
+                    client.destroy_chain(chains.depth)?;
+                }
+                frames(client, chains, &habits, 2)
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[12, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "the first size again");
+    });
+}
+
+#[test]
+fn one_session_follows_another() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+            for _ in 0..2 {
+                client.create_session().unwrap();
+                client.poll().unwrap();
+                let chains = Chains::new(&client, &habits).unwrap();
+                frames(&mut client, &chains, &habits, 2).unwrap();
+                client.destroy_session().unwrap();
+            }
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[2, 0]; 2], "{}", seen.said);
+        assert_seen(&seen, &habits, "the second session");
+    });
+}
+
+/// A call of the runtime fails, once or from then on: no call of the application's fails but the one of the same name,
+/// which fails without the layer, too. After a single failure everything is synthesized again.
+#[test]
+fn no_fault_of_the_runtime_fails_another_call() {
+    with_gpu(|gpu| {
+        let habits = Habits { frames: 2, ..Habits::PLAIN };
+        let quiet = |faults| Script { faults, pictures: None, ..script() };
+        let all = watched(quiet(vec![]), || drop(run(gpu, &habits).unwrap())).calls();
+        // What the layer passes through without looking, and what fails before it is there.
+        let not = [
+            "xrCreateInstance",
+            "xrDestroyInstance",
+            "xrGetInstanceProcAddr",
+            "xrGetSystem",
+            "xrGetVulkanGraphicsRequirementsKHR",
+            "xrPollEvent",
+        ];
+        let making = ["xrCreateSwapchain", "xrEnumerateSwapchainImages"];
+        let (mut own, mut passed) = (0, 0);
+        for (call, count) in all.iter().filter(|(call, _)| !not.contains(&call.as_str())) {
+            for (nth, and_later) in (1..=*count).flat_map(|nth| [(nth, false), (nth, true)]) {
+                let result = sys::Result::ERROR_RUNTIME_FAILURE.into_raw();
+                let fault = Fault { call: call.clone(), nth, and_later, result };
+                let what = format!("{call}, {nth}{}", if and_later { " and later" } else { "" });
+                let mut outcome = Ok(());
+                let seen = watched(quiet(vec![fault]), || {
+                    outcome = run(gpu, &Habits { frames: 4, ..habits }).map(|_| ());
+                });
+                match outcome {
+                    Err(Failure { call: failed, result: got }) => {
+                        // The layer keeps releases back until the frame ends, and with them what they return.
+                        let late = call == "xrReleaseSwapchainImage" && failed == "xrEndFrame";
+                        assert!(failed == call || late, "{what}: {failed} fails: {}", seen.said);
+                        assert_eq!(got.into_raw(), result, "{what}");
+                        passed += 1;
+                    }
+                    Ok(()) => {
+                        assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+                        let counts = seen.counts();
+                        assert_eq!(counts.iter().flatten().sum::<u64>(), 4, "{what}: {}", seen.said);
+                        let synthesized = seen.views()[0].image != seen.views()[1].image;
+                        // A swapchain that the layer could not make as it wants it stays as it is.
+                        let lasts = and_later || making.contains(&call.as_str());
+                        assert!(synthesized || lasts, "{what}: {}", seen.said);
+                        assert_eq!(
+                            seen.said("the same image for both eyes") > 0,
+                            counts[0][1] > 0,
+                            "{}",
+                            seen.said
+                        );
+                        own += 1;
+                    }
+                }
+            }
+        }
+        println!("{own} faults that the application does not notice, {passed} that are its own");
+        assert!(own > 20 && passed > 20, "{own} {passed}");
     });
 }

@@ -40,10 +40,8 @@ fn meet(origin: Vec3, ray: Vec3) -> (f32, Vec3) {
 pub fn render(pose: Pose, frustum: Frustum, size: [u32; 2], samples: u32) -> Picture {
     let [width, height] = size.map(|n| n as f32);
     let at = |x: f32, y: f32| {
-        let tangents = [
-            frustum.left + x / width * frustum.width(),
-            frustum.bottom + y / height * frustum.height(),
-        ];
+        let tangents =
+            [frustum.left + x / width * frustum.width(), frustum.bottom + y / height * frustum.height()];
         meet(pose.position, pose.orientation * Vec3::new(tangents[0], tangents[1], -1.0))
     };
     let mut picture = Picture { size, rgba: Vec::new(), distance: Vec::new() };

@@ -69,7 +69,8 @@ const FORMATS: [i64; 7] = [43, 37, 50, 44, 124, 126, 130];
 
 /// A headset as they are, with Vulkan.
 pub fn script() -> Script {
-    Script { formats: FORMATS.into(), ..Script::default() }.asymmetric()
+    let pictures = Some(Pictures { folder: "in each run's own".into(), from: 0 });
+    Script { formats: FORMATS.into(), pictures, ..Script::default() }.asymmetric()
 }
 
 /// What could be seen of a run.
@@ -120,7 +121,9 @@ pub fn watched(mut script: Script, application: impl FnOnce()) -> Seen {
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("log");
     script.log = Some(log.clone());
-    script.pictures.get_or_insert(Pictures { folder: folder.path().into(), from: 0 });
+    if let Some(pictures) = &mut script.pictures {
+        pictures.folder = folder.path().into();
+    }
     yoro_openxr_stub::begin(script);
     let mut overheard = Overheard::begin();
     application();

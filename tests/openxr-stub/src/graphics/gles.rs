@@ -71,10 +71,7 @@ pub unsafe fn binding(
         _ => return Ok(None),
     };
     if display.is_null() || context.is_null() {
-        return Err(forbidden(
-            sys::Result::ERROR_GRAPHICS_DEVICE_INVALID,
-            "display or context is null",
-        ));
+        return Err(forbidden(sys::Result::ERROR_GRAPHICS_DEVICE_INVALID, "display or context is null"));
     }
     Ok(Some((name, display, context)))
 }

@@ -261,8 +261,7 @@ impl Graphics for Vulkan {
             _ => return None,
         };
         let bytes = self.copy(texture, layer, rect)?;
-        let mut pixels: Vec<u8> =
-            bytes.chunks_exact(rect[2] as usize * 4).rev().flatten().copied().collect();
+        let mut pixels: Vec<u8> = bytes.chunks_exact(rect[2] as usize * 4).rev().flatten().copied().collect();
         if swapped {
             pixels.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
         }
