@@ -58,17 +58,26 @@ unsafe extern "system" fn note(
 
 /// Runs a test body on a device, unless tests are to do without.
 pub fn with_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
+    with(rendering, true, body);
+}
+
+/// The same without the validation layer, which keeps something of every submission: for what must not grow.
+pub fn with_unwatched_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
+    with(rendering, false, body);
+}
+
+fn with(rendering: Rendering, watched: bool, body: impl FnOnce(&Gpu)) {
     if std::env::var_os("YORO_TEST_WITHOUT_VULKAN").is_some() {
         return println!("LEFT OUT: Vulkan by {rendering:?}");
     }
-    match Gpu::open(rendering) {
+    match Gpu::open(rendering, watched) {
         Ok(gpu) => body(&gpu),
         Err(reason) => panic!("{reason}: `cargo xtask setup`, or set YORO_TEST_WITHOUT_VULKAN=1"),
     }
 }
 
 impl Gpu {
-    fn open(rendering: Rendering) -> Result<Gpu, String> {
+    fn open(rendering: Rendering, watched: bool) -> Result<Gpu, String> {
         // SAFETY: the loader is a library that does nothing when it is loaded; all handles are made here and are used
         // while they live.
         unsafe {
@@ -102,7 +111,7 @@ impl Gpu {
             let mut early = messenger();
             let info = vk::InstanceCreateInfo::default()
                 .application_info(&application)
-                .enabled_layer_names(&layers)
+                .enabled_layer_names(if watched { &layers } else { &[] })
                 .enabled_extension_names(&extensions)
                 .push_next(&mut features)
                 .push_next(&mut early);

@@ -421,6 +421,10 @@ impl<'a> Client<'a> {
         }
     }
 
+    pub fn is_running(&self) -> bool {
+        self.running
+    }
+
     /// Makes a swapchain for colour or for depth.
     pub fn chain(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Outcome<Chain> {
         let kind = match harness::is_depth(format) {

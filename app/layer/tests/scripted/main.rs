@@ -18,7 +18,7 @@ use yoro_openxr_stub::script::{At, Event, Fault, Script, State, What};
 
 use client::{Chain, Client, DEPTH, Failure, Layer, Outcome, Part, Planes, Submitted, VULKAN, View};
 use harness::{Gpu, READ, WRITTEN};
-use world::{Seen, allocations, script, watched, with_gpu};
+use world::{Seen, allocations, script, watched, with_gpu, with_unwatched_gpu};
 
 const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const D32: vk::Format = vk::Format::D32_SFLOAT;
@@ -673,4 +673,136 @@ fn no_fault_of_the_runtime_fails_another_call() {
         println!("{own} faults that the application does not notice, {passed} that are its own");
         assert!(own > 20 && passed > 20, "{own} {passed}");
     });
+}
+
+/// What the runtime refuses of the layer's own is submitted again as it was; where it is late, the frame does not wait.
+#[test]
+fn a_refused_or_late_runtime_costs_one_frame() {
+    with_gpu(|gpu| {
+        let cases = [
+            ("xrEndFrame", 3, sys::Result::ERROR_LAYER_INVALID, "xrEndFrame fails with ERROR_LAYER_INVALID"),
+            ("xrEndFrame", 3, sys::Result::ERROR_POSE_INVALID, "xrEndFrame fails with ERROR_POSE_INVALID"),
+            // In each frame those of colour and depth come before.
+            ("xrWaitSwapchainImage", 6, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
+        ];
+        for (call, nth, result, reason) in cases {
+            let fault = Fault { call: call.into(), nth, and_later: false, result: result.into_raw() };
+            let habits = Habits { frames: 4, ..Habits::PLAIN };
+            let seen =
+                watched(Script { faults: vec![fault], ..script() }, || drop(run(gpu, &habits).unwrap()));
+            assert!(seen.violations().is_empty(), "{reason}: {:?}", seen.violations());
+            assert_eq!(seen.counts(), [[3, 1]], "{reason}: {}", seen.said);
+            assert_eq!(seen.said(reason), 1, "{}", seen.said);
+            assert_seen(&seen, &habits, reason);
+        }
+    });
+}
+
+/// Frames until the session is over or lost, at most so many.
+fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, most: u32) -> Outcome<()> {
+    for _ in 0..most {
+        client.poll()?;
+        if client.over {
+            break;
+        }
+        if client.is_running() {
+            frame(client, chains, habits)?;
+        }
+    }
+    Ok(())
+}
+
+/// Session and instance are lost, or end, in every state, and the application goes on with a new session.
+#[test]
+fn losses_in_every_state() {
+    with_gpu(|gpu| {
+        let states = [State::Idle, State::Ready, State::Synchronized, State::Visible, State::Focused];
+        let ends =
+            [What::LoseSession, What::LoseInstance, What::SessionLossPending, What::Exit, What::TakeOff(2)];
+        for (state, end) in states.iter().flat_map(|state| ends.iter().map(move |end| (*state, end))) {
+            // Who is told to begin and to end at the same time cannot do right.
+            if matches!(end, What::Exit | What::TakeOff(_)) && state < State::Synchronized {
+                continue;
+            }
+            let what = format!("{end:?} in {state:?}");
+            let habits = Habits::PLAIN;
+            let event = Event { at: At::State(state), what: end.clone() };
+            let seen = watched(Script { events: vec![event], pictures: None, ..script() }, || {
+                for session in 0..2 {
+                    let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+                    let mut life = || -> Outcome<()> {
+                        client.create_session()?;
+                        client.poll()?;
+                        let chains = Chains::new(&client, &habits)?;
+                        until_over(&mut client, &chains, &habits, 12)
+                    };
+                    if let Err(Failure { result, .. }) = life() {
+                        let loss = [sys::Result::ERROR_SESSION_LOST, sys::Result::ERROR_INSTANCE_LOST];
+                        assert!(session == 0 && loss.contains(&result), "{what}: {result:?}");
+                    }
+                    // A lost one must still be destroyed.
+                    client.destroy_session().unwrap();
+                }
+            });
+            assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+            let counts = seen.counts();
+            let [synthesized, not] = counts.last().unwrap();
+            assert!(*synthesized > 8 && *not == 0, "{what}: {}", seen.said);
+        }
+    });
+}
+
+/// What this process has open, its threads, and its memory in bytes.
+fn resources() -> [usize; 3] {
+    let count = |folder: &str| std::fs::read_dir(folder).unwrap().count();
+    let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
+    let resident: usize = pages.split(' ').nth(1).unwrap().parse().unwrap();
+    [count("/proc/self/fd"), count("/proc/self/task"), resident * 4096]
+}
+
+/// So many frames after a hundred first ones leave nothing behind, and the layer allocates nothing for them.
+fn steady(gpu: &Gpu, count: u32) {
+    let (mut most, mut grown) = (0, 0);
+    let habits = Habits::PLAIN;
+    let seen = watched(Script { pictures: None, log: None, ..script() }, || {
+        let work = |client: &mut Client, chains: &Chains| {
+            frames(client, chains, &habits, 100)?;
+            let before = resources();
+            for _ in 0..count {
+                client.poll()?;
+                let frame = client.begin_frame()?;
+                let first = allocations();
+                let view = client.locate(frame)?[0].unwrap();
+                let located = allocations() - first;
+                let submitted = render(client, chains, &habits, view)?;
+                let layers = [Layer::Projection(vec![submitted])];
+                let first = allocations();
+                client.end_frame(frame, &layers)?;
+                most = most.max(located + allocations() - first);
+            }
+            let after = resources();
+            assert_eq!((before[0], before[1]), (after[0], after[1]), "open files and threads");
+            grown = after[2].saturating_sub(before[2]);
+            Ok(())
+        };
+        with_session(gpu, &habits, work).unwrap();
+    });
+    assert_eq!(seen.counts(), [[u64::from(count) + 100, 0]], "{}", seen.said);
+    println!("{count} frames: {most} allocations in the layer in one of them, {grown} bytes more");
+    // The line of the log, once a second, may take one.
+    assert!(most <= 1, "the layer allocates {most} times in a frame");
+    // Neither an image nor a line for each frame.
+    assert!(grown < 1 << 20, "{grown} bytes more");
+}
+
+#[test]
+fn nothing_grows_from_frame_to_frame() {
+    with_unwatched_gpu(|gpu| steady(gpu, 300));
+}
+
+/// `cargo test -p yoro-layer --test scripted -- --ignored --nocapture`
+#[test]
+#[ignore = "takes a quarter of a minute"]
+fn nothing_grows_in_ten_thousand_frames() {
+    with_unwatched_gpu(|gpu| steady(gpu, 10_000));
 }

@@ -53,6 +53,17 @@ const SETTINGS: &str = "guard_band = '16px'\n\
 
 /// Runs a test body on a device, with settings of its own.
 pub fn with_gpu(body: impl FnOnce(&Gpu)) {
+    settle();
+    harness::with_gpu(Rendering::RenderPasses, body);
+}
+
+/// The same without Vulkan's validation layer.
+pub fn with_unwatched_gpu(body: impl FnOnce(&Gpu)) {
+    settle();
+    harness::with_unwatched_gpu(Rendering::RenderPasses, body);
+}
+
+fn settle() {
     static SETTLED: Once = Once::new();
     SETTLED.call_once(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("layer-settings");
@@ -61,7 +72,6 @@ pub fn with_gpu(body: impl FnOnce(&Gpu)) {
         // SAFETY: Vulkan, which starts threads that may look at the environment, is not loaded yet.
         unsafe { std::env::set_var("XDG_CONFIG_HOME", &folder) };
     });
-    harness::with_gpu(Rendering::RenderPasses, body);
 }
 
 /// The formats of a runtime on Vulkan: R8G8B8A8_SRGB, _UNORM, B8G8R8A8_SRGB, _UNORM, and depth in 16, 32 and 32+8 bits.
