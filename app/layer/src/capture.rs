@@ -1,7 +1,6 @@
 //! Pictures of what the runtime gets, for tests.
 
 use ash::vk;
-use yoro::eyes::Eye;
 
 use crate::geometry::Rectangle;
 use crate::say;
@@ -11,19 +10,19 @@ use crate::vulkan::{Image, Synthesizer};
 /// The frame of a session that pictures are taken of.
 pub const FRAME: u64 = 20;
 
-/// Writes an eye's part of an image to `left.png` or `right.png` of the folder that the settings name, if they do.
+/// Writes a part of an image to a PNG of this name in the folder that the settings name, if they do.
 ///
 /// # Safety
 /// As [`Synthesizer::read`].
 pub unsafe fn write(
     session: &Session,
     synthesizer: &mut Synthesizer,
-    eye: Eye,
+    name: &str,
     image: Image,
     part: Rectangle,
 ) {
     let Some(folder) = &session.instance.settings.capture else { return };
-    let path = folder.join(format!("{}.png", eye.name()));
+    let path = folder.join(format!("{name}.png"));
     // SAFETY: promised by the caller.
     let written = match unsafe { synthesizer.read(image, part) } {
         Ok(bytes) => encode(image.format, part.size, bytes),
@@ -31,7 +30,7 @@ pub unsafe fn write(
     };
     let written = written.and_then(|png| yoro_files::write(&path, &png).map_err(|error| error.to_string()));
     if let Err(error) = written {
-        say(format_args!("no picture of the {} eye: {error}", eye.name()));
+        say(format_args!("no picture {name}.png: {error}"));
     }
 }
 

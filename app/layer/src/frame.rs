@@ -324,8 +324,9 @@ impl Frames {
             Some(synthesizer) => unsafe {
                 let result = synthesizer.synthesize(&job);
                 if let (Ok(()), true) = (result, self.counts.frames == capture::FRAME) {
-                    capture::write(session, synthesizer, dominant, color_image, crop);
-                    capture::write(session, synthesizer, other, target_image, whole);
+                    capture::write(session, synthesizer, "rendered", color_image, part);
+                    capture::write(session, synthesizer, dominant.name(), color_image, crop);
+                    capture::write(session, synthesizer, other.name(), target_image, whole);
                 }
                 if let Some(time) = synthesizer.time() {
                     self.counts.gpu += time;
@@ -431,7 +432,7 @@ impl Frames {
             let layer = view.sub_image.image_array_index;
             let image = Image { image, format: content.format, size: content.size, layer };
             // SAFETY: as in `synthesize`.
-            unsafe { capture::write(session, &mut synthesizer, eye, image, part) };
+            unsafe { capture::write(session, &mut synthesizer, eye.name(), image, part) };
         }
     }
 

@@ -167,7 +167,9 @@ impl Wanted {
             wanted.web |= package == "yoro-app" && name.starts_with("web::");
             wanted.hello_xr |= package == "yoro-layer" && name.contains("hello_xr");
             wanted.shader_compilers |= package == "yoro-tests" && name.starts_with("shader_cost::");
-            wanted.vulkan |= package == "yoro" || (package == "yoro-tests" && name.starts_with("vulkan::"));
+            wanted.vulkan |= package == "yoro"
+                || package == "yoro-layer"
+                || (package == "yoro-tests" && name.starts_with("vulkan::"));
         }
         wanted
     }

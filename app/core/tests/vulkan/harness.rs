@@ -62,6 +62,7 @@ pub fn with_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
 }
 
 /// The same without the validation layer, which keeps something of every submission: for what must not grow.
+#[allow(dead_code, reason = "for the layer's tests, which share this")]
 pub fn with_unwatched_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
     with(rendering, false, body);
 }
