@@ -1,5 +1,7 @@
-//! The layer between Khronos's hello_xr, as Debian has it, and Monado.
+//! The layer between Khronos's hello_xr, as Debian has it, and Monado, by itself and with Khronos's validation layer.
 
+use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -21,6 +23,11 @@ fn programs() -> Option<PathBuf> {
     );
     programs
 }
+
+/// Khronos's layer that checks what applications and other layers call.
+const VALIDATION: &str = "XR_APILAYER_LUNARG_core_validation";
+/// This package's layer for measurements.
+const MEASURED: &str = "XR_APILAYER_YORO_measured";
 
 /// Killed when it is dropped.
 struct Running(Child);
@@ -57,44 +64,35 @@ impl Monado {
             assert!(start.elapsed() < LIMIT, "Monado's service does not begin");
             thread::sleep(Duration::from_millis(50));
         }
-        let library = std::env::current_exe().unwrap().with_file_name("libyoro_layer.so");
-        let manifest = yoro_layer::manifest(&library, false);
-        fs::write(folder.path().join(yoro_layer::MANIFEST), manifest).unwrap();
-        Monado { programs, folder, _service: service }
+        let monado = Monado { programs, folder, _service: service };
+        let folder = std::env::current_exe().unwrap().parent().unwrap().to_owned();
+        let manifest = yoro_layer::manifest(&folder.join("libyoro_layer.so"), false);
+        fs::write(monado.folder.path().join(yoro_layer::MANIFEST), manifest).unwrap();
+        monado.add(MEASURED, &folder.join("../examples/libmeasured.so"));
+        monado.add(VALIDATION, &monado.validation());
+        monado
     }
 
-    /// Runs hello_xr through the layer, at one moment of the world's, until there are pictures of both eyes in the folder,
-    /// and so many frames were synthesized; its output.
-    fn hello(&self, views: &str, time: &str, pictures: &Path, frames: u64) -> String {
-        fs::create_dir(pictures).unwrap();
-        let log = pictures.join("log");
-        let file = fs::File::create(&log).unwrap();
-        let child = Command::new(self.programs.join("hello_xr"))
-            .args(["-g", "Vulkan2", "-vc", views])
-            .env("XDG_RUNTIME_DIR", self.folder.path())
-            .env("XDG_CONFIG_HOME", self.folder.path())
-            .env("XR_API_LAYER_PATH", self.folder.path())
-            .env("XR_ENABLE_API_LAYERS", yoro_layer::NAME)
-            .env("YORO_LAYER_TIME", time)
-            .env("YORO_LAYER_CAPTURE", pictures)
-            // It ends with the first key that is pressed, or with the end of its input.
-            .stdin(Stdio::piped())
-            .stdout(file.try_clone().unwrap())
-            .stderr(file)
-            .spawn()
-            .unwrap();
-        let mut child = Running(child);
-        let text = || String::from_utf8_lossy(&fs::read(&log).unwrap()).into_owned();
-        let start = Instant::now();
-        let done = |text: &str| {
-            ["left.png", "right.png"].iter().all(|name| pictures.join(name).exists())
-                && synthesized(text) >= frames
-        };
-        while !done(&text()) {
-            assert_eq!(child.0.try_wait().unwrap(), None, "hello_xr has ended: {}", text());
-            assert!(start.elapsed() < LIMIT, "hello_xr takes too long: {}", text());
-            thread::sleep(Duration::from_millis(100));
-        }
+    /// Validation's library, which may not be there.
+    fn validation(&self) -> PathBuf {
+        let libraries = self.programs.join("root/usr/lib/x86_64-linux-gnu");
+        libraries.join("openxr/1/api_layers/libXrApiLayer_core_validation.so")
+    }
+
+    /// Puts another layer where the loader finds it.
+    fn add(&self, name: &str, library: &Path) {
+        let manifest = serde_json::json!({ "file_format_version": "1.0.0", "api_layer": {
+            "name": name, "library_path": library, "api_version": "1.1", "implementation_version": "1",
+            "description": name,
+        }});
+        fs::write(self.folder.path().join(format!("{name}.json")), manifest.to_string()).unwrap();
+    }
+
+    /// Runs hello_xr as it is told until it is `done` by its output and the files in the folder; its output.
+    fn hello(&self, run: &Hello, folder: &Path, done: impl Fn(&str) -> bool) -> String {
+        fs::create_dir(folder).unwrap();
+        let mut child = self.start_hello(run, folder, done);
+        let text = || output(folder);
         drop(child.0.stdin.take());
         let start = Instant::now();
         while child.0.try_wait().unwrap().is_none() {
@@ -104,6 +102,54 @@ impl Monado {
         assert!(child.0.wait().unwrap().success(), "{}", text());
         text()
     }
+
+    /// The same without ending it.
+    fn start_hello(&self, run: &Hello, folder: &Path, done: impl Fn(&str) -> bool) -> Running {
+        let file = fs::File::create(folder.join("log")).unwrap();
+        let child = Command::new(self.programs.join("hello_xr"))
+            .args(["-g", "Vulkan2", "-vc", run.views])
+            .env("XDG_RUNTIME_DIR", self.folder.path())
+            .env("XDG_CONFIG_HOME", self.folder.path())
+            .env("XR_API_LAYER_PATH", self.folder.path())
+            .env("XR_ENABLE_API_LAYERS", run.layers.join(":"))
+            .env("XR_CORE_VALIDATION_EXPORT_TYPE", "text")
+            .env("XR_CORE_VALIDATION_FILE_NAME", folder.join("validation"))
+            .envs(run.environment.iter().map(|(name, value)| (*name, value)))
+            // It ends with the first key that is pressed, or with the end of its input.
+            .stdin(Stdio::piped())
+            .stdout(file.try_clone().unwrap())
+            .stderr(file)
+            .spawn()
+            .unwrap();
+        let mut child = Running(child);
+        let text = || output(folder);
+        let start = Instant::now();
+        while !done(&text()) {
+            assert_eq!(child.0.try_wait().unwrap(), None, "hello_xr has ended: {}", text());
+            assert!(start.elapsed() < LIMIT, "hello_xr takes too long: {}", text());
+            thread::sleep(Duration::from_millis(100));
+        }
+        child
+    }
+}
+
+/// A run of hello_xr.
+struct Hello<'a> {
+    /// `Mono` or `Stereo`.
+    views: &'static str,
+    /// Names of layers, the application's side first.
+    layers: &'a [&'a str],
+    environment: Vec<(&'static str, OsString)>,
+}
+
+/// What it has written so far.
+fn output(folder: &Path) -> String {
+    String::from_utf8_lossy(&fs::read(folder.join("log")).unwrap()).into_owned()
+}
+
+/// Whether there are pictures of both eyes in a folder.
+fn has_pictures(folder: &Path) -> bool {
+    ["left.png", "right.png"].iter().all(|name| folder.join(name).exists())
 }
 
 /// How many frames the lines of the log say were synthesized.
@@ -132,24 +178,29 @@ struct Run {
     stereo: PathBuf,
 }
 
-fn run_both(monado: &Monado, folder: &Path) -> Run {
+/// With a size per eye, at that in place of Monado's.
+fn run_both(monado: &Monado, folder: &Path, size: Option<&str>) -> Run {
     fs::create_dir(folder).unwrap();
     // Any moment of the monotonic clock since the service began: what CLOCK_MONOTONIC is now, from the time since boot.
     let uptime = fs::read_to_string("/proc/uptime").unwrap();
     let seconds: f64 = uptime.split(' ').next().unwrap().parse().unwrap();
     let time = format!("{}", (seconds * 1e9) as u64);
     let [mono, stereo] = ["mono", "stereo"].map(|name| folder.join(name));
-    let two = monado.hello("Stereo", &time, &stereo, 0);
-    let one = monado.hello("Mono", &time, &mono, 100);
+    let run = |views, folder: &Path, frames| {
+        let mut environment: Vec<(&'static str, OsString)> =
+            vec![("YORO_LAYER_TIME", time.clone().into()), ("YORO_LAYER_CAPTURE", folder.into())];
+        environment.extend(size.map(|size| ("YORO_MEASURED_SIZE", size.into())));
+        let layers = [yoro_layer::NAME, MEASURED];
+        let run = Hello { views, layers: &layers[..1 + usize::from(size.is_some())], environment };
+        monado.hello(&run, folder, |log| has_pictures(folder) && synthesized(log) >= frames)
+    };
+    let (two, one) = (run("Stereo", &stereo, 0), run("Mono", &mono, if size.is_some() { 0 } else { 100 }));
     Run { one, two, mono, stereo }
 }
 
-/// An unmodified application renders one view, and the runtime gets two: the one it would have rendered itself, and
-/// one that is much closer to the other one that it would have rendered than the same image for both eyes is.
-#[test]
-fn monado_gets_two_views_of_one_that_hello_xr_renders() {
-    let Some(programs) = programs() else { return };
-    let monado = Monado::start(programs);
+/// Runs hello_xr with one view and with two, until both have seen the same; how the dominant eye's images, the other's, and
+/// the dominant one's and the other's compare, in dB.
+fn compared(monado: &Monado, size: Option<&str>) -> ([f64; 3], Run) {
     // hello_xr draws a cube at the origin of LOCAL space, which Monado puts where its swaying head is when a session begins:
     // around the eyes, where it is not seen, or beside them. Only runs that have it in the same place compare.
     let compare = |run: &Run| {
@@ -158,11 +209,20 @@ fn monado_gets_two_views_of_one_that_hello_xr_renders() {
         [psnr(&mono_right, &right), psnr(&mono_left, &left), psnr(&mono_right, &left)]
     };
     let agrees = |[own, made, same]: [f64; 3]| own > 35.0 && made > same + 6.0;
-    let tries = (0..TRIES).map(|i| run_both(&monado, &monado.folder.path().join(i.to_string())));
+    let tries = (0..TRIES).map(|i| run_both(monado, &monado.folder.path().join(i.to_string()), size));
     let mut compared = tries.map(|run| (compare(&run), run));
     let first = compared.next().unwrap();
     let found = if agrees(first.0) { None } else { compared.find(|(db, _)| agrees(*db)) };
-    let ([own, made, same], Run { one, two, .. }) = found.unwrap_or(first);
+    found.unwrap_or(first)
+}
+
+/// An unmodified application renders one view, and the runtime gets two: the one it would have rendered itself, and
+/// one that is much closer to the other one that it would have rendered than the same image for both eyes is.
+#[test]
+fn monado_gets_two_views_of_one_that_hello_xr_renders() {
+    let Some(programs) = programs() else { return };
+    let monado = Monado::start(programs);
+    let ([own, made, same], Run { one, two, .. }) = compared(&monado, None);
     for log in [&one, &two] {
         assert!(log.contains("->XR_SESSION_STATE_FOCUSED"), "{log}");
         assert!(!log.contains("VUID-"), "{log}");
@@ -185,6 +245,121 @@ fn monado_gets_two_views_of_one_that_hello_xr_renders() {
     // Angles are rounded on their way: a silhouette's pixel may fall to the other side.
     assert!(own > 35.0, "the dominant eye's image has changed: {own} dB");
     assert!(made > same + 6.0, "{made} dB, and the same image {same} dB");
+}
+
+/// Khronos's validation layer has nothing to say about what the application calls of the layer, nor about what the layer calls
+/// of the runtime. An application that is killed leaves nothing behind.
+#[test]
+fn hello_xr_is_valid_above_and_below_the_layer() {
+    let Some(programs) = programs() else { return };
+    let monado = Monado::start(programs);
+    let folder = monado.folder.path();
+    if monado.validation().exists() {
+        for layers in [[VALIDATION, yoro_layer::NAME], [yoro_layer::NAME, VALIDATION]] {
+            let run = Hello { views: "Mono", layers: &layers, environment: Vec::new() };
+            let files = folder.join(layers[0]);
+            let log = monado.hello(&run, &files, |log| synthesized(log) >= 10);
+            let said = fs::read_to_string(files.join("validation")).unwrap();
+            assert!(said.contains("Core Validation Layer will be destroyed"), "{said}");
+            let worse = |line: &&str| line.contains("[VALID_") && !line.contains("[VALID_DEBUG");
+            assert_eq!(said.lines().find(worse), None, "{layers:?}: {log}");
+        }
+    } else {
+        println!("SKIPPED: Khronos's validation layer for OpenXR is not here");
+    }
+
+    let temporary = folder.join("temporary");
+    fs::create_dir(&temporary).unwrap();
+    let left = || -> BTreeSet<PathBuf> {
+        let folders = [folder, &temporary, Path::new("/dev/shm")].map(|folder| fs::read_dir(folder).unwrap());
+        folders.into_iter().flatten().map(|entry| entry.unwrap().path()).collect()
+    };
+    let environment = vec![("TMPDIR", temporary.clone().into_os_string())];
+    let run = Hello { views: "Mono", layers: &[yoro_layer::NAME], environment };
+    let killed = folder.join("killed");
+    fs::create_dir(&killed).unwrap();
+    let before = left();
+    let child = monado.start_hello(&run, &killed, |log| synthesized(log) >= 10);
+    drop(child);
+    assert_eq!(left().difference(&before).next(), None);
+    monado.hello(&run, &folder.join("next"), |log| synthesized(log) >= 10);
+}
+
+/// The middle one.
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// The number between two texts, in each line that has both.
+fn numbers<'a>(log: &'a str, before: &'a str, after: &'a str) -> impl Iterator<Item = f64> + 'a {
+    log.lines().filter_map(move |line| line.split_once(before)?.1.split_once(after)?.0.parse().ok())
+}
+
+/// hello_xr's frame time with two views and with one and the layer, in turn, and a picture of what there is to see:
+/// `cargo test --release -p yoro-layer --test hello_xr -- --ignored --nocapture`, after
+/// `cargo build --release -p yoro-layer --examples`.
+#[test]
+#[ignore = "measures for some minutes"]
+fn hello_xr_measured() {
+    const ROUNDS: usize = 5;
+    let Some(programs) = programs() else { return };
+    let monado = Monado::start(programs);
+    for (size, seconds) in [("320x240", 5), ("1680x1760", 12)] {
+        let (mut times, mut synthesis) = ([vec![], vec![]], vec![]);
+        for round in 0..ROUNDS {
+            let both = [("Stereo", &[MEASURED][..]), ("Mono", &[yoro_layer::NAME, MEASURED])];
+            for (i, (views, layers)) in both.into_iter().enumerate() {
+                let environment =
+                    vec![("YORO_MEASURED_SIZE", size.into()), ("VK_LOADER_LAYERS_DISABLE", "~all~".into())];
+                let (run, start) = (Hello { views, layers, environment }, Instant::now());
+                let files = monado.folder.path().join(format!("{size}-{round}-{i}"));
+                let log = monado.hello(&run, &files, |_| start.elapsed() > Duration::from_secs(seconds));
+                times[i].push(numbers(&log, "measured: ", " ms").next().expect(&log));
+                synthesis.extend(numbers(&log, " synthesized in ", " ms of GPU time"));
+            }
+        }
+        println!("{size}, two views, one and the layer: {times:.2?}");
+        let [two, one] = times.map(|mut times| median(&mut times));
+        let synthesis = median(&mut synthesis);
+        println!("{size}: {two:.2} ms, {one:.2} ms (synthesis {synthesis:.2} ms), ratio {:.2}", one / two);
+    }
+    let (db, run) = compared(&monado, Some("1680x1760"));
+    println!("the dominant eye, synthesized, the same image for both: {db:.2?} dB");
+    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hello-xr");
+    fs::create_dir_all(&place).unwrap();
+    let [rendered, left, right] = ["rendered", "left", "right"].map(|name| picture(&run.mono, name));
+    let [own_left, own_right] = ["left", "right"].map(|name| picture(&run.stereo, name));
+    let mut error = left.clone();
+    for (error, own) in error.iter_mut().zip(own_left.iter()) {
+        *error = error.abs_diff(*own).saturating_mul(8);
+    }
+    let all = [
+        ("rendered", &rendered),
+        ("left", &left),
+        ("right", &right),
+        ("own-left", &own_left),
+        ("own-right", &own_right),
+        ("error", &error),
+    ];
+    for (name, picture) in all {
+        picture.save(place.join(format!("{name}.png"))).unwrap();
+    }
+    // In a row: what is rendered, what both eyes get, and the error.
+    const HEIGHT: u32 = 440;
+    let small = [&rendered, &left, &right, &error].map(|picture| {
+        let width = picture.width() * HEIGHT / picture.height();
+        image::imageops::resize(picture, width, HEIGHT, image::imageops::FilterType::Triangle)
+    });
+    let width = small.iter().map(|picture| picture.width() + 8).sum::<u32>() - 8;
+    let mut row = image::RgbImage::from_pixel(width, HEIGHT, image::Rgb([255; 3]));
+    let mut x = 0;
+    for picture in &small {
+        image::imageops::replace(&mut row, picture, x, 0);
+        x += i64::from(picture.width()) + 8;
+    }
+    row.save(place.join("row.png")).unwrap();
+    println!("{}", place.display());
 }
 
 /// In dB, over all channels. Not the metrics of yoro-lab: a layer's tests need not wait for all that comes with them.
