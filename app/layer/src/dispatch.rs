@@ -56,6 +56,26 @@ macro_rules! table {
     };
 }
 
+impl Dispatch {
+    /// All images of a swapchain.
+    ///
+    /// # Errors
+    /// What xrEnumerateSwapchainImages returns.
+    ///
+    /// # Safety
+    /// The swapchain is live, and `empty` is the structure for images of its session.
+    pub unsafe fn swapchain_images<T: Copy>(&self, swapchain: sys::Swapchain, empty: T) -> XrResult<Vec<T>> {
+        let enumerate = self.enumerate_swapchain_images;
+        let mut count = 0;
+        // SAFETY: promised by the caller; without room only the number is told.
+        check(unsafe { enumerate(swapchain, 0, &mut count, std::ptr::null_mut()) })?;
+        let mut images = vec![empty; count as usize];
+        // SAFETY: promised by the caller, and room for as many as is said.
+        check(unsafe { enumerate(swapchain, count, &mut count, images.as_mut_ptr().cast()) })?;
+        Ok(images)
+    }
+}
+
 /// A literal of the table as C has it.
 const fn name(with_nul: &str) -> &CStr {
     match CStr::from_bytes_with_nul(with_nul.as_bytes()) {

@@ -10,11 +10,11 @@ use sys::{ViewConfigurationType as ViewsOf, pfn};
 use crate::dispatch::{Dispatch, XrResult, check};
 use crate::frame;
 use crate::geometry::{xr_fov, xr_pose};
+use crate::graphics::Binding;
 use crate::instance::Instance;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::swapchain::{Content, Swapchain};
-use crate::vulkan::Binding;
 use crate::{lock, say};
 
 /// The application's objects. They are few: a list is as fast as a map.
@@ -23,7 +23,8 @@ static SESSIONS: Mutex<Vec<Arc<Session>>> = Mutex::new(Vec::new());
 static SWAPCHAINS: Mutex<Vec<Arc<Swapchain>>> = Mutex::new(Vec::new());
 
 const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
-const VULKAN: [&CStr; 2] = [c"XR_KHR_vulkan_enable", c"XR_KHR_vulkan_enable2"];
+const GRAPHICS: [&CStr; 4] =
+    [c"XR_KHR_vulkan_enable", c"XR_KHR_vulkan_enable2", c"XR_KHR_opengl_enable", c"XR_KHR_opengl_es_enable"];
 
 /// Runs what a C function does; no panic crosses into the caller.
 fn shielded(work: impl FnOnce() -> XrResult<sys::Result>) -> sys::Result {
@@ -129,9 +130,9 @@ unsafe fn create_instance(
         for error in errors {
             say(format_args!("{error}"));
         }
-        let serves = VULKAN.into_iter().any(enables);
+        let serves = GRAPHICS.into_iter().any(enables);
         if !serves {
-            say(format_args!("{name}: passed through: it does not use Vulkan"));
+            say(format_args!("{name}: passed through: it uses neither Vulkan nor OpenGL"));
         }
         lock(&INSTANCES).push(Arc::new(Instance::new(handle, dispatch, settings, name, serves)));
         Ok(result)
@@ -336,14 +337,7 @@ unsafe extern "system" fn create_session(
         // SAFETY: the application's call.
         unsafe {
             let result = check((instance.next.create_session)(handle, info, created))?;
-            let mut binding = None;
-            let mut structure = (*info).next.cast::<sys::BaseInStructure>();
-            while let Some(header) = structure.as_ref() {
-                if header.ty == sys::GraphicsBindingVulkanKHR::TYPE {
-                    binding = Some(Binding::new(&*structure.cast::<sys::GraphicsBindingVulkanKHR>()));
-                }
-                structure = header.next;
-            }
+            let binding = Binding::of(&*info);
             let session = Arc::new(Session::new(*created, instance, binding, (*info).system_id));
             lock(&SESSIONS).push(session);
             Ok(result)
@@ -499,13 +493,14 @@ unsafe extern "system" fn create_swapchain(
             let asked = *info;
             let attached = sys::SwapchainUsageFlags::COLOR_ATTACHMENT
                 | sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT;
-            let readable = session.binding.is_some()
-                && asked.usage_flags.intersects(attached)
-                && (asked.sample_count, asked.face_count) == (1, 1)
-                && !asked.create_flags.contains(sys::SwapchainCreateFlags::PROTECTED_CONTENT);
+            let binding = session.binding.filter(|_| {
+                asked.usage_flags.intersects(attached)
+                    && (asked.sample_count, asked.face_count) == (1, 1)
+                    && !asked.create_flags.contains(sys::SwapchainCreateFlags::PROTECTED_CONTENT)
+            });
             let mut result = sys::Result::ERROR_FEATURE_UNSUPPORTED;
             let mut content = None;
-            if readable {
+            if let Some(binding) = binding {
                 let mut usage = asked.usage_flags | sys::SwapchainUsageFlags::SAMPLED;
                 if session.instance.settings.capture.is_some() {
                     usage |= sys::SwapchainUsageFlags::TRANSFER_SRC;
@@ -513,7 +508,7 @@ unsafe extern "system" fn create_swapchain(
                 let more = sys::SwapchainCreateInfo { usage_flags: usage, ..asked };
                 result = (next.create_swapchain)(handle, &more, created);
                 if check(result).is_ok() {
-                    content = Content::of(next, *created, &asked).ok();
+                    content = Content::of(next, &binding, *created, &asked).ok();
                 }
             }
             if check(result).is_err() {

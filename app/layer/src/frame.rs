@@ -4,17 +4,16 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use ash::vk;
 use openxr_sys as sys;
 use sys::Handle as _;
 use yoro::eyes::Eye;
 
 use crate::dispatch::check;
 use crate::geometry::{Rectangle, Submitted, SubmittedDepth, frustum, pose, split, xr_fov, xr_pose};
+use crate::graphics::{Binding, Job, PATIENCE, Synthesizer};
 use crate::reason::Reason;
 use crate::session::Session;
 use crate::swapchain::{Content, Swapchain};
-use crate::vulkan::{Image, Job, PATIENCE, Synthesizer};
 use crate::{capture, lock, say};
 
 /// The two views of a layer.
@@ -26,7 +25,8 @@ pub struct Frames {
     layers: Vec<*const sys::CompositionLayerBaseHeader>,
     projections: Vec<sys::CompositionLayerProjection>,
     views: Vec<Views>,
-    synthesizer: Option<Synthesizer>,
+    /// Made with the first frame that needs it; why it cannot be is found out once.
+    synthesizer: Option<Result<Box<dyn Synthesizer>, Reason>>,
     target: Option<Target>,
     /// [`Reason::bit`] of those that the log has.
     told: u32,
@@ -36,7 +36,8 @@ pub struct Frames {
 }
 
 // SAFETY: the pointers in the lists are to the application's structures and to one another, are used only during the call
-// of xrEndFrame that has filled them, and cleared before the next use.
+// of xrEndFrame that has filled them, and cleared before the next use. A synthesizer's objects are used by one thread at a
+// time, and those of OpenGL only while their context is current there.
 unsafe impl Send for Frames {}
 
 /// How the frames of a session went.
@@ -193,7 +194,7 @@ fn find(session: &Session, handle: sys::Swapchain, what: &'static str) -> Result
 }
 
 /// What is in the swapchain, and the image that the application has just released.
-fn held<'a>(swapchain: &'a Swapchain, what: &'static str) -> Result<(&'a Content, vk::Image), Reason> {
+fn held<'a>(swapchain: &'a Swapchain, what: &'static str) -> Result<(&'a Content, u64), Reason> {
     match (&swapchain.content, swapchain.held()) {
         (None, _) => Err(Reason::Unreadable(what)),
         (_, None) => Err(Reason::Old(what)),
@@ -266,7 +267,7 @@ impl Frames {
     ) -> Result<Views, Reason> {
         // SAFETY: promised by the caller.
         let info = unsafe { depth_of(view) }.ok_or(Reason::NoDepth)?;
-        let binding = session.binding.ok_or(Reason::NoVulkan)?;
+        let binding = session.binding.ok_or(Reason::NoGraphics)?;
         let offer = lock(&session.offer).ok_or(Reason::NoViews)?.map_err(Reason::Views)?;
         let color = find(session, view.sub_image.swapchain, "colour")?;
         let depth = find(session, info.sub_image.swapchain, "depth")?;
@@ -291,57 +292,45 @@ impl Frames {
         )
         .map_err(Reason::Geometry)?;
 
-        if self.synthesizer.is_none() {
-            // SAFETY: the application keeps its device until the session is destroyed, and this is dropped before.
-            self.synthesizer = Some(unsafe { Synthesizer::new(binding)? });
-        }
-        let target = self.target(session, color)?;
+        self.synthesizer(binding)?;
+        let target = self.target(session, &binding, color)?;
         let target_image = target.acquire(session)?;
-        let (handle, format) = (target.handle, target.content.format);
-        let target_image = Image { image: target_image, format, size: target.content.size, layer: 0 };
-        let image = |image: vk::Image, content: &Content, layer: u32| Image {
-            image,
-            format: content.format,
-            size: content.size,
-            layer,
-        };
-        let color_image = image(color_image, color, view.sub_image.image_array_index);
+        let target_image = target.content.image(target_image, 0);
+        let handle = target.handle;
+        let color_image = color.image(color_image, view.sub_image.image_array_index);
+        let from_top = binding.rows_from_top();
         let job = Job {
             color: color_image,
-            depth: image(depth_image, depth, info.sub_image.image_array_index),
-            origin: part.origin,
-            split: &split,
+            depth: depth.image(depth_image, info.sub_image.image_array_index),
+            source: part.part(split.source, from_top),
+            warp: &split.warp,
             target: target_image,
         };
         let whole = Rectangle { origin: [0; 2], size: split.crop.size };
-        let crop = split.crop.origin;
-        let crop =
-            Rectangle { origin: [part.origin[0] + crop[0], part.origin[1] + crop[1]], size: split.crop.size };
+        let crop = part.part(split.crop, from_top);
         let (dominant, other) = (offer.eyes.dominant, offer.eyes.dominant.other());
-        let result = match &mut self.synthesizer {
-            // SAFETY: the application's side has these images: it has not released them, or the layer has kept that back.
-            // In xrEndFrame the application lets nobody else use the queue (XR_KHR_vulkan_enable).
-            Some(synthesizer) => unsafe {
-                let result = synthesizer.synthesize(&job);
-                if let (Ok(()), true) = (result, self.counts.frames == capture::FRAME) {
-                    capture::write(session, synthesizer, "rendered", color_image, part);
-                    capture::write(session, synthesizer, dominant.name(), color_image, crop);
-                    capture::write(session, synthesizer, other.name(), target_image, whole);
-                }
-                if let Some(time) = synthesizer.time() {
-                    self.counts.gpu += time;
-                    self.counts.timed += 1;
-                }
-                result
-            },
-            None => Err(Reason::NoVulkan),
+        let captures = self.counts.frames == capture::FRAME;
+        let synthesizer = self.synthesizer(binding)?;
+        // SAFETY: the application's side has these images: it has not released them, or the layer has kept that back.
+        // In xrEndFrame the application lets nobody else use the queue (XR_KHR_vulkan_enable) or the context.
+        let result = unsafe {
+            let result = synthesizer.synthesize(&job);
+            if result.is_ok() && captures {
+                capture::write(session, synthesizer, "rendered", color_image, part);
+                capture::write(session, synthesizer, dominant.name(), color_image, crop);
+                capture::write(session, synthesizer, other.name(), target_image, whole);
+            }
+            result
         };
         // Released even if nothing is in it: it is not shown then. What cannot be released is of no use any more.
         if let Err(reason) = release(session, handle) {
             self.drop_target(session);
             return Err(reason);
         }
-        result?;
+        if let Some(time) = result? {
+            self.counts.gpu += time;
+            self.counts.timed += 1;
+        }
         let eye = |eye: Eye, sub_image| sys::CompositionLayerProjectionView {
             ty: sys::CompositionLayerProjectionView::TYPE,
             next: std::ptr::null(),
@@ -355,24 +344,36 @@ impl Frames {
         Ok(views)
     }
 
+    /// The pipeline, made if there is none yet.
+    fn synthesizer(&mut self, binding: Binding) -> Result<&mut dyn Synthesizer, Reason> {
+        // SAFETY: the application keeps its device or context until the session is destroyed, and this is dropped before.
+        match self.synthesizer.get_or_insert_with(|| unsafe { binding.synthesizer() }) {
+            Ok(synthesizer) => Ok(synthesizer.as_mut()),
+            Err(reason) => Err(reason.clone()),
+        }
+    }
+
     /// A swapchain for the other eye, like the application's.
-    fn target(&mut self, session: &Session, color: &Content) -> Result<&mut Target, Reason> {
+    fn target(
+        &mut self,
+        session: &Session,
+        binding: &Binding,
+        color: &Content,
+    ) -> Result<&mut Target, Reason> {
         let fits = |target: &Target| {
             let size = target.content.size;
             target.content.format == color.format && size[0] >= color.size[0] && size[1] >= color.size[1]
         };
         if !self.target.as_ref().is_some_and(fits) {
             self.drop_target(session);
-            self.target = Some(Target::new(session, color)?);
+            self.target = Some(Target::new(session, binding, color)?);
         }
-        self.target.as_mut().ok_or(Reason::NoVulkan)
+        self.target.as_mut().ok_or(Reason::NoGraphics)
     }
 
     fn drop_target(&mut self, session: &Session) {
         if let Some(old) = self.target.take() {
-            if let Some(synthesizer) = &mut self.synthesizer {
-                synthesizer.forget(&old.content.images);
-            }
+            self.forget(&old.content);
             // SAFETY: the layer's own, whose images no command uses any more.
             unsafe { (session.instance.next.destroy_swapchain)(old.handle) };
         }
@@ -422,23 +423,24 @@ impl Frames {
         let Some(layer) = layer else { return };
         // SAFETY: a layer of two views.
         let views = unsafe { std::slice::from_raw_parts(layer.views, 2) };
-        // SAFETY: as in `synthesize`.
-        let Ok(mut synthesizer) = (unsafe { Synthesizer::new(binding) }) else { return };
+        // SAFETY: dropped at the end of this call.
+        let Ok(mut synthesizer) = (unsafe { binding.synthesizer() }) else { return };
         for (eye, view) in Eye::BOTH.into_iter().zip(views) {
             let swapchain = find(session, view.sub_image.swapchain, "colour");
             let Ok(swapchain) = swapchain else { continue };
             let Ok((content, image)) = held(&swapchain, "colour") else { continue };
             let Ok(part) = rectangle(&view.sub_image, content) else { continue };
             let layer = view.sub_image.image_array_index;
-            let image = Image { image, format: content.format, size: content.size, layer };
             // SAFETY: as in `synthesize`.
-            unsafe { capture::write(session, &mut synthesizer, eye.name(), image, part) };
+            unsafe {
+                capture::write(session, synthesizer.as_mut(), eye.name(), content.image(image, layer), part)
+            };
         }
     }
 
     /// Forgets images that are about to be destroyed.
     pub fn forget(&mut self, content: &Content) {
-        if let Some(synthesizer) = &mut self.synthesizer {
+        if let Some(Ok(synthesizer)) = &mut self.synthesizer {
             synthesizer.forget(&content.images);
         }
     }
@@ -464,7 +466,7 @@ fn same(view: &sys::CompositionLayerProjectionView) -> Views {
 }
 
 impl Target {
-    fn new(session: &Session, color: &Content) -> Result<Target, Reason> {
+    fn new(session: &Session, binding: &Binding, color: &Content) -> Result<Target, Reason> {
         let mut usage = sys::SwapchainUsageFlags::COLOR_ATTACHMENT | sys::SwapchainUsageFlags::SAMPLED;
         if session.instance.settings.capture.is_some() {
             usage |= sys::SwapchainUsageFlags::TRANSFER_SRC;
@@ -474,7 +476,7 @@ impl Target {
             next: std::ptr::null(),
             create_flags: sys::SwapchainCreateFlags::EMPTY,
             usage_flags: usage,
-            format: i64::from(color.format.as_raw()),
+            format: color.format,
             sample_count: 1,
             width: color.size[0],
             height: color.size[1],
@@ -487,7 +489,7 @@ impl Target {
         // SAFETY: a live session, and a valid description.
         check(unsafe { (next.create_swapchain)(session.handle, &info, &mut handle) })
             .map_err(|result| Reason::Runtime("xrCreateSwapchain", result))?;
-        match Content::of(next, handle, &info) {
+        match Content::of(next, binding, handle, &info) {
             Ok(content) => Ok(Target { handle, content, acquired: None }),
             Err(result) => {
                 // SAFETY: made above.
@@ -498,7 +500,7 @@ impl Target {
     }
 
     /// An image to write to.
-    fn acquire(&mut self, session: &Session) -> Result<vk::Image, Reason> {
+    fn acquire(&mut self, session: &Session) -> Result<u64, Reason> {
         let next = &session.instance.next;
         let index = match self.acquired {
             Some(index) => index,

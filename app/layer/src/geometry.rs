@@ -152,6 +152,18 @@ pub struct Rectangle {
     pub size: [u32; 2],
 }
 
+impl Rectangle {
+    /// A part of it, counted from its upper left corner, as a rectangle of the image that both are in. With rows that are not
+    /// counted from the top, as in OpenGL, the corners of both rectangles in the image are the lower left ones.
+    pub fn part(&self, part: Rectangle, rows_from_top: bool) -> Rectangle {
+        let row = match rows_from_top {
+            true => part.origin[1],
+            false => self.size[1] - part.origin[1] - part.size[1],
+        };
+        Rectangle { origin: [self.origin[0] + part.origin[0], self.origin[1] + row], size: part.size }
+    }
+}
+
 /// What becomes of a submitted view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
@@ -394,6 +406,14 @@ mod tests {
         let mut blind = submitted(&offer);
         blind.pose.orientation = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
         assert_eq!(split(&offer.eyes, &blind), Err(EyesError::Invalid.into()));
+    }
+
+    #[test]
+    fn rows_are_counted_from_where_the_image_begins() {
+        let submitted = Rectangle { origin: [100, 50], size: [300, 200] };
+        let part = Rectangle { origin: [10, 20], size: [280, 150] };
+        assert_eq!(submitted.part(part, true), Rectangle { origin: [110, 70], size: [280, 150] });
+        assert_eq!(submitted.part(part, false), Rectangle { origin: [110, 80], size: [280, 150] });
     }
 
     #[test]

@@ -4,7 +4,8 @@
 //! The application is offered the view configuration PRIMARY_MONO: one view, at the dominant eye's pose, that sees what
 //! both eyes see. What it submits in xrEndFrame, colour with depth (XR_KHR_composition_layer_depth), is cropped for the
 //! dominant eye, without a copy, and synthesized for the other one. Applications on Vulkan (XR_KHR_vulkan_enable and
-//! enable2); for all others, and for those that begin PRIMARY_STEREO, everything passes through.
+//! enable2), OpenGL (XR_KHR_opengl_enable by Xlib or EGL) and OpenGL ES (XR_KHR_opengl_es_enable); for all others, and for
+//! those that begin PRIMARY_STEREO, everything passes through.
 //!
 //! Whatever fails here does not fail the application: such a frame shows the same image to both eyes, the log says why
 //! once, and counts.
@@ -14,13 +15,16 @@
 //! * `instance`, `session`, `swapchain`: what is known of the application's objects.
 //! * `frame`: xrEndFrame.
 //! * `geometry`: the offered view, and the parts of a submitted one.
-//! * `vulkan`: synthesis on the application's device and queue.
+//! * `graphics`: synthesis, whatever the application draws with: `vulkan`, on its device and queue, and `gl`, in its
+//!   context.
 
 mod capture;
 mod dispatch;
 mod entry;
 mod frame;
 mod geometry;
+mod gl;
+mod graphics;
 mod instance;
 mod manifest;
 mod reason;

@@ -1,21 +1,27 @@
 //! Why a frame is not synthesized.
 
+use std::sync::Arc;
+
 use ash::vk;
 use openxr_sys as sys;
 use yoro::eyes::EyesError;
+use yoro::gl::GlError;
 use yoro::vulkan::VulkanError;
 
 use crate::geometry::GeometryError;
 
 /// The same image is shown to both eyes, for this reason.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum Reason {
     /// No XrCompositionLayerDepthInfoKHR.
     #[error("it submits no depth; let it enable XR_KHR_composition_layer_depth and submit its depth buffer")]
     NoDepth,
     /// The session is bound to something else.
-    #[error("its session is not bound to Vulkan")]
-    NoVulkan,
+    #[error("its session is bound to neither Vulkan, OpenGL by Xlib or EGL, nor OpenGL ES by EGL")]
+    NoGraphics,
+    /// The system's library is not there.
+    #[error("{0} cannot be loaded")]
+    NoLibrary(&'static str),
     /// No view was located yet, or none could be offered.
     #[error("the headset's views are not known")]
     NoViews,
@@ -49,6 +55,17 @@ pub enum Reason {
     /// A command of the synthesis.
     #[error("{0}")]
     Synthesis(VulkanError),
+    /// The application's context of OpenGL.
+    #[error(
+        "its OpenGL context cannot be made current in xrEndFrame; let it be current there, or on no thread"
+    )]
+    NotCurrent,
+    /// The image is one that OpenGL before 4.3, or OpenGL ES before 3.2, cannot copy.
+    #[error("it submits a part of an image or of an array, which needs OpenGL 4.3 or OpenGL ES 3.2")]
+    Part,
+    /// OpenGL, or its synthesis. Shared, since it is told in each frame if there is no pipeline.
+    #[error("{0}")]
+    Gl(Arc<GlError>),
     /// A call of the runtime.
     #[error("{0} fails with {1:?}")]
     Runtime(&'static str, sys::Result),
@@ -62,7 +79,7 @@ impl Reason {
     pub fn bit(&self) -> u32 {
         1 << match self {
             Reason::NoDepth => 0,
-            Reason::NoVulkan => 1,
+            Reason::NoGraphics => 1,
             Reason::NoViews => 2,
             Reason::Views(_) => 3,
             Reason::Geometry(_) => 4,
@@ -76,6 +93,16 @@ impl Reason {
             Reason::Synthesis(_) => 12,
             Reason::Runtime(..) => 13,
             Reason::Panic => 14,
+            Reason::NoLibrary(_) => 15,
+            Reason::NotCurrent => 16,
+            Reason::Part => 17,
+            Reason::Gl(_) => 18,
         }
+    }
+}
+
+impl From<GlError> for Reason {
+    fn from(error: GlError) -> Reason {
+        Reason::Gl(Arc::new(error))
     }
 }

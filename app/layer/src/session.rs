@@ -10,16 +10,16 @@ use yoro::eyes::{EyesError, Frustum, Pose};
 use crate::dispatch::{XrResult, check};
 use crate::frame::Frames;
 use crate::geometry::{Offer, frustum, pose};
+use crate::graphics::Binding;
 use crate::instance::Instance;
 use crate::lock;
 use crate::swapchain::Swapchain;
-use crate::vulkan::Binding;
 
 /// One session.
 pub struct Session {
     pub handle: sys::Session,
     pub instance: Arc<Instance>,
-    /// None where it is bound to something else than Vulkan.
+    /// None where it is bound to something that the layer does not know.
     pub binding: Option<Binding>,
     /// What the runtime recommends for the dominant eye, in pixels.
     eye_size: [u32; 2],

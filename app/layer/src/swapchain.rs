@@ -1,17 +1,16 @@
 //! The application's swapchains: what is in their images, and when these are released.
 //!
 //! An image is read in xrEndFrame, when the application has released it already. The layer keeps the release to itself
-//! until then: as long as the runtime has not heard of it, the image is the application's side's, in the layout of an
-//! attachment.
+//! until then: as long as the runtime has not heard of it, the image is the application's side's, in Vulkan in the layout of
+//! an attachment.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use ash::vk;
-use ash::vk::Handle as _;
 use openxr_sys as sys;
 
 use crate::dispatch::{Dispatch, XrResult, check};
+use crate::graphics::{Binding, Image};
 use crate::lock;
 use crate::session::Session;
 
@@ -26,8 +25,9 @@ pub struct Swapchain {
 
 /// Images that can be read.
 pub struct Content {
-    pub images: Vec<vk::Image>,
-    pub format: vk::Format,
+    pub images: Vec<u64>,
+    /// As in XrSwapchainCreateInfo.
+    pub format: i64,
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// Layers.
@@ -35,34 +35,27 @@ pub struct Content {
 }
 
 impl Content {
-    /// Of a swapchain of a session on Vulkan.
+    /// Of a swapchain of a session.
     ///
     /// # Errors
     /// What xrEnumerateSwapchainImages returns.
     pub fn of(
         next: &Dispatch,
+        binding: &Binding,
         swapchain: sys::Swapchain,
         info: &sys::SwapchainCreateInfo,
     ) -> XrResult<Content> {
-        let mut count = 0;
-        // SAFETY: a live swapchain; without room only the number is told.
-        check(unsafe { (next.enumerate_swapchain_images)(swapchain, 0, &mut count, std::ptr::null_mut()) })?;
-        let empty = sys::SwapchainImageVulkanKHR {
-            ty: sys::SwapchainImageVulkanKHR::TYPE,
-            next: std::ptr::null_mut(),
-            image: 0,
-        };
-        let mut images = vec![empty; count as usize];
-        // SAFETY: a live swapchain of a session on Vulkan, and room for as many as is said.
-        check(unsafe {
-            (next.enumerate_swapchain_images)(swapchain, count, &mut count, images.as_mut_ptr().cast())
-        })?;
         Ok(Content {
-            images: images.iter().map(|image| vk::Image::from_raw(image.image)).collect(),
-            format: vk::Format::from_raw(info.format as i32),
+            images: binding.images(next, swapchain)?,
+            format: info.format,
             size: [info.width, info.height],
             array_size: info.array_size,
         })
+    }
+
+    /// One of the images, with a layer of its array.
+    pub fn image(&self, image: u64, layer: u32) -> Image {
+        Image { image, format: self.format, size: self.size, layer, layers: self.array_size }
     }
 }
 
@@ -148,7 +141,7 @@ impl Swapchain {
     }
 
     /// The image that the application has released last and the runtime has not got yet, if it is one that can be read.
-    pub fn held(&self) -> Option<(&Content, vk::Image)> {
+    pub fn held(&self) -> Option<(&Content, u64)> {
         let index = lock(&self.state).held?;
         let content = self.content.as_ref()?;
         Some((content, *content.images.get(index as usize)?))

@@ -11,13 +11,12 @@ use yoro::vulkan::{
     Frame, Gather, Host, ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages,
 };
 
-use crate::geometry::{Rectangle, Split};
+use crate::geometry::Rectangle;
+use crate::graphics::{self, Image, Job, PATIENCE};
 use crate::reason::Reason;
 
 /// Frames whose commands may be pending at the same time.
 const FRAMES: usize = 3;
-/// How long commands of [`FRAMES`] frames ago, or an image of the runtime's, are waited for.
-pub const PATIENCE: Duration = Duration::from_millis(500);
 
 /// What the application binds its session to.
 #[derive(Clone, Copy)]
@@ -41,27 +40,6 @@ impl Binding {
             queue: binding.queue_index,
         }
     }
-}
-
-/// An image of a swapchain, or one layer of its array.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Image {
-    pub image: vk::Image,
-    pub format: vk::Format,
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    pub layer: u32,
-}
-
-/// What is synthesized in a frame.
-pub struct Job<'a> {
-    pub color: Image,
-    pub depth: Image,
-    /// Upper left corner of the submitted rectangle in both.
-    pub origin: [u32; 2],
-    pub split: &'a Split,
-    /// The other eye's part begins at its upper left corner.
-    pub target: Image,
 }
 
 /// Command buffers and the pipeline, for one session.
@@ -97,7 +75,7 @@ impl Synthesizer {
     /// # Safety
     /// The binding's handles are valid until this is dropped.
     pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
-        let entry = entry().ok_or(Reason::NoVulkan)?;
+        let entry = entry().ok_or(Reason::NoLibrary("Vulkan's loader"))?;
         // SAFETY: promised by the caller.
         let (instance, device) = unsafe {
             let instance = ash::Instance::load(entry.static_fn(), binding.instance);
@@ -138,78 +116,12 @@ impl Synthesizer {
         }
     }
 
-    /// Submits the synthesis of one frame to the application's queue.
-    ///
-    /// # Safety
-    /// The images are this device's. The source's are in the layouts of attachments, and so is the target's left. Nobody
-    /// else uses the queue.
-    pub unsafe fn synthesize(&mut self, job: &Job) -> Result<(), Reason> {
-        let slot = self.slots[self.frame % FRAMES];
-        // SAFETY: promised by the caller; commands and images are this device's, and the slot's commands are not pending.
-        unsafe {
-            self.wait_for(slot)?;
-            self.make_gather(job)?;
-            let (source, target) = (self.source(job)?, self.target(job.target)?);
-            self.begin(slot)?;
-            let Some((gather, _)) = &mut self.gather else { return Err(Reason::NoVulkan) };
-            let from = job.split.source.origin;
-            let frame = Frame {
-                source,
-                source_origin: [job.origin[0] + from[0], job.origin[1] + from[1]],
-                target,
-                target_origin: [0, 0],
-            };
-            gather.record(slot.commands, &frame, &job.split.warp).map_err(Reason::Synthesis)?;
-            self.device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
-            self.submit(slot)
-        }
-    }
-
-    /// What the synthesis of an earlier frame took on the GPU, if that is known by now.
-    ///
-    /// # Safety
-    /// What was recorded was submitted.
-    pub unsafe fn time(&mut self) -> Option<Duration> {
-        let (gather, _) = self.gather.as_mut()?;
-        // SAFETY: promised by the caller. Without times there is nothing to say about them.
-        let times = unsafe { gather.pass_times() }.ok()??;
-        Some(times.tiles + times.spans + times.march)
-    }
-
-    /// Forgets a swapchain's images, which the application is about to destroy.
-    pub fn forget(&mut self, images: &[vk::Image]) {
-        let uses = |image: &Image| images.contains(&image.image);
-        if !self.sources.iter().any(|(source, _)| source.iter().any(uses))
-            && !self.targets.iter().any(|(target, _)| uses(target))
-        {
-            return;
-        }
-        self.wait_for_all();
-        let Some((gather, _)) = &mut self.gather else { return };
-        self.sources.retain(|(source, id)| {
-            let keep = !source.iter().any(uses);
-            if !keep {
-                // SAFETY: no command is pending.
-                unsafe { gather.release_source(*id) };
-            }
-            keep
-        });
-        self.targets.retain(|(target, id)| {
-            let keep = !uses(target);
-            if !keep {
-                // SAFETY: no command is pending.
-                unsafe { gather.release_target(*id) };
-            }
-            keep
-        });
-    }
-
     /// A pipeline for these formats and sizes.
     unsafe fn make_gather(&mut self, job: &Job) -> Result<(), Reason> {
         let [source, target] = [job.color.size, job.target.size];
         let fits = |limit: [u32; 2], size: [u32; 2]| limit[0] >= size[0] && limit[1] >= size[1];
         if let Some((_, options)) = &self.gather
-            && options.color_format == job.target.format
+            && options.color_format == vk_format(job.target)
             && fits(options.max_source_size, source)
             && fits(options.max_target_size, target)
         {
@@ -220,7 +132,7 @@ impl Synthesizer {
         self.sources.clear();
         self.targets.clear();
         let options = Options {
-            color_format: job.target.format,
+            color_format: vk_format(job.target),
             max_source_size: source,
             max_target_size: target,
             timed_frames: FRAMES as u32 + 1,
@@ -245,7 +157,7 @@ impl Synthesizer {
         if let Some((_, id)) = self.sources.iter().find(|(source, _)| *source == key) {
             return Ok(*id);
         }
-        let Some((gather, _)) = &mut self.gather else { return Err(Reason::NoVulkan) };
+        let gather = made(&mut self.gather)?;
         // SAFETY: live images, which are forgotten before they are destroyed.
         let id = unsafe {
             gather.register_source(&SourceImages {
@@ -264,7 +176,7 @@ impl Synthesizer {
         if let Some((_, id)) = self.targets.iter().find(|(known, _)| *known == target) {
             return Ok(*id);
         }
-        let Some((gather, _)) = &mut self.gather else { return Err(Reason::NoVulkan) };
+        let gather = made(&mut self.gather)?;
         // SAFETY: live images, which are forgotten before they are destroyed.
         let id = unsafe {
             gather.register_target(&TargetImages {
@@ -339,12 +251,8 @@ impl Synthesizer {
         }
     }
 
-    /// Copies a rectangle of an image that is in the layout of a colour attachment, and waits for it: four bytes a pixel,
-    /// row 0 at the top. For tests.
-    ///
-    /// # Safety
-    /// As for [`Synthesizer::synthesize`].
-    pub unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
+    /// Copies a rectangle of an image that is in the layout of a colour attachment, and waits for it: four bytes a pixel.
+    unsafe fn read_back(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
         let slot = self.slots[self.frame % FRAMES];
         let bytes = u64::from(part.size[0]) * u64::from(part.size[1]) * 4;
         // SAFETY: promised by the caller; all other objects are made here and destroyed after the commands have ended.
@@ -355,7 +263,7 @@ impl Synthesizer {
             let device = &self.device;
             let turn = |from: ImageState, to: ImageState| {
                 let barrier = vk::ImageMemoryBarrier::default()
-                    .image(image.image)
+                    .image(vk_image(image))
                     .old_layout(from.layout)
                     .new_layout(to.layout)
                     .src_access_mask(from.access)
@@ -397,7 +305,7 @@ impl Synthesizer {
                 .image_extent(vk::Extent3D { width: part.size[0], height: part.size[1], depth: 1 });
             device.cmd_copy_image_to_buffer(
                 slot.commands,
-                image.image,
+                vk_image(image),
                 copied.layout,
                 staging.buffer,
                 &[copy],
@@ -411,8 +319,80 @@ impl Synthesizer {
     }
 }
 
+impl graphics::Synthesizer for Synthesizer {
+    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
+        let slot = self.slots[self.frame % FRAMES];
+        // SAFETY: promised by the caller; commands and images are this device's, and the slot's commands are not pending.
+        unsafe {
+            self.wait_for(slot)?;
+            self.make_gather(job)?;
+            let (source, target) = (self.source(job)?, self.target(job.target)?);
+            self.begin(slot)?;
+            let gather = made(&mut self.gather)?;
+            let frame = Frame { source, source_origin: job.source.origin, target, target_origin: [0, 0] };
+            gather.record(slot.commands, &frame, job.warp).map_err(Reason::Synthesis)?;
+            self.device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
+            self.submit(slot)?;
+            // Without times there is nothing to say about them.
+            let times = made(&mut self.gather)?.pass_times().ok().flatten();
+            Ok(times.map(|times| times.tiles + times.spans + times.march))
+        }
+    }
+
+    fn forget(&mut self, images: &[u64]) {
+        let uses = |image: &Image| images.contains(&image.image);
+        if !self.sources.iter().any(|(source, _)| source.iter().any(uses))
+            && !self.targets.iter().any(|(target, _)| uses(target))
+        {
+            return;
+        }
+        self.wait_for_all();
+        let Some((gather, _)) = &mut self.gather else { return };
+        self.sources.retain(|(source, id)| {
+            let keep = !source.iter().any(uses);
+            if !keep {
+                // SAFETY: no command is pending.
+                unsafe { gather.release_source(*id) };
+            }
+            keep
+        });
+        self.targets.retain(|(target, id)| {
+            let keep = !uses(target);
+            if !keep {
+                // SAFETY: no command is pending.
+                unsafe { gather.release_target(*id) };
+            }
+            keep
+        });
+    }
+
+    unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
+        let places = match vk_format(image) {
+            vk::Format::R8G8B8A8_SRGB | vk::Format::R8G8B8A8_UNORM => [0, 1, 2],
+            vk::Format::B8G8R8A8_SRGB | vk::Format::B8G8R8A8_UNORM => [2, 1, 0],
+            format => return Err(format!("{format:?} is no format of four bytes")),
+        };
+        // SAFETY: promised by the caller.
+        let bytes = unsafe { self.read_back(image, part) }.map_err(|reason| reason.to_string())?;
+        Ok(bytes.chunks_exact(4).flat_map(|pixel| places.map(|place| pixel[place])).collect())
+    }
+}
+
+/// The pipeline, which is made before anything is done with it.
+fn made(gather: &mut Option<(Gather, Options)>) -> Result<&mut Gather, Reason> {
+    gather.as_mut().map(|(gather, _)| gather).ok_or(Reason::Panic)
+}
+
+fn vk_image(image: Image) -> vk::Image {
+    vk::Image::from_raw(image.image)
+}
+
+fn vk_format(image: Image) -> vk::Format {
+    vk::Format::from_raw(image.format as i32)
+}
+
 fn layer_image(image: Image, before: ImageState, after: ImageState) -> LayerImage {
-    LayerImage { image: image.image, format: image.format, layer: image.layer, before, after }
+    LayerImage { image: vk_image(image), format: vk_format(image), layer: image.layer, before, after }
 }
 
 impl Drop for Synthesizer {

@@ -1,0 +1,311 @@
+//! Contexts that others have made: EGL's and GLX's, found by the loader that the application or the system gives.
+
+use std::ffi::{CStr, c_char, c_int, c_uint, c_ulong, c_void};
+use std::sync::OnceLock;
+
+use libloading::Library;
+use openxr_sys as sys;
+
+use crate::reason::Reason;
+
+/// Gives an entry point by its name, of GL and of EGL or GLX.
+type Load = unsafe extern "system" fn(*const c_char) -> *const c_void;
+
+const EGL_OPENGL_API: c_uint = 0x30A2;
+const EGL_CONTEXT_CLIENT_TYPE: c_int = 0x3097;
+const EGL_DRAW: c_int = 0x3059;
+const EGL_READ: c_int = 0x305A;
+
+#[cfg(target_os = "android")]
+const EGL_LIBRARIES: &[&str] = &["libEGL.so"];
+const GLX_LIBRARIES: &[&str] = &["libGLX.so.0", "libGL.so.1"];
+
+/// The context that a session is bound to. Its pointers are not followed here, but handed to EGL or GLX.
+#[derive(Clone, Copy)]
+pub enum Binding {
+    Egl(Egl),
+    Glx(Glx),
+}
+
+// SAFETY: handles and functions, which EGL and GLX let any thread use.
+unsafe impl Send for Binding {}
+// SAFETY: as above.
+unsafe impl Sync for Binding {}
+
+impl Binding {
+    /// That of a structure in the chain of XrSessionCreateInfo, if it is one, and if what it names can be found.
+    ///
+    /// # Safety
+    /// The structure is what its type says, of a call that has succeeded.
+    pub unsafe fn of(header: &sys::BaseInStructure) -> Option<Binding> {
+        let structure = std::ptr::from_ref(header);
+        // SAFETY: promised by the caller.
+        unsafe {
+            match header.ty {
+                sys::GraphicsBindingEGLMNDX::TYPE => {
+                    let info = &*structure.cast::<sys::GraphicsBindingEGLMNDX>();
+                    // A function, or null, that returns another one, or null.
+                    let load = std::mem::transmute::<Option<sys::pfn::EglGetProcAddressMNDX>, Option<Load>>(
+                        info.get_proc_address,
+                    );
+                    Egl::new(load?, info.display, info.context).map(Binding::Egl)
+                }
+                #[cfg(target_os = "android")]
+                sys::GraphicsBindingOpenGLESAndroidKHR::TYPE => {
+                    let info = &*structure.cast::<sys::GraphicsBindingOpenGLESAndroidKHR>();
+                    let load = system_loader(EGL_LIBRARIES, b"eglGetProcAddress\0")?;
+                    Egl::new(load, info.display, info.context).map(Binding::Egl)
+                }
+                sys::GraphicsBindingOpenGLXlibKHR::TYPE => {
+                    let info = &*structure.cast::<sys::GraphicsBindingOpenGLXlibKHR>();
+                    Glx::new(info).map(Binding::Glx)
+                }
+                _ => None,
+            }
+        }
+    }
+
+    /// Which structure xrEnumerateSwapchainImages fills.
+    pub fn image_type(&self) -> sys::StructureType {
+        match self {
+            Binding::Egl(egl) if egl.api != EGL_OPENGL_API => sys::SwapchainImageOpenGLESKHR::TYPE,
+            _ => sys::SwapchainImageOpenGLKHR::TYPE,
+        }
+    }
+
+    /// An entry point of GL, null for those that do not exist.
+    pub fn load(&self, name: &CStr) -> *const c_void {
+        let load = match self {
+            Binding::Egl(egl) => egl.load,
+            Binding::Glx(glx) => glx.load,
+        };
+        // SAFETY: it takes a name.
+        unsafe { load(name.as_ptr()) }
+    }
+
+    /// Makes the context current on this thread, until the result is dropped.
+    ///
+    /// # Errors
+    /// [`Reason::NotCurrent`]: it may be current on another thread.
+    ///
+    /// # Safety
+    /// The context exists.
+    pub unsafe fn make_current(&self) -> Result<Current, Reason> {
+        // SAFETY: promised by the caller.
+        let current = unsafe {
+            match self {
+                Binding::Egl(egl) => egl.make_current(),
+                Binding::Glx(glx) => glx.make_current(),
+            }
+        };
+        current.ok_or(Reason::NotCurrent)
+    }
+}
+
+/// What was current before, and is again when this is dropped.
+pub enum Current {
+    /// The context itself.
+    Same,
+    Egl(Egl, EglState),
+    Glx(Glx, GlxState),
+}
+
+impl Drop for Current {
+    fn drop(&mut self) {
+        // SAFETY: what was current on this thread at `make_current`. What fails here fails for the application, too.
+        unsafe {
+            match self {
+                Current::Same => {}
+                Current::Egl(egl, state) => egl.restore(state),
+                Current::Glx(glx, state) => {
+                    let display = if state.display.is_null() { glx.display } else { state.display };
+                    (glx.functions.make_current)(display, state.draw, state.read, state.context);
+                }
+            }
+        }
+    }
+}
+
+/// The function that gives all others, of a library that is never unloaded.
+fn system_loader(libraries: &[&str], name: &[u8]) -> Option<Load> {
+    static LIBRARY: OnceLock<Option<Library>> = OnceLock::new();
+    // SAFETY: the system's library, which the application has loaded before.
+    let open = || libraries.iter().find_map(|library| unsafe { Library::new(library).ok() });
+    let library = LIBRARY.get_or_init(open).as_ref()?;
+    // SAFETY: a function of this name has this type.
+    unsafe { library.get::<Load>(name).ok().map(|load| *load) }
+}
+
+macro_rules! functions {
+    ($(#[doc = $doc:literal] $table:ident { $($field:ident: fn($($parameter:ty),*) $(-> $result:ty)? = $name:literal,)* })*) => {
+        $(
+            #[doc = $doc]
+            #[derive(Clone, Copy)]
+            struct $table {
+                $($field: unsafe extern "system" fn($($parameter),*) $(-> $result)?,)*
+            }
+
+            impl $table {
+                /// None where one is missing.
+                ///
+                /// # Safety
+                /// What the loader gives for these names are the functions that are known by them.
+                unsafe fn new(load: Load) -> Option<$table> {
+                    // SAFETY: promised by the caller; null is `None`.
+                    unsafe {
+                        Some($table {
+                            $($field: std::mem::transmute::<
+                                *const c_void,
+                                Option<unsafe extern "system" fn($($parameter),*) $(-> $result)?>,
+                            >(load($name.as_ptr()))?,)*
+                        })
+                    }
+                }
+            }
+        )*
+    };
+}
+
+functions! {
+    /// Of EGL 1.5, or with EGL_KHR_get_all_proc_addresses.
+    EglFunctions {
+        query_api: fn() -> c_uint = c"eglQueryAPI",
+        bind_api: fn(c_uint) -> c_uint = c"eglBindAPI",
+        query_context: fn(*mut c_void, *mut c_void, c_int, *mut c_int) -> c_uint = c"eglQueryContext",
+        current_context: fn() -> *mut c_void = c"eglGetCurrentContext",
+        current_display: fn() -> *mut c_void = c"eglGetCurrentDisplay",
+        current_surface: fn(c_int) -> *mut c_void = c"eglGetCurrentSurface",
+        make_current: fn(*mut c_void, *mut c_void, *mut c_void, *mut c_void) -> c_uint = c"eglMakeCurrent",
+    }
+    /// Of GLX 1.3.
+    GlxFunctions {
+        current_context: fn() -> *mut c_void = c"glXGetCurrentContext",
+        current_display: fn() -> *mut c_void = c"glXGetCurrentDisplay",
+        current_draw: fn() -> c_ulong = c"glXGetCurrentDrawable",
+        current_read: fn() -> c_ulong = c"glXGetCurrentReadDrawable",
+        make_current: fn(*mut c_void, c_ulong, c_ulong, *mut c_void) -> c_int = c"glXMakeContextCurrent",
+    }
+}
+
+/// A context of EGL.
+#[derive(Clone, Copy)]
+pub struct Egl {
+    load: Load,
+    display: *mut c_void,
+    context: *mut c_void,
+    /// EGL_OPENGL_API or EGL_OPENGL_ES_API: each has a current context of its own.
+    api: c_uint,
+    functions: EglFunctions,
+}
+
+/// What was current in EGL.
+pub struct EglState {
+    /// The one that is chosen, and that of the others, which `make_current` has changed.
+    api: c_uint,
+    display: *mut c_void,
+    draw: *mut c_void,
+    read: *mut c_void,
+    context: *mut c_void,
+}
+
+impl Egl {
+    unsafe fn new(load: Load, display: *mut c_void, context: *mut c_void) -> Option<Egl> {
+        // SAFETY: EGL's loader, a display and a context.
+        unsafe {
+            let functions = EglFunctions::new(load)?;
+            let mut api = 0;
+            let known = (functions.query_context)(display, context, EGL_CONTEXT_CLIENT_TYPE, &mut api);
+            (known != 0).then_some(Egl { load, display, context, api: api as c_uint, functions })
+        }
+    }
+
+    unsafe fn make_current(&self) -> Option<Current> {
+        let EglFunctions { query_api, bind_api, current_context, current_display, current_surface, .. } =
+            self.functions;
+        // SAFETY: queries, and the application's own context.
+        unsafe {
+            let api = query_api();
+            if api != self.api {
+                bind_api(self.api);
+            }
+            let state = EglState {
+                api,
+                display: current_display(),
+                draw: current_surface(EGL_DRAW),
+                read: current_surface(EGL_READ),
+                context: current_context(),
+            };
+            if state.context == self.context {
+                if api != self.api {
+                    bind_api(api);
+                }
+                return Some(Current::Same);
+            }
+            let none = std::ptr::null_mut();
+            if (self.functions.make_current)(self.display, none, none, self.context) != 0 {
+                return Some(Current::Egl(*self, state));
+            }
+            bind_api(api);
+            None
+        }
+    }
+
+    unsafe fn restore(&self, state: &EglState) {
+        let display = if state.display.is_null() { self.display } else { state.display };
+        // SAFETY: promised by the caller.
+        unsafe {
+            (self.functions.make_current)(display, state.draw, state.read, state.context);
+            (self.functions.bind_api)(state.api);
+        }
+    }
+}
+
+/// A context of GLX.
+#[derive(Clone, Copy)]
+pub struct Glx {
+    load: Load,
+    display: *mut c_void,
+    drawable: c_ulong,
+    context: *mut c_void,
+    functions: GlxFunctions,
+}
+
+/// What was current in GLX.
+pub struct GlxState {
+    display: *mut c_void,
+    draw: c_ulong,
+    read: c_ulong,
+    context: *mut c_void,
+}
+
+impl Glx {
+    unsafe fn new(info: &sys::GraphicsBindingOpenGLXlibKHR) -> Option<Glx> {
+        let load = system_loader(GLX_LIBRARIES, b"glXGetProcAddressARB\0")?;
+        Some(Glx {
+            load,
+            display: info.x_display,
+            drawable: info.glx_drawable,
+            context: info.glx_context,
+            // SAFETY: GLX's loader.
+            functions: unsafe { GlxFunctions::new(load)? },
+        })
+    }
+
+    unsafe fn make_current(&self) -> Option<Current> {
+        let functions = &self.functions;
+        // SAFETY: queries, and the application's own context and window.
+        unsafe {
+            let state = GlxState {
+                display: (functions.current_display)(),
+                draw: (functions.current_draw)(),
+                read: (functions.current_read)(),
+                context: (functions.current_context)(),
+            };
+            if state.context == self.context {
+                return Some(Current::Same);
+            }
+            let made = (functions.make_current)(self.display, self.drawable, self.drawable, self.context);
+            (made != 0).then_some(Current::Glx(*self, state))
+        }
+    }
+}

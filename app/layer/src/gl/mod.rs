@@ -1,0 +1,377 @@
+//! Synthesis in the application's context of OpenGL or OpenGL ES, which is as it was afterwards.
+
+mod binding;
+
+use std::mem::ManuallyDrop;
+use std::num::NonZeroU32;
+use std::rc::Rc;
+use std::time::Duration;
+
+use glow::HasContext as _;
+use yoro::gl::{Context, Destination, GlApi, GlError};
+use yoro::synthesis::{self, GlState, Outputs, Source, Synthesis, SynthesisOptions};
+
+pub use binding::Binding;
+
+use crate::geometry::Rectangle;
+use crate::graphics::{self, Image, Job};
+use crate::reason::Reason;
+
+/// Frames whose times may be pending at the same time.
+const TIMED_FRAMES: usize = 4;
+/// Both in OpenGL and, with GL_EXT_disjoint_timer_query, in OpenGL ES.
+const QUERY_COUNTER_BITS: u32 = 0x8864;
+const GPU_DISJOINT: u32 = 0x8FBB;
+
+/// The pipeline in the application's context.
+pub struct Synthesizer {
+    binding: Binding,
+    /// Deleted while the context is current, or not at all.
+    objects: ManuallyDrop<Objects>,
+}
+
+/// What lives in the context, and is used while it is current.
+struct Objects {
+    context: Rc<Context>,
+    pipeline: Option<(Outputs, Box<dyn Synthesis>)>,
+    /// Framebuffers by what is attached to them.
+    targets: Vec<(Image, glow::Framebuffer)>,
+    /// Copies of colour and depth, where these are parts of what is submitted.
+    copies: [Option<Copy>; 2],
+    timer: Option<Timer>,
+}
+
+/// A texture of a format and a size.
+struct Copy {
+    texture: glow::Texture,
+    format: i64,
+    size: [u32; 2],
+}
+
+/// Time stamps before and after the synthesis of each frame. Unlike queries of elapsed time they do not disturb those of
+/// the application.
+struct Timer {
+    queries: [[glow::Query; 2]; TIMED_FRAMES],
+    /// The frame that is timed next, and how many before it are pending.
+    next: usize,
+    pending: usize,
+    /// Whether the clock can be disturbed, and says so.
+    disjoint: bool,
+}
+
+impl Synthesizer {
+    /// # Safety
+    /// The binding's context exists until this is dropped.
+    pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
+        // SAFETY: promised by the caller; entry points of the context, which is current.
+        let objects = unsafe {
+            let _current = binding.make_current()?;
+            let glow = glow::Context::from_loader_function_cstr(|name| binding.load(name));
+            let context = Context::with_loader(glow, |name| binding.load(name))?;
+            let timer = Timer::new(&binding, &context);
+            Objects { context, pipeline: None, targets: Vec::new(), copies: [None, None], timer }
+        };
+        Ok(Synthesizer { binding, objects: ManuallyDrop::new(objects) })
+    }
+}
+
+impl Drop for Synthesizer {
+    fn drop(&mut self) {
+        // SAFETY: the context exists, and its objects are not used any more. If it is current elsewhere they stay, and go
+        // with it.
+        unsafe {
+            if let Ok(_current) = self.binding.make_current() {
+                self.objects.delete();
+                ManuallyDrop::drop(&mut self.objects);
+            }
+        }
+    }
+}
+
+impl graphics::Synthesizer for Synthesizer {
+    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
+        // SAFETY: promised by the caller.
+        unsafe {
+            let _current = self.binding.make_current()?;
+            self.objects.synthesize(job)
+        }
+    }
+
+    fn forget(&mut self, images: &[u64]) {
+        let uses = |image: &Image| images.contains(&image.image);
+        if !self.objects.targets.iter().any(|(image, _)| uses(image)) {
+            return;
+        }
+        // SAFETY: the context exists. If it is current elsewhere the framebuffers stay until it goes.
+        let current = unsafe { self.binding.make_current() };
+        let Objects { context, targets, .. } = &mut *self.objects;
+        targets.retain(|(image, framebuffer)| {
+            let keep = !uses(image);
+            if !keep && current.is_ok() {
+                // SAFETY: made here, and used no more.
+                unsafe { context.raw().delete_framebuffer(*framebuffer) };
+            }
+            keep
+        });
+    }
+
+    unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
+        if ![glow::RGBA8, glow::SRGB8_ALPHA8].map(i64::from).contains(&image.format) {
+            return Err(format!("0x{:x} is no format of four bytes", image.format));
+        }
+        // SAFETY: promised by the caller.
+        let rows = unsafe {
+            let _current = self.binding.make_current().map_err(|reason| reason.to_string())?;
+            self.objects.read(image, part).map_err(|reason| reason.to_string())?
+        };
+        let rows = rows.chunks_exact(part.size[0] as usize * 4).rev();
+        Ok(rows
+            .flat_map(|row| row.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]))
+            .collect())
+    }
+}
+
+fn texture(name: u64) -> Result<glow::Texture, Reason> {
+    let name = u32::try_from(name).ok().and_then(NonZeroU32::new);
+    Ok(glow::NativeTexture(name.ok_or(Reason::Beyond)?))
+}
+
+/// Framebuffers that are bound for drawing and for reading.
+fn bound_framebuffers(gl: &glow::Context) -> [Option<glow::Framebuffer>; 2] {
+    // SAFETY: queries.
+    [glow::DRAW_FRAMEBUFFER_BINDING, glow::READ_FRAMEBUFFER_BINDING]
+        .map(|name| unsafe { gl.get_parameter_framebuffer(name) })
+}
+
+fn bind_framebuffers(gl: &glow::Context, [draw, read]: [Option<glow::Framebuffer>; 2]) {
+    // SAFETY: framebuffers of this context.
+    unsafe {
+        gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, draw);
+        gl.bind_framebuffer(glow::READ_FRAMEBUFFER, read);
+    }
+}
+
+impl Objects {
+    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
+        // SAFETY: promised by the caller.
+        let (source, framebuffer) = unsafe {
+            let color = self.source(0, job.color, job.source)?;
+            let depth = self.source(1, job.depth, job.source)?;
+            (Source::new(color, depth), self.framebuffer(job.target)?)
+        };
+        let srgb = job.target.format == i64::from(glow::SRGB8_ALPHA8);
+        let outputs = Outputs { srgb, ..Outputs::default() };
+        let pipeline = match &mut self.pipeline {
+            Some((made_for, pipeline)) if *made_for == outputs => pipeline,
+            other => {
+                let options = SynthesisOptions { gl_state: GlState::Preserve, ..SynthesisOptions::default() };
+                let pipeline = synthesis::create(&self.context, &options, outputs)?;
+                &mut other.insert((outputs, pipeline)).1
+            }
+        };
+        let target =
+            Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: job.warp.target_size };
+        let context = &self.context;
+        let timing = self.timer.as_mut().and_then(|timer| timer.begin(context));
+        let result = pipeline.synthesize(source, job.warp, &target);
+        if let Some(timing) = timing {
+            timing.end(context);
+        }
+        result?;
+        Ok(self.timer.as_mut().and_then(|timer| timer.time(context)))
+    }
+
+    /// A texture that is this part of an image: its own, or a copy.
+    unsafe fn source(
+        &mut self,
+        which: usize,
+        image: Image,
+        part: Rectangle,
+    ) -> Result<glow::Texture, Reason> {
+        let own = texture(image.image)?;
+        if image.layers == 1 && part.size == image.size {
+            return Ok(own);
+        }
+        let capabilities = self.context.capabilities();
+        let least = if capabilities.api == GlApi::Desktop { (4, 3) } else { (3, 2) };
+        if capabilities.version < least {
+            return Err(Reason::Part);
+        }
+        let gl = self.context.raw();
+        let fits = |copy: &Copy| copy.format == image.format && copy.size == part.size;
+        // SAFETY: textures of this context; the rectangle lies in the image, and what is bound is bound again.
+        unsafe {
+            let copy = match &mut self.copies[which] {
+                Some(copy) if fits(copy) => copy,
+                other => {
+                    if let Some(old) = other.take() {
+                        gl.delete_texture(old.texture);
+                    }
+                    let made = gl.create_texture();
+                    let texture =
+                        made.map_err(|reason| GlError::Object { what: "a texture".into(), reason })?;
+                    let before = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D);
+                    gl.bind_texture(glow::TEXTURE_2D, Some(texture));
+                    let [width, height] = part.size.map(|pixels| pixels as i32);
+                    gl.tex_storage_2d(glow::TEXTURE_2D, 1, image.format as u32, width, height);
+                    gl.bind_texture(glow::TEXTURE_2D, before);
+                    other.insert(Copy { texture, format: image.format, size: part.size })
+                }
+            };
+            let target = if image.layers == 1 { glow::TEXTURE_2D } else { glow::TEXTURE_2D_ARRAY };
+            let ([x, y], [width, height]) =
+                (part.origin.map(|pixels| pixels as i32), part.size.map(|pixels| pixels as i32));
+            let (layer, to) = (image.layer as i32, (copy.texture, glow::TEXTURE_2D));
+            gl.copy_image_sub_data(own, target, 0, x, y, layer, to.0, to.1, 0, 0, 0, 0, width, height, 1);
+            Ok(copy.texture)
+        }
+    }
+
+    /// A framebuffer around an image, which stays until the image is forgotten.
+    unsafe fn framebuffer(&mut self, image: Image) -> Result<glow::Framebuffer, Reason> {
+        if let Some((_, framebuffer)) = self.targets.iter().find(|(known, _)| *known == image) {
+            return Ok(*framebuffer);
+        }
+        let gl = self.context.raw();
+        let texture = texture(image.image)?;
+        // SAFETY: a texture of this context; what is bound is bound again.
+        unsafe {
+            let made = gl.create_framebuffer();
+            let framebuffer =
+                made.map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
+            let before = bound_framebuffers(gl);
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
+            let (target, attachment) = (glow::FRAMEBUFFER, glow::COLOR_ATTACHMENT0);
+            match image.layers {
+                1 => gl.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, Some(texture), 0),
+                _ => gl.framebuffer_texture_layer(target, attachment, Some(texture), 0, image.layer as i32),
+            }
+            let status = gl.check_framebuffer_status(target);
+            bind_framebuffers(gl, before);
+            if status != glow::FRAMEBUFFER_COMPLETE {
+                gl.delete_framebuffer(framebuffer);
+                let reason = format!(
+                    "the GL driver cannot render to the format 0x{:x} (status 0x{status:x})",
+                    image.format
+                );
+                return Err(GlError::Unsupported(reason).into());
+            }
+            self.targets.push((image, framebuffer));
+            Ok(framebuffer)
+        }
+    }
+
+    /// Four bytes a pixel, rows from the bottom.
+    unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
+        // SAFETY: promised by the caller.
+        let framebuffer = unsafe { self.framebuffer(image)? };
+        let gl = self.context.raw();
+        let before = bound_framebuffers(gl);
+        // SAFETY: queries of state that there is, and its own values again.
+        unsafe {
+            let buffer = gl.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING);
+            let stores =
+                [glow::PACK_ALIGNMENT, glow::PACK_ROW_LENGTH, glow::PACK_SKIP_ROWS, glow::PACK_SKIP_PIXELS];
+            let values = stores.map(|name| gl.get_parameter_i32(name));
+            let from = Destination { framebuffer: Some(framebuffer), origin: part.origin, size: part.size };
+            let bytes = self.context.read_rgba8(&from);
+            for (name, value) in stores.into_iter().zip(values) {
+                gl.pixel_store_i32(name, value);
+            }
+            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, buffer);
+            bind_framebuffers(gl, before);
+            Ok(bytes)
+        }
+    }
+
+    /// Before it is dropped: what does not delete itself.
+    fn delete(&mut self) {
+        let gl = self.context.raw();
+        // SAFETY: made here, and used no more.
+        unsafe {
+            for (_, framebuffer) in self.targets.drain(..) {
+                gl.delete_framebuffer(framebuffer);
+            }
+            for copy in self.copies.iter_mut().filter_map(Option::take) {
+                gl.delete_texture(copy.texture);
+            }
+            if let Some(timer) = self.timer.take() {
+                timer.queries.into_iter().flatten().for_each(|query| gl.delete_query(query));
+            }
+        }
+    }
+}
+
+/// The query that ends what is timed.
+struct Timing(glow::Query);
+
+impl Timing {
+    fn end(self, context: &Context) {
+        // SAFETY: a query of this context.
+        unsafe { context.raw().query_counter(self.0, glow::TIMESTAMP) }
+    }
+}
+
+impl Timer {
+    /// None where the driver has no time stamps.
+    ///
+    /// # Safety
+    /// The context is current, and the binding's.
+    unsafe fn new(binding: &Binding, context: &Context) -> Option<Timer> {
+        type GetQuery = unsafe extern "system" fn(u32, u32, *mut i32);
+        if !context.capabilities().timer_queries {
+            return None;
+        }
+        let get_query = binding.load(c"glGetQueryiv");
+        // SAFETY: a function of this name has this type; one integer is written.
+        unsafe {
+            let get_query = std::mem::transmute::<*const std::ffi::c_void, Option<GetQuery>>(get_query)?;
+            let mut bits = 0;
+            get_query(glow::TIMESTAMP, QUERY_COUNTER_BITS, &mut bits);
+            if bits == 0 {
+                return None;
+            }
+            let mut queries = Vec::with_capacity(2 * TIMED_FRAMES);
+            for _ in 0..2 * TIMED_FRAMES {
+                queries.push(context.raw().create_query().ok()?);
+            }
+            let queries = std::array::from_fn(|i| [queries[2 * i], queries[2 * i + 1]]);
+            let disjoint = context.capabilities().api == GlApi::Es;
+            Some(Timer { queries, next: 0, pending: 0, disjoint })
+        }
+    }
+
+    /// None while as many frames are pending as can be.
+    fn begin(&mut self, context: &Context) -> Option<Timing> {
+        if self.pending == TIMED_FRAMES {
+            return None;
+        }
+        let [first, last] = self.queries[self.next % TIMED_FRAMES];
+        self.next += 1;
+        self.pending += 1;
+        // SAFETY: a query of this context, whose last result was read.
+        unsafe { context.raw().query_counter(first, glow::TIMESTAMP) };
+        Some(Timing(last))
+    }
+
+    /// That of the oldest frame that is pending, if it is known. Does not wait.
+    fn time(&mut self, context: &Context) -> Option<Duration> {
+        if self.pending == 0 {
+            return None;
+        }
+        let [first, last] = self.queries[(self.next - self.pending) % TIMED_FRAMES];
+        let gl = context.raw();
+        // SAFETY: queries of this context that have ended; the parameter is there where `disjoint` is set.
+        unsafe {
+            if gl.get_query_parameter_u32(last, glow::QUERY_RESULT_AVAILABLE) == 0 {
+                return None;
+            }
+            self.pending -= 1;
+            let disturbed = self.disjoint && gl.get_parameter_bool(GPU_DISJOINT);
+            let [first, last] =
+                [first, last].map(|query| gl.get_query_parameter_u64(query, glow::QUERY_RESULT));
+            let time = last.checked_sub(first)?;
+            (!disturbed).then_some(Duration::from_nanos(time))
+        }
+    }
+}
