@@ -110,7 +110,9 @@ unsafe fn create_instance(
         let is = |extension: *const c_char, name: &CStr| CStr::from_ptr(extension) == name;
         let enables = |name: &CStr| extensions.iter().any(|&extension| is(extension, name));
         let mut result = create(info, &below, handle);
-        if result == sys::Result::ERROR_EXTENSION_NOT_PRESENT && enables(DEPTH) {
+        let mut takes_depth = enables(DEPTH);
+        if result == sys::Result::ERROR_EXTENSION_NOT_PRESENT && takes_depth {
+            takes_depth = false;
             // A runtime without it: the layer takes the depth, and what it does not know it ignores.
             let rest: Vec<*const c_char> =
                 extensions.iter().copied().filter(|&extension| !is(extension, DEPTH)).collect();
@@ -134,7 +136,7 @@ unsafe fn create_instance(
         if !serves {
             say(format_args!("{name}: passed through: it uses neither Vulkan nor OpenGL"));
         }
-        lock(&INSTANCES).push(Arc::new(Instance::new(handle, dispatch, settings, name, serves)));
+        lock(&INSTANCES).push(Arc::new(Instance::new(handle, dispatch, settings, name, serves, takes_depth)));
         Ok(result)
     }
 }

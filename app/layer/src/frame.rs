@@ -10,24 +10,36 @@ use yoro::eyes::Eye;
 
 use crate::dispatch::check;
 use crate::geometry::{Rectangle, Submitted, SubmittedDepth, frustum, pose, split, xr_fov, xr_pose};
-use crate::graphics::{Binding, Job, PATIENCE, Synthesizer};
+use crate::graphics::{Binding, Image, Job, PATIENCE, Synthesizer};
 use crate::reason::Reason;
 use crate::session::Session;
 use crate::swapchain::{Content, Swapchain};
 use crate::{capture, lock, say};
 
-/// The two views of a layer.
-type Views = [sys::CompositionLayerProjectionView; 2];
+/// The two views of a layer, and their depth where it goes on to the runtime.
+struct Eyes {
+    views: [sys::CompositionLayerProjectionView; 2],
+    depths: Option<[sys::CompositionLayerDepthInfoKHR; 2]>,
+}
+
+/// Places in lists of what there is of both.
+const COLOR: usize = 0;
+const DEPTH: usize = 1;
+const ATTACHMENTS: [sys::SwapchainUsageFlags; 2] =
+    [sys::SwapchainUsageFlags::COLOR_ATTACHMENT, sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT];
 
 /// What xrEndFrame keeps from frame to frame.
 #[derive(Default)]
 pub struct Frames {
     layers: Vec<*const sys::CompositionLayerBaseHeader>,
     projections: Vec<sys::CompositionLayerProjection>,
-    views: Vec<Views>,
+    eyes: Vec<Eyes>,
     /// Made with the first frame that needs it; why it cannot be is found out once.
     synthesizer: Option<Result<Box<dyn Synthesizer>, Reason>>,
-    target: Option<Target>,
+    /// Colour and, for runtimes that take it, depth of the other eye.
+    targets: [Option<Target>; 2],
+    /// There cannot be one of depth.
+    without_depth: bool,
     /// [`Reason::bit`] of those that the log has.
     told: u32,
     counts: Counts,
@@ -54,7 +66,7 @@ struct Counts {
     timed: u64,
 }
 
-/// The swapchain of the other eye.
+/// A swapchain of the other eye.
 struct Target {
     handle: sys::Swapchain,
     content: Content,
@@ -215,14 +227,14 @@ impl Frames {
     ) {
         self.layers.clear();
         self.projections.clear();
-        self.views.clear();
+        self.eyes.clear();
         // SAFETY: promised by the caller.
         let of_one_view = |pointer| unsafe { projection(pointer, 1) };
         let mut done = false;
         for layer in pointers.iter().filter_map(|&pointer| of_one_view(pointer)) {
             // SAFETY: a layer of one view.
             let view = unsafe { &*layer.views };
-            let views = match (synthesize, done) {
+            let eyes = match (synthesize, done) {
                 (false, _) => None,
                 (true, true) => Some(Err(Reason::Another)),
                 (true, false) => {
@@ -231,11 +243,11 @@ impl Frames {
                     Some(catch_unwind(work).unwrap_or(Err(Reason::Panic)))
                 }
             };
-            let views = match views {
-                Some(Ok(views)) => {
+            let eyes = match eyes {
+                Some(Ok(eyes)) => {
                     self.counts.synthesized += 1;
                     done = true;
-                    views
+                    eyes
                 }
                 Some(Err(reason)) => {
                     self.fall_back(session, reason);
@@ -243,11 +255,15 @@ impl Frames {
                 }
                 None => same(view),
             };
-            self.views.push(views);
+            self.eyes.push(eyes);
             self.projections.push(sys::CompositionLayerProjection { view_count: 2, ..*layer });
         }
-        for (projection, views) in self.projections.iter_mut().zip(&self.views) {
-            projection.views = views.as_ptr();
+        // From here on the lists stay as they are, and can be pointed to.
+        for (projection, eyes) in self.projections.iter_mut().zip(&mut self.eyes) {
+            for (view, depth) in eyes.views.iter_mut().zip(eyes.depths.iter().flatten()) {
+                view.next = std::ptr::from_ref(depth).cast();
+            }
+            projection.views = eyes.views.as_ptr();
         }
         let mut rewritten = self.projections.iter();
         for &pointer in pointers {
@@ -264,7 +280,7 @@ impl Frames {
         &mut self,
         session: &Session,
         view: &sys::CompositionLayerProjectionView,
-    ) -> Result<Views, Reason> {
+    ) -> Result<Eyes, Reason> {
         // SAFETY: promised by the caller.
         let info = unsafe { depth_of(view) }.ok_or(Reason::NoDepth)?;
         let binding = session.binding.ok_or(Reason::NoGraphics)?;
@@ -293,10 +309,7 @@ impl Frames {
         .map_err(Reason::Geometry)?;
 
         self.synthesizer(binding)?;
-        let target = self.target(session, &binding, color)?;
-        let target_image = target.acquire(session)?;
-        let target_image = target.content.image(target_image, 0);
-        let handle = target.handle;
+        let target = self.acquire(session, &binding, color, depth)?;
         let color_image = color.image(color_image, view.sub_image.image_array_index);
         let from_top = binding.rows_from_top();
         let job = Job {
@@ -304,7 +317,8 @@ impl Frames {
             depth: depth.image(depth_image, info.sub_image.image_array_index),
             source: part.part(split.source, from_top),
             warp: &split.warp,
-            target: target_image,
+            target: target.color.1,
+            target_depth: target.depth.map(|(_, image)| image),
         };
         let whole = Rectangle { origin: [0; 2], size: split.crop.size };
         let crop = part.part(split.crop, from_top);
@@ -318,30 +332,42 @@ impl Frames {
             if result.is_ok() && captures {
                 capture::write(session, synthesizer, "rendered", color_image, part);
                 capture::write(session, synthesizer, dominant.name(), color_image, crop);
-                capture::write(session, synthesizer, other.name(), target_image, whole);
+                capture::write(session, synthesizer, other.name(), job.target, whole);
             }
             result
         };
         // Released even if nothing is in it: it is not shown then. What cannot be released is of no use any more.
-        if let Err(reason) = release(session, handle) {
-            self.drop_target(session);
+        if let Err(reason) = target.release(session) {
+            self.drop_target(session, COLOR);
+            self.drop_target(session, DEPTH);
             return Err(reason);
         }
         if let Some(time) = result? {
             self.counts.gpu += time;
             self.counts.timed += 1;
         }
-        let eye = |eye: Eye, sub_image| sys::CompositionLayerProjectionView {
+        let parts = |own: &sys::SwapchainSubImage, others: sys::Swapchain| {
+            Eye::BOTH.map(|eye| match eye == dominant {
+                true => sub_image(own.swapchain, crop, own.image_array_index),
+                false => sub_image(others, whole, 0),
+            })
+        };
+        let colors = parts(&view.sub_image, target.color.0);
+        let views = Eye::BOTH.map(|eye| sys::CompositionLayerProjectionView {
             ty: sys::CompositionLayerProjectionView::TYPE,
             next: std::ptr::null(),
             pose: xr_pose(split.poses[eye.index()]),
             fov: xr_fov(split.frusta[eye.index()]),
-            sub_image,
-        };
-        let mut views =
-            [eye(dominant, sub_image(view.sub_image.swapchain, crop, view.sub_image.image_array_index)); 2];
-        views[other.index()] = eye(other, sub_image(handle, whole, 0));
-        Ok(views)
+            sub_image: colors[eye.index()],
+        });
+        let depths = target.depth.map(|(handle, _)| {
+            parts(&info.sub_image, handle).map(|sub_image| sys::CompositionLayerDepthInfoKHR {
+                next: std::ptr::null(),
+                sub_image,
+                ..*info
+            })
+        });
+        Ok(Eyes { views, depths })
     }
 
     /// The pipeline, made if there is none yet.
@@ -353,26 +379,64 @@ impl Frames {
         }
     }
 
-    /// A swapchain for the other eye, like the application's.
-    fn target(
+    /// Images for the other eye, in swapchains like the application's.
+    fn acquire(
         &mut self,
         session: &Session,
         binding: &Binding,
         color: &Content,
-    ) -> Result<&mut Target, Reason> {
-        let fits = |target: &Target| {
-            let size = target.content.size;
-            target.content.format == color.format && size[0] >= color.size[0] && size[1] >= color.size[1]
-        };
-        if !self.target.as_ref().is_some_and(fits) {
-            self.drop_target(session);
-            self.target = Some(Target::new(session, binding, color)?);
+        depth: &Content,
+    ) -> Result<Acquired, Reason> {
+        self.fit(session, binding, COLOR, color)?;
+        if session.instance.takes_depth
+            && !self.without_depth
+            && let Err(reason) = self.fit(session, binding, DEPTH, depth)
+        {
+            self.without_depth = true;
+            let application = &session.instance.application;
+            say(format_args!("{application}: depth does not go on to the runtime: {reason}"));
         }
-        self.target.as_mut().ok_or(Reason::NoGraphics)
+        let [color, depth] = &mut self.targets;
+        let color = color.as_mut().ok_or(Reason::NoGraphics)?;
+        let image = color.acquire(session)?;
+        let color = (color.handle, color.content.image(image, 0));
+        let depth = match depth {
+            None => None,
+            Some(target) => match target.acquire(session) {
+                Ok(image) => Some((target.handle, target.content.image(image, 0))),
+                Err(reason) => {
+                    if release(session, color.0).is_err() {
+                        self.drop_target(session, COLOR);
+                    }
+                    return Err(reason);
+                }
+            },
+        };
+        Ok(Acquired { color, depth })
     }
 
-    fn drop_target(&mut self, session: &Session) {
-        if let Some(old) = self.target.take() {
+    /// Makes a swapchain like the application's, unless there is one that will do.
+    fn fit(
+        &mut self,
+        session: &Session,
+        binding: &Binding,
+        which: usize,
+        like: &Content,
+    ) -> Result<(), Reason> {
+        let fits = |target: &Target| {
+            let Content { format, size, .. } = target.content;
+            format == like.format && size[0] >= like.size[0] && size[1] >= like.size[1]
+        };
+        if self.targets[which].as_ref().is_some_and(fits) {
+            return Ok(());
+        }
+        self.drop_target(session, which);
+        self.targets[which] = Some(Target::new(session, binding, ATTACHMENTS[which], like)?);
+        Ok(())
+    }
+
+    fn drop_target(&mut self, session: &Session, which: usize) {
+        if let Some(old) = self.targets[which].take() {
             self.forget(&old.content);
             // SAFETY: the layer's own, whose images no command uses any more.
             unsafe { (session.instance.next.destroy_swapchain)(old.handle) };
@@ -448,7 +512,6 @@ impl Frames {
     /// Before the session is destroyed, which destroys its swapchains.
     pub fn end(&mut self, session: &Session) {
         self.synthesizer = None;
-        self.target = None;
         let Counts { frames, synthesized, fallbacks, .. } = self.counts;
         if session.is_mono() {
             say(format_args!(
@@ -461,13 +524,31 @@ impl Frames {
 }
 
 /// The one image for both eyes. What hangs on the view is for one eye, and goes no further.
-fn same(view: &sys::CompositionLayerProjectionView) -> Views {
-    [sys::CompositionLayerProjectionView { next: std::ptr::null(), ..*view }; 2]
+fn same(view: &sys::CompositionLayerProjectionView) -> Eyes {
+    Eyes { views: [sys::CompositionLayerProjectionView { next: std::ptr::null(), ..*view }; 2], depths: None }
+}
+
+/// Images of the other eye's swapchains that can be written.
+struct Acquired {
+    color: (sys::Swapchain, Image),
+    depth: Option<(sys::Swapchain, Image)>,
+}
+
+impl Acquired {
+    fn release(&self, session: &Session) -> Result<(), Reason> {
+        let depth = self.depth.map_or(Ok(()), |(handle, _)| release(session, handle));
+        release(session, self.color.0).and(depth)
+    }
 }
 
 impl Target {
-    fn new(session: &Session, binding: &Binding, color: &Content) -> Result<Target, Reason> {
-        let mut usage = sys::SwapchainUsageFlags::COLOR_ATTACHMENT | sys::SwapchainUsageFlags::SAMPLED;
+    fn new(
+        session: &Session,
+        binding: &Binding,
+        attachment: sys::SwapchainUsageFlags,
+        like: &Content,
+    ) -> Result<Target, Reason> {
+        let mut usage = attachment | sys::SwapchainUsageFlags::SAMPLED;
         if session.instance.settings.capture.is_some() {
             usage |= sys::SwapchainUsageFlags::TRANSFER_SRC;
         }
@@ -476,10 +557,10 @@ impl Target {
             next: std::ptr::null(),
             create_flags: sys::SwapchainCreateFlags::EMPTY,
             usage_flags: usage,
-            format: color.format,
+            format: like.format,
             sample_count: 1,
-            width: color.size[0],
-            height: color.size[1],
+            width: like.size[0],
+            height: like.size[1],
             face_count: 1,
             array_size: 1,
             mip_count: 1,

@@ -38,6 +38,8 @@ pub struct Job<'a> {
     pub warp: &'a Warp,
     /// The other eye begins at its first column and row.
     pub target: Image,
+    /// Its depth, stored as the source's is.
+    pub target_depth: Option<Image>,
 }
 
 /// The pipeline and what it needs, for one session.
@@ -47,7 +49,7 @@ pub trait Synthesizer {
     ///
     /// # Safety
     /// The images are the session's, and the application's side has them: in Vulkan the source's are in the layouts of
-    /// attachments, and so is the target's left. Nobody else uses the queue or the context.
+    /// attachments, and so are the target's left. Nobody else uses the queue or the context.
     unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason>;
 
     /// Forgets a swapchain's images, which are about to be destroyed.

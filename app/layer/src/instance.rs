@@ -22,6 +22,8 @@ pub struct Instance {
     pub application: String,
     /// It has enabled a graphics interface that the layer knows; without that everything passes through.
     pub serves: bool,
+    /// The runtime takes depth, too: it has the extension that the application has enabled.
+    pub takes_depth: bool,
     /// The recommended size of the one view, in pixels: the same in all answers since the first session was made.
     size: Mutex<Option<[u32; 2]>>,
 }
@@ -33,8 +35,9 @@ impl Instance {
         settings: Settings,
         application: String,
         serves: bool,
+        takes_depth: bool,
     ) -> Instance {
-        Instance { handle, next, settings, application, serves, size: Mutex::new(None) }
+        Instance { handle, next, settings, application, serves, takes_depth, size: Mutex::new(None) }
     }
 
     /// Whether the application is offered one view, on a system that has two.

@@ -47,7 +47,7 @@ pub struct Synthesizer {
     // Before the device's other objects: it is dropped first.
     gather: Option<(Gather, Options)>,
     sources: Vec<([Image; 2], SourceId)>,
-    targets: Vec<(Image, TargetId)>,
+    targets: Vec<([Option<Image>; 2], TargetId)>,
     instance: ash::Instance,
     device: ash::Device,
     binding: Binding,
@@ -122,6 +122,7 @@ impl Synthesizer {
         let fits = |limit: [u32; 2], size: [u32; 2]| limit[0] >= size[0] && limit[1] >= size[1];
         if let Some((_, options)) = &self.gather
             && options.color_format == vk_format(job.target)
+            && options.depth_format == job.target_depth.map(vk_format)
             && fits(options.max_source_size, source)
             && fits(options.max_target_size, target)
         {
@@ -133,6 +134,7 @@ impl Synthesizer {
         self.targets.clear();
         let options = Options {
             color_format: vk_format(job.target),
+            depth_format: job.target_depth.map(vk_format),
             max_source_size: source,
             max_target_size: target,
             timed_frames: FRAMES as u32 + 1,
@@ -172,21 +174,26 @@ impl Synthesizer {
         Ok(id)
     }
 
-    unsafe fn target(&mut self, target: Image) -> Result<TargetId, Reason> {
-        if let Some((_, id)) = self.targets.iter().find(|(known, _)| *known == target) {
+    unsafe fn target(&mut self, job: &Job) -> Result<TargetId, Reason> {
+        let key = [Some(job.target), job.target_depth];
+        if let Some((_, id)) = self.targets.iter().find(|(known, _)| *known == key) {
             return Ok(*id);
         }
         let gather = made(&mut self.gather)?;
         // SAFETY: live images, which are forgotten before they are destroyed.
         let id = unsafe {
             gather.register_target(&TargetImages {
-                color: layer_image(target, ImageState::DISCARDED, ImageState::COLOR_ATTACHMENT),
-                depth: None,
-                size: target.size,
+                color: layer_image(job.target, ImageState::DISCARDED, ImageState::COLOR_ATTACHMENT),
+                depth: job
+                    .target_depth
+                    .map(|depth| layer_image(depth, ImageState::DISCARDED, ImageState::DEPTH_ATTACHMENT)),
+                size: [0, 1].map(|i| {
+                    job.target_depth.map_or(u32::MAX, |depth| depth.size[i]).min(job.target.size[i])
+                }),
             })
         };
         let id = id.map_err(Reason::Synthesis)?;
-        self.targets.push((target, id));
+        self.targets.push((key, id));
         Ok(id)
     }
 
@@ -326,7 +333,7 @@ impl graphics::Synthesizer for Synthesizer {
         unsafe {
             self.wait_for(slot)?;
             self.make_gather(job)?;
-            let (source, target) = (self.source(job)?, self.target(job.target)?);
+            let (source, target) = (self.source(job)?, self.target(job)?);
             self.begin(slot)?;
             let gather = made(&mut self.gather)?;
             let frame = Frame { source, source_origin: job.source.origin, target, target_origin: [0, 0] };
@@ -342,7 +349,7 @@ impl graphics::Synthesizer for Synthesizer {
     fn forget(&mut self, images: &[u64]) {
         let uses = |image: &Image| images.contains(&image.image);
         if !self.sources.iter().any(|(source, _)| source.iter().any(uses))
-            && !self.targets.iter().any(|(target, _)| uses(target))
+            && !self.targets.iter().any(|(target, _)| target.iter().flatten().any(uses))
         {
             return;
         }
@@ -357,7 +364,7 @@ impl graphics::Synthesizer for Synthesizer {
             keep
         });
         self.targets.retain(|(target, id)| {
-            let keep = !uses(target);
+            let keep = !target.iter().flatten().any(uses);
             if !keep {
                 // SAFETY: no command is pending.
                 unsafe { gather.release_target(*id) };

@@ -35,7 +35,7 @@ struct Objects {
     context: Rc<Context>,
     pipeline: Option<(Outputs, Box<dyn Synthesis>)>,
     /// Framebuffers by what is attached to them.
-    targets: Vec<(Image, glow::Framebuffer)>,
+    targets: Vec<([Option<Image>; 2], glow::Framebuffer)>,
     /// Copies of colour and depth, where these are parts of what is submitted.
     copies: [Option<Copy>; 2],
     timer: Option<Timer>,
@@ -99,14 +99,15 @@ impl graphics::Synthesizer for Synthesizer {
 
     fn forget(&mut self, images: &[u64]) {
         let uses = |image: &Image| images.contains(&image.image);
-        if !self.objects.targets.iter().any(|(image, _)| uses(image)) {
+        let attached = |target: &[Option<Image>; 2]| target.iter().flatten().any(uses);
+        if !self.objects.targets.iter().any(|(target, _)| attached(target)) {
             return;
         }
         // SAFETY: the context exists. If it is current elsewhere the framebuffers stay until it goes.
         let current = unsafe { self.binding.make_current() };
         let Objects { context, targets, .. } = &mut *self.objects;
-        targets.retain(|(image, framebuffer)| {
-            let keep = !uses(image);
+        targets.retain(|(target, framebuffer)| {
+            let keep = !attached(target);
             if !keep && current.is_ok() {
                 // SAFETY: made here, and used no more.
                 unsafe { context.raw().delete_framebuffer(*framebuffer) };
@@ -116,7 +117,9 @@ impl graphics::Synthesizer for Synthesizer {
     }
 
     unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
-        if ![glow::RGBA8, glow::SRGB8_ALPHA8].map(i64::from).contains(&image.format) {
+        // OpenGL ES reads others in their own type.
+        let bytes = [glow::RGBA8, glow::SRGB8_ALPHA8].map(i64::from).contains(&image.format);
+        if !bytes && self.objects.context.capabilities().api == GlApi::Es {
             return Err(format!("0x{:x} is no format of four bytes", image.format));
         }
         // SAFETY: promised by the caller.
@@ -157,10 +160,10 @@ impl Objects {
         let (source, framebuffer) = unsafe {
             let color = self.source(0, job.color, job.source)?;
             let depth = self.source(1, job.depth, job.source)?;
-            (Source::new(color, depth), self.framebuffer(job.target)?)
+            (Source::new(color, depth), self.framebuffer([Some(job.target), job.target_depth])?)
         };
         let srgb = job.target.format == i64::from(glow::SRGB8_ALPHA8);
-        let outputs = Outputs { srgb, ..Outputs::default() };
+        let outputs = Outputs { srgb, depth: job.target_depth.is_some(), ..Outputs::default() };
         let pipeline = match &mut self.pipeline {
             Some((made_for, pipeline)) if *made_for == outputs => pipeline,
             other => {
@@ -172,6 +175,7 @@ impl Objects {
         let target =
             Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: job.warp.target_size };
         let context = &self.context;
+        let _silence = Silence::begin(context);
         let timing = self.timer.as_mut().and_then(|timer| timer.begin(context));
         let result = pipeline.synthesize(source, job.warp, &target);
         if let Some(timing) = timing {
@@ -227,36 +231,37 @@ impl Objects {
         }
     }
 
-    /// A framebuffer around an image, which stays until the image is forgotten.
-    unsafe fn framebuffer(&mut self, image: Image) -> Result<glow::Framebuffer, Reason> {
-        if let Some((_, framebuffer)) = self.targets.iter().find(|(known, _)| *known == image) {
+    /// A framebuffer around an image of colour and, if there is one, of depth, which stays until one of them is forgotten.
+    unsafe fn framebuffer(&mut self, images: [Option<Image>; 2]) -> Result<glow::Framebuffer, Reason> {
+        if let Some((_, framebuffer)) = self.targets.iter().find(|(known, _)| *known == images) {
             return Ok(*framebuffer);
         }
         let gl = self.context.raw();
-        let texture = texture(image.image)?;
-        // SAFETY: a texture of this context; what is bound is bound again.
+        // SAFETY: textures of this context; what is bound is bound again.
         unsafe {
             let made = gl.create_framebuffer();
             let framebuffer =
                 made.map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
             let before = bound_framebuffers(gl);
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
-            let (target, attachment) = (glow::FRAMEBUFFER, glow::COLOR_ATTACHMENT0);
-            match image.layers {
-                1 => gl.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, Some(texture), 0),
-                _ => gl.framebuffer_texture_layer(target, attachment, Some(texture), 0, image.layer as i32),
+            for (image, attachment) in images.iter().zip([glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT]) {
+                let Some(image) = image else { continue };
+                let (texture, target) = (texture(image.image).ok(), glow::FRAMEBUFFER);
+                match image.layers {
+                    1 => gl.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, texture, 0),
+                    _ => gl.framebuffer_texture_layer(target, attachment, texture, 0, image.layer as i32),
+                }
             }
-            let status = gl.check_framebuffer_status(target);
+            let status = gl.check_framebuffer_status(glow::FRAMEBUFFER);
             bind_framebuffers(gl, before);
             if status != glow::FRAMEBUFFER_COMPLETE {
                 gl.delete_framebuffer(framebuffer);
-                let reason = format!(
-                    "the GL driver cannot render to the format 0x{:x} (status 0x{status:x})",
-                    image.format
-                );
+                let formats = images.map(|image| image.map_or(0, |image| image.format));
+                let reason =
+                    format!("the GL driver cannot render to the formats {formats:x?} (status 0x{status:x})");
                 return Err(GlError::Unsupported(reason).into());
             }
-            self.targets.push((image, framebuffer));
+            self.targets.push((images, framebuffer));
             Ok(framebuffer)
         }
     }
@@ -264,7 +269,7 @@ impl Objects {
     /// Four bytes a pixel, rows from the bottom.
     unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
         // SAFETY: promised by the caller.
-        let framebuffer = unsafe { self.framebuffer(image)? };
+        let framebuffer = unsafe { self.framebuffer([Some(image), None])? };
         let gl = self.context.raw();
         let before = bound_framebuffers(gl);
         // SAFETY: queries of state that there is, and its own values again.
@@ -298,6 +303,31 @@ impl Objects {
             if let Some(timer) = self.timer.take() {
                 timer.queries.into_iter().flatten().for_each(|query| gl.delete_query(query));
             }
+        }
+    }
+}
+
+/// Keeps the names of passes, and all else that is the layer's, out of what the application logs of its context.
+struct Silence<'a>(Option<&'a Context>);
+
+impl Silence<'_> {
+    fn begin(context: &Context) -> Silence<'_> {
+        let gl = context.raw();
+        // SAFETY: a capability that is there with debug groups.
+        let loud = context.capabilities().debug_groups && unsafe { gl.is_enabled(glow::DEBUG_OUTPUT) };
+        if loud {
+            // SAFETY: as above.
+            unsafe { gl.disable(glow::DEBUG_OUTPUT) };
+        }
+        Silence(loud.then_some(context))
+    }
+}
+
+impl Drop for Silence<'_> {
+    fn drop(&mut self) {
+        if let Some(context) = self.0 {
+            // SAFETY: as above; it was enabled before.
+            unsafe { context.raw().enable(glow::DEBUG_OUTPUT) };
         }
     }
 }
