@@ -287,7 +287,8 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
                 ));
             }
             let image = submitted_image(world, &info.sub_image, true)?;
-            depth = Some(Depth { image, range, near_far });
+            // JSON knows no infinity.
+            depth = Some(Depth { image, range, near_far: near_far.map(|z| z.min(f32::MAX)) });
         }
         next = structure.next;
     }
@@ -385,6 +386,14 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
                 _ => image::DynamicImage::from(picture).into_rgb8().save(&path),
             };
             written.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        }
+        let Layer::Projection { views } = layer else { continue };
+        for (i, depth) in views.iter().enumerate().filter_map(|(i, view)| Some((i, view.depth.as_ref()?))) {
+            // Not every format can be read as it is.
+            if let Some(depth) = read(world, &depth.image) {
+                let path = pictures.folder.join(format!("depth-{i}"));
+                std::fs::write(&path, depth).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+            }
         }
     }
     Ok(())

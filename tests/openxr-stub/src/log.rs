@@ -85,7 +85,7 @@ pub struct Depth {
     pub image: Image,
     /// The smallest and the largest value of the depth buffer.
     pub range: [f32; 2],
-    /// What they stand for, in metres.
+    /// What they stand for, in metres, f32::MAX for infinity.
     pub near_far: [f32; 2],
 }
 

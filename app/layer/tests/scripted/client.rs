@@ -179,7 +179,7 @@ pub struct Planes {
 impl Planes {
     pub const PLAIN: Planes = Planes { near: 0.1, far: 100.0, min: 0.0, max: 1.0 };
 
-    fn stored(self, distance: f32) -> f32 {
+    pub fn stored(self, distance: f32) -> f32 {
         let depth = DepthRange::from_distances(self.near, self.far).depth(distance);
         self.min + depth * (self.max - self.min)
     }

@@ -168,6 +168,33 @@ fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
     assert!(other > 31.0, "{what}: the other eye's image is none of that eye: {other} dB");
 }
 
+/// The runtime must have both eyes' depth: in the rectangles of their colour, and what is seen from there.
+fn assert_depth(seen: &Seen, habits: &Habits, what: &str) {
+    let Planes { near, far, min, max } = habits.planes;
+    for (eye, view) in seen.views().iter().enumerate() {
+        let depth = view.depth.as_ref().unwrap();
+        assert_eq!(depth.image.rect, view.image.rect, "{what}: eye {eye}");
+        assert_eq!(depth.range, [min, max], "{what}: eye {eye}");
+        assert_eq!(depth.near_far, [near, far].map(|z| z.min(f32::MAX)), "{what}: eye {eye}");
+        if habits.formats[1] != D32 {
+            continue;
+        }
+        let [.., width, height] = view.image.rect.map(|n| n as u32);
+        let truth = scene::render(pose_of(view), frustum_of(view), [width, height], 1).distance;
+        let close = |(stored, distance): (&f32, &f32)| {
+            let error = (stored - habits.planes.stored(*distance)).abs();
+            // What a pixel to the side is off by, away from silhouettes.
+            error < 0.02 * (max - min) * (habits.planes.stored(0.8) - habits.planes.stored(6.0)).abs()
+        };
+        let got = seen.depth(eye);
+        assert_eq!(got.len(), truth.len(), "{what}: eye {eye}");
+        let close = got.iter().zip(&truth).filter(|pair| close(*pair)).count();
+        let share = close as f64 / truth.len() as f64;
+        println!("{what}: depth of eye {eye}: {share:.4} of the pixels");
+        assert!(share > 0.99, "{what}: depth of eye {eye} is that of {share} of the pixels");
+    }
+}
+
 /// The synthesized eye must be what the core makes of the same source for the submitted views.
 fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habits, what: &str) {
     let views = seen.views();
@@ -257,6 +284,7 @@ fn one_view_becomes_the_two_that_the_runtime_asks_for() {
             let pixels = if habits.scale == 1.0 { 0.0 } else { 1.0 / habits.scale };
             assert_own_eyes(&seen, &script, pixels, what);
             assert_seen(&seen, &habits, what);
+            assert_depth(&seen, &habits, what);
             if habits.scale == 1.0 && (habits.planes.min, habits.planes.max) == (0.0, 1.0) {
                 assert_synthesized(gpu, &seen, client.as_ref().unwrap(), &habits, what);
             }
@@ -682,8 +710,9 @@ fn a_refused_or_late_runtime_costs_one_frame() {
         let cases = [
             ("xrEndFrame", 3, sys::Result::ERROR_LAYER_INVALID, "xrEndFrame fails with ERROR_LAYER_INVALID"),
             ("xrEndFrame", 3, sys::Result::ERROR_POSE_INVALID, "xrEndFrame fails with ERROR_POSE_INVALID"),
-            // In each frame those of colour and depth come before.
-            ("xrWaitSwapchainImage", 6, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
+            // In each frame the application's colour and depth come first, then the layer's.
+            ("xrWaitSwapchainImage", 7, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
+            ("xrWaitSwapchainImage", 8, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
         ];
         for (call, nth, result, reason) in cases {
             let fault = Fault { call: call.into(), nth, and_later: false, result: result.into_raw() };

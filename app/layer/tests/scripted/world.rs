@@ -170,6 +170,12 @@ impl Seen {
         image::imageops::flip_vertical(&picture).into_raw()
     }
 
+    /// The depth that the runtime got last for an eye, in 32 bits of float, rows from the bottom.
+    pub fn depth(&self, eye: usize) -> Vec<f32> {
+        let bytes = fs::read(self.folder.path().join(format!("depth-{eye}"))).unwrap();
+        bytes.chunks_exact(4).map(|four| f32::from_ne_bytes([four[0], four[1], four[2], four[3]])).collect()
+    }
+
     /// What the runtime says that the specification forbids. A layer may ask for functions of extensions that are not
     /// enabled: how else would it know.
     pub fn violations(&self) -> Vec<&Entry> {

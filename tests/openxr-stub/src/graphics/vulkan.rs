@@ -120,7 +120,7 @@ impl Vulkan {
         }
     }
 
-    /// A host's copy of a rectangle of colour.
+    /// A host's copy of a rectangle of four bytes a pixel.
     fn copy(&self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
         let [x, y, width, height] = rect;
         let image = self.images.get(&texture.raw)?;
@@ -256,7 +256,7 @@ impl Graphics for Vulkan {
     fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
         let format = self.images.get(&texture.raw)?.format;
         let swapped = match format {
-            vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => false,
+            vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB | vk::Format::D32_SFLOAT => false,
             vk::Format::B8G8R8A8_UNORM | vk::Format::B8G8R8A8_SRGB => true,
             _ => return None,
         };
