@@ -10,7 +10,8 @@ const NAME: &str = "XR_APILAYER_YORO_one_view";
 fn layer(folder: &Path, arguments: &[&str]) -> Run {
     let mut command = yoro(["layer"].iter().chain(arguments));
     command.current_dir(folder).env("XDG_DATA_HOME", folder.join("data"));
-    finish(command.env("XDG_CONFIG_HOME", folder.join("config")))
+    command.env("XDG_CONFIG_HOME", folder.join("config")).env("XDG_STATE_HOME", folder.join("state"));
+    finish(&mut command)
 }
 
 #[test]
@@ -35,6 +36,17 @@ fn it_is_installed_told_of_and_removed() {
     }
     assert!(layer(folder, &["status"]).stdout.contains("not installed"));
     assert_eq!(layer(folder, &["remove"]).code, Some(0));
+}
+
+#[test]
+fn the_log_of_the_last_program_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    layer(folder.path(), &["log"]).refuses(&["layer.log", "yoro layer run"]);
+    let log = folder.path().join("state/yoro/layer.log");
+    fs::create_dir_all(log.parent().unwrap()).unwrap();
+    fs::write(&log, "yoro layer: HelloXR: renders one view\n").unwrap();
+    let shown = layer(folder.path(), &["log"]);
+    assert_eq!((shown.code, shown.stdout.as_str()), (Some(0), "yoro layer: HelloXR: renders one view\n"));
 }
 
 #[test]

@@ -7,10 +7,11 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use glam::{Quat, Vec3};
 use image::{Rgb, RgbImage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use yoro::eyes::{Eye, EyePair};
+use yoro::eyes::{Eye, EyePair, Frustum};
 use yoro_context::{Backend, Headless};
 use yoro_lab::metrics::{Channels, Quality};
 use yoro_lab::picture;
@@ -663,6 +664,77 @@ impl Drop for Monado {
     fn drop(&mut self) {
         let _ = self.service.kill();
         let _ = self.service.wait();
+    }
+}
+
+/// The program as an application of one view: what the layer makes of that is what the program synthesizes itself, in the
+/// layers of an array, and with the HUD in front.
+#[test]
+fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
+    let Some(programs) = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from) else {
+        let without = std::env::var_os("YORO_TEST_WITHOUT_HELLO_XR").is_some();
+        assert!(
+            without,
+            "set YORO_TEST_HELLO_XR to the folder of `cargo xtask hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
+        );
+        return;
+    };
+    // The program smooths edges after its synthesis, and before the layer's.
+    const UNSMOOTHED: &str = "anti-aliasing=off";
+    let pictures = Some(Pictures { folder: "in the run's own".into(), from: 0 });
+    let simulated = Simulated::new(&Script { pictures, ..Script::default() }.asymmetric());
+    let folder = simulated.folder.path();
+    let mut command = yoro(["layer", "run", "--library"]);
+    command
+        // Cargo builds it for these tests, beside them.
+        .arg(std::env::current_exe().unwrap().with_file_name("libyoro_layer.so"))
+        .arg("--")
+        .arg(programs.join("run"))
+        .arg(env!("CARGO_BIN_EXE_yoro"))
+        .args(["xr", "--mono", "--method", "mono", "--frames", "2", "--capture", "captured", "--json"])
+        .arg("--runtime")
+        .arg(programs.join("libopenxr_loader.so.1"))
+        .args(cheap())
+        .args(["--set", UNSMOOTHED])
+        .env("XR_RUNTIME_JSON", simulated.path("runtime.json"))
+        .env("XDG_CONFIG_HOME", folder)
+        .env("XDG_STATE_HOME", folder)
+        .env(VARIABLE, "script.json")
+        .current_dir(folder);
+    let run = in_time(&mut command, LIMIT);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(run.stderr.contains("yoro layer: yoro: renders one view; the left eye is synthesized"));
+    let end = run.stderr.lines().find(|line| line.contains("session ended after")).unwrap();
+    assert!(end.ends_with(" synthesized, 0 not"), "{}", run.stderr);
+
+    // The same is in its log.
+    let log = fs::read_to_string(folder.join("yoro/layer.log")).unwrap();
+    assert!(log.contains(end), "{log}");
+
+    let views = simulated.views();
+    let (_, views) = views.last().unwrap();
+    assert!(views.iter().all(|view| view.depth.is_some()), "{views:?}");
+    // Where the program had its one view in the scene; the other eye is as far from it there as in the room.
+    let (_, own, _) = captured(folder, &run.json()).remove(0);
+    let at = |view: &View| Vec3::from(view.position);
+    let apart = Quat::from_array(views[1].orientation).inverse() * (at(&views[0]) - at(&views[1]));
+    let placed = own.poses[0];
+    let [.., width, height] = views[0].image.rect.map(|n| n as u32);
+    let pair = EyePair {
+        poses: [placed.translated_local(apart), placed],
+        frusta: [0, 1].map(|eye: usize| {
+            let [left, right, up, down] = views[eye].fov_degrees.map(f32::to_radians);
+            Frustum::from_fov(left, right, up, down)
+        }),
+        size: [width, height],
+        ..own
+    };
+    let settings = Settings::resolve(None, CHEAP.into_iter().chain([UNSMOOTHED]).map(str::to_owned)).unwrap();
+    let own = desktop("prototype", Method::Yoro, &pair, &settings);
+    for eye in Eye::BOTH {
+        let quality = rgb(&simulated.picture(&format!("view-{}.png", eye.index())), &own[eye.index()]);
+        println!("{eye:?}: {quality:?}");
+        assert!(quality.ssim_gaussian > 0.99, "{eye:?}: {quality:?}");
     }
 }
 

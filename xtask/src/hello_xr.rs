@@ -18,6 +18,7 @@ const PACKAGE: &str = "libopenxr-utils";
 /// Of all that it depends on, what Monado's folder does not have.
 const UNPACKED: [&str; 3] = ["libopenxr-utils_", "libopenxr-loader1_", "libjsoncpp"];
 const WITHOUT: [&str; 1] = ["./usr/share/*"];
+const LOADER: &str = "libopenxr_loader.so.1";
 
 /// Sets it up; how it is used.
 ///
@@ -32,7 +33,9 @@ pub fn usage() -> anyhow::Result<String> {
     ))
 }
 
-/// The folder with the programs `hello_xr` and `monado-service`: fetches and unpacks what is missing.
+/// The folder with the programs `hello_xr` and `monado-service`, with `run PROGRAM ...`, which is
+/// [Monado's](crate::monado) with the loader's libraries, and the loader itself, `libopenxr_loader.so.1`: fetches and
+/// unpacks what is missing.
 ///
 /// # Errors
 /// When it cannot be had on this machine.
@@ -69,7 +72,8 @@ fn write_programs(folder: &Path, root: &Path, monado: &Path) -> anyhow::Result<(
         bail!("{} is not where Debian's packages have it", program.display());
     }
     let drivers = monado.join("root/usr/share/vulkan/icd.d/lvp_icd.json");
-    let linker = monado::linker(&monado.join("root"), &[usr.join("lib/x86_64-linux-gnu")]);
+    let libraries = usr.join("lib/x86_64-linux-gnu");
+    let linker = monado::linker(&monado.join("root"), std::slice::from_ref(&libraries));
     let manifest = monado.join("root").join(monado::MANIFEST);
     let hello = format!(
         "# Khronos's example with the libraries that Monado has, and Monado as its OpenXR runtime.\n\
@@ -81,6 +85,13 @@ fn write_programs(folder: &Path, root: &Path, monado: &Path) -> anyhow::Result<(
         quoted(&program),
     );
     write_launcher(&folder.join("hello_xr"), &hello)?;
+    write_launcher(
+        &folder.join("run"),
+        &monado::run(&monado.join("root"), std::slice::from_ref(&libraries)),
+    )?;
+    let loader = folder.join(LOADER);
+    fs::copy(libraries.join(LOADER), &loader)
+        .with_context(|| format!("{} cannot be written", loader.display()))?;
     let service = format!("exec {} \"$@\"\n", quoted(&monado.join("monado-service")));
     write_launcher(&folder.join("monado-service"), &service)
 }

@@ -98,9 +98,30 @@ pub fn linker(root: &Path, first: &[PathBuf]) -> String {
     )
 }
 
-fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
+/// The text of a launcher for programs of this machine, with the libraries of this root after those in the folders `first`.
+/// The runtime is Monado, or what XR_RUNTIME_JSON names.
+pub fn run(root: &Path, first: &[PathBuf]) -> String {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");
+    format!(
+        "# A program of this machine with the libraries that Monado has, and Monado as its OpenXR runtime.\n\
+         unset LD_LIBRARY_PATH\n\
+         export LIBGL_ALWAYS_SOFTWARE=1 LIBGL_DRIVERS_PATH={} GBM_BACKENDS_PATH={}\n\
+         export __EGL_VENDOR_LIBRARY_FILENAMES={}\n\
+         export XR_RUNTIME_JSON=${{XR_RUNTIME_JSON:-{}}}\n\
+         program=$(command -v \"$1\") || exit 127\n\
+         shift\n\
+         exec {} \"$program\" \"$@\"\n",
+        quoted(&libraries.join("dri")),
+        quoted(&libraries.join("gbm")),
+        quoted(&usr.join("share/glvnd/egl_vendor.d/50_mesa.json")),
+        quoted(&root.join(MANIFEST)),
+        linker(root, first),
+    )
+}
+
+fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
+    let usr = root.join("usr");
     let linker = linker(root, &[]);
     let service = format!(
         "# Monado with a simulated headset, on the CPU and without a display.\n\
@@ -109,24 +130,11 @@ fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
         quoted(&usr.join("share/vulkan/icd.d/lvp_icd.json")),
         quoted(&usr.join("bin/monado-service")),
     );
-    let run = format!(
-        "# A program of this machine with the libraries that Monado has, and Monado as its OpenXR runtime.\n\
-         unset LD_LIBRARY_PATH\n\
-         export LIBGL_ALWAYS_SOFTWARE=1 LIBGL_DRIVERS_PATH={} GBM_BACKENDS_PATH={}\n\
-         export __EGL_VENDOR_LIBRARY_FILENAMES={} XR_RUNTIME_JSON={}\n\
-         program=$(command -v \"$1\") || exit 127\n\
-         shift\n\
-         exec {linker} \"$program\" \"$@\"\n",
-        quoted(&libraries.join("dri")),
-        quoted(&libraries.join("gbm")),
-        quoted(&usr.join("share/glvnd/egl_vendor.d/50_mesa.json")),
-        quoted(&root.join(MANIFEST)),
-    );
     for file in [usr.join("bin/monado-service"), root.join(MANIFEST)] {
         if !file.is_file() {
             bail!("{} is not where Debian's packages have it", file.display());
         }
     }
     write_launcher(&folder.join("monado-service"), &service)?;
-    write_launcher(&folder.join("run"), &run)
+    write_launcher(&folder.join("run"), &run(root, &[]))
 }

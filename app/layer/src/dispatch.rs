@@ -98,6 +98,7 @@ table! {
         enumerate_view_configuration_views: EnumerateViewConfigurationViews = "xrEnumerateViewConfigurationViews\0",
         enumerate_environment_blend_modes: EnumerateEnvironmentBlendModes = "xrEnumerateEnvironmentBlendModes\0",
         locate_views: LocateViews = "xrLocateViews\0",
+        begin_frame: BeginFrame = "xrBeginFrame\0",
         end_frame: EndFrame = "xrEndFrame\0",
         create_swapchain: CreateSwapchain = "xrCreateSwapchain\0",
         destroy_swapchain: DestroySwapchain = "xrDestroySwapchain\0",

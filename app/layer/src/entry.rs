@@ -3,6 +3,7 @@
 use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
+use std::time::Instant;
 
 use openxr_sys as sys;
 use sys::{ViewConfigurationType as ViewsOf, pfn};
@@ -191,6 +192,7 @@ fn own_function(name: &CStr, instance: &Instance) -> Option<pfn::VoidFunction> {
             b"xrEnumerateEnvironmentBlendModes" => enumerate_environment_blend_modes: EnumerateEnvironmentBlendModes,
             b"xrGetVisibilityMaskKHR" => get_visibility_mask: GetVisibilityMaskKHR,
             b"xrLocateViews" => locate_views: LocateViews,
+            b"xrBeginFrame" => begin_frame: BeginFrame,
             b"xrEndFrame" => end_frame: EndFrame,
             b"xrCreateSwapchain" => create_swapchain: CreateSwapchain,
             b"xrDestroySwapchain" => destroy_swapchain: DestroySwapchain,
@@ -468,6 +470,16 @@ unsafe extern "system" fn locate_space(
         let time = instance.settings.time.map_or(time, sys::Time::from_nanos);
         // SAFETY: the application's call.
         Ok(unsafe { (instance.next.locate_space)(space, base, time, location) })
+    })
+}
+
+unsafe extern "system" fn begin_frame(handle: sys::Session, info: *const sys::FrameBeginInfo) -> sys::Result {
+    shielded(|| {
+        let session = session(handle)?;
+        // SAFETY: the application's call.
+        let result = unsafe { (session.instance.next.begin_frame)(handle, info) };
+        *lock(&session.begun) = Some(Instant::now());
+        Ok(result)
     })
 }
 

@@ -1,5 +1,6 @@
 //! xrEndFrame: a projection layer of one view becomes one of two.
 
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -61,9 +62,25 @@ struct Counts {
     synthesized: u64,
     /// Layers of one view that were shown to both eyes as they are.
     fallbacks: u64,
+    /// From xrBeginFrame to xrEndFrame: what the application does in a frame.
+    application: Duration,
+    /// What the layer does in xrEndFrame, without the runtime's own.
+    layer: Duration,
     /// What the synthesis of `timed` frames took on the GPU.
     gpu: Duration,
     timed: u64,
+}
+
+/// The mean of a number of times, in milliseconds; of none it is not available.
+struct Mean(Duration, u64);
+
+impl fmt::Display for Mean {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.1 {
+            0 => f.write_str("na"),
+            _ => write!(f, "{:.2}", self.0.as_secs_f64() * 1e3),
+        }
+    }
 }
 
 /// A swapchain of the other eye.
@@ -80,8 +97,11 @@ struct Target {
 /// As the specification says.
 pub unsafe fn end_frame(session: &Session, info: &sys::FrameEndInfo) -> sys::Result {
     let next = session.instance.next.end_frame;
+    let start = Instant::now();
+    let begun = lock(&session.begun).take();
     let frames = &mut *lock(&session.frames);
     frames.counts.frames += 1;
+    frames.counts.application += begun.map_or(Duration::ZERO, |begun| start.duration_since(begun));
     let pointers = match info.layers.is_null() {
         true => &[],
         // SAFETY: promised by the caller: as many as the structure says.
@@ -107,6 +127,7 @@ pub unsafe fn end_frame(session: &Session, info: &sys::FrameEndInfo) -> sys::Res
         // SAFETY: the application's own.
         return unsafe { next(session.handle, info) };
     }
+    frames.counts.layer += start.elapsed();
     let rewritten = sys::FrameEndInfo { layers: frames.layers.as_ptr(), ..*info };
     // SAFETY: the application's layers, or ones like them, which live until the end of this function.
     let mut result = unsafe { next(session.handle, &rewritten) };
@@ -459,15 +480,19 @@ impl Frames {
         if taken >= Duration::from_secs(1) {
             self.last = Some((now, self.counts));
             let counts = &self.counts;
-            let rate = (counts.frames - last.frames) as f64 / taken.as_secs_f64();
-            let timed = counts.timed - last.timed;
-            let gpu = (counts.gpu - last.gpu).as_secs_f64() * 1e3 / timed.max(1) as f64;
+            let frames = counts.frames - last.frames;
+            let rate = frames as f64 / taken.as_secs_f64();
+            let mean =
+                |now: Duration, last: Duration, count: u64| Mean((now - last) / count.max(1) as u32, count);
+            let gpu = mean(counts.gpu, last.gpu, counts.timed - last.timed);
+            let own = mean(counts.application, last.application, frames);
+            let layer = mean(counts.layer, last.layer, frames);
             let application = &session.instance.application;
             let (synthesized, fallbacks) =
                 (counts.synthesized - last.synthesized, counts.fallbacks - last.fallbacks);
             say(format_args!(
-                "{application}: {rate:.1} frames a second, {synthesized} synthesized in {gpu:.2} ms of GPU time each, \
-                 {fallbacks} not"
+                "{application}: {rate:.1} frames a second, {synthesized} synthesized in {gpu} ms of GPU time each, \
+                 {fallbacks} not; {own} ms of a frame the application's, {layer} ms the layer's"
             ));
         }
     }

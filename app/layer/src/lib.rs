@@ -26,6 +26,7 @@ mod geometry;
 mod gl;
 mod graphics;
 mod instance;
+pub mod log;
 mod manifest;
 mod reason;
 mod session;
@@ -33,9 +34,9 @@ pub mod settings;
 mod swapchain;
 mod vulkan;
 
-use std::fmt;
-use std::io::Write as _;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use log::say;
 
 pub use entry::xrNegotiateLoaderApiLayerInterface;
 pub use manifest::{DISABLE, ENABLE, MANIFEST, NAME, manifest};
@@ -43,9 +44,4 @@ pub use manifest::{DISABLE, ENABLE, MANIFEST, NAME, manifest};
 /// What a panic elsewhere has left is as good as before: nothing is changed in two steps.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Writes a line to the standard error output; an application may have closed it.
-fn say(line: fmt::Arguments) {
-    writeln!(std::io::stderr().lock(), "yoro layer: {line}").ok();
 }

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::Instant;
 
 use openxr_sys as sys;
 use sys::Handle as _;
@@ -30,6 +31,8 @@ pub struct Session {
     /// The application's swapchains.
     pub swapchains: Mutex<Vec<Arc<Swapchain>>>,
     pub frames: Mutex<Frames>,
+    /// When xrBeginFrame returned last.
+    pub begun: Mutex<Option<Instant>>,
 }
 
 impl Session {
@@ -52,6 +55,7 @@ impl Session {
             offer: Mutex::new(None),
             swapchains: Mutex::new(Vec::new()),
             frames: Mutex::default(),
+            begun: Mutex::default(),
         };
         if let Some(size) = session.probe() {
             session.instance.latch_size(size);

@@ -3,10 +3,11 @@
 use std::env;
 use std::ffi::OsString;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Seek as _};
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Duration;
 
 use anyhow::{Context as _, bail};
 use clap::Subcommand;
@@ -14,6 +15,8 @@ use yoro_files as files;
 use yoro_layer::{DISABLE, ENABLE, MANIFEST, NAME};
 
 const LIBRARY: &str = "libyoro_layer.so";
+/// Before it is looked whether there is more in the log.
+const PAUSE: Duration = Duration::from_millis(200);
 
 /// Stereo in OpenXR applications that render one view: an API layer that synthesizes the other
 #[derive(clap::Args, Clone, Debug)]
@@ -43,6 +46,12 @@ enum Task {
     },
     /// Say whether it is there, and what its settings are
     Status,
+    /// Show what the layer says in the program that has begun last
+    Log {
+        /// Go on as long as more is said, until Ctrl-C
+        #[arg(long, short)]
+        follow: bool,
+    },
     /// Take it away again
     Remove,
 }
@@ -123,6 +132,7 @@ pub fn run(args: &LayerArgs) -> anyhow::Result<()> {
         Task::Run { library, program } => run_program(&library.find()?, program),
         Task::Install { implicit, library } => install(*implicit, &library.find()?),
         Task::Status => status(),
+        Task::Log { follow } => show_log(*follow),
         Task::Remove => {
             let data = data()?;
             let all = [manifest_path(&data, false), manifest_path(&data, true), library_path(&data)];
@@ -170,6 +180,9 @@ fn status() -> anyhow::Result<()> {
             println!("{how}: not installed");
         }
     }
+    if let Some(path) = yoro_layer::log::path().filter(|path| path.is_file()) {
+        println!("log: {}", path.display());
+    }
     if let Some(path) = yoro_layer::settings::path() {
         let there = if path.is_file() { "" } else { " (not there)" };
         println!("settings: {}{there}", path.display());
@@ -178,6 +191,26 @@ fn status() -> anyhow::Result<()> {
     match errors.into_iter().next() {
         Some(error) => Err(error.into()),
         None => Ok(()),
+    }
+}
+
+fn show_log(follow: bool) -> anyhow::Result<()> {
+    let path = yoro_layer::log::path();
+    let path = path.context("neither XDG_STATE_HOME nor HOME is an absolute path; set one of them")?;
+    let mut file = fs::File::open(&path).with_context(|| {
+        format!("{}: no program has run with the layer yet; see `yoro layer run`", path.display())
+    })?;
+    let mut out = std::io::stdout().lock();
+    loop {
+        std::io::copy(&mut file, &mut out)?;
+        if !follow {
+            return Ok(());
+        }
+        std::thread::sleep(PAUSE);
+        // Another program has begun it anew.
+        if file.metadata()?.len() < file.stream_position()? {
+            file.rewind()?;
+        }
     }
 }
 

@@ -166,6 +166,7 @@ impl Wanted {
             wanted.monado |= package == "yoro-app" && name.contains("monado");
             wanted.web |= package == "yoro-app" && name.starts_with("web::");
             wanted.hello_xr |= package == "yoro-layer" && name.contains("hello_xr");
+            wanted.hello_xr |= package == "yoro-app" && name.contains("through_the_layer");
             wanted.shader_compilers |= package == "yoro-tests" && name.starts_with("shader_cost::");
             wanted.vulkan |= package == "yoro"
                 || package == "yoro-layer"

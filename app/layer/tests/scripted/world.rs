@@ -70,7 +70,10 @@ fn settle() {
         fs::create_dir_all(folder.join("yoro")).unwrap();
         fs::write(folder.join("yoro/layer.toml"), SETTINGS).unwrap();
         // SAFETY: Vulkan, which starts threads that may look at the environment, is not loaded yet.
-        unsafe { std::env::set_var("XDG_CONFIG_HOME", &folder) };
+        unsafe {
+            std::env::set_var("XDG_CONFIG_HOME", &folder);
+            std::env::set_var("XDG_STATE_HOME", &folder);
+        }
     });
 }
 
