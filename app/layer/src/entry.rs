@@ -298,17 +298,26 @@ unsafe extern "system" fn enumerate_view_configuration_views(
         let instance = instance(handle)?;
         // SAFETY: the application's call.
         unsafe {
-            if kind != ViewsOf::PRIMARY_MONO || !instance.offers(system) {
-                let next = instance.next.enumerate_view_configuration_views;
-                return Ok(next(handle, system, kind, capacity, count, views));
-            }
-            let view = instance.view(system)?;
-            // Type and chain are the application's.
-            let view = match views.as_ref().filter(|_| capacity > 0) {
-                Some(place) => sys::ViewConfigurationView { ty: place.ty, next: place.next, ..view },
-                None => view,
+            let own = match kind {
+                ViewsOf::PRIMARY_MONO if instance.offers(system) => vec![instance.view(system)?],
+                ViewsOf::PRIMARY_STEREO if instance.settings.shrink && instance.offers(system) => {
+                    instance.shrunk_views(system)?.to_vec()
+                }
+                _ => {
+                    let next = instance.next.enumerate_view_configuration_views;
+                    return Ok(next(handle, system, kind, capacity, count, views));
+                }
             };
-            answer(&[view], capacity, count, views)
+            if views.is_null() || (capacity as usize) < own.len() {
+                return answer(&own, capacity, count, views);
+            }
+            *count.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)? = own.len() as u32;
+            for (i, view) in own.iter().enumerate() {
+                // Type and chain are the application's.
+                let place = &mut *views.add(i);
+                *place = sys::ViewConfigurationView { ty: place.ty, next: place.next, ..*view };
+            }
+            Ok(sys::Result::SUCCESS)
         }
     })
 }
@@ -377,21 +386,25 @@ unsafe extern "system" fn begin_session(
         // SAFETY: the application's call.
         unsafe {
             let kind = (*info).primary_view_configuration_type;
+            let other = session.instance.settings.dominant.other().name();
+            if kind == ViewsOf::PRIMARY_STEREO && session.shrinks() {
+                let result = check(next(handle, info))?;
+                session.begin(2);
+                say(format_args!("{name}: renders a tiny image for the {other} eye, which is synthesized"));
+                return Ok(result);
+            }
             if kind != ViewsOf::PRIMARY_MONO {
                 say(format_args!(
                     "{name}: passed through: it begins its session with {kind:?}, not with one view"
                 ));
-                session.begin(false);
+                session.begin(0);
                 return Ok(next(handle, info));
             }
             let stereo =
                 sys::SessionBeginInfo { primary_view_configuration_type: ViewsOf::PRIMARY_STEREO, ..*info };
             let result = check(next(handle, &stereo))?;
-            session.begin(true);
-            say(format_args!(
-                "{name}: renders one view; the {} eye is synthesized",
-                session.instance.settings.dominant.other().name()
-            ));
+            session.begin(1);
+            say(format_args!("{name}: renders one view; the {other} eye is synthesized"));
             Ok(result)
         }
     })
@@ -410,11 +423,12 @@ unsafe extern "system" fn get_visibility_mask(
         let next = next.ok_or(sys::Result::ERROR_FUNCTION_UNSUPPORTED)?;
         // SAFETY: the application's call.
         unsafe {
-            if kind != ViewsOf::PRIMARY_MONO {
-                return Ok(next(handle, kind, view, mask_kind, mask));
-            }
-            if view != 0 {
-                return Err(sys::Result::ERROR_VALIDATION_FAILURE);
+            let dominant = session.instance.settings.dominant.index() as u32;
+            match kind {
+                ViewsOf::PRIMARY_MONO if view != 0 => return Err(sys::Result::ERROR_VALIDATION_FAILURE),
+                ViewsOf::PRIMARY_MONO => {}
+                ViewsOf::PRIMARY_STEREO if session.shrinks() && view == dominant => {}
+                _ => return Ok(next(handle, kind, view, mask_kind, mask)),
             }
             // What one eye does not see the other one may: nothing is hidden.
             (*mask).vertex_count_output = 0;
@@ -442,7 +456,15 @@ unsafe extern "system" fn locate_views(
             }
             if asked.view_configuration_type != ViewsOf::PRIMARY_MONO {
                 let next = session.instance.next.locate_views;
-                return Ok(next(handle, &asked, state, capacity, count, views));
+                let result = check(next(handle, &asked, state, capacity, count, views))?;
+                if session.views() == 2 && capacity >= 2 && !views.is_null() {
+                    // One of them sees what both do.
+                    let located = [*views, *views.add(1)];
+                    let (pose, frustum) = session.offer(&located);
+                    let own = &mut *views.add(session.instance.settings.dominant.index());
+                    (own.pose, own.fov) = (xr_pose(pose), xr_fov(frustum));
+                }
+                return Ok(result);
             }
             let state = state.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)?;
             let located = session.locate(&asked, state)?;

@@ -108,7 +108,7 @@ pub unsafe fn end_frame(session: &Session, info: &sys::FrameEndInfo) -> sys::Res
         false => unsafe { std::slice::from_raw_parts(info.layers, info.layer_count as usize) },
     };
     let before = frames.counts.synthesized;
-    if session.is_mono() {
+    if session.views() > 0 {
         // SAFETY: promised by the caller.
         unsafe { frames.rewrite(session, pointers, true) };
     } else if session.reads_images() && frames.counts.frames == capture::FRAME {
@@ -123,7 +123,7 @@ pub unsafe fn end_frame(session: &Session, info: &sys::FrameEndInfo) -> sys::Res
     if let Err(error) = released {
         return error;
     }
-    if !session.is_mono() {
+    if session.views() == 0 {
         // SAFETY: the application's own.
         return unsafe { next(session.handle, info) };
     }
@@ -236,7 +236,7 @@ fn held<'a>(swapchain: &'a Swapchain, what: &'static str) -> Result<(&'a Content
 }
 
 impl Frames {
-    /// Fills `layers` with the application's, and with others in place of those of one view.
+    /// Fills `layers` with the application's, and with others in place of those of one view, or of one that matters.
     ///
     /// # Safety
     /// The pointers are those of a valid XrFrameEndInfo.
@@ -250,11 +250,13 @@ impl Frames {
         self.projections.clear();
         self.eyes.clear();
         // SAFETY: promised by the caller.
-        let of_one_view = |pointer| unsafe { projection(pointer, 1) };
+        let of_one_view = |pointer| unsafe { projection(pointer, session.views() as u32) };
+        // Of two the other one is tiny.
+        let place = if session.views() == 2 { session.instance.settings.dominant.index() } else { 0 };
         let mut done = false;
         for layer in pointers.iter().filter_map(|&pointer| of_one_view(pointer)) {
-            // SAFETY: a layer of one view.
-            let view = unsafe { &*layer.views };
+            // SAFETY: a layer of so many views.
+            let view = unsafe { &*layer.views.add(place) };
             let eyes = match (synthesize, done) {
                 (false, _) => None,
                 (true, true) => Some(Err(Reason::Another)),
@@ -538,7 +540,7 @@ impl Frames {
     pub fn end(&mut self, session: &Session) {
         self.synthesizer = None;
         let Counts { frames, synthesized, fallbacks, .. } = self.counts;
-        if session.is_mono() {
+        if session.views() > 0 {
             say(format_args!(
                 "{}: session ended after {frames} frames: {synthesized} synthesized, {fallbacks} not",
                 session.instance.application

@@ -13,6 +13,9 @@ use crate::settings::{OfferedAs, Settings};
 /// that could tell: about as much as common headsets' frusta differ.
 const ESTIMATED_WIDTH: f32 = 1.25;
 
+/// Width and height in pixels that are recommended for an image that is not used.
+const TINY: u32 = 16;
+
 /// One instance.
 pub struct Instance {
     pub handle: sys::Instance,
@@ -128,6 +131,17 @@ impl Instance {
             recommended_image_rect_height: size[1].min(own.max_image_rect_height),
             ..own
         })
+    }
+
+    /// Both views, where one is tiny.
+    pub fn shrunk_views(&self, system: sys::SystemId) -> XrResult<[sys::ViewConfigurationView; 2]> {
+        let mut views = self.own_views(system)?.map(|own| sys::ViewConfigurationView {
+            recommended_image_rect_width: TINY.min(own.max_image_rect_width),
+            recommended_image_rect_height: TINY.min(own.max_image_rect_height),
+            ..own
+        });
+        views[self.settings.dominant.index()] = self.view(system)?;
+        Ok(views)
     }
 
     /// What the first session knows of the view's size; later ones do not change it.

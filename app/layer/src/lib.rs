@@ -5,7 +5,8 @@
 //! both eyes see. What it submits in xrEndFrame, colour with depth (XR_KHR_composition_layer_depth), is cropped for the
 //! dominant eye, without a copy, and synthesized for the other one. Applications on Vulkan (XR_KHR_vulkan_enable and
 //! enable2), OpenGL (XR_KHR_opengl_enable by Xlib or EGL) and OpenGL ES (XR_KHR_opengl_es_enable); for all others, and for
-//! those that begin PRIMARY_STEREO, everything passes through.
+//! those that begin PRIMARY_STEREO, everything passes through; unless the setting `shrink` has them render one of two views
+//! tiny, which is replaced.
 //!
 //! Whatever fails here does not fail the application: such a frame shows the same image to both eyes, the log says why
 //! once, and counts.

@@ -1,6 +1,6 @@
 //! What is known of the application's session.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -24,8 +24,8 @@ pub struct Session {
     pub binding: Option<Binding>,
     /// What the runtime recommends for the dominant eye, in pixels.
     eye_size: [u32; 2],
-    /// It was begun with one view.
-    mono: AtomicBool,
+    /// [`Session::views`].
+    views: AtomicUsize,
     /// What was offered last, or why nothing can be.
     pub offer: Mutex<Option<Result<Offer, EyesError>>>,
     /// The application's swapchains.
@@ -51,7 +51,7 @@ impl Session {
             instance,
             binding,
             eye_size,
-            mono: AtomicBool::new(false),
+            views: AtomicUsize::new(0),
             offer: Mutex::new(None),
             swapchains: Mutex::new(Vec::new()),
             frames: Mutex::default(),
@@ -135,19 +135,25 @@ impl Session {
         offer.map_or((pose(own.pose), frustum(own.fov)), |offer| (offer.pose, offer.frustum))
     }
 
-    /// It begins, with one view or with two.
-    pub fn begin(&self, mono: bool) {
-        self.mono.store(mono, Ordering::Relaxed);
+    /// It begins.
+    pub fn begin(&self, views: usize) {
+        self.views.store(views, Ordering::Relaxed);
     }
 
-    /// Whether it was begun with one view.
-    pub fn is_mono(&self) -> bool {
-        self.mono.load(Ordering::Relaxed)
+    /// How many views a projection layer of the application's has that becomes one of both eyes: one, or two of which one is
+    /// tiny. None where everything passes through.
+    pub fn views(&self) -> usize {
+        self.views.load(Ordering::Relaxed)
+    }
+
+    /// Whether one of two views is tiny, and replaced, if it is begun with two.
+    pub fn shrinks(&self) -> bool {
+        self.binding.is_some() && self.instance.settings.shrink
     }
 
     /// Whether images of the application are read at the end of a frame.
     pub fn reads_images(&self) -> bool {
-        self.binding.is_some() && (self.is_mono() || self.instance.settings.capture.is_some())
+        self.binding.is_some() && (self.views() > 0 || self.instance.settings.capture.is_some())
     }
 }
 

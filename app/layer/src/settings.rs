@@ -30,6 +30,10 @@ pub struct Settings {
     pub dominant: Eye,
     /// `guard_band`, YORO_LAYER_GUARD_BAND: `none`, pixels (`40px`) or metres (`1.0`).
     pub guard_band: GuardBand,
+    /// `shrink`, YORO_LAYER_SHRINK: `on` or `off`. An application that begins its session in stereo is told that one eye's
+    /// image is tiny, and that image is replaced. Only for applications that make a swapchain for each eye, of the size
+    /// that is recommended for it.
+    pub shrink: bool,
     /// YORO_LAYER_CAPTURE: a folder that gets pictures of what the runtime gets, of one frame. For tests.
     pub capture: Option<PathBuf>,
     /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located, in place of the one that is
@@ -43,6 +47,7 @@ impl Default for Settings {
             offer: OfferedAs::First,
             dominant: Eye::Right,
             guard_band: GuardBand::Distance(1.0),
+            shrink: false,
             capture: None,
             time: None,
         }
@@ -56,6 +61,7 @@ struct Choices {
     offer: Option<String>,
     dominant: Option<String>,
     guard_band: Option<String>,
+    shrink: Option<String>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -64,6 +70,7 @@ struct File {
     offer: Option<String>,
     dominant: Option<String>,
     guard_band: Option<String>,
+    shrink: Option<String>,
     /// By the name that the application gives itself in XrApplicationInfo.
     #[serde(default)]
     application: std::collections::BTreeMap<String, Choices>,
@@ -130,14 +137,14 @@ impl Settings {
             {
                 Ok(mut file) => {
                     let own = file.application.remove(application).unwrap_or_default();
-                    let File { offer, dominant, guard_band, .. } = file;
-                    settings.choose_of(&Choices { offer, dominant, guard_band }, &path, &mut errors);
+                    let File { offer, dominant, guard_band, shrink, .. } = file;
+                    settings.choose_of(&Choices { offer, dominant, guard_band, shrink }, &path, &mut errors);
                     settings.choose_of(&own, &path, &mut errors);
                 }
                 Err(reason) => errors.push(SettingsError::File { path, reason }),
             }
         }
-        for key in ["offer", "dominant", "guard_band"] {
+        for key in ["offer", "dominant", "guard_band", "shrink"] {
             let name = format!("YORO_LAYER_{}", key.to_ascii_uppercase());
             if let Some(value) = environment(&name) {
                 settings.choose(key, &value.to_string_lossy(), "the environment", &name, &mut errors);
@@ -158,8 +165,12 @@ impl Settings {
 
     fn choose_of(&mut self, choices: &Choices, path: &Path, errors: &mut Vec<SettingsError>) {
         let place = path.display().to_string();
-        let all =
-            [("offer", &choices.offer), ("dominant", &choices.dominant), ("guard_band", &choices.guard_band)];
+        let all = [
+            ("offer", &choices.offer),
+            ("dominant", &choices.dominant),
+            ("guard_band", &choices.guard_band),
+            ("shrink", &choices.shrink),
+        ];
         for (key, value) in all {
             if let Some(value) = value {
                 self.choose(key, value, &place, key, errors);
@@ -189,6 +200,10 @@ impl Settings {
                 set(&mut self.guard_band, GuardBand::from_str(value).ok()),
                 "none, pixels such as 40px, or metres such as 1.0",
             ),
+            "shrink" => {
+                let shrink = ["off", "on"].into_iter().position(|choice| choice == value);
+                (set(&mut self.shrink, shrink.map(|choice| choice == 1)), "on or off")
+            }
             _ => {
                 let time = value.parse().ok().filter(|time| *time > 0);
                 (set(&mut self.time, time.map(Some)), "nanoseconds, more than 0")
@@ -215,12 +230,13 @@ mod tests {
 
     #[test]
     fn the_environment_comes_before_the_application_before_all() {
-        let file = "offer = 'only'\ndominant = 'left'\n[application.hello]\noffer = 'last'\nguard_band = '20px'\n\
+        let file = "offer = 'only'\ndominant = 'left'\n[application.hello]\noffer = 'last'\nguard_band = '20px'\nshrink = 'on'\n\
                     [application.other]\ndominant = 'right'\n";
         let (settings, errors) = resolve(file, &[]);
         assert!(errors.is_empty(), "{errors:?}");
         assert_eq!((settings.offer, settings.dominant), (OfferedAs::Last, Eye::Left));
-        assert_eq!(settings.guard_band, GuardBand::Pixels(20));
+        assert_eq!((settings.guard_band, settings.shrink), (GuardBand::Pixels(20), true));
+        assert!(!resolve(file, &[("YORO_LAYER_SHRINK", "off")]).0.shrink);
         let (settings, _) =
             resolve(file, &[("YORO_LAYER_OFFER", "first"), ("YORO_LAYER_GUARD_BAND", "none")]);
         assert_eq!((settings.offer, settings.guard_band), (OfferedAs::First, GuardBand::None));

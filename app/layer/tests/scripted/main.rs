@@ -417,6 +417,45 @@ fn stereo_passes_through() {
     });
 }
 
+/// An application that insists on two views renders a tiny one, which is replaced.
+#[test]
+fn a_second_view_may_be_tiny() {
+    with_gpu(|gpu| {
+        let habits = Habits { name: "shrink", ..Habits::PLAIN };
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+            client.views = ViewsOf::PRIMARY_STEREO;
+            client.create_session().unwrap();
+            client.poll().unwrap();
+            let sizes = client.sizes().unwrap();
+            assert!(sizes[0] == [16; 2] && sizes[1][0] > 128 && sizes[1][1] == 128, "{sizes:?}");
+            let (color, depth) =
+                (client.chain(SRGB, sizes[1], 1).unwrap(), client.chain(D32, sizes[1], 1).unwrap());
+            let part = Part { chain: color.handle, origin: [0; 2], size: sizes[1], layer: 0 };
+            let own = Chains { color, depth, part };
+            let tiny = client.chain(SRGB, sizes[0], 1).unwrap();
+            let part = Part { chain: tiny.handle, size: sizes[0], ..part };
+            for _ in 0..3 {
+                client.poll().unwrap();
+                let frame = client.begin_frame().unwrap();
+                let views = client.locate(frame).unwrap().map(Option::unwrap);
+                let rendered = render(&mut client, &own, &habits, views[1]).unwrap();
+                client.acquire(&tiny).unwrap();
+                client.release(&tiny).unwrap();
+                let unused = Submitted { view: views[0], color: part, depth: None };
+                client.end_frame(frame, &[Layer::Projection(vec![unused, rendered])]).unwrap();
+            }
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[3, 0]], "{}", seen.said);
+        assert_eq!(seen.said("renders a tiny image for the left eye"), 1, "{}", seen.said);
+        assert_own_eyes(&seen, &script(), 0.0, "a tiny view");
+        assert_seen(&seen, &habits, "a tiny view");
+        assert_depth(&seen, &habits, "a tiny view");
+    });
+}
+
 /// One view is offered where the setting says, and in place of a runtime's own; not on a runtime that has no two.
 #[test]
 fn one_view_is_offered_where_there_are_two() {

@@ -48,6 +48,7 @@ pub fn allocations() -> usize {
 /// Settings by the names that applications give themselves.
 const SETTINGS: &str = "guard_band = '16px'\n\
     [application.left]\ndominant = 'left'\n\
+    [application.shrink]\nshrink = 'on'\n\
     [application.only]\noffer = 'only'\n\
     [application.last]\noffer = 'last'\n";
 
