@@ -110,7 +110,7 @@ impl Monado {
             .args(["-g", "Vulkan2", "-vc", run.views])
             .env("XDG_RUNTIME_DIR", self.folder.path())
             .env("XDG_CONFIG_HOME", self.folder.path())
-            .env("XDG_STATE_HOME", self.folder.path())
+            .env("XDG_STATE_HOME", folder)
             .env("XR_API_LAYER_PATH", self.folder.path())
             .env("XR_ENABLE_API_LAYERS", run.layers.join(":"))
             .env("XR_CORE_VALIDATION_EXPORT_TYPE", "text")
