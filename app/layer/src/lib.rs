@@ -40,7 +40,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use log::say;
 
 pub use entry::xrNegotiateLoaderApiLayerInterface;
-pub use manifest::{DISABLE, ENABLE, MANIFEST, NAME, manifest};
+pub use manifest::{DISABLE, ENABLE, Kind, MANIFEST, NAME, manifest};
 
 /// What a panic elsewhere has left is as good as before: nothing is changed in two steps.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

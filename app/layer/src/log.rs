@@ -1,4 +1,4 @@
-//! What the layer says: to the standard error output, and to a file that `yoro layer log` shows.
+//! What the layer says: to the standard error output, and to a file that `yoro layer log` shows; on Android to logcat.
 
 use std::env;
 use std::fmt;
@@ -33,6 +33,26 @@ fn file() -> Option<&'static File> {
     FILE.get_or_init(open).as_ref()
 }
 
+#[cfg(not(target_os = "android"))]
+fn show(line: &[u8]) {
+    std::io::stderr().lock().write_all(line).ok();
+}
+
+/// Under the tag `yoro`. A line has room for the zero that C wants in place of its end.
+#[cfg(target_os = "android")]
+fn show(line: &[u8]) {
+    use std::ffi::{c_char, c_int};
+    #[link(name = "log")]
+    unsafe extern "C" {
+        fn __android_log_write(priority: c_int, tag: *const c_char, text: *const c_char) -> c_int;
+    }
+    const INFO: c_int = 4;
+    let mut text = [0u8; LONGEST];
+    text[..line.len() - 1].copy_from_slice(&line[..line.len() - 1]);
+    // SAFETY: both texts end in zero.
+    unsafe { __android_log_write(INFO, c"yoro".as_ptr(), text.as_ptr().cast()) };
+}
+
 /// Writes a line, at once and without an allocation, so that the application's own do not get in between; it may have
 /// closed its standard error output.
 pub fn say(text: fmt::Arguments) {
@@ -44,7 +64,7 @@ pub fn say(text: fmt::Arguments) {
     let length = LONGEST - 1 - rest.len();
     line[length] = b'\n';
     let line = &line[..=length];
-    std::io::stderr().lock().write_all(line).ok();
+    show(line);
     if let Some(mut file) = file() {
         file.write_all(line).ok();
     }

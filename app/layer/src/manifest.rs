@@ -11,9 +11,19 @@ pub const ENABLE: &str = "YORO_LAYER_ENABLE";
 /// With this variable set to anything, loaders leave the implicit layer out.
 pub const DISABLE: &str = "YORO_LAYER_DISABLE";
 
-/// The manifest's text, for the layer's library at a path. An implicit layer is loaded in every application where
-/// [`ENABLE`] is set; an explicit one where it is asked for by name.
-pub fn manifest(library: &Path, implicit: bool) -> String {
+/// In which applications loaders load the layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Where it is asked for by name.
+    Explicit,
+    /// Everywhere where [`ENABLE`] is set.
+    Implicit,
+    /// In the one that it is packaged with: on Android, whose loaders know no variables.
+    Packaged,
+}
+
+/// The manifest's text, for the layer's library at a path.
+pub fn manifest(library: &Path, kind: Kind) -> String {
     let mut layer = serde_json::json!({
         "name": NAME,
         "library_path": library,
@@ -24,8 +34,10 @@ pub fn manifest(library: &Path, implicit: bool) -> String {
             { "name": "XR_KHR_composition_layer_depth", "extension_version": "6", "entrypoints": [] }
         ],
     });
-    if implicit {
+    if kind == Kind::Implicit {
         layer["enable_environment"] = ENABLE.into();
+    }
+    if kind != Kind::Explicit {
         layer["disable_environment"] = DISABLE.into();
     }
     format!("{:#}\n", serde_json::json!({ "file_format_version": "1.0.0", "api_layer": layer }))
@@ -37,8 +49,10 @@ mod tests {
 
     #[test]
     fn only_an_implicit_layer_needs_to_be_enabled_by_a_variable() {
-        for implicit in [false, true] {
-            let text = manifest(Path::new("/lib/libyoro_layer.so"), implicit);
+        for (kind, enable, disable) in
+            [(Kind::Explicit, false, false), (Kind::Implicit, true, true), (Kind::Packaged, false, true)]
+        {
+            let text = manifest(Path::new("/lib/libyoro_layer.so"), kind);
             let json: serde_json::Value = serde_json::from_str(&text).unwrap();
             let layer = &json["api_layer"];
             assert_eq!(
@@ -46,8 +60,8 @@ mod tests {
                 (&NAME.into(), &"/lib/libyoro_layer.so".into())
             );
             assert_eq!(layer["instance_extensions"][0]["name"], "XR_KHR_composition_layer_depth");
-            assert_eq!(layer.get("enable_environment").is_some(), implicit);
-            assert_eq!(layer.get("disable_environment").is_some(), implicit);
+            assert_eq!(layer.get("enable_environment").is_some(), enable);
+            assert_eq!(layer.get("disable_environment").is_some(), disable);
         }
     }
 }

@@ -1,4 +1,5 @@
-//! What a user can choose: by a file for all applications and for each one, and by environment variables for one run.
+//! What a user can choose: by a file for all applications and for each one, and by environment variables, on Android system
+//! properties, for one run.
 
 use std::env;
 use std::ffi::OsString;
@@ -108,6 +109,28 @@ pub fn path() -> Option<PathBuf> {
     config.map(|config| config.join("yoro/layer.toml"))
 }
 
+/// Where settings for one run are.
+const VARIABLES: &str = if cfg!(target_os = "android") { "the system properties" } else { "the environment" };
+
+#[cfg(not(target_os = "android"))]
+fn variable(name: &str) -> Option<OsString> {
+    env::var_os(name)
+}
+
+/// On Android YORO_LAYER_OFFER is the system property `debug.yoro.layer.offer`. Empty means unset: a property cannot be
+/// deleted.
+#[cfg(target_os = "android")]
+fn variable(name: &str) -> Option<OsString> {
+    let key = name.strip_prefix("YORO_LAYER_")?.to_ascii_lowercase();
+    let name = std::ffi::CString::new(format!("debug.yoro.layer.{key}")).ok()?;
+    let mut value = [0u8; libc::PROP_VALUE_MAX as usize];
+    // SAFETY: the name ends in zero, and there is room for the longest value.
+    let length = unsafe { libc::__system_property_get(name.as_ptr(), value.as_mut_ptr().cast()) };
+    let value = String::from_utf8_lossy(value.get(..usize::try_from(length).ok()?)?);
+    let value = value.trim();
+    (!value.is_empty()).then(|| value.into())
+}
+
 impl Settings {
     /// The settings of an application: the environment's, then the file's for the application, then the file's for all, then
     /// the defaults. What is wrong is told by the errors, and left at what it would be otherwise.
@@ -121,7 +144,7 @@ impl Settings {
             }
             _ => None,
         };
-        Settings::resolve(application, file, |name| env::var_os(name))
+        Settings::resolve(application, file, variable)
     }
 
     fn resolve(
@@ -147,18 +170,12 @@ impl Settings {
         for key in ["offer", "dominant", "guard_band", "shrink"] {
             let name = format!("YORO_LAYER_{}", key.to_ascii_uppercase());
             if let Some(value) = environment(&name) {
-                settings.choose(key, &value.to_string_lossy(), "the environment", &name, &mut errors);
+                settings.choose(key, &value.to_string_lossy(), VARIABLES, &name, &mut errors);
             }
         }
         settings.capture = environment("YORO_LAYER_CAPTURE").map(PathBuf::from);
         if let Some(time) = environment("YORO_LAYER_TIME") {
-            settings.choose(
-                "time",
-                &time.to_string_lossy(),
-                "the environment",
-                "YORO_LAYER_TIME",
-                &mut errors,
-            );
+            settings.choose("time", &time.to_string_lossy(), VARIABLES, "YORO_LAYER_TIME", &mut errors);
         }
         (settings, errors)
     }

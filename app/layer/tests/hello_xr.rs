@@ -66,7 +66,7 @@ impl Monado {
         }
         let monado = Monado { programs, folder, _service: service };
         let folder = std::env::current_exe().unwrap().parent().unwrap().to_owned();
-        let manifest = yoro_layer::manifest(&folder.join("libyoro_layer.so"), false);
+        let manifest = yoro_layer::manifest(&folder.join("libyoro_layer.so"), yoro_layer::Kind::Explicit);
         fs::write(monado.folder.path().join(yoro_layer::MANIFEST), manifest).unwrap();
         monado.add(MEASURED, &folder.join("../examples/libmeasured.so"));
         monado.add(VALIDATION, &monado.validation());

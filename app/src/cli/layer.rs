@@ -12,7 +12,7 @@ use std::time::Duration;
 use anyhow::{Context as _, bail};
 use clap::Subcommand;
 use yoro_files as files;
-use yoro_layer::{DISABLE, ENABLE, MANIFEST, NAME};
+use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME};
 
 const LIBRARY: &str = "libyoro_layer.so";
 /// Before it is looked whether there is more in the log.
@@ -154,8 +154,9 @@ pub fn run(args: &LayerArgs) -> anyhow::Result<()> {
 fn install(implicit: bool, library: &Path) -> anyhow::Result<()> {
     let data = data()?;
     let (manifest, own) = (manifest_path(&data, implicit), library_path(&data));
+    let kind = if implicit { Kind::Implicit } else { Kind::Explicit };
     write(&own, &files::read(library)?)?;
-    write(&manifest, yoro_layer::manifest(&own, implicit).as_bytes())?;
+    write(&manifest, yoro_layer::manifest(&own, kind).as_bytes())?;
     // One of the two, or loaders would find it twice.
     remove(&manifest_path(&data, !implicit))?;
     println!("{}\n{}", own.display(), manifest.display());
@@ -217,7 +218,7 @@ fn show_log(follow: bool) -> anyhow::Result<()> {
 fn run_program(library: &Path, program: &[OsString]) -> anyhow::Result<()> {
     let folder = tempfile::tempdir()
         .context("no folder for the layer's manifest; set TMPDIR to one that can be written")?;
-    write(&folder.path().join(MANIFEST), yoro_layer::manifest(library, false).as_bytes())?;
+    write(&folder.path().join(MANIFEST), yoro_layer::manifest(library, Kind::Explicit).as_bytes())?;
     let join = |first: OsString, variable: &str| {
         let rest = env::var_os(variable).filter(|rest| !rest.is_empty());
         rest.map_or(first.clone(), |rest| [first, rest].join(std::ffi::OsStr::new(":")))

@@ -1,6 +1,8 @@
 //! Contexts that others have made: EGL's and GLX's, found by the loader that the application or the system gives.
 
-use std::ffi::{CStr, c_char, c_int, c_uint, c_ulong, c_void};
+#[cfg(not(target_os = "android"))]
+use std::ffi::c_ulong;
+use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::sync::OnceLock;
 
 use libloading::Library;
@@ -16,14 +18,17 @@ const EGL_CONTEXT_CLIENT_TYPE: c_int = 0x3097;
 const EGL_DRAW: c_int = 0x3059;
 const EGL_READ: c_int = 0x305A;
 
+/// Where to look for the function that gives all others, if the application does not say.
 #[cfg(target_os = "android")]
-const EGL_LIBRARIES: &[&str] = &["libEGL.so"];
-const GLX_LIBRARIES: &[&str] = &["libGLX.so.0", "libGL.so.1"];
+const SYSTEM_LOADER: (&[&str], &[u8]) = (&["libEGL.so"], b"eglGetProcAddress\0");
+#[cfg(not(target_os = "android"))]
+const SYSTEM_LOADER: (&[&str], &[u8]) = (&["libGLX.so.0", "libGL.so.1"], b"glXGetProcAddressARB\0");
 
 /// The context that a session is bound to. Its pointers are not followed here, but handed to EGL or GLX.
 #[derive(Clone, Copy)]
 pub enum Binding {
     Egl(Egl),
+    #[cfg(not(target_os = "android"))]
     Glx(Glx),
 }
 
@@ -53,9 +58,9 @@ impl Binding {
                 #[cfg(target_os = "android")]
                 sys::GraphicsBindingOpenGLESAndroidKHR::TYPE => {
                     let info = &*structure.cast::<sys::GraphicsBindingOpenGLESAndroidKHR>();
-                    let load = system_loader(EGL_LIBRARIES, b"eglGetProcAddress\0")?;
-                    Egl::new(load, info.display, info.context).map(Binding::Egl)
+                    Egl::new(system_loader()?, info.display, info.context).map(Binding::Egl)
                 }
+                #[cfg(not(target_os = "android"))]
                 sys::GraphicsBindingOpenGLXlibKHR::TYPE => {
                     let info = &*structure.cast::<sys::GraphicsBindingOpenGLXlibKHR>();
                     Glx::new(info).map(Binding::Glx)
@@ -77,6 +82,7 @@ impl Binding {
     pub fn load(&self, name: &CStr) -> *const c_void {
         let load = match self {
             Binding::Egl(egl) => egl.load,
+            #[cfg(not(target_os = "android"))]
             Binding::Glx(glx) => glx.load,
         };
         // SAFETY: it takes a name.
@@ -95,6 +101,7 @@ impl Binding {
         let current = unsafe {
             match self {
                 Binding::Egl(egl) => egl.make_current(),
+                #[cfg(not(target_os = "android"))]
                 Binding::Glx(glx) => glx.make_current(),
             }
         };
@@ -107,6 +114,7 @@ pub enum Current {
     /// The context itself.
     Same,
     Egl(Egl, EglState),
+    #[cfg(not(target_os = "android"))]
     Glx(Glx, GlxState),
 }
 
@@ -117,6 +125,7 @@ impl Drop for Current {
             match self {
                 Current::Same => {}
                 Current::Egl(egl, state) => egl.restore(state),
+                #[cfg(not(target_os = "android"))]
                 Current::Glx(glx, state) => {
                     let display = if state.display.is_null() { glx.display } else { state.display };
                     (glx.functions.make_current)(display, state.draw, state.read, state.context);
@@ -126,8 +135,9 @@ impl Drop for Current {
     }
 }
 
-/// The function that gives all others, of a library that is never unloaded.
-fn system_loader(libraries: &[&str], name: &[u8]) -> Option<Load> {
+/// The system's, of a library that is never unloaded.
+fn system_loader() -> Option<Load> {
+    let (libraries, name) = SYSTEM_LOADER;
     static LIBRARY: OnceLock<Option<Library>> = OnceLock::new();
     // SAFETY: the system's library, which the application has loaded before.
     let open = || libraries.iter().find_map(|library| unsafe { Library::new(library).ok() });
@@ -137,14 +147,15 @@ fn system_loader(libraries: &[&str], name: &[u8]) -> Option<Load> {
 }
 
 macro_rules! functions {
-    ($(#[doc = $doc:literal] $table:ident { $($field:ident: fn($($parameter:ty),*) $(-> $result:ty)? = $name:literal,)* })*) => {
+    ($($(#[$attribute:meta])+ $table:ident { $($field:ident: fn($($parameter:ty),*) $(-> $result:ty)? = $name:literal,)* })*) => {
         $(
-            #[doc = $doc]
+            $(#[$attribute])+
             #[derive(Clone, Copy)]
             struct $table {
                 $($field: unsafe extern "system" fn($($parameter),*) $(-> $result)?,)*
             }
 
+            $(#[$attribute])+
             impl $table {
                 /// None where one is missing.
                 ///
@@ -178,6 +189,7 @@ functions! {
         make_current: fn(*mut c_void, *mut c_void, *mut c_void, *mut c_void) -> c_uint = c"eglMakeCurrent",
     }
     /// Of GLX 1.3.
+    #[cfg(not(target_os = "android"))]
     GlxFunctions {
         current_context: fn() -> *mut c_void = c"glXGetCurrentContext",
         current_display: fn() -> *mut c_void = c"glXGetCurrentDisplay",
@@ -261,6 +273,7 @@ impl Egl {
 }
 
 /// A context of GLX.
+#[cfg(not(target_os = "android"))]
 #[derive(Clone, Copy)]
 pub struct Glx {
     load: Load,
@@ -271,6 +284,7 @@ pub struct Glx {
 }
 
 /// What was current in GLX.
+#[cfg(not(target_os = "android"))]
 pub struct GlxState {
     display: *mut c_void,
     draw: c_ulong,
@@ -278,9 +292,10 @@ pub struct GlxState {
     context: *mut c_void,
 }
 
+#[cfg(not(target_os = "android"))]
 impl Glx {
     unsafe fn new(info: &sys::GraphicsBindingOpenGLXlibKHR) -> Option<Glx> {
-        let load = system_loader(GLX_LIBRARIES, b"glXGetProcAddressARB\0")?;
+        let load = system_loader()?;
         Some(Glx {
             load,
             display: info.x_display,
