@@ -667,8 +667,8 @@ impl Drop for Monado {
     }
 }
 
-/// The program as an application of one view: what the layer makes of that is what the program synthesizes itself, in the
-/// layers of an array, and with the HUD in front.
+/// The program as an application of one view, in an array of two: what the layer makes of that is what the program
+/// synthesizes itself; of whole images, and of a part of larger ones.
 #[test]
 fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
     let Some(programs) = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from) else {
@@ -679,6 +679,12 @@ fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
         );
         return;
     };
+    for scale in ["render-scale=1", "render-scale=0.7"] {
+        assert_synthesized_through_the_layer(&programs, scale);
+    }
+}
+
+fn assert_synthesized_through_the_layer(programs: &Path, scale: &'static str) {
     // The program smooths edges after its synthesis, and before the layer's.
     const UNSMOOTHED: &str = "anti-aliasing=off";
     let pictures = Some(Pictures { folder: "in the run's own".into(), from: 0 });
@@ -695,7 +701,7 @@ fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
         .arg("--runtime")
         .arg(programs.join("libopenxr_loader.so.1"))
         .args(cheap())
-        .args(["--set", UNSMOOTHED])
+        .args(["--set", UNSMOOTHED, "--set", scale])
         .env("XR_RUNTIME_JSON", simulated.path("runtime.json"))
         .env("XDG_CONFIG_HOME", folder)
         .env("XDG_STATE_HOME", folder)
@@ -729,12 +735,13 @@ fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
         size: [width, height],
         ..own
     };
-    let settings = Settings::resolve(None, CHEAP.into_iter().chain([UNSMOOTHED]).map(str::to_owned)).unwrap();
+    let settings =
+        Settings::resolve(None, CHEAP.into_iter().chain([UNSMOOTHED, scale]).map(str::to_owned)).unwrap();
     let own = desktop("prototype", Method::Yoro, &pair, &settings);
     for eye in Eye::BOTH {
         let quality = rgb(&simulated.picture(&format!("view-{}.png", eye.index())), &own[eye.index()]);
-        println!("{eye:?}: {quality:?}");
-        assert!(quality.ssim_gaussian > 0.99, "{eye:?}: {quality:?}");
+        println!("{scale}: {eye:?}: {quality:?}");
+        assert!(quality.ssim_gaussian > 0.99, "{scale}: {eye:?}: {quality:?}");
     }
 }
 

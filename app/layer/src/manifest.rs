@@ -47,6 +47,14 @@ pub fn manifest(library: &Path, kind: Kind) -> String {
 mod tests {
     use super::*;
 
+    /// An application has it in its assets, and Android finds the library by its name.
+    #[test]
+    fn the_packaged_manifest_is_this_one() {
+        let json = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap();
+        let packaged = json(include_str!("../android/XR_APILAYER_YORO_one_view.json"));
+        assert_eq!(packaged, json(&manifest(Path::new("libyoro_layer.so"), Kind::Packaged)));
+    }
+
     #[test]
     fn only_an_implicit_layer_needs_to_be_enabled_by_a_variable() {
         for (kind, enable, disable) in

@@ -19,7 +19,7 @@ const LIBRARY: &str = "libyoro.so";
 pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
     let header = read(&root().join("app/capi/include/yoro.h"))?;
     let mut files: Vec<(String, Vec<u8>)> = vec![
-        ("AndroidManifest.xml".into(), manifest().into()),
+        ("AndroidManifest.xml".into(), android_manifest("org.yoro.library").into()),
         ("prefab/prefab.json".into(), prefab().into()),
         ("prefab/modules/yoro/module.json".into(), module().into()),
         ("prefab/modules/yoro/include/yoro.h".into(), header),
@@ -35,25 +35,33 @@ pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
         // Applications take libraries from here.
         files.push((format!("jni/{}/{LIBRARY}", architecture.abi), library));
     }
-    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, content) in files {
-        zip.start_file(name, SimpleFileOptions::default())?;
-        zip.write_all(&content)?;
-    }
     let packed = folder.join(format!("yoro-{VERSION}.aar"));
-    crate::packages::write(&packed, zip.finish()?.into_inner())?;
-    println!("{}", packed.display());
+    pack(&files, &packed)?;
     Ok(packed)
 }
 
-fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+/// Writes an AAR of these files.
+pub fn pack(files: &[(String, Vec<u8>)], packed: &Path) -> anyhow::Result<()> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, content) in files {
+        zip.start_file(name.as_str(), SimpleFileOptions::default())?;
+        zip.write_all(content)?;
+    }
+    crate::packages::write(packed, zip.finish()?.into_inner())?;
+    println!("{}", packed.display());
+    Ok(())
+}
+
+/// The content of a file.
+pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
 }
 
-fn manifest() -> String {
+/// What every AAR begins with.
+pub fn android_manifest(package: &str) -> String {
     format!(
         "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\
-         <manifest xmlns:android=\"http://schemas.android.com/apk/res/android\" package=\"org.yoro.library\">\n\
+         <manifest xmlns:android=\"http://schemas.android.com/apk/res/android\" package=\"{package}\">\n\
          \x20 <uses-sdk android:minSdkVersion=\"{LIBRARY_API}\"/>\n\
          </manifest>\n"
     )
@@ -84,7 +92,7 @@ mod tests {
     #[test]
     fn prefab_is_told_the_version_and_the_level() {
         assert!(prefab().contains(&format!("\"version\": \"{VERSION}\"")));
-        assert!(manifest().contains("minSdkVersion=\"30\""));
+        assert!(android_manifest("org.yoro.library").contains("minSdkVersion=\"30\""));
         assert!(abi(ARCHITECTURES[0]).contains("\"api\": 30"));
     }
 }

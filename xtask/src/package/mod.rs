@@ -1,6 +1,7 @@
-//! What an engine that is not written in Rust builds in: archives of the C library for Linux, and an AAR for Android.
+//! What others build in: archives of the C library for Linux, an AAR of it for Android, and one of the OpenXR API layer.
 
 mod android;
+mod layer;
 mod linux;
 mod texts;
 
@@ -27,6 +28,8 @@ pub enum Target {
     LinuxAarch64,
     /// Android on arm64 and x86_64, an AAR with prefab
     Android,
+    /// The OpenXR API layer for Android on arm64 and x86_64, an AAR
+    AndroidLayer,
 }
 
 /// Makes packages, or all of them when none is named; where they are.
@@ -41,6 +44,7 @@ pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
         Target::Linux => linux::native(&folder),
         Target::LinuxAarch64 => linux::aarch64(&folder),
         Target::Android => android::aar(&folder),
+        Target::AndroidLayer => layer::aar(&folder),
     };
     targets.iter().map(make).collect()
 }
@@ -53,12 +57,18 @@ struct Built {
     needs: Vec<String>,
 }
 
-/// Has `cargo` build the library. `folder` is where cargo puts things for this target.
-fn build(mut cargo: Command, target: Option<&str>, soname: &str, folder: &Path) -> anyhow::Result<Built> {
-    cargo.args(["rustc", "--package", "yoro-c", "--lib", "--profile", "capi"]);
-    cargo
-        .args(["--crate-type", "cdylib,staticlib"])
-        .args(target.iter().flat_map(|target| ["--target", target]));
+/// Has `cargo` build a package's library; where it is, and what rustc tells. `folder` is where cargo puts things for this
+/// target.
+fn compile(
+    mut cargo: Command,
+    package: &str,
+    crate_types: &str,
+    target: Option<&str>,
+    soname: &str,
+    folder: &Path,
+) -> anyhow::Result<(PathBuf, String)> {
+    cargo.args(["rustc", "--package", package, "--lib", "--profile", "capi"]);
+    cargo.args(["--crate-type", crate_types]).args(target.iter().flat_map(|target| ["--target", target]));
     cargo.args(["--", "--print", "native-static-libs", &format!("-Clink-arg=-Wl,-soname,{soname}")]);
     cargo.current_dir(root()).env("CARGO_TARGET_DIR", folder);
     eprintln!(
@@ -67,13 +77,18 @@ fn build(mut cargo: Command, target: Option<&str>, soname: &str, folder: &Path) 
     );
     let output =
         cargo.stdin(Stdio::null()).stdout(Stdio::inherit()).output().context("cargo cannot be started")?;
-    let told = String::from_utf8_lossy(&output.stderr);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
     eprint!("{told}");
     if !output.status.success() {
-        bail!("the C library does not compile: see above");
+        bail!("{package} does not compile: see above");
     }
+    Ok((target.map_or(folder.to_owned(), |target| folder.join(target)).join("capi"), told))
+}
+
+/// Has `cargo` build the C library.
+fn build(cargo: Command, target: Option<&str>, soname: &str, folder: &Path) -> anyhow::Result<Built> {
+    let (built, told) = compile(cargo, "yoro-c", "cdylib,staticlib", target, soname, folder)?;
     let needs = needs(&told).context("rustc does not say what the archive needs")?;
-    let built = target.map_or(folder.to_owned(), |target| folder.join(target)).join("capi");
     let shared = built.join("libyoro_c.so");
     let size = fs::metadata(&shared).with_context(|| format!("{} is missing", shared.display()))?.len();
     if size > LARGEST {

@@ -1,0 +1,32 @@
+//! The OpenXR API layer for Android: an AAR with the library and, where loaders look for layers in an application, its
+//! manifest.
+
+use std::path::{Path, PathBuf};
+
+use super::android::{android_manifest, pack, read};
+use super::{VERSION, compile};
+use crate::android::{ARCHITECTURES, library_cargo};
+use crate::folders::{root, target_folder};
+
+const LIBRARY: &str = "libyoro_layer.so";
+const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
+
+/// Builds and packs `yoro-layer-VERSION.aar`; the file.
+pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
+    let manifest = read(&root().join("app/layer/android").join(MANIFEST))?;
+    let mut files = vec![
+        ("AndroidManifest.xml".to_owned(), android_manifest("org.yoro.layer").into()),
+        (format!("assets/openxr/1/api_layers/implicit.d/{MANIFEST}"), manifest),
+    ];
+    // Beside the C library, whose dependencies it shares.
+    let build_folder = target_folder()?.join("android/capi");
+    for architecture in ARCHITECTURES {
+        let cargo = library_cargo(architecture)?;
+        let target = Some(architecture.triple);
+        let (built, _) = compile(cargo, "yoro-layer", "cdylib", target, LIBRARY, &build_folder)?;
+        files.push((format!("jni/{}/{LIBRARY}", architecture.abi), read(&built.join(LIBRARY))?));
+    }
+    let packed = folder.join(format!("yoro-layer-{VERSION}.aar"));
+    pack(&files, &packed)?;
+    Ok(packed)
+}
