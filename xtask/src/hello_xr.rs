@@ -1,4 +1,5 @@
-//! hello_xr, Khronos's example of an OpenXR application, and the loader that it comes with, for the tests of the API layer.
+//! hello_xr, Khronos's example of an OpenXR application, the loader that it comes with, and Khronos's layer that validates what is
+//! called, for the tests of the API layer.
 //!
 //! It comes from Debian's packages, unpacked beside [Monado](crate::monado), and runs with Monado's libraries. Debian's
 //! release that has Monado has an older hello_xr, which knows neither one view nor depth, so this one is that of Debian's
@@ -15,8 +16,10 @@ use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher
 
 const RELEASE: &str = "sid";
 const PACKAGE: &str = "libopenxr-utils";
-/// Of all that it depends on, what Monado's folder does not have.
-const UNPACKED: [&str; 3] = ["libopenxr-utils_", "libopenxr-loader1_", "libjsoncpp"];
+/// Tests do without it where it cannot be had.
+const VALIDATION: &str = "openxr-layer-corevalidation";
+/// Of all that they depend on, what Monado's folder does not have.
+const UNPACKED: [&str; 4] = ["libopenxr-utils_", "libopenxr-loader1_", "libjsoncpp", VALIDATION];
 const WITHOUT: [&str; 1] = ["./usr/share/*"];
 const LOADER: &str = "libopenxr_loader.so.1";
 
@@ -43,7 +46,7 @@ pub fn make() -> anyhow::Result<PathBuf> {
     let monado = monado::make()?;
     let folder = target_folder()?.join("hello-xr");
     let (root, stamp) = (folder.join("root"), folder.join("stamp"));
-    let recipe = format!("{RELEASE} {PACKAGE}\n");
+    let recipe = format!("{RELEASE} {PACKAGE} {VALIDATION}\n");
     if !fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
         if folder.exists() {
             fs::remove_dir_all(&folder)
@@ -52,7 +55,14 @@ pub fn make() -> anyhow::Result<PathBuf> {
         eprintln!("fetching hello_xr for the tests: 40 MB, once");
         let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
         apt.update()?;
-        for package in apt.download(&[PACKAGE.to_owned()])? {
+        let program = apt.download(&[PACKAGE.to_owned()])?;
+        let all = apt.download(&[VALIDATION.to_owned()]).unwrap_or_else(|error| {
+            eprintln!(
+                "warning: OpenXR's validation layer cannot be had, so that tests do without it: {error:#}"
+            );
+            program
+        });
+        for package in all {
             let name = package.file_name().unwrap_or_default().to_string_lossy();
             if UNPACKED.iter().any(|start| name.starts_with(start)) {
                 unpack(&package, &root, &[], &WITHOUT)?;

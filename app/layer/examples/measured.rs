@@ -13,7 +13,7 @@ use openxr_sys as sys;
 use sys::{Handle as _, pfn};
 
 /// Frames in which things are made that last.
-const FIRST: usize = 20;
+const FIRST: usize = 5;
 
 /// The functions of the runtime; one instance in a process is measured.
 struct Next {

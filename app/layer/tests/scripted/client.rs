@@ -62,7 +62,6 @@ functions! {
     destroy_session: DestroySession = c"xrDestroySession",
     begin_session: BeginSession = c"xrBeginSession",
     end_session: EndSession = c"xrEndSession",
-    request_exit_session: RequestExitSession = c"xrRequestExitSession",
     create_reference_space: CreateReferenceSpace = c"xrCreateReferenceSpace",
     wait_frame: WaitFrame = c"xrWaitFrame",
     begin_frame: BeginFrame = c"xrBeginFrame",
@@ -137,10 +136,7 @@ fn layer() -> sys::NegotiateApiLayerRequest {
 /// A swapchain, and its images.
 pub struct Chain {
     pub handle: sys::Swapchain,
-    pub images: Vec<vk::Image>,
-    pub format: vk::Format,
-    pub size: [u32; 2],
-    pub layers: u32,
+    images: Vec<vk::Image>,
 }
 
 /// A part of one.
@@ -459,7 +455,7 @@ impl<'a> Client<'a> {
             check("xrEnumerateSwapchainImages", result)?;
         }
         let images = images[..count as usize].iter().map(|image| vk::Image::from_raw(image.image)).collect();
-        Ok(Chain { handle, images, format, size, layers })
+        Ok(Chain { handle, images })
     }
 
     pub fn destroy_chain(&self, chain: Chain) -> Outcome<()> {
@@ -712,12 +708,6 @@ impl<'a> Client<'a> {
         };
         // SAFETY: complete structures.
         check("xrEndFrame", unsafe { (self.xr.end_frame)(self.session, &info) }).map(|_| ())
-    }
-
-    /// Asks for the session's end.
-    pub fn request_exit(&mut self) -> Outcome<()> {
-        // SAFETY: a live session.
-        check("xrRequestExitSession", unsafe { (self.xr.request_exit_session)(self.session) }).map(|_| ())
     }
 
     pub fn destroy_session(&mut self) -> Outcome<()> {

@@ -160,11 +160,11 @@ impl Seen {
     pub fn views(&self) -> &[View] {
         let frames = self.frames();
         let layers = frames.last().expect("there are frames").iter();
-        let views = layers.filter_map(|layer| match layer {
+        let mut views = layers.rev().filter_map(|layer| match layer {
             Layer::Projection { views } => Some(views.as_slice()),
             _ => None,
         });
-        views.last().expect("there is a projection layer")
+        views.next().expect("there is a projection layer")
     }
 
     /// What the runtime got last for an eye, rows from the bottom.

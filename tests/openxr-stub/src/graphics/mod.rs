@@ -66,7 +66,7 @@ pub unsafe fn bind(
         let structure = unsafe { &*next };
         if enabled(OPENGL_ES) {
             // SAFETY: of the type that it says.
-            if let Some((name, display, context)) = unsafe { gles::binding(structure, &enabled) }? {
+            if let Some((name, display, context)) = unsafe { gles::binding(structure, enabled) }? {
                 return Ok((name, Box::new(gles::Gles::new(display, context)?)));
             }
         }
