@@ -298,8 +298,7 @@ fn numbers<'a>(log: &'a str, before: &'a str, after: &'a str) -> impl Iterator<I
 }
 
 /// hello_xr's frame time with two views and with one and the layer, in turn, and a picture of what there is to see:
-/// `cargo test --release -p yoro-layer --test hello_xr -- --ignored --nocapture`, after
-/// `cargo build --release -p yoro-layer --examples`.
+/// `cargo test --release -p yoro-layer hello_xr_measured -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures for some minutes"]
 fn hello_xr_measured() {

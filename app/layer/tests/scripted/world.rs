@@ -45,6 +45,14 @@ pub fn allocations() -> usize {
     ALLOCATIONS.get()
 }
 
+/// Does what allocates, and is not to be counted.
+pub fn uncounted<T>(work: impl FnOnce() -> T) -> T {
+    let before = ALLOCATIONS.get();
+    let result = work();
+    ALLOCATIONS.set(before);
+    result
+}
+
 /// Settings by the names that applications give themselves.
 const SETTINGS: &str = "guard_band = '16px'\n\
     [application.left]\ndominant = 'left'\n\
