@@ -107,6 +107,10 @@ pub unsafe fn end_frame(session: &Session, info: &sys::FrameEndInfo) -> sys::Res
         // SAFETY: promised by the caller: as many as the structure says.
         false => unsafe { std::slice::from_raw_parts(info.layers, info.layer_count as usize) },
     };
+    // The runtime's xrEndFrame shall find what the application has left.
+    // SAFETY: the session is live.
+    let current =
+        session.binding.filter(|_| session.reads_images()).and_then(|binding| unsafe { binding.hold() });
     let before = frames.counts.synthesized;
     if session.views() > 0 {
         // SAFETY: promised by the caller.
@@ -123,6 +127,7 @@ pub unsafe fn end_frame(session: &Session, info: &sys::FrameEndInfo) -> sys::Res
     if let Err(error) = released {
         return error;
     }
+    drop(current);
     if session.views() == 0 {
         // SAFETY: the application's own.
         return unsafe { next(session.handle, info) };
@@ -365,6 +370,10 @@ impl Frames {
             self.drop_target(session, DEPTH);
             return Err(reason);
         }
+        // A format that the driver cannot write as depth, perhaps.
+        if let (Err(reason @ (Reason::Gl(_) | Reason::Synthesis(_))), Some(_)) = (&result, target.depth) {
+            self.give_up_depth(session, reason);
+        }
         if let Some(time) = result? {
             self.counts.gpu += time;
             self.counts.timed += 1;
@@ -395,6 +404,8 @@ impl Frames {
 
     /// The pipeline, made if there is none yet.
     fn synthesizer(&mut self, binding: Binding) -> Result<&mut dyn Synthesizer, Reason> {
+        // The next frame may have it.
+        self.synthesizer.take_if(|made| matches!(made, Err(Reason::NotCurrent)));
         // SAFETY: the application keeps its device or context until the session is destroyed, and this is dropped before.
         match self.synthesizer.get_or_insert_with(|| unsafe { binding.synthesizer() }) {
             Ok(synthesizer) => Ok(synthesizer.as_mut()),
@@ -415,9 +426,7 @@ impl Frames {
             && !self.without_depth
             && let Err(reason) = self.fit(session, binding, DEPTH, depth)
         {
-            self.without_depth = true;
-            let application = &session.instance.application;
-            say(format_args!("{application}: depth does not go on to the runtime: {reason}"));
+            self.give_up_depth(session, &reason);
         }
         let [color, depth] = &mut self.targets;
         let color = color.as_mut().ok_or(Reason::NoGraphics)?;
@@ -456,6 +465,14 @@ impl Frames {
         self.drop_target(session, which);
         self.targets[which] = Some(Target::new(session, binding, ATTACHMENTS[which], like)?);
         Ok(())
+    }
+
+    /// From here on it stays with the layer. That of the application's images is needed nevertheless.
+    fn give_up_depth(&mut self, session: &Session, reason: &Reason) {
+        self.without_depth = true;
+        self.drop_target(session, DEPTH);
+        let application = &session.instance.application;
+        say(format_args!("{application}: depth does not go on to the runtime: {reason}"));
     }
 
     fn drop_target(&mut self, session: &Session, which: usize) {

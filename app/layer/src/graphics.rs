@@ -142,6 +142,18 @@ impl Binding {
         }
     }
 
+    /// Sees to it that what is current in OpenGL now is so again when the result is dropped, whatever runtimes do in between.
+    ///
+    /// # Safety
+    /// The session is live.
+    pub unsafe fn hold(&self) -> Option<gl::Current> {
+        match self {
+            Binding::Vulkan(_) => None,
+            // SAFETY: promised by the caller. What cannot be made current is told of where it is needed.
+            Binding::Gl(binding) => unsafe { binding.make_current().ok() },
+        }
+    }
+
     /// Whether rows of images are counted from the top.
     pub fn rows_from_top(&self) -> bool {
         matches!(self, Binding::Vulkan(_))

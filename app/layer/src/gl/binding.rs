@@ -109,10 +109,8 @@ impl Binding {
     }
 }
 
-/// What was current before, and is again when this is dropped.
+/// What was current before, and is again when this is dropped, whoever has changed it.
 pub enum Current {
-    /// The context itself.
-    Same,
     Egl(Egl, EglState),
     #[cfg(not(target_os = "android"))]
     Glx(Glx, GlxState),
@@ -123,13 +121,9 @@ impl Drop for Current {
         // SAFETY: what was current on this thread at `make_current`. What fails here fails for the application, too.
         unsafe {
             match self {
-                Current::Same => {}
                 Current::Egl(egl, state) => egl.restore(state),
                 #[cfg(not(target_os = "android"))]
-                Current::Glx(glx, state) => {
-                    let display = if state.display.is_null() { glx.display } else { state.display };
-                    (glx.functions.make_current)(display, state.draw, state.read, state.context);
-                }
+                Current::Glx(glx, state) => glx.restore(state),
             }
         }
     }
@@ -212,7 +206,7 @@ pub struct Egl {
 
 /// What was current in EGL.
 pub struct EglState {
-    /// The one that is chosen, and that of the others, which `make_current` has changed.
+    /// The one that is chosen; the others are those of [`Egl::api`].
     api: c_uint,
     display: *mut c_void,
     draw: *mut c_void,
@@ -232,42 +226,42 @@ impl Egl {
     }
 
     unsafe fn make_current(&self) -> Option<Current> {
-        let EglFunctions { query_api, bind_api, current_context, current_display, current_surface, .. } =
-            self.functions;
+        let functions = &self.functions;
         // SAFETY: queries, and the application's own context.
         unsafe {
-            let api = query_api();
+            let api = (functions.query_api)();
             if api != self.api {
-                bind_api(self.api);
+                (functions.bind_api)(self.api);
             }
             let state = EglState {
                 api,
-                display: current_display(),
-                draw: current_surface(EGL_DRAW),
-                read: current_surface(EGL_READ),
-                context: current_context(),
+                display: (functions.current_display)(),
+                draw: (functions.current_surface)(EGL_DRAW),
+                read: (functions.current_surface)(EGL_READ),
+                context: (functions.current_context)(),
             };
-            if state.context == self.context {
-                if api != self.api {
-                    bind_api(api);
-                }
-                return Some(Current::Same);
-            }
             let none = std::ptr::null_mut();
-            if (self.functions.make_current)(self.display, none, none, self.context) != 0 {
-                return Some(Current::Egl(*self, state));
-            }
-            bind_api(api);
-            None
+            let made = state.context == self.context
+                || (functions.make_current)(self.display, none, none, self.context) != 0;
+            let current = Current::Egl(*self, state);
+            made.then_some(current)
         }
     }
 
     unsafe fn restore(&self, state: &EglState) {
+        let functions = &self.functions;
         let display = if state.display.is_null() { self.display } else { state.display };
         // SAFETY: promised by the caller.
         unsafe {
-            (self.functions.make_current)(display, state.draw, state.read, state.context);
-            (self.functions.bind_api)(state.api);
+            if (functions.query_api)() != self.api {
+                (functions.bind_api)(self.api);
+            }
+            if (functions.current_context)() != state.context {
+                (functions.make_current)(display, state.draw, state.read, state.context);
+            }
+            if state.api != self.api {
+                (functions.bind_api)(state.api);
+            }
         }
     }
 }
@@ -316,11 +310,20 @@ impl Glx {
                 read: (functions.current_read)(),
                 context: (functions.current_context)(),
             };
-            if state.context == self.context {
-                return Some(Current::Same);
+            let made = state.context == self.context
+                || (functions.make_current)(self.display, self.drawable, self.drawable, self.context) != 0;
+            let current = Current::Glx(*self, state);
+            made.then_some(current)
+        }
+    }
+
+    unsafe fn restore(&self, state: &GlxState) {
+        let display = if state.display.is_null() { self.display } else { state.display };
+        // SAFETY: promised by the caller.
+        unsafe {
+            if (self.functions.current_context)() != state.context {
+                (self.functions.make_current)(display, state.draw, state.read, state.context);
             }
-            let made = (functions.make_current)(self.display, self.drawable, self.drawable, self.context);
-            (made != 0).then_some(Current::Glx(*self, state))
         }
     }
 }

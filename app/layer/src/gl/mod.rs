@@ -11,7 +11,7 @@ use glow::HasContext as _;
 use yoro::gl::{Context, Destination, GlApi, GlError};
 use yoro::synthesis::{self, GlState, Outputs, Source, Synthesis, SynthesisOptions};
 
-pub use binding::Binding;
+pub use binding::{Binding, Current};
 
 use crate::geometry::Rectangle;
 use crate::graphics::{self, Image, Job};
@@ -156,6 +156,9 @@ fn bind_framebuffers(gl: &glow::Context, [draw, read]: [Option<glow::Framebuffer
 
 impl Objects {
     unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
+        let context = Rc::clone(&self.context);
+        let context = &*context;
+        let _silence = Silence::begin(context);
         // SAFETY: promised by the caller.
         let (source, framebuffer) = unsafe {
             let color = self.source(0, job.color, job.source)?;
@@ -174,8 +177,6 @@ impl Objects {
         };
         let target =
             Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: job.warp.target_size };
-        let context = &self.context;
-        let _silence = Silence::begin(context);
         let timing = self.timer.as_mut().and_then(|timer| timer.begin(context));
         let result = pipeline.synthesize(source, job.warp, &target);
         if let Some(timing) = timing {
