@@ -1,6 +1,6 @@
 #version 310 es
 // How much of the guard band the other eye sees, and would see after some motion of the head: each of 4 x 64 texels
-// looks at every fourth column and at a 64th of the rows of a rendered view. Columns are counted forward
+// looks at every fourth column, in every second of a 64th of the rows, of a rendered view. Columns are counted forward
 // (include/warp.glsl): those of the guard band are the first.
 
 uniform sampler2D depth_map;
@@ -38,6 +38,7 @@ void main() {
             }
         }
     }
-    ivec2 counts = ivec2(min(ceil(vec2(columns, undrawn)), 65535.0));
+    // One column more, so that a buffer of zeros is none of this.
+    ivec2 counts = ivec2(min(ceil(vec2(columns + 1.0, undrawn)), 65535.0));
     need = vec4(counts & 255, counts >> 8).xzyw / 255.0;
 }

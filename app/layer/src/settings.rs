@@ -214,7 +214,12 @@ impl Settings {
                 (set(&mut self.dominant, eye), "left or right")
             }
             "guard_band" => (
-                set(&mut self.guard_band, GuardBand::from_str(value).ok()),
+                {
+                    // The application renders all of what it is offered.
+                    let fixed =
+                        GuardBand::from_str(value).ok().filter(|band| !matches!(band, GuardBand::Auto(_)));
+                    set(&mut self.guard_band, fixed)
+                },
                 "none, pixels such as 40px, or metres such as 1.0",
             ),
             "shrink" => {

@@ -82,8 +82,29 @@ impl Display for GuardBand {
             GuardBand::None => f.write_str("none"),
             GuardBand::Pixels(n) => write!(f, "{n}px"),
             GuardBand::Distance(z) => write!(f, "{z}"),
-            GuardBand::AUTO => f.write_str("auto"),
             GuardBand::Auto(z) => write!(f, "auto:{z}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_are_read_again() {
+        for (text, band) in [
+            ("none", GuardBand::None),
+            ("40px", GuardBand::Pixels(40)),
+            ("0.5", GuardBand::Distance(0.5)),
+            ("auto:1", GuardBand::AUTO),
+            ("auto:0.5", GuardBand::Auto(0.5)),
+        ] {
+            assert_eq!((text.parse(), band.to_string().as_str()), (Ok(band), text));
+        }
+        assert_eq!("auto".parse(), Ok(GuardBand::AUTO));
+        for text in ["", "auto:", "auto:0", "auto:40px", "2000px", "-1", "Auto", "1 m"] {
+            assert_eq!(text.parse::<GuardBand>(), Err(ParseGuardBandError), "{text}");
         }
     }
 }

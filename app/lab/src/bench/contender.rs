@@ -43,6 +43,15 @@ impl Band {
     /// All of them.
     pub const ALL: [Band; 4] = [Band::None, Band::OneMetre, Band::HalfMetre, Band::Auto];
 
+    fn name(self) -> &'static str {
+        match self {
+            Band::None => "none",
+            Band::OneMetre => "1",
+            Band::HalfMetre => "0.5",
+            Band::Auto => "auto",
+        }
+    }
+
     /// The band.
     pub fn guard_band(self) -> GuardBand {
         match self {
@@ -100,7 +109,7 @@ impl Contender {
             Contender::Method(method) => method.name().into(),
             Contender::Yoro(pipeline) => format!("yoro-{}", pipeline.name()),
             Contender::Edges(edges) => format!("yoro-edges-{}", edges.name()),
-            Contender::Band(band) => format!("yoro-guard-{}", band.guard_band()),
+            Contender::Band(band) => format!("yoro-guard-{}", band.name()),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
             Contender::Patcher(kind) => format!("patcher-{}", kind.name()),

@@ -41,7 +41,7 @@ impl Entrant {
     }
 
     /// Renders a frame as the second of two alike, and waits for it: in the first a method may look how wide its guard
-    /// band has to be at this place, which a viewer's frames know from those before.
+    /// band has to be at this place.
     ///
     /// # Errors
     /// As [`StereoMethod::render`].

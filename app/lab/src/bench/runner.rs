@@ -373,7 +373,7 @@ impl<'a> Runner<'a> {
                 let entrant = &mut field.entrants[at].1;
                 let time = entrant.render(prepared, pair, &mut field.frame)?;
                 measurements[at].push(metric::FRAME_MS, milliseconds(time.wall));
-                if let Some(used) = entrant.guard_band().filter(|_| i > 0) {
+                if let Some(used) = entrant.guard_band() {
                     measurements[at].push(metric::GUARD_COLUMNS, f64::from(used.columns));
                     measurements[at].push(metric::UNDRAWN, f64::from(used.undrawn));
                 }

@@ -23,6 +23,11 @@ const LOOK_EVERY: u32 = 30;
 /// This part of the band is drawn in every frame: what reaches far, ambient occlusion and bloom, stops there, and must not
 /// stop anywhere else in the next frame.
 const LEAST: u32 = 4;
+/// It has as many columns at least: beside its own a pixel that is shown may depend on those that filters reach, of ambient
+/// occlusion at half size (5) and of FXAA (4).
+const REACH: u32 = 10;
+/// The head was put elsewhere, rather than moved, if it moved by so many times what it may between looks.
+const CUT: f32 = 10.0;
 /// Columns that are drawn beyond what is seen: filters of the renderer read so far to each side.
 const SPARE: u32 = 4;
 
@@ -87,9 +92,13 @@ impl Width {
             }
             Some(_) => {}
         }
-        let moved = (pose.position - look.pose.position).length() > MOVE * geometry.ipd
-            || pose.orientation.angle_between(look.pose.orientation) > TURN;
-        if moved || look.frames >= LOOK_EVERY {
+        let moved = (pose.position - look.pose.position).length() / (MOVE * geometry.ipd).max(1e-6);
+        let turned = pose.orientation.angle_between(look.pose.orientation) / TURN;
+        let motion = moved.max(turned);
+        if motion > CUT {
+            self.before = 0;
+        }
+        if motion > 1.0 || look.frames >= LOOK_EVERY {
             return self.look_again(geometry, pose);
         }
         self.columns
@@ -104,7 +113,7 @@ impl Width {
 
 /// Columns of a band that are drawn in every frame.
 pub(super) fn least(guard_columns: u32) -> u32 {
-    guard_columns.div_ceil(LEAST)
+    guard_columns.div_ceil(LEAST).max(REACH).min(guard_columns)
 }
 
 /// Decides and measures.
@@ -115,8 +124,9 @@ pub(super) struct AutoGuardBand {
     buffer: PixelBuffer,
     pending: bool,
     width: Width,
-    drawn: u32,
-    last: GuardBandUse,
+    /// Columns that were drawn last, of how many.
+    drawn: Option<[u32; 2]>,
+    last: Option<GuardBandUse>,
 }
 
 impl AutoGuardBand {
@@ -128,8 +138,8 @@ impl AutoGuardBand {
             buffer: PixelBuffer::new(gl, BYTES)?,
             pending: false,
             width: Width::default(),
-            drawn: 0,
-            last: GuardBandUse::default(),
+            drawn: None,
+            last: None,
         })
     }
 
@@ -143,22 +153,24 @@ impl AutoGuardBand {
             ipd: pair.ipd(),
         };
         let need = self.take();
-        self.last = GuardBandUse {
-            columns: self.drawn,
-            most: views.guard_columns,
-            undrawn: need.map_or(0, |need| need.undrawn),
-        };
-        self.drawn = self.width.next(need, geometry, pair.poses[pair.dominant.index()]);
+        self.last = self.drawn.zip(need).map(|([columns, most], need)| GuardBandUse {
+            columns,
+            most,
+            undrawn: need.undrawn,
+        });
+        let drawn = self.width.next(need, geometry, pair.poses[pair.dominant.index()]);
         let without = |left_out: u32| match views.warp.target_eye {
             Eye::Left => [left_out, views.source.size[0]],
             Eye::Right => [0, views.source.size[0] - left_out],
         };
         let guard = views.guard_columns;
-        Columns { drawn: without(guard - self.drawn), always: without(guard - least(guard)) }
+        self.drawn = Some([drawn, guard]);
+        Columns { drawn: without(guard - drawn), always: without(guard - least(guard)) }
     }
 
     /// Starts to measure what of the band a frame's depth shows.
     pub(super) fn measure(&mut self, depth: &Texture, pair: &EyePair, views: &SynthesisViews) {
+        let Some([drawn, _]) = self.drawn.filter(|_| views.guard_columns > 0) else { return };
         let (warp, guard) = (&views.warp, views.guard_columns as f32);
         // In forward columns, which begin with the guard band; a surface at infinity moves in by nothing.
         let (sense, before) = match warp.target_eye {
@@ -166,8 +178,17 @@ impl AutoGuardBand {
             Eye::Right => (-1.0, warp.target_size[0] as f32 - warp.source_size[0] as f32),
         };
         let law = Vec2::new(before + sense * warp.law.offset as f32 + guard, sense * warp.law.scale as f32);
-        let motion = Vec2::new(pair.focal_length_pixels() * TURN, MOVE);
-        let inside = (motion.x + motion.y * guard).ceil() as u32;
+        // At the border of a wide view things move faster than in its middle.
+        let border = match warp.target_eye {
+            Eye::Left => -views.target.frustum.left,
+            Eye::Right => views.target.frustum.right,
+        };
+        let turn = pair.focal_length_pixels() * TURN * (1.0 + border * border);
+        let along = MOVE * border.max(1.0);
+        // Where the rendered eye sees further out than the other, infinity is as many columns away from being seen.
+        let beyond = (-(law.x + law.y * pair.depth.clear_value())).max(0.0);
+        let motion = Vec2::new(turn + along * beyond, along);
+        let inside = (turn + along * guard + beyond).ceil() as u32;
         let end = (views.guard_columns + inside).min(views.source.size[0]);
         self.gl.pass("border need", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
@@ -177,7 +198,7 @@ impl AutoGuardBand {
                 .texture("depth_map", 0, depth.raw())
                 .set("mirrored", warp.target_eye == Eye::Right)
                 .set("guard", views.guard_columns as i32)
-                .set("first", (views.guard_columns - self.drawn) as i32)
+                .set("first", (views.guard_columns - drawn) as i32)
                 .set("end", end as i32)
                 .set("law", law)
                 .set("motion", motion);
@@ -187,9 +208,17 @@ impl AutoGuardBand {
         self.pending = true;
     }
 
-    /// The frame before the last [`AutoGuardBand::columns`].
-    pub(super) fn last(&self) -> GuardBandUse {
+    /// The frame before the last [`AutoGuardBand::columns`], if it was measured.
+    pub(super) fn last(&self) -> Option<GuardBandUse> {
         self.last
+    }
+
+    /// Forgets what was seen: a frame goes by without the band.
+    pub(super) fn interrupt(&mut self) {
+        self.pending = false;
+        self.drawn = None;
+        self.last = None;
+        self.width = Width::default();
     }
 
     fn take(&mut self) -> Option<Need> {
@@ -200,7 +229,9 @@ impl AutoGuardBand {
         self.buffer.read(&mut cells);
         let mut need = Need::default();
         for cell in cells.chunks_exact(4) {
-            need.columns = need.columns.max(u32::from(u16::from_le_bytes([cell[0], cell[1]])));
+            // Zeros come from a driver that could not give the buffer, and from nobody else.
+            let columns = u32::from(u16::from_le_bytes([cell[0], cell[1]])).checked_sub(1)?;
+            need.columns = need.columns.max(columns);
             need.undrawn += u32::from(u16::from_le_bytes([cell[2], cell[3]]));
         }
         Some(need)
@@ -255,7 +286,7 @@ mod tests {
         let mut width = Width::default();
         width.next(None, GEOMETRY, Pose::IDENTITY);
         assert_eq!(widths(&mut width, Pose::IDENTITY, &[0, 0]), [14, 14]);
-        assert_eq!([0, 1, 4, 5, 56].map(least), [0, 1, 1, 2, 14]);
+        assert_eq!([0, 1, 10, 28, 56].map(least), [0, 1, 10, 10, 14]);
     }
 
     #[test]
@@ -264,8 +295,11 @@ mod tests {
         width.next(None, GEOMETRY, Pose::IDENTITY);
         widths(&mut width, Pose::IDENTITY, &[40]);
         let away = |i: f32| Pose { position: Vec3::X * i, ..Pose::IDENTITY };
-        assert_eq!(widths(&mut width, away(1.0), &[40, 10]), [56, 44]);
-        assert_eq!(widths(&mut width, away(2.0), &[10, 10]), [56, 14]);
+        assert_eq!(widths(&mut width, away(0.1), &[40, 10]), [56, 44]);
+        assert_eq!(widths(&mut width, away(0.2), &[10, 10]), [56, 14]);
+        // Elsewhere, what was before means nothing.
+        widths(&mut width, away(0.3), &[40, 40]);
+        assert_eq!(widths(&mut width, away(9.0), &[40, 10]), [56, 14]);
     }
 
     #[test]

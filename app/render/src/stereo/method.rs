@@ -77,7 +77,8 @@ pub struct GuardBandUse {
     pub columns: u32,
     /// Columns that the band has at most.
     pub most: u32,
-    /// Pixels at the other eye's border that show something which lies in the band but was not drawn; they were filled.
+    /// Pixels at the other eye's border that were filled, since what they show lies in the band and was not drawn: as far as
+    /// the outermost column that was drawn tells.
     pub undrawn: u32,
 }
 
@@ -92,8 +93,8 @@ pub trait StereoMethod {
         Ok(())
     }
 
-    /// The use of the guard band as far as it is known by now, which is some frames late. None for methods and settings
-    /// that always draw all of it.
+    /// The use of the guard band in the frame before, which is measured by now. None for methods and settings that always
+    /// draw all of it, and before anything was measured.
     fn guard_band(&self) -> Option<GuardBandUse> {
         None
     }

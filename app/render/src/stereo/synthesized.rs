@@ -297,6 +297,9 @@ impl StereoMethod for Yoro {
                 switch.mode = switch.policy.next(switch.mode, fraction);
             }
             if switch.mode == FrameMode::BothRendered {
+                if let Some(auto) = &mut self.auto_guard_band {
+                    auto.interrupt();
+                }
                 switch.conventional.render_to(renderer, scene, pair, to)?;
                 let depth = switch.conventional.depth();
                 switch.fraction.measure(depth, [0, 0], pair.size, &pair.depth, switch.policy.distance);
@@ -318,6 +321,6 @@ impl StereoMethod for Yoro {
     }
 
     fn guard_band(&self) -> Option<GuardBandUse> {
-        self.auto_guard_band.as_ref().map(AutoGuardBand::last)
+        self.auto_guard_band.as_ref()?.last()
     }
 }
