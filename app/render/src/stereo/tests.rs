@@ -273,11 +273,11 @@ fn what_comes_to_the_border_is_filled_counted_and_drawn_from_the_next_frame_on()
             rigs[0].render(&mut method, &pair);
         }
         let narrow = method.guard_band().unwrap();
-        assert!(narrow.columns < 10 && narrow.undrawn == 0, "{narrow:?}");
+        assert!(narrow.columns <= 10 && narrow.undrawn == 0, "{narrow:?}");
         let [filled, _] = rigs[1].render(&mut method, &pair);
         let [drawn, _] = rigs[1].render(&mut method, &pair);
         let used = method.guard_band().unwrap();
-        assert!(used.columns < 10 && used.undrawn > 500, "{renderer:?}: {used:?}");
+        assert!(used.columns <= 10 && used.undrawn > 500, "{renderer:?}: {used:?}");
         rigs[1].render(&mut method, &pair);
         let used = method.guard_band().unwrap();
         assert!(used.columns == used.most && used.undrawn == 0, "{renderer:?}: {used:?}");
