@@ -93,9 +93,9 @@ impl EyeArgs {
 pub struct StereoArgs {
     #[command(flatten)]
     synthesis: SynthesisArgs,
-    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in
+    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), `auto`, or complete from a distance in
     /// metres (`1.0`) [default: 1.0; paper: none]
-    #[arg(long, value_name = "none|Npx|METRES")]
+    #[arg(long, value_name = "none|Npx|METRES|auto")]
     guard_band: Option<GuardBand>,
     /// When to anti-alias [default: after; paper: before]
     #[arg(long, value_parser = choices::anti_aliasing())]

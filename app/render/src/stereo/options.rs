@@ -145,7 +145,7 @@ impl Default for StereoOptions {
         StereoOptions {
             synthesis: SynthesisOptions::default(),
             edges: None,
-            guard_band: GuardBand::AUTO,
+            guard_band: GuardBand::Distance(1.0),
             anti_aliasing: AntiAliasing::default(),
             near_field: None,
             policy: Some(NearFieldPolicy::default()),
