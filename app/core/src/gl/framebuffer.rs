@@ -25,8 +25,8 @@ impl Destination {
 }
 
 impl Context {
-    /// Copies a rectangle of colour to another, of the same size or stretched without filtering. Bits stay what they are, unless just one of the two
-    /// is stored as sRGB.
+    /// Copies a rectangle of colour to another, of the same size or stretched without filtering. Bits stay what they are,
+    /// unless just one of the two is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
         let gl = self.raw();
         let [x, y] = from.origin.map(|n| n as i32);

@@ -9,9 +9,9 @@ use std::rc::Rc;
 use anyhow::Context as _;
 
 use super::record::metric;
-use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, SynthesisViews};
+use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
 use yoro::gl::{Context, Destination, Filter, Format, RenderTarget};
-use yoro::synthesis::{Gather, Source, Synthesis};
+use yoro::synthesis::{Gather, Source, Synthesis, Uniforms};
 use yoro_render::{PreparedScene, RenderSettings, Selection, ViewTargets};
 
 /// The committed table of `cargo xtask shader-cost`.
@@ -163,23 +163,15 @@ impl Counts<'_> {
 /// Mean over the columns of tiles of the target: trips of the loop of the second pass (`synthesis/gather/spans.frag`).
 fn span_trips(views: &SynthesisViews) -> f64 {
     let warp = &views.warp;
-    let (far, near) = match warp.convention {
-        DepthConvention::Standard => (1.0, 0.0),
-        DepthConvention::Reversed => (0.0, 1.0),
-    };
-    let forward = |depth: f64| match warp.target_eye {
-        Eye::Left => warp.law.displacement(depth),
-        Eye::Right => {
-            f64::from(warp.target_size[0]) - f64::from(warp.source_size[0]) - warp.law.displacement(depth)
-        }
-    };
+    let Uniforms { near_displacement, far_displacement, .. } = Uniforms::new(warp, [0, 0]);
     let tile = f64::from(TILE[0]);
     let last_tile = f64::from(warp.source_size[0].div_ceil(TILE[0]) - 1);
     let columns = warp.target_size[0].div_ceil(TILE[0]);
     let trips = (0..columns).map(|column| {
         let first = f64::from(column) * tile;
-        let from = (((first - forward(near) - 1.0) / tile).floor() - 1.0).clamp(0.0, last_tile);
-        let to = ((first + tile - 1.0 - forward(far) + 1.0) / tile).floor().clamp(0.0, last_tile);
+        let from =
+            (((first - f64::from(near_displacement) - 1.0) / tile).floor() - 1.0).clamp(0.0, last_tile);
+        let to = ((first + tile - f64::from(far_displacement)) / tile).floor().clamp(0.0, last_tile);
         (to - from + 1.0).max(0.0)
     });
     trips.sum::<f64>() / f64::from(columns)
@@ -190,8 +182,10 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count
 }
 
-/// Counts what `gather` executes.
+/// Counts what `gather` executes on a device.
 pub struct Meter {
+    device: Device,
+    programs: Programs,
     gather: Gather,
     targets: ViewTargets,
     counts: RenderTarget,
@@ -201,22 +195,23 @@ impl Meter {
     /// Compiles the pipeline that counts.
     ///
     /// # Errors
-    /// When the driver refuses it, or has no OpenGL ES 3.1.
-    pub fn new(gl: &Rc<Context>, settings: &RenderSettings) -> anyhow::Result<Meter> {
+    /// When the driver refuses it, or has no OpenGL ES 3.1; when the table lacks a program.
+    pub fn new(gl: &Rc<Context>, settings: &RenderSettings, device: Device) -> anyhow::Result<Meter> {
         Ok(Meter {
+            device,
+            programs: Programs::of(device.gpu)?,
             gather: Gather::counting(gl)?,
             targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
             counts: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
         })
     }
 
-    /// Values of one frame on a device, by metric.
+    /// Values of one frame, by metric.
     ///
     /// # Errors
-    /// When the eyes cannot be synthesized, GL refuses, or the table lacks a program.
+    /// When the eyes cannot be synthesized, or GL refuses.
     pub fn measure(
         &mut self,
-        device: &Device,
         prepared: &mut PreparedScene,
         pair: &EyePair,
     ) -> anyhow::Result<Vec<(&'static str, f64)>> {
@@ -228,7 +223,7 @@ impl Meter {
         let pixels = self.counts.read_rgba8(0, [0, 0], pair.size);
         let counts = Counts { pixels: &pixels, size: pair.size };
 
-        let programs = Programs::of(device.gpu)?;
+        let Meter { device, programs, .. } = self;
         let waves = counts.waves(programs.march.wave());
         let each = counts.waves([1, 1]);
         let march: Vec<Work> = waves.iter().map(|wave| programs.wave(*wave)).collect();

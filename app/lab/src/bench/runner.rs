@@ -415,7 +415,7 @@ impl<'a> Runner<'a> {
 
     fn executed(&mut self, job: &Job, device: &Device, prepared: &mut PreparedScene) -> anyhow::Result<()> {
         let views = Views::spread(job, prepared)?;
-        let mut meter = Meter::new(self.gl, &job.render)?;
+        let mut meter = Meter::new(self.gl, &job.render, *device)?;
         let mut measurement = Measurement {
             setting: job.setting.clone(),
             contender: device.name.to_owned(),
@@ -425,7 +425,7 @@ impl<'a> Runner<'a> {
         self.bar.set_message(job.setting.to_string());
         for pair in &views.pairs {
             interrupt::check()?;
-            for (name, value) in meter.measure(device, prepared, pair)? {
+            for (name, value) in meter.measure(prepared, pair)? {
                 measurement.push(name, value);
             }
             self.bar.inc(1);

@@ -111,7 +111,8 @@ impl ViewTargets {
         Ok(ViewTargets { images: Images::Forward(Box::new(targets)) })
     }
 
-    /// Says which columns of a view [`Renderer::render`] draws; at first all of them, `None`. The images have the view's size all the same.
+    /// Says which columns of a view [`Renderer::render`] draws; at first all of them, `None`. The images have
+    /// the view's size all the same.
     pub fn set_columns(&mut self, columns: Option<Columns>) {
         match &mut self.images {
             Images::Deferred(targets) => targets.light.columns = columns,

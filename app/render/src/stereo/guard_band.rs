@@ -10,6 +10,7 @@ use yoro::eyes::{Eye, EyePair, Pose, SynthesisViews};
 use yoro::gl::{
     Context, Filter, Format, GlError, PixelBuffer, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
+use yoro::synthesis::Uniforms;
 
 /// Texels of the image that is read back; `stereo/border_need.frag`.
 const CELLS: [u32; 2] = [4, 64];
@@ -112,7 +113,7 @@ impl Width {
 }
 
 /// Columns of a band that are drawn in every frame.
-pub(super) fn least(guard_columns: u32) -> u32 {
+fn least(guard_columns: u32) -> u32 {
     guard_columns.div_ceil(LEAST).max(REACH).min(guard_columns)
 }
 
@@ -171,22 +172,18 @@ impl AutoGuardBand {
     /// Starts to measure what of the band a frame's depth shows.
     pub(super) fn measure(&mut self, depth: &Texture, pair: &EyePair, views: &SynthesisViews) {
         let Some([drawn, _]) = self.drawn.filter(|_| views.guard_columns > 0) else { return };
-        let (warp, guard) = (&views.warp, views.guard_columns as f32);
-        // In forward columns, which begin with the guard band; a surface at infinity moves in by nothing.
-        let (sense, before) = match warp.target_eye {
-            Eye::Left => (1.0, 0.0),
-            Eye::Right => (-1.0, warp.target_size[0] as f32 - warp.source_size[0] as f32),
-        };
-        let law = Vec2::new(before + sense * warp.law.offset as f32 + guard, sense * warp.law.scale as f32);
+        let (warp, guard) = (Uniforms::new(&views.warp, [0, 0]), views.guard_columns as f32);
+        // Forward columns begin with the guard band: from its end a surface at infinity moves in by nothing.
+        let law = warp.law + Vec2::X * guard;
         // At the border of a wide view things move faster than in its middle.
-        let border = match warp.target_eye {
+        let border = match views.warp.target_eye {
             Eye::Left => -views.target.frustum.left,
             Eye::Right => views.target.frustum.right,
         };
         let turn = pair.focal_length_pixels() * TURN * (1.0 + border * border);
         let along = MOVE * border.max(1.0);
         // Where the rendered eye sees further out than the other, infinity is as many columns away from being seen.
-        let beyond = (-(law.x + law.y * pair.depth.clear_value())).max(0.0);
+        let beyond = (-(warp.far_displacement + guard)).max(0.0);
         let motion = Vec2::new(turn + along * beyond, along);
         let inside = (turn + along * guard + beyond).ceil() as u32;
         let end = (views.guard_columns + inside).min(views.source.size[0]);
@@ -196,7 +193,7 @@ impl AutoGuardBand {
             self.program
                 .bind()
                 .texture("depth_map", 0, depth.raw())
-                .set("mirrored", warp.target_eye == Eye::Right)
+                .set("mirrored", warp.mirrored)
                 .set("guard", views.guard_columns as i32)
                 .set("first", (views.guard_columns - drawn) as i32)
                 .set("end", end as i32)
