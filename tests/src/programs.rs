@@ -6,6 +6,7 @@ use std::rc::Rc;
 use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
+use yoro::eyes::GuardBand;
 use yoro::gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro::synthesis::{
     self, Edges, Gather, GatherVariant, ImBufferSize, Outputs, PaperOptions, Pipeline, SynthesisOptions,
@@ -162,7 +163,12 @@ fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
 fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
     let settings = RenderSettings::default();
     for anti_aliasing in [AntiAliasing::After, AntiAliasing::Before, AntiAliasing::Off] {
-        let options = StereoOptions { anti_aliasing, near_field: Some(1.0), ..StereoOptions::default() };
+        let options = StereoOptions {
+            anti_aliasing,
+            near_field: Some(1.0),
+            guard_band: GuardBand::AUTO,
+            ..StereoOptions::default()
+        };
         let there = |m: &Method| m.supported(gl.capabilities(), &settings).is_ok();
         for method in Method::ALL.into_iter().filter(there) {
             stereo::create(gl, method, &settings, &options)?;
