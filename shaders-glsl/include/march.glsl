@@ -1,5 +1,7 @@
-#include "include/tiles.glsl"
+#include "include/span.glsl"
 #include "include/fill.glsl"
+
+TEXTURE(2) uniform highp usampler2D tile_map;
 
 // What a target pixel shows: the fractional source column, its depth, and whether nothing of the source is seen
 // and this is the column it is filled from.
@@ -8,6 +10,83 @@ struct Surface {
     float depth;
     bool hole;
 };
+
+// Forward column at which to begin.
+float span_start(uint span, float origin) {
+    return floor(origin - farthest - uintBitsToFloat(span));
+}
+
+// Tiles that are walked whatever they hold: to skip some pays only where there are many.
+const float FIRST_TILES = 4.0;
+
+// From column `x` on, where a tile begins, the first one whose tile lands within a pixel of this one, or that of the
+// last tile before `end`. Beside the silhouettes of near surfaces that is hundreds of columns away. The far plane's
+// surface lands here from column `origin`.
+float next_candidate(float x, float end, float origin, int row) {
+    bool lands = false;
+    while (x + float(TILE.x) < end && !lands) {
+        COUNT_TRIP(4)
+        uint moved = texelFetch(tile_map, ivec2(int(x), row) / TILE, 0).r;
+        vec2 at = x - origin + vec2(moved & 0xffffu, moved >> 16) / TILE_UNITS;
+        lands = at.x <= 1.0 && at.y + float(TILE.x) >= -1.0;
+        x += lands ? 0.0 : float(TILE.x);
+    }
+    return x;
+}
+
+// How far the search is. Whole columns are those of the image here, not forward ones.
+struct Search {
+    int column;
+    // Place of the column, and then where the one before and its own surface land, relative to the pixel.
+    float shift;
+    float a;
+    float b;
+    // Depth of the column before and its own.
+    float depth;
+    float next;
+    bool found;
+    // Column and depth of the hole's background.
+    int edge;
+    float edge_depth;
+    // The nearest silhouette beside the pixel.
+    int rim;
+    float rim_depth;
+};
+
+// Goes to forward column x, where a tile begins.
+void leap(inout Search at, float x, float origin, int row) {
+    at.column = source_column(int(x));
+    at.shift = x - origin;
+    at.next = depth_texel(at.column, row);
+    at.b = at.shift + law.y * at.next;
+}
+
+// Goes on column by column until the surface is found, or the place is `limit`.
+void walk(inout Search at, float limit, int row) {
+    int step = mirrored ? -1 : 1;
+    while (at.shift < limit && !at.found) {
+        COUNT_TRIP(1)
+        at.a = at.b;
+        at.depth = at.next;
+        int here = at.column;
+        at.column += step;
+        at.shift += 1.0;
+        at.next = depth_texel(at.column, row);
+        at.b = at.shift + law.y * at.next;
+        bool before = at.a <= 0.0;
+        bool jump = before && at.b > 0.0;
+        bool torn = at.b - at.a >= MAX_STRETCH;
+        at.found = jump && (at.a > -0.5 || !torn);
+        bool fold = before && max(at.b, -1.0) < at.a;
+        bool beside = fold || (jump && torn && at.b < 1.0);
+        bool nearest = beside && at.rim < 0;
+        at.rim = nearest ? (fold ? here : at.column) : at.rim;
+        at.rim_depth = nearest ? (fold ? at.depth : at.next) : at.rim_depth;
+        bool farther = jump && law.y * (at.depth - at.edge_depth) < 0.0;
+        at.edge = farther ? here : at.edge;
+        at.edge_depth = farther ? at.depth : at.edge_depth;
+    }
+}
 
 // Colour and surface of a pixel. Column x lands at x - origin + law.y * depth, relative to the pixel. The search starts
 // at column `x`, of depth `next`, that lands at `b`, and takes `steps` steps at most.
@@ -21,64 +100,46 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
     b -= x;
     x = clamp(x, 0.0, last_column);
     b += x;
-    float shift = x - origin;
-    float limit = min(x + steps, last_column) - origin;
-    // Whole columns are those of the image here, not forward ones.
-    int column = source_column(int(x));
-    int step = mirrored ? -1 : 1;
-    // Column and depth of the hole's background. Left of everything it is the border of the image.
+    float end = min(x + steps, last_column);
+    Search at = Search(source_column(int(x)), x - origin, b, b, next, next, false, -1, law.y < 0.0 ? -1e9 : 1e9, -1, 0.0);
+    // Left of everything the border of the image is the background.
     bool outside = x == 0.0 && b > 0.0;
-    int edge = outside ? column : -1;
-    float edge_depth = outside ? next : law.y < 0.0 ? -1e9 : 1e9;
-    limit = outside && b < 0.5 ? shift : limit;
-    // The nearest silhouette beside the pixel.
-    int rim = -1;
-    float rim_depth = 0.0;
-
-    bool found = false;
-    float a = b;
-    float depth = next;
-    while (shift < limit && !found) {
-        COUNT_TRIP(1)
-        a = b;
-        depth = next;
-        int here = column;
-        column += step;
-        shift += 1.0;
-        next = depth_texel(column, row);
-        b = shift + law.y * next;
-        bool before = a <= 0.0;
-        bool jump = before && b > 0.0;
-        bool torn = b - a >= MAX_STRETCH;
-        found = jump && (a > -0.5 || !torn);
-        bool fold = before && max(b, -1.0) < a;
-        bool beside = fold || (jump && torn && b < 1.0);
-        bool nearest = beside && rim < 0;
-        rim = nearest ? (fold ? here : column) : rim;
-        rim_depth = nearest ? (fold ? depth : next) : rim_depth;
-        bool farther = jump && law.y * (depth - edge_depth) < 0.0;
-        edge = farther ? here : edge;
-        edge_depth = farther ? depth : edge_depth;
+    at.edge = outside ? at.column : at.edge;
+    at.edge_depth = outside ? next : at.edge_depth;
+    end = outside && b < 0.5 ? x : end;
+#if defined(SHORT_WAY) || !defined(TEXTURE_GATHER)
+    // Nearly every pixel ends within the first tiles; those beside silhouettes of near surfaces go on, tile by tile.
+    float first = (floor(x / float(TILE.x)) + FIRST_TILES) * float(TILE.x);
+    walk(at, min(first, end) - origin, row);
+    while (at.shift < end - origin && !at.found) {
+        COUNT_TRIP(3)
+        x = next_candidate(round(at.shift + origin), end, origin - farthest, row);
+        leap(at, x, origin, row);
+        walk(at, min(x + float(TILE.x), end) - origin, row);
     }
+#else
+    // CPU rasterizers pay for every fetch in the text: without those of the tiles they are faster on all but near surfaces.
+    walk(at, end - origin, row);
+#endif
     // Where nothing is found: the hole's edge, or the last column right of everything.
-    edge_depth = found || edge < 0 ? next : edge_depth;
-    column = found || edge < 0 ? column : edge;
+    bool own = at.found || at.edge < 0;
+    int column = own ? at.column : at.edge;
     x = float(source_column(column));
-    float t = b - a < MAX_STRETCH ? -a / (b - a) : 0.0;
-    t = found ? t : 1.0;
+    float t = at.b - at.a < MAX_STRETCH ? -at.a / (at.b - at.a) : 0.0;
+    t = at.found ? t : 1.0;
     surface.source = x - 1.0 + t;
-    surface.depth = mix(depth, edge_depth, t);
+    surface.depth = mix(at.depth, own ? at.next : at.edge_depth, t);
     float away = x - origin + law.y * surface.depth;
-    surface.hole = !found && abs(away) >= 0.5;
+    surface.hole = !at.found && abs(away) >= 0.5;
     vec4 color = fill_hole(surface.hole, color_at(surface.source, row), away, column, surface.depth, row);
     // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
     // it covers on average.
-    if (rim >= 0) {
-        x = float(source_column(rim));
-        float coverage = 1.0 - abs(x - origin + law.y * rim_depth);
-        color = mix(color, texelFetch(color_map, in_image(ivec2(rim, row)), 0), coverage);
+    if (at.rim >= 0) {
+        x = float(source_column(at.rim));
+        float coverage = 1.0 - abs(x - origin + law.y * at.rim_depth);
+        color = mix(color, texelFetch(color_map, in_image(ivec2(at.rim, row)), 0), coverage);
         if (coverage >= 0.5) {
-            surface = Surface(x, rim_depth, false);
+            surface = Surface(x, at.rim_depth, false);
         }
     }
     return color;

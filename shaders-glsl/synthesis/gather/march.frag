@@ -7,7 +7,6 @@
 // the text: there all pixels take the long way.
 
 #include "include/march.glsl"
-#include "include/span.glsl"
 
 layout(location = 0) out vec4 color;
 #ifdef SOURCE_MAP
@@ -33,7 +32,7 @@ float depth_beyond(float x, int row) {
 void main() {
     float origin = origins.x * gl_FragCoord.x + origins.y;
     uint span = pixel_span();
-    float x = floor(origin - farthest - uintBitsToFloat(span));
+    float x = span_start(span, origin);
     Surface surface;
 #ifdef SHORT_WAY
     // Where columns x and x + 1 land, relative to the pixel. Columns beyond the borders repeat them. A quarter of a
@@ -83,7 +82,7 @@ void main() {
     color = march(origin, row, span_steps(span), x, x - origin + law.y * depth, depth, surface);
 #endif
 #ifdef COUNT_TRIPS
-    color = vec4(vec3(trips) / 255.0, done ? 0.0 : 1.0);
+    color = vec4(trips[0] | trips[2] << 4 | (done ? 0 : 128), trips[1], trips[3], trips[4]) / 255.0;
 #endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = surface.depth;

@@ -77,8 +77,9 @@ impl Gather {
         Gather::with_defines(gl, outputs, variant.defines())
     }
 
-    /// What GPUs run, with counts for colours: in the target's red, green and blue how often a pixel runs the loops of the
-    /// short way, of the long way and of the fill (of 255, and no more than that), in alpha whether it goes the long way.
+    /// What GPUs run, with counts for colours: in the target's red how often a pixel runs the loop of the short way (low four
+    /// bits) and of the fill (the next two), and whether it goes the long way (the highest bit); in green, blue and alpha how
+    /// many columns it walks there, in how many rounds, and past how many tiles (of 255, and no more than that).
     ///
     /// # Errors
     /// As [`Gather::with_variant`].
@@ -130,7 +131,8 @@ impl Synthesis for Gather {
         });
         gl.pass("gather march", || {
             set_source(self.march.bind(), source, &uniforms);
-            self.march.texture("span_map", 2, self.span_map.color(0).raw());
+            self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
+            self.march.texture("span_map", 3, self.span_map.color(0).raw());
             draw_target(gl, target, self.outputs);
         });
         gl.end_synthesis();

@@ -117,34 +117,45 @@ fn agrees_with_reference(gl: &Rc<Context>, subject: Subject, reference: Referenc
         let warp = p.synthesis(guard).unwrap().warp;
         let (rgba, depth) = scene(warp.source_size, p.depth, seed);
         let result = subject.offline(gl).run(&rgba, &depth, &warp).unwrap();
-        let (ws, wt) = (warp.source_size[0] as usize, warp.target_size[0] as usize);
-        let mirrored = warp.target_eye == Eye::Right;
-        let mut different = 0;
-        for y in 0..warp.target_size[1] as usize {
-            let entries = reference(&reference::positions(row(&depth, y, ws), &warp), wt);
-            let source_row = row(&rgba, y, ws * 4);
-            for (t, entry) in entries.iter().enumerate() {
-                let x = if mirrored { wt - 1 - t } else { t };
-                let got = result.source_map[y * wt + x];
-                let hole = got & SOURCE_MAP_HOLE != 0;
-                let source = (got & !SOURCE_MAP_HOLE) as f64 / SOURCE_MAP_FIXED as f64;
-                // Positions within rounding of a decision (a pixel centre exactly on an edge) may go either way.
-                if hole != entry.hole || (source - entry.source).abs() > 2e-3 {
-                    different += 1;
-                    continue;
-                }
-                if !hole && entry.rim.is_none() {
-                    let color = fetch(source_row, source, mirrored);
-                    for (value, want) in result.rgba[(y * wt + x) * 4..].iter().zip(color) {
-                        let error = (*value as f64 - want).abs();
-                        assert!(error <= 1.6, "{subject:?} ({x}, {y}): {value} for {want}");
-                    }
+        is_its_reference(&result, reference, &rgba, &depth, &warp, &format!("{subject:?}, case {seed}"));
+    }
+}
+
+fn is_its_reference(
+    result: &SynthesizedImage,
+    reference: Reference,
+    rgba: &[u8],
+    depth: &[f32],
+    warp: &Warp,
+    what: &str,
+) {
+    let (ws, wt) = (warp.source_size[0] as usize, warp.target_size[0] as usize);
+    let mirrored = warp.target_eye == Eye::Right;
+    let mut different = 0;
+    for y in 0..warp.target_size[1] as usize {
+        let entries = reference(&reference::positions(row(depth, y, ws), warp), wt);
+        let source_row = row(rgba, y, ws * 4);
+        for (t, entry) in entries.iter().enumerate() {
+            let x = if mirrored { wt - 1 - t } else { t };
+            let got = result.source_map[y * wt + x];
+            let hole = got & SOURCE_MAP_HOLE != 0;
+            let source = (got & !SOURCE_MAP_HOLE) as f64 / SOURCE_MAP_FIXED as f64;
+            // Positions within rounding of a decision (a pixel centre exactly on an edge) may go either way.
+            if hole != entry.hole || (source - entry.source).abs() > 2e-3 {
+                different += 1;
+                continue;
+            }
+            if !hole && entry.rim.is_none() {
+                let color = fetch(source_row, source, mirrored);
+                for (value, want) in result.rgba[(y * wt + x) * 4..].iter().zip(color) {
+                    let error = (*value as f64 - want).abs();
+                    assert!(error <= 1.6, "{what} ({x}, {y}): {value} for {want}");
                 }
             }
         }
-        let total = result.source_map.len();
-        assert!(different * 1000 <= total, "{subject:?}, case {seed}: {different} of {total} pixels differ");
     }
+    let total = result.source_map.len();
+    assert!(different * 1000 <= total, "{what}: {different} of {total} pixels differ");
 }
 
 /// Half a red pixel before blue: where a silhouette covers a share of a pixel, the colour is that mixture.
@@ -489,4 +500,57 @@ fn depth_that_is_no_number_ends() {
             }
         }
     });
+}
+
+/// Boxes as near as 6 cm before a far wall: the search passes over what lies between the tiles that land in a pixel, and
+/// finds what the reference finds that looks at every column.
+#[test]
+fn near_surfaces_are_found_in_few_steps() {
+    let depth = DepthRange { near: 0.05, far: 100.0, convention: DepthConvention::Standard };
+    let size = [840, 120];
+    let frustum = Frustum { left: -1.1, right: 1.1, bottom: -0.16, top: 0.16 };
+    let p = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, size, Eye::Right);
+    let warp = p.synthesis(GuardBand::Distance(1.0)).unwrap().warp;
+    on_every_backend(|gl| {
+        for (seed, boxes) in [(0, 1), (1, 1), (2, 6), (3, 6)] {
+            let (rgba, depth) = near_boxes(warp.source_size, p.depth, seed, boxes);
+            for variant in GatherVariant::ALL {
+                let result = Subject::Gather(variant).offline(gl).run(&rgba, &depth, &warp).unwrap();
+                let what = format!("{variant:?}, {boxes} boxes");
+                is_its_reference(&result, reference::gather_row, &rgba, &depth, &warp, &what);
+            }
+            let counting = Box::new(Gather::counting(gl).unwrap());
+            let counts = Offline::with_pipeline(gl, counting).unwrap().run(&rgba, &depth, &warp).unwrap();
+            let most = counts.rgba.chunks_exact(4).map(|pixel| pixel[1]).max().unwrap();
+            // Four tiles at first, and then those of the box's silhouettes: where they are slanted, two for each.
+            assert!(boxes > 1 || (1..=8 * 16).contains(&most), "{most} steps past a single box");
+        }
+    });
+}
+
+fn near_boxes(size: [u32; 2], range: DepthRange, seed: u64, boxes: u32) -> (Vec<u8>, Vec<f32>) {
+    let [w, h] = size.map(|n| n as usize);
+    let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
+    // Reciprocals of metres.
+    let mut nearness = vec![0.2f32; w * h];
+    for _ in 0..boxes {
+        let [x, wide] = [0..w, w / 20..w / 3].map(|range| rng.random_range(range));
+        // A single one from the lowest row to the topmost: the rows of a tile that has a box above walk like the box's.
+        let (y, high) = match boxes {
+            1 => (0, h),
+            _ => (rng.random_range(0..h), rng.random_range(h / 8..h / 2)),
+        };
+        let nearest = if boxes == 1 { 14.0 } else { 3.0 };
+        let (front, slope) = (rng.random_range(nearest..16.0f32), rng.random_range(-0.01..0.01f32));
+        for j in y..(y + high).min(h) {
+            // Slanted sides.
+            let left = (x + (j - y) / 4).min(w);
+            for i in left..(left + wide).min(w) {
+                let here = (front + slope * (i - left) as f32).clamp(3.0, 20.0);
+                nearness[j * w + i] = nearness[j * w + i].max(here);
+            }
+        }
+    }
+    let rgba = (0..w * h * 4).map(|_| rng.random()).collect();
+    (rgba, nearness.into_iter().map(|nearness| range.depth(1.0 / nearness)).collect())
 }

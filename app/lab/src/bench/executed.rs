@@ -51,6 +51,42 @@ pub const DEVICES: [Device; 3] = [
     Device { name: "mali-g57", gpu: "g57", size: [1200, 1080], slots: 0.061e12, fetches: 7.6e9, bytes: 17e9 },
 ];
 
+/// How often the loops of the march run, as [`Gather::counting`] tells it: of one pixel, or the largest of a wave.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Trips {
+    short: f64,
+    fill: f64,
+    /// 1 where a pixel goes the long way.
+    goes_on: f64,
+    columns: f64,
+    rounds: f64,
+    tiles: f64,
+}
+
+impl Trips {
+    fn of([packed, columns, rounds, tiles]: [u8; 4]) -> Trips {
+        Trips {
+            short: f64::from(packed & 15),
+            fill: f64::from(packed >> 4 & 3),
+            goes_on: f64::from(packed >> 7),
+            columns: columns.into(),
+            rounds: rounds.into(),
+            tiles: tiles.into(),
+        }
+    }
+
+    fn max(self, other: Trips) -> Trips {
+        Trips {
+            short: self.short.max(other.short),
+            fill: self.fill.max(other.fill),
+            goes_on: self.goes_on.max(other.goes_on),
+            columns: self.columns.max(other.columns),
+            rounds: self.rounds.max(other.rounds),
+            tiles: self.tiles.max(other.tiles),
+        }
+    }
+}
+
 /// Issue slots and texture instructions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Work {
@@ -73,21 +109,28 @@ struct Listing {
 }
 
 impl Listing {
-    /// The program's row; its loops are those of the listing, none inside another.
+    /// The program's row; of a loop what stands in loops inside it is left out.
     fn of(gpu: &str, program: &str) -> anyhow::Result<Listing> {
         let find = || {
             let columns = TABLE.lines().map(|line| line.split(',').collect::<Vec<_>>());
             let row =
                 columns.into_iter().find(|row| row.len() == 12 && row[0] == gpu && row[1] == program)?;
-            let loops: Option<Vec<Work>> = (row[11].split_whitespace())
-                .map(|text| {
-                    let (slots, fetches) = text.split_once('/')?;
-                    Some(Work { slots: slots.parse().ok()?, fetches: fetches.parse().ok()? })
-                })
-                .collect();
+            let mut loops: Vec<Work> = Vec::new();
+            let mut outermost = 0;
+            for text in row[11].split_whitespace() {
+                let body = text.trim_start_matches('>');
+                let (slots, fetches) = body.split_once('/')?;
+                let work = Work { slots: slots.parse().ok()?, fetches: fetches.parse().ok()? };
+                match text.len() - body.len() {
+                    0 => outermost = loops.len(),
+                    1 => loops[outermost] = loops[outermost].plus(-1.0, work),
+                    _ => return None,
+                }
+                loops.push(work);
+            }
             let all = Work { slots: row[4].parse().ok()?, fetches: row[8].parse().ok()? };
             // Mali's waves have 16 lanes; its rows do not say so.
-            Some(Listing { all, loops: loops?, lanes: row[7].parse().unwrap_or(16) })
+            Some(Listing { all, loops, lanes: row[7].parse().unwrap_or(16) })
         };
         find().with_context(|| format!("docs/shader-cost.csv has no readable row {gpu},{program}: renew it with cargo xtask shader-cost --bless"))
     }
@@ -127,12 +170,16 @@ impl Programs {
         })
     }
 
-    /// What a wave executes for each of its pixels, by the counts of [`Gather::counting`] of its slowest pixel.
-    fn wave(&self, [short, long, fill, goes_on]: [f64; 4]) -> Work {
-        let [short_loop, long_loop, fill_loop] = [0, 1, 2].map(|i| self.march.loops[i]);
-        let every = self.short_way.straight().plus(short, short_loop);
+    /// What a wave executes for each of its pixels, by the counts of its slowest pixel.
+    fn wave(&self, trips: Trips) -> Work {
+        // The columns' loop is there twice, of the first tiles and in each later round.
+        let [short, columns, round, tiles, fill] = [0, 1, 2, 3, 5].map(|i| self.march.loops[i]);
+        let every = self.short_way.straight().plus(trips.short, short);
         let rest = self.march.straight().plus(-1.0, self.short_way.straight());
-        every.plus(goes_on, rest).plus(long, long_loop).plus(fill, fill_loop)
+        (every.plus(trips.goes_on, rest).plus(trips.rounds, round))
+            .plus(trips.columns, columns)
+            .plus(trips.tiles, tiles)
+            .plus(trips.fill, fill)
     }
 }
 
@@ -143,20 +190,17 @@ struct Counts<'a> {
 }
 
 impl Counts<'_> {
-    /// The largest counts of each wave: loops' trips, and 1 where a pixel goes the long way.
-    fn waves(&self, wave: [u32; 2]) -> Vec<[f64; 4]> {
+    /// The largest counts of each wave.
+    fn waves(&self, wave: [u32; 2]) -> Vec<Trips> {
         let [width, height] = self.size;
         let across = width.div_ceil(wave[0]) as usize;
-        let mut waves = vec![[0u8; 4]; across * height.div_ceil(wave[1]) as usize];
-        for (i, pixel) in self.pixels.chunks_exact(4).enumerate() {
+        let mut waves = vec![Trips::default(); across * height.div_ceil(wave[1]) as usize];
+        for (i, pixel) in self.pixels.as_chunks().0.iter().enumerate() {
             let (x, y) = (i as u32 % width, i as u32 / width);
             let largest = &mut waves[(y / wave[1]) as usize * across + (x / wave[0]) as usize];
-            for (most, count) in largest.iter_mut().zip(pixel) {
-                *most = (*most).max(*count);
-            }
+            *largest = largest.max(Trips::of(*pixel));
         }
-        let scaled = |[a, b, c, on]: [u8; 4]| [a.into(), b.into(), c.into(), f64::from(on) / 255.0];
-        waves.into_iter().map(scaled).collect()
+        waves
     }
 }
 
@@ -239,11 +283,11 @@ impl Meter {
         let all = march.plus(1.0, tiles).plus(1.0, spans);
         let ms_of = 1e3 * f64::from(pair.size[0]) * f64::from(pair.size[1]);
         Ok(vec![
-            (metric::TRIPS_PIXEL, mean(each.iter().map(|counts| counts[0]))),
-            (metric::TRIPS_WAVE, mean(waves.iter().map(|counts| counts[0]))),
-            (metric::GOES_ON_PIXEL, mean(each.iter().map(|counts| counts[3]))),
-            (metric::GOES_ON_WAVE, mean(waves.iter().map(|counts| counts[3]))),
-            (metric::LONG_TRIPS_WAVE, mean(waves.iter().map(|counts| counts[1]))),
+            (metric::TRIPS_PIXEL, mean(each.iter().map(|trips| trips.short))),
+            (metric::TRIPS_WAVE, mean(waves.iter().map(|trips| trips.short))),
+            (metric::GOES_ON_PIXEL, mean(each.iter().map(|trips| trips.goes_on))),
+            (metric::GOES_ON_WAVE, mean(waves.iter().map(|trips| trips.goes_on))),
+            (metric::LONG_TRIPS_WAVE, mean(waves.iter().map(|trips| trips.columns))),
             (metric::SLOTS_TILES, tiles.slots),
             (metric::SLOTS_SPANS, spans.slots),
             (metric::SLOTS_MARCH, march.slots),
@@ -264,7 +308,7 @@ mod tests {
     fn the_committed_table_has_what_is_needed() {
         for device in DEVICES {
             let programs = Programs::of(device.gpu).unwrap();
-            assert_eq!(programs.march.loops.len(), 3, "{}", device.name);
+            assert_eq!(programs.march.loops.len(), 6, "{}", device.name);
             assert_eq!(programs.short_way.loops.len(), 1, "{}", device.name);
             assert_eq!([&programs.tiles, &programs.spans].map(|listing| listing.loops.len()), [1, 1]);
             let (all, short) = (programs.march.straight(), programs.short_way.straight());
@@ -285,28 +329,33 @@ mod tests {
             pixels[(y * 6 + x) * 4..][..4].copy_from_slice(&counts);
         };
         set(0, 0, [3, 0, 0, 0]);
-        set(3, 2, [1, 9, 2, 255]);
+        set(3, 2, [1 | 2 << 4 | 128, 9, 2, 7]);
         set(5, 1, [2, 0, 0, 0]);
         let counts = Counts { pixels: &pixels, size: [6, 3] };
-        assert_eq!(counts.waves([4, 4]), [[3.0, 9.0, 2.0, 1.0], [2.0, 0.0, 0.0, 0.0]]);
+        let long = Trips { short: 3.0, fill: 2.0, goes_on: 1.0, columns: 9.0, rounds: 2.0, tiles: 7.0 };
+        assert_eq!(counts.waves([4, 4]), [long, Trips { short: 2.0, ..Trips::default() }]);
         assert_eq!(counts.waves([1, 1]).len(), 18);
     }
 
     #[test]
     fn work_adds_up() {
         let body = |slots, fetches| Work { slots, fetches };
+        // The third one with two loops inside.
+        let loops = [(20.0, 1.0), (50.0, 1.0), (40.0, 1.0), (60.0, 1.0), (50.0, 1.0), (70.0, 4.0)];
         let march = Listing {
-            all: body(300.0, 11.0),
-            loops: vec![body(20.0, 1.0), body(50.0, 1.0), body(60.0, 4.0)],
+            all: body(390.0, 13.0),
+            loops: loops.map(|(slots, fetches)| body(slots, fetches)).to_vec(),
             lanes: 128,
         };
         let short_way = Listing { all: body(100.0, 4.0), loops: vec![body(20.0, 1.0)], lanes: 128 };
         let programs = Programs { tiles: march.clone(), spans: march.clone(), march, short_way };
-        assert_eq!(programs.wave([2.0, 0.0, 0.0, 0.0]), body(80.0 + 40.0, 3.0 + 2.0));
-        // Beyond the short way 90 slots and 2 fetches outside of the loops.
+        let short = Trips { short: 2.0, ..Trips::default() };
+        assert_eq!(programs.wave(short), body(80.0 + 40.0, 3.0 + 2.0));
+        // Beyond the short way 20 slots and 1 fetch outside of the loops.
+        let long = Trips { short: 1.0, fill: 2.0, goes_on: 1.0, columns: 30.0, rounds: 2.0, tiles: 3.0 };
         assert_eq!(
-            programs.wave([1.0, 3.0, 2.0, 1.0]),
-            body(100.0 + 90.0 + 150.0 + 120.0, 4.0 + 2.0 + 3.0 + 8.0)
+            programs.wave(long),
+            body(100.0 + 20.0 + 80.0 + 1500.0 + 180.0 + 140.0, 4.0 + 1.0 + 2.0 + 30.0 + 3.0 + 8.0)
         );
     }
 }
