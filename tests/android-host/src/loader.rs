@@ -106,8 +106,8 @@ unsafe fn of_runtime<T: Copy>(name: &CStr) -> Result<T, sys::Result> {
     // SAFETY: a name, and room for a function.
     let result = unsafe { runtime()?(sys::Instance::NULL, name.as_ptr(), &mut function) };
     match (result, function) {
-        // SAFETY: promised by the caller; both are pointers.
         (sys::Result::SUCCESS, Some(function)) => {
+            // SAFETY: promised by the caller; both are pointers.
             Ok(unsafe { std::mem::transmute_copy::<pfn::VoidFunction, T>(&function) })
         }
         (sys::Result::SUCCESS, None) => Err(sys::Result::ERROR_FUNCTION_UNSUPPORTED),
