@@ -303,7 +303,7 @@ impl Activity {
         let gl = context(&mut self.gl, window)?;
         let mut viewer = self.configuration.make_viewer(Viewer::new)?;
         viewer.attach(gl.clone())?;
-        let options = Options { android: Some(android), ..Options::default() };
+        let options = Options { android: Some(android) };
         let headset = Headset::open(found, &*window, gl, viewer, options)?;
         self.display = Display::Headset(Box::new(headset));
         Ok(())

@@ -22,18 +22,32 @@ pub unsafe fn write(
     let Some(folder) = &session.instance.settings.capture else { return };
     let path = folder.join(format!("{name}.png"));
     // SAFETY: promised by the caller.
-    let written = unsafe { synthesizer.read(image, part) }.and_then(|bytes| encode(part.size, bytes));
-    let written = written.and_then(|png| yoro_files::write(&path, &png).map_err(|error| error.to_string()));
+    let written = unsafe { synthesizer.read(image, part) }
+        .and_then(|bytes| encode(part.size, &bytes).map_err(|error| error.to_string()))
+        .and_then(|png| yoro_files::write(&path, &png).map_err(|error| error.to_string()));
     if let Err(error) = written {
         say(format_args!("no picture {name}.png: {error}"));
     }
 }
 
-fn encode(size: [u32; 2], bytes: Vec<u8>) -> Result<Vec<u8>, String> {
-    let mut png = std::io::Cursor::new(Vec::new());
-    image::RgbImage::from_raw(size[0], size[1], bytes)
-        .ok_or_else(|| "it has too few bytes".to_owned())?
-        .write_to(&mut png, image::ImageFormat::Png)
-        .map_err(|error| error.to_string())?;
-    Ok(png.into_inner())
+/// Of red, green and blue.
+fn encode([width, height]: [u32; 2], bytes: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header()?.write_image_data(bytes)?;
+    Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_what_was_read() {
+        let bytes: Vec<u8> = (0..3 * 4 * 5).collect();
+        let picture = image::load_from_memory(&encode([4, 5], &bytes).unwrap()).unwrap();
+        assert_eq!(picture.into_rgb8().into_raw(), bytes);
+        assert!(encode([4, 5], &bytes[1..]).is_err());
+    }
 }

@@ -34,6 +34,7 @@ mod session;
 pub mod settings;
 mod swapchain;
 mod vulkan;
+pub mod xdg;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

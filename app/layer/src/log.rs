@@ -1,11 +1,12 @@
 //! What the layer says: to the standard error output, and to a file that `yoro layer log` shows; on Android to logcat.
 
-use std::env;
 use std::fmt;
 use std::fs::File;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::OnceLock;
+
+use crate::xdg;
 
 /// Bytes that a line has room for; the rest is cut off.
 const LONGEST: usize = 1024;
@@ -13,9 +14,7 @@ const LONGEST: usize = 1024;
 /// The file that the program that has begun last writes to: `$XDG_STATE_HOME/yoro/layer.log`, in `~/.local/state` where
 /// that is not set; None without a home.
 pub fn path() -> Option<PathBuf> {
-    let folder = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let state = folder("XDG_STATE_HOME").or_else(|| folder("HOME").map(|home| home.join(".local/state")));
-    state.map(|state| state.join("yoro/layer.log"))
+    Some(xdg::folder("XDG_STATE_HOME", ".local/state")?.join("yoro/layer.log"))
 }
 
 /// Begun anew by each program, with its first line. Where it cannot be written there is none: the lines are on the standard

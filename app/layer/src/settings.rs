@@ -1,13 +1,14 @@
 //! What a user can choose: by a file for all applications and for each one, and by environment variables, on Android system
 //! properties, for one run.
 
-use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use serde::Deserialize;
 use yoro::eyes::{Eye, GuardBand};
+
+use crate::xdg;
 
 /// Where in the list of view configurations the application finds the one of a single view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -104,9 +105,7 @@ pub enum SettingsError {
 
 /// The file of settings: `$XDG_CONFIG_HOME/yoro/layer.toml`, in `~/.config` where that is not set; None without a home.
 pub fn path() -> Option<PathBuf> {
-    let folder = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let config = folder("XDG_CONFIG_HOME").or_else(|| folder("HOME").map(|home| home.join(".config")));
-    config.map(|config| config.join("yoro/layer.toml"))
+    Some(xdg::folder("XDG_CONFIG_HOME", ".config")?.join("yoro/layer.toml"))
 }
 
 /// Where settings for one run are.
@@ -114,7 +113,7 @@ const VARIABLES: &str = if cfg!(target_os = "android") { "the system properties"
 
 #[cfg(not(target_os = "android"))]
 fn variable(name: &str) -> Option<OsString> {
-    env::var_os(name)
+    std::env::var_os(name)
 }
 
 /// On Android YORO_LAYER_OFFER is the system property `debug.yoro.layer.offer`. Empty means unset: a property cannot be

@@ -12,7 +12,7 @@ use std::time::Duration;
 use anyhow::{Context as _, bail};
 use clap::Subcommand;
 use yoro_files as files;
-use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME};
+use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME, xdg};
 
 const LIBRARY: &str = "libyoro_layer.so";
 /// Before it is looked whether there is more in the log.
@@ -90,8 +90,7 @@ impl LibraryArgs {
 
 /// Where this user's data are.
 fn data() -> anyhow::Result<PathBuf> {
-    let folder = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let data = folder("XDG_DATA_HOME").or_else(|| folder("HOME").map(|home| home.join(".local/share")));
+    let data = xdg::folder("XDG_DATA_HOME", ".local/share");
     data.context("neither XDG_DATA_HOME nor HOME is an absolute path; set one of them")
 }
 

@@ -47,7 +47,7 @@ pub struct XrArgs {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// One view in place of two, where the runtime has that
+    /// One view in place of two, where the runtime or an API layer offers that (setting `one-view`)
     #[arg(long)]
     mono: bool,
     #[command(flatten)]
@@ -62,7 +62,9 @@ impl XrArgs {
     fn resolve(&self) -> anyhow::Result<Settings> {
         let scene = self.scene.as_ref().map(|scene| format!("scene={scene}"));
         let method = self.methods.first().map(|method| format!("method={}", method.name()));
-        self.settings.resolve(scene.into_iter().chain(method).chain(self.renderer.settings()))
+        let one_view = self.mono.then(|| "one-view=true".to_owned());
+        let named = scene.into_iter().chain(method).chain(one_view);
+        self.settings.resolve(named.chain(self.renderer.settings()))
     }
 
     fn find_runtime(&self) -> anyhow::Result<Runtime> {
@@ -176,8 +178,7 @@ pub fn run(args: &XrArgs) -> anyhow::Result<()> {
     let mut viewer = Viewer::new(settings, &[])?;
     viewer.attach(gl.clone())?;
     let graphics = HeadlessGraphics::new(&headless)?;
-    let options = Options { mono: args.mono };
-    let mut headset = Headset::open(runtime, &graphics, gl, viewer, options)?;
+    let mut headset = Headset::open(runtime, &graphics, gl, viewer, Options::default())?;
     let run = show(args, &graphics, &mut headset);
     let summary = run.map(|(methods, empty_frames)| XrSummary {
         found,

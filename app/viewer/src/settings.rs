@@ -248,6 +248,8 @@ pub struct Settings {
     pub performance_hints: bool,
     /// Headsets: the depth of both eyes goes to the compositor, where it takes it. Counts when a session begins.
     pub submit_depth: bool,
+    /// Headsets: one view in place of two, where the runtime or an API layer offers that. Counts when a session begins.
+    pub one_view: bool,
     /// Measure the GPU time of each stage, where the driver has timer queries.
     pub profiling: bool,
     /// Name of this run in the log line, for scripts that start several.
@@ -299,6 +301,7 @@ pub const KEYS: &[&str] = &[
     "performance",
     "performance-hints",
     "submit-depth",
+    "one-view",
     "profiling",
     "run",
 ];
@@ -365,6 +368,7 @@ impl Default for Settings {
             performance: Performance::default(),
             performance_hints: true,
             submit_depth: true,
+            one_view: false,
             profiling: true,
             run: None,
         }

@@ -1,4 +1,4 @@
-//! The APK: libraries and assets come out of the built file itself.
+//! The APK, and the AAR of an API layer: libraries and assets come out of the built file itself.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -23,20 +23,33 @@ impl Apk {
     pub fn read(path: &Path, abi: &str) -> Result<Self> {
         let file = File::open(path)
             .with_context(|| format!("cannot open {}: build it by `cargo xtask apk`", path.display()))?;
-        Self::read_from(file, abi)
+        Self::read_from(file, &format!("lib/{abi}/"))
             .with_context(|| format!("{} is not an APK that the host can run", path.display()))
     }
 
-    fn read_from(file: impl Read + Seek, abi: &str) -> Result<Self> {
+    /// As [`Apk::read`], of an AAR: what of it gets into the APK of an application that depends on it.
+    ///
+    /// # Errors
+    /// As [`Apk::read`].
+    pub fn read_aar(path: &Path, abi: &str) -> Result<Self> {
+        const REMEDY: &str = "build it by `cargo xtask package --target android-layer`";
+        let file = File::open(path).with_context(|| format!("cannot open {}: {REMEDY}", path.display()))?;
+        let mut aar = Self::read_from(file, &format!("jni/{abi}/"))
+            .with_context(|| format!("{} is not an AAR that the host can run", path.display()))?;
+        aar.library.0.replace_range(..3, "lib");
+        Ok(aar)
+    }
+
+    /// `folder` is where the libraries of the ABI are.
+    fn read_from(file: impl Read + Seek, folder: &str) -> Result<Self> {
         let mut archive = zip::ZipArchive::new(file)?;
-        let folder = format!("lib/{abi}/");
         let mut libraries = Vec::new();
         let mut assets = BTreeMap::new();
         for index in 0..archive.len() {
             let mut entry = archive.by_index(index)?;
             let name = entry.name()?.into_owned();
             let asset = name.strip_prefix("assets/").map(str::to_owned);
-            if entry.is_dir() || !(name.starts_with(&folder) || asset.is_some()) {
+            if entry.is_dir() || !(name.starts_with(folder) || asset.is_some()) {
                 continue;
             }
             let mut bytes = Vec::new();
@@ -83,7 +96,7 @@ mod tests {
             ("lib/arm64-v8a/liba.so", "a"),
             ("assets/d/e.txt", "e"),
         ];
-        let apk = Apk::read_from(archive(&files), "x86_64").unwrap();
+        let apk = Apk::read_from(archive(&files), "lib/x86_64/").unwrap();
         assert_eq!(apk.library, ("lib/x86_64/liba.so".into(), b"x".to_vec()));
         assert_eq!(apk.assets, [("d/e.txt".to_owned(), b"e".to_vec())].into());
     }
@@ -91,7 +104,7 @@ mod tests {
     #[test]
     fn what_is_no_apk_is_refused() {
         let refused =
-            |files: &[(&str, &str)]| Apk::read_from(archive(files), "x86_64").err().unwrap().to_string();
+            |files: &[(&str, &str)]| Apk::read_from(archive(files), "lib/x86_64/").err().unwrap().to_string();
         assert!(refused(&[("lib/x86_64/liba.so", "x")]).contains("AndroidManifest"));
         assert!(
             refused(&[("AndroidManifest.xml", "m"), ("lib/arm64-v8a/liba.so", "x")]).contains("lib/x86_64/")
@@ -100,6 +113,6 @@ mod tests {
             refused(&[("AndroidManifest.xml", "m"), ("lib/x86_64/a.so", "x"), ("lib/x86_64/b.so", "x")])
                 .contains("several")
         );
-        assert!(Apk::read_from(Cursor::new(vec![0; 100]), "x86_64").is_err());
+        assert!(Apk::read_from(Cursor::new(vec![0; 100]), "lib/x86_64/").is_err());
     }
 }

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use crate::exports::{self, Export, System, exports};
 use crate::host::{fatal, host, lock};
-use crate::openxr;
+use crate::{loader, openxr};
 
 /// Functions of libc.so that are glibc's.
 const SAME_C: &str = "\
@@ -540,7 +540,7 @@ unsafe extern "C" fn dlopen(path: *const c_char, _flags: c_int) -> *mut c_void {
     if host.library.get().is_some_and(|library| library.path.as_c_str().to_bytes() == name.as_bytes()) {
         return SELF as *mut c_void;
     }
-    if let Some(library) = openxr::open(&name) {
+    if let Some(library) = openxr::open(&name).or_else(|| loader::open(&name)) {
         return library;
     }
     match System::ALL.iter().position(|library| library.name() == name) {
@@ -558,9 +558,10 @@ extern "C" fn dlclose(_handle: *mut c_void) -> c_int {
 
 unsafe extern "C" fn dlsym(handle: *mut c_void, name: *const c_char) -> *mut c_void {
     // SAFETY: a terminated name.
-    if let Some(address) = openxr::symbol(handle, unsafe { CStr::from_ptr(name) }) {
+    let symbol = unsafe { CStr::from_ptr(name) };
+    if let Some(address) = openxr::symbol(handle, symbol).or_else(|| loader::symbol(handle, symbol)) {
         if address.is_null() {
-            dl_error("undefined symbol of the OpenXR runtime".into());
+            dl_error("undefined symbol of the OpenXR runtime or loader".into());
         }
         return address;
     }
@@ -592,8 +593,8 @@ extern "C" fn dlerror() -> *const c_char {
 }
 
 unsafe extern "C" fn dladdr(address: *const c_void, info: *mut libc::Dl_info) -> c_int {
-    match host().library.get() {
-        Some(library) if library.contains(address as usize) => {
+    match host().libraries().find(|library| library.contains(address as usize)) {
+        Some(library) => {
             // SAFETY: the caller gives room for one Dl_info; the path lives as long as the process.
             unsafe {
                 info.write(libc::Dl_info {
@@ -606,14 +607,14 @@ unsafe extern "C" fn dladdr(address: *const c_void, info: *mut libc::Dl_info) ->
             1
         }
         // SAFETY: same contract as the caller's.
-        _ => unsafe { libc::dladdr(address, info) },
+        None => unsafe { libc::dladdr(address, info) },
     }
 }
 
 type VisitLibrary = unsafe extern "C" fn(*mut libc::dl_phdr_info, usize, *mut c_void) -> c_int;
 
 unsafe extern "C" fn dl_iterate_phdr(visit: VisitLibrary, data: *mut c_void) -> c_int {
-    if let Some(library) = host().library.get() {
+    for library in host().libraries() {
         // SAFETY: the structure is plain data for which zero is valid.
         let mut info: libc::dl_phdr_info = unsafe { std::mem::zeroed() };
         info.dlpi_addr = library.base() as _;

@@ -38,19 +38,21 @@ extern "C" fn crashed(signal: c_int, information: *mut libc::siginfo_t, context:
     };
     let callers: Vec<_> = words(stack).into_iter().filter_map(in_library).take(12).collect();
     fatal(format!(
-        "{name} at address {address:#x} in thread {}, {}; the stack has the library's addresses {}",
+        "{name} at address {address:#x} in thread {}, {}; the stack has the addresses {}",
         thread_name(),
         in_library(counter).map_or_else(
-            || format!("outside of the library (pc {counter:#x})"),
-            |offset| format!("at {offset} of the library")
+            || format!("outside of the package's libraries (pc {counter:#x})"),
+            |offset| format!("at {offset}")
         ),
         callers.join(" ")
     ))
 }
 
 fn in_library(address: usize) -> Option<String> {
-    let library = host().library.get()?;
-    library.is_code(address).then(|| format!("{:#x}", address - library.base()))
+    let library = host().libraries().find(|library| library.is_code(address))?;
+    let path = library.path.to_string_lossy();
+    let file = path.rsplit('/').next().unwrap_or_default();
+    Some(format!("{file}+{:#x}", address - library.base()))
 }
 
 /// Program counter and stack pointer.

@@ -55,8 +55,10 @@ pub struct Host {
     pub jni: Jni,
     /// The application's folders.
     pub directories: Directories,
-    /// The loaded library.
+    /// The application's library.
     pub library: OnceLock<Library>,
+    /// That of an API layer, where the application carries one.
+    pub layer: OnceLock<Library>,
     /// Whether the application asked for its end by `ANativeActivity_finish`.
     pub finish_asked: AtomicBool,
     /// Kernel's number of the thread that runs `android_main`; 0 before the first.
@@ -77,8 +79,8 @@ pub struct Report {
     pub script: String,
     /// Where the summary goes.
     pub out: PathBuf,
-    /// Facts of the library.
-    pub library: Option<LibraryFacts>,
+    /// Facts of the libraries.
+    pub libraries: Vec<LibraryFacts>,
     /// Imported, but answered by a trap.
     pub trapped_symbols: Vec<String>,
     /// Marks so far.
@@ -143,6 +145,7 @@ impl Host {
             jni: Jni::new(),
             directories: Directories::new(&device.files)?,
             library: OnceLock::new(),
+            layer: OnceLock::new(),
             finish_asked: AtomicBool::new(false),
             main_thread: AtomicI32::new(0),
             ndk_objects: Mutex::new(BTreeMap::new()),
@@ -164,6 +167,11 @@ impl Host {
 
     fn get() -> &'static Self {
         host()
+    }
+
+    /// What is loaded like Android's linker does it.
+    pub fn libraries(&self) -> impl Iterator<Item = &Library> {
+        self.library.get().into_iter().chain(self.layer.get())
     }
 
     /// One line on the real standard error.
@@ -255,7 +263,7 @@ impl Host {
             script: report.script.clone(),
             apk: report.apk.clone(),
             abi: ABI.to_owned(),
-            library: report.library.clone(),
+            libraries: report.libraries.clone(),
             failure,
             frames: self.frames.shown(),
             seconds: self.clock.seconds(),

@@ -19,6 +19,7 @@ mod frames;
 mod graphics;
 mod host;
 mod jni;
+mod loader;
 mod openxr;
 mod player;
 mod random;
@@ -49,38 +50,50 @@ use crate::script::Script;
 pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Result<std::convert::Infallible> {
     let started = Instant::now();
     std::fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
-    let apk = Apk::read(apk_path, ABI)?;
+    let mut apk = Apk::read(apk_path, ABI)?;
+    let headset = script.device.openxr.as_ref();
+    let layer = headset.and_then(|headset| headset.layer.as_deref());
+    let layer = layer.map(|path| Apk::read_aar(path, ABI)).transpose()?;
+    // Of what a package depends on, the package has the assets, too.
+    apk.assets.extend(layer.iter().flat_map(|layer| layer.assets.clone()));
     let report = Report {
         apk: apk_path.to_owned(),
         script: script.name.clone(),
         out: out.to_owned(),
-        library: None,
+        libraries: Vec::new(),
         trapped_symbols: Vec::new(),
         marks: Vec::new(),
         captures: Vec::new(),
         stderr: std::io::stderr().as_fd().try_clone_to_owned()?,
         started,
     };
-    if let Some(headset) = &script.device.openxr {
+    if let Some(headset) = headset {
         // SAFETY: the process has one thread.
         unsafe { openxr::install(headset) }?;
     }
     let host = Host::install(script, Assets::new(apk.assets), verbose, report)?;
-    let (name, bytes) = apk.library;
     let sdk = host.device.sdk;
-    let loaded = Library::load(&name, &bytes, |library, symbol| exports::find(library, symbol, sdk))?;
-    {
+    let load = |(name, bytes): &(String, Vec<u8>)| -> Result<Library> {
+        let loaded = Library::load(name, bytes, |library, symbol| exports::find(library, symbol, sdk))?;
         let mut report = host.report();
-        report.library = Some(loaded.facts);
-        report.trapped_symbols = loaded.trapped;
+        report.libraries.push(loaded.facts);
+        report.trapped_symbols.extend(loaded.trapped);
+        Ok(loaded.library)
+    };
+    let library = load(&apk.library)?;
+    let library = host.library.get_or_init(|| library);
+    if let Some(layer) = &layer {
+        let library = load(&layer.library)?;
+        loader::install(&layer.assets, host.layer.get_or_init(|| library))?;
     }
-    let library = host.library.get_or_init(|| loaded.library);
     crash::install();
-    // SAFETY: the library can reach everything it needs through the host from now on.
-    unsafe { library.initialize() };
+    for library in host.libraries() {
+        // SAFETY: the library can reach everything it needs through the host from now on.
+        unsafe { library.initialize() };
+    }
     let create = library
         .symbol("ANativeActivity_onCreate")
-        .with_context(|| format!("{name} does not export ANativeActivity_onCreate"))?;
+        .with_context(|| format!("{} does not export ANativeActivity_onCreate", apk.library.0))?;
     // SAFETY: a symbol of this name has this type by the NDK's contract.
     let create: OnCreate = unsafe { std::mem::transmute(create) };
     let mut player = Player::new(create, out.to_owned());

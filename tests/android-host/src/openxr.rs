@@ -5,6 +5,7 @@
 //! window.
 
 use std::ffi::{CStr, CString, c_char, c_void};
+use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
@@ -77,12 +78,14 @@ pub fn query(uri: &str, columns: Vec<String>) -> Option<Arc<Object>> {
 
 /// The runtime's library by the path that the broker gave; none for any other.
 pub fn open(path: &str) -> Option<*mut c_void> {
+    if Path::new(path) == FOLDER.get()?.join(FILE) { library() } else { None }
+}
+
+/// The runtime's library; none without a headset.
+pub fn library() -> Option<*mut c_void> {
     let file = FOLDER.get()?.join(FILE);
-    if Path::new(path) != file {
-        return None;
-    }
     let handle = *LIBRARY.get_or_init(|| {
-        let path = CString::new(path).unwrap_or_default();
+        let path = CString::new(file.into_os_string().into_vec()).unwrap_or_default();
         // SAFETY: a library of this project, which has no constructors of its own.
         let handle = unsafe { libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL) };
         // SAFETY: the handle is that of a library, or null, for which nothing is found.

@@ -133,6 +133,9 @@ pub struct OpenXr {
     /// The broker that names it is the system's, not one that a user has installed.
     #[serde(default)]
     pub system: bool,
+    /// An API layer that the application carries, by its AAR, with a loader that puts it between.
+    #[serde(default)]
+    pub layer: Option<PathBuf>,
 }
 
 impl Default for Device {

@@ -20,8 +20,8 @@ pub struct Summary {
     pub apk: PathBuf,
     /// `x86_64` or `arm64-v8a`.
     pub abi: String,
-    /// The library, as loaded.
-    pub library: Option<LibraryFacts>,
+    /// The application's library, as loaded, and after it an API layer's.
+    pub libraries: Vec<LibraryFacts>,
     /// Why the run ended early, absent when the script was played to its end.
     pub failure: Option<String>,
     /// Frames shown.
@@ -44,17 +44,17 @@ pub struct Summary {
     pub jni_invented: BTreeMap<String, u64>,
     /// What it asked of the device's performance, and how often.
     pub requests: BTreeMap<String, u64>,
-    /// Symbols that the library imports and that are answered by a trap.
+    /// Symbols that the libraries import and that are answered by a trap.
     pub trapped_symbols: Vec<String>,
     /// Files written by `capture`.
     pub captures: Vec<PathBuf>,
     /// How often each tag logged, errors apart.
     pub log_counts: BTreeMap<String, u64>,
-    /// Lines of tag `YORO`, and every line of priority error and above.
+    /// Lines of the tags `YORO`, the application's, and `yoro`, the API layer's, and every line of priority error and above.
     pub log: Vec<LogLine>,
 }
 
-/// The library in the APK.
+/// A library in the APK.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct LibraryFacts {
     /// Path in the APK.
@@ -180,7 +180,7 @@ impl Summary {
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{LABEL}: {} ({}, {})", self.script, self.apk.display(), self.abi)?;
-        if let Some(library) = &self.library {
+        for library in &self.libraries {
             writeln!(
                 f,
                 "  library   {}: {} KiB, {} symbols, {} relocations, aligned to {} KiB, needs {}",

@@ -3,6 +3,8 @@
 
 mod host;
 
+use std::path::Path;
+
 use glam::{EulerRot, Quat};
 use image::RgbImage;
 use yoro::gl::{Destination, Filter, Format, RenderTarget};
@@ -12,10 +14,10 @@ use yoro_viewer::telemetry::Line;
 use yoro_viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
 
 use yoro_android_host::summary::Summary;
-use yoro_openxr_stub::log::{self, Entry, Layer};
-use yoro_openxr_stub::script::{Fault, Pictures, Script as Headset};
+use yoro_openxr_stub::log::{self, Entry, Layer, View};
+use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headset, What};
 
-use host::{Run, device, play, play_arm64};
+use host::{Run, device, layer, play, play_arm64};
 
 /// What each test's device has in its properties, as the desktop's settings: a scene and a quality that a CPU draws fast.
 const SETTINGS: [(&str, &str); 8] = [
@@ -429,33 +431,49 @@ fn random_events_are_survived() {
 }
 
 /// A `[device]` with a headset, in a folder that the runtime writes its log and pictures to.
-fn headset(folder: &std::path::Path, system: bool) -> String {
+fn headset(folder: &Path, system: bool) -> String {
+    headset_with(folder, Headset::default().asymmetric(), &[], &format!("system = {system}"))
+}
+
+/// As [`headset`], of a script that says more, with more settings, and with keys of `[device.openxr]`.
+fn headset_with(folder: &Path, script: Headset, settings: &[(&str, &str)], keys: &str) -> String {
     let script = Headset {
         log: Some(folder.join("log.jsonl")),
         poison: true,
         pictures: Some(Pictures { folder: folder.into(), from: 1 }),
-        ..Headset::default()
+        ..script
     };
     let path = folder.join("headset.json");
-    std::fs::write(&path, serde_json::to_string(&script.asymmetric()).unwrap()).unwrap();
-    let settings: Vec<_> = SETTINGS.into_iter().filter(|(key, _)| *key != "render-scale").collect();
-    let keys = format!("[device.openxr]\nscript = {:?}\nsystem = {system}", path.display().to_string());
+    std::fs::write(&path, serde_json::to_string(&script).unwrap()).unwrap();
+    let own = SETTINGS.iter().filter(|(key, _)| *key != "render-scale");
+    let settings: Vec<_> = own.chain(settings).copied().collect();
+    let keys = format!("[device.openxr]\nscript = {:?}\n{keys}", path.display().to_string());
     format!("{}\n{keys}", device(&settings, ""))
 }
 
 const IMMERSIVE: &str = r#""launch", { wait-log = { text = "display: headset", frames = 10 } },
     { wait-log = { text = "triangles", frames = 2000 } }, { frames = 8 }, "pause", "resume", { frames = 4 }, "quit""#;
 
-fn assert_immersive(run: &Run, folder: &std::path::Path) -> [RgbImage; 2] {
+fn assert_immersive(run: &Run, folder: &Path) -> [RgbImage; 2] {
     run.assert_clean();
-    let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
-    assert!(
-        !display.is_empty() && display.iter().all(|line| line.contains("headset, by OpenXR 1.1.54 runtime")),
-        "{display:?}"
-    );
+    assert_display(run, "headset, by OpenXR 1.1.54 runtime");
     let log = log::read(&folder.join("log.jsonl"));
-    let violations: Vec<_> = log.iter().filter(|entry| matches!(entry, Entry::Violation { .. })).collect();
-    assert!(violations.is_empty(), "{violations:#?}");
+    assert!(!log.iter().any(is_violation), "{log:#?}");
+    assert_both_eyes(&log, folder)
+}
+
+fn is_violation(entry: &Entry) -> bool {
+    matches!(entry, Entry::Violation { .. })
+}
+
+/// On what the application has shown all of its frames.
+fn assert_display(run: &Run, which: &str) {
+    let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
+    assert!(!display.is_empty() && display.iter().all(|line| line.contains(which)), "{display:?}");
+}
+
+/// The runtime got two views from an Android application, drawn to their edges; the last ones.
+fn assert_both_eyes(log: &[Entry], folder: &Path) -> [RgbImage; 2] {
     assert!(log.iter().any(|entry| matches!(entry, Entry::Instance { android: true, .. })));
     assert!(log.iter().any(|entry| matches!(entry, Entry::Session { binding } if binding == "android")));
     // XR_ANDROID_THREAD_TYPE_RENDERER_MAIN_KHR.
@@ -518,6 +536,113 @@ fn a_headset_whose_runtime_fails_ends_the_application() {
                 && !display.iter().any(|line| line.contains("Cardboard")),
             "{display:?}"
         );
+    }
+}
+
+/// The application with one view on the headset, and between them the API layer's own Android library, of this AAR.
+fn layered(folder: &Path, script: Headset, aar: &Path, layer: &[(&str, &str)]) -> String {
+    let own = [("one-view", "true"), ("method", "mono")];
+    let settings: Vec<_> = own.iter().chain(layer).copied().collect();
+    headset_with(folder, script, &settings, &format!("layer = {:?}", aar.display().to_string()))
+}
+
+/// What the layer has said in logcat, without its own name and the application's.
+fn said(run: &Run) -> Vec<&str> {
+    run.summary.log_of("yoro").filter_map(|line| line.strip_prefix("yoro layer: yoro: ")).collect()
+}
+
+/// The layer's library is loaded as Android loads it, nothing was forbidden, and both eyes were shown.
+fn assert_layered(run: &Run, folder: &Path) -> [RgbImage; 2] {
+    assert!(run.summary.is_clean(), "{}\n{:#?}", run.summary, run.summary.log);
+    assert_display(run, "headset, by OpenXR by the loader libopenxr_loader.so");
+    let libraries: Vec<_> = run.summary.libraries.iter().map(|library| library.name.as_str()).collect();
+    assert!(
+        matches!(libraries.as_slice(), [_, layer] if layer.ends_with("/libyoro_layer.so")),
+        "{libraries:?}"
+    );
+    let log = log::read(&folder.join("log.jsonl"));
+    // A layer may ask for functions of extensions that are not enabled: how else would it know.
+    let asks =
+        |entry: &&Entry| matches!(entry, Entry::Violation { call, .. } if call == "xrGetInstanceProcAddr");
+    let violations: Vec<_> = log.iter().filter(|entry| is_violation(entry) && !asks(entry)).collect();
+    assert!(violations.is_empty(), "{violations:#?}");
+    let ends: Vec<_> = said(run).into_iter().filter(|line| line.starts_with("session ended")).collect();
+    assert!(!ends.is_empty() && ends.iter().all(|line| line.ends_with(" synthesized, 0 not")), "{ends:?}");
+    let end = run.summary.mark("end").unwrap();
+    assert!(end.gl_objects.is_empty() && end.egl_contexts == 0, "{}", end.objects());
+    assert_both_eyes(&log, folder)
+}
+
+/// The views of the last frame that shows any.
+fn submitted(folder: &Path) -> [View; 2] {
+    let views = |entry| match entry {
+        Entry::Frame { layers, .. } => layers.into_iter().find_map(|layer| match layer {
+            Layer::Projection { views } => Some(views),
+            _ => None,
+        }),
+        _ => None,
+    };
+    let log = log::read(&folder.join("log.jsonl"));
+    log.into_iter().rev().find_map(views).unwrap().try_into().unwrap()
+}
+
+#[test]
+fn one_view_through_the_layer_is_what_the_application_synthesizes() {
+    let Some(aar) = layer("layer") else { return };
+    // The application renders multiples of 16 pixels. With these the layer's eyes are some, too: the one view is 192 wide.
+    let mut script = Headset::default().asymmetric();
+    script.eyes.iter_mut().for_each(|eye| eye.size = [154, 128]);
+    // By default, and by a property.
+    for (dominant, settings) in [(1, &[][..]), (0, &[("layer.dominant", "left")][..])] {
+        let folder = tempfile::tempdir().unwrap();
+        let device = layered(folder.path(), script.clone(), &aar, settings);
+        let Some(run) = play(&format!("layer-{dominant}"), &device, IMMERSIVE) else { return };
+        run.assert_clean();
+        let views = assert_layered(&run, folder.path());
+        let names = ["left", "right"];
+        let begins = format!("renders one view; the {} eye is synthesized", names[1 - dominant]);
+        assert_eq!(said(&run).iter().filter(|line| **line == begins).count(), 1, "{:?}", said(&run));
+
+        // The same eyes, to the pixel: the layer's begin and end where pixels of the one view do.
+        let eyes = submitted(folder.path()).map(|view| {
+            let [.., width, height] = view.image.rect.map(|n| n as u32);
+            Eye { size: [width, height], fov_degrees: view.fov_degrees, ..Eye::default() }
+        });
+        let own = tempfile::tempdir().unwrap();
+        let settings = [("method", "yoro"), ("dominant", names[dominant])];
+        let device = headset_with(own.path(), Headset { eyes, ..Headset::default() }, &settings, "");
+        let Some(run) = play(&format!("layer-none-{dominant}"), &device, IMMERSIVE) else { return };
+        let expected = assert_immersive(&run, own.path());
+        let [rendered, synthesized] =
+            [dominant, 1 - dominant].map(|eye| decibels(&views[eye], &expected[eye]));
+        let same = decibels(&views[dominant], &expected[1 - dominant]);
+        println!("rendered {rendered:.1} dB, synthesized {synthesized:.1} dB, the same image {same:.1} dB");
+        assert!(
+            rendered > 40.0 && synthesized > 35.0 && synthesized > same + 10.0,
+            "rendered {rendered:.1} dB, synthesized {synthesized:.1} dB, the same image {same:.1} dB"
+        );
+    }
+}
+
+#[test]
+fn the_layer_goes_on_after_a_loss() {
+    let Some(aar) = layer("layer-loss") else { return };
+    for what in [What::LoseSession, What::LoseInstance] {
+        let folder = tempfile::tempdir().unwrap();
+        let case = format!("{what:?}");
+        let script = Headset { events: vec![Event { at: At::Frame(6), what }], ..Headset::default() };
+        let device = layered(folder.path(), script, &aar, &[]);
+        let begins = r#"{ wait-log = { text = "renders one view", frames = 2000 } }"#;
+        let steps = format!(
+            r#""launch", {begins}, {{ wait-log = {{ text = "triangles", frames = 2000 }} }}, {begins}, {{ frames = 8 }}, "pause", "resume",
+                {{ frames = 4 }}, {{ mark = "first" }}, {{ frames = 40 }}, {{ mark = "last" }}, "quit""#
+        );
+        let Some(run) = play(&format!("layer-{case}"), &device, &steps) else { return };
+        assert_layered(&run, folder.path());
+        let sessions = said(&run).iter().filter(|line| line.starts_with("renders one view")).count();
+        assert_eq!(sessions, 2, "{case}: {:?}", said(&run));
+        let [first, last] = ["first", "last"].map(|name| &run.summary.mark(name).unwrap().gl_objects);
+        assert_eq!(first, last, "{case}");
     }
 }
 

@@ -1,11 +1,15 @@
 //! The OpenXR API layer for Android: an AAR with the library and, where loaders look for layers in an application, its
 //! manifest.
 
+use std::env::consts::ARCH;
+use std::fs;
 use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
 
 use super::android::{android_manifest, pack, read};
 use super::{VERSION, compile};
-use crate::android::{ARCHITECTURES, library_cargo};
+use crate::android::{ARCHITECTURES, Architecture, library_cargo};
 use crate::folders::{root, target_folder};
 
 const LIBRARY: &str = "libyoro_layer.so";
@@ -13,6 +17,21 @@ const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
 
 /// Builds and packs `yoro-layer-VERSION.aar`; the file.
 pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
+    aar_for(&ARCHITECTURES, folder)
+}
+
+/// The same for this machine's processor alone, in a folder of its own: the simulated Android host runs it.
+///
+/// # Errors
+/// When it does not compile although everything is there.
+pub fn aar_for_tests() -> anyhow::Result<PathBuf> {
+    let folder = target_folder()?.join("android/layer");
+    fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+    let own = ARCHITECTURES.into_iter().find(|architecture| architecture.triple.starts_with(ARCH));
+    aar_for(own.as_slice(), &folder)
+}
+
+fn aar_for(architectures: &[Architecture], folder: &Path) -> anyhow::Result<PathBuf> {
     let manifest = read(&root().join("app/layer/android").join(MANIFEST))?;
     let mut files = vec![
         ("AndroidManifest.xml".to_owned(), android_manifest("org.yoro.layer").into()),
@@ -20,7 +39,7 @@ pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
     ];
     // Beside the C library, whose dependencies it shares.
     let build_folder = target_folder()?.join("android/capi");
-    for architecture in ARCHITECTURES {
+    for &architecture in architectures {
         let cargo = library_cargo(architecture)?;
         let target = Some(architecture.triple);
         let (built, _) = compile(cargo, "yoro-layer", "cdylib", target, LIBRARY, &build_folder)?;

@@ -14,6 +14,8 @@ use clap::ValueEnum;
 
 use crate::folders::{root, target_folder};
 
+pub use layer::aar_for_tests as layer_for_tests;
+
 /// Version of all packages.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// A stripped library is not larger, in bytes.

@@ -10,7 +10,7 @@ use anyhow::anyhow;
 
 use super::summary::Summary;
 use crate::shader_cost::Compilers;
-use crate::{android, apt, hello_xr, monado, setup, web};
+use crate::{android, apt, hello_xr, monado, package, setup, web};
 
 /// What is here.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +21,8 @@ pub struct Equipment {
     vulkan: bool,
     /// The Android application.
     apk: Equipped,
+    /// The OpenXR API layer for Android.
+    layer: Equipped,
     /// The simulated Android host for arm64.
     arm64: Equipped,
     /// A browser for report pages.
@@ -79,6 +81,7 @@ impl Equipment {
             command.env("YORO_TEST_WITHOUT_VULKAN", "1");
         }
         self.apk.tell("APK", command);
+        self.layer.tell("ANDROID_LAYER", command);
         self.arm64.tell("ARM64_HOST", command);
         self.browser.tell("CHROMIUM", command);
         self.monado.tell("MONADO", command);
@@ -118,6 +121,8 @@ impl Equipment {
 pub struct Wanted {
     /// The Android application.
     pub apk: bool,
+    /// The OpenXR API layer for Android, which is of no use without the application.
+    pub layer: bool,
     /// The simulated Android host for arm64, which is of no use without the application.
     pub arm64: bool,
     /// An OpenXR runtime.
@@ -138,6 +143,7 @@ impl Wanted {
     /// For all tests.
     pub const ALL: Self = Self {
         apk: true,
+        layer: true,
         arm64: true,
         monado: true,
         hello_xr: true,
@@ -148,6 +154,7 @@ impl Wanted {
     };
     const NONE: Self = Self {
         apk: false,
+        layer: false,
         arm64: false,
         monado: false,
         hello_xr: false,
@@ -162,6 +169,7 @@ impl Wanted {
         let mut wanted = Self::NONE;
         for (package, name) in tests {
             wanted.apk |= package == "yoro-android-host";
+            wanted.layer |= package == "yoro-android-host" && name.contains("layer");
             wanted.arm64 |= package == "yoro-android-host" && name.contains("arm64");
             wanted.monado |= package == "yoro-app" && name.contains("monado");
             wanted.web |= package == "yoro-app" && name.starts_with("web::");
@@ -178,6 +186,7 @@ impl Wanted {
 
 /// Installing and fetching that goes on.
 pub struct Preparation<'scope> {
+    wanted: Wanted,
     system: ScopedJoinHandle<'scope, (anyhow::Result<System>, Duration)>,
     /// Monado, and hello_xr, which begins with it.
     xr: Option<ScopedJoinHandle<'scope, ([Equipped; 2], Duration)>>,
@@ -244,6 +253,7 @@ impl<'scope> Preparation<'scope> {
         let fetch_webxr =
             || Equipped::or_missing(web::emulator(), "the WebXR emulator cannot be fetched here");
         Ok(Self {
+            wanted,
             system: scope.spawn(move || timed(|| System::install(wanted))),
             xr: wants_xr.then(|| scope.spawn(move || timed(fetch_xr))),
             shader_compilers: wanted.shader_compilers.then(|| scope.spawn(move || timed(fetch_compilers))),
@@ -295,6 +305,12 @@ impl<'scope> Preparation<'scope> {
             }
             Some(Err(error)) => Equipped::or_missing(Err(error), "the APK cannot be built here"),
         };
+        let layer = match apk {
+            Equipped::At(_) if self.wanted.layer => {
+                Equipped::At(summary.measure("building the Android layer", package::layer_for_tests)?)
+            }
+            _ => Equipped::NotWanted,
+        };
         let host = match (system.arm64, host) {
             (Some(Err(error)), _) => Some(Err(error)),
             (_, host) => host,
@@ -316,7 +332,19 @@ impl<'scope> Preparation<'scope> {
             }
         };
         let System { osmesa, vulkan, browser, .. } = system;
-        Ok(Equipment { osmesa, vulkan, apk, arm64, browser, monado, hello_xr, shader_compilers, web, webxr })
+        Ok(Equipment {
+            osmesa,
+            vulkan,
+            apk,
+            layer,
+            arm64,
+            browser,
+            monado,
+            hello_xr,
+            shader_compilers,
+            web,
+            webxr,
+        })
     }
 }
 
@@ -334,6 +362,7 @@ mod tests {
         assert_eq!(Wanted::by([("yoro-android-host", "boots")]), Wanted { apk: true, ..Wanted::NONE });
         let tests = [
             ("yoro-android-host", "the_arm64_library"),
+            ("yoro-android-host", "through_the_layer"),
             ("yoro-app", "xr::monado_shows"),
             ("yoro-layer", "monado_and_hello_xr"),
             ("yoro-tests", "shader_cost::synthesis"),
@@ -358,6 +387,7 @@ mod tests {
             set,
             [
                 "YORO_TEST_APK",
+                "YORO_TEST_WITHOUT_ANDROID_LAYER",
                 "YORO_TEST_WITHOUT_ARM64_HOST",
                 "YORO_TEST_WITHOUT_CHROMIUM",
                 "YORO_TEST_WITHOUT_HELLO_XR",

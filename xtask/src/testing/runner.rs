@@ -19,6 +19,8 @@ const SLOW: Duration = Duration::from_secs(120);
 const LIMIT: Duration = Duration::from_secs(900);
 /// How often a silent process is looked at.
 const LOOK: Duration = Duration::from_millis(100);
+/// For how long what a process has printed may be on its way to here when it has ended.
+const LATE: Duration = Duration::from_secs(1);
 
 /// What is told while tests run.
 #[derive(Debug)]
@@ -145,18 +147,21 @@ fn listen(
 ) -> io::Result<(Vec<Line>, bool)> {
     let mut all = Vec::new();
     let (mut last, mut told, mut results) = (Instant::now(), SLOW, 0);
+    let mut end: Option<Instant> = None;
     loop {
-        match lines.recv_timeout(LOOK) {
+        match lines.recv_timeout(end.map_or(LOOK, |end| LATE.saturating_sub(end.elapsed()))) {
             Ok(line) => {
                 results += usize::from(line.text.starts_with("test "));
                 (last, told) = (Instant::now(), SLOW);
                 all.push(line);
             }
             Err(RecvTimeoutError::Disconnected) => return Ok((all, false)),
+            // A process below it that goes on may still hold the pipe.
+            Err(RecvTimeoutError::Timeout) if end.is_some() => return Ok((all, false)),
             Err(RecvTimeoutError::Timeout) => {
-                // A process below it that goes on may still hold the pipe.
                 if has_ended(child.id()) {
-                    return Ok((all, false));
+                    end = Some(Instant::now());
+                    continue;
                 }
                 if last.elapsed() > LIMIT {
                     child.kill()?;
@@ -291,6 +296,21 @@ mod tests {
         let (all, ..) = outcomes(&[(PROGRAM, "leave")], 1);
         assert_eq!(all, [("leave".to_owned(), Outcome::Passed)]);
         assert!(start.elapsed() < Duration::from_secs(4));
+    }
+
+    /// On a busy machine whoever reads the pipe may come to it only when the process is gone.
+    #[test]
+    fn what_is_printed_last_is_not_lost() {
+        let mut child = Command::new("true").spawn().unwrap();
+        let (sender, receiver) = mpsc::channel();
+        let reader = thread::spawn(move || {
+            thread::sleep(4 * LOOK);
+            sender.send(Line { text: "test x ... ok".into(), at: 0.4 }).unwrap();
+        });
+        let (lines, too_long) = listen(&mut child, &receiver, |_, _| {}).unwrap();
+        assert_eq!((lines.len(), too_long), (1, false));
+        reader.join().unwrap();
+        child.wait().unwrap();
     }
 
     #[test]

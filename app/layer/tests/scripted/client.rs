@@ -1,6 +1,6 @@
 //! An OpenXR application that does as it is told, on the layer, with the simulated runtime below it.
 
-use std::ffi::{CStr, c_void};
+use std::ffi::CStr;
 use std::ptr;
 
 use openxr_sys as sys;
@@ -10,11 +10,11 @@ use yoro::vulkan::ImageState;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::ash::vk::Handle as _;
 
+use crate::drawing::Drawing;
 use crate::harness::{self, Gpu, READ, WRITTEN};
 use crate::scene::{self, Picture};
 
 pub const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
-pub const VULKAN: &CStr = c"XR_KHR_vulkan_enable2";
 
 /// A call of the application's that has failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,6 @@ functions! {
     destroy_instance: DestroyInstance = c"xrDestroyInstance",
     get_system: GetSystem = c"xrGetSystem",
     poll_event: PollEvent = c"xrPollEvent",
-    get_requirements: GetVulkanGraphicsRequirements2KHR = c"xrGetVulkanGraphicsRequirements2KHR",
     enumerate_view_configurations: EnumerateViewConfigurations = c"xrEnumerateViewConfigurations",
     enumerate_view_configuration_views: EnumerateViewConfigurationViews = c"xrEnumerateViewConfigurationViews",
     create_session: CreateSession = c"xrCreateSession",
@@ -136,7 +135,8 @@ fn layer() -> sys::NegotiateApiLayerRequest {
 /// A swapchain, and its images.
 pub struct Chain {
     pub handle: sys::Swapchain,
-    images: Vec<vk::Image>,
+    /// VkImages, or names of textures.
+    images: Vec<u64>,
 }
 
 /// A part of one.
@@ -210,19 +210,33 @@ pub struct Frame {
     pub should_render: bool,
 }
 
-/// A picture in images that can be copied to swapchains.
+/// A picture that can be copied to swapchains.
 pub struct Painted<'a> {
     view: View,
     samples: u32,
     planes: Planes,
+    formats: [vk::Format; 2],
     pub picture: Picture,
-    pub color: harness::Image<'a>,
-    pub depth: harness::Image<'a>,
+    /// Its depth as it is stored.
+    stored: Vec<f32>,
+    /// Colour and depth on Vulkan.
+    images: Option<[harness::Image<'a>; 2]>,
+}
+
+impl<'a> Painted<'a> {
+    pub fn color(&self) -> &harness::Image<'a> {
+        &self.images.as_ref().expect("on Vulkan")[0]
+    }
+
+    pub fn depth(&self) -> &harness::Image<'a> {
+        &self.images.as_ref().expect("on Vulkan")[1]
+    }
 }
 
 /// The application.
 pub struct Client<'a> {
-    gpu: &'a Gpu,
+    drawing: Drawing<'a>,
+    get: pfn::GetInstanceProcAddr,
     xr: Functions,
     instance: sys::Instance,
     system: sys::SystemId,
@@ -240,9 +254,9 @@ const IDENTITY: sys::Posef = sys::Posef {
 };
 
 impl<'a> Client<'a> {
-    /// Makes an instance with these extensions, and finds the headset.
-    pub fn new(gpu: &'a Gpu, name: &str, extensions: &[&CStr]) -> Outcome<Client<'a>> {
-        let layer = layer();
+    /// Makes an instance with these extensions and those of what it draws with, and finds the headset.
+    pub fn new(drawing: impl Into<Drawing<'a>>, name: &str, extensions: &[&CStr]) -> Outcome<Client<'a>> {
+        let (drawing, layer) = (drawing.into(), layer());
         let mut next = sys::ApiLayerNextInfo {
             struct_type: sys::ApiLayerNextInfo::TYPE,
             struct_version: sys::ApiLayerNextInfo::VERSION,
@@ -270,7 +284,8 @@ impl<'a> Client<'a> {
         for (to, from) in application.application_name.iter_mut().zip(name.bytes()) {
             *to = from as _;
         }
-        let extensions: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
+        let extensions: Vec<_> =
+            drawing.extensions().iter().chain(extensions).map(|name| name.as_ptr()).collect();
         let info = sys::InstanceCreateInfo {
             ty: sys::InstanceCreateInfo::TYPE,
             next: ptr::null(),
@@ -285,10 +300,12 @@ impl<'a> Client<'a> {
         let create = layer.create_api_layer_instance.unwrap();
         // SAFETY: complete structures.
         check("xrCreateInstance", unsafe { create(&info, &chain, &mut instance) })?;
+        let get = layer.get_instance_proc_addr.unwrap();
         // SAFETY: the instance was just made.
-        let xr = unsafe { Functions::new(layer.get_instance_proc_addr.unwrap(), instance) };
+        let xr = unsafe { Functions::new(get, instance) };
         let mut client = Client {
-            gpu,
+            drawing,
+            get,
             xr,
             instance,
             system: sys::SystemId::from_raw(0),
@@ -338,35 +355,24 @@ impl<'a> Client<'a> {
 
     /// Makes a session with a space.
     pub fn create_session(&mut self) -> Outcome<()> {
-        let host = self.gpu.host();
-        let mut requirements = sys::GraphicsRequirementsVulkanKHR {
-            ty: sys::GraphicsRequirementsVulkanKHR::TYPE,
-            next: ptr::null_mut(),
-            min_api_version_supported: sys::Version::new(0, 0, 0),
-            max_api_version_supported: sys::Version::new(0, 0, 0),
-        };
-        let binding = sys::GraphicsBindingVulkanKHR {
-            ty: sys::GraphicsBindingVulkanKHR::TYPE,
-            next: ptr::null(),
-            instance: host.instance.handle().as_raw() as *const c_void,
-            physical_device: host.physical_device.as_raw() as *const c_void,
-            device: host.device.handle().as_raw() as *const c_void,
-            queue_family_index: host.queue_family,
-            queue_index: 0,
-        };
-        let info = sys::SessionCreateInfo {
-            ty: sys::SessionCreateInfo::TYPE,
-            next: (&raw const binding).cast(),
-            create_flags: sys::SessionCreateFlags::EMPTY,
-            system_id: self.system,
-        };
         (self.running, self.over) = (false, false);
-        // SAFETY: complete structures, with handles that live longer than the session.
+        let (instance, system, create) = (self.instance, self.system, self.xr.create_session);
+        let (call, result) = self.drawing.ask_requirements(self.get, instance, system);
+        check(call, result)?;
+        let session = &mut self.session;
+        let result = self.drawing.with_binding(|binding| {
+            let info = sys::SessionCreateInfo {
+                ty: sys::SessionCreateInfo::TYPE,
+                next: binding,
+                create_flags: sys::SessionCreateFlags::EMPTY,
+                system_id: system,
+            };
+            // SAFETY: complete structures, with handles that live longer than the session.
+            unsafe { create(instance, &info, session) }
+        });
+        check("xrCreateSession", result)?;
+        // SAFETY: complete structures.
         unsafe {
-            let result = (self.xr.get_requirements)(self.instance, self.system, &mut requirements);
-            check("xrGetVulkanGraphicsRequirements2KHR", result)?;
-            let result = (self.xr.create_session)(self.instance, &info, &mut self.session);
-            check("xrCreateSession", result)?;
             let info = sys::ReferenceSpaceCreateInfo {
                 ty: sys::ReferenceSpaceCreateInfo::TYPE,
                 next: ptr::null(),
@@ -432,7 +438,7 @@ impl<'a> Client<'a> {
             next: ptr::null(),
             create_flags: sys::SwapchainCreateFlags::EMPTY,
             usage_flags: kind | sys::SwapchainUsageFlags::TRANSFER_DST,
-            format: format.as_raw().into(),
+            format: self.drawing.format(format),
             sample_count: 1,
             width: size[0],
             height: size[1],
@@ -440,21 +446,12 @@ impl<'a> Client<'a> {
             array_size: layers,
             mip_count: 1,
         };
-        let (mut handle, mut count) = (sys::Swapchain::NULL, 0);
-        let empty = sys::SwapchainImageVulkanKHR {
-            ty: sys::SwapchainImageVulkanKHR::TYPE,
-            next: ptr::null_mut(),
-            image: 0,
-        };
-        let mut images = [empty; 8];
-        // SAFETY: complete structures, and room for as many as is said.
-        unsafe {
-            check("xrCreateSwapchain", (self.xr.create_swapchain)(self.session, &info, &mut handle))?;
-            let place = images.as_mut_ptr().cast();
-            let result = (self.xr.enumerate_swapchain_images)(handle, 8, &mut count, place);
-            check("xrEnumerateSwapchainImages", result)?;
-        }
-        let images = images[..count as usize].iter().map(|image| vk::Image::from_raw(image.image)).collect();
+        let mut handle = sys::Swapchain::NULL;
+        // SAFETY: complete structures.
+        let result = unsafe { (self.xr.create_swapchain)(self.session, &info, &mut handle) };
+        check("xrCreateSwapchain", result)?;
+        let (result, images) = self.drawing.images(self.xr.enumerate_swapchain_images, handle);
+        check("xrEnumerateSwapchainImages", result)?;
         Ok(Chain { handle, images })
     }
 
@@ -524,13 +521,13 @@ impl<'a> Client<'a> {
         Ok(located)
     }
 
-    pub fn acquire(&self, chain: &Chain) -> Outcome<vk::Image> {
+    pub fn acquire(&self, chain: &Chain) -> Outcome<u64> {
         let image = self.acquire_only(chain)?;
         self.wait_image(chain)?;
         Ok(image)
     }
 
-    pub fn acquire_only(&self, chain: &Chain) -> Outcome<vk::Image> {
+    pub fn acquire_only(&self, chain: &Chain) -> Outcome<u64> {
         let mut index = 0;
         // SAFETY: a live swapchain.
         let result = unsafe { (self.xr.acquire_swapchain_image)(chain.handle, ptr::null(), &mut index) };
@@ -568,70 +565,41 @@ impl<'a> Client<'a> {
             old.view == view
                 && (old.samples, old.planes) == (samples, planes)
                 && old.picture.size == size
-                && [old.color.format, old.depth.format] == formats
+                && old.formats == formats
         };
         if self.painted.as_ref().is_some_and(same) {
             return;
         }
         let picture = scene::render(view.pose, view.frustum, size, samples);
-        let [color, depth] = formats.map(|format| self.gpu.image(format, size, 1));
-        color.upload_rgba8(0, &picture.rgba, READ);
         let stored: Vec<f32> = picture.distance.iter().map(|&z| planes.stored(z)).collect();
-        depth.upload_depth(0, &stored, READ);
-        self.painted = Some(Painted { view, samples, planes, picture, color, depth });
+        let images = match self.drawing {
+            Drawing::Vulkan(gpu) => {
+                let [color, depth] = formats.map(|format| gpu.image(format, size, 1));
+                color.upload_rgba8(0, &picture.rgba, READ);
+                depth.upload_depth(0, &stored, READ);
+                Some([color, depth])
+            }
+            Drawing::Gles(_) => None,
+        };
+        self.painted = Some(Painted { view, samples, planes, formats, picture, stored, images });
     }
 
-    /// Copies what was painted to a part of a swapchain's image.
-    pub fn copy(&self, from: &harness::Image, to: vk::Image, part: Part) {
-        let depth = harness::is_depth(from.format);
-        let (state, aspect_mask) = match depth {
-            true => (ImageState::DEPTH_ATTACHMENT, vk::ImageAspectFlags::DEPTH),
-            false => (ImageState::COLOR_ATTACHMENT, vk::ImageAspectFlags::COLOR),
-        };
-        let stencil =
-            from.format == vk::Format::D32_SFLOAT_S8_UINT || from.format == vk::Format::D24_UNORM_S8_UINT;
-        let all = if stencil { aspect_mask | vk::ImageAspectFlags::STENCIL } else { aspect_mask };
-        let layers = |base_array_layer| vk::ImageSubresourceLayers {
-            aspect_mask,
-            mip_level: 0,
-            base_array_layer,
-            layer_count: 1,
-        };
-        let [x, y] = part.origin.map(|n| n as i32);
-        let region = vk::ImageCopy {
-            src_subresource: layers(0),
-            src_offset: vk::Offset3D::default(),
-            dst_subresource: layers(part.layer),
-            dst_offset: vk::Offset3D { x, y, z: 0 },
-            extent: vk::Extent3D { width: part.size[0], height: part.size[1], depth: 1 },
-        };
-        let turn = |commands, from: ImageState, to_state: ImageState| {
-            let barrier = vk::ImageMemoryBarrier::default()
-                .image(to)
-                .old_layout(from.layout)
-                .new_layout(to_state.layout)
-                .src_access_mask(from.access)
-                .dst_access_mask(to_state.access)
-                .subresource_range(vk::ImageSubresourceRange {
-                    aspect_mask: all,
-                    base_mip_level: 0,
-                    level_count: 1,
-                    base_array_layer: part.layer,
-                    layer_count: 1,
-                });
-            let (from, to, none) = (from.stages, to_state.stages, vk::DependencyFlags::empty());
-            // SAFETY: a live image in this layout.
-            unsafe { self.gpu.device.cmd_pipeline_barrier(commands, from, to, none, &[], &[], &[barrier]) };
-        };
-        self.gpu.run(|commands| {
-            turn(commands, state, WRITTEN);
-            // SAFETY: live images in these layouts.
-            unsafe {
-                let (read, written) = (READ.layout, WRITTEN.layout);
-                self.gpu.device.cmd_copy_image(commands, from.raw, read, to, written, &[region]);
-            }
-            turn(commands, WRITTEN, state);
-        });
+    /// Copies the colour that was painted to a part of a swapchain's image.
+    pub fn copy_color(&self, to: u64, part: Part) {
+        let painted = self.painted.as_ref().unwrap();
+        match self.drawing {
+            Drawing::Vulkan(gpu) => copy(gpu, painted.color(), vk::Image::from_raw(to), part),
+            Drawing::Gles(gles) => gles.upload_color(to, part, &painted.picture.rgba),
+        }
+    }
+
+    /// The same with its depth.
+    pub fn copy_depth(&self, to: u64, part: Part) {
+        let painted = self.painted.as_ref().unwrap();
+        match self.drawing {
+            Drawing::Vulkan(gpu) => copy(gpu, painted.depth(), vk::Image::from_raw(to), part),
+            Drawing::Gles(gles) => gles.upload_depth(to, part, &painted.stored),
+        }
     }
 
     /// Ends a frame with these layers.
@@ -717,6 +685,59 @@ impl<'a> Client<'a> {
             unsafe { (self.xr.destroy_session)(std::mem::replace(&mut self.session, sys::Session::NULL)) };
         check("xrDestroySession", result).map(|_| ())
     }
+}
+
+/// Copies an image to a part of a swapchain's.
+fn copy(gpu: &Gpu, from: &harness::Image, to: vk::Image, part: Part) {
+    let depth = harness::is_depth(from.format);
+    let (state, aspect_mask) = match depth {
+        true => (ImageState::DEPTH_ATTACHMENT, vk::ImageAspectFlags::DEPTH),
+        false => (ImageState::COLOR_ATTACHMENT, vk::ImageAspectFlags::COLOR),
+    };
+    let stencil =
+        from.format == vk::Format::D32_SFLOAT_S8_UINT || from.format == vk::Format::D24_UNORM_S8_UINT;
+    let all = if stencil { aspect_mask | vk::ImageAspectFlags::STENCIL } else { aspect_mask };
+    let layers = |base_array_layer| vk::ImageSubresourceLayers {
+        aspect_mask,
+        mip_level: 0,
+        base_array_layer,
+        layer_count: 1,
+    };
+    let [x, y] = part.origin.map(|n| n as i32);
+    let region = vk::ImageCopy {
+        src_subresource: layers(0),
+        src_offset: vk::Offset3D::default(),
+        dst_subresource: layers(part.layer),
+        dst_offset: vk::Offset3D { x, y, z: 0 },
+        extent: vk::Extent3D { width: part.size[0], height: part.size[1], depth: 1 },
+    };
+    let turn = |commands, from: ImageState, to_state: ImageState| {
+        let barrier = vk::ImageMemoryBarrier::default()
+            .image(to)
+            .old_layout(from.layout)
+            .new_layout(to_state.layout)
+            .src_access_mask(from.access)
+            .dst_access_mask(to_state.access)
+            .subresource_range(vk::ImageSubresourceRange {
+                aspect_mask: all,
+                base_mip_level: 0,
+                level_count: 1,
+                base_array_layer: part.layer,
+                layer_count: 1,
+            });
+        let (from, to, none) = (from.stages, to_state.stages, vk::DependencyFlags::empty());
+        // SAFETY: a live image in this layout.
+        unsafe { gpu.device.cmd_pipeline_barrier(commands, from, to, none, &[], &[], &[barrier]) };
+    };
+    gpu.run(|commands| {
+        turn(commands, state, WRITTEN);
+        // SAFETY: live images in these layouts.
+        unsafe {
+            let (read, written) = (READ.layout, WRITTEN.layout);
+            gpu.device.cmd_copy_image(commands, from.raw, read, to, written, &[region]);
+        }
+        turn(commands, WRITTEN, state);
+    });
 }
 
 impl Drop for Client<'_> {

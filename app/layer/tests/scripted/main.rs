@@ -1,10 +1,12 @@
-//! The layer between a scripted application and the simulated runtime, on Vulkan, under the validation layer.
+//! The layer between a scripted application and the simulated runtime: on Vulkan, under the validation layer, and what is
+//! OpenGL ES's own, on that.
 
 #[path = "../../../core/tests/vulkan/harness.rs"]
 #[expect(dead_code, reason = "shared with the core's tests, which use all of it")]
 mod harness;
 
 mod client;
+mod drawing;
 mod scene;
 mod world;
 
@@ -16,7 +18,8 @@ use yoro::vulkan::{Frame, Gather, ImageState, Options, SourceImages, TargetImage
 use yoro_openxr_stub::log;
 use yoro_openxr_stub::script::{At, Event, Fault, Script, State, What};
 
-use client::{Chain, Client, DEPTH, Failure, Layer, Outcome, Part, Planes, Submitted, VULKAN, View};
+use client::{Chain, Client, DEPTH, Failure, Layer, Outcome, Part, Planes, Submitted, View};
+use drawing::{Drawing, with_gles};
 use harness::{Gpu, READ, WRITTEN};
 use world::{Seen, allocations, script, uncounted, watched, with_gpu, with_unwatched_gpu};
 
@@ -86,13 +89,12 @@ impl Chains {
 /// Renders a view to the swapchains; what is to be submitted.
 fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View) -> Outcome<Submitted> {
     client.paint(view, chains.part.size, habits.samples, habits.formats, habits.planes);
-    let painted = client.painted.as_ref().unwrap();
     let image = client.acquire(&chains.color)?;
-    uncounted(|| client.copy(&painted.color, image, chains.part));
+    uncounted(|| client.copy_color(image, chains.part));
     let mut depth = None;
     if habits.submits_depth {
         let image = client.acquire(&chains.depth)?;
-        uncounted(|| client.copy(&painted.depth, image, chains.depth_part()));
+        uncounted(|| client.copy_depth(image, chains.depth_part()));
         client.release(&chains.depth)?;
         depth = Some((chains.depth_part(), habits.planes));
     }
@@ -124,8 +126,8 @@ fn frames(client: &mut Client, chains: &Chains, habits: &Habits, count: u32) -> 
 }
 
 /// A whole run of an application that renders one view.
-fn run<'a>(gpu: &'a Gpu, habits: &Habits) -> Outcome<Client<'a>> {
-    let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH])?;
+fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Client<'a>> {
+    let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
     client.create_session()?;
     client.poll()?;
     let chains = Chains::new(&client, habits)?;
@@ -220,8 +222,8 @@ fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habits, 
     unsafe {
         let mut gather = Gather::new(&gpu.host(), &options).unwrap();
         let source = SourceImages {
-            color: painted.color.layer(0, READ, READ),
-            depth: painted.depth.layer(0, READ, READ),
+            color: painted.color().layer(0, READ, READ),
+            depth: painted.depth().layer(0, READ, READ),
             sample_color: None,
             size: painted.picture.size,
         };
@@ -334,7 +336,7 @@ fn other_layers_keep_their_places() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
-            let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
             client.create_session().unwrap();
             client.poll().unwrap();
             let chains = Chains::new(&client, &habits).unwrap();
@@ -383,7 +385,7 @@ fn stereo_passes_through() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
-            let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
             client.views = ViewsOf::PRIMARY_STEREO;
             assert_eq!(client.sizes().unwrap(), [[128, 128]; 2]);
             client.create_session().unwrap();
@@ -423,7 +425,7 @@ fn a_second_view_may_be_tiny() {
     with_gpu(|gpu| {
         let habits = Habits { name: "shrink", ..Habits::PLAIN };
         let seen = watched(script(), || {
-            let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
             client.views = ViewsOf::PRIMARY_STEREO;
             client.create_session().unwrap();
             client.poll().unwrap();
@@ -471,7 +473,7 @@ fn one_view_is_offered_where_there_are_two() {
             for mono in [true, false] {
                 let want = if stereo || mono { want.clone() } else { vec![] };
                 watched(Script { stereo, mono, ..script() }, || {
-                    let client = Client::new(gpu, name, &[VULKAN, DEPTH]).unwrap();
+                    let client = Client::new(gpu, name, &[DEPTH]).unwrap();
                     assert_eq!(client.configurations().unwrap(), want);
                     if want.contains(&V::PRIMARY_MONO) {
                         // As wide as both eyes if it is the layer's, as the runtime says if it is its own.
@@ -528,7 +530,7 @@ fn what_cannot_be_synthesized_is_shown_as_it_is() {
     with_gpu(|gpu| {
         for (reason, habits, spoil) in cases {
             let seen = watched(script(), || {
-                let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+                let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
                 client.create_session().unwrap();
                 client.poll().unwrap();
                 let chains = Chains::new(&client, &habits).unwrap();
@@ -557,12 +559,12 @@ fn what_cannot_be_synthesized_is_shown_as_it_is() {
 }
 
 /// Runs an application that has a session, swapchains, and one view; what it does with them is told.
-fn with_session(
-    gpu: &Gpu,
+fn with_session<'a>(
+    drawing: impl Into<Drawing<'a>>,
     habits: &Habits,
     work: impl FnOnce(&mut Client, &Chains) -> Outcome<()>,
 ) -> Outcome<()> {
-    let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH])?;
+    let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
     client.create_session()?;
     client.poll()?;
     let chains = Chains::new(&client, habits)?;
@@ -616,8 +618,7 @@ fn what_the_runtime_has_already_is_shown_as_it_is() {
                 client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
                 let begun = client.begin_frame()?;
                 client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
-                let painted = client.painted.as_ref().unwrap();
-                client.copy(&painted.color, ahead, chains.part);
+                client.copy_color(ahead, chains.part);
                 client.release(&chains.color)?;
                 frames(client, chains, &habits, 2)
             };
@@ -661,7 +662,7 @@ fn one_session_follows_another() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
-            let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
             for _ in 0..2 {
                 client.create_session().unwrap();
                 client.poll().unwrap();
@@ -791,7 +792,7 @@ fn losses_in_every_state() {
             let event = Event { at: At::State(state), what: end.clone() };
             let seen = watched(Script { events: vec![event], pictures: None, ..script() }, || {
                 for session in 0..2 {
-                    let mut client = Client::new(gpu, habits.name, &[VULKAN, DEPTH]).unwrap();
+                    let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
                     let mut life = || -> Outcome<()> {
                         client.create_session()?;
                         client.poll()?;
@@ -823,29 +824,29 @@ fn resources() -> [usize; 3] {
 }
 
 /// So many frames after a hundred first ones leave nothing behind, and the layer allocates nothing for them.
-fn steady(gpu: &Gpu, count: u32) {
+fn steady(drawing: Drawing, script: Script, habits: &Habits, count: u32) {
     let (mut most, mut grown) = (0, 0);
-    let habits = Habits::PLAIN;
-    let seen = watched(Script { pictures: None, log: None, ..script() }, || {
+    let seen = watched(Script { pictures: None, log: None, ..script }, || {
         let work = |client: &mut Client, chains: &Chains| {
-            frames(client, chains, &habits, 100)?;
-            let before = resources();
+            frames(client, chains, habits, 100)?;
+            let (before, objects) = (resources(), drawing.objects());
             for _ in 0..count {
                 let first = allocations();
                 client.poll()?;
                 let frame = client.begin_frame()?;
                 let view = client.locate(frame)?[0].unwrap();
-                let submitted = render(client, chains, &habits, view)?;
+                let submitted = render(client, chains, habits, view)?;
                 let layers = uncounted(|| [Layer::Projection(vec![submitted])]);
                 client.end_frame(frame, &layers)?;
                 most = most.max(allocations() - first);
             }
             let after = resources();
             assert_eq!((before[0], before[1]), (after[0], after[1]), "open files and threads");
+            assert_eq!(objects, drawing.objects(), "objects of OpenGL");
             grown = after[2].saturating_sub(before[2]);
             Ok(())
         };
-        with_session(gpu, &habits, work).unwrap();
+        with_session(drawing, habits, work).unwrap();
     });
     assert_eq!(seen.counts(), [[u64::from(count) + 100, 0]], "{}", seen.said);
     println!("{count} frames: {most} allocations in the layer in one of them, {grown} bytes more");
@@ -856,12 +857,28 @@ fn steady(gpu: &Gpu, count: u32) {
 
 #[test]
 fn nothing_grows_from_frame_to_frame() {
-    with_unwatched_gpu(|gpu| steady(gpu, 300));
+    with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 300));
 }
 
 /// `cargo test -p yoro-layer --test scripted -- --ignored --nocapture`
 #[test]
 #[ignore = "takes a quarter of a minute"]
 fn nothing_grows_in_ten_thousand_frames() {
-    with_unwatched_gpu(|gpu| steady(gpu, 10_000));
+    with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 10_000));
+}
+
+/// On OpenGL ES the frame's path is another one: of whole images, and of a part of one in an array, which is copied.
+#[test]
+fn nothing_grows_on_opengl_es() {
+    with_gles(|gles| {
+        let part = Habits { margin: [13, 7], layers: [2, 1], ..Habits::PLAIN };
+        for (what, habits) in [("whole", Habits::PLAIN), ("part", part)] {
+            let script = Script { formats: Script::default().formats, ..script() };
+            let seen = watched(script.clone(), || drop(run(gles, &habits).unwrap()));
+            assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+            assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+            assert_seen(&seen, &habits, what);
+            steady(gles.into(), script, &habits, 300);
+        }
+    });
 }

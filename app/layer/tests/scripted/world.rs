@@ -72,13 +72,14 @@ pub fn with_unwatched_gpu(body: impl FnOnce(&Gpu)) {
     harness::with_unwatched_gpu(Rendering::RenderPasses, body);
 }
 
-fn settle() {
+/// Settings and the log in a folder of the tests.
+pub fn settle() {
     static SETTLED: Once = Once::new();
     SETTLED.call_once(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("layer-settings");
         fs::create_dir_all(folder.join("yoro")).unwrap();
         fs::write(folder.join("yoro/layer.toml"), SETTINGS).unwrap();
-        // SAFETY: Vulkan, which starts threads that may look at the environment, is not loaded yet.
+        // SAFETY: drivers, which start threads that may look at the environment, are not loaded yet.
         unsafe {
             std::env::set_var("XDG_CONFIG_HOME", &folder);
             std::env::set_var("XDG_STATE_HOME", &folder);

@@ -6,8 +6,6 @@ use yoro::eyes::EyePair;
 /// What a session should be like, besides the viewer's settings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// One view instead of two, for debugging.
-    pub mono: bool,
     /// The activity.
     #[cfg(target_os = "android")]
     pub android: Option<super::graphics::Android>,

@@ -9,8 +9,8 @@ use crate::exports::{Export, System, exports};
 use crate::host::{fatal, host, lock};
 use crate::summary::LogLine;
 
-/// The application's own tag: the telemetry's.
-pub const TAG: &str = "YORO";
+/// The tags of the application, which is the telemetry's, and of the API layer.
+pub const TAGS: [&str; 2] = ["YORO", "yoro"];
 
 /// Everything logged so far.
 pub struct Log {
@@ -22,7 +22,7 @@ pub struct Log {
 /// What the summary takes.
 #[derive(Clone, Default)]
 pub struct Collected {
-    /// Lines of [`TAG`] and errors.
+    /// Lines of [`TAGS`] and errors.
     pub lines: Vec<LogLine>,
     /// Lines by tag.
     pub counts: BTreeMap<String, u64>,
@@ -67,7 +67,7 @@ impl Log {
         if state.recent.len() > KEPT {
             state.recent.pop_front();
         }
-        if (line.tag == TAG || matches!(priority, 'E' | 'F')) && state.lines.len() < KEPT {
+        if (TAGS.contains(&line.tag.as_str()) || matches!(priority, 'E' | 'F')) && state.lines.len() < KEPT {
             state.lines.push(line);
         }
     }

@@ -9,6 +9,8 @@ use yoro_android_host::summary::Summary;
 
 /// Of `cargo xtask test`.
 const APK: &str = "YORO_TEST_APK";
+/// The OpenXR API layer for Android, an AAR, of `cargo xtask test`, too.
+const LAYER: &str = "YORO_TEST_ANDROID_LAYER";
 /// A program that runs the simulated host for arm64, of `cargo xtask test`, too.
 const ARM64_HOST: &str = "YORO_TEST_ARM64_HOST";
 
@@ -48,6 +50,11 @@ pub fn play_arm64(name: &str, device: &str, steps: &str) -> Option<Run> {
     let host =
         named(ARM64_HOST).or_else(|| left_out(name, "there is no host for arm64", ARM64_HOST, remedy))?;
     Some(run(&host, &apk, name, device, steps))
+}
+
+/// The API layer's AAR for an application to carry; none, with a loud line, where there is none.
+pub fn layer(name: &str) -> Option<PathBuf> {
+    named(LAYER).or_else(|| left_out(name, "there is no API layer", LAYER, "builds one"))
 }
 
 /// A file that the environment names.

@@ -39,7 +39,7 @@ impl Session {
         make_current(graphics)?;
         let instance = create_instance(runtime, options)?;
         let properties = call("xrGetInstanceProperties", instance.properties())?;
-        let system = System::of(&instance, options.mono)?;
+        let system = System::of(&instance, settings.one_view)?;
         let size = system.image_size(settings.render_scale, gl.capabilities().max_texture_size / 2);
 
         graphics::check_version(&instance, system.id, gl.capabilities().version)?;
@@ -168,14 +168,14 @@ struct System {
 }
 
 impl System {
-    /// Asks the runtime; `mono` prefers one view to two.
-    fn of(instance: &xr::Instance, mono: bool) -> Result<System, XrError> {
+    /// Asks the runtime; `one_view` prefers one view to two.
+    fn of(instance: &xr::Instance, one_view: bool) -> Result<System, XrError> {
         let id = call("xrGetSystem", instance.system(xr::FormFactor::HEAD_MOUNTED_DISPLAY))?;
         let properties = call("xrGetSystemProperties", instance.system_properties(id))?;
         let configurations =
             call("xrEnumerateViewConfigurations", instance.enumerate_view_configurations(id))?;
         let mut wanted = [xr::ViewConfigurationType::PRIMARY_STEREO, xr::ViewConfigurationType::PRIMARY_MONO];
-        if mono {
+        if one_view {
             wanted.reverse();
         }
         let views = wanted

@@ -1,0 +1,14 @@
+//! This user's folders, by the XDG Base Directory Specification.
+
+use std::env;
+use std::path::PathBuf;
+
+/// The folder that a variable names, or this one in the user's home where it is not set; None without a home, as
+/// applications on Android are.
+pub fn folder(variable: &str, in_home: &str) -> Option<PathBuf> {
+    if cfg!(target_os = "android") {
+        return None;
+    }
+    let absolute = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    absolute(variable).or_else(|| absolute("HOME").map(|home| home.join(in_home)))
+}
