@@ -7,31 +7,51 @@
 
 const int RADIUS = 2;
 
+// Three channels in one integer, ten bits each: eight of the channel, and above them a guard bit that takes the borrow
+// when another such integer is subtracted. Counts of neighbours fit as well.
+const int ONES = 0x00100401;
+const int GUARDS = ONES << 8;
+
+int pack(vec3 channels) {
+    ivec3 levels = ivec3(channels * 255.0 + 0.5);
+    return levels.r | levels.g << 10 | levels.b << 20;
+}
+
+// A one for each channel of `a` that is no less than that of `b`.
+int no_less(int a, int b) {
+    return (a + GUARDS - b) >> 8 & ONES;
+}
+
 void main() {
-    ivec2 pixel = here();
-    color = color_at(pixel.x, pixel.y);
-    ivec3 values[25];
+    // The neighbourhood is the same if the image is mirrored.
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    color = texelFetch(color_map, pixel, 0);
+    ivec2 first = max(pixel - RADIUS, 0);
+    ivec2 last = min(pixel + RADIUS, size - 1);
+    int level = 0;
     int count = 0;
+    // The median is the largest level that no more than half of the values lie below: found two bits at a time. The
+    // neighbours are fetched again each time, since an array of them lies in memory or takes most of a GPU's registers.
     // Rare work stands in a loop with a dynamic count; see include/fill.glsl.
-    for (int y = color.a < 0.5 ? -RADIUS : RADIUS + 1; y <= RADIUS; ++y) {
-        for (int x = -RADIUS; x <= RADIUS; ++x) {
-            ivec2 at = pixel + ivec2(x, y);
-            if (inside(at.x, at.y) && !is_hole(at.x, at.y)) {
-                values[count++] = ivec3(color_at(at.x, at.y).rgb * 255.0 + 0.5);
+    for (int bit = color.a < 0.5 ? 64 : 0; bit > 0; bit >>= 2) {
+        ivec3 candidates = level + bit * ONES * ivec3(1, 2, 3);
+        ivec3 above = ivec3(0);
+        count = 0;
+        for (int y = first.y; y <= last.y; ++y) {
+            for (int x = first.x; x <= last.x; ++x) {
+                vec4 neighbour = texelFetch(color_map, ivec2(x, y), 0);
+                if (neighbour.a >= 0.5) {
+                    int value = pack(neighbour.rgb);
+                    above += ivec3(
+                        no_less(value, candidates.x), no_less(value, candidates.y), no_less(value, candidates.z));
+                    ++count;
+                }
             }
         }
-    }
-    // The median is the largest level that no more than half of the values lie below: found bit by bit.
-    ivec3 level = ivec3(0);
-    for (int bit = count > 0 ? 128 : 0; bit > 0; bit >>= 1) {
-        ivec3 candidate = level + bit;
-        ivec3 below = ivec3(0);
-        for (int i = 0; i < count; ++i) {
-            below += ivec3(lessThan(values[i], candidate));
-        }
-        level += bit * ivec3(lessThanEqual(below, ivec3((count - 1) / 2)));
+        int enough = (count - (count - 1) / 2) * ONES;
+        level += bit * (no_less(above.x, enough) + no_less(above.y, enough) + no_less(above.z, enough));
     }
     if (count > 0) {
-        color = vec4(vec3(level) / 255.0, 1.0);
+        color = vec4(vec3(ivec3(level, level >> 10, level >> 20) & 255) / 255.0, 1.0);
     }
 }

@@ -13,8 +13,10 @@ layout(num_views = 2) in;
 #else
 #define VIEW gl_InstanceID
 #endif
-#define EYE eyes[VIEW]
-#define EYE_TO_CLIP eyes_to_clip[VIEW]
+// A choice between two, not an index: for that Mali and Adreno load the uniforms from memory.
+#define OF_VIEW(uniforms) (VIEW == 0 ? uniforms[0] : uniforms[1])
+#define EYE OF_VIEW(eyes)
+#define EYE_TO_CLIP OF_VIEW(eyes_to_clip)
 #else
 uniform vec3 eye;
 uniform mat4 eye_to_clip;  // from the position relative to the eye
@@ -46,7 +48,7 @@ void main() {
 #endif
     gl_Position = EYE_TO_CLIP * vec4(v_position, 1.0);
 #ifdef CLIP_DISTANCE
-    gl_ClipDistance[0] = dot(seams[VIEW], vec4(v_position, 1.0));
+    gl_ClipDistance[0] = dot(OF_VIEW(seams), vec4(v_position, 1.0));
 #endif
 #ifdef SEAM_DISCARD
     v_view = VIEW;

@@ -20,7 +20,10 @@ float blur(ivec2 p, vec4 center) {
     vec2 sum = vec2(center.x, 1.0) * 0.01;
     for (int y = -2; y < 2; ++y) {
         for (int x = -2; x < 2; ++x) {
-            vec4 texel = texelFetch(occlusion_map, clamp(p + ivec2(x, y), ivec2(0), last), 0);
+            vec4 texel = center;
+            if (x != 0 || y != 0) {
+                texel = texelFetch(occlusion_map, clamp(p + ivec2(x, y), ivec2(0), last), 0);
+            }
             float weight = same_surface(code + dot(gradient, vec2(x, y)), unpack_code(texel));
             sum += weight * vec2(texel.x, 1.0);
         }
