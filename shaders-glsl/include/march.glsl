@@ -61,7 +61,8 @@ void leap(inout Search at, float x, float origin, int row) {
     at.b = at.shift + law.y * at.next;
 }
 
-// Goes on column by column until the surface is found, or the place is `limit`.
+// Goes on column by column until the surface is found, or the place is beyond `limit`, which lies between two columns:
+// places are rounded.
 void walk(inout Search at, float limit, int row) {
     int step = mirrored ? -1 : 1;
     while (at.shift < limit && !at.found) {
@@ -110,16 +111,17 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
 #if defined(SHORT_WAY) || !defined(TEXTURE_GATHER)
     // Nearly every pixel ends within the first tiles; those beside silhouettes of near surfaces go on, tile by tile.
     float first = (floor(x / float(TILE.x)) + FIRST_TILES) * float(TILE.x);
-    walk(at, min(first, end) - origin, row);
-    while (at.shift < end - origin && !at.found) {
+    walk(at, min(first, end) - origin - 0.5, row);
+    while (at.shift < end - origin - 0.5 && !at.found) {
         COUNT_TRIP(3)
         x = next_candidate(round(at.shift + origin), end, origin - farthest, row);
         leap(at, x, origin, row);
-        walk(at, min(x + float(TILE.x), end) - origin, row);
+        walk(at, min(x + float(TILE.x), end) - origin - 0.5, row);
     }
 #else
-    // CPU rasterizers pay for every fetch in the text: without those of the tiles they are faster on all but near surfaces.
-    walk(at, end - origin, row);
+    // CPU rasterizers pay for every fetch in the text, and without those of the tiles they are faster on all frames but
+    // those of near surfaces.
+    walk(at, end - origin - 0.5, row);
 #endif
     // Where nothing is found: the hole's edge, or the last column right of everything.
     bool own = at.found || at.edge < 0;

@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let target =
         Destination { framebuffer: Some(other.framebuffer), origin: [0, 0], size: views.target.size };
     synthesis.synthesize(textures, &views.warp, &target)?;
-    // Program, vertex array, texture units 0 to 2, viewport, framebuffer and more are yoro's now: set your own, or ask
+    // Program, vertex array, texture units 0 to 3, viewport, framebuffer and more are yoro's now: set your own, or ask
     // for `GlState::Preserve` in `SynthesisOptions`. The table is in the documentation of `Synthesis`.
 
     // The rendered eye's own image is the part of `source` that starts at `dominant_crop`.

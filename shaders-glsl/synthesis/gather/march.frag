@@ -1,5 +1,6 @@
 #version 310 es
-// Gather, pass 3: for each target pixel, walk along the source row from the nearest candidate outwards.
+// Gather, pass 3: for each target pixel, walk along the source row from the nearest candidate outwards,
+// past the tiles that do not land in the pixel.
 //
 // The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
 // fetched with linear filtering. With SHORT_WAY nearly every pixel ends within a few cheap steps here, and only those

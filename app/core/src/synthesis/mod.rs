@@ -184,7 +184,7 @@ pub enum GlState {
 /// | vertex array | one without attributes | changed |
 /// | draw and read framebuffer | the target's | changed |
 /// | viewport (all of a viewport array, which `Preserve` gives back as the first) | the target's rectangle | changed |
-/// | 2-D texture of units 0 to 2, of 0 to 4 other than with [`Edges::Hard`] | depth, colour, intermediate | changed |
+/// | 2-D texture of units 0 to 3, of 0 to 4 other than with [`Edges::Hard`] | depth, colour, intermediate | changed |
 /// | multisample texture of units 0 and 3, with [`Edges::Multisample`] | depth, colour | changed |
 /// | sampler object of units 0 to 4 | yoro's own | none |
 /// | active unit | 0 to 4 | changed |

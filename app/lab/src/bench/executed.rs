@@ -170,7 +170,8 @@ impl Programs {
         })
     }
 
-    /// What a wave executes for each of its pixels, by the counts of its slowest pixel.
+    /// What a wave executes for each of its pixels at least: of each loop the most that one of its pixels runs it. Lanes that walk
+    /// in different rounds wait for each other, too.
     fn wave(&self, trips: Trips) -> Work {
         // The columns' loop is there twice, of the first tiles and in each later round.
         let [short, columns, round, tiles, fill] = [0, 1, 2, 3, 5].map(|i| self.march.loops[i]);
@@ -309,6 +310,12 @@ mod tests {
         for device in DEVICES {
             let programs = Programs::of(device.gpu).unwrap();
             assert_eq!(programs.march.loops.len(), 6, "{}", device.name);
+            let [first, later] = [1, 4].map(|i| programs.march.loops[i].slots);
+            assert!(
+                (0.8..1.25).contains(&(later / first)),
+                "{}: one text, {first} and {later} slots",
+                device.name
+            );
             assert_eq!(programs.short_way.loops.len(), 1, "{}", device.name);
             assert_eq!([&programs.tiles, &programs.spans].map(|listing| listing.loops.len()), [1, 1]);
             let (all, short) = (programs.march.straight(), programs.short_way.straight());

@@ -119,7 +119,7 @@ pub mod metric {
     pub const GOES_ON_PIXEL: &str = "goes_on_pixel";
     /// Share of the waves of which a pixel does.
     pub const GOES_ON_WAVE: &str = "goes_on_wave";
-    /// Trips of the loop of the march's long way for a wave.
+    /// Columns that the march walks on its long way, for a wave.
     pub const LONG_TRIPS_WAVE: &str = "long_trips_wave";
     /// Estimated issue slots for each pixel of the first pass of `gather`.
     pub const SLOTS_TILES: &str = "slots_tiles";
