@@ -516,6 +516,35 @@ fn sizes_and_rectangles_at_random() {
     });
 }
 
+/// Displacements of up to 300 pixels, of a whole source and of a part of one: the search passes over tiles there.
+#[test]
+fn near_surfaces_are_those_of_opengl() {
+    let gl = Gl::new();
+    with_gpu(Rendering::Core, |gpu| {
+        let limits = Options { max_source_size: [540, 30], max_target_size: [540, 30], ..Options::default() };
+        let range = DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
+        for (number, (variant, _)) in VARIANTS.into_iter().enumerate() {
+            // SAFETY: the device outlives it, and everything is executed.
+            let mut gather = unsafe { Gather::with_variant(&gpu.host(), &limits, variant).unwrap() };
+            for (scale, source_margins) in [(300.0, [[0, 0], [0, 0]]), (-300.0, [[7, 3], [5, 2]])] {
+                let warp = Warp {
+                    source_size: [520, 24],
+                    target_size: [500, 24],
+                    law: DisparityLaw { offset: 0.0, scale },
+                    row_offset: 0,
+                    target_eye: Eye::BOTH[usize::from(scale < 0.0)],
+                    convention: DepthConvention::Reversed,
+                };
+                let picture = picture(&warp, range, 3);
+                let setup = Setup { source_margins, ..Setup::PLAIN };
+                let got = synthesize(gpu, &mut gather, &setup, &picture);
+                let want = gl.run(number, &picture);
+                assert_equal(&got.rgba, &want.rgba, 4, &format!("{number}, {warp:?}, {setup:?}"));
+            }
+        }
+    });
+}
+
 fn deterministic() -> proptest::test_runner::TestRng {
     proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha)
 }
