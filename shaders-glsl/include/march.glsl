@@ -11,11 +11,6 @@ struct Surface {
     bool hole;
 };
 
-// Forward column at which to begin.
-float span_start(uint span, float origin) {
-    return floor(origin - farthest - uintBitsToFloat(span));
-}
-
 // Tiles that are walked whatever they hold: to skip some pays only where there are many.
 const float FIRST_TILES = 4.0;
 
@@ -61,9 +56,10 @@ void leap(inout Search at, float x, float origin, int row) {
     at.b = at.shift + law.y * at.next;
 }
 
-// Goes on column by column until the surface is found, or the place is beyond `limit`, which lies between two columns:
-// places are rounded.
-void walk(inout Search at, float limit, int row) {
+// Goes on column by column until the surface is found, or to forward column `end`.
+void walk(inout Search at, float end, float origin, int row) {
+    // Between two columns: places are rounded.
+    float limit = end - origin - 0.5;
     int step = mirrored ? -1 : 1;
     while (at.shift < limit && !at.found) {
         COUNT_TRIP(1)
@@ -101,31 +97,31 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
     b -= x;
     x = clamp(x, 0.0, last_column);
     b += x;
-    float end = min(x + steps, last_column);
-    Search at = Search(source_column(int(x)), x - origin, b, b, next, next, false, -1, law.y < 0.0 ? -1e9 : 1e9, -1, 0.0);
     // Left of everything the border of the image is the background.
     bool outside = x == 0.0 && b > 0.0;
-    at.edge = outside ? at.column : at.edge;
-    at.edge_depth = outside ? next : at.edge_depth;
-    end = outside && b < 0.5 ? x : end;
+    float end = outside && b < 0.5 ? x : min(x + steps, last_column);
+    int column = source_column(int(x));
+    int edge = outside ? column : -1;
+    float edge_depth = outside ? next : law.y < 0.0 ? -1e9 : 1e9;
+    Search at = Search(column, x - origin, b, b, next, next, false, edge, edge_depth, -1, 0.0);
 #if defined(SHORT_WAY) || !defined(TEXTURE_GATHER)
     // Nearly every pixel ends within the first tiles; those beside silhouettes of near surfaces go on, tile by tile.
     float first = (floor(x / float(TILE.x)) + FIRST_TILES) * float(TILE.x);
-    walk(at, min(first, end) - origin - 0.5, row);
+    walk(at, min(first, end), origin, row);
     while (at.shift < end - origin - 0.5 && !at.found) {
         COUNT_TRIP(3)
         x = next_candidate(round(at.shift + origin), end, origin - farthest, row);
         leap(at, x, origin, row);
-        walk(at, min(x + float(TILE.x), end) - origin - 0.5, row);
+        walk(at, min(x + float(TILE.x), end), origin, row);
     }
 #else
     // CPU rasterizers pay for every fetch in the text, and without those of the tiles they are faster on all frames but
     // those of near surfaces.
-    walk(at, end - origin - 0.5, row);
+    walk(at, end, origin, row);
 #endif
     // Where nothing is found: the hole's edge, or the last column right of everything.
     bool own = at.found || at.edge < 0;
-    int column = own ? at.column : at.edge;
+    column = own ? at.column : at.edge;
     x = float(source_column(column));
     float t = at.b - at.a < MAX_STRETCH ? -at.a / (at.b - at.a) : 0.0;
     t = at.found ? t : 1.0;

@@ -33,7 +33,7 @@ float depth_beyond(float x, int row) {
 void main() {
     float origin = origins.x * gl_FragCoord.x + origins.y;
     uint span = pixel_span();
-    float x = span_start(span, origin);
+    float x = floor(origin - farthest - uintBitsToFloat(span));
     Surface surface;
 #ifdef SHORT_WAY
     // Where columns x and x + 1 land, relative to the pixel. Columns beyond the borders repeat them. A quarter of a

@@ -519,12 +519,14 @@ fn near_surfaces_are_found_in_few_steps() {
             let p = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, size, dominant);
             let warp = p.synthesis(GuardBand::Distance(1.0)).unwrap().warp;
             let (rgba, depth) = near_boxes(warp.source_size, p.depth, seed, boxes);
-            let run = |variant| Subject::Gather(variant).offline(gl).run(&rgba, &depth, &warp).unwrap();
-            let every_column = run(GatherVariant::Software);
-            for variant in GatherVariant::ALL {
-                let result = run(variant);
+            let results = GatherVariant::ALL.map(|variant| {
+                (variant, Subject::Gather(variant).offline(gl).run(&rgba, &depth, &warp).unwrap())
+            });
+            let of_all_columns = |(variant, _): &&(_, _)| *variant == GatherVariant::Software;
+            let (_, every_column) = results.iter().find(of_all_columns).unwrap();
+            for (variant, result) in &results {
                 let what = format!("{variant:?}, {boxes} boxes, {dominant:?} dominant, {convention:?}");
-                is_its_reference(&result, reference::gather_row, &rgba, &depth, &warp, &what);
+                is_its_reference(result, reference::gather_row, &rgba, &depth, &warp, &what);
                 let pairs = result.source_map.iter().zip(&every_column.source_map);
                 // Rounding of positions, where a pixel's middle lies on an edge.
                 let different =

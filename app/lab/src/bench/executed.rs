@@ -170,8 +170,8 @@ impl Programs {
         })
     }
 
-    /// What a wave executes for each of its pixels at least: of each loop the most that one of its pixels runs it. Lanes that walk
-    /// in different rounds wait for each other, too.
+    /// What a wave executes for each of its pixels at least: of each loop the most that one of its pixels runs it. Lanes
+    /// that walk in different rounds wait for each other, too.
     fn wave(&self, trips: Trips) -> Work {
         // The columns' loop is there twice, of the first tiles and in each later round.
         let [short, columns, round, tiles, fill] = [0, 1, 2, 3, 5].map(|i| self.march.loops[i]);
