@@ -68,7 +68,7 @@ static FILES: &[(&str, &str)] = embed![
     "render/tonemap.frag",
     "render/transparent.frag",
     "screen.vert",
-    "stereo/border_need.frag",
+    "stereo/border_profile.frag",
     "stereo/composite.frag",
     "stereo/disocclusion.frag",
     "stereo/far_depth.frag",

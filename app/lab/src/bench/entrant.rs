@@ -40,8 +40,8 @@ impl Entrant {
         Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)? })
     }
 
-    /// Renders a frame as the second of two alike, and waits for it: in the first a method may look how wide its guard
-    /// band has to be at this place.
+    /// Renders a frame as the last of three alike, and waits for it: what a method sees in the first (how wide its guard
+    /// band has to be) it knows in the third.
     ///
     /// # Errors
     /// As [`StereoMethod::render`].
@@ -51,8 +51,19 @@ impl Entrant {
         pair: &EyePair,
         frame: &mut StereoFrame,
     ) -> Result<FrameTime, StereoError> {
-        self.render(prepared, pair, frame)?;
+        self.settle(prepared, pair, frame)?;
         self.render(prepared, pair, frame)
+    }
+
+    fn settle(
+        &mut self,
+        prepared: &mut PreparedScene,
+        pair: &EyePair,
+        frame: &mut StereoFrame,
+    ) -> Result<(), StereoError> {
+        self.render(prepared, pair, frame)?;
+        self.render(prepared, pair, frame)?;
+        Ok(())
     }
 
     /// Renders a frame and waits for it.
@@ -88,7 +99,7 @@ impl Entrant {
         pair: &EyePair,
         frame: &mut StereoFrame,
     ) -> Result<Vec<(&'static str, f64)>, StereoError> {
-        self.render(prepared, pair, frame)?;
+        self.settle(prepared, pair, frame)?;
         self.gl.set_profiling(Profiling::Auto);
         let rendered = self.method.render(&mut prepared.renderer, &prepared.scene, pair, frame);
         let passes = self.gl.take_pass_times();

@@ -358,7 +358,7 @@ impl<'a> Runner<'a> {
     }
 
     /// Every contender's frames in their order, each once, as a viewer renders them. A frame's use of the band is known
-    /// with the frame after it.
+    /// two frames after it.
     fn guard_band(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
         let views = Views::along_path(job, prepared, views::HEADSET_STEP)?;
         let mut field = self.field(job, prepared, &views, true)?;

@@ -1,5 +1,6 @@
 //! How a frame gets its two eyes, one file a method.
 
+mod border;
 mod conventional;
 mod finish;
 mod forward_hybrid;
@@ -10,6 +11,7 @@ mod method;
 mod mono;
 mod near_field;
 mod options;
+mod readback;
 mod shading_reprojection;
 mod single_pass;
 mod synthesized;

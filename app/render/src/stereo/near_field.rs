@@ -4,11 +4,10 @@ use std::rc::Rc;
 
 use glam::IVec2;
 
+use super::readback::Readback;
 use crate::render::ViewTargets;
 use yoro::eyes::{DepthConvention, DepthRange};
-use yoro::gl::{
-    Context, Filter, Format, GlError, PixelBuffer, Program, RasterState, RenderTarget, ShaderSource, Texture,
-};
+use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
 /// Composites a near layer over a far one by depth.
 pub(super) struct Composite {
@@ -49,21 +48,17 @@ impl Composite {
 /// Texels per side of the image that [`NearFraction`] reads back; `stereo/near_fraction.frag`.
 const GRID: u32 = 16;
 
-/// Measures which fraction of a view is nearer than a distance, one frame late so that nothing waits.
+/// Measures which fraction of a view is nearer than a distance, two frames late so that nothing waits.
 pub(super) struct NearFraction {
     gl: Rc<Context>,
     program: Program,
-    cells: RenderTarget,
-    buffer: PixelBuffer,
-    pending: bool,
+    readback: Readback<()>,
 }
 
 impl NearFraction {
     pub(super) fn new(gl: &Rc<Context>) -> Result<NearFraction, GlError> {
         let program = Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), &[])?;
-        let cells = RenderTarget::new(gl, [GRID; 2], &[(Format::Rgba8, Filter::Nearest)], None)?;
-        let buffer = PixelBuffer::new(gl, (GRID * GRID * 4) as usize)?;
-        Ok(NearFraction { gl: gl.clone(), program, cells, buffer, pending: false })
+        Ok(NearFraction { gl: gl.clone(), program, readback: Readback::new(gl, [GRID; 2])? })
     }
 
     /// Starts to measure the part of a depth image at `origin` with `size` pixels.
@@ -78,7 +73,7 @@ impl NearFraction {
         let to_ivec = |v: [u32; 2]| IVec2::new(v[0] as i32, v[1] as i32);
         self.gl.pass("near fraction", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
-            self.cells.bind();
+            self.readback.image().bind();
             self.program
                 .bind()
                 .texture("depth_map", 0, depth.raw())
@@ -87,18 +82,14 @@ impl NearFraction {
                 .set("near_depth", range.depth(distance))
                 .set("reversed", range.convention == DepthConvention::Reversed);
             self.gl.draw_screen();
-            self.cells.read_into(&self.buffer);
+            self.readback.start(());
         });
-        self.pending = true;
     }
 
-    /// The result of the last [`NearFraction::measure`], 0 to 1; once.
+    /// The result of the last [`NearFraction::measure`] but one, 0 to 1; once.
     pub(super) fn take(&mut self) -> Option<f32> {
-        if !std::mem::take(&mut self.pending) {
-            return None;
-        }
         let mut cells = [0u8; (GRID * GRID * 4) as usize];
-        self.buffer.read(&mut cells);
+        self.readback.take(&mut cells)?;
         let sum: u32 = cells.iter().step_by(4).map(|&c| c as u32).sum();
         Some(sum as f32 / (255 * GRID * GRID) as f32)
     }

@@ -234,10 +234,11 @@ fn a_band_as_wide_as_it_must_be_gives_the_picture_of_a_whole_one() {
             asymmetric.frusta[1].right *= 1.2;
             for pair in [pair(dominant, DepthConvention::Standard), asymmetric.evened()] {
                 let mut method = Yoro::new(gl, &settings, &auto_band()).unwrap();
-                let [whole, part] = [(); 2].map(|()| rig.render(&mut method, &pair));
+                // What a frame shows is known two frames later.
+                let [whole, _, part] = [(); 3].map(|()| rig.render(&mut method, &pair));
                 let looked = method.guard_band().unwrap();
                 assert!(looked.columns == looked.most && looked.most > 30, "{looked:?}");
-                rig.render(&mut method, &pair);
+                (0..2).for_each(|_| drop(rig.render(&mut method, &pair)));
                 let used = method.guard_band().unwrap();
                 assert!(used.columns > 3 && used.columns < 20 && used.undrawn == 0, "{used:?}");
                 let [rendered, other] = [dominant, dominant.other()].map(Eye::index);
@@ -251,7 +252,7 @@ fn a_band_as_wide_as_it_must_be_gives_the_picture_of_a_whole_one() {
 }
 
 #[test]
-fn what_comes_to_the_border_is_filled_counted_and_drawn_from_the_next_frame_on() {
+fn what_comes_to_the_border_is_filled_counted_and_drawn_two_frames_later() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut far = scene();
@@ -269,18 +270,17 @@ fn what_comes_to_the_border_is_filled_counted_and_drawn_from_the_next_frame_on()
         });
         let pair = pair(Eye::Right, DepthConvention::Standard);
         let mut method = Yoro::new(gl, &settings, &auto_band()).unwrap();
-        for _ in 0..3 {
+        for _ in 0..5 {
             rigs[0].render(&mut method, &pair);
         }
         let narrow = method.guard_band().unwrap();
         assert!(narrow.columns <= 10 && narrow.undrawn == 0, "{narrow:?}");
-        let [filled, _] = rigs[1].render(&mut method, &pair);
-        let [drawn, _] = rigs[1].render(&mut method, &pair);
+        let [[filled, _], _, [drawn, _]] = [(); 3].map(|()| rigs[1].render(&mut method, &pair));
         let used = method.guard_band().unwrap();
         assert!(used.columns <= 10 && used.undrawn > 500, "{renderer:?}: {used:?}");
-        rigs[1].render(&mut method, &pair);
+        (0..2).for_each(|_| drop(rigs[1].render(&mut method, &pair)));
         let used = method.guard_band().unwrap();
-        assert!(used.columns == used.most && used.undrawn == 0, "{renderer:?}: {used:?}");
+        assert!(used.columns >= 20 && used.undrawn == 0, "{renderer:?}: {used:?}");
         // The board goes on to the border, as it does where it was drawn.
         let share = equal_share(&filled, &drawn);
         assert!(share > 0.95, "{renderer:?}: {share} of the picture as it should be");

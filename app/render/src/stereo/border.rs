@@ -1,0 +1,345 @@
+//! Which columns of a guard band the other eye will see, told by the surfaces that an earlier frame showed at its border
+//! and by the head's motion since.
+
+use glam::Vec3;
+
+use yoro::eyes::{Eye, EyePair, Pose, SynthesisViews};
+use yoro::synthesis::Uniforms;
+
+/// Texels of a profile across the columns; `stereo/border_profile.frag`.
+pub(super) const CELLS: usize = 64;
+/// Texels of a profile down the rows.
+pub(super) const BANDS: usize = 16;
+/// Disparity is measured in so many parts of a pixel.
+const UNIT: f32 = 16.0;
+/// Columns that are drawn beyond what is seen: filters of the renderer read so far to each side.
+const SPARE: u32 = 4;
+/// The band stays as wide as the last frames asked for.
+const HOLD: usize = 8;
+/// All of the band is drawn once in so many frames: what is near and lies wholly outside of what is drawn is seen by
+/// nobody else.
+const LOOK_EVERY: u32 = 30;
+/// No surface is taken to have come nearer than to this part of its distance.
+const APPROACH: f32 = 0.25;
+
+/// The border at which the band lies, and the eyes' geometry as far as things move along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Border {
+    /// Columns that the band has at most.
+    pub guard_columns: u32,
+    /// Disparity, in pixels and 0 at the far plane, at which a surface reaches the other eye's border from the band's
+    /// inner end. Nothing at infinity unless the frusta differ.
+    pub beyond: f32,
+    /// Of the rendered eye.
+    pose: Pose,
+    /// 1 where the band is on the right, -1 on the left.
+    side: f32,
+    /// Tangents of the border's angles: outwards, down, up.
+    outwards: f32,
+    down: f32,
+    up: f32,
+    /// In pixels.
+    focal_length: f32,
+    /// Disparity of the far plane against infinity, in pixels.
+    far: f32,
+    ipd: f32,
+}
+
+/// How surfaces at the border have moved from one frame to another, in columns outwards.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    /// Least and most at infinity, up and down the border.
+    turned: [f32; 2],
+    /// More for each pixel of the disparity that they have now.
+    along: f32,
+    /// How much nearer they are: disparity over what it was, less one, for each pixel of it.
+    nearer: f32,
+}
+
+impl Border {
+    pub(super) fn new(pair: &EyePair, views: &SynthesisViews) -> Border {
+        let target = &views.target.frustum;
+        let (side, outwards) = match views.warp.target_eye {
+            Eye::Left => (-1.0, -target.left),
+            Eye::Right => (1.0, target.right),
+        };
+        let (focal_length, ipd) = (pair.focal_length_pixels(), pair.ipd());
+        Border {
+            guard_columns: views.guard_columns,
+            beyond: -(Uniforms::new(&views.warp, [0, 0]).far_displacement + views.guard_columns as f32),
+            pose: pair.poses[pair.dominant.index()],
+            side,
+            outwards,
+            down: target.bottom,
+            up: target.top,
+            focal_length,
+            far: focal_length * ipd / pair.depth.far,
+            ipd,
+        }
+    }
+
+    /// Whether both are of the same eyes, as exactly as poses give the distance between them.
+    fn is_of(&self, other: &Border) -> bool {
+        let numbers = |b: &Border| [b.side, b.outwards, b.down, b.up, b.focal_length, b.far, b.ipd];
+        let near = |(a, b): (f32, f32)| (a - b).abs() <= 0.01 * a.abs().max(b.abs());
+        self.guard_columns == other.guard_columns && numbers(self).into_iter().zip(numbers(other)).all(near)
+    }
+
+    /// None if these are other eyes, or if the head has been put elsewhere rather than moved.
+    fn motion_to(&self, now: &Border) -> Option<Motion> {
+        if !self.is_of(now) {
+            return None;
+        }
+        let turn = now.pose.orientation.inverse() * self.pose.orientation;
+        let moved = self.pose.orientation.inverse() * (now.pose.position - self.pose.position);
+        let mut turned = [f32::INFINITY, f32::NEG_INFINITY];
+        for height in [self.down, 0.5 * (self.down + self.up), self.up] {
+            let direction = turn * Vec3::new(self.side * self.outwards, height, -1.0);
+            let tangent = self.side * direction.x / -direction.z;
+            let columns = self.focal_length * (tangent - self.outwards);
+            turned = [turned[0].min(columns), turned[1].max(columns)];
+            if direction.z >= 0.0 || columns.abs() > self.guard_columns as f32 {
+                return None;
+            }
+        }
+        // Neither is more than a band's width for the nearest surface that the band is made for.
+        let forward = -moved.z;
+        let along = (self.outwards * forward - self.side * moved.x) / self.ipd;
+        let nearer = forward / (self.focal_length * self.ipd);
+        (along.abs() <= 1.0).then_some(Motion { turned, along, nearer })
+    }
+}
+
+impl Motion {
+    /// Least and most columns that surfaces as near as this or farther have moved. Those that are not at the border itself
+    /// do not move quite as those that are.
+    fn columns(&self, disparity: f32) -> [f32; 2] {
+        let along = self.along * self.disparity(disparity);
+        let [least, most] = [self.turned[0] + along.min(0.0), self.turned[1] + along.max(0.0)];
+        let error = least.abs().max(most.abs()) / 8.0;
+        [least - error, most + error]
+    }
+
+    /// What a disparity has become.
+    fn disparity(&self, disparity: f32) -> f32 {
+        disparity / (1.0 - self.nearer * disparity).max(APPROACH)
+    }
+}
+
+/// What a frame showed at its border.
+#[derive(Clone, Debug)]
+pub(super) struct Profile {
+    pub border: Border,
+    /// Columns of the band that were drawn.
+    pub drawn: u32,
+    /// Pixels that were seen and not drawn, as far as the outermost column that was drawn tells.
+    pub undrawn: u32,
+    /// Columns to each of `disparities`.
+    step: u32,
+    /// Of the nearest surface in some columns, against infinity; from the outermost that was drawn inwards.
+    disparities: [f32; CELLS],
+}
+
+impl Profile {
+    /// From the texels of `stereo/border_profile.frag`; none if they are a driver's that could not give them.
+    pub(super) fn read(texels: &[u8], border: Border, drawn: u32, step: u32) -> Option<Profile> {
+        let mut profile = Profile { border, drawn, undrawn: 0, step, disparities: [0.0; CELLS] };
+        for (i, texel) in texels.chunks_exact(4).enumerate() {
+            let units = u16::from_le_bytes([texel[0], texel[1]]).checked_sub(1)?;
+            let disparity = &mut profile.disparities[i % CELLS];
+            *disparity = disparity.max(f32::from(units) / UNIT + border.far);
+            profile.undrawn += u32::from(u16::from_le_bytes([texel[2], texel[3]]));
+        }
+        Some(profile)
+    }
+
+    /// Columns of the band that are seen from `now`; none if this frame does not tell.
+    fn seen(&self, now: &Border) -> Option<u32> {
+        let motion = self.border.motion_to(now)?;
+        let (step, drawn) = (self.step as f32, self.drawn as f32);
+        let beyond = self.border.beyond + self.border.far;
+        let mut seen = 0f32;
+        let mut edge = 0f32;
+        for (i, &before) in self.disparities.iter().enumerate() {
+            // This cell reaches so far out, and is seen so far.
+            let out = drawn - i as f32 * step;
+            let [least, most] = motion.columns(before);
+            let reach = motion.disparity(before) - beyond + 1.0;
+            if out - step + 1.0 + least < reach {
+                seen = seen.max(reach.min(out + most));
+            }
+            if 2.0 * i as f32 * step < self.border.guard_columns as f32 {
+                edge = edge.max(reach);
+            }
+        }
+        // What was not drawn is taken to be as near as what was, up to half a band's width beside it.
+        let [unknown, _] = motion.columns(edge);
+        if drawn + unknown < edge.min(self.border.guard_columns as f32) {
+            seen = seen.max(edge);
+        }
+        Some(seen.ceil() as u32)
+    }
+}
+
+/// How many columns to draw.
+#[derive(Debug, Default)]
+pub(super) struct Width {
+    /// What the last frames asked for, in no order.
+    asked: [u32; HOLD],
+    frames: u32,
+}
+
+impl Width {
+    /// For a frame, from what an earlier one showed: all columns if that does not tell, and no fewer than `least`.
+    pub(super) fn next(&mut self, profile: Option<&Profile>, now: &Border, least: u32) -> u32 {
+        let Some(seen) = profile.and_then(|profile| profile.seen(now)) else {
+            *self = Width::default();
+            return now.guard_columns;
+        };
+        self.asked[self.frames as usize % HOLD] = (seen + SPARE).max(least).min(now.guard_columns);
+        self.frames += 1;
+        if self.frames.is_multiple_of(LOOK_EVERY) {
+            return now.guard_columns;
+        }
+        self.asked.into_iter().max().unwrap_or(now.guard_columns)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Quat;
+    use yoro::eyes::{EyeOptions, GuardBand};
+
+    const LEAST: u32 = 14;
+
+    /// Of a right eye that is rendered with a band of 56 columns on its left; or a left eye, mirrored.
+    fn border(head: Pose, dominant: Eye) -> Border {
+        let pair = EyeOptions { dominant, ..EyeOptions::default() }.pair(head);
+        Border::new(&pair, &pair.synthesis(GuardBand::Distance(1.0)).unwrap())
+    }
+
+    fn at(head: Pose) -> Border {
+        border(head, Eye::Right)
+    }
+
+    fn turned(degrees: f32) -> Pose {
+        Pose { orientation: Quat::from_rotation_y(degrees.to_radians()), ..Pose::IDENTITY }
+    }
+
+    fn moved(x: f32, z: f32) -> Pose {
+        Pose { position: Vec3::new(x, 0.0, z), ..Pose::IDENTITY }
+    }
+
+    /// Of a frame at rest: two columns to a cell, disparities by the column outwards from the band's inner end.
+    fn profile(drawn: u32, disparity: impl Fn(i32) -> f32) -> Profile {
+        let disparities = std::array::from_fn(|i| disparity(drawn as i32 - 2 * i as i32));
+        Profile { border: at(Pose::IDENTITY), drawn, undrawn: 0, step: 2, disparities }
+    }
+
+    /// A surface in some columns, before a background that moves by three pixels.
+    fn post(columns: [i32; 2], disparity: f32) -> Profile {
+        profile(56, |out| if out >= columns[0] && out <= columns[1] { disparity } else { 3.0 })
+    }
+
+    #[test]
+    fn columns_are_seen_as_far_out_as_their_disparity_is_large() {
+        let rest = at(Pose::IDENTITY);
+        assert_eq!((rest.guard_columns, (rest.beyond + rest.far).abs() < 0.01), (56, true));
+        assert_eq!(profile(56, |_| 20.0).seen(&rest), Some(20));
+        assert_eq!(profile(56, |_| 0.0).seen(&rest), Some(0));
+        assert_eq!(post([40, 50], 30.0).seen(&rest), Some(4));
+        assert_eq!(post([40, 50], 45.0).seen(&rest), Some(46));
+        assert_eq!(post([40, 50], 100.0).seen(&rest), Some(50));
+    }
+
+    #[test]
+    fn a_turn_brings_to_the_border_what_was_beside_it() {
+        // A degree at a border 30 degrees off the middle: 20.6 columns, and less at its ends.
+        let motion = at(Pose::IDENTITY).motion_to(&at(turned(-1.0))).unwrap();
+        assert!((motion.turned[0] - 20.6).abs() < 0.4 && motion.turned[1] - motion.turned[0] < 0.4, "{motion:?}");
+        let left = border(Pose::IDENTITY, Eye::Left).motion_to(&border(turned(1.0), Eye::Left)).unwrap();
+        assert!((motion.turned[0] - left.turned[0]).abs() < 1e-2, "{left:?}");
+        // Seen ten columns within the picture, and outside of it after a turn to the other side.
+        let within = post([-12, -10], 25.0);
+        assert_eq!(within.seen(&at(Pose::IDENTITY)), Some(4));
+        let seen = within.seen(&at(turned(-1.0))).unwrap();
+        assert!((10..=15).contains(&seen), "{seen}");
+        // And what was outside comes in.
+        let seen = post([40, 44], 30.0).seen(&at(turned(1.0))).unwrap();
+        assert!((23..=28).contains(&seen), "{seen}");
+        // A nod or a roll moves the ends of the border.
+        let roll = Pose { orientation: Quat::from_rotation_z(0.02), ..Pose::IDENTITY };
+        let motion = at(Pose::IDENTITY).motion_to(&at(roll)).unwrap();
+        assert!((motion.turned[1] - 10.2).abs() < 0.5 && (motion.turned[0] + 10.2).abs() < 0.5, "{motion:?}");
+    }
+
+    #[test]
+    fn near_surfaces_move_more() {
+        let rest = at(Pose::IDENTITY);
+        // Half the distance between the eyes to the right: half a disparity to the left, which is outwards.
+        let motion = rest.motion_to(&at(moved(0.0315, 0.0))).unwrap();
+        assert!((motion.along - 0.5).abs() < 1e-3 && motion.turned[1].abs() < 1e-3, "{motion:?}");
+        // Five centimetres towards a surface at 1 m.
+        let motion = rest.motion_to(&at(moved(0.0, -0.05))).unwrap();
+        let disparity = rest.focal_length * 0.063;
+        assert!((motion.disparity(disparity) - disparity / 0.95).abs() < 0.01, "{motion:?}");
+        let direction = Vec3::new(-(30f32.to_radians().tan()), 0.0, -1.0) + Vec3::Z * 0.05;
+        let columns = rest.focal_length * (direction.x / direction.z - 30f32.to_radians().tan());
+        let [least, most] = motion.columns(disparity);
+        assert!(least <= columns && columns <= most && most < 1.2 * columns, "{columns}: {least} {most}");
+    }
+
+    #[test]
+    fn what_was_not_drawn_is_taken_to_be_as_near_as_what_is_beside_it() {
+        let rest = at(Pose::IDENTITY);
+        assert_eq!(profile(14, |_| 9.0).seen(&rest), Some(10));
+        assert_eq!(profile(14, |_| 40.0).seen(&rest), Some(41));
+        // Far within the picture it says nothing of what is outside.
+        assert_eq!(profile(14, |out| if out < -30 { 40.0 } else { 9.0 }).seen(&rest), Some(10));
+        // A turn of a degree brings in twenty columns: nobody has seen what is there.
+        let turned = |disparity: f32| profile(14, |_| disparity).seen(&at(turned(1.0))).unwrap();
+        assert!((10..=11).contains(&turned(9.0)) && (31..=32).contains(&turned(30.0)));
+    }
+
+    #[test]
+    fn other_eyes_and_leaps_tell_nothing() {
+        let seen = |now: Border| profile(56, |_| 9.0).seen(&now);
+        assert_eq!(seen(Border { focal_length: 800.0, ..at(Pose::IDENTITY) }), None);
+        for far in [turned(4.0), turned(-4.0), turned(90.0), turned(180.0), moved(0.1, 0.0), moved(0.0, -1.0)] {
+            assert_eq!(seen(at(far)), None, "{far:?}");
+        }
+        let mut width = Width::default();
+        assert_eq!(width.next(None, &at(Pose::IDENTITY), LEAST), 56);
+        assert_eq!(width.next(Some(&profile(56, |_| 20.0)), &at(turned(90.0)), LEAST), 56);
+    }
+
+    #[test]
+    fn it_widens_at_once_and_narrows_after_some_frames() {
+        let rest = at(Pose::IDENTITY);
+        let mut width = Width::default();
+        let mut next = |disparity: f32| width.next(Some(&profile(56, |_| disparity)), &rest, LEAST);
+        assert_eq!([20.0, 30.0, 20.0].map(&mut next), [24, 34, 34]);
+        assert_eq!([(); HOLD].map(|()| next(20.0)), [34, 34, 34, 34, 34, 34, 24, 24]);
+        assert_eq!(next(99.0), 56);
+        let widths = [(); 2 * LOOK_EVERY as usize].map(|()| next(0.0));
+        assert_eq!(widths.iter().filter(|columns| **columns == LEAST).count(), 2 * LOOK_EVERY as usize - 7 - 2);
+    }
+
+    #[test]
+    fn texels_are_read_and_a_drivers_zeros_are_none() {
+        let rest = at(Pose::IDENTITY);
+        let mut texels = [0u8; CELLS * BANDS * 4];
+        assert!(Profile::read(&texels, rest, 14, 2).is_none());
+        for texel in texels.chunks_exact_mut(4) {
+            texel.copy_from_slice(&[1, 0, 0, 0]);
+        }
+        // Ten pixels in the third cell of two bands of rows, eight elsewhere; a few pixels left undrawn.
+        for (at, units) in [(2, 160u16), (CELLS + 2, 128)] {
+            texels[at * 4..at * 4 + 2].copy_from_slice(&(units + 1).to_le_bytes());
+            texels[at * 4 + 2..at * 4 + 4].copy_from_slice(&300u16.to_le_bytes());
+        }
+        let profile = Profile::read(&texels, rest, 14, 2).unwrap();
+        assert_eq!((profile.undrawn, profile.disparities[1], profile.disparities[2]), (600, rest.far, 10.0 + rest.far));
+    }
+}
