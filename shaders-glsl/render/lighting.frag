@@ -81,8 +81,7 @@ void main() {
     float depth = G_TEXEL(depth_map, p).x;
     vec3 ray = view_ray(gl_FragCoord.xy / vec2(g_size()));
     vec3 color = vec3(0.0);
-    // Loops, because CPU rasterizers run both sides of an `if` but leave a loop that no pixel needs.
-    for (int drawn = is_lit(p, depth) ? 1 : 0; drawn > 0; --drawn) {
+    if (is_lit(p, depth)) {
         color = hdr_encode(lit(p, depth, ray));
     }
 #ifdef NEAR_FIELD
@@ -90,7 +89,7 @@ void main() {
         color = texelFetch(far_field, p + far_field_crop, 0).rgb;
     }
 #else
-    for (int empty = depth == far_depth ? 1 : 0; empty > 0; --empty) {
+    if (depth == far_depth) {
         color = hdr_encode(background(normalize(ray)));
     }
 #endif

@@ -65,8 +65,7 @@ void main() {
     float depth = G_TEXEL(depth_map, p).x;
     float z = axis_distance(depth);
     out_occlusion = pack_occlusion(1.0, distance_code(z), false);
-    // A loop, because CPU rasterizers run both sides of an `if` but leave a loop that no pixel needs.
-    for (int wanted = is_wanted(p, depth) ? 1 : 0; wanted > 0; --wanted) {
+    if (is_wanted(p, depth)) {
         out_occlusion = pack_occlusion(occlusion(p, size, z), distance_code(z), true);
     }
 }
