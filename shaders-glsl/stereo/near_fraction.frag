@@ -1,8 +1,12 @@
 #version 310 es
 // How much of a depth image is nearer than a given depth: each of 16 x 16 texels looks at 8 x 8 pixels of its
-// part of the image.
+// part of the image, of several samples at the first.
 
+#ifdef MULTISAMPLE
+uniform highp sampler2DMS depth_map;
+#else
 uniform sampler2D depth_map;
+#endif
 uniform ivec2 origin;
 uniform ivec2 size;
 uniform float near_depth;

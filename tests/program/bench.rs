@@ -134,6 +134,100 @@ fn sweeps_have_their_points_and_baselines() {
     assert_eq!(a, b);
 }
 
+/// The devices of the estimate keep their own sizes: they take most of the test's seconds.
+#[test]
+fn guard_bands_and_estimates_are_measured_and_reported() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let line =
+        "bench guard-band shader-cost --quick --scene prototype --size 96x96 --viewpoints 1 --out both.jsonl";
+    succeed(at, line);
+    let records = records(&at.join("both.jsonl"));
+    assert!(of_kind(&records, "unsupported").is_empty());
+    let of = |contender: &str, metric: &str| values(&records, contender, metric);
+    let mean = |contender: &str, metric: &str| {
+        let values = of(contender, metric);
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    let measured = of_kind(&records, "measurement");
+    let who = |suite: &str| -> Vec<&str> {
+        let rows = measured.iter().filter(|m| m["suite"] == suite && m["scene"] == "prototype");
+        rows.map(|m| m["contender"].as_str().unwrap()).collect()
+    };
+
+    let bands = ["yoro-guard-none", "yoro-guard-1", "yoro-guard-0.5", "yoro-guard-auto"];
+    assert_eq!(who("guard-band"), [&["conventional", "mono"][..], &bands].concat());
+    let frames = of("conventional", "frame_ms").len();
+    assert!(frames > 2, "{frames} frames");
+    for contender in who("guard-band") {
+        let times = of(contender, "frame_ms");
+        assert!(times.len() == frames && times.iter().all(|ms| *ms > 0.0), "{contender}: {times:?}");
+    }
+    for band in bands {
+        assert!(mean(band, "psnr") > mean("mono", "psnr") + 2.0, "{band}");
+        let [border, all] = ["border_psnr", "psnr"].map(|metric| of(band, metric));
+        assert!(border.len() == frames && border != all, "{band}: {border:?}");
+    }
+    let at_border = bands.map(|band| mean(band, "border_psnr"));
+    assert!(at_border[1..].iter().all(|band| *band > at_border[0] + 0.5), "{at_border:?}");
+    // Only one of them chooses.
+    for metric in ["guard_columns", "undrawn"] {
+        let told = |m: &&&Value| !m["values"][metric].is_null();
+        let tell: Vec<&str> =
+            measured.iter().filter(told).map(|m| m["contender"].as_str().unwrap()).collect();
+        assert_eq!(tell, ["yoro-guard-auto"], "{metric}");
+    }
+    let [columns, undrawn] = ["guard_columns", "undrawn"].map(|metric| of("yoro-guard-auto", metric));
+    assert!(columns.len() <= frames && columns.len() > 1, "{columns:?}");
+    assert!(columns.iter().all(|n| *n >= 1.0 && *n < 96.0 / 4.0 && n.fract() == 0.0), "{columns:?}");
+    assert!(undrawn.iter().all(|n| *n >= 0.0 && *n < 96.0 * 96.0 / 100.0), "{undrawn:?}");
+
+    let devices = ["quest-2", "quest-3", "mali-g57"];
+    assert_eq!(who("shader-cost"), devices);
+    for device in devices {
+        let one = |metric: &str| match of(device, metric)[..] {
+            [value] => value,
+            ref values => panic!("{device}, {metric}: {values:?} of one viewpoint"),
+        };
+        let slots = ["slots_tiles", "slots_spans", "slots_march"].map(one);
+        assert!(slots.iter().all(|n| *n > 1.0) && slots[2] > slots[0] + slots[1], "{device}: {slots:?}");
+        let sum = slots.iter().sum::<f64>();
+        assert!((sum - one("slots")).abs() < 1e-6 * sum && sum < 1000.0, "{device}: {slots:?}");
+        // At the least the march reads depth and colour of each pixel.
+        assert!(one("fetches") > 2.0 && one("fetches") < one("slots"), "{device}");
+        // A wave does what the slowest of its pixels does.
+        for [pixel, wave] in [["trips_pixel", "trips_wave"], ["goes_on_pixel", "goes_on_wave"]] {
+            let [pixel, wave] = [one(pixel), one(wave)];
+            assert!(pixel > 0.0 && pixel < wave, "{device}: {pixel} and {wave}");
+        }
+        assert!(one("goes_on_wave") < 1.0, "{device}");
+        for metric in ["alu_ms", "fetch_ms", "memory_ms"] {
+            assert!(one(metric) > 0.01 && one(metric) < 100.0, "{device}: {metric} {}", one(metric));
+        }
+    }
+
+    succeed(at, "report both.jsonl --out out");
+    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
+    let (guard_band, shader_cost) =
+        results.split_once("## Suite shader-cost").expect("a section of each suite");
+    assert!(guard_band.contains("## Suite guard-band"), "{results}");
+    for (section, rows) in [(guard_band, &bands[..]), (shader_cost, &devices)] {
+        for row in rows {
+            assert!(section.contains(&format!(" | {row} | ")), "{row}: {section}");
+        }
+    }
+    let told = format!(
+        " | {:.4} | {:.4} |",
+        mean("yoro-guard-auto", "guard_columns"),
+        mean("yoro-guard-auto", "undrawn")
+    );
+    assert!(guard_band.contains(&told), "{told}: {guard_band}");
+    let page = fs::read_to_string(at.join("out/report.html")).unwrap();
+    for needed in ["guard-band", "border_psnr", "yoro-guard-auto", "shader-cost", "mali-g57"] {
+        assert!(page.contains(needed), "{needed}");
+    }
+}
+
 #[test]
 fn scenes_beyond_the_bounds_are_left_out_with_the_reason() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,8 +1,9 @@
 //! The forward renderer: surfaces are lit as they are drawn, with several samples in each pixel.
 //!
-//! opaque surfaces -> sky -> (transparent surfaces) -> average of the samples, and their nearest depth -> bloom and
-//! outlines. All before the average is one pass of a tile-based GPU.
+//! opaque surfaces -> sky -> (transparent surfaces) -> average of the samples, and their nearest depth where something
+//! reads it -> bloom and outlines. All before the average is one pass of a tile-based GPU.
 
+use std::cell::Cell;
 use std::rc::Rc;
 
 use glam::{IVec2, Vec2, Vec3};
@@ -58,8 +59,12 @@ pub struct ForwardTargets {
     /// Colour with bloom and outlines, if there are any: of one eye.
     developed: Option<RenderTarget>,
     pub kept: Kept,
+    /// [`ForwardTargets::depth`] is wanted of a view that is rendered.
+    pub keeps_depth: bool,
     /// The first sample's depth is wanted, not the nearest.
     pub first_sample: bool,
+    /// Whether the resolved depth is that of what was drawn.
+    has_depth: Cell<bool>,
     /// Which columns are drawn; all if none.
     pub columns: Option<Columns>,
     /// One of them, on its way to those that are not.
@@ -106,7 +111,9 @@ impl ForwardTargets {
             bloom: bloom.transpose()?,
             developed: None,
             kept: Kept::default(),
+            keeps_depth: true,
             first_sample: false,
+            has_depth: Cell::new(false),
             columns: None,
             column: None,
         })
@@ -193,7 +200,11 @@ impl ForwardTargets {
 
     /// The nearest depth of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0), and
     /// where samples stayed in tiles.
+    ///
+    /// # Panics
+    /// When it was not asked for since the last surface was drawn.
     pub fn depth(&self) -> &Texture {
+        assert!(self.has_depth.get(), "this view was rendered without its depth");
         self.resolved.depth()
     }
 
@@ -205,6 +216,11 @@ impl ForwardTargets {
     /// Each sample's colour, if it is kept, can be read and is that of the finished image.
     pub fn color_samples(&self) -> Option<glow::Texture> {
         self.samples.as_ref().filter(|_| self.kept.color && self.developed.is_none())?.color()
+    }
+
+    /// Notes that depth is drawn: the resolved one is another until [`Forward::resolve`], if there are samples.
+    fn draws_depth(&self) {
+        self.has_depth.set(self.samples.is_none());
     }
 
     /// Binds what is drawn into, with a viewport for an image of `size` pixels.
@@ -353,6 +369,7 @@ impl Forward {
     /// Empties the targets for these views.
     pub fn clear(&self, targets: &ForwardTargets, view: &View) {
         targets.bind(targets.layout.texture_size(view.size));
+        targets.draws_depth();
         self.gl.clear(Some(view.depth.clear_value()));
     }
 
@@ -366,6 +383,7 @@ impl Forward {
         view: &View,
     ) {
         targets.bind(view.size);
+        targets.draws_depth();
         self.copy((color, depth), crop);
     }
 
@@ -402,6 +420,7 @@ impl Forward {
             return;
         };
         targets.bind(targets.layout.texture_size(view.size));
+        targets.draws_depth();
         pass.programs().for_each(|program| light.set(program.bind()));
         match part {
             Part::Selected(culler) => pass.draw_selected(light.scene, view, culler),
@@ -435,15 +454,19 @@ impl Forward {
         self.gl.set_viewport(origin, view.size);
     }
 
-    /// Averages the samples, and takes their nearest depth if `depth` is wanted; what [`ForwardTargets::kept`] does not
-    /// name is given up.
+    /// Averages the samples, and takes their nearest depth if `depth` is wanted, or if outlines need it; what
+    /// [`ForwardTargets::kept`] does not name is given up.
     pub fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool) {
+        let depth = depth || (self.ink && !targets.is_readable());
         if let Some(tile) = targets.tile.as_ref().filter(|_| targets.in_tile) {
             if !depth {
                 tile.discard_depth();
             }
         } else if targets.samples.is_some() {
             self.resolve_to(targets, &targets.resolved, view, depth);
+        }
+        if depth {
+            targets.has_depth.set(true);
         }
     }
 
@@ -466,7 +489,9 @@ impl Forward {
                 samples.resolve_depth(to);
             }
             samples.discard(!(color || self.ink), !(kept_depth || reads_depth));
-            if let (true, Some(program), Some(map)) = (nearest, &self.nearest, samples.depth()) {
+        });
+        if let (true, Some(program), Some(map)) = (nearest, &self.nearest, samples.depth()) {
+            self.gl.pass("nearest depth", || {
                 to.bind();
                 self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
                 self.gl.mask_color();
@@ -476,8 +501,8 @@ impl Forward {
                     .set("nearer", nearer(view.depth.convention));
                 self.gl.draw_screen();
                 self.gl.set_raster_state(&RasterState::SCREEN);
-            }
-        });
+            });
+        }
     }
 
     /// Adds bloom and outlines to an eye's image, where there are any. With `again` the bloom is that of the time before.
@@ -504,12 +529,14 @@ impl Forward {
                     .texture("bloom", 1, bloom.result().raw())
                     .set("bloom_strength", bloom::STRENGTH * self.exposure);
             }
-            match targets.samples.as_ref().and_then(|s| s.depth().zip(s.color())) {
-                Some((depth, color)) => program
-                    .texture_multisample("depth_map", 2, depth)
-                    .texture_multisample("color_map", 3, color),
-                None => program.texture("depth_map", 2, targets.depth().raw()),
-            };
+            if self.ink {
+                match targets.samples.as_ref().and_then(|s| s.depth().zip(s.color())) {
+                    Some((depth, color)) => program
+                        .texture_multisample("depth_map", 2, depth)
+                        .texture_multisample("color_map", 3, color),
+                    None => program.texture("depth_map", 2, targets.depth().raw()),
+                };
+            }
             set_view(program, view);
             self.gl.draw_screen();
         });

@@ -342,3 +342,35 @@ fn what_it_cannot_do_is_refused() {
     assert!(error.to_string().contains("same settings"), "{error}");
     rig.render(&view, Selection::All);
 }
+
+/// OpenGL ES 3.0 again: they read the resolved depth, which nobody else may want.
+#[test]
+fn outlines_have_a_depth_where_samples_cannot_be_read() {
+    let head = open();
+    let gl = head.gl();
+    let settings = with_samples(4);
+    let scene = GpuScene::upload(gl, scene(ShadingStyle::Anime)).unwrap();
+    let view = view(DepthConvention::Standard);
+    let [unwanted, wanted] = [false, true].map(|depth| {
+        let passes = Forward::build(gl, &settings, &scene, false).unwrap();
+        let renderer = Renderer::with(gl, &settings, &scene, Passes::Forward(Box::new(passes))).unwrap();
+        let images = ForwardTargets::build(gl, Layout::Single, [1, 1], &settings, false).unwrap();
+        let mut targets = ViewTargets { images: Images::Forward(Box::new(images)) };
+        renderer.render_all(&mut targets, &scene, &view, depth).unwrap();
+        targets.color_target().read_rgba8(0, [0, 0], view.size)
+    });
+    assert!(unwanted == wanted);
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+#[should_panic(expected = "rendered without its depth")]
+fn a_depth_that_was_not_asked_for_is_not_to_be_had() {
+    let head = open();
+    let mut rig = Rig::new(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
+    rig.render(&view(DepthConvention::Standard), Selection::All);
+    rig.targets.depth();
+    rig.targets.keep_depth(false);
+    rig.render(&view(DepthConvention::Standard), Selection::All);
+    rig.targets.depth();
+}

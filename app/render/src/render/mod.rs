@@ -136,6 +136,15 @@ impl ViewTargets {
         }
     }
 
+    /// Says whether [`ViewTargets::depth`] is wanted when [`Renderer::render`] has rendered a view; at first it is. Where it
+    /// is not, a forward renderer with several samples in each pixel does not spend anything on it. Means nothing to a
+    /// deferred renderer.
+    pub fn keep_depth(&mut self, depth: bool) {
+        if let Images::Forward(targets) = &mut self.images {
+            targets.keeps_depth = depth;
+        }
+    }
+
     /// Makes [`ViewTargets::depth`] that of each pixel's first sample, as drivers resolve it, instead of the nearest one's:
     /// for synthesis from what there is without multisample textures. Means nothing to a deferred renderer.
     pub fn set_first_sample(&mut self, first: bool) {
@@ -166,6 +175,10 @@ impl ViewTargets {
     /// Window depth in the view's convention. Deferred: 24 bits for standard, float for reversed depth. Forward: float,
     /// the nearest of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0), and after
     /// [`Renderer::render_all`] where samples stay in tiles.
+    ///
+    /// # Panics
+    /// When a forward renderer has not rendered anything, or, with several samples in each pixel, was told that depth is not
+    /// wanted ([`ViewTargets::keep_depth`], [`Renderer::render_all`]).
     pub fn depth(&self) -> &Texture {
         match &self.images {
             Images::Deferred(targets) => targets.g_buffer.target().depth(),
@@ -322,7 +335,7 @@ impl Renderer {
                 self.gl.within_columns(drawn, || {
                     self.draw_forward(passes, targets, scene, &[*view], &Part::Selected(&culler));
                 });
-                passes.resolve(targets, view, true);
+                passes.resolve(targets, view, targets.keeps_depth);
                 if let Some(drawn) = drawn {
                     targets.repeat_columns(drawn)?;
                 }

@@ -44,9 +44,10 @@ impl Conventional {
         to: &EyeTarget,
     ) -> Result<(), StereoError> {
         let view = pair.view(eye);
-        renderer.render_all(&mut self.targets, scene, &view, self.keeps_depth || to.depth.is_some())?;
+        let keeps_depth = self.keeps_depth && eye == pair.dominant;
+        renderer.render_all(&mut self.targets, scene, &view, keeps_depth || to.depth.is_some())?;
         self.finish.color(self.targets.color_target(), [0, 0], &to.color);
-        Finish::depth(DepthImage::whole(self.targets.depth()), to);
+        Finish::depth(|| DepthImage::whole(self.targets.depth()), to);
         Ok(())
     }
 
@@ -55,7 +56,7 @@ impl Conventional {
         Conventional { keeps_depth: true, ..self }
     }
 
-    /// The depth of the eye that was rendered last.
+    /// The dominant eye's depth, which was rendered last.
     pub(super) fn depth(&self) -> &Texture {
         self.targets.depth()
     }

@@ -40,7 +40,7 @@ impl Finish {
             renderer.draw_transparent(&Destination::whole(color), depth, scene, view)?;
         }
         self.color(color, [0, 0], &to.color);
-        Finish::depth(depth, to);
+        Finish::depth(|| depth, to);
         Ok(())
     }
 
@@ -52,10 +52,10 @@ impl Finish {
         }
     }
 
-    /// Hands an eye's depth to whoever wants it.
-    pub(super) fn depth(from: DepthImage, to: &EyeTarget) {
+    /// Hands an eye's depth to whoever wants it; if nobody does, it is not looked for.
+    pub(super) fn depth<'a>(from: impl FnOnce() -> DepthImage<'a>, to: &EyeTarget) {
         if let Some(depth) = &to.depth {
-            depth.copy.run(from, &depth.to);
+            depth.copy.run(from(), &depth.to);
         }
     }
 }

@@ -66,7 +66,7 @@ impl StereoMethod for ForwardHybrid {
                 None => renderer.render_all(&mut self.eye, scene, &view, wants_depth)?,
             }
             self.finish.color(self.eye.color_target(), [0, 0], &to.color);
-            Finish::depth(DepthImage::whole(self.eye.depth()), to);
+            Finish::depth(|| DepthImage::whole(self.eye.depth()), to);
         }
         Ok(())
     }

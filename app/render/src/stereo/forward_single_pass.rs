@@ -69,7 +69,7 @@ impl StereoMethod for ForwardSinglePass {
                 None => self.finish.color(image, origin, &to.color),
             }
             let origin = self.layout.origin(view.size, eye);
-            Finish::depth(DepthImage { origin, ..DepthImage::whole(self.targets.depth()) }, to);
+            Finish::depth(|| DepthImage { origin, ..DepthImage::whole(self.targets.depth()) }, to);
         }
         Ok(())
     }

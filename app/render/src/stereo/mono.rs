@@ -47,7 +47,8 @@ impl StereoMethod for Mono {
         let views = here.synthesis(GuardBand::None)?;
         let wants_depth = to.iter().any(|eye| eye.depth.is_some());
         renderer.render_all(&mut self.targets, scene, &views.source, wants_depth)?;
-        let (color, depth) = (self.targets.color_target(), DepthImage::whole(self.targets.depth()));
+        let color = self.targets.color_target();
+        let depth = |origin| DepthImage { origin, ..DepthImage::whole(self.targets.depth()) };
         let [dominant, other] = [pair.dominant, pair.dominant.other()].map(|eye| &to[eye.index()]);
         let (crop, other_crop) = (views.dominant_crop, origin_in(&views.source, &views.target));
         self.finish.color(color, crop, &dominant.color);
@@ -56,8 +57,8 @@ impl StereoMethod for Mono {
         } else {
             self.finish.color(color, other_crop, &other.color);
         }
-        Finish::depth(DepthImage { origin: crop, ..depth }, dominant);
-        Finish::depth(DepthImage { origin: other_crop, ..depth }, other);
+        Finish::depth(|| depth(crop), dominant);
+        Finish::depth(|| depth(other_crop), other);
         Ok(())
     }
 }

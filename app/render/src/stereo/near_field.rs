@@ -48,23 +48,37 @@ impl Composite {
 /// Texels per side of the image that [`NearFraction`] reads back; `stereo/near_fraction.frag`.
 const GRID: u32 = 16;
 
+/// A depth image that [`NearFraction`] looks at.
+#[derive(Clone, Copy)]
+pub(super) enum DepthMap<'a> {
+    Resolved(&'a Texture),
+    /// A `TEXTURE_2D_MULTISAMPLE`: the first sample of each pixel.
+    Samples(glow::Texture),
+}
+
 /// Measures which fraction of a view is nearer than a distance, two frames late so that nothing waits.
 pub(super) struct NearFraction {
     gl: Rc<Context>,
-    program: Program,
+    resolved: Program,
+    /// Where it was asked for.
+    samples: Option<Program>,
     readback: Readback<()>,
 }
 
 impl NearFraction {
-    pub(super) fn new(gl: &Rc<Context>) -> Result<NearFraction, GlError> {
-        let program = Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), &[])?;
-        Ok(NearFraction { gl: gl.clone(), program, readback: Readback::new(gl, [GRID; 2])? })
+    /// For resolved depth; with `samples` also for that of all samples.
+    pub(super) fn new(gl: &Rc<Context>, samples: bool) -> Result<NearFraction, GlError> {
+        let program =
+            |defines: &[_]| Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), defines);
+        let resolved = program(&[])?;
+        let samples = samples.then(|| program(&[("MULTISAMPLE", String::new())])).transpose()?;
+        Ok(NearFraction { gl: gl.clone(), resolved, samples, readback: Readback::new(gl, [GRID; 2])? })
     }
 
     /// Starts to measure the part of a depth image at `origin` with `size` pixels.
     pub(super) fn measure(
         &mut self,
-        depth: &Texture,
+        depth: DepthMap,
         origin: [u32; 2],
         size: [u32; 2],
         range: &DepthRange,
@@ -74,9 +88,14 @@ impl NearFraction {
         self.gl.pass("near fraction", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.readback.image().bind();
-            self.program
-                .bind()
-                .texture("depth_map", 0, depth.raw())
+            let program = match depth {
+                DepthMap::Resolved(depth) => self.resolved.bind().texture("depth_map", 0, depth.raw()),
+                DepthMap::Samples(depth) => {
+                    let program = self.samples.as_ref().expect("made for samples");
+                    program.bind().texture_multisample("depth_map", 0, depth)
+                }
+            };
+            program
                 .set("origin", to_ivec(origin))
                 .set("size", to_ivec(size))
                 .set("near_depth", range.depth(distance))

@@ -6,7 +6,7 @@ use super::conventional::Conventional;
 use super::finish::Finish;
 use super::guard_band::AutoGuardBand;
 use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
-use super::near_field::{Composite, NearFraction};
+use super::near_field::{Composite, DepthMap, NearFraction};
 use super::options::{AntiAliasing, StereoOptions};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
 use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
@@ -93,15 +93,16 @@ impl Yoro {
             let layers = [layer(gl, true)?, layer(gl, true)?];
             Ok(NearLayer { targets: targets()?, composite: Composite::new(gl)?, layers })
         });
+        let edges = options.edges(settings, gl.capabilities())?;
+        let reads_samples = edges == Edges::Multisample && gl.capabilities().multisample_textures;
         let switch = options.policy.map(|policy| -> Result<_, GlError> {
             Ok(Switch {
                 policy,
                 mode: FrameMode::default(),
-                fraction: NearFraction::new(gl)?,
+                fraction: NearFraction::new(gl, reads_samples)?,
                 conventional: Conventional::new(gl, settings, options)?.keeping_depth(),
             })
         });
-        let edges = options.edges(settings, gl.capabilities())?;
         let mut source = targets()?;
         source.set_first_sample(edges == Edges::Sample);
         let auto = matches!(options.guard_band, GuardBand::Auto(_)).then(|| AutoGuardBand::new(gl));
@@ -136,7 +137,13 @@ impl Yoro {
         Ok(())
     }
 
-    /// Renders the dominant eye and synthesizes the other, with its depth or without.
+    /// The depth of every sample, if that is what is read of the rendered eye.
+    fn depth_samples(&self) -> Option<glow::Texture> {
+        self.targets.depth_samples().filter(|_| self.edges == Edges::Multisample)
+    }
+
+    /// Renders the dominant eye and synthesizes the other, with its depth or without. `to`: where the dominant eye is
+    /// wanted.
     fn synthesize(
         &mut self,
         renderer: &mut Renderer,
@@ -144,6 +151,7 @@ impl Yoro {
         pair: &EyePair,
         views: &SynthesisViews,
         depth: bool,
+        to: &EyeTarget,
     ) -> Result<(), StereoError> {
         let from = pair.middle();
         let selection = match self.options.near_field {
@@ -154,7 +162,11 @@ impl Yoro {
         self.make_synthesizer(depth)?;
         let columns = self.auto_guard_band.as_mut().map(|auto| auto.columns(pair, views));
         self.targets.set_columns(columns);
-        self.targets.keep_samples(goes_on, goes_on || self.edges == Edges::Multisample);
+        let multisample = self.edges == Edges::Multisample;
+        self.targets.keep_samples(goes_on, goes_on || multisample);
+        // With near objects, which are drawn after synthesis, another depth is handed on.
+        let handed_on = to.depth.is_some() && self.options.near_field.is_none();
+        self.targets.keep_depth(!multisample || self.auto_guard_band.is_some() || handed_on);
         renderer.render(&mut self.targets, scene, &views.source, selection)?;
         let mut color = self.targets.color();
         if let Some(smooth) = &mut self.smooth {
@@ -162,10 +174,9 @@ impl Yoro {
             self.before.color(self.targets.color_target(), [0, 0], &Destination::whole(smooth));
             color = smooth.color(0);
         }
-        let samples = self.targets.depth_samples().filter(|_| self.edges == Edges::Multisample);
         let source = Source {
             color: color.raw(),
-            depth: samples.unwrap_or(self.targets.depth().raw()),
+            depth: self.depth_samples().unwrap_or_else(|| self.targets.depth().raw()),
             samples: self.targets.color_samples(),
         };
         if let Some(Synthesizer { synthesis, image }) = &mut self.synthesizers[usize::from(depth)] {
@@ -214,16 +225,14 @@ impl Yoro {
             None => self.targets.color_target(),
         };
         self.after.color(dominant, views.dominant_crop, &dominant_to.color);
-        let depth = DepthImage { origin: views.dominant_crop, ..DepthImage::whole(self.targets.depth()) };
-        Finish::depth(depth, dominant_to);
+        let origin = views.dominant_crop;
+        Finish::depth(|| DepthImage { origin, ..DepthImage::whole(self.targets.depth()) }, dominant_to);
         if goes_on {
             let depth = near_depth(other_to);
             renderer.go_on_with(&self.targets, other, scene, &views.target, near, depth)?;
         }
         self.after.color(other, [0, 0], &other_to.color);
-        if other_to.depth.is_some() {
-            Finish::depth(DepthImage::whole(other.depth()), other_to);
-        }
+        Finish::depth(|| DepthImage::whole(other.depth()), other_to);
         Ok(())
     }
 }
@@ -271,11 +280,9 @@ impl Yoro {
         let [dominant_to, other_to] = eyes.map(|eye| &to[eye.index()]);
         self.after.color(dominant, views.dominant_crop, &dominant_to.color);
         let cropped = DepthImage { origin: views.dominant_crop, ..DepthImage::whole(dominant_depth) };
-        Finish::depth(cropped, dominant_to);
+        Finish::depth(|| cropped, dominant_to);
         self.after.color(other, [0, 0], &other_to.color);
-        if other_to.depth.is_some() {
-            Finish::depth(DepthImage::whole(other.depth()), other_to);
-        }
+        Finish::depth(|| DepthImage::whole(other.depth()), other_to);
         Ok(())
     }
 }
@@ -301,17 +308,21 @@ impl StereoMethod for Yoro {
                     auto.interrupt();
                 }
                 switch.conventional.render_to(renderer, scene, pair, to)?;
-                let depth = switch.conventional.depth();
+                let depth = DepthMap::Resolved(switch.conventional.depth());
                 switch.fraction.measure(depth, [0, 0], pair.size, &pair.depth, switch.policy.distance);
                 return Ok(());
             }
         }
         let views = pair.synthesis(self.options.guard_band)?;
         let reads_depth = self.goes_on(scene) || to[pair.dominant.other().index()].depth.is_some();
-        self.synthesize(renderer, scene, pair, &views, reads_depth)?;
+        let dominant_to = &to[pair.dominant.index()];
+        self.synthesize(renderer, scene, pair, &views, reads_depth, dominant_to)?;
+        let samples = self.depth_samples();
         if let Some(switch) = &mut self.switch {
             // Of the far layer alone when near objects have their own: what they hide is not too near.
-            let (depth, distance) = (self.targets.depth(), switch.policy.distance);
+            let resolved = || DepthMap::Resolved(self.targets.depth());
+            let depth = samples.map_or_else(resolved, DepthMap::Samples);
+            let distance = switch.policy.distance;
             switch.fraction.measure(depth, views.dominant_crop, pair.size, &pair.depth, distance);
         }
         match renderer.settings().is_forward() {

@@ -4,10 +4,15 @@ use std::rc::Rc;
 
 use glam::Vec3;
 
+use super::near_field::{DepthMap, NearFraction};
 use super::*;
 use crate::fixture::quad;
-use crate::render::{GpuScene, Layout, Renderer, RendererKind, Seam};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
+use crate::render::{
+    Columns, DepthCopy, GpuScene, Layout, Renderer, RendererKind, Seam, Selection, ViewTargets,
+};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews};
+use yoro::gl::{Destination, Filter, Format, Profiling, RenderTarget};
+use yoro::synthesis::{self, Edges, NearFieldPolicy, Outputs, Source, SynthesisOptions};
 use yoro_context::{Backend, Headless};
 use yoro_scene::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
 
@@ -284,6 +289,178 @@ fn what_comes_to_the_border_is_filled_counted_and_drawn_two_frames_later() {
         // The board goes on to the border, as it does where it was drawn.
         let share = equal_share(&filled, &drawn);
         assert!(share > 0.95, "{renderer:?}: {share} of the picture as it should be");
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
+/// With several samples in each pixel.
+fn forward() -> RenderSettings {
+    RenderSettings { renderer: RendererKind::Forward, ..local() }
+}
+
+/// How often the nearest depth was taken of a view's samples in a frame, each eye's depth wanted or not by [`Eye::index`].
+fn depths_taken(gl: &Rc<Context>, rig: &mut Rig, method: &mut dyn StereoMethod, wanted: [bool; 2]) -> usize {
+    let pair = pair(Eye::Right, DepthConvention::Reversed);
+    let copy = DepthCopy::new(gl).unwrap();
+    let depth = [(); 2].map(|()| RenderTarget::new(gl, SIZE, &[], Some(Format::Depth32F)).unwrap());
+    let mut targets = rig.frame.targets();
+    for ((target, depth), _) in targets.iter_mut().zip(&depth).zip(wanted).filter(|(_, wanted)| *wanted) {
+        target.depth = Some(DepthTarget { to: Destination::whole(depth), copy: &copy });
+    }
+    gl.set_profiling(Profiling::Finish);
+    method.render_to(&mut rig.renderer, &rig.scene, &pair, &targets).unwrap();
+    let passes = gl.take_pass_times();
+    gl.set_profiling(Profiling::Off);
+    assert!(passes.iter().any(|pass| pass.name == "forward"));
+    passes.iter().filter(|pass| pass.name == "nearest depth").count()
+}
+
+#[test]
+fn the_nearest_depth_is_taken_of_the_samples_where_something_reads_it() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut rig = Rig::new(gl, &forward());
+    let plain = StereoOptions::default();
+    assert!(plain.policy.is_some(), "the switch to two renders reads the samples");
+    let near = StereoOptions { near_field: Some(1.6), ..plain };
+    let of = |edges| StereoOptions { edges: Some(edges), ..plain };
+    let without_policy = StereoOptions { policy: None, ..plain };
+    let [nobody, dominant, other, both] = [[false, false], [false, true], [true, false], [true, true]];
+    for (options, wanted, expected) in [
+        (plain, nobody, 0),
+        (without_policy, nobody, 0),
+        (plain, dominant, 1),
+        (plain, other, 0),
+        (near, nobody, 0),
+        (near, dominant, 1),
+        (near, both, 2),
+        (auto_band(), nobody, 1),
+        (auto_band(), dominant, 1),
+        (of(Edges::Nearest), nobody, 1),
+        (of(Edges::Hard), nobody, 1),
+        (of(Edges::Sample), nobody, 0),
+    ] {
+        let mut method = Yoro::new(gl, &forward(), &options).unwrap();
+        let taken = depths_taken(gl, &mut rig, &mut method, wanted);
+        assert_eq!(taken, expected, "{wanted:?}, {options:?}");
+    }
+    // Everything is too near: the third frame is rendered twice, and the switch reads the dominant eye's depth.
+    let policy = Some(NearFieldPolicy { distance: 400.0, ..NearFieldPolicy::default() });
+    let mut method = Yoro::new(gl, &forward(), &StereoOptions { policy, ..plain }).unwrap();
+    assert_eq!(
+        [nobody, nobody, nobody, both].map(|wanted| depths_taken(gl, &mut rig, &mut method, wanted)),
+        [0, 0, 1, 2]
+    );
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn whoever_reads_the_nearest_depth_changes_no_picture() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    for near_field in [None, Some(1.6)] {
+        let options = StereoOptions { near_field, ..StereoOptions::default() };
+        let mut rig = Rig::new(gl, &forward());
+        let mut method = Yoro::new(gl, &forward(), &options).unwrap();
+        let [unread, read] = [[false; 2], [true; 2]].map(|wanted| {
+            depths_taken(gl, &mut rig, &mut method, wanted);
+            Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE))
+        });
+        assert!(unread == read, "{near_field:?}");
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn the_first_samples_tell_how_much_is_near_as_the_nearest_do() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+        let rig = Rig::new(gl, &forward());
+        let mut targets = ViewTargets::new(gl, SIZE, convention, &forward()).unwrap();
+        targets.keep_samples(false, true);
+        let view = pair(Eye::Left, convention).view(Eye::Left);
+        rig.renderer.render(&mut targets, &rig.scene, &view, Selection::All).unwrap();
+        let samples = DepthMap::Samples(targets.depth_samples().unwrap());
+        let mut fraction = NearFraction::new(gl, true).unwrap();
+        let [first, nearest] = [samples, DepthMap::Resolved(targets.depth())].map(|depth| {
+            // What is measured is known after the next measurement.
+            (0..2).for_each(|_| fraction.measure(depth, [0, 0], SIZE, &view.depth, 3.0));
+            fraction.take().unwrap()
+        });
+        // Posts and the floor below.
+        assert!(first > 0.2 && first < 0.8, "{first}");
+        assert!(first <= nearest && nearest - first < 0.05, "{first} and {nearest}");
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
+/// Both eyes as [`Yoro`] makes them of samples, of which only some columns are drawn: the rendered one, the other one.
+fn of_columns(
+    gl: &Rc<Context>,
+    (renderer, scene): (&Renderer, &GpuScene),
+    pair: &EyePair,
+    views: &SynthesisViews,
+    columns: Option<Columns>,
+) -> [Vec<u8>; 2] {
+    let mut targets = ViewTargets::new(gl, SIZE, pair.depth.convention, renderer.settings()).unwrap();
+    targets.set_columns(columns);
+    targets.keep_samples(true, true);
+    targets.keep_depth(false);
+    renderer.render(&mut targets, scene, &views.source, Selection::All).unwrap();
+    let (depth, samples) = (targets.depth_samples().unwrap(), targets.color_samples());
+    assert!(samples.is_some(), "nothing is added to their average");
+    let options = SynthesisOptions { edges: Edges::Multisample, ..SynthesisOptions::default() };
+    let mut synthesis =
+        synthesis::create(gl, &options, Outputs { depth: true, ..Outputs::default() }).unwrap();
+    let formats = [(Format::Rgba8, Filter::Linear)];
+    let other = RenderTarget::new(gl, pair.size, &formats, Some(Format::Depth32F)).unwrap();
+    let source = Source { color: targets.color().raw(), depth, samples };
+    synthesis.synthesize(source, &views.warp, &Destination::whole(&other)).unwrap();
+    renderer.go_on(&targets, scene, &views.source, None, false).unwrap();
+    let rendered = targets.color_target().read_rgba8(0, views.dominant_crop, pair.size);
+    renderer.go_on_with(&targets, &other, scene, &views.target, None, false).unwrap();
+    [rendered, other.read_rgba8(0, [0, 0], pair.size)]
+}
+
+/// Without bloom the synthesis reads the samples' colours, which are those of nothing in columns that are not drawn.
+#[test]
+fn samples_beside_the_columns_that_are_drawn_are_seen_by_nobody() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut scene = scene();
+    // Glass across the borders of both eyes and their bands, before the wall.
+    for x in [-4.5, 1.5] {
+        quad(&mut scene.model, 3, Vec3::new(x, -0.5, -2.5), Vec3::X * 3.0, Vec3::Y);
+    }
+    let scene = GpuScene::upload(gl, scene).unwrap();
+    let renderer = Renderer::new(gl, &forward(), &scene).unwrap();
+    for dominant in Eye::BOTH {
+        for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+            let pair = pair(dominant, convention);
+            let views = pair.synthesis(GuardBand::Distance(0.2)).unwrap();
+            let of = |columns| of_columns(gl, (&renderer, &scene), &pair, &views, columns);
+            let whole = of(None);
+            // How far the nearest post may move in from beside, and a soft edge.
+            let seen = (pair.focal_length_pixels() * pair.ipd() / 1.4).ceil() as u32 + 1;
+            assert!(2 * seen < views.guard_columns);
+            for (band, expected) in [(2 * seen, 0), (0, seen)] {
+                let left_out = views.guard_columns - band;
+                let [width, source_width] = [SIZE[0], views.source.size[0]];
+                let is_left = views.warp.target_eye == Eye::Left;
+                let drawn = if is_left { [left_out, source_width] } else { [0, source_width - left_out] };
+                let part = of(Some(Columns { drawn, always: drawn }));
+                assert!(whole[0] == part[0], "{dominant:?}, {convention:?}, {band}: the rendered eye");
+                let from_border = |x: u32| if is_left { x } else { width - 1 - x };
+                let differing = whole[1].chunks(4).zip(part[1].chunks(4)).enumerate();
+                let differing = differing.filter(|(_, (a, b))| a != b);
+                let beyond = differing.map(|(i, _)| from_border(i as u32 % width) + 1).max().unwrap_or(0);
+                assert!(
+                    beyond <= expected && (beyond == 0) == (expected == 0),
+                    "{dominant:?}, {convention:?}, {band}: {beyond} columns of the other eye differ"
+                );
+            }
+        }
     }
     assert_eq!(gl.take_errors(), None);
 }
