@@ -7,37 +7,41 @@
 
 uniform G_SAMPLER normal_map;
 uniform vec4 kernel[SAMPLES / 2];  // points of a spiral in the unit disc
-uniform vec3 radius;               // metres, pixels at distance 1, most pixels
-uniform ivec2 columns;             // first and last that are always drawn: what lies beside them does not reach in
+uniform vec2 radius;               // pixels at distance 1, most pixels
+uniform vec4 falloff;              // of the radius in metres: its square, one over that, a hundredth of that, of itself
+uniform mat3 pixel_rays;           // through the middle of pixel (0, 0), at distance 1 along the axis; one more right; up
+uniform ivec3 bounds;              // first and last column always drawn: what lies beside does not reach in; last row
 
 layout(location = 0) out vec4 out_occlusion;
 
-float occlusion(ivec2 p, ivec2 size, float z) {
-    vec2 texel = 1.0 / vec2(size);
-    vec3 position = view_ray((vec2(p) + 0.5) * texel) * z;
+vec3 pixel_ray(ivec2 p) {
+    return pixel_rays[0] + float(p.x) * pixel_rays[1] + float(p.y) * pixel_rays[2];
+}
+
+float occlusion(ivec2 p, float z) {
+    vec3 position = pixel_ray(p) * z;
     vec3 normal = unpack_normal(G_TEXEL(normal_map, p).xyz);
 
-    float pixels = min(radius.y / z, radius.z);
+    float pixels = min(radius.x / z, radius.y);
     // One of sixteen rotations: the blur covers each once.
     ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
     float angle = float((cell.x * 4 + cell.y) * 7 & 15) * (6.2831853 / 16.0);
     vec2 axis = pixels * vec2(cos(angle), sin(angle));
     mat2 rotation = mat2(axis.x, axis.y, -axis.y, axis.x);
-    float r2 = radius.x * radius.x;
-    float bias = 0.01 * radius.x + 0.002 * z;
+    float bias = falloff.w + 0.002 * z;
     float sum = 0.0;
-    ivec2 lowest = ivec2(min(columns.x, p.x), 0);
-    ivec2 highest = ivec2(max(columns.y, p.x), size.y - 1);
+    ivec2 lowest = ivec2(min(bounds.x, p.x), 0);
+    ivec2 highest = ivec2(max(bounds.y, p.x), bounds.z);
     for (int i = 0; i < SAMPLES; ++i) {
         vec4 pair = kernel[i / 2];
         vec2 offset = rotation * ((i & 1) == 0 ? pair.xy : pair.zw);
         ivec2 q = clamp(p + ivec2(floor(offset + 0.5)), lowest, highest);
-        vec3 v = view_ray((vec2(q) + 0.5) * texel) * axis_distance(G_TEXEL(depth_map, q).x) - position;
+        vec3 v = pixel_ray(q) * axis_distance(G_TEXEL(depth_map, q).x) - position;
         float vv = dot(v, v);
-        float f = max(r2 - vv, 0.0) / r2;
-        sum += f * f * f * max((dot(v, normal) - bias) / (vv + 0.01 * r2), 0.0);
+        float f = max(falloff.x - vv, 0.0) * falloff.y;
+        sum += f * f * f * max((dot(v, normal) - bias) / (vv + falloff.z), 0.0);
     }
-    return max(1.0 - sum * (radius.x * STRENGTH / float(SAMPLES)), 0.0);
+    return max(1.0 - sum * (falloff.w * (100.0 * STRENGTH / float(SAMPLES))), 0.0);
 }
 
 // Whether any pixel is lit whose blur reads this texel.
@@ -60,12 +64,13 @@ bool is_wanted(ivec2 p, float depth) {
 }
 
 void main() {
-    ivec2 size = g_size();
-    ivec2 p = min(ivec2(gl_FragCoord.xy) * SCALE, size - 1);
+    ivec2 p = min(ivec2(gl_FragCoord.xy) * SCALE, g_size() - 1);
     float depth = G_TEXEL(depth_map, p).x;
     float z = axis_distance(depth);
-    out_occlusion = pack_occlusion(1.0, distance_code(z), false);
-    if (is_wanted(p, depth)) {
-        out_occlusion = pack_occlusion(occlusion(p, size, z), distance_code(z), true);
+    bool wanted = is_wanted(p, depth);
+    float open = 1.0;
+    if (wanted) {
+        open = occlusion(p, z);
     }
+    out_occlusion = pack_occlusion(open, distance_code(z), wanted);
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use glam::{IVec2, IVec4, Mat4, Vec2, Vec3, Vec4};
+use glam::{IVec2, IVec3, IVec4, Mat3, Mat4, Vec2, Vec3, Vec4};
 use glow::HasContext;
 use yoro_shaders::{Assembled, MissingFile};
 
@@ -194,10 +194,12 @@ uniform!(i32, |gl, l, v| gl.uniform_1_i32(Some(l), v));
 uniform!(u32, |gl, l, v| gl.uniform_1_u32(Some(l), v));
 uniform!(bool, |gl, l, v| gl.uniform_1_i32(Some(l), v as i32));
 uniform!(IVec2, |gl, l, v| gl.uniform_2_i32(Some(l), v.x, v.y));
+uniform!(IVec3, |gl, l, v| gl.uniform_3_i32(Some(l), v.x, v.y, v.z));
 uniform!(IVec4, |gl, l, v| gl.uniform_4_i32(Some(l), v.x, v.y, v.z, v.w));
 uniform!(Vec2, |gl, l, v| gl.uniform_2_f32(Some(l), v.x, v.y));
 uniform!(Vec3, |gl, l, v| gl.uniform_3_f32(Some(l), v.x, v.y, v.z));
 uniform!(Vec4, |gl, l, v| gl.uniform_4_f32(Some(l), v.x, v.y, v.z, v.w));
+uniform!(Mat3, |gl, l, v| gl.uniform_matrix_3_f32_slice(Some(l), false, v.as_ref()));
 uniform!(Mat4, |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, v.as_ref()));
 uniform!(&[IVec4], |gl, l, v| gl.uniform_4_i32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[IVec2], |gl, l, v| gl.uniform_2_i32_slice(Some(l), bytemuck::cast_slice(v)));

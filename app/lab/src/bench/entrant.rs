@@ -4,7 +4,7 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::process;
-use yoro::eyes::EyePair;
+use yoro::eyes::{EyePair, GuardBand};
 use yoro::gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
     self, GuardBandUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
@@ -15,6 +15,8 @@ use yoro_render::{PreparedScene, RenderSettings};
 pub struct Entrant {
     gl: Rc<Context>,
     method: Box<dyn StereoMethod>,
+    /// Frames at a new place until the method knows how wide its guard band has to be there.
+    unsettled: u32,
 }
 
 /// What one frame took.
@@ -37,11 +39,12 @@ impl Entrant {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<Entrant, GlError> {
-        Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)? })
+        // What it sees in the first frame it knows in the third.
+        let unsettled = if matches!(options.guard_band, GuardBand::Auto(_)) { 2 } else { 0 };
+        Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)?, unsettled })
     }
 
-    /// Renders a frame as the last of three alike, and waits for it: what a method sees in the first (how wide its guard
-    /// band has to be) it knows in the third.
+    /// Renders a frame at a new place, once the method has settled there, and waits for it.
     ///
     /// # Errors
     /// As [`StereoMethod::render`].
@@ -61,8 +64,9 @@ impl Entrant {
         pair: &EyePair,
         frame: &mut StereoFrame,
     ) -> Result<(), StereoError> {
-        self.render(prepared, pair, frame)?;
-        self.render(prepared, pair, frame)?;
+        for _ in 0..self.unsettled {
+            self.render(prepared, pair, frame)?;
+        }
         Ok(())
     }
 

@@ -3,10 +3,10 @@
 use std::f32::consts::TAU;
 use std::rc::Rc;
 
-use glam::{IVec2, Vec3, Vec4};
+use glam::{IVec3, Vec2, Vec4};
 
 use super::role::{Role, RoleKind};
-use super::uniforms::set_view;
+use super::uniforms::{pixel_rays, set_view};
 use yoro::eyes::View;
 use yoro::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
@@ -111,14 +111,17 @@ impl SsaoPass {
             self.gl.set_raster_state(&RasterState::SCREEN);
             let height = view.size[1] as f32;
             let pixels_at_1_m = self.radius * height / view.frustum.height();
+            let squared = self.radius * self.radius;
             targets.raw.bind();
             self.sample
                 .bind()
                 .texture_of("depth_map", 0, g_buffer.depth())
                 .texture_of("normal_map", 1, g_buffer.color(1))
                 .set("kernel", &self.kernel[..])
-                .set("columns", IVec2::new(always[0] as i32, always[1] as i32 - 1))
-                .set("radius", Vec3::new(self.radius, pixels_at_1_m, 0.12 * height));
+                .set("bounds", IVec3::new(always[0] as i32, always[1] as i32 - 1, view.size[1] as i32 - 1))
+                .set("radius", Vec2::new(pixels_at_1_m, 0.12 * height))
+                .set("falloff", Vec4::new(squared, 1.0 / squared, 0.01 * squared, 0.01 * self.radius))
+                .set("pixel_rays", pixel_rays(view));
             set_view(&self.sample, view);
             role.set(&self.sample, view);
             self.gl.draw_screen();

@@ -1,6 +1,6 @@
 //! Uniforms that several passes share.
 
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 
 use super::cluster::Culler;
 use super::settings::MAX_POINT_LIGHTS;
@@ -40,6 +40,15 @@ pub fn set_view(program: &Program, view: &View) {
         .set("ray_height", axes(Vec3::Y * f.height()))
         .set("inverse_distance", Vec2::new(c as f32, m as f32))
         .set("far_depth", view.depth.clear_value());
+}
+
+/// Rays at distance 1 along the viewing axis, along the world's axes: through the middle of the lower left pixel, and what
+/// the next pixel to the right and the next one above add.
+pub fn pixel_rays(view: &View) -> Mat3 {
+    let f = &view.frustum;
+    let [right, up] = [f.width() / view.size[0] as f32, f.height() / view.size[1] as f32];
+    let corner = Vec3::new(f.left + 0.5 * right, f.bottom + 0.5 * up, -1.0);
+    Mat3::from_quat(view.pose.orientation) * Mat3::from_cols(corner, Vec3::X * right, Vec3::Y * up)
 }
 
 /// The point lights of one view, or of both eyes, strongest first.

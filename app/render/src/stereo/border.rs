@@ -257,7 +257,10 @@ mod tests {
     fn a_turn_brings_to_the_border_what_was_beside_it() {
         // A degree at a border 30 degrees off the middle: 20.6 columns, and less at its ends.
         let motion = at(Pose::IDENTITY).motion_to(&at(turned(-1.0))).unwrap();
-        assert!((motion.turned[0] - 20.6).abs() < 0.4 && motion.turned[1] - motion.turned[0] < 0.4, "{motion:?}");
+        assert!(
+            (motion.turned[0] - 20.6).abs() < 0.4 && motion.turned[1] - motion.turned[0] < 0.4,
+            "{motion:?}"
+        );
         let left = border(Pose::IDENTITY, Eye::Left).motion_to(&border(turned(1.0), Eye::Left)).unwrap();
         assert!((motion.turned[0] - left.turned[0]).abs() < 1e-2, "{left:?}");
         // Seen ten columns within the picture, and outside of it after a turn to the other side.
@@ -306,7 +309,8 @@ mod tests {
     fn other_eyes_and_leaps_tell_nothing() {
         let seen = |now: Border| profile(56, |_| 9.0).seen(&now);
         assert_eq!(seen(Border { focal_length: 800.0, ..at(Pose::IDENTITY) }), None);
-        for far in [turned(4.0), turned(-4.0), turned(90.0), turned(180.0), moved(0.1, 0.0), moved(0.0, -1.0)] {
+        for far in [turned(4.0), turned(-4.0), turned(90.0), turned(180.0), moved(0.1, 0.0), moved(0.0, -1.0)]
+        {
             assert_eq!(seen(at(far)), None, "{far:?}");
         }
         let mut width = Width::default();
@@ -323,7 +327,10 @@ mod tests {
         assert_eq!([(); HOLD].map(|()| next(20.0)), [34, 34, 34, 34, 34, 34, 24, 24]);
         assert_eq!(next(99.0), 56);
         let widths = [(); 2 * LOOK_EVERY as usize].map(|()| next(0.0));
-        assert_eq!(widths.iter().filter(|columns| **columns == LEAST).count(), 2 * LOOK_EVERY as usize - 7 - 2);
+        assert_eq!(
+            widths.iter().filter(|columns| **columns == LEAST).count(),
+            2 * LOOK_EVERY as usize - 7 - 2
+        );
     }
 
     #[test]
@@ -340,6 +347,9 @@ mod tests {
             texels[at * 4 + 2..at * 4 + 4].copy_from_slice(&300u16.to_le_bytes());
         }
         let profile = Profile::read(&texels, rest, 14, 2).unwrap();
-        assert_eq!((profile.undrawn, profile.disparities[1], profile.disparities[2]), (600, rest.far, 10.0 + rest.far));
+        assert_eq!(
+            (profile.undrawn, profile.disparities[1], profile.disparities[2]),
+            (600, rest.far, 10.0 + rest.far)
+        );
     }
 }
