@@ -7,7 +7,7 @@ uniform sampler2D depth_map;
 uniform bool mirrored;
 uniform int guard;      // columns of the guard band
 uniform int first;      // first column that is drawn
-uniform int step;       // columns to a texel
+uniform int columns;    // to a texel
 uniform vec2 law;       // disparity of a depth in pixels, 0 at the far plane: law.x + law.y * depth
 uniform float beyond;   // disparity at which a surface reaches the other eye's border from column `guard`
 
@@ -20,8 +20,8 @@ const float UNIT = 16.0;  // of disparity, to a pixel
 void main() {
     ivec2 cell = ivec2(gl_FragCoord.xy);
     ivec2 size = textureSize(depth_map, 0);
-    int begin = min(first + cell.x * step, size.x);
-    int end = min(begin + step, size.x);
+    int begin = min(first + cell.x * columns, size.x);
+    int end = min(begin + columns, size.x);
     int top = (cell.y + 1) * size.y / BANDS;
     float nearest = 0.0;
     float undrawn = 0.0;
@@ -33,7 +33,7 @@ void main() {
             // A surface that goes on beyond the outermost column that is drawn, seen as far as it moves in.
             if (x == first) {
                 float seen = min(disparity - beyond, float(guard)) - float(guard - first);
-                undrawn += first > 0 ? float(ROWS) * max(seen, 0.0) : 0.0;
+                undrawn += first > 0 ? max(seen, 0.0) : 0.0;
             }
         }
     }

@@ -15,7 +15,7 @@ use yoro_render::{PreparedScene, RenderSettings};
 pub struct Entrant {
     gl: Rc<Context>,
     method: Box<dyn StereoMethod>,
-    /// Frames at a new place until the method knows how wide its guard band has to be there.
+    /// Frames at a new place until the method has settled there.
     unsettled: u32,
 }
 
@@ -39,8 +39,9 @@ impl Entrant {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<Entrant, GlError> {
-        // What it sees in the first frame it knows in the third.
-        let unsettled = if matches!(options.guard_band, GuardBand::Auto(_)) { 2 } else { 0 };
+        // What it sees in the first frame, how wide its guard band has to be or that all is near, it knows in the third.
+        let looks = matches!(options.guard_band, GuardBand::Auto(_)) || options.policy.is_some();
+        let unsettled = if method == Method::Yoro && looks { 2 } else { 0 };
         Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)?, unsettled })
     }
 

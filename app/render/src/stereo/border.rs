@@ -19,8 +19,14 @@ const HOLD: usize = 8;
 /// All of the band is drawn once in so many frames: what is near and lies wholly outside of what is drawn is seen by
 /// nobody else.
 const LOOK_EVERY: u32 = 30;
+/// One row of so many is looked at.
+const ROWS: u32 = 2;
+/// The head was put elsewhere, rather than moved, if it moved by so many times the distance between the eyes.
+const LEAP: f32 = 2.0;
 /// No surface is taken to have come nearer than to this part of its distance.
 const APPROACH: f32 = 0.25;
+/// The range of no number.
+const NOTHING: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// The border at which the band lies, and the eyes' geometry as far as things move along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,13 +51,16 @@ pub(super) struct Border {
     ipd: f32,
 }
 
-/// How surfaces at the border have moved from one frame to another, in columns outwards.
+/// How surfaces at the border have moved from one frame to another, in columns outwards: the least and the most of those
+/// up and down the border and as far out and in as the band is wide.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
-    /// Least and most at infinity, up and down the border.
+    /// At infinity.
     turned: [f32; 2],
     /// More for each pixel of the disparity that they have now.
-    along: f32,
+    along: [f32; 2],
+    /// How much turning has made of a disparity, at most.
+    turning: f32,
     /// How much nearer they are: disparity over what it was, less one, for each pixel of it.
     nearer: f32,
 }
@@ -92,37 +101,45 @@ impl Border {
         }
         let turn = now.pose.orientation.inverse() * self.pose.orientation;
         let moved = self.pose.orientation.inverse() * (now.pose.position - self.pose.position);
-        let mut turned = [f32::INFINITY, f32::NEG_INFINITY];
-        for height in [self.down, 0.5 * (self.down + self.up), self.up] {
-            let direction = turn * Vec3::new(self.side * self.outwards, height, -1.0);
-            let tangent = self.side * direction.x / -direction.z;
-            let columns = self.focal_length * (tangent - self.outwards);
-            turned = [turned[0].min(columns), turned[1].max(columns)];
-            if direction.z >= 0.0 || columns.abs() > self.guard_columns as f32 {
-                return None;
+        if moved.length() > LEAP * self.ipd {
+            return None;
+        }
+        let forward = -moved.z;
+        let nearer = forward / (self.focal_length * self.ipd);
+        let mut motion = Motion { turned: NOTHING, along: NOTHING, turning: 1.0, nearer };
+        let most = self.guard_columns as f32;
+        for column in [-most, 0.0, most] {
+            let outwards = self.outwards + column / self.focal_length;
+            widen(&mut motion.along, (outwards * forward - self.side * moved.x) / self.ipd);
+            for height in [self.down, 0.5 * (self.down + self.up), self.up] {
+                let direction = turn * Vec3::new(self.side * outwards, height, -1.0);
+                let columns = self.focal_length * (self.side * direction.x / -direction.z - outwards);
+                if direction.z > -APPROACH || columns.abs() > most {
+                    return None;
+                }
+                widen(&mut motion.turned, columns);
+                motion.turning = motion.turning.max(-1.0 / direction.z);
             }
         }
-        // Neither is more than a band's width for the nearest surface that the band is made for.
-        let forward = -moved.z;
-        let along = (self.outwards * forward - self.side * moved.x) / self.ipd;
-        let nearer = forward / (self.focal_length * self.ipd);
-        (along.abs() <= 1.0).then_some(Motion { turned, along, nearer })
+        Some(motion)
     }
 }
 
+fn widen(range: &mut [f32; 2], by: f32) {
+    *range = [range[0].min(by), range[1].max(by)];
+}
+
 impl Motion {
-    /// Least and most columns that surfaces as near as this or farther have moved. Those that are not at the border itself
-    /// do not move quite as those that are.
+    /// Least and most columns that surfaces as near as this or farther have moved.
     fn columns(&self, disparity: f32) -> [f32; 2] {
-        let along = self.along * self.disparity(disparity);
-        let [least, most] = [self.turned[0] + along.min(0.0), self.turned[1] + along.max(0.0)];
-        let error = least.abs().max(most.abs()) / 8.0;
-        [least - error, most + error]
+        let now = self.disparity(disparity);
+        let along = self.along.map(|along| along * now);
+        [self.turned[0] + along[0].min(0.0), self.turned[1] + along[1].max(0.0)]
     }
 
     /// What a disparity has become.
     fn disparity(&self, disparity: f32) -> f32 {
-        disparity / (1.0 - self.nearer * disparity).max(APPROACH)
+        self.turning * disparity / (1.0 - self.nearer * disparity).max(APPROACH)
     }
 }
 
@@ -148,7 +165,7 @@ impl Profile {
             let units = u16::from_le_bytes([texel[0], texel[1]]).checked_sub(1)?;
             let disparity = &mut profile.disparities[i % CELLS];
             *disparity = disparity.max(f32::from(units) / UNIT + border.far);
-            profile.undrawn += u32::from(u16::from_le_bytes([texel[2], texel[3]]));
+            profile.undrawn += ROWS * u32::from(u16::from_le_bytes([texel[2], texel[3]]));
         }
         Some(profile)
     }
@@ -158,24 +175,24 @@ impl Profile {
         let motion = self.border.motion_to(now)?;
         let (step, drawn) = (self.step as f32, self.drawn as f32);
         let beyond = self.border.beyond + self.border.far;
+        let reach = |before: f32| motion.disparity(before) - beyond + 1.0;
         let mut seen = 0f32;
         let mut edge = 0f32;
         for (i, &before) in self.disparities.iter().enumerate() {
             // This cell reaches so far out, and is seen so far.
             let out = drawn - i as f32 * step;
             let [least, most] = motion.columns(before);
-            let reach = motion.disparity(before) - beyond + 1.0;
-            if out - step + 1.0 + least < reach {
-                seen = seen.max(reach.min(out + most));
+            if out - step + 1.0 + least < reach(before) {
+                seen = seen.max(reach(before).min(out + most));
             }
             if 2.0 * i as f32 * step < self.border.guard_columns as f32 {
-                edge = edge.max(reach);
+                edge = edge.max(before);
             }
         }
         // What was not drawn is taken to be as near as what was, up to half a band's width beside it.
         let [unknown, _] = motion.columns(edge);
-        if drawn + unknown < edge.min(self.border.guard_columns as f32) {
-            seen = seen.max(edge);
+        if drawn + unknown < reach(edge).min(self.border.guard_columns as f32) {
+            seen = seen.max(reach(edge));
         }
         Some(seen.ceil() as u32)
     }
@@ -201,7 +218,8 @@ impl Width {
         if self.frames.is_multiple_of(LOOK_EVERY) {
             return now.guard_columns;
         }
-        self.asked.into_iter().max().unwrap_or(now.guard_columns)
+        // Another band may be narrower.
+        self.asked.into_iter().fold(least, u32::max).min(now.guard_columns)
     }
 }
 
@@ -209,7 +227,7 @@ impl Width {
 mod tests {
     use super::*;
     use glam::Quat;
-    use yoro::eyes::{EyeOptions, GuardBand};
+    use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, Frustum, GuardBand};
 
     const LEAST: u32 = 14;
 
@@ -254,13 +272,31 @@ mod tests {
     }
 
     #[test]
+    fn where_the_frusta_differ_infinity_is_beyond_the_border() {
+        // The rendered eye sees a tenth of a tangent, 88.7 columns, further out than the other.
+        let mut pair = EyeOptions::default().pair(Pose::IDENTITY);
+        let shifted = |f: Frustum, by: f32| Frustum { left: f.left + by, right: f.right + by, ..f };
+        pair.frusta = [shifted(pair.frusta[0], 0.05), shifted(pair.frusta[1], -0.05)];
+        for (convention, far) in
+            [(DepthConvention::Standard, 100.0), (DepthConvention::Reversed, f32::INFINITY)]
+        {
+            pair.depth = DepthRange { near: 0.1, far, convention };
+            let border = Border::new(&pair, &pair.synthesis(GuardBand::Distance(1.0)).unwrap());
+            let beyond = border.beyond + border.far;
+            assert!((beyond - 0.1 * border.focal_length).abs() < 1.1, "{border:?}");
+            let seen =
+                |disparity: f32| Profile { border, ..profile(56, |_| disparity) }.seen(&border).unwrap();
+            let near = seen(beyond + 20.0);
+            assert!(seen(beyond - 2.0) == 0 && (20..=21).contains(&near), "{near}: {border:?}");
+        }
+    }
+
+    #[test]
     fn a_turn_brings_to_the_border_what_was_beside_it() {
         // A degree at a border 30 degrees off the middle: 20.6 columns, and less at its ends.
         let motion = at(Pose::IDENTITY).motion_to(&at(turned(-1.0))).unwrap();
-        assert!(
-            (motion.turned[0] - 20.6).abs() < 0.4 && motion.turned[1] - motion.turned[0] < 0.4,
-            "{motion:?}"
-        );
+        let [least, most] = motion.turned;
+        assert!((0.5 * (least + most) - 20.6).abs() < 0.4 && most - least < 4.0, "{motion:?}");
         let left = border(Pose::IDENTITY, Eye::Left).motion_to(&border(turned(1.0), Eye::Left)).unwrap();
         assert!((motion.turned[0] - left.turned[0]).abs() < 1e-2, "{left:?}");
         // Seen ten columns within the picture, and outside of it after a turn to the other side.
@@ -271,10 +307,13 @@ mod tests {
         // And what was outside comes in.
         let seen = post([40, 44], 30.0).seen(&at(turned(1.0))).unwrap();
         assert!((23..=28).contains(&seen), "{seen}");
-        // A nod or a roll moves the ends of the border.
+        // A nod moves nothing much, and a roll the ends of the border.
+        let nod = Pose { orientation: Quat::from_rotation_x(0.02), ..Pose::IDENTITY };
+        let motion = at(Pose::IDENTITY).motion_to(&at(nod)).unwrap();
+        assert!(motion.turned[0] > -8.0 && motion.turned[1] < 8.0, "{motion:?}");
         let roll = Pose { orientation: Quat::from_rotation_z(0.02), ..Pose::IDENTITY };
         let motion = at(Pose::IDENTITY).motion_to(&at(roll)).unwrap();
-        assert!((motion.turned[1] - 10.2).abs() < 0.5 && (motion.turned[0] + 10.2).abs() < 0.5, "{motion:?}");
+        assert!((motion.turned[1] - 10.2).abs() < 1.0 && (motion.turned[0] + 10.2).abs() < 1.0, "{motion:?}");
     }
 
     #[test]
@@ -282,11 +321,14 @@ mod tests {
         let rest = at(Pose::IDENTITY);
         // Half the distance between the eyes to the right: half a disparity to the left, which is outwards.
         let motion = rest.motion_to(&at(moved(0.0315, 0.0))).unwrap();
-        assert!((motion.along - 0.5).abs() < 1e-3 && motion.turned[1].abs() < 1e-3, "{motion:?}");
+        let half = |motion: Motion| motion.along.map(|along| (along * 1e3).round() / 1e3);
+        assert!(half(motion) == [0.5; 2] && motion.turned[1].abs() < 1e-3, "{motion:?}");
+        let left = border(Pose::IDENTITY, Eye::Left).motion_to(&border(moved(0.0315, 0.0), Eye::Left));
+        assert_eq!(half(left.unwrap()), [-0.5; 2]);
         // Five centimetres towards a surface at 1 m.
         let motion = rest.motion_to(&at(moved(0.0, -0.05))).unwrap();
         let disparity = rest.focal_length * 0.063;
-        assert!((motion.disparity(disparity) - disparity / 0.95).abs() < 0.01, "{motion:?}");
+        assert!((motion.disparity(disparity) - disparity / 0.95).abs() < 0.02, "{motion:?}");
         let direction = Vec3::new(-(30f32.to_radians().tan()), 0.0, -1.0) + Vec3::Z * 0.05;
         let columns = rest.focal_length * (direction.x / direction.z - 30f32.to_radians().tan());
         let [least, most] = motion.columns(disparity);
@@ -309,10 +351,14 @@ mod tests {
     fn other_eyes_and_leaps_tell_nothing() {
         let seen = |now: Border| profile(56, |_| 9.0).seen(&now);
         assert_eq!(seen(Border { focal_length: 800.0, ..at(Pose::IDENTITY) }), None);
-        for far in [turned(4.0), turned(-4.0), turned(90.0), turned(180.0), moved(0.1, 0.0), moved(0.0, -1.0)]
+        for far in [turned(4.0), turned(-4.0), turned(90.0), turned(180.0), moved(0.2, 0.0), moved(0.0, -1.0)]
         {
             assert_eq!(seen(at(far)), None, "{far:?}");
         }
+        let up = Pose { position: Vec3::Y, ..Pose::IDENTITY };
+        // Along the border's own direction.
+        let slanting = Pose { position: Vec3::new(-0.577, 0.0, -1.0), ..Pose::IDENTITY };
+        assert_eq!([up, slanting].map(|pose| seen(at(pose))), [None, None]);
         let mut width = Width::default();
         assert_eq!(width.next(None, &at(Pose::IDENTITY), LEAST), 56);
         assert_eq!(width.next(Some(&profile(56, |_| 20.0)), &at(turned(90.0)), LEAST), 56);
@@ -326,11 +372,14 @@ mod tests {
         assert_eq!([20.0, 30.0, 20.0].map(&mut next), [24, 34, 34]);
         assert_eq!([(); HOLD].map(|()| next(20.0)), [34, 34, 34, 34, 34, 34, 24, 24]);
         assert_eq!(next(99.0), 56);
+        // A narrower band, of an earlier frame of its own.
+        let narrow = Border { guard_columns: 40, ..rest };
+        let other = Profile { border: narrow, ..profile(40, |_| 0.0) };
+        assert_eq!(width.next(Some(&other), &narrow, LEAST), 40);
+        let mut width = Width::default();
+        let mut next = |disparity: f32| width.next(Some(&profile(56, |_| disparity)), &rest, LEAST);
         let widths = [(); 2 * LOOK_EVERY as usize].map(|()| next(0.0));
-        assert_eq!(
-            widths.iter().filter(|columns| **columns == LEAST).count(),
-            2 * LOOK_EVERY as usize - 7 - 2
-        );
+        assert_eq!(widths.iter().filter(|columns| **columns == LEAST).count(), 2 * LOOK_EVERY as usize - 2);
     }
 
     #[test]
@@ -341,15 +390,13 @@ mod tests {
         for texel in texels.chunks_exact_mut(4) {
             texel.copy_from_slice(&[1, 0, 0, 0]);
         }
-        // Ten pixels in the third cell of two bands of rows, eight elsewhere; a few pixels left undrawn.
-        for (at, units) in [(2, 160u16), (CELLS + 2, 128)] {
+        // Forty pixels in the third cell of a band of rows, eight in the next band; a few pixels left undrawn.
+        for (at, units) in [(2, 640u16), (CELLS + 2, 128)] {
             texels[at * 4..at * 4 + 2].copy_from_slice(&(units + 1).to_le_bytes());
             texels[at * 4 + 2..at * 4 + 4].copy_from_slice(&300u16.to_le_bytes());
         }
         let profile = Profile::read(&texels, rest, 14, 2).unwrap();
-        assert_eq!(
-            (profile.undrawn, profile.disparities[1], profile.disparities[2]),
-            (600, rest.far, 10.0 + rest.far)
-        );
+        assert_eq!(profile.undrawn, 2 * 300 * ROWS);
+        assert_eq!(profile.disparities[1..3], [rest.far, 40.0 + rest.far]);
     }
 }

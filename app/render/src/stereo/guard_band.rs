@@ -15,14 +15,14 @@ use yoro::synthesis::Uniforms;
 const BYTES: usize = CELLS * BANDS * 4;
 /// This part of the band is drawn in every frame: what reaches far, ambient occlusion and bloom, stops there, and must not
 /// stop anywhere else in the next frame.
-const LEAST: u32 = 4;
+const PART: u32 = 4;
 /// It has as many columns at least: beside its own a pixel that is shown may depend on those that filters reach, of ambient
 /// occlusion at half size (5) and of FXAA (4).
 const REACH: u32 = 10;
 
 /// Columns of a band that are drawn in every frame.
 fn least(guard_columns: u32) -> u32 {
-    guard_columns.div_ceil(LEAST).max(REACH).min(guard_columns)
+    guard_columns.div_ceil(PART).max(REACH).min(guard_columns)
 }
 
 /// Decides and measures.
@@ -31,8 +31,8 @@ pub(super) struct AutoGuardBand {
     program: Program,
     readback: Readback<Frame>,
     width: Width,
-    /// Columns that the frame draws.
-    drawn: u32,
+    /// The frame that is being rendered.
+    frame: Option<Frame>,
     last: Option<GuardBandUse>,
 }
 
@@ -40,6 +40,7 @@ pub(super) struct AutoGuardBand {
 struct Frame {
     border: Border,
     drawn: u32,
+    /// Columns to a texel of its profile.
     step: u32,
 }
 
@@ -50,7 +51,7 @@ impl AutoGuardBand {
             program: Program::new(gl, ShaderSource::Screen("stereo/border_profile.frag"), &[])?,
             readback: Readback::new(gl, [CELLS as u32, BANDS as u32])?,
             width: Width::default(),
-            drawn: 0,
+            frame: None,
             last: None,
         })
     }
@@ -67,23 +68,23 @@ impl AutoGuardBand {
             undrawn: profile.undrawn,
         });
         let guard = views.guard_columns;
-        self.drawn = self.width.next(profile.as_ref(), &border, least(guard));
+        let drawn = self.width.next(profile.as_ref(), &border, least(guard));
+        // As far into the picture as the band is wide: what turns out of it comes from there.
+        self.frame = Some(Frame { border, drawn, step: (drawn + guard).div_ceil(CELLS as u32) });
         let without = |left_out: u32| match views.warp.target_eye {
             Eye::Left => [left_out, views.source.size[0]],
             Eye::Right => [0, views.source.size[0] - left_out],
         };
-        Columns { drawn: without(guard - self.drawn), always: without(guard - least(guard)) }
+        Columns { drawn: without(guard - drawn), always: without(guard - least(guard)) }
     }
 
-    /// Starts to measure a frame's depth.
-    pub(super) fn measure(&mut self, depth: &Texture, pair: &EyePair, views: &SynthesisViews) {
-        if views.guard_columns == 0 {
+    /// Starts to measure the frame that [`AutoGuardBand::columns`] was for.
+    pub(super) fn measure(&mut self, depth: &Texture, views: &SynthesisViews) {
+        let Some(frame) = self.frame.take().filter(|frame| frame.border.guard_columns > 0) else {
+            self.readback.forget();
             return;
-        }
-        let border = Border::new(pair, views);
+        };
         let warp = Uniforms::new(&views.warp, [0, 0]);
-        // As far into the picture as the band is wide: what turns out of it comes from there.
-        let step = (self.drawn + views.guard_columns).div_ceil(CELLS as u32);
         self.gl.pass("border profile", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.readback.image().bind();
@@ -92,12 +93,12 @@ impl AutoGuardBand {
                 .texture("depth_map", 0, depth.raw())
                 .set("mirrored", warp.mirrored)
                 .set("guard", views.guard_columns as i32)
-                .set("first", (views.guard_columns - self.drawn) as i32)
-                .set("step", step as i32)
+                .set("first", (views.guard_columns - frame.drawn) as i32)
+                .set("columns", frame.step as i32)
                 .set("law", warp.law - glam::Vec2::X * warp.far_displacement)
-                .set("beyond", border.beyond);
+                .set("beyond", frame.border.beyond);
             self.gl.draw_screen();
-            self.readback.start(Frame { border, drawn: self.drawn, step });
+            self.readback.start(frame);
         });
     }
 
@@ -109,6 +110,7 @@ impl AutoGuardBand {
     /// Forgets what was seen: a frame goes by without the band.
     pub(super) fn interrupt(&mut self) {
         self.readback.forget();
+        self.frame = None;
         self.last = None;
         self.width = Width::default();
     }

@@ -93,8 +93,8 @@ pub trait StereoMethod {
         Ok(())
     }
 
-    /// The use of the guard band in the newest frame that is measured by now, the one before the last. None for methods and settings that always
-    /// draw all of it, and before anything was measured.
+    /// The use of the guard band two frames before the last one that was rendered, which is measured by now. None for methods
+    /// and settings that always draw all of it, and before anything was measured.
     fn guard_band(&self) -> Option<GuardBandUse> {
         None
     }

@@ -184,7 +184,7 @@ impl Yoro {
             synthesis.synthesize(source, &views.warp, &Destination::whole(image))?;
         }
         if let Some(auto) = &mut self.auto_guard_band {
-            auto.measure(self.targets.depth(), pair, views);
+            auto.measure(self.targets.depth(), views);
         }
         Ok(())
     }

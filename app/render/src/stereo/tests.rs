@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::near_field::{DepthMap, NearFraction};
 use super::*;
@@ -252,6 +252,41 @@ fn a_band_as_wide_as_it_must_be_gives_the_picture_of_a_whole_one() {
                 assert!(share > 0.999, "{:?}, {dominant:?}: {share}", settings.renderer);
             }
         }
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn a_head_that_moves_sees_what_a_whole_band_shows() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut rig = Rig::new(gl, &local());
+    let whole = StereoOptions { guard_band: GuardBand::Distance(0.2), ..StereoOptions::default() };
+    for (dominant, sense) in [(Eye::Left, 1.0), (Eye::Left, -1.0), (Eye::Right, 1.0), (Eye::Right, -1.0)] {
+        let [mut whole, mut auto] =
+            [whole, auto_band()].map(|options| Yoro::new(gl, &local(), &options).unwrap());
+        let mut narrow = 0;
+        for frame in 0..20 {
+            // 0.4 degrees and 3 mm a frame.
+            let by = sense * frame as f32;
+            let pose = Pose {
+                position: Vec3::new(0.003 * by, 0.0, -0.002 * frame as f32),
+                orientation: Quat::from_rotation_y(0.007 * by),
+            };
+            let still = pair(dominant, DepthConvention::Standard);
+            let moved = EyePair::parallel(pose, still.frusta[0], still.ipd(), still.depth, SIZE, dominant);
+            let expected = rig.render(&mut whole, &moved);
+            let images = rig.render(&mut auto, &moved);
+            let [rendered, other] = [dominant, dominant.other()].map(Eye::index);
+            assert!(images[rendered] == expected[rendered], "{dominant:?}, frame {frame}");
+            let share = equal_share(&images[other], &expected[other]);
+            assert!(share > 0.999, "{dominant:?}, {sense}, frame {frame}: {share}");
+            if let Some(used) = auto.guard_band() {
+                assert_eq!(used.undrawn, 0, "{dominant:?}, {sense}, frame {frame}");
+                narrow += u32::from(used.columns < used.most);
+            }
+        }
+        assert!(narrow > 12, "{dominant:?}, {sense}: {narrow} frames drew less than the whole band");
     }
     assert_eq!(gl.take_errors(), None);
 }
