@@ -139,8 +139,9 @@ impl Player {
                     if self.finish_asked() {
                         return;
                     }
-                    self.host.frames.grant(1);
+                    // Counted before it is granted: it may be shown at once.
                     let shown = self.host.frames.shown();
+                    self.host.frames.grant(1);
                     self.wait("a frame, or the application's wish to finish", |host| {
                         host.frames.shown() > shown || host.finish_asked.load(Ordering::Acquire)
                     });
