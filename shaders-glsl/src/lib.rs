@@ -83,8 +83,6 @@ static FILES: &[(&str, &str)] = embed![
     "synthesis/paper/patch.frag",
     "synthesis/paper/reproject.frag",
     "synthesis/paper/scatter.comp",
-    "synthesis/rowgroup/resolve.frag",
-    "synthesis/rowgroup/scatter.comp",
     "viewer/hud.frag",
     "viewer/lens.frag",
     "viewer/lens.vert",

@@ -43,7 +43,6 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
         "shading-reprojection",
         "mono",
         "yoro-gather",
-        "yoro-rowgroup",
         "yoro-paper",
     ] {
         // Nobody is missing without a reason.

@@ -8,7 +8,7 @@ use image::RgbImage;
 use yoro_lab::picture;
 
 use crate::pair;
-use crate::program::{finish, run, succeed, yoro};
+use crate::program::{finish, run, yoro};
 
 fn color_and_depth(dir: &Path) {
     picture::save_color(&dir.join("color.png"), &pair::color(0.5)).unwrap();
@@ -115,6 +115,8 @@ fn options_out_of_range() {
         ("render prototype --fov-y-degrees 190", &["--fov-y-degrees", "1 to 170"]),
         ("render prototype --frames 0", &["--frames"]),
         ("render prototype --pipeline magic", &["--pipeline", "gather"]),
+        ("render prototype --pipeline rowgroup", &["--pipeline", "was taken out", "choose gather"]),
+        ("view prototype --set pipeline=rowgroup", &["pipeline", "was taken out", "choose gather"]),
         ("render prototype --imbuffer 0", &["--imbuffer", "512x512"]),
         ("render prototype --position 1,2", &["--position", "three numbers"]),
         ("render prototype --half-angles-degrees 95,10", &["--half-angles-degrees", "1 to 85"]),
@@ -123,7 +125,7 @@ fn options_out_of_range() {
         ("rendr prototype", &["rendr", "render"]),
         ("synthesize --color color.png --depth depth.png --out o.png --near 5 --far 1", &["--near 5"]),
         (
-            "synthesize --color color.png --depth depth.png --out o.png --pipeline rowgroup --edges nearest",
+            "synthesize --color color.png --depth depth.png --out o.png --pipeline paper --edges nearest",
             &["one sample per pixel", "gather"],
         ),
         ("synthesize --color color.png --depth depth.png --out o.png --depth-gamma 0", &["--depth-gamma"]),
@@ -155,25 +157,6 @@ fn no_gl_at_all() {
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         assert!(run.stdout.contains("osmesa: "), "{}", run.stdout);
     }
-}
-
-#[test]
-fn rows_too_long_for_the_rowgroup_pipeline() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
-    let egl = &succeed(at, "info --gl egl --json").json()["egl"];
-    let number = |name: &str| egl[name].as_u64().unwrap() as u32;
-    let width = number("max_compute_shared_memory") / 4 + 64;
-    if width > number("max_texture_size").min(picture::MAX_SIZE) {
-        eprintln!("no picture is too wide for the shared memory of this driver");
-        return;
-    }
-    picture::save_color(&at.join("color.png"), &RgbImage::new(width, 4)).unwrap();
-    picture::save_gray(&at.join("depth.png"), &image::GrayImage::new(width, 4)).unwrap();
-    let line = "synthesize --gl egl --color color.png --depth depth.png --out out.png --pipeline";
-    run(at, &format!("{line} rowgroup")).refuses(&[&width.to_string(), "shared memory", "pipeline gather"]);
-    assert!(!at.join("out.png").exists());
-    succeed(at, &format!("{line} gather"));
 }
 
 #[test]

@@ -11,7 +11,7 @@ fn a_report_of_every_method() {
     let json = succeed(dir.path(), "run prototype --viewpoints 1 --size 96x96 --json").json();
     let scene = &json["scenes"][0];
     assert!(scene.to_string().contains("prototype"), "{json:#}");
-    for method in ["conventional", "gather", "rowgroup", "paper"] {
+    for method in ["conventional", "gather", "paper"] {
         assert!(scene.to_string().to_lowercase().contains(method), "{method}: {json:#}");
     }
     let page = fs::read_to_string(dir.path().join("out/report.html")).unwrap();

@@ -81,9 +81,7 @@ fn every_pipeline_and_either_eye() {
     for (dominant, source, target) in [("right", 0.5, -0.5), ("left", -0.5, 0.5)] {
         picture::save_color(&dir.path().join("color.png"), &pair::color(source)).unwrap();
         picture::save_depth(&dir.path().join("depth.exr"), &pair::metres(source)).unwrap();
-        for pipeline in
-            ["gather", "rowgroup", "paper", "paper --imbuffer 2", "paper --strict", "gather --gl osmesa"]
-        {
+        for pipeline in ["gather", "paper", "paper --imbuffer 2", "paper --strict", "gather --gl osmesa"] {
             if pipeline.ends_with("osmesa") && std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some() {
                 continue;
             }

@@ -71,11 +71,11 @@ fn on_es(version: &str, folder: &Path, line: &str) -> Run {
 #[test]
 fn opengl_es_3_0_shows_the_same_by_gather() {
     let dir = tempfile::tempdir().unwrap();
-    let es = on_es("3.0", dir.path(), "--set pipeline=rowgroup");
+    let es = on_es("3.0", dir.path(), "--set pipeline=paper");
     assert_eq!(es.code, Some(0), "{}", es.stderr);
     let warnings: Vec<_> = es.stderr.lines().collect();
     assert!(
-        matches!(warnings.as_slice(), [line] if line.contains("rowgroup") && line.contains("gather")),
+        matches!(warnings.as_slice(), [line] if line.contains("paper") && line.contains("gather")),
         "{warnings:?}"
     );
     let image = picture::load_color(&dir.path().join("es.png")).unwrap();

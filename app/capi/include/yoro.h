@@ -527,23 +527,6 @@ typedef uint32_t YoroApi;
 #define YORO_API_VULKAN 2
 
 /**
- * Which way the other eye is synthesized.
- */
-typedef uint32_t YoroPipeline;
-/**
- * Fragment shaders; for every driver, and the one to begin with.
- */
-#define YORO_PIPELINE_GATHER 0
-/**
- * Compute shaders: one workgroup a row.
- */
-#define YORO_PIPELINE_ROWGROUP 1
-/**
- * Compute shaders: Algorithms 1 to 3 of the paper.
- */
-#define YORO_PIPELINE_PAPER 2
-
-/**
  * What a YoroContext runs on, and what it takes.
  */
 typedef struct {
@@ -564,11 +547,11 @@ typedef struct {
    */
   uint32_t api_minor;
   /**
-   * How it synthesizes.
+   * Zero.
    */
-  YoroPipeline pipeline;
+  uint32_t reserved;
   /**
-   * 1 where compute shaders are there, which all pipelines but YORO_PIPELINE_GATHER need.
+   * 1 if there are compute shaders; yoro does not need them.
    */
   uint32_t compute;
   /**
@@ -657,9 +640,9 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * How to synthesize; 0 is YORO_PIPELINE_GATHER.
+   * Zero. It once chose a pipeline: other numbers are refused.
    */
-  YoroPipeline pipeline;
+  uint32_t reserved;
   /**
    * YORO_OUTPUT_ bits.
    */
@@ -674,8 +657,8 @@ typedef struct {
    */
   uint32_t check;
   /**
-   * What the source knows of its edges; 0 is YORO_EDGES_HARD. The others need YORO_PIPELINE_GATHER, and
-   * YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
+   * What the source knows of its edges; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs
+   * OpenGL ES 3.1.
    */
   YoroEdges edges;
   /**
@@ -1061,8 +1044,8 @@ YoroResult yoro_capabilities(YoroContext *context,
 YoroResult yoro_destroy(YoroContext *context);
 
 /**
- * Creates a context for OpenGL ES 3.0 (3.1 for other pipelines than YORO_PIPELINE_GATHER) or later, or desktop OpenGL 4.5
- * or later, and compiles its shaders: at start, not in a frame.
+ * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders: at start, not in
+ * a frame.
  *
  * On the thread on which the GL context is current. GL state as YoroGlInfo says, without a change of the error flag.
  *

@@ -8,7 +8,6 @@ use crate::gl::Gl;
 use crate::result::{
     Failure, YORO_ERROR_BUSY, YORO_ERROR_INTERNAL, YORO_ERROR_NULL, YoroMessages, YoroResult, border,
 };
-use crate::types::YoroPipeline;
 use crate::versioned::{self, Versioned, versioned};
 
 /// One way to synthesize in one GL context or on one Vulkan device: compiled shaders and small buffers.
@@ -54,9 +53,9 @@ pub struct YoroCapabilities {
     pub api_major: u32,
     /// Version of the API: 1 of 3.1.
     pub api_minor: u32,
-    /// How it synthesizes.
-    pub pipeline: YoroPipeline,
-    /// 1 where compute shaders are there, which all pipelines but YORO_PIPELINE_GATHER need.
+    /// Zero.
+    pub reserved: u32,
+    /// 1 if there are compute shaders; yoro does not need them.
     pub compute: u32,
     /// 1 where the CPU draws (llvmpipe, SwiftShader).
     pub software: u32,
@@ -233,7 +232,7 @@ mod tests {
         let mut sentences = 0u32;
         let info = YoroGlInfo {
             struct_size: size_of::<YoroGlInfo>() as u32,
-            pipeline: 0,
+            reserved: 0,
             outputs: 0,
             state: YORO_GL_STATE_LEAVE,
             check: 0,

@@ -7,7 +7,7 @@ use std::rc::Rc;
 use glow::HasContext;
 use yoro::eyes::Warp;
 use yoro::gl::{Context, Destination, GlApi};
-use yoro::synthesis::{self, Edges, GlState, Outputs, Pipeline, Source, Synthesis, SynthesisOptions};
+use yoro::synthesis::{self, Edges, GlState, Outputs, Source, Synthesis, SynthesisOptions};
 
 use crate::context::{
     Api, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, create, enter,
@@ -16,10 +16,7 @@ use crate::result::{
     Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL,
     YORO_ERROR_TOO_LARGE, YoroMessages, YoroResult,
 };
-use crate::types::{
-    YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YORO_PIPELINE_GATHER, YORO_PIPELINE_PAPER, YORO_PIPELINE_ROWGROUP,
-    YoroEdges, YoroOutputFlags, YoroPipeline, edges,
-};
+use crate::types::{YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroEdges, YoroOutputFlags, edges};
 use crate::versioned::{self, versioned};
 use crate::views::YoroWarp;
 
@@ -41,8 +38,8 @@ pub const YORO_GL_STATE_PRESERVE: YoroGlState = 1;
 pub struct YoroGlInfo {
     /// sizeof(YoroGlInfo).
     pub struct_size: u32,
-    /// How to synthesize; 0 is YORO_PIPELINE_GATHER.
-    pub pipeline: YoroPipeline,
+    /// Zero. It once chose a pipeline: other numbers are refused.
+    pub reserved: u32,
     /// YORO_OUTPUT_ bits.
     pub outputs: YoroOutputFlags,
     /// What becomes of GL state.
@@ -50,8 +47,8 @@ pub struct YoroGlInfo {
     /// 1: each call looks whether textures and framebuffer are as they must be, and whether GL has errors, which it takes.
     /// Costs a wait for the driver: for development. 0: such mistakes are undefined, as in GL.
     pub check: u32,
-    /// What the source knows of its edges; 0 is YORO_EDGES_HARD. The others need YORO_PIPELINE_GATHER, and
-    /// YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
+    /// What the source knows of its edges; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs
+    /// OpenGL ES 3.1.
     pub edges: YoroEdges,
     /// Entry points.
     pub loader: YoroGlLoader,
@@ -61,8 +58,8 @@ pub struct YoroGlInfo {
 
 versioned!(YoroGlInfo);
 
-/// Creates a context for OpenGL ES 3.0 (3.1 for other pipelines than YORO_PIPELINE_GATHER) or later, or desktop OpenGL 4.5
-/// or later, and compiles its shaders: at start, not in a frame.
+/// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders: at start, not in
+/// a frame.
 ///
 /// On the thread on which the GL context is current. GL state as YoroGlInfo says, without a change of the error flag.
 ///
@@ -170,7 +167,6 @@ fn of_gl(api: &mut Api) -> Result<&mut Gl, Failure> {
 pub(crate) struct Gl {
     context: Rc<Context>,
     synthesis: Box<dyn Synthesis>,
-    pipeline: YoroPipeline,
     edges: Edges,
     outputs: Outputs,
     check: bool,
@@ -180,16 +176,12 @@ impl Gl {
     /// # Safety
     /// A GL context is current, and the loader gives its entry points.
     unsafe fn new(info: &YoroGlInfo) -> Result<Gl, Failure> {
-        let pipeline = match info.pipeline {
-            YORO_PIPELINE_GATHER => Pipeline::Gather,
-            YORO_PIPELINE_ROWGROUP => Pipeline::Rowgroup,
-            YORO_PIPELINE_PAPER => Pipeline::Paper,
-            other => {
-                return Err(Failure::value(format!(
-                    "{other} is no pipeline: give a YORO_PIPELINE_ constant"
-                )));
-            }
-        };
+        if info.reserved != 0 {
+            return Err(Failure::value(format!(
+                "reserved is {}: give 0; it once chose a pipeline, and only that of the number 0 is left",
+                info.reserved
+            )));
+        }
         let gl_state = match info.state {
             YORO_GL_STATE_LEAVE => GlState::Leave,
             YORO_GL_STATE_PRESERVE => GlState::Preserve,
@@ -214,9 +206,9 @@ impl Gl {
             check_current(load)?;
             Context::with_loader(glow::Context::from_loader_function_cstr(load), load)?
         };
-        let options = SynthesisOptions { pipeline, gl_state, edges, ..SynthesisOptions::default() };
+        let options = SynthesisOptions { gl_state, edges, ..SynthesisOptions::default() };
         let synthesis = synthesis::create(&context, &options, outputs)?;
-        Ok(Gl { context, synthesis, pipeline: info.pipeline, edges, outputs, check: info.check == 1 })
+        Ok(Gl { context, synthesis, edges, outputs, check: info.check == 1 })
     }
 
     pub(crate) fn capabilities(&self) -> YoroCapabilities {
@@ -229,7 +221,7 @@ impl Gl {
             },
             api_major: own.version.0,
             api_minor: own.version.1,
-            pipeline: self.pipeline,
+            reserved: 0,
             compute: own.compute.into(),
             software: own.software.into(),
             max_image_size: own.max_texture_size,

@@ -57,15 +57,6 @@ pub const YORO_ROWS_UP: YoroRows = 0;
 /// Row 0 is the topmost: Vulkan, Direct3D, image files.
 pub const YORO_ROWS_DOWN: YoroRows = 1;
 
-/// Which way the other eye is synthesized.
-pub type YoroPipeline = u32;
-/// Fragment shaders; for every driver, and the one to begin with.
-pub const YORO_PIPELINE_GATHER: YoroPipeline = 0;
-/// Compute shaders: one workgroup a row.
-pub const YORO_PIPELINE_ROWGROUP: YoroPipeline = 1;
-/// Compute shaders: Algorithms 1 to 3 of the paper.
-pub const YORO_PIPELINE_PAPER: YoroPipeline = 2;
-
 /// What the rendered eye knows of its edges, where a pixel shows more than one surface, and with it what its depth is. Depth
 /// that was averaged over samples belongs to no surface, and gives halos.
 pub type YoroEdges = u32;

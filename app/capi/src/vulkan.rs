@@ -14,7 +14,7 @@ use crate::result::{
     YORO_ERROR_NO_CONTEXT, YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE,
     YORO_ERROR_UNSUPPORTED, YORO_ERROR_VALUE, YoroMessages, YoroResult,
 };
-use crate::types::{YORO_PIPELINE_GATHER, YoroEdges, edges};
+use crate::types::{YoroEdges, edges};
 use crate::versioned::{self, versioned};
 use crate::views::YoroWarp;
 
@@ -449,7 +449,7 @@ impl Vulkan {
             api: YORO_API_VULKAN,
             api_major: vk::api_version_major(properties.api_version),
             api_minor: vk::api_version_minor(properties.api_version),
-            pipeline: YORO_PIPELINE_GATHER,
+            reserved: 0,
             compute: 1,
             software: (properties.device_type == vk::PhysicalDeviceType::CPU).into(),
             max_image_size: properties.limits.max_image_dimension2_d,

@@ -33,11 +33,15 @@ pub fn backend() -> impl TypedValueParser<Value = Backend> {
 
 /// `--pipeline`.
 pub fn pipeline() -> impl TypedValueParser<Value = Pipeline> {
-    choice(Pipeline::ALL, Pipeline::name, |pipeline| match pipeline {
-        Pipeline::Gather => "Fragment shaders that march along the source row",
-        Pipeline::Rowgroup => "One compute workgroup per row",
-        Pipeline::Paper => "Algorithms 1 to 3 of the paper",
-    })
+    let possible = Pipeline::ALL.map(|pipeline| {
+        PossibleValue::new(pipeline.name()).help(match pipeline {
+            Pipeline::Gather => "Fragment shaders that march along the source row",
+            Pipeline::Paper => "Algorithms 1 to 3 of the paper",
+        })
+    });
+    // A name of earlier versions, which `Pipeline::from_str` answers with the remedy.
+    let former = PossibleValue::new("rowgroup").hide(true);
+    PossibleValuesParser::new(possible.into_iter().chain([former])).try_map(|name| name.parse::<Pipeline>())
 }
 
 /// `--edges`, as far as there are these.

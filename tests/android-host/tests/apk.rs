@@ -283,7 +283,7 @@ fn without_battery_and_sensors() {
 
 #[test]
 fn opengl_es_3_0_is_enough() {
-    let settings: Vec<_> = SETTINGS.into_iter().chain([("pipeline", "rowgroup")]).collect();
+    let settings: Vec<_> = SETTINGS.into_iter().chain([("pipeline", "paper")]).collect();
     let steps = format!(r#""launch", {READY}, {{ seconds = 1.2 }}, {{ capture = "es30.png" }}, "quit""#);
     let Some(run) = play("es30", &device(&settings, "gles = \"3.0\"\nsensors = []"), &steps) else { return };
     run.assert_clean();

@@ -34,7 +34,6 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
         ("shading reprojection", Method::ShadingReprojection, default),
         ("mono", Method::Mono, default),
         ("gather", Method::Yoro, of(Pipeline::Gather)),
-        ("rowgroup", Method::Yoro, of(Pipeline::Rowgroup)),
         ("paper", Method::Yoro, of(Pipeline::Paper)),
         ("paper 1/4", Method::Yoro, small_imbuffer),
         ("near field", Method::Yoro, near_field),

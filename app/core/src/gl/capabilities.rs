@@ -29,7 +29,7 @@ pub struct Capabilities {
     pub renderer: String,
     /// GL_VERSION.
     pub version_string: String,
-    /// Compute shaders, image stores: `paper` and `rowgroup` need them, `gather` does not.
+    /// Compute shaders, image stores: the pipeline `paper` needs them, `gather` does not.
     pub compute: bool,
     /// Float colour buffers (HDR targets, EXT_color_buffer_float or half_float).
     pub float_render_targets: bool,

@@ -7,7 +7,6 @@
 //! |---|---|---|
 //! | [`Gather`] | tile bounds, tile spans, march: fragment shaders | ES 3.0 |
 //! | [`Layers`] | [`Gather`] of anti-aliased sources: split, tile bounds, tile spans, march: fragment shaders | ES 3.0, multisample depth ES 3.1 |
-//! | [`Rowgroup`] | scatter by one workgroup a row (compute), resolve | ES 3.1 |
 //! | [`Paper`] | Algorithms 1 to 3: fragment, compute per row, fragment | ES 3.1 |
 
 mod gather;
@@ -16,11 +15,11 @@ mod near_field;
 mod offline;
 mod paper;
 mod preserve;
-mod rowgroup;
 mod stored_depth;
 mod uniforms;
 
 use std::rc::Rc;
+use std::str::FromStr;
 
 use crate::eyes::{DepthConvention, Eye, Warp};
 use crate::gl::{Context, Destination, GlError, Program};
@@ -32,7 +31,6 @@ pub use layers::Layers;
 pub use near_field::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
-pub use rowgroup::Rowgroup;
 pub use stored_depth::{Nearness, StoredDepth, StoredDepthError};
 
 #[cfg(feature = "vulkan")]
@@ -50,28 +48,58 @@ pub const SOURCE_MAP_FIXED: f32 = 65536.0;
 /// Which pipeline synthesizes the other eye.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase", try_from = "String"))]
 pub enum Pipeline {
     /// Fragment shaders that march along the source row.
     #[default]
     Gather,
-    /// One compute workgroup per row.
-    Rowgroup,
     /// Algorithms 1 to 3 of the paper.
     Paper,
 }
 
 impl Pipeline {
     /// All pipelines, the default first.
-    pub const ALL: [Pipeline; 3] = [Pipeline::Gather, Pipeline::Rowgroup, Pipeline::Paper];
+    pub const ALL: [Pipeline; 2] = [Pipeline::Gather, Pipeline::Paper];
 
     /// Its name in settings.
     pub fn name(self) -> &'static str {
         match self {
             Pipeline::Gather => "gather",
-            Pipeline::Rowgroup => "rowgroup",
             Pipeline::Paper => "paper",
         }
+    }
+}
+
+/// A name that is not the name of a [`Pipeline`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ParsePipelineError {
+    /// A pipeline of earlier versions.
+    #[error(
+        "the pipeline rowgroup was taken out: choose gather, which is closer to the truth on every scene"
+    )]
+    Rowgroup,
+    /// Any other name.
+    #[error("{0:?} is not a pipeline: choose gather or paper")]
+    Unknown(String),
+}
+
+impl FromStr for Pipeline {
+    type Err = ParsePipelineError;
+
+    fn from_str(name: &str) -> Result<Pipeline, ParsePipelineError> {
+        match Pipeline::ALL.into_iter().find(|pipeline| pipeline.name() == name) {
+            Some(pipeline) => Ok(pipeline),
+            None if name == "rowgroup" => Err(ParsePipelineError::Rowgroup),
+            None => Err(ParsePipelineError::Unknown(name.to_owned())),
+        }
+    }
+}
+
+impl TryFrom<String> for Pipeline {
+    type Error = ParsePipelineError;
+
+    fn try_from(name: String) -> Result<Pipeline, ParsePipelineError> {
+        name.parse()
     }
 }
 
@@ -188,7 +216,7 @@ pub enum GlState {
 /// | multisample texture of units 0 and 3, with [`Edges::Multisample`] | depth, colour | changed |
 /// | sampler object of units 0 to 4 | yoro's own | none |
 /// | active unit | 0 to 4 | changed |
-/// | image unit 0 ([`Rowgroup`], [`Paper`]) | intermediate | changed |
+/// | image unit 0 ([`Paper`]) | intermediate | changed |
 /// | scissor, stencil and depth test, face culling | off; depth test on for the target with [`Outputs::depth`] | off |
 /// | depth function, depth mask, depth range | `ALWAYS`, on, 0 to 1 | so |
 /// | blending and colour mask, of draw buffer 0 and, with [`Outputs::source_map`] or other than with [`Edges::Hard`], 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | so |
@@ -256,7 +284,6 @@ pub fn create(
         Ok(match (options.pipeline, options.edges) {
             (Pipeline::Gather, Edges::Hard) => Box::new(Gather::new(gl, outputs)?),
             (Pipeline::Gather, edges) => Box::new(Layers::new(gl, outputs, edges)?),
-            (Pipeline::Rowgroup, Edges::Hard) => Box::new(Rowgroup::new(gl, outputs)?),
             (Pipeline::Paper, Edges::Hard) => Box::new(Paper::new(gl, outputs, options.paper)?),
             (other, edges) => {
                 return Err(GlError::Unsupported(format!(

@@ -51,9 +51,6 @@
 //! # Ok(())
 //! # }
 //! ```
-//!
-//! The pipeline `rowgroup` is not here: it needs compute shaders, storage images and shared memory, and writes and
-//! reads four bytes more for each pixel, to gain nothing that gather does not do with fragments alone.
 
 mod gather;
 mod objects;

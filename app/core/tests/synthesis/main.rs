@@ -54,7 +54,7 @@ impl Subject {
 fn every_subject() -> Vec<Subject> {
     let strict = PaperOptions { strict: true, linear_interpolation: false, ..Default::default() };
     let strict = SynthesisOptions { paper: strict, ..options(Pipeline::Paper) };
-    let others = [options(Pipeline::Rowgroup), options(Pipeline::Paper), strict].map(Subject::Of);
+    let others = [options(Pipeline::Paper), strict].map(Subject::Of);
     GatherVariant::ALL.map(Subject::Gather).into_iter().chain(others).collect()
 }
 
@@ -213,12 +213,6 @@ fn gather_is_its_reference() {
             agrees_with_reference(gl, Subject::Gather(variant), reference::gather_row);
         }
     });
-}
-
-#[test]
-fn rowgroup_is_its_reference() {
-    let rowgroup = Subject::Of(options(Pipeline::Rowgroup));
-    on_every_backend(|gl| agrees_with_reference(gl, rowgroup, reference::rowgroup_row));
 }
 
 #[test]

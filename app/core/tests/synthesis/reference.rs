@@ -84,53 +84,6 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
         .collect()
 }
 
-/// The rowgroup pipeline: every segment of the row drawn into the targets, the smallest source column wins.
-pub fn rowgroup_row(p: &[f64], width: usize) -> Vec<Entry> {
-    let mut keys: Vec<Option<f64>> = vec![None; width];
-    let mut put = |t: f64, source: f64| {
-        if t >= 0.0 && t < width as f64 {
-            let key = &mut keys[t as usize];
-            *key = Some(key.map_or(source, |k: f64| k.min(source)));
-        }
-    };
-    for x in 0..p.len() {
-        let next = (x + 1).min(p.len() - 1);
-        let (a, b) = (p[x], p[next]);
-        if b - a > 0.0 && b - a < MAX_STRETCH {
-            let mut t = a.ceil();
-            while t < b.ceil() {
-                put(t, x as f64 + (t - a) / (b - a));
-                t += 1.0;
-            }
-        } else {
-            put((a + 0.5).floor(), x as f64);
-            put((b + 0.5).floor(), next as f64);
-        }
-    }
-    (0..width)
-        .map(|t| match keys[t] {
-            Some(source) => Entry::new(false, source),
-            None => {
-                let left = (0..t).rev().find_map(|i| keys[i].map(|k| (i as f64 - k, k)));
-                let right = (t + 1..width).find_map(|i| keys[i].map(|k| (i as f64 - k, k)));
-                let source = match (left, right) {
-                    (Some(l), Some(r)) => {
-                        if l.0 <= r.0 {
-                            l.1
-                        } else {
-                            r.1
-                        }
-                    }
-                    (Some(l), None) => l.1,
-                    (None, Some(r)) => r.1,
-                    (None, None) => t.min(p.len() - 1) as f64,
-                };
-                Entry::new(true, source)
-            }
-        })
-        .collect()
-}
-
 /// One ImBuffer entry of Algorithm 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImBufferEntry {
