@@ -52,9 +52,18 @@
 //! # }
 //! ```
 
+mod adapter;
+mod barriers;
+mod commands;
+mod formats;
 mod gather;
+mod images;
 mod objects;
+mod passes;
+mod pipelines;
 mod shaders;
+mod targets;
+mod timer;
 
 pub use ash;
 use ash::vk;
@@ -63,7 +72,7 @@ use crate::synthesis::Edges;
 
 pub use gather::Gather;
 #[doc(hidden)]
-pub use gather::GatherVariant;
+pub use shaders::GatherVariant;
 
 /// Why something cannot be made, registered or recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

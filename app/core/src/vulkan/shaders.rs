@@ -1,13 +1,16 @@
 //! The shaders of the passes as SPIR-V, compiled beforehand from the files of `yoro-shaders`: `cargo xtask spirv`.
 
-use std::io::Cursor;
-
-use ash::vk;
-
-use super::VulkanError;
-use super::gather::GatherVariant;
-use super::objects::{Object, Objects};
 use crate::synthesis::Edges;
+
+/// The kind of device that the shaders are written for; see [`crate::synthesis::GatherVariant`].
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GatherVariant {
+    /// A CPU rasterizer.
+    Software,
+    /// A GPU.
+    ShortWay,
+}
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
 pub(super) const SPANS: &[u8] = include_bytes!("spirv/spans.spv");
@@ -43,17 +46,6 @@ pub(super) fn march(edges: Edges, variant: GatherVariant, depth: bool) -> &'stat
         (Edges::Multisample, _, true) => include_bytes!("spirv/layer-march-multisample-depth.spv"),
         (_, _, false) => include_bytes!("spirv/layer-march.spv"),
         (_, _, true) => include_bytes!("spirv/layer-march-depth.spv"),
-    }
-}
-
-impl Objects {
-    pub(super) fn shader(&mut self, spirv: &[u8]) -> Result<vk::ShaderModule, VulkanError> {
-        let words = ash::util::read_spv(&mut Cursor::new(spirv))
-            .map_err(|_| VulkanError::new("vkCreateShaderModule", vk::Result::ERROR_INVALID_SHADER_NV))?;
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: valid SPIR-V, which needs no capability but Shader.
-        let shader = unsafe { self.device().create_shader_module(&info, None) };
-        self.keep("vkCreateShaderModule", shader, Object::Shader)
     }
 }
 

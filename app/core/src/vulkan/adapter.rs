@@ -1,0 +1,105 @@
+//! The limits and formats of the physical device.
+
+use ash::vk;
+
+use super::{Host, Options, VulkanError};
+use crate::synthesis::Edges;
+
+/// A physical device and its properties.
+pub(super) struct Adapter {
+    instance: ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    pub(super) properties: vk::PhysicalDeviceProperties,
+}
+
+impl Adapter {
+    /// # Safety
+    /// The host's instance and physical device belong together and outlive the adapter.
+    pub(super) unsafe fn new(host: &Host) -> Adapter {
+        let (instance, physical_device) = (host.instance.clone(), host.physical_device);
+        // SAFETY: the caller's physical device belongs to the instance.
+        let properties = unsafe { instance.get_physical_device_properties(physical_device) };
+        Adapter { instance, physical_device, properties }
+    }
+
+    pub(super) fn memory(&self) -> vk::PhysicalDeviceMemoryProperties {
+        // SAFETY: `Adapter::new` asks for a physical device of this instance.
+        unsafe { self.instance.get_physical_device_memory_properties(self.physical_device) }
+    }
+
+    /// The properties of a queue family that draws.
+    pub(super) fn graphics_family(&self, index: u32) -> Result<vk::QueueFamilyProperties, VulkanError> {
+        // SAFETY: `Adapter::new` asks for a physical device of this instance.
+        let families =
+            unsafe { self.instance.get_physical_device_queue_family_properties(self.physical_device) };
+        let family = families.get(index as usize).copied();
+        family
+            .filter(|family| family.queue_flags.contains(vk::QueueFlags::GRAPHICS))
+            .ok_or(VulkanError::QueueFamily(index))
+    }
+
+    /// Checks that the device can do what the options ask for.
+    pub(super) fn check_options(&self, options: &Options) -> Result<(), VulkanError> {
+        self.check_image_size("a largest source", options.max_source_size)?;
+        self.check_image_size("a largest target", options.max_target_size)?;
+        // Integers cannot be blended, which excludes them here.
+        let blended = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+        self.check_format(options.color_format, blended, "a target's colour")?;
+        if let Some(format) = options.depth_format {
+            let attachment = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
+            self.check_format(format, attachment, "a target's depth")?;
+        }
+        if options.edges == Edges::Multisample {
+            self.check_samples(options.samples)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_image_size(&self, what: &'static str, size: [u32; 2]) -> Result<(), VulkanError> {
+        check_size(what, size, [self.properties.limits.max_image_dimension2_d; 2])
+    }
+
+    pub(super) fn check_format(
+        &self,
+        format: vk::Format,
+        features: vk::FormatFeatureFlags,
+        role: &'static str,
+    ) -> Result<(), VulkanError> {
+        // SAFETY: `Adapter::new` asks for a physical device of this instance.
+        let properties =
+            unsafe { self.instance.get_physical_device_format_properties(self.physical_device, format) };
+        if properties.optimal_tiling_features.contains(features) {
+            Ok(())
+        } else {
+            Err(VulkanError::Format { format, role })
+        }
+    }
+
+    fn check_samples(&self, samples: u32) -> Result<(), VulkanError> {
+        let sampled = self.properties.limits.sampled_image_depth_sample_counts;
+        if matches!(samples, 2 | 4) && sampled.contains(vk::SampleCountFlags::from_raw(samples)) {
+            Ok(())
+        } else {
+            Err(VulkanError::Samples(samples))
+        }
+    }
+}
+
+pub(super) fn check_size(what: &'static str, size: [u32; 2], limit: [u32; 2]) -> Result<(), VulkanError> {
+    if (0..2).all(|i| (1..=limit[i]).contains(&size[i])) {
+        Ok(())
+    } else {
+        Err(VulkanError::Size { what, size, limit })
+    }
+}
+
+/// Checks that a rectangle lies within its image.
+pub(super) fn check_rectangle(
+    what: &'static str,
+    origin: [u32; 2],
+    size: [u32; 2],
+    image: [u32; 2],
+) -> Result<(), VulkanError> {
+    let fits = |i: usize| origin[i].checked_add(size[i]).is_some_and(|end| end <= image[i]);
+    if fits(0) && fits(1) { Ok(()) } else { Err(VulkanError::Rectangle { what, origin, size, image }) }
+}

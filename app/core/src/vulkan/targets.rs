@@ -1,0 +1,278 @@
+//! What the passes draw into, by dynamic rendering or by render passes.
+
+use ash::{khr, vk};
+
+use super::commands::{Commands, has_command};
+use super::formats::{self, texel_bytes};
+use super::objects::Objects;
+use super::{Host, ImageState, Options, VulkanError};
+use crate::synthesis::Edges;
+
+/// The kinds of attachments that passes draw into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PassKind {
+    /// One 32-bit integer for each tile.
+    Map,
+    /// Two colour attachments: the surfaces that each source pixel shows, and the colour behind them.
+    Layers,
+    /// The caller's target.
+    Target,
+}
+
+impl PassKind {
+    /// Formats of the colour attachments.
+    pub(super) fn formats(self, options: &Options) -> Vec<vk::Format> {
+        match self {
+            PassKind::Map => vec![formats::MAP],
+            PassKind::Layers => vec![formats::MAP, formats::background(options.color_format)],
+            PassKind::Target => vec![options.color_format],
+        }
+    }
+
+    /// Format of the depth attachment.
+    pub(super) fn depth_format(self, options: &Options) -> Option<vk::Format> {
+        options.depth_format.filter(|_| self == PassKind::Target)
+    }
+}
+
+/// The way in which passes begin and end.
+pub(super) enum Rendering {
+    Dynamic { begin: vk::PFN_vkCmdBeginRendering, end: vk::PFN_vkCmdEndRendering },
+    Passes(RenderPasses),
+}
+
+/// A render pass for each [`PassKind`].
+pub(super) struct RenderPasses {
+    map: vk::RenderPass,
+    /// Null for hard edges, which have no layers.
+    layers: vk::RenderPass,
+    target: vk::RenderPass,
+}
+
+/// The views that a pass draws into. Render passes have a framebuffer of them.
+#[derive(Clone, Copy)]
+pub(super) struct Attachments {
+    kind: PassKind,
+    /// The second one for [`PassKind::Layers`] only.
+    colors: [vk::ImageView; 2],
+    depth: Option<vk::ImageView>,
+    framebuffer: vk::Framebuffer,
+}
+
+/// The result of one pass that later passes read.
+pub(super) struct Intermediate {
+    pub(super) images: Vec<vk::Image>,
+    pub(super) attachments: Attachments,
+    /// Width and height in texels.
+    pub(super) size: [u32; 2],
+    /// Memory of its texels.
+    pub(super) bytes: u64,
+}
+
+impl Rendering {
+    /// # Safety
+    /// The host's handles are valid and belong together.
+    pub(super) unsafe fn new(
+        host: &Host,
+        objects: &mut Objects,
+        options: &Options,
+    ) -> Result<Rendering, VulkanError> {
+        if host.dynamic_rendering {
+            // SAFETY: the caller's handles are valid.
+            return unsafe { Rendering::dynamic(host) };
+        }
+        let mut pass = |kind| render_pass(objects, kind, options);
+        Ok(Rendering::Passes(RenderPasses {
+            map: pass(PassKind::Map)?,
+            layers: match options.edges {
+                Edges::Hard => vk::RenderPass::null(),
+                _ => pass(PassKind::Layers)?,
+            },
+            target: pass(PassKind::Target)?,
+        }))
+    }
+
+    /// The commands of VK_KHR_dynamic_rendering, or those of Vulkan 1.3.
+    ///
+    /// # Safety
+    /// As [`Rendering::new`].
+    unsafe fn dynamic(host: &Host) -> Result<Rendering, VulkanError> {
+        // SAFETY: the caller's handles are valid.
+        let has = |name| unsafe { has_command(host, name) };
+        if has(c"vkCmdBeginRenderingKHR") && has(c"vkCmdEndRenderingKHR") {
+            let extension = khr::dynamic_rendering::Device::new(host.instance, host.device);
+            let (begin, end) = (extension.fp().cmd_begin_rendering_khr, extension.fp().cmd_end_rendering_khr);
+            Ok(Rendering::Dynamic { begin, end })
+        } else if has(c"vkCmdBeginRendering") && has(c"vkCmdEndRendering") {
+            let core = host.device.fp_v1_3();
+            Ok(Rendering::Dynamic { begin: core.cmd_begin_rendering, end: core.cmd_end_rendering })
+        } else {
+            Err(VulkanError::DynamicRendering)
+        }
+    }
+
+    /// The render pass of a kind; null for dynamic rendering.
+    pub(super) fn render_pass(&self, kind: PassKind) -> vk::RenderPass {
+        let Rendering::Passes(passes) = self else { return vk::RenderPass::null() };
+        match kind {
+            PassKind::Map => passes.map,
+            PassKind::Layers => passes.layers,
+            PassKind::Target => passes.target,
+        }
+    }
+
+    /// Attachments of views that have the formats of the kind.
+    pub(super) fn attachments(
+        &self,
+        objects: &mut Objects,
+        kind: PassKind,
+        colors: &[vk::ImageView],
+        depth: Option<vk::ImageView>,
+        size: [u32; 2],
+    ) -> Result<Attachments, VulkanError> {
+        let framebuffer = match self {
+            Rendering::Dynamic { .. } => vk::Framebuffer::null(),
+            Rendering::Passes { .. } => {
+                let views: Vec<_> = colors.iter().copied().chain(depth).collect();
+                objects.create_framebuffer(
+                    &vk::FramebufferCreateInfo::default()
+                        .render_pass(self.render_pass(kind))
+                        .attachments(&views)
+                        .width(size[0])
+                        .height(size[1])
+                        .layers(1),
+                )?
+            }
+        };
+        let color = |i: usize| colors.get(i).copied().unwrap_or_default();
+        Ok(Attachments { kind, colors: [color(0), color(1)], depth, framebuffer })
+    }
+
+    /// Draws over an area of the attachments, which are in the layouts of attachments.
+    pub(super) fn draw(
+        &self,
+        commands: &Commands,
+        attachments: &Attachments,
+        pipeline: vk::Pipeline,
+        area: vk::Rect2D,
+    ) {
+        // SAFETY: `Commands::new` asks for a buffer that records outside of render passes, and for live handles. What
+        // begins here ends here. Nothing is cleared, so that clear values are not needed.
+        unsafe {
+            match *self {
+                Rendering::Dynamic { begin, end } => {
+                    attachments.begin_dynamic(begin, commands.buffer, area);
+                    commands.draw(pipeline, area);
+                    end(commands.buffer);
+                }
+                Rendering::Passes { .. } => {
+                    let info = vk::RenderPassBeginInfo::default()
+                        .render_pass(self.render_pass(attachments.kind))
+                        .framebuffer(attachments.framebuffer)
+                        .render_area(area);
+                    let contents = vk::SubpassContents::INLINE;
+                    commands.device.cmd_begin_render_pass(commands.buffer, &info, contents);
+                    commands.draw(pipeline, area);
+                    commands.device.cmd_end_render_pass(commands.buffer);
+                }
+            }
+        }
+    }
+}
+
+impl Attachments {
+    /// The view of a colour attachment.
+    pub(super) fn color(&self, index: usize) -> vk::ImageView {
+        self.colors[index]
+    }
+
+    /// # Safety
+    /// The buffer records outside of render passes, and `begin` is a command of its device.
+    unsafe fn begin_dynamic(
+        &self,
+        begin: vk::PFN_vkCmdBeginRendering,
+        buffer: vk::CommandBuffer,
+        area: vk::Rect2D,
+    ) {
+        let attachment = |view, state: ImageState| {
+            vk::RenderingAttachmentInfo::default()
+                .image_view(view)
+                .image_layout(state.layout)
+                .load_op(vk::AttachmentLoadOp::DONT_CARE)
+                .store_op(vk::AttachmentStoreOp::STORE)
+        };
+        let colors = self.colors.map(|view| attachment(view, ImageState::COLOR_ATTACHMENT));
+        let count = if self.kind == PassKind::Layers { 2 } else { 1 };
+        let depth = attachment(self.depth.unwrap_or_default(), ImageState::DEPTH_ATTACHMENT);
+        let info = vk::RenderingInfo::default()
+            .render_area(area)
+            .layer_count(1)
+            .color_attachments(&colors[..count])
+            .depth_attachment(&depth);
+        // SAFETY: the caller's buffer and command; the description names live views.
+        unsafe { begin(buffer, &info) };
+    }
+}
+
+/// A render pass that changes no layouts and keeps stencil.
+fn render_pass(
+    objects: &mut Objects,
+    kind: PassKind,
+    options: &Options,
+) -> Result<vk::RenderPass, VulkanError> {
+    let attachment = |format, state: ImageState| {
+        vk::AttachmentDescription::default()
+            .format(format)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .load_op(vk::AttachmentLoadOp::DONT_CARE)
+            .store_op(vk::AttachmentStoreOp::STORE)
+            .stencil_load_op(vk::AttachmentLoadOp::LOAD)
+            .stencil_store_op(vk::AttachmentStoreOp::STORE)
+            .initial_layout(state.layout)
+            .final_layout(state.layout)
+    };
+    let (colors, depth) = (kind.formats(options), kind.depth_format(options));
+    let color_attachments = colors.iter().map(|&format| attachment(format, ImageState::COLOR_ATTACHMENT));
+    let depth_attachment = depth.map(|format| attachment(format, ImageState::DEPTH_ATTACHMENT));
+    let attachments: Vec<_> = color_attachments.chain(depth_attachment).collect();
+    let reference = |attachment: usize, state: ImageState| vk::AttachmentReference {
+        attachment: attachment as u32,
+        layout: state.layout,
+    };
+    let color_references: Vec<_> =
+        (0..colors.len()).map(|i| reference(i, ImageState::COLOR_ATTACHMENT)).collect();
+    let depth_reference = reference(colors.len(), ImageState::DEPTH_ATTACHMENT);
+    let mut subpass = vk::SubpassDescription::default()
+        .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
+        .color_attachments(&color_references);
+    if depth.is_some() {
+        subpass = subpass.depth_stencil_attachment(&depth_reference);
+    }
+    let subpasses = [subpass];
+    objects.create_render_pass(
+        &vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses),
+    )
+}
+
+impl Intermediate {
+    pub(super) fn new(
+        objects: &mut Objects,
+        rendering: &Rendering,
+        memory: &vk::PhysicalDeviceMemoryProperties,
+        kind: PassKind,
+        options: &Options,
+        size: [u32; 2],
+    ) -> Result<Intermediate, VulkanError> {
+        let formats = kind.formats(options);
+        let (mut images, mut views) = (Vec::new(), Vec::new());
+        for &format in &formats {
+            let image = objects.create_color_image(memory, format, size)?;
+            images.push(image);
+            views.push(objects.create_view(image, format, vk::ImageAspectFlags::COLOR, 0)?);
+        }
+        let attachments = rendering.attachments(objects, kind, &views, None, size)?;
+        let texels = u64::from(size[0]) * u64::from(size[1]);
+        let bytes = texels * formats.into_iter().map(texel_bytes).sum::<u64>();
+        Ok(Intermediate { images, attachments, size, bytes })
+    }
+}
