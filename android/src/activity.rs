@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 use android_activity::{AndroidApp, MainEvent, PollEvent, WindowManagerFlags};
 use yoro::gl::{Context, Destination};
 use yoro_context::android::{Window, WindowError};
+use yoro_lenses::{MotionSample, Screen};
+use yoro_protocol::DisplayKind;
+use yoro_protocol::telemetry::DeviceState;
 use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
-use yoro_viewer::telemetry::DeviceState;
-use yoro_viewer::{
-    Action, Cardboard, DisplayKind, FrameReport, FrameTiming, MotionSample, Screen, Viewer, ViewerError,
-};
+use yoro_viewer::{Action, Cardboard, FrameReport, FrameTiming, Viewer, ViewerError};
 
 use crate::configuration::Configuration;
 use crate::device::Device;

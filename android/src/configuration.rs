@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use android_activity::AndroidApp;
+use yoro_protocol::Settings;
 use yoro_scenes::BUILTINS;
-use yoro_viewer::{Settings, Viewer, ViewerError, list_scenes};
+use yoro_viewer::{Viewer, ViewerError, list_scenes};
 
 use crate::display::Display;
 use crate::java::Java;

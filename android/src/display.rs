@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use yoro_context::android::WindowError;
+use yoro_protocol::Settings;
 use yoro_viewer::openxr::{Headset, XrError};
-use yoro_viewer::{Cardboard, Settings, Viewer, ViewerError};
+use yoro_viewer::{Cardboard, Viewer, ViewerError};
 
 /// On what the eyes look; it owns the application that draws there.
 #[derive(Default)]

@@ -48,7 +48,7 @@ fn android_main(app: android_activity::AndroidApp) {
     android_logger::init_once(
         android_logger::Config::default()
             .with_max_level(log::LevelFilter::Info)
-            .with_tag(yoro_viewer::telemetry::LOG_TAG)
+            .with_tag(yoro_protocol::telemetry::LOG_TAG)
             .format(|writer, record| write!(writer, "{}", record.args())),
     );
     // A panic never unwinds into Android's code: the build aborts, after this.

@@ -7,7 +7,7 @@ use std::ptr::NonNull;
 use std::time::Duration;
 
 use ndk::native_window::NativeWindow;
-use yoro_viewer::{Performance as Level, Settings};
+use yoro_protocol::{Performance as Level, Settings};
 
 use crate::dynamic::Library;
 use crate::java::Java;
@@ -83,7 +83,7 @@ impl Performance {
         }
     }
 
-    /// What the device was asked for and has, for its [`DeviceState`](yoro_viewer::telemetry::DeviceState).
+    /// What the device was asked for and has, for its [`DeviceState`](yoro_protocol::telemetry::DeviceState).
     pub fn name(&self) -> &'static str {
         match (self.sustained == Some((true, true)), self.hints.is_some()) {
             (true, true) => "sustained/hints",

@@ -15,7 +15,7 @@ use std::thread;
 use android_activity::AndroidAppWaker;
 use ndk::looper::{ForeignLooper, ThreadLooper};
 use ndk_sys as ffi;
-use yoro_viewer::MotionSample;
+use yoro_lenses::MotionSample;
 
 use crate::dynamic::Library;
 use crate::pace::{self, Refresh, Timeline};

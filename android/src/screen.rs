@@ -1,6 +1,6 @@
 //! The phone's screen as Android has it now.
 
-use yoro_viewer::{Rotation, Screen};
+use yoro_lenses::{Rotation, Screen};
 
 use crate::java::{DisplayMetrics, Java};
 

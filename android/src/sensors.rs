@@ -5,7 +5,7 @@ use std::ptr::{self, NonNull};
 
 use glam::Vec3;
 use ndk_sys as ffi;
-use yoro_viewer::MotionSample;
+use yoro_lenses::MotionSample;
 
 const ACCELEROMETER: c_int = 1;
 const GYROSCOPE: c_int = 4;

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use yoro_viewer::{KEYS, Settings};
+use yoro_protocol::{KEYS, Settings};
 
 /// System properties that begin so are settings: `adb shell setprop debug.yoro.method mono`.
 pub const PROPERTY_PREFIX: &str = "debug.yoro.";

@@ -202,7 +202,7 @@ fn every_method_shows_what_the_desktop_shows() {
         for method in Method::ALL.into_iter().filter(|method| *method != Method::Multiview) {
             let name = format!("{}, {}", renderer.name(), method.name());
             let offered = format!("!document.querySelector('#method [value={}]').disabled", method.name());
-            let supported = method.supported(gl.capabilities(), &settings).is_ok();
+            let supported = settings.supports(method, gl.capabilities()).is_ok();
             assert_eq!(page.evaluate(&offered), json!(supported), "{name}");
             if !supported {
                 continue;

@@ -20,9 +20,9 @@ use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
     At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
 };
-use yoro_render::stereo::{self, Method, StereoFrame};
-use yoro_render::{GpuScene, Renderer};
-use yoro_viewer::Settings;
+use yoro_protocol::Settings;
+use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
+use yoro_render::{GpuScene, RenderSettings, Renderer};
 
 use crate::program::{Run, finish, yoro};
 
@@ -521,7 +521,8 @@ fn desktop(scene: &str, method: Method, pair: &EyePair, settings: &Settings) -> 
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
     let scene = GpuScene::upload(gl, yoro_scenes::build(scene, yoro_scenes::DEFAULT_SEED).unwrap()).unwrap();
-    let (render, options) = (settings.render_settings(), settings.stereo_options(settings.pipeline));
+    let (render, options) =
+        (RenderSettings::of_settings(settings), StereoOptions::of_settings(settings, settings.pipeline));
     let mut renderer = Renderer::new(gl, &render, &scene).unwrap();
     let mut method = stereo::create(gl, method, &render, &options).unwrap();
     method.prepare(&mut renderer, &scene).unwrap();

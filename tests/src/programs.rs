@@ -85,7 +85,7 @@ fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
 fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> anyhow::Result<()> {
     let mut renderer = Renderer::new(gl, settings, scene)?;
     for method in Method::ALL {
-        match method.supported(gl.capabilities(), settings) {
+        match settings.supports(method, gl.capabilities()) {
             Ok(()) => stereo::create(gl, method, settings, &StereoOptions::default())?
                 .prepare(&mut renderer, scene)?,
             Err(reason) => eprintln!("SKIPPED: {} is not compiled here: {reason}", method.name()),
@@ -169,7 +169,7 @@ fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
             guard_band: GuardBand::AUTO,
             ..StereoOptions::default()
         };
-        let there = |m: &Method| m.supported(gl.capabilities(), &settings).is_ok();
+        let there = |m: &Method| settings.supports(*m, gl.capabilities()).is_ok();
         for method in Method::ALL.into_iter().filter(there) {
             stereo::create(gl, method, &settings, &options)?;
         }

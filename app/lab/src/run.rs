@@ -12,10 +12,10 @@ use crate::picture;
 use crate::report::{Cost, MethodCost, PassTime, SceneReport, Viewpoint};
 use yoro::eyes::{Eye, EyeOptions, EyePair};
 use yoro::gl::Context;
+use yoro_protocol::telemetry::stats::{Summary, median};
 use yoro_render::stereo::{Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_scenes::BUILTINS;
-use yoro_viewer::telemetry::stats::{Summary, median};
 
 /// What is measured on each scene.
 #[derive(Clone, Debug)]

@@ -12,8 +12,8 @@ use yoro::gl::Context;
 use yoro::synthesis::{ImBufferSize, PaperOptions, Pipeline, SynthesisOptions};
 use yoro_context::{Backend, ContextError, Headless};
 use yoro_lab::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
+use yoro_protocol::Settings;
 use yoro_render::{MSAA, RenderSettings, RendererKind};
-use yoro_viewer::Settings;
 
 /// Where the GL context comes from.
 #[derive(clap::Args, Clone, Copy, Debug)]

@@ -146,7 +146,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     log::info!("{}", args.eyes.distances(options.guard_band));
     let headless = args.gl.open()?;
     let gl = headless.gl();
-    args.method.supported(gl.capabilities(), &settings)?;
+    settings.supports(args.method, gl.capabilities())?;
     let mut prepared = PreparedScene::new(gl, scene, &settings)?;
     warn_of_blank(gl, args, &mut prepared, &heads)?;
     let PreparedScene { scene, mut renderer } = prepared;

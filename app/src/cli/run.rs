@@ -82,7 +82,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     let headless = args.gl.open()?;
     let gl = headless.gl();
     for method in &args.methods {
-        method.supported(gl.capabilities(), &settings)?;
+        settings.supports(*method, gl.capabilities())?;
     }
     let plan = plan(args, &settings);
     let bar = progress_bar(names.len() as u64 * plan.steps());

@@ -9,9 +9,9 @@ use anyhow::{Context as _, bail, ensure};
 use crate::cli::machine;
 use yoro_files as files;
 use yoro_lab::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
+use yoro_protocol::Settings;
 use yoro_render::stereo::Method;
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
-use yoro_viewer::Settings;
 
 /// Plan a user study, collect its ratings, analyse them
 #[derive(clap::Args, Clone, Debug)]

@@ -12,7 +12,9 @@ use yoro::gl::{Destination, Filter, Format, RenderTarget};
 use yoro_files as files;
 use yoro_lab::interrupt;
 use yoro_lab::picture::{self, PictureError, rgb_image};
-use yoro_viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
+use yoro_lenses::{Rotation, Screen};
+use yoro_protocol::Settings;
+use yoro_viewer::{Cardboard, FrameTiming, HeldHead, SceneState};
 
 /// The refresh rate of the imagined display.
 const REFRESH_HZ: f32 = 60.0;

@@ -15,12 +15,14 @@ use yoro_context::HeadlessGraphics;
 use yoro_files as files;
 use yoro_lab::interrupt;
 use yoro_lab::picture;
+use yoro_protocol::Settings;
+use yoro_protocol::telemetry::DeviceState;
+use yoro_protocol::telemetry::stats::median;
+use yoro_render::RenderSettings;
 use yoro_render::stereo::Method;
 use yoro_viewer::openxr::runtime::{self, NoBroker, Place, Runtime};
 use yoro_viewer::openxr::{Capture, Description, Frame, Headset, Options, Step};
-use yoro_viewer::telemetry::DeviceState;
-use yoro_viewer::telemetry::stats::median;
-use yoro_viewer::{SceneState, Settings, Viewer};
+use yoro_viewer::{SceneState, Viewer};
 
 /// The pause before a runtime that wants no frame is asked again.
 const PAUSE: Duration = Duration::from_millis(5);
@@ -173,7 +175,7 @@ pub fn run(args: &XrArgs) -> anyhow::Result<()> {
     let headless = args.gl.open()?;
     let gl = headless.gl();
     for method in &args.methods {
-        method.supported(gl.capabilities(), &settings.render_settings())?;
+        RenderSettings::of_settings(&settings).supports(*method, gl.capabilities())?;
     }
     let mut viewer = Viewer::new(settings, &[])?;
     viewer.attach(gl.clone())?;

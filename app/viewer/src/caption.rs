@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Write};
 
-use crate::hud::COLUMNS;
-use crate::telemetry::Line;
+use yoro_lenses::COLUMNS;
+use yoro_protocol::telemetry::Line;
 
 /// How long a message stays in view, in nanoseconds.
 const MESSAGE_NS: i64 = 2_000_000_000;

@@ -1,7 +1,7 @@
 //! Why the viewer cannot go on.
 
-use crate::cardboard::params::ParamsError;
 use yoro::gl::GlError;
+use yoro_lenses::ParamsError;
 use yoro_render::stereo::StereoError;
 
 /// Why the viewer cannot go on. A scene that cannot be loaded is not among these: it is shown in view, see

@@ -5,10 +5,11 @@ use std::rc::Rc;
 use crate::adaptive::{Controller, Load, Quality};
 use crate::error::ViewerError;
 use crate::scene_slot::Shown;
-use crate::settings::Settings;
 use yoro::eyes::{EyePair, EyesError, GuardBand};
 use yoro::gl::{Context, GlError};
 use yoro::synthesis::{ImBufferSize, Pipeline};
+use yoro_protocol::Settings;
+use yoro_render::RenderSettings;
 use yoro_render::stereo::{self, EyeTarget, GuardBandUse, Method, StereoMethod, StereoOptions};
 
 /// The place of the one method.
@@ -98,7 +99,7 @@ impl MethodSlot {
 
     /// The options of the settings with the pipeline and the ImBuffer that are in use.
     fn options(&self, settings: &Settings) -> StereoOptions {
-        let mut options = settings.stereo_options(self.pipeline);
+        let mut options = StereoOptions::of_settings(settings, self.pipeline);
         let (imbuffer, divisor) = (&mut options.synthesis.paper.imbuffer, self.quality.imbuffer);
         *imbuffer = match *imbuffer {
             ImBufferSize::Divisor(n) => ImBufferSize::Divisor(n * divisor),
@@ -110,7 +111,7 @@ impl MethodSlot {
     /// Compiles the current method, if there is a context with a scene to use it on.
     pub fn make(&mut self, gl: Option<&Rc<Context>>, settings: &Settings) -> Result<(), GlError> {
         if let Some(gl) = gl {
-            let (render, options) = (settings.render_settings(), self.options(settings));
+            let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
             self.made = Some(stereo::create(gl, self.method, &render, &options)?);
             self.substitute = None;
         }
@@ -120,7 +121,7 @@ impl MethodSlot {
 
     /// Compiles the method for the first time, or synthesis where the driver cannot do it.
     pub fn make_first(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
-        let (render, options) = (settings.render_settings(), self.options(settings));
+        let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
         let made = match stereo::create(gl, self.method, &render, &options) {
             Err(GlError::Unsupported(reason)) if self.method != Method::Yoro => {
                 log::warn!("{} is used instead of {}: {reason}", Method::Yoro.name(), self.method.name());
@@ -194,7 +195,7 @@ impl MethodSlot {
         to: &[EyeTarget; 2],
     ) -> Result<(), ViewerError> {
         if self.unfit.is_some() && self.substitute.is_none() {
-            let (render, options) = (settings.render_settings(), self.options(settings));
+            let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
             self.substitute = Some(stereo::create(gl, Method::Conventional, &render, &options)?);
         }
         let method = if self.unfit.is_some() { &mut self.substitute } else { &mut self.made };

@@ -181,6 +181,6 @@ mod tests {
         asked(5).write(&mut text);
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(lines[..2], ["image quality?", "1 (worst) to 5 (best): 3"]);
-        assert!(lines.len() == 4 && lines.iter().all(|line| line.len() <= crate::hud::COLUMNS));
+        assert!(lines.len() == 4 && lines.iter().all(|line| line.len() <= yoro_lenses::COLUMNS));
     }
 }

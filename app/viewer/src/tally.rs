@@ -3,9 +3,9 @@
 use glam::Quat;
 
 use crate::questionnaire::Questionnaire;
-use crate::settings::Settings;
-use crate::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 use yoro::gl::PassTime;
+use yoro_protocol::Settings;
+use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 use yoro_render::stereo::GuardBandUse;
 
 /// What is counted and asked from the time that a scene comes into view to the end of the session.
@@ -53,13 +53,13 @@ impl Tally {
 
     /// Counts a frame, with the GPU times of `timed` earlier ones; how many refreshes it was late.
     pub fn frame(&mut self, now_ns: i64, refresh_hz: f32, passes: &[PassTime], timed: u32) -> u32 {
-        self.telemetry.gpu(passes, timed);
+        self.telemetry.gpu(passes.iter().map(|pass| (pass.name, pass.time)), timed);
         self.telemetry.frame(now_ns, refresh_hz)
     }
 
     /// As [`Telemetry::guard_band`].
     pub fn guard_band(&mut self, used: GuardBandUse) {
-        self.telemetry.guard_band(used);
+        self.telemetry.guard_band(used.columns, used.undrawn);
     }
 
     /// Whether a second has passed since the last line.

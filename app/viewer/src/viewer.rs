@@ -26,18 +26,18 @@ use crate::caption::{Caption, Status};
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming, SceneState};
-use crate::hud::{Content, Hud, Panel, Placement};
 use crate::loading::SceneSource;
 use crate::method_slot::MethodSlot;
 use crate::scene_slot::{SceneSlot, Shown};
-use crate::settings::Settings;
 use crate::tally::Tally;
-use crate::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
 use yoro::eyes::{EyePair, MAX_IPD, Pose};
 use yoro::gl::{Context, Destination, GlError, PassTime, Profiling};
 use yoro::synthesis::Pipeline;
-use yoro_render::Renderer;
-use yoro_render::stereo::{EyeTarget, Method};
+use yoro_lenses::{Content, Hud, Panel, Placement};
+use yoro_protocol::Settings;
+use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
+use yoro_render::stereo::{EyeTarget, Method, StereoOptions};
+use yoro_render::{RenderSettings, Renderer};
 use yoro_scene::Scene;
 
 /// The IPD changes by this much at a time, in metres.
@@ -146,12 +146,13 @@ impl Viewer {
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         // What may fail by a mistake in the settings comes first.
         let source = self.other_scene(&settings, folders)?;
-        let (render, method_differs) = (settings.render_settings(), settings.method != self.settings.method);
+        let (render, method_differs) =
+            (RenderSettings::of_settings(&settings), settings.method != self.settings.method);
         if let Some(attached) = &self.attached
-            && (method_differs || render != self.settings.render_settings())
+            && (method_differs || render != RenderSettings::of_settings(&self.settings))
         {
             let method = if method_differs { settings.method } else { self.method.method() };
-            method.supported(attached.gl.capabilities(), &render)?;
+            render.supports(method, attached.gl.capabilities())?;
         }
         let before = std::mem::replace(&mut self.settings, settings);
         let in_use = self.method.choice();
@@ -209,16 +210,16 @@ impl Viewer {
         if let Some(attached) = &self.attached {
             self.method.choose_pipeline(&attached.gl, settings);
         }
-        let render = settings.render_settings();
-        let renderer_differs = render != before.render_settings();
+        let render = RenderSettings::of_settings(settings);
+        let renderer_differs = render != RenderSettings::of_settings(before);
         if let Some(attached) = &self.attached
             && let Some(shown) = self.scene.shown()
             && renderer_differs
         {
             shown.renderer = Renderer::new(&attached.gl, &render, &shown.scene)?;
         }
-        let options_differ =
-            settings.stereo_options(settings.pipeline) != before.stereo_options(before.pipeline);
+        let options_differ = StereoOptions::of_settings(settings, settings.pipeline)
+            != StereoOptions::of_settings(before, before.pipeline);
         if renderer_differs || options_differ || method_differs {
             self.make_method()?;
         }
@@ -571,7 +572,7 @@ impl Viewer {
         self.method.drop_made();
         self.scene.drop_shown();
         self.scene.set_viewpoints(&scene.viewpoints);
-        let shown = Shown::new(gl, scene, &self.settings.render_settings())?;
+        let shown = Shown::new(gl, scene, &RenderSettings::of_settings(&self.settings))?;
         self.method.make_first(gl, &self.settings)?;
         log::info!("{}: {} triangles", shown.scene.name, shown.scene.triangle_count());
         self.scene.show(shown);

@@ -42,7 +42,7 @@ impl Page {
         let render = self.settings.render_settings();
         let (mut names, mut entrants, mut unsupported) = (Vec::new(), Vec::new(), Vec::new());
         for method in Method::ALL {
-            match method.supported(self.gl.capabilities(), &render) {
+            match render.supports(method, self.gl.capabilities()) {
                 Err(reason) => unsupported.push((contender(method), reason.to_string())),
                 Ok(()) => {
                     names.push(contender(method));

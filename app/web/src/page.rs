@@ -123,7 +123,7 @@ impl Page {
     pub fn methods(&self, json: &str) -> Result<String, JsError> {
         let render = Settings::parse(json).map_err(|text| JsError::new(&text))?.render_settings();
         let entry = |method: Method| {
-            let supported = method.supported(self.gl.capabilities(), &render);
+            let supported = render.supports(method, self.gl.capabilities());
             serde_json::json!({ "name": method.name(), "reason": supported.err().map(|error| error.to_string()) })
         };
         Ok(serde_json::Value::from_iter(Method::ALL.map(entry)).to_string())

@@ -4,8 +4,8 @@ use glam::{Quat, Vec3};
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, Eye, EyePair, Pose};
 use yoro::gl::Destination;
+use yoro_lenses::{LensPass, Optics, ViewerParams, neck_offset};
 use yoro_render::stereo::StereoFrame;
-use yoro_viewer::{LensPass, Optics, ViewerParams, neck_offset};
 
 use crate::page::{Page, sentence};
 

@@ -3,9 +3,9 @@
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, EyePair, GuardBand};
 use yoro::gl::{Destination, Format, GlError, RenderTarget};
+use yoro_lenses::{Content, Hud, Placement};
 use yoro_render::DepthCopy;
 use yoro_render::stereo::{DepthTarget, EyeTarget, Method, StereoFrame, StereoMethod};
-use yoro_viewer::{Content, Hud, Placement};
 
 use crate::page::{Page, sentence};
 use crate::views::{VIEW_FLOATS, view};

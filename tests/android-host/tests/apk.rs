@@ -10,8 +10,10 @@ use image::RgbImage;
 use yoro::gl::{Destination, Filter, Format, RenderTarget};
 use yoro_context::{Backend, Headless};
 use yoro_lab::metrics::{Channels, psnr};
-use yoro_viewer::telemetry::Line;
-use yoro_viewer::{Cardboard, FrameTiming, HeldHead, Rotation, SceneState, Screen, Settings};
+use yoro_lenses::{Rotation, Screen};
+use yoro_protocol::Settings;
+use yoro_protocol::telemetry::Line;
+use yoro_viewer::{Cardboard, FrameTiming, HeldHead, SceneState};
 
 use yoro_android_host::summary::Summary;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};

@@ -110,7 +110,7 @@ fn single_pass_stereo_equals_two_renders() {
             for (name, pair) in pairs(&stage) {
                 let expected = stage.render(Method::Conventional, &options, &pair)?;
                 for method in [Method::Instanced, Method::Multiview] {
-                    if let Err(reason) = method.supported(gl.capabilities(), &stage.settings) {
+                    if let Err(reason) = stage.settings.supports(method, gl.capabilities()) {
                         eprintln!("SKIPPED: {} is not tested here: {reason}", method.name());
                         continue;
                     }
@@ -135,7 +135,7 @@ fn what_a_driver_lacks_is_one_sentence() {
             for renderer in RendererKind::ALL {
                 let settings = RenderSettings { renderer, ..RenderSettings::default() };
                 let made = stereo::create(gl, method, &settings, &StereoOptions::default());
-                let Err(reason) = method.supported(gl.capabilities(), &settings) else {
+                let Err(reason) = settings.supports(method, gl.capabilities()) else {
                     made?;
                     continue;
                 };

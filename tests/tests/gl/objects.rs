@@ -39,7 +39,7 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
         ("near field", Method::Yoro, near_field),
     ]
     .into_iter()
-    .filter(|(name, method, _)| match method.supported(gl.capabilities(), settings) {
+    .filter(|(name, method, _)| match settings.supports(*method, gl.capabilities()) {
         Ok(()) => true,
         Err(reason) => {
             eprintln!("SKIPPED: {name} is not tested here: {reason}");

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use super::bandwidth;
 use super::contender::Contender;
 use super::record::{Measurement, Results, Setting, metric};
-use yoro_viewer::telemetry::stats::median;
+use yoro_protocol::telemetry::stats::median;
 
 /// A column: heading, metric, decimals, how its values become one.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use yoro_files::{self as files, FileError};
-use yoro_viewer::telemetry::{LINE_KEYS, Line};
+use yoro_protocol::telemetry::{LINE_KEYS, Line};
 
 /// Version of the folder's format.
 pub const VERSION: u32 = 1;

@@ -37,8 +37,8 @@ use super::pins::{Pins, Wanted};
 use super::run::{self, Found, Plan};
 use crate::interrupt;
 use yoro_files::{self as files, FileError};
+use yoro_protocol::{Settings, SettingsError};
 use yoro_render::stereo::Method;
-use yoro_viewer::{Settings, SettingsError};
 
 /// What the experiment's own file is called in the folder of its runs.
 pub const FILE: &str = "experiment.toml";

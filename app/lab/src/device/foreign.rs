@@ -8,7 +8,7 @@ use super::capture::Sample;
 use super::log::{self, Kind, VRAPI_TAG};
 use super::phone::{self, Battery};
 use super::reading::Reading;
-use yoro_viewer::telemetry::{CurrentNormalizer, Line};
+use yoro_protocol::telemetry::{CurrentNormalizer, Line};
 
 /// How often the battery is asked, in seconds: each question costs the device something, too.
 const BATTERY_PERIOD_S: f64 = 2.0;

@@ -1,6 +1,6 @@
 //! Lines of logcat: who says what, and when.
 
-use yoro_viewer::telemetry::{LOG_TAG, Rating};
+use yoro_protocol::telemetry::{LOG_TAG, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
 pub const VRAPI_TAG: &str = "VrApi";

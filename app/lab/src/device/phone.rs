@@ -2,8 +2,8 @@
 
 use super::adb::{Device, DeviceError, serial_number};
 use super::capture::DeviceInfo;
-use yoro_viewer::Settings;
-use yoro_viewer::telemetry::BatteryStatus;
+use yoro_protocol::Settings;
+use yoro_protocol::telemetry::BatteryStatus;
 
 /// The application.
 pub const PACKAGE: &str = "io.github.yoro";
@@ -322,7 +322,7 @@ pub fn pairs(settings: &Settings) -> Vec<(String, String)> {
         other => other.to_string(),
     };
     let value = |key: &str| table.get(key).map_or_else(|| "auto".into(), text);
-    yoro_viewer::KEYS.iter().map(|key| ((*key).to_owned(), value(key))).collect()
+    yoro_protocol::KEYS.iter().map(|key| ((*key).to_owned(), value(key))).collect()
 }
 
 /// Ends an application.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::capture::{Fault, FaultKind, Sample};
 use super::log::{self, Entry, Kind, VRAPI_TAG};
 use super::phone::LEAST_MILLIVOLTS;
-use yoro_viewer::telemetry::{BatteryStatus, LOG_TAG, Line, fields};
+use yoro_protocol::telemetry::{BatteryStatus, LOG_TAG, Line, fields};
 
 /// Of two lines in one session, the device's clock may differ by this from the session's before that is a jump, in
 /// seconds: a line is logged some frames after its second has ended.
@@ -423,7 +423,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use yoro_viewer::telemetry::BatteryStatus;
+    use yoro_protocol::telemetry::BatteryStatus;
 
     fn line(time_s: f64) -> Line {
         Line {

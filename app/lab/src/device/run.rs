@@ -15,9 +15,9 @@ use super::pins::Pins;
 use super::plausible::MeanPower;
 use super::reading::{News, Reading};
 use crate::interrupt;
+use yoro_protocol::Settings;
 use yoro_render::stereo::Method;
 use yoro_scenes::BUILTINS;
-use yoro_viewer::Settings;
 
 /// How long the application may take to load a scene and show it, in seconds.
 const START_PATIENCE_S: f64 = 180.0;

@@ -11,7 +11,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::palette::{self, Look, Shape};
 use crate::metrics::inference::Interval;
-use yoro_viewer::telemetry::stats::percentile;
+use yoro_protocol::telemetry::stats::percentile;
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]

@@ -7,7 +7,7 @@ use crate::machine::{Machine, Parameter};
 use crate::metrics::{Channels, MetricsError, Quality, error_map};
 use crate::paper::{self, PaperScene};
 use yoro::eyes::Eye;
-use yoro_viewer::telemetry::stats::Summary;
+use yoro_protocol::telemetry::stats::Summary;
 
 /// How the quality figures are made; printed wherever they are.
 pub const QUALITY_METHOD: &str = "PSNR in dB over red, green and blue, data range 255. SSIM as the mean of red, \

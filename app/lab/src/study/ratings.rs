@@ -7,7 +7,7 @@ use super::error::StudyError;
 use super::plan::Trials;
 use crate::device::log::{self, Kind};
 use yoro_files as files;
-use yoro_viewer::telemetry::{LOG_TAG, Rating};
+use yoro_protocol::telemetry::{LOG_TAG, Rating};
 
 /// Columns of a table of ratings; others are left alone.
 const COLUMNS: [&str; 5] = ["participant", "method", "scene", "question", "rating"];

@@ -1,36 +1,8 @@
 //! What the renderer does and how well.
 
 use yoro::gl::{Capabilities, GlError};
-
-/// The most point lights that light one view.
-pub const MAX_POINT_LIGHTS: usize = 24;
-
-/// Numbers of samples that a pixel of the forward renderer may have.
-pub const MSAA: [u32; 3] = [1, 2, 4];
-
-/// How a view is rendered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RendererKind {
-    /// G-buffer, ambient occlusion, lighting of each pixel, bloom, tone mapping; edges are smoothed afterwards, by FXAA.
-    #[default]
-    Deferred,
-    /// Surfaces are lit as they are drawn, with several samples in each pixel (MSAA); no ambient occlusion.
-    Forward,
-}
-
-impl RendererKind {
-    /// All of them, the default first.
-    pub const ALL: [RendererKind; 2] = [RendererKind::Deferred, RendererKind::Forward];
-
-    /// Its name on the command line and in settings.
-    pub fn name(self) -> &'static str {
-        match self {
-            RendererKind::Deferred => "deferred",
-            RendererKind::Forward => "forward",
-        }
-    }
-}
+pub use yoro_protocol::{MAX_POINT_LIGHTS, MSAA, RendererKind};
+use yoro_protocol::{Settings, Ssao};
 
 /// What the renderer does and how well.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -73,6 +45,20 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
+    /// The renderer that the viewer's settings ask for.
+    pub fn of_settings(settings: &Settings) -> RenderSettings {
+        RenderSettings {
+            renderer: settings.renderer,
+            msaa: settings.msaa,
+            shadow_map_size: settings.shadow_map,
+            ssao: settings.ssao != Ssao::Off,
+            ssao_half_size: settings.ssao == Ssao::Half,
+            bloom: settings.bloom,
+            point_lights: settings.point_lights,
+            ..RenderSettings::default()
+        }
+    }
+
     /// Whether the forward renderer is chosen.
     pub fn is_forward(&self) -> bool {
         self.renderer == RendererKind::Forward

@@ -44,7 +44,7 @@ pub fn create(
     settings: &RenderSettings,
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
-    method.supported(gl.capabilities(), settings)?;
+    settings.supports(method, gl.capabilities())?;
     Ok(match method {
         Method::Conventional => Box::new(Conventional::new(gl, settings, options)?),
         Method::Instanced if settings.is_forward() => {

@@ -1,121 +1,46 @@
-//! The methods and their settings.
+//! Settings of the methods.
 
 use crate::render::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro::gl::{Capabilities, GlError};
-use yoro::synthesis::{Edges, NearFieldPolicy, Pipeline, SynthesisOptions};
+use yoro::synthesis::{Edges, NearFieldPolicy, PaperOptions, Pipeline, SynthesisOptions};
+use yoro_protocol::Settings;
+pub use yoro_protocol::{AntiAliasing, Method};
 
-/// A way to make both eyes of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Method {
-    /// Both eyes rendered, one after the other: the ground truth.
-    Conventional,
-    /// Both eyes in one set of draw calls, by instancing.
-    Instanced,
-    /// Both eyes in one set of draw calls, by GL_OVR_multiview2.
-    Multiview,
-    /// The far field rendered once for both eyes, the near field for each (Fink et al. 2019).
-    Hybrid,
-    /// The dominant eye's shading reprojected to the other eye's geometry; only disocclusions are shaded.
-    ShadingReprojection,
-    /// The dominant eye's image shown to both: the lower bound.
-    Mono,
-    /// The dominant eye rendered, the other synthesized.
-    Yoro,
+/// What the forward renderer does not have for a method, if anything.
+fn lacking_forward(method: Method) -> Option<&'static str> {
+    match method {
+        Method::ShadingReprojection => Some("the g-buffer of both eyes"),
+        // Layers with several samples are EXT_multisampled_render_to_texture's, by
+        // GL_OVR_multiview_multisampled_render_to_texture.
+        Method::Multiview => Some("layers with one sample in each pixel"),
+        _ => None,
+    }
 }
 
-impl Method {
-    /// All methods: those that render both eyes first.
-    pub const ALL: [Method; 7] = [
-        Method::Conventional,
-        Method::Instanced,
-        Method::Multiview,
-        Method::Hybrid,
-        Method::ShadingReprojection,
-        Method::Mono,
-        Method::Yoro,
-    ];
-
-    /// The name on the command line and in results.
-    pub fn name(self) -> &'static str {
-        match self {
-            Method::Conventional => "conventional",
-            Method::Instanced => "instanced",
-            Method::Multiview => "multiview",
-            Method::Hybrid => "hybrid",
-            Method::ShadingReprojection => "shading-reprojection",
-            Method::Mono => "mono",
-            Method::Yoro => "yoro",
-        }
-    }
-
-    /// What the forward renderer does not have for the method, if anything.
-    fn lacking_forward(self) -> Option<&'static str> {
-        match self {
-            Method::ShadingReprojection => Some("the g-buffer of both eyes"),
-            // Layers with several samples are EXT_multisampled_render_to_texture's, by
-            // GL_OVR_multiview_multisampled_render_to_texture.
-            Method::Multiview => Some("layers with one sample in each pixel"),
-            _ => None,
-        }
-    }
-
-    /// Whether the method shows pixels of one eye to the other, which needs eyes that look in the same direction
-    /// ([`yoro::eyes::EyePair::synthesis`]).
-    pub fn needs_aligned_eyes(self) -> bool {
-        matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Mono | Method::Yoro)
-    }
-
-    /// Whether a driver can run the method with a renderer of these settings; what a pipeline of [`Method::Yoro`] needs
-    /// is its own to say.
+impl RenderSettings {
+    /// Checks that a driver can run a method with this renderer. What a pipeline of [`Method::Yoro`] needs is its own to
+    /// check.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] with what is missing and the remedy.
-    pub fn supported(self, capabilities: &Capabilities, settings: &RenderSettings) -> Result<(), GlError> {
-        settings.supported(capabilities)?;
-        if settings.is_forward()
-            && let Some(lacking) = self.lacking_forward()
+    pub fn supports(&self, method: Method, capabilities: &Capabilities) -> Result<(), GlError> {
+        self.supported(capabilities)?;
+        if self.is_forward()
+            && let Some(lacking) = lacking_forward(method)
         {
             return Err(GlError::Unsupported(format!(
                 "{} needs {lacking}: choose the deferred renderer, or another method",
-                self.name()
+                method.name()
             )));
         }
-        if self == Method::Multiview && !capabilities.multiview {
+        if method == Method::Multiview && !capabilities.multiview {
             return Err(GlError::Unsupported(format!(
                 "{} ({}) has no GL_OVR_multiview2; use instanced, or a driver that has it, such as Mesa 25",
                 capabilities.renderer, capabilities.version_string
             )));
         }
         Ok(())
-    }
-}
-
-/// When anti-aliasing runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum AntiAliasing {
-    /// After synthesis, on each eye.
-    #[default]
-    After,
-    /// Before synthesis, on the rendered eye only, as in the paper.
-    Before,
-    /// Not at all.
-    Off,
-}
-
-impl AntiAliasing {
-    /// All of them, the default first.
-    pub const ALL: [AntiAliasing; 3] = [AntiAliasing::After, AntiAliasing::Before, AntiAliasing::Off];
-
-    /// Its name in settings.
-    pub fn name(self) -> &'static str {
-        match self {
-            AntiAliasing::After => "after",
-            AntiAliasing::Before => "before",
-            AntiAliasing::Off => "off",
-        }
     }
 }
 
@@ -174,6 +99,27 @@ impl StereoOptions {
         }
     }
 
+    /// The options that the viewer's settings ask for, with a pipeline that may be another one than that of the settings
+    /// where the driver cannot do that.
+    pub fn of_settings(settings: &Settings, pipeline: Pipeline) -> StereoOptions {
+        let options = StereoOptions::of_pipeline(pipeline);
+        let paper = PaperOptions {
+            imbuffer: settings.imbuffer,
+            linear_interpolation: settings.linear_interpolation,
+            kernel_height: settings.kernel_height,
+            strict: settings.strict,
+        };
+        StereoOptions {
+            synthesis: SynthesisOptions { paper, ..options.synthesis },
+            edges: settings.edges,
+            guard_band: settings.guard_band.unwrap_or(options.guard_band),
+            anti_aliasing: settings.anti_aliasing.unwrap_or(options.anti_aliasing),
+            near_field: settings.near_field,
+            policy: settings.switch.then(NearFieldPolicy::default),
+            split_disparity: settings.split_disparity,
+        }
+    }
+
     /// The default with another pipeline. The paper's pipeline comes as in the paper: no guard band,
     /// anti-aliasing before synthesis.
     pub fn of_pipeline(pipeline: Pipeline) -> StereoOptions {
@@ -185,5 +131,45 @@ impl StereoOptions {
             }
             _ => options,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No option of the methods is out of the settings' reach.
+    #[test]
+    fn every_stereo_option_has_a_setting() {
+        let changed = Settings::resolve(
+            None,
+            [
+                "imbuffer=4",
+                "linear-interpolation=false",
+                "kernel-height=5",
+                "strict=true",
+                "guard-band=40px",
+                "anti-aliasing=off",
+                "edges=nearest",
+                "near-field=1",
+                "switch=false",
+                "split-disparity=2.5",
+            ],
+        );
+        let [changed, default] = [changed.unwrap(), Settings::default()]
+            .map(|s| serde_json::json!(StereoOptions::of_settings(&s, Pipeline::Paper)));
+        assert_eq!(
+            serde_json::json!(StereoOptions::of_settings(&Settings::default(), Pipeline::Gather)),
+            serde_json::json!(StereoOptions::default())
+        );
+        fn unchanged(path: &str, a: &serde_json::Value, b: &serde_json::Value) -> Vec<String> {
+            match (a.as_object(), b.as_object()) {
+                (Some(a), Some(b)) => {
+                    a.iter().flat_map(|(key, a)| unchanged(&format!("{path}.{key}"), a, &b[key])).collect()
+                }
+                _ => (a == b).then(|| path.to_owned()).into_iter().collect(),
+            }
+        }
+        assert_eq!(unchanged("", &changed, &default), [".synthesis.pipeline"]);
     }
 }

@@ -52,7 +52,7 @@ impl SinglePass {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<SinglePass, GlError> {
-        Method::Multiview.supported(gl.capabilities(), settings)?;
+        settings.supports(Method::Multiview, gl.capabilities())?;
         SinglePass::new(gl, Layout::Layered, settings, options)
     }
 

@@ -12,7 +12,7 @@ use yoro_lab::device::foreign::Subject;
 use yoro_lab::device::pins::{Pins, Wanted};
 use yoro_lab::device::run::{self, Other, Plan};
 use yoro_lab::interrupt;
-use yoro_viewer::Settings;
+use yoro_protocol::Settings;
 
 /// Make one run: a method in a scene for a time, captured into a folder
 #[derive(clap::Args, Clone, Debug)]

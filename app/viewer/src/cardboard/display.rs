@@ -6,17 +6,17 @@ use std::rc::Rc;
 use glam::{Quat, Vec3};
 
 use super::fence::Fence;
-use super::head::{HeadTracker, MotionSample, neck_offset};
-use super::lens::LensPass;
-use super::optics::{Optics, Screen};
-use super::params::ViewerParams;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming};
-use crate::settings::Settings;
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, Eye, EyePair, MAX_IPD, Pose};
 use yoro::gl::{Context, Destination};
+use yoro_lenses::LensPass;
+use yoro_lenses::ViewerParams;
+use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
+use yoro_lenses::{Optics, Screen};
+use yoro_protocol::Settings;
 use yoro_render::stereo::StereoFrame;
 
 /// A head held still, instead of the one that the sensors measure.

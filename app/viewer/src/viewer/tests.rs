@@ -6,9 +6,10 @@ use std::time::Duration;
 use glam::{Quat, Vec3};
 
 use super::*;
-use crate::cardboard::{Cardboard, HeldHead, MotionSample, Rotation, Screen};
+use crate::cardboard::{Cardboard, HeldHead};
 use yoro::gl::{Filter, Format, RenderTarget};
 use yoro_context::{Backend, Headless};
+use yoro_lenses::{MotionSample, Rotation, Screen};
 
 const WINDOW: [u32; 2] = [320, 180];
 const PERIOD_NS: i64 = 16_666_667;

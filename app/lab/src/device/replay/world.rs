@@ -13,9 +13,9 @@ use crate::device::adb::{DeviceError, State};
 use crate::device::{log, phone};
 use crate::interrupt;
 use yoro_files as files;
+use yoro_protocol::Settings;
+use yoro_protocol::telemetry::{BatteryStatus, CurrentNormalizer, Line};
 use yoro_render::stereo::Method;
-use yoro_viewer::Settings;
-use yoro_viewer::telemetry::{BatteryStatus, CurrentNormalizer, Line};
 
 /// When every replay begins, in seconds since 1970: results do not depend on the day.
 const BEGIN: f64 = 1_750_000_000.0;
@@ -372,11 +372,11 @@ impl World {
             if std::mem::take(&mut self.truncate) {
                 text.truncate(text.len() * 2 / 3);
             }
-            self.write_log(pid, "I", yoro_viewer::telemetry::LOG_TAG, &text);
+            self.write_log(pid, "I", yoro_protocol::telemetry::LOG_TAG, &text);
         }
         if over {
             let text = format!("v=1,summary=1,t={time_s:.1}s,frames={:.0}", time_s * line.fps.unwrap_or(0.0));
-            self.write_log(pid, "I", yoro_viewer::telemetry::LOG_TAG, &text);
+            self.write_log(pid, "I", yoro_protocol::telemetry::LOG_TAG, &text);
         }
     }
 
@@ -658,7 +658,7 @@ impl World {
         self.write_log(
             pid,
             "I",
-            yoro_viewer::telemetry::LOG_TAG,
+            yoro_protocol::telemetry::LOG_TAG,
             &format!("yoro {} starts", env!("CARGO_PKG_VERSION")),
         );
         self.application = Some(Application {
@@ -702,7 +702,9 @@ fn read_recording(path: &Path) -> Result<Vec<Line>, DeviceError> {
     let bytes = files::read(path)?;
     let text = String::from_utf8_lossy(&bytes);
     let line = |line: &str| match log::parse(line) {
-        log::Kind::Entry(entry) if entry.tag == yoro_viewer::telemetry::LOG_TAG => entry.message.parse().ok(),
+        log::Kind::Entry(entry) if entry.tag == yoro_protocol::telemetry::LOG_TAG => {
+            entry.message.parse().ok()
+        }
         _ => None,
     };
     Ok(text.lines().filter_map(line).collect())

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::bench::record::{Header, Results, SceneFacts, Setting, metric};
-use yoro_viewer::telemetry::stats::{Summary, percentile};
+use yoro_protocol::telemetry::stats::{Summary, percentile};
 
 /// One suite as measured under one set of conditions.
 pub struct Suite {

@@ -5,9 +5,9 @@ use openxr as xr;
 
 use super::state::Session;
 use crate::openxr::error::{XrError, call};
-use crate::settings::Settings;
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
+use yoro_protocol::Settings;
 
 /// Half of the angle beyond which no frustum makes sense, in radians.
 const WIDEST: f32 = 1.55;

@@ -7,7 +7,6 @@ use openxr as xr;
 use xr::sys;
 
 use super::state::{Depth, PanelImages, Session, Spaces};
-use crate::hud::Panel;
 use crate::openxr::description::{Description, Options};
 #[cfg(target_os = "android")]
 use crate::openxr::error::check;
@@ -18,10 +17,11 @@ use crate::openxr::input::Input;
 use crate::openxr::mask::Mask;
 use crate::openxr::runtime::Runtime;
 use crate::openxr::storage::{self, Storage};
-use crate::settings::Settings;
 use yoro::eyes::Eye;
 use yoro::gl::Context;
 use yoro_context::Graphics;
+use yoro_lenses::Panel;
+use yoro_protocol::Settings;
 use yoro_render::DepthCopy;
 
 /// The images of the eyes are multiples of this many pixels, where they are scaled.

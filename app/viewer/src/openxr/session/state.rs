@@ -12,9 +12,9 @@ use crate::openxr::images::{EyeImages, Images};
 use crate::openxr::input::Input;
 use crate::openxr::mask::Mask;
 use crate::openxr::storage::Storage;
-use crate::settings::Performance;
 use yoro::eyes::EyesError;
 use yoro::gl::Context;
+use yoro_protocol::Performance;
 use yoro_render::DepthCopy;
 
 /// What a step has led to.

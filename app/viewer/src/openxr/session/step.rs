@@ -13,9 +13,9 @@ use crate::frame::FrameTiming;
 use crate::openxr::description::Frame;
 use crate::openxr::error::{XrError, call, check, optional};
 use crate::openxr::graphics::make_current;
-use crate::settings::{Performance, Settings};
 use crate::viewer::Viewer;
 use yoro_context::Graphics;
+use yoro_protocol::{Performance, Settings};
 
 impl Session {
     /// Takes the runtime's events, and makes a frame if it wants one. New states go to `states`.

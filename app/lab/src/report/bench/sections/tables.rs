@@ -5,7 +5,7 @@ use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite, mean};
 use crate::report::grid::{Cell, Table};
 use crate::text::{fixed, short_count};
-use yoro_viewer::telemetry::stats::percentile;
+use yoro_protocol::telemetry::stats::percentile;
 
 /// A table with a row for each setting and a column for each contender; then the mean, and those that were not
 /// measured.

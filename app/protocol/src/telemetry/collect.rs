@@ -1,13 +1,13 @@
 //! A session, second after second.
 
+use std::time::Duration;
+
 use super::device::DeviceState;
 use super::frames::FrameStatistics;
 use super::line::{Line, StageTime};
 use super::power::CurrentNormalizer;
 use super::process::{ProcessSample, cpu_load};
 use super::summary::{SessionSummary, Totals};
-use yoro::gl::PassTime;
-use yoro_render::stereo::GuardBandUse;
 
 /// Length of a period in nanoseconds.
 const PERIOD_NS: i64 = 1_000_000_000;
@@ -90,23 +90,23 @@ impl Telemetry {
     }
 
     /// Adds the GPU times of some frames.
-    pub fn gpu(&mut self, passes: &[PassTime], frames: u32) {
+    pub fn gpu(&mut self, passes: impl IntoIterator<Item = (&'static str, Duration)>, frames: u32) {
         self.timed_frames += frames;
-        for pass in passes {
-            let nanoseconds = pass.time.as_nanos() as u64;
-            match self.stages.iter_mut().find(|stage| stage.name == pass.name) {
+        for (name, time) in passes {
+            let nanoseconds = time.as_nanos() as u64;
+            match self.stages.iter_mut().find(|stage| stage.name == name) {
                 Some(stage) => stage.nanoseconds += nanoseconds,
-                None => self.stages.push(Stage { name: pass.name, nanoseconds }),
+                None => self.stages.push(Stage { name, nanoseconds }),
             }
         }
     }
 
     /// Adds what a frame drew of a guard band that sets its own width.
-    pub fn guard_band(&mut self, used: GuardBandUse) {
+    pub fn guard_band(&mut self, columns: u32, undrawn: u32) {
         let sum = self.guard_band.get_or_insert_default();
         sum.frames += 1;
-        sum.columns += u64::from(used.columns);
-        sum.undrawn += u64::from(used.undrawn);
+        sum.columns += u64::from(columns);
+        sum.undrawn += u64::from(undrawn);
     }
 
     /// Frames stop; the time until the next one is not counted.
@@ -186,8 +186,6 @@ impl Telemetry {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::*;
     use crate::telemetry::BatteryStatus;
 
@@ -287,8 +285,8 @@ mod tests {
     fn gpu_times_are_means_per_frame() {
         let mut telemetry = Telemetry::default();
         for ms in [2, 4] {
-            let pass = |name, ms| PassTime { name, time: Duration::from_millis(ms) };
-            telemetry.gpu(&[pass("geometry", ms), pass("fxaa", 1), pass("fxaa", 1)], 1);
+            let pass = |name, ms| (name, Duration::from_millis(ms));
+            telemetry.gpu([pass("geometry", ms), pass("fxaa", 1), pass("fxaa", 1)], 1);
         }
         let line = telemetry.line(0, &viewer(), &DeviceState::default());
         let times: Vec<_> = line.stages.iter().map(|s| (s.name.as_str(), s.milliseconds)).collect();

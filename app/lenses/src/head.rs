@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
-use super::optics::Rotation;
+use crate::optics::Rotation;
 
 /// Eyes from the neck's joint in metres: up and forward.
 const NECK: Vec3 = Vec3::new(0.0, 0.075, -0.080);

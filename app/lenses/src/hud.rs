@@ -15,8 +15,8 @@ use yoro::gl::{
     Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
 };
 
-/// Characters of a line; longer ones are cut.
-pub(crate) const COLUMNS: usize = 34;
+/// The characters that a line of the panel has room for; longer lines are cut.
+pub const COLUMNS: usize = 34;
 const LINES: usize = 4;
 const FONT: [usize; 2] = [10, 20];
 const MARGIN: usize = 8;

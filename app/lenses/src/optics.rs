@@ -5,7 +5,7 @@
 
 use glam::Vec2;
 
-use super::params::{VerticalAlignment, ViewerParams};
+use crate::params::{VerticalAlignment, ViewerParams};
 use yoro::eyes::{Eye, Frustum};
 
 /// Rows and columns of the mesh's vertices.

@@ -9,13 +9,12 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toml::{Table, Value};
 
+use crate::choices::{
+    AntiAliasing, DisplayKind, MAX_POINT_LIGHTS, MSAA, Method, Performance, RendererKind, ScreenSize, Ssao,
+};
 use yoro::eyes::{DEFAULT_IPD, Eye, GuardBand, MAX_IPD};
-use yoro::synthesis::{Edges, ImBufferSize, NearFieldPolicy, PaperOptions, Pipeline, SynthesisOptions};
-use yoro_render::stereo::{AntiAliasing, Method, StereoOptions};
-use yoro_render::{MAX_POINT_LIGHTS, MSAA, RenderSettings, RendererKind};
+use yoro::synthesis::{Edges, ImBufferSize, Pipeline};
 
-/// Lengths in millimetres that a side of a screen behind lenses can have.
-const PLAUSIBLE_SCREEN: std::ops::RangeInclusive<f32> = 30.0..=400.0;
 /// Largest settings file in bytes.
 const MAX_FILE: u64 = 1 << 20;
 
@@ -62,88 +61,6 @@ pub enum SettingsError {
     /// An override that is not `key=value`.
     #[error("\"{0}\" is not a setting: write key=value, such as method=yoro")]
     NoPair(String),
-}
-
-/// On what the eyes are shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum DisplayKind {
-    /// A headset where there is an OpenXR runtime, else a Cardboard-compatible viewer.
-    #[default]
-    Auto,
-    /// A headset with an OpenXR runtime.
-    OpenXr,
-    /// A phone in a Cardboard-compatible viewer.
-    Cardboard,
-}
-
-/// How fast the processors should run, where applications may say: on headsets by XR_EXT_performance_settings; on phones
-/// the two sustained levels are Android's sustained performance mode.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Performance {
-    /// As slowly as can be.
-    PowerSaving,
-    /// Slowly; the rate may be missed.
-    SustainedLow,
-    /// As fast as can be held for as long as one likes.
-    #[default]
-    SustainedHigh,
-    /// As fast as can be, for a short time.
-    Boost,
-}
-
-/// Width and height of a screen in millimetres, in the position in which a viewer holds it: `158x71mm`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScreenSize {
-    millimetres: [f32; 2],
-}
-
-impl ScreenSize {
-    /// Width and height in metres.
-    pub fn metres(self) -> [f32; 2] {
-        self.millimetres.map(|length| length * 1e-3)
-    }
-}
-
-impl FromStr for ScreenSize {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<ScreenSize, String> {
-        let lengths = text.trim().strip_suffix("mm").and_then(|lengths| lengths.split_once('x'));
-        let lengths = lengths.map(|(width, height)| [width, height].map(|text| text.trim().parse().ok()));
-        match lengths {
-            Some([Some(width), Some(height)])
-                if PLAUSIBLE_SCREEN.contains(&width) && PLAUSIBLE_SCREEN.contains(&height) =>
-            {
-                Ok(ScreenSize { millimetres: [width, height] })
-            }
-            _ => Err(format!(
-                "give width and height from {} to {} mm, such as 158x71mm, or auto for what the device says",
-                PLAUSIBLE_SCREEN.start(),
-                PLAUSIBLE_SCREEN.end()
-            )),
-        }
-    }
-}
-
-impl Display for ScreenSize {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [width, height] = self.millimetres;
-        write!(f, "{width}x{height}mm")
-    }
-}
-
-/// Ambient occlusion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Ssao {
-    /// None.
-    Off,
-    /// At half the resolution.
-    Half,
-    /// At full resolution.
-    Full,
 }
 
 /// All settings of the viewer. As TOML, and as `key=value`, keys are written with hyphens.
@@ -323,24 +240,23 @@ const OPTIONAL: &[&str] = &[
 
 impl Default for Settings {
     fn default() -> Settings {
-        let (stereo, paper) = (StereoOptions::default(), PaperOptions::default());
         Settings {
             scene: "prototype".into(),
-            seed: yoro_scenes::DEFAULT_SEED,
+            seed: 1,
             viewpoint: 0,
             method: Method::Yoro,
             methods: vec![Method::Yoro, Method::Conventional, Method::Mono],
             pipeline: Pipeline::default(),
-            imbuffer: paper.imbuffer,
-            linear_interpolation: paper.linear_interpolation,
-            kernel_height: paper.kernel_height,
-            strict: paper.strict,
+            imbuffer: ImBufferSize::Divisor(1),
+            linear_interpolation: true,
+            kernel_height: 3,
+            strict: false,
             guard_band: None,
             anti_aliasing: None,
             edges: None,
             near_field: None,
             switch: true,
-            split_disparity: stereo.split_disparity,
+            split_disparity: 1.0,
             viewer: "v2".into(),
             screen: None,
             dominant: Eye::Right,
@@ -351,7 +267,7 @@ impl Default for Settings {
             chromatic: false,
             hud: true,
             renderer: RendererKind::default(),
-            msaa: RenderSettings::default().msaa,
+            msaa: 4,
             // Phones: half of what the desktop program takes by default.
             shadow_map: 2048,
             ssao: Ssao::Half,
@@ -519,41 +435,6 @@ impl Settings {
         };
         if fits { Ok(()) } else { Err(remedy) }
     }
-
-    /// What the stereo methods take, with a pipeline that may be another one than that of the settings where the
-    /// driver cannot do that. All other options come from here.
-    pub fn stereo_options(&self, pipeline: Pipeline) -> StereoOptions {
-        let pipeline = StereoOptions::of_pipeline(pipeline);
-        let paper = PaperOptions {
-            imbuffer: self.imbuffer,
-            linear_interpolation: self.linear_interpolation,
-            kernel_height: self.kernel_height,
-            strict: self.strict,
-        };
-        StereoOptions {
-            synthesis: SynthesisOptions { paper, ..pipeline.synthesis },
-            edges: self.edges,
-            guard_band: self.guard_band.unwrap_or(pipeline.guard_band),
-            anti_aliasing: self.anti_aliasing.unwrap_or(pipeline.anti_aliasing),
-            near_field: self.near_field,
-            policy: self.switch.then(NearFieldPolicy::default),
-            split_disparity: self.split_disparity,
-        }
-    }
-
-    /// What the renderer takes.
-    pub fn render_settings(&self) -> RenderSettings {
-        RenderSettings {
-            renderer: self.renderer,
-            msaa: self.msaa,
-            shadow_map_size: self.shadow_map,
-            ssao: self.ssao != Ssao::Off,
-            ssao_half_size: self.ssao == Ssao::Half,
-            bloom: self.bloom,
-            point_lights: self.point_lights,
-            ..RenderSettings::default()
-        }
-    }
 }
 
 /// One line: `key=value` for each setting.
@@ -688,44 +569,12 @@ mod tests {
         assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(0.06)));
         assert_eq!(settings.screen.unwrap().metres(), [0.158, 0.0705]);
         assert_eq!((settings.dominant, settings.duration), (Eye::Left, Some(30.0)));
-        assert!(settings.adaptive && settings.hud && !settings.render_settings().ssao);
-        assert_eq!(settings.stereo_options(settings.pipeline).synthesis.pipeline, Pipeline::Paper);
+        assert!(settings.adaptive && settings.hud && settings.ssao == Ssao::Off);
+        assert_eq!(settings.pipeline, Pipeline::Paper);
         let again = with(&["ipd=0.06", "ipd=auto", "imbuffer=4", "methods=mono", "guard-band=0.5"]).unwrap();
         assert_eq!((again.ipd, again.imbuffer), (None, ImBufferSize::Divisor(4)));
         assert_eq!(again.guard_band, Some(GuardBand::Distance(0.5)));
         assert_eq!(again.methods, [Method::Mono]);
-    }
-
-    /// No option of the methods is out of the settings' reach.
-    #[test]
-    fn every_stereo_option_has_a_setting() {
-        let changed = with(&[
-            "imbuffer=4",
-            "linear-interpolation=false",
-            "kernel-height=5",
-            "strict=true",
-            "guard-band=40px",
-            "anti-aliasing=off",
-            "edges=nearest",
-            "near-field=1",
-            "switch=false",
-            "split-disparity=2.5",
-        ]);
-        let [changed, default] = [changed.unwrap(), Settings::default()]
-            .map(|s| serde_json::json!(s.stereo_options(Pipeline::Paper)));
-        assert_eq!(
-            serde_json::json!(Settings::default().stereo_options(Pipeline::Gather)),
-            serde_json::json!(StereoOptions::default())
-        );
-        fn unchanged(path: &str, a: &serde_json::Value, b: &serde_json::Value) -> Vec<String> {
-            match (a.as_object(), b.as_object()) {
-                (Some(a), Some(b)) => {
-                    a.iter().flat_map(|(key, a)| unchanged(&format!("{path}.{key}"), a, &b[key])).collect()
-                }
-                _ => (a == b).then(|| path.to_owned()).into_iter().collect(),
-            }
-        }
-        assert_eq!(unchanged("", &changed, &default), [".synthesis.pipeline"]);
     }
 
     #[test]

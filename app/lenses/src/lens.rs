@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glam::{Mat4, Quat, Vec2, Vec4};
 
-use super::optics::{Optics, mesh_strip};
+use crate::optics::{Optics, mesh_strip};
 use yoro::eyes::{Eye, Frustum};
 use yoro::gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
 use yoro_render::stereo::StereoFrame;
@@ -78,8 +78,8 @@ impl LensPass {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cardboard::optics::{Distortion, MESH_RESOLUTION, Rotation, Screen};
-    use crate::cardboard::params::ViewerParams;
+    use crate::optics::{Distortion, MESH_RESOLUTION, Rotation, Screen};
+    use crate::params::ViewerParams;
     use yoro::gl::{Filter, Format, RenderTarget};
     use yoro_context::{Backend, Headless};
 

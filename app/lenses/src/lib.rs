@@ -1,0 +1,18 @@
+//! A phone behind the lenses of a Cardboard-compatible viewer, and a panel of text before both eyes.
+//!
+//! A viewer's parameters and a screen's size come in; frusta, the mesh that undoes the lenses' distortion, and the pass
+//! that draws both eyes through it go out. Motion samples come in, and the head's orientation goes out.
+//!
+//! This crate must never know a scene, settings, or where a GL context comes from; it builds for phones and browsers alike.
+
+mod head;
+mod hud;
+mod lens;
+mod optics;
+mod params;
+
+pub use head::{HeadTracker, MotionSample, neck_offset};
+pub use hud::{COLUMNS, Content, Hud, Panel, Placement};
+pub use lens::LensPass;
+pub use optics::{Optics, Rotation, Screen};
+pub use params::{ParamsError, VerticalAlignment, ViewerParams};
