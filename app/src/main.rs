@@ -5,7 +5,7 @@ mod cli;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use yoro_lab::interrupt;
+use yoro_files::interrupt;
 
 /// Render one eye, synthesize the other
 #[derive(Parser)]

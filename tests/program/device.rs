@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
-use yoro_lab::device::capture::{self, Capture, FaultKind, Outcome, Sample};
+use yoro_devices::capture::{self, Capture, FaultKind, Outcome, Sample};
 
 use crate::program::{finish, interrupt, run, succeed, yoro};
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use yoro_lab::device::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
+use yoro_devices::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
 
 use crate::browser::{Browser, check_figures};
 use crate::program::{run, succeed};

@@ -7,6 +7,7 @@
 //! This crate must never know what is in the files.
 
 mod input;
+pub mod interrupt;
 
 use std::fs;
 use std::io::{self, BufWriter, Read as _, Write};

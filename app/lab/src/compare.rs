@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use crate::interrupt::{self, Interrupted};
 use crate::metrics::{Comparison, MetricsError, PartQuality, Psnr, Quality, error_map, holes_of_mask};
 use crate::picture::{self, PictureError};
+use yoro_files::interrupt::{self, Interrupted};
 use yoro_files::{self as files, FileError};
 
 /// Why nothing could be compared.

@@ -1,9 +1,8 @@
-//! Measuring: how good a synthesized eye is, what it costs, and what a person or a phone says of it.
+//! Measuring: how good a synthesized eye is, and what it costs.
 //!
 //! [`metrics`] compares images, [`compare`] files and folders of them, [`picture`] reads and writes them; [`inpaint`]
 //! has the patchers that fill holes after other papers; [`dataset`] renders image groups; [`run`] holds methods against
-//! rendering both eyes, [`mod@bench`] every method against every other, and [`report`] makes pages of both; [`device`]
-//! measures phones and headsets over adb; [`study`] plans and evaluates user studies.
+//! rendering both eyes, [`mod@bench`] every method against every other, and [`report`] makes pages of both.
 //!
 //! The heavy parts are features: `neural` (weights of a network and a runtime for them) and `h264` (an encoder that
 //! compiles C).
@@ -13,14 +12,9 @@
 pub mod bench;
 pub mod compare;
 pub mod dataset;
-pub mod device;
 pub mod inpaint;
-pub mod interrupt;
 pub mod machine;
 pub mod metrics;
-pub mod paper;
 pub mod picture;
 pub mod report;
 pub mod run;
-pub mod study;
-mod text;

@@ -7,11 +7,11 @@ use image::RgbImage;
 use indicatif::ProgressBar;
 
 use crate::bench::{BlankFinder, Entrant, spread};
-use crate::interrupt;
 use crate::picture;
 use crate::report::{Cost, MethodCost, PassTime, SceneReport, Viewpoint};
 use yoro::eyes::{Eye, EyeOptions, EyePair};
 use yoro::gl::Context;
+use yoro_files::interrupt;
 use yoro_protocol::telemetry::stats::{Summary, median};
 use yoro_render::stereo::{Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};

@@ -12,12 +12,12 @@ use crate::cli::machine;
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DEFAULT_IPD, Eye, EyeOptions};
 use yoro::gl::Context;
+use yoro_files::interrupt::Interrupted;
 use yoro_lab::bench::record::{Header, PassClock, VERSION};
 use yoro_lab::bench::{
     self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, process,
 };
 use yoro_lab::inpaint::PatcherOptions;
-use yoro_lab::interrupt::Interrupted;
 use yoro_scene::load::sidecar_file;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own

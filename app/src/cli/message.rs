@@ -2,9 +2,9 @@
 //! options.
 
 use yoro_context::ContextError;
+use yoro_devices::adb::{DeviceError, quoted};
+use yoro_devices::experiment::ExperimentError;
 use yoro_lab::bench::record::RecordError;
-use yoro_lab::device::adb::{DeviceError, quoted};
-use yoro_lab::device::experiment::ExperimentError;
 
 /// The sentence, and the option of its remedy if it has one.
 pub fn of(error: &anyhow::Error) -> String {

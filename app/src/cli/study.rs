@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail, ensure};
 
 use crate::cli::machine;
+use yoro_devices::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
 use yoro_files as files;
-use yoro_lab::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
 use yoro_protocol::Settings;
 use yoro_render::stereo::Method;
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};

@@ -17,8 +17,8 @@ use yoro::synthesis::{
     SynthesizedImage,
 };
 use yoro_files as files;
+use yoro_files::interrupt;
 use yoro_lab::inpaint::{Patcher, Reprojected};
-use yoro_lab::interrupt;
 use yoro_lab::picture::{self, DepthImage, DepthSamples, rgb_image};
 
 /// What the values of a depth image mean.

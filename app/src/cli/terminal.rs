@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use yoro_lab::interrupt;
+use yoro_files::interrupt;
 
 /// Ends the program without a word when nobody reads its standard output any more, as after `| head`: `print!` would
 /// panic.

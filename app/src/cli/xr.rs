@@ -13,7 +13,7 @@ use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyePair};
 use yoro_context::HeadlessGraphics;
 use yoro_files as files;
-use yoro_lab::interrupt;
+use yoro_files::interrupt;
 use yoro_lab::picture;
 use yoro_protocol::Settings;
 use yoro_protocol::telemetry::DeviceState;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::record::Setting;
-use crate::text::slug;
+use yoro_figures::text::slug;
 
 /// Where a run with results in `results` saves the pictures of a setting: `RUN.pictures/SUITE/SCENE` with `.LABEL` or
 /// `.POINT`, and in there `dominant.png`, `truth.png` and `CONTENDER.png`.

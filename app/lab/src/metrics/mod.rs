@@ -1,4 +1,4 @@
-//! How alike two images are, and statistics of samples.
+//! How alike two images are.
 //!
 //! All figures are computed in f64 on display-referred 8-bit values, data range 255. PSNR and SSIM agree with
 //! scikit-image's `peak_signal_noise_ratio` and `structural_similarity`, FLIP with its authors' program.
@@ -6,7 +6,6 @@
 mod error_map;
 mod flicker;
 mod flip;
-pub mod inference;
 mod input;
 mod psnr;
 mod ssim;

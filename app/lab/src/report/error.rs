@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use super::plot;
 use crate::metrics::MetricsError;
 use crate::picture::PictureError;
 use yoro_files::FileError;
@@ -17,12 +16,12 @@ pub enum ReportError {
     /// A picture could not be encoded.
     #[error("cannot encode a picture of the report: {0}")]
     Picture(#[from] image::ImageError),
-    /// The template and the data do not fit.
-    #[error("cannot fill in the report's template: {0}")]
-    Template(#[from] minijinja::Error),
+    /// A page or a figure could not be made.
+    #[error(transparent)]
+    Figures(#[from] yoro_figures::ReportError),
     /// A figure could not be drawn.
     #[error(transparent)]
-    Plot(#[from] plot::PlotError),
+    Plot(#[from] yoro_figures::plot::PlotError),
     /// A file of results has nothing to report.
     #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
     Empty {

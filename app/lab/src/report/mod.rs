@@ -4,13 +4,9 @@
 //! Every figure stands beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost
 //! beside two full renders. The paper's figures are marked as the paper's.
 
-pub mod bd_rate;
 pub mod bench;
 mod error;
-pub mod grid;
-pub(crate) mod page;
-mod palette;
-pub mod plot;
+mod page;
 mod run;
 mod table;
 
@@ -18,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::paper::{self, PaperScene};
+use yoro_figures::paper::{self, PaperScene};
 use yoro_files as files;
 
 pub use error::ReportError;

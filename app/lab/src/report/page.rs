@@ -3,28 +3,20 @@
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use image::RgbImage;
-use minijinja::{Environment, UndefinedBehavior, context};
+use minijinja::context;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::error::ReportError;
-use super::palette;
-use super::plot::{Axis, DotRow, Figure, Mark, Panel};
 use super::run::{PassTime, QUALITY_METHOD, Row, RunReport, SceneReport, Viewpoint};
 use crate::metrics::Quality;
-use crate::paper;
 use crate::picture::encode_jpeg;
-use crate::text::short_count;
+use yoro_figures::page::{Template, figures, fill};
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, DotRow, Figure, Mark, Panel};
+use yoro_figures::text::short_count;
 
-/// The templates, by name.
-const TEMPLATES: [(&str, &str); 6] = [
-    ("base.html.j2", include_str!("templates/base.html.j2")),
-    ("parts.html.j2", include_str!("templates/parts.html.j2")),
-    ("run.html.j2", include_str!("templates/run.html.j2")),
-    ("bench.html.j2", include_str!("templates/bench.html.j2")),
-    ("device.html.j2", include_str!("templates/device.html.j2")),
-    ("study.html.j2", include_str!("templates/study.html.j2")),
-];
+const TEMPLATE: Template = Template { name: "run.html.j2", text: include_str!("templates/run.html.j2") };
 
 /// What all pictures of a page may take, encoded in base64.
 pub(super) const PICTURE_BUDGET: usize = 14 << 20;
@@ -37,42 +29,6 @@ const MAP_HALVINGS: u32 = 1;
 
 pub(super) fn render(report: &RunReport) -> Result<String, ReportError> {
     render_within(report, PICTURE_BUDGET)
-}
-
-/// Fills in the page of this name; what all pages need comes with `page`.
-pub(crate) fn fill(name: &str, title: &str, page: minijinja::Value) -> Result<String, ReportError> {
-    let mut environment = Environment::new();
-    environment.set_undefined_behavior(UndefinedBehavior::Strict);
-    environment.set_trim_blocks(true);
-    environment.set_lstrip_blocks(true);
-    // The names' ending turns on HTML escaping.
-    for (name, template) in TEMPLATES {
-        environment.add_template(name, template)?;
-    }
-    let hex = |color: u32| format!("#{color:06X}");
-    let colors = palette::colors().into_iter();
-    let colors = colors.map(|(light, dark)| context! { light => hex(light), dark => hex(dark) });
-    let common = context! { title => title, plot_colors => colors.collect::<Vec<_>>() };
-    Ok(environment.get_template(name)?.render(context! { ..page, ..common })?)
-}
-
-/// Figures as the template takes them.
-pub(crate) fn figures(figures: &[Figure]) -> Result<Vec<minijinja::Value>, ReportError> {
-    let figure = |figure: &Figure| {
-        Ok(context! {
-            id => &figure.id,
-            title => &figure.title,
-            caption => &figure.caption,
-            svg => inline(&figure.svg()?),
-        })
-    };
-    figures.iter().map(figure).collect()
-}
-
-/// An SVG document as a part of a page: without a size of its own and without the namespace.
-fn inline(svg: &str) -> String {
-    let start = svg.find("viewBox").unwrap_or(0);
-    format!("<svg {}", svg[start..].replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1))
 }
 
 fn render_within(report: &RunReport, budget: usize) -> Result<String, ReportError> {
@@ -114,7 +70,7 @@ fn render_within(report: &RunReport, budget: usize) -> Result<String, ReportErro
             })
             .collect::<Vec<_>>(),
     };
-    fill("run.html.j2", &report.title, page)
+    Ok(fill(TEMPLATE, &report.title, page)?)
 }
 
 #[derive(Serialize)]

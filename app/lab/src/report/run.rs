@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use crate::machine::{Machine, Parameter};
 use crate::metrics::{Channels, MetricsError, Quality, error_map};
-use crate::paper::{self, PaperScene};
 use yoro::eyes::Eye;
+use yoro_figures::paper::{self, PaperScene};
 use yoro_protocol::telemetry::stats::Summary;
 
 /// How the quality figures are made; printed wherever they are.

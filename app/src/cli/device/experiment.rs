@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 
 use super::which::{WhichArgs, each};
-use yoro_lab::device::experiment::{self, Experiment, length, method_name};
+use yoro_devices::experiment::{self, Experiment, length, method_name};
 
 /// Make the runs of an experiment: methods, scenes and repetitions in a balanced order, with pauses to cool down
 #[derive(clap::Args, Clone, Debug)]

@@ -1,8 +1,8 @@
 //! `yoro device list`.
 
 use super::which::SourceArgs;
-use yoro_lab::device::adb::{Device, DeviceError, State};
-use yoro_lab::device::phone;
+use yoro_devices::adb::{Device, DeviceError, State};
+use yoro_devices::phone;
 
 /// List the devices, their batteries and the yoro on them
 #[derive(clap::Args, Clone, Debug)]

@@ -10,16 +10,16 @@ use anyhow::{Context, bail, ensure};
 
 use super::which::WhichArgs;
 use crate::cli::args::parse_positive;
+use yoro_devices::adb::{Device, DeviceError};
+use yoro_devices::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
+use yoro_devices::follow::{Event, Follower};
+use yoro_devices::foreign::{Foreign, Subject};
+use yoro_devices::log::SIMULATED_MARK;
+use yoro_devices::phone;
+use yoro_devices::plausible::MeanPower;
+use yoro_devices::reading::{News, Reading};
 use yoro_files::FileError;
-use yoro_lab::device::adb::{Device, DeviceError};
-use yoro_lab::device::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
-use yoro_lab::device::follow::{Event, Follower};
-use yoro_lab::device::foreign::{Foreign, Subject};
-use yoro_lab::device::log::SIMULATED_MARK;
-use yoro_lab::device::phone;
-use yoro_lab::device::plausible::MeanPower;
-use yoro_lab::device::reading::{News, Reading};
-use yoro_lab::interrupt;
+use yoro_files::interrupt;
 
 /// On a terminal, the head of the table comes again after so many rows.
 const ROWS: u64 = 24;

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use anyhow::ensure;
 
 use crate::cli::machine;
+use yoro_devices::capture;
+use yoro_devices::report::DeviceReport;
 use yoro_files as files;
-use yoro_lab::device::capture;
-use yoro_lab::device::report::DeviceReport;
 
 /// Figures of captures: power, frame rate, temperature and the rest, each method against the baseline
 #[derive(clap::Args, Clone, Debug)]

@@ -6,12 +6,12 @@ use anyhow::bail;
 
 use super::which::{WhichArgs, each, folder_of};
 use crate::cli::args::parse_positive;
-use yoro_lab::device::adb::{Device, DeviceError};
-use yoro_lab::device::capture::Outcome;
-use yoro_lab::device::foreign::Subject;
-use yoro_lab::device::pins::{Pins, Wanted};
-use yoro_lab::device::run::{self, Other, Plan};
-use yoro_lab::interrupt;
+use yoro_devices::adb::{Device, DeviceError};
+use yoro_devices::capture::Outcome;
+use yoro_devices::foreign::Subject;
+use yoro_devices::pins::{Pins, Wanted};
+use yoro_devices::run::{self, Other, Plan};
+use yoro_files::interrupt;
 use yoro_protocol::Settings;
 
 /// Make one run: a method in a scene for a time, captured into a folder

@@ -6,10 +6,10 @@ use std::thread;
 use anyhow::bail;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
-use yoro_lab::device::adb::{self, Adb, Device, DeviceError};
-use yoro_lab::device::program::AdbProgram;
-use yoro_lab::device::replay::Replay;
-use yoro_lab::interrupt;
+use yoro_devices::adb::{self, Adb, Device, DeviceError};
+use yoro_devices::program::AdbProgram;
+use yoro_devices::replay::Replay;
+use yoro_files::interrupt;
 
 use crate::cli::message;
 
@@ -103,5 +103,5 @@ where
 
 /// Where something of one of several devices goes.
 pub fn folder_of(out: &Path, serial: &str, is_only: bool) -> PathBuf {
-    if is_only { out.into() } else { out.join(yoro_lab::device::experiment::file_name(serial)) }
+    if is_only { out.into() } else { out.join(yoro_devices::experiment::file_name(serial)) }
 }

@@ -13,12 +13,16 @@ use minijinja::context;
 use crate::bench::{Results, picture_folder};
 use crate::picture;
 use crate::report::error::ReportError;
-use crate::report::page::{self, PICTURE_BUDGET, Pictures};
+use crate::report::page::{PICTURE_BUDGET, Pictures};
 use crate::report::run::{QUALITY_METHOD, Viewpoint};
 use data::Suite;
 use sections::Section;
 use yoro::eyes::Eye;
+use yoro_figures::page::{self, Template};
 use yoro_files as files;
+
+const TEMPLATE: Template =
+    Template { name: "bench.html.j2", text: include_str!("../templates/bench.html.j2") };
 
 /// Heading of the page.
 const TITLE: &str = "yoro: every method side by side";
@@ -113,7 +117,7 @@ impl BenchReport {
                 })
                 .collect::<Vec<_>>(),
         };
-        page::fill("bench.html.j2", TITLE, page)
+        Ok(page::fill(TEMPLATE, TITLE, page)?)
     }
 
     /// All tables, with `figures` (if given) as the folder from which pictures are linked.

@@ -6,8 +6,8 @@ use super::sweeps::QUALITY_FIGURES;
 use super::tables::{metric_table, push_refusals};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite, mean};
-use crate::report::grid::{Cell, Table};
-use crate::report::plot::{Axis, DotRow, Mark, Panel};
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
 
 /// The section of the suite `anti-aliasing`.
 pub fn section(suite: &Suite) -> Section {

@@ -4,12 +4,12 @@ use super::cells::percent;
 use super::section::Section;
 use super::tables::push_refusals;
 use crate::bench::bandwidth;
-use crate::paper;
-use crate::report::bd_rate::bd_rate;
 use crate::report::bench::data::{Measured, SettingData, Suite, mean};
-use crate::report::grid::{Cell, Table};
-use crate::report::plot::{Axis, Panel, Series};
-use crate::text::{fixed, slug};
+use yoro_figures::bd_rate::bd_rate;
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, Panel, Series};
+use yoro_figures::text::{fixed, slug};
 
 /// The share of the anchor's qualities that a curve must reach to be compared.
 const LEAST_OVERLAP: f64 = 0.1;

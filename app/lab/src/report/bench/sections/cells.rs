@@ -1,10 +1,10 @@
 //! Figures as text, and cells of tables.
 
 use crate::bench::record::metric;
-use crate::paper;
 use crate::report::bench::data::{Measured, SettingData};
-use crate::report::grid::Cell;
-use crate::text::fixed;
+use yoro_figures::grid::Cell;
+use yoro_figures::paper;
+use yoro_figures::text::fixed;
 
 /// Name of the contender that everything costs in proportion to: two full renders.
 pub const CONVENTIONAL: &str = "conventional";

@@ -4,12 +4,12 @@ use super::cells::{CONVENTIONAL, PAPERS, cell, milliseconds};
 use super::section::Section;
 use super::tables::{push_refusals, sweep_table};
 use crate::bench::record::metric;
-use crate::paper::{self, COMPLEXITY};
-use crate::report::bd_rate::line_through;
 use crate::report::bench::data::{Suite, geometric_mean, mean};
-use crate::report::grid::{Cell, Table};
-use crate::report::plot::{Axis, Panel, Series};
-use crate::text::{fixed, short_count};
+use yoro_figures::bd_rate::line_through;
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::paper::{self, COMPLEXITY};
+use yoro_figures::plot::{Axis, Panel, Series};
+use yoro_figures::text::{fixed, short_count};
 
 /// The paper's frame times of conventional rendering, by [`COMPLEXITY`]'s triangles.
 const PAPERS_CONVENTIONAL: [f64; 9] = COMPLEXITY.systems[1].1;

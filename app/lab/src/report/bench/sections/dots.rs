@@ -1,9 +1,9 @@
 //! Dot plots with a line for each setting.
 
 use super::cells::PAPERS;
-use crate::paper;
 use crate::report::bench::data::{SettingData, Suite};
-use crate::report::plot::{Axis, DotRow, Mark, Panel};
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
 
 /// The paper's figure of the system that a method here stands for.
 pub fn papers_mark(method: &str, value: f64) -> Mark {

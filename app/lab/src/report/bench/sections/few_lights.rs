@@ -5,10 +5,10 @@ use super::dots::{papers_mark, scene_dots};
 use super::section::Section;
 use super::tables::{scene_table, time_details};
 use crate::bench::record::metric;
-use crate::paper;
 use crate::report::bench::data::{Suite, geometric_mean};
-use crate::report::plot::{Axis, DotRow, Mark, Panel};
-use crate::text::fixed;
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
+use yoro_figures::text::fixed;
 
 /// The section of the suite `lights`.
 pub fn section(suite: &Suite) -> Section {

@@ -6,9 +6,9 @@ use super::section::Section;
 use super::tables::{means_table, scene_table};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite, mean};
-use crate::report::grid::Cell;
-use crate::report::plot::Axis;
-use crate::text::fixed;
+use yoro_figures::grid::Cell;
+use yoro_figures::plot::Axis;
+use yoro_figures::text::fixed;
 
 /// The section of the suite `flicker`.
 pub fn section(suite: &Suite) -> Section {

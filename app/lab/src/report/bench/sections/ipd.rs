@@ -3,9 +3,9 @@
 use super::section::Section;
 use super::sweeps::quality_sweep;
 use crate::bench::record::metric;
-use crate::paper;
 use crate::report::bench::data::Suite;
-use crate::report::plot::Axis;
+use yoro_figures::paper;
+use yoro_figures::plot::Axis;
 
 /// The section of the suite `ipd`.
 pub fn section(suite: &Suite) -> Section {

@@ -4,8 +4,8 @@ use super::cells::cell;
 use super::section::Section;
 use super::tables::push_refusals;
 use crate::report::bench::data::Suite;
-use crate::report::grid::{Cell, Table};
-use crate::text::{fixed, slug};
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::text::{fixed, slug};
 
 /// Every metric of a suite that has no section of its own.
 pub fn section(suite: &Suite) -> Section {

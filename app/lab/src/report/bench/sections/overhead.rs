@@ -6,11 +6,11 @@ use super::section::Section;
 use super::tables::means_table;
 use crate::bench::record::PassClock;
 use crate::bench::record::metric;
-use crate::paper;
 use crate::report::bench::data::{SettingData, Suite, mean};
-use crate::report::grid::{Cell, Table};
-use crate::report::plot::Axis;
-use crate::text::fixed;
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::paper;
+use yoro_figures::plot::Axis;
+use yoro_figures::text::fixed;
 
 /// The section on CPU time and memory of the suite `scenes`.
 pub fn section(suite: &Suite) -> Section {

@@ -4,11 +4,11 @@ use super::cells::{cell, milliseconds};
 use super::section::Section;
 use super::tables::{metric_table, push_refusals};
 use crate::bench::record::metric;
-use crate::paper;
 use crate::report::bench::data::{Suite, mean};
-use crate::report::grid::{Cell, Table};
-use crate::report::plot::{Axis, DotRow, Mark, Panel};
-use crate::text::fixed;
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
+use yoro_figures::text::fixed;
 
 /// The section of the suite `patchers`.
 pub fn section(suite: &Suite) -> Section {

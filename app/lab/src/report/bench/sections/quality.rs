@@ -6,11 +6,11 @@ use super::section::Section;
 use super::sweeps::QUALITY_FIGURES;
 use super::tables::{means_table, metric_table, scene_table};
 use crate::bench::record::metric;
-use crate::paper;
 use crate::report::bench::data::{Suite, mean};
-use crate::report::grid::Table;
-use crate::report::plot::Axis;
-use crate::text::fixed;
+use yoro_figures::grid::Table;
+use yoro_figures::paper;
+use yoro_figures::plot::Axis;
+use yoro_figures::text::fixed;
 
 fn paper_quality(scene: &paper::PaperScene, name: &str) -> Option<f64> {
     match name {

@@ -3,7 +3,7 @@
 use super::section::Section;
 use super::sweeps::{quality_sweep, time_sweep};
 use crate::report::bench::data::Suite;
-use crate::report::plot::Axis;
+use yoro_figures::plot::Axis;
 
 /// The section of the suite `resolution`.
 pub fn section(suite: &Suite) -> Section {

@@ -1,7 +1,7 @@
 //! An experiment on the page.
 
-use crate::report::grid::Table;
-use crate::report::plot::{Figure, Panel};
+use yoro_figures::grid::Table;
+use yoro_figures::plot::{Figure, Panel};
 
 /// An experiment on the page.
 #[derive(Debug)]

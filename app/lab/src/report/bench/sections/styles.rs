@@ -6,10 +6,10 @@ use super::section::Section;
 use super::sweeps::QUALITY_FIGURES;
 use super::tables::{metric_table, push_refusals};
 use crate::bench::record::metric;
-use crate::paper;
 use crate::report::bench::data::{SettingData, Suite, mean};
-use crate::report::grid::{Cell, Table};
-use crate::report::plot::{Axis, DotRow, Mark, Panel};
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
 
 /// The section of the suite `styles`.
 pub fn section(suite: &Suite) -> Section {

@@ -5,9 +5,9 @@ use super::section::Section;
 use super::tables::sweep_table;
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use crate::report::grid::{Cell, Column};
-use crate::report::plot::{Axis, Panel, Series};
-use crate::text::fixed;
+use yoro_figures::grid::{Cell, Column};
+use yoro_figures::plot::{Axis, Panel, Series};
+use yoro_figures::text::fixed;
 
 /// The eye that is not dominant, by metric, for the page's figures.
 pub const QUALITY_FIGURES: [(&str, &str, &str); 3] = [

@@ -3,8 +3,8 @@
 use super::cells::{cell, milliseconds};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite, mean};
-use crate::report::grid::{Cell, Table};
-use crate::text::{fixed, short_count};
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::text::{fixed, short_count};
 use yoro_protocol::telemetry::stats::percentile;
 
 /// A table with a row for each setting and a column for each contender; then the mean, and those that were not

@@ -5,13 +5,16 @@ use std::fmt::Write as _;
 use minijinja::context;
 
 use super::analysis::{Question, Study};
-use crate::metrics::inference::{Interval, Sample};
-use crate::paper;
-use crate::report::ReportError;
-use crate::report::grid::{Cell, Table};
-use crate::report::page::{figures, fill};
-use crate::report::plot::{Axis, DotRow, Figure, Mark, Panel};
-use crate::text::{fixed, slug};
+use yoro_figures::ReportError;
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::inference::{Interval, Sample};
+use yoro_figures::page::{Template, figures, fill};
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, DotRow, Figure, Mark, Panel};
+use yoro_figures::text::{fixed, slug};
+
+const TEMPLATE: Template =
+    Template { name: "study.html.j2", text: include_str!("../templates/study.html.j2") };
 
 pub(super) fn html(study: &Study) -> Result<String, ReportError> {
     let question = |question: &Question| {
@@ -26,7 +29,7 @@ pub(super) fn html(study: &Study) -> Result<String, ReportError> {
         method => method_notes(study),
         made_by => &study.made_by,
     };
-    fill("study.html.j2", "User study", page)
+    fill(TEMPLATE, "User study", page)
 }
 
 pub(super) fn markdown(study: &Study) -> String {

@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::device::adb::DeviceError;
-use crate::device::capture;
+use crate::adb::DeviceError;
+use crate::capture;
 use yoro_files as files;
 
 /// Devices, and what happens to them.

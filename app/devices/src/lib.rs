@@ -7,6 +7,9 @@
 //! [`adb`] says what is asked of a device; [`program`] asks the program adb, [`replay`] plays a script. [`follow`] reads a
 //! log over lost connections, [`reading`] makes samples of its lines ([`foreign`] says which are those of another
 //! application than this project's), [`run`] captures one run, [`experiment`] many, and [`report`] makes figures of them.
+//! [`study`] plans and evaluates user studies.
+//!
+//! This crate must never know OpenGL, how anything is rendered, or the command line.
 
 pub mod adb;
 pub mod capture;
@@ -22,3 +25,4 @@ pub mod reading;
 pub mod replay;
 pub mod report;
 pub mod run;
+pub mod study;

@@ -1,6 +1,6 @@
 //! What a sample says of what it was taken from: intervals, paired tests, effect size, power, equivalence.
 //!
-//! Values agree with SciPy, statsmodels and mpmath to 1e-6 (`tests/vectors/inference.json`).
+//! Values agree with SciPy, statsmodels and mpmath to 1e-6 (`vectors/inference.json`).
 
 use std::f64::consts::{FRAC_1_SQRT_2, LN_2};
 

@@ -6,11 +6,17 @@
 /// The outline of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
+    /// A disc.
     Circle,
+    /// A square.
     Square,
+    /// A square on its corner.
     Diamond,
+    /// A triangle that points upwards.
     Up,
+    /// A triangle that points downwards.
     Down,
+    /// A diagonal cross.
     Cross,
 }
 

@@ -9,13 +9,13 @@ use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
 use super::script::{Current, Fault, FaultKind, Load, Phone, Voltage};
-use crate::device::adb::{DeviceError, State};
-use crate::device::{log, phone};
-use crate::interrupt;
+use crate::adb::{DeviceError, State};
+use crate::{log, phone};
 use yoro_files as files;
+use yoro_files::interrupt;
+use yoro_protocol::Method;
 use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{BatteryStatus, CurrentNormalizer, Line};
-use yoro_render::stereo::Method;
 
 /// When every replay begins, in seconds since 1970: results do not depend on the day.
 const BEGIN: f64 = 1_750_000_000.0;

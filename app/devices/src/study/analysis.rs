@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::error::StudyError;
 use super::ratings::Ratings;
-use crate::metrics::inference::{Equivalence, Interval, Sample, pairs_for_power};
+use yoro_figures::inference::{Equivalence, Interval, Sample, pairs_for_power};
 
 /// Lowest and highest rating.
 pub type Scale = [f64; 2];

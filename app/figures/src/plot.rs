@@ -10,7 +10,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::palette::{self, Look, Shape};
-use crate::metrics::inference::Interval;
+use crate::inference::Interval;
 use yoro_protocol::telemetry::stats::percentile;
 
 /// Why a figure could not be drawn.

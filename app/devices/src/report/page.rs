@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use super::run::{COUNTER_TOLERANCE, LEAST_COVERED, PAPER_VOLTS};
 use super::{CONFIDENCE, Device, DeviceReport, Difference, Note, Quantity, Run};
-use crate::metrics::inference::{Basis, BlockInterval, Interval};
-use crate::paper;
-use crate::report::ReportError;
-use crate::report::grid::{Cell, Table};
-use crate::report::page::{figures, fill};
-use crate::report::plot::{Axis, DotRow, Figure, Mark, Panel, Series};
+use yoro_figures::ReportError;
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::inference::{Basis, BlockInterval, Interval};
+use yoro_figures::page::{Template, figures, fill};
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, DotRow, Figure, Mark, Panel, Series};
 use yoro_scenes::BUILTINS;
 
 /// Where the scenes of a device are taken together.
@@ -24,6 +24,9 @@ const FIRST_HALF: [Quantity; 5] =
     [Quantity::Power, Quantity::Fps, Quantity::Stale, Quantity::FrameTime, Quantity::FrameTimeP99];
 const SECOND_HALF: [Quantity; 5] =
     [Quantity::GpuTime, Quantity::Temperature, Quantity::Rise, Quantity::Cpu, Quantity::Memory];
+
+const TEMPLATE: Template =
+    Template { name: "device.html.j2", text: include_str!("../templates/device.html.j2") };
 
 pub(super) fn html(report: &DeviceReport) -> Result<String, ReportError> {
     let device = |(index, device): (usize, &Device)| -> Result<minijinja::Value, ReportError> {
@@ -52,7 +55,7 @@ pub(super) fn html(report: &DeviceReport) -> Result<String, ReportError> {
         method => method_notes(report),
         made_by => &report.made_by,
     };
-    fill("device.html.j2", &title(report), page)
+    fill(TEMPLATE, &title(report), page)
 }
 
 pub(super) fn markdown(report: &DeviceReport) -> String {
@@ -642,7 +645,7 @@ fn change_figures(report: &DeviceReport, device: &Device, id: &str) -> Vec<Figur
         });
         let name = format!("{} against {}, {unit}{mark}", quantity.name(), report.baseline);
         let figure = Figure {
-            id: format!("{id}-{}", crate::text::slug(quantity.name())),
+            id: format!("{id}-{}", yoro_figures::text::slug(quantity.name())),
             title: format!("{}: {} against {}{mark}", device_plain(device), quantity.name(), report.baseline),
             caption: format!(
                 "Bars: {:.0} % intervals. The line is {}. Hollow: the paper's, for its own scenes and devices.",
@@ -688,7 +691,7 @@ fn trace_figures(report: &DeviceReport, device: &Device, id: &str, scene: &str) 
         series.sort_by(|a, b| a.method.cmp(&b.method));
         let axis = Axis::new(format!("{}, {}{mark}", quantity.name(), quantity.unit()));
         let figure = Figure {
-            id: format!("{id}-{}", crate::text::slug(quantity.name())),
+            id: format!("{id}-{}", yoro_figures::text::slug(quantity.name())),
             title: format!("{scene}: {}{mark}", quantity.name()),
             caption: "A line for each run that counts, warm-up left out.".into(),
             panel: Panel::Traces {

@@ -14,9 +14,9 @@ use super::phone::{self, PACKAGE};
 use super::pins::Pins;
 use super::plausible::MeanPower;
 use super::reading::{News, Reading};
-use crate::interrupt;
+use yoro_files::interrupt;
+use yoro_protocol::Method;
 use yoro_protocol::Settings;
-use yoro_render::stereo::Method;
 use yoro_scenes::BUILTINS;
 
 /// How long the application may take to load a scene and show it, in seconds.

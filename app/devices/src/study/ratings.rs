@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
 use super::plan::Trials;
-use crate::device::log::{self, Kind};
+use crate::log::{self, Kind};
 use yoro_files as files;
 use yoro_protocol::telemetry::{LOG_TAG, Rating};
 

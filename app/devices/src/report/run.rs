@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::device::capture::{Capture, Fault, FaultKind, Outcome, Sample};
-use crate::device::phone::LEAST_MILLIVOLTS;
+use crate::capture::{Capture, Fault, FaultKind, Outcome, Sample};
+use crate::phone::LEAST_MILLIVOLTS;
 use yoro_protocol::telemetry::stats::median;
 
 /// Voltage by which the paper turns battery percent into energy.

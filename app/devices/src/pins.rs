@@ -280,8 +280,8 @@ pub fn give_back_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::adb::Adb;
-    use crate::device::replay::{Fault, FaultKind, Phone, Replay, Script};
+    use crate::adb::Adb;
+    use crate::replay::{Fault, FaultKind, Phone, Replay, Script};
     use std::path::Path;
     use std::time::Duration;
 

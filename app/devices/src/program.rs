@@ -12,7 +12,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use super::adb::{Adb, Device, DeviceError, Listed, LogEvent, LogStream, State, is_wireless, quoted};
 use super::log;
-use crate::interrupt;
+use yoro_files::interrupt;
 
 /// How long a command may take.
 const PATIENCE: Duration = Duration::from_secs(60);

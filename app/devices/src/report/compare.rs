@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::run::{Quantity, Run};
 use super::{CONFIDENCE, Device};
-use crate::metrics::inference::{Basis, BlockInterval, Blocks, Interval, Sample};
+use yoro_figures::inference::{Basis, BlockInterval, Blocks, Interval, Sample};
 
 /// A method on a scene: all its runs that count.
 #[derive(Clone, Debug, PartialEq, Serialize)]

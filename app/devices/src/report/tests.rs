@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use serde::Deserialize;
 
 use super::*;
-use crate::device::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION};
-use crate::metrics::inference::{Basis, BlockInterval};
+use crate::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION};
+use yoro_figures::inference::{Basis, BlockInterval};
 
 const WARM_UP: u32 = 10;
 const DURATION: u32 = 100;
@@ -334,7 +334,7 @@ fn changes_agree_with_scipy() {
         interval: [f64; 2],
     }
     let vectors: Vectors =
-        serde_json::from_str(include_str!("../../metrics/vectors/inference.json")).unwrap();
+        serde_json::from_str(include_str!("../../../figures/src/vectors/inference.json")).unwrap();
     for v in vectors.ratio {
         let mut captures = Vec::new();
         for (i, (a, b)) in v.a.iter().zip(&v.b).enumerate() {

@@ -35,10 +35,10 @@ use super::capture::{self, CaptureError, Fault, FaultKind, Outcome, RUN_FILE, Ru
 use super::phone::{self, Battery};
 use super::pins::{Pins, Wanted};
 use super::run::{self, Found, Plan};
-use crate::interrupt;
+use yoro_files::interrupt;
 use yoro_files::{self as files, FileError};
+use yoro_protocol::Method;
 use yoro_protocol::{Settings, SettingsError};
-use yoro_render::stereo::Method;
 
 /// What the experiment's own file is called in the folder of its runs.
 pub const FILE: &str = "experiment.toml";

@@ -12,7 +12,7 @@ mod ratings;
 
 use std::path::{Path, PathBuf};
 
-use crate::report::ReportError;
+use yoro_figures::ReportError;
 use yoro_files as files;
 
 pub use analysis::{Excluded, Options, Question, Scale, Study, Verdict};

@@ -19,9 +19,9 @@ use serde::Serialize;
 
 use super::capture::{Capture, FaultKind};
 use super::plausible::implausible;
-use crate::report::ReportError;
 pub use compare::{Difference, Mean};
 pub use run::{ByLevel, Counted, Exclusion, Integrated, Quantity, Run};
+use yoro_figures::ReportError;
 use yoro_files as files;
 use yoro_scenes::BUILTINS;
 

@@ -1,0 +1,22 @@
+//! Why a report could not be made.
+
+use crate::plot::PlotError;
+use yoro_files::FileError;
+
+/// Why a report could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// A file could not be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The template and the data do not fit.
+    #[error("cannot fill in the report's template: {0}")]
+    Template(#[from] minijinja::Error),
+    /// A figure could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    /// The figures cannot be written as JSON.
+    #[error("cannot write the report as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}

@@ -1,0 +1,57 @@
+//! Pages: templates filled in, with figures drawn into them. Nothing on them is loaded from elsewhere.
+
+use minijinja::{Environment, UndefinedBehavior, Value, context};
+
+use crate::error::ReportError;
+use crate::palette;
+use crate::plot::Figure;
+
+/// A page's own template, which extends `base.html.j2` and may import from `parts.html.j2`.
+#[derive(Clone, Copy, Debug)]
+pub struct Template {
+    /// Its file's name; the ending `.html.j2` turns on HTML escaping.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+/// Returns the page made of a template and of what it needs. The title and the plots' colours come with it.
+///
+/// # Errors
+/// [`ReportError::Template`] when template and data do not fit.
+pub fn fill(template: Template, title: &str, page: Value) -> Result<String, ReportError> {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.set_trim_blocks(true);
+    environment.set_lstrip_blocks(true);
+    environment.add_template("base.html.j2", include_str!("templates/base.html.j2"))?;
+    environment.add_template("parts.html.j2", include_str!("templates/parts.html.j2"))?;
+    environment.add_template(template.name, template.text)?;
+    let hex = |color: u32| format!("#{color:06X}");
+    let colors = palette::colors().into_iter();
+    let colors = colors.map(|(light, dark)| context! { light => hex(light), dark => hex(dark) });
+    let common = context! { title => title, plot_colors => colors.collect::<Vec<_>>() };
+    Ok(environment.get_template(template.name)?.render(context! { ..page, ..common })?)
+}
+
+/// Returns the figures as the macro `plots` of `parts.html.j2` takes them.
+///
+/// # Errors
+/// [`ReportError::Plot`] when one cannot be drawn.
+pub fn figures(figures: &[Figure]) -> Result<Vec<Value>, ReportError> {
+    let figure = |figure: &Figure| {
+        Ok(context! {
+            id => &figure.id,
+            title => &figure.title,
+            caption => &figure.caption,
+            svg => inline(&figure.svg()?),
+        })
+    };
+    figures.iter().map(figure).collect()
+}
+
+/// Returns an SVG document as a part of a page: without a size of its own and without the namespace.
+fn inline(svg: &str) -> String {
+    let start = svg.find("viewBox").unwrap_or(0);
+    format!("<svg {}", svg[start..].replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1))
+}
