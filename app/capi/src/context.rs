@@ -1,12 +1,13 @@
 //! The handle: one pipeline in one context or device, guarded against use by two threads.
 
+use std::any::Any;
 use std::cell::UnsafeCell;
 use std::ptr;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use crate::gl::Gl;
 use crate::result::{
-    Failure, YORO_ERROR_BUSY, YORO_ERROR_INTERNAL, YORO_ERROR_NULL, YoroMessages, YoroResult, border,
+    Failure, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_INTERNAL, YORO_ERROR_NULL, YoroMessages, YoroResult,
+    border,
 };
 use crate::versioned::{self, Versioned, versioned};
 
@@ -17,7 +18,7 @@ use crate::versioned::{self, Versioned, versioned};
 pub struct YoroContext {
     state: AtomicU8,
     messages: YoroMessages,
-    api: UnsafeCell<Api>,
+    backend: UnsafeCell<Box<dyn Backend>>,
 }
 
 const READY: u8 = 0;
@@ -25,11 +26,12 @@ const BUSY: u8 = 1;
 /// A panic came out of it: nothing is known of what is inside.
 const BROKEN: u8 = 2;
 
-/// What it was made for.
-pub(crate) enum Api {
-    Gl(Gl),
-    #[cfg(feature = "vulkan")]
-    Vulkan(Box<crate::vulkan::Vulkan>),
+/// The part of a context that is made for one API.
+pub(crate) trait Backend: Any {
+    /// Name of the API, for sentences.
+    fn api(&self) -> &'static str;
+
+    fn capabilities(&self) -> YoroCapabilities;
 }
 
 /// The API that a YoroContext was made for.
@@ -91,14 +93,7 @@ pub unsafe extern "C" fn yoro_capabilities(
 ) -> YoroResult {
     // SAFETY: the header asks the caller for it.
     unsafe {
-        enter(context, |api| {
-            let value = match api {
-                Api::Gl(gl) => gl.capabilities(),
-                #[cfg(feature = "vulkan")]
-                Api::Vulkan(vulkan) => vulkan.capabilities(),
-            };
-            versioned::write(capabilities, "capabilities", &value)
-        })
+        enter(context, |backend| versioned::write(capabilities, "capabilities", &backend.capabilities()))
     }
 }
 
@@ -117,10 +112,10 @@ pub unsafe extern "C" fn yoro_destroy(context: *mut YoroContext) -> YoroResult {
         // SAFETY: the header asks the caller for it.
         let Some(alive) = (unsafe { context.as_ref() }) else { return Ok(()) };
         *messages = alive.messages;
-        if alive.state.load(Ordering::Acquire) == BUSY {
-            return Err(busy());
-        }
-        // SAFETY: made by `hand_out`, and nobody else has it.
+        // Busy for good: of two threads that come at once only one gets on.
+        let take = |state| (state != BUSY).then_some(BUSY);
+        alive.state.fetch_update(Ordering::Acquire, Ordering::Acquire, take).map_err(|_| busy())?;
+        // SAFETY: `create` has made it, and the exchange let nobody else in.
         drop(unsafe { Box::from_raw(context) });
         Ok(())
     })
@@ -133,31 +128,31 @@ fn busy() -> Failure {
     )
 }
 
-/// Runs the body of a function that creates a context: `make` makes the API's part of it of `info`, and `messages` says where
-/// the sentences of errors go.
+/// Runs the body of a function that creates a context. `messages` is the callback in `info`, and `make` makes the part
+/// of the context that is of one API.
 ///
 /// # Safety
 /// `info` is null or leads to as many bytes as it states; `context` is null or can be written.
-pub(crate) unsafe fn create<I: Versioned>(
+pub(crate) unsafe fn create<I: Versioned, B: Backend>(
     info: *const I,
     context: *mut *mut YoroContext,
     messages: impl FnOnce(&I) -> YoroMessages,
-    make: impl FnOnce(&I) -> Result<Api, Failure>,
+    make: impl FnOnce(&I) -> Result<B, Failure>,
 ) -> YoroResult {
     border(|told| {
         if !context.is_null() {
-            // SAFETY: promised by the caller.
+            // SAFETY: the caller gives a pointer that can be written.
             unsafe { context.write(ptr::null_mut()) };
         }
-        // SAFETY: promised by the caller.
+        // SAFETY: the caller gives a pointer to as many bytes as they state.
         let info = unsafe { versioned::read(info, "info") }?;
         *told = messages(&info);
         if context.is_null() {
             return Err(Failure::new(YORO_ERROR_NULL, "context is NULL: say where the new context goes"));
         }
-        let api = UnsafeCell::new(make(&info)?);
-        let made = YoroContext { state: AtomicU8::new(READY), messages: *told, api };
-        // SAFETY: promised by the caller.
+        let backend = UnsafeCell::new(Box::new(make(&info)?) as Box<dyn Backend>);
+        let made = YoroContext { state: AtomicU8::new(READY), messages: *told, backend };
+        // SAFETY: as above.
         unsafe { context.write(Box::into_raw(Box::new(made))) };
         Ok(())
     })
@@ -169,7 +164,7 @@ pub(crate) unsafe fn create<I: Versioned>(
 /// `context` is null or alive.
 pub(crate) unsafe fn enter(
     context: *mut YoroContext,
-    body: impl FnOnce(&mut Api) -> Result<(), Failure>,
+    body: impl FnOnce(&mut dyn Backend) -> Result<(), Failure>,
 ) -> YoroResult {
     /// Leaves the context broken when a panic passes.
     struct Leave<'a>(&'a AtomicU8);
@@ -182,7 +177,7 @@ pub(crate) unsafe fn enter(
     }
 
     border(|messages| {
-        // SAFETY: promised by the caller.
+        // SAFETY: the caller gives a context that is alive, or null.
         let Some(context) = (unsafe { context.as_ref() }) else {
             return Err(Failure::new(YORO_ERROR_NULL, "context is NULL: create it first"));
         };
@@ -199,8 +194,30 @@ pub(crate) unsafe fn enter(
         }
         let _leave = Leave(&context.state);
         // SAFETY: the exchange let nobody else in.
-        body(unsafe { &mut *context.api.get() })
+        body(unsafe { &mut **context.backend.get() })
     })
+}
+
+/// Runs the body of a function that takes a context of one API. `create` is the name of the function that creates such
+/// contexts.
+///
+/// # Safety
+/// `context` is null or alive.
+pub(crate) unsafe fn enter_as<B: Backend>(
+    context: *mut YoroContext,
+    create: &str,
+    body: impl FnOnce(&mut B) -> Result<(), Failure>,
+) -> YoroResult {
+    let downcast = |backend: &mut dyn Backend| {
+        let api = backend.api();
+        let Some(backend) = (backend as &mut dyn Any).downcast_mut::<B>() else {
+            let sentence = format!("this YoroContext was made for {api}: create one with {create}");
+            return Err(Failure::new(YORO_ERROR_API, sentence));
+        };
+        body(backend)
+    };
+    // SAFETY: the caller gives a context that is alive, or null.
+    unsafe { enter(context, downcast) }
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use yoro::eyes::{DepthRange, EyePair};
 
-use crate::result::{Failure, YORO_ERROR_EYES_CANTED, YoroMessages, YoroResult, border};
+use crate::result::{Failure, YORO_ERROR_EYES_CANTED, YoroMessages, YoroResult};
 use crate::types::{YoroClip, YoroDepth, YoroEye, YoroFov, YoroPose, YoroRows, clip, depth, eye, rows_down};
-use crate::versioned::{self, versioned};
-use crate::views::{YoroViews, guard_band, images, views};
+use crate::versioned::versioned;
+use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
 /// Bits of what may be done to eyes that rows cannot serve as they are.
 pub type YoroEyesFlags = u32;
@@ -66,16 +66,8 @@ versioned!(YoroEyes);
 ///         cannot serve; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_views_from_eyes(eyes: *const YoroEyes, views: *mut YoroViews) -> YoroResult {
-    border(|messages| {
-        // SAFETY: the header asks the caller for it.
-        let eyes = unsafe { versioned::read(eyes, "eyes") }?;
-        *messages = eyes.messages;
-        // SAFETY: as above.
-        unsafe { versioned::check_output(views, "views") }?;
-        let result = eyes.views()?;
-        // SAFETY: as above.
-        unsafe { versioned::write(views, "views", &result) }
-    })
+    // SAFETY: the header asks for pointers to structures of the size that they state.
+    unsafe { fill_views(eyes, "eyes", views, |eyes| eyes.messages, YoroEyes::views) }
 }
 
 impl YoroEyes {

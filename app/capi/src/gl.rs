@@ -1,20 +1,21 @@
 //! OpenGL and OpenGL ES.
 
+mod check;
+
 use std::ffi::{CStr, c_char, c_void};
 use std::num::NonZeroU32;
 use std::rc::Rc;
 
-use glow::HasContext;
 use yoro::eyes::Warp;
 use yoro::gl::{Context, Destination, GlApi};
 use yoro::synthesis::{self, Edges, GlState, Outputs, Source, Synthesis, SynthesisOptions};
 
 use crate::context::{
-    Api, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, create, enter,
+    Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, create, enter_as,
 };
 use crate::result::{
-    Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL,
-    YORO_ERROR_TOO_LARGE, YoroMessages, YoroResult,
+    Failure, YORO_ERROR_DRIVER, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YoroMessages,
+    YoroResult,
 };
 use crate::types::{YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroEdges, YoroOutputFlags, edges};
 use crate::versioned::{self, versioned};
@@ -74,7 +75,7 @@ pub unsafe extern "C" fn yoro_gl_create(
     context: *mut *mut YoroContext,
 ) -> YoroResult {
     // SAFETY: the header asks the caller for pointers to what they name, and for a current GL context and its loader.
-    unsafe { create(info, context, |info| info.messages, |info| Ok(Api::Gl(Gl::new(info)?))) }
+    unsafe { create(info, context, |info| info.messages, |info| Gl::new(info)) }
 }
 
 /// Textures and framebuffer of one synthesis.
@@ -116,8 +117,7 @@ versioned!(YoroGlImages);
 pub unsafe extern "C" fn yoro_gl_prepare(context: *mut YoroContext, warp: *const YoroWarp) -> YoroResult {
     // SAFETY: the header asks the caller for it.
     unsafe {
-        enter(context, |api| {
-            let gl = of_gl(api)?;
+        enter_gl(context, |gl| {
             let warp = gl.fitting(warp)?;
             Ok(gl.synthesis.prepare(&warp)?)
         })
@@ -144,23 +144,21 @@ pub unsafe extern "C" fn yoro_gl_synthesize(
 ) -> YoroResult {
     // SAFETY: the header asks the caller for it.
     unsafe {
-        enter(context, |api| {
-            let gl = of_gl(api)?;
+        enter_gl(context, |gl| {
             let warp = gl.fitting(warp)?;
             gl.synthesize(&warp, &versioned::read(images, "images")?)
         })
     }
 }
 
-fn of_gl(api: &mut Api) -> Result<&mut Gl, Failure> {
-    match api {
-        Api::Gl(gl) => Ok(gl),
-        #[cfg(feature = "vulkan")]
-        Api::Vulkan(_) => Err(Failure::new(
-            crate::result::YORO_ERROR_API,
-            "this YoroContext was made for Vulkan: create one with yoro_gl_create",
-        )),
-    }
+/// # Safety
+/// `context` is null or alive.
+unsafe fn enter_gl(
+    context: *mut YoroContext,
+    body: impl FnOnce(&mut Gl) -> Result<(), Failure>,
+) -> YoroResult {
+    // SAFETY: the contract is the same.
+    unsafe { enter_as(context, "yoro_gl_create", body) }
 }
 
 /// A pipeline in a GL context.
@@ -209,27 +207,6 @@ impl Gl {
         let options = SynthesisOptions { gl_state, edges, ..SynthesisOptions::default() };
         let synthesis = synthesis::create(&context, &options, outputs)?;
         Ok(Gl { context, synthesis, edges, outputs, check: info.check == 1 })
-    }
-
-    pub(crate) fn capabilities(&self) -> YoroCapabilities {
-        let own = self.context.capabilities();
-        let mut capabilities = YoroCapabilities {
-            struct_size: size_of::<YoroCapabilities>() as u32,
-            api: match own.api {
-                GlApi::Es => YORO_API_OPENGL_ES,
-                GlApi::Desktop => YORO_API_OPENGL,
-            },
-            api_major: own.version.0,
-            api_minor: own.version.1,
-            reserved: 0,
-            compute: own.compute.into(),
-            software: own.software.into(),
-            max_image_size: own.max_texture_size,
-            buffer_bytes: self.context.texture_bytes() as u64,
-            device: [0; 128],
-        };
-        capabilities.set_device(&own.renderer);
-        capabilities
     }
 
     /// The warp, of sizes that the driver can render.
@@ -282,7 +259,7 @@ impl Gl {
             size: warp.target_size,
         };
         if self.check {
-            self.check_images(source, warp, &target)?;
+            check::check_images(&self.context, self.edges, self.outputs, source, warp, &target)?;
         }
         self.synthesis.synthesize(source, warp, &target)?;
         match self.check.then(|| self.context.take_errors()).flatten() {
@@ -293,167 +270,33 @@ impl Gl {
             None => Ok(()),
         }
     }
-
-    /// Looks whether the images are as they must be. Leaves bindings as they were.
-    fn check_images(&self, source: Source, warp: &Warp, target: &Destination) -> Result<(), Failure> {
-        let gl = self.context.raw();
-        let framebuffer = target.framebuffer;
-        // Of what happened before the call the caller shall know that it did.
-        if let Some(errors) = self.context.take_errors() {
-            return Err(Failure::new(
-                YORO_ERROR_DRIVER,
-                format!("GL already has errors from before the call ({errors}): look for them in the engine"),
-            ));
-        }
-        let is_color = |level: Level| {
-            level.depth == 0 && level.color_type != glow::INT && level.color_type != glow::UNSIGNED_INT
-        };
-        let is_depth = |level: Level| level.depth > 0 || level.color_type == glow::FLOAT;
-        let of_depth = if self.edges == Edges::Multisample { &SAMPLES } else { &PLAIN };
-        self.check_texture(source.color, "color_texture", &PLAIN, warp.source_size, is_color)?;
-        self.check_texture(source.depth, "depth_texture", of_depth, warp.source_size, is_depth)?;
-        if let Some(samples) = source.samples {
-            self.check_texture(samples, "sample_color_texture", &SAMPLES, warp.source_size, is_color)?;
-        }
-        // SAFETY: queries and bindings; an unknown name is refused by GL with an error, which is taken.
-        let (is_known, status, attached) = unsafe {
-            let bound = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
-            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, framebuffer);
-            let is_known = self.context.take_errors().is_none();
-            let status = gl.check_framebuffer_status(glow::DRAW_FRAMEBUFFER);
-            let attached = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT].map(|attachment| {
-                let ask = |what| {
-                    gl.get_framebuffer_attachment_parameter_i32(glow::DRAW_FRAMEBUFFER, attachment, what)
-                        as u32
-                };
-                // The window's framebuffer has other attachments, and none that is a texture.
-                let kind =
-                    framebuffer.map_or(glow::RENDERBUFFER, |_| ask(glow::FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE));
-                let is_texture = kind == glow::TEXTURE;
-                let name = if is_texture { ask(glow::FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) } else { 0 };
-                (kind, NonZeroU32::new(name).map(glow::NativeTexture))
-            });
-            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, bound);
-            (is_known, status, attached)
-        };
-        let [(_, color), (depth_kind, depth)] = attached;
-        let wrong = |sentence: String| Err(Failure::new(YORO_ERROR_FORMAT, sentence));
-        if !is_known {
-            return wrong("framebuffer is no name of a framebuffer of this GL context".into());
-        }
-        if status != glow::FRAMEBUFFER_COMPLETE {
-            return wrong(format!(
-                "the framebuffer is not complete (GL says 0x{status:04x}): see its attachments"
-            ));
-        }
-        if self.outputs.depth && depth_kind == glow::NONE {
-            return wrong("the framebuffer has no depth attachment, which YORO_OUTPUT_DEPTH writes".into());
-        }
-        for (texture, what) in [
-            (Some(source.color), "color_texture"),
-            (Some(source.depth), "depth_texture"),
-            (source.samples, "sample_color_texture"),
-        ] {
-            if texture.is_some() && [color, depth].contains(&texture) {
-                return wrong(format!(
-                    "{what} is attached to the framebuffer: nothing can be drawn into what is read, give the \
-                     framebuffer textures of its own"
-                ));
-            }
-        }
-        let end = [0, 1].map(|i| target.origin[i].saturating_add(target.size[i]));
-        let first_level = color.and_then(|texture| self.level(texture, &PLAIN));
-        match first_level.map(|level| level.size) {
-            Some([width, height]) if width > 0 && (end[0] > width || end[1] > height) => wrong(format!(
-                "the rectangle ends at column {} and row {}, beyond the framebuffer's {width}x{height} pixels: see x \
-                 and y of YoroGlImages",
-                end[0], end[1]
-            )),
-            _ => Ok(()),
-        }
-    }
-
-    /// What the first level of a texture is, with nothing in it where that cannot be asked for: since OpenGL ES 3.1. None
-    /// for a texture of another target.
-    fn level(&self, texture: glow::Texture, kind: &Kind) -> Option<Level> {
-        let gl = self.context.raw();
-        // SAFETY: queries; a texture of another target is refused by GL with an error, which is taken.
-        unsafe {
-            let bound = gl.get_parameter_texture(kind.binding);
-            gl.bind_texture(kind.target, Some(texture));
-            let is_such = self.context.take_errors().is_none();
-            let asked = is_such && self.context.capabilities().compute;
-            let ask = |name| if asked { gl.get_tex_level_parameter_i32(kind.target, 0, name) } else { 0 };
-            let level = Level {
-                asked,
-                size: [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT].map(|name| ask(name) as u32),
-                color_type: ask(glow::TEXTURE_RED_TYPE) as u32,
-                depth: ask(glow::TEXTURE_DEPTH_SIZE),
-            };
-            gl.bind_texture(kind.target, bound);
-            is_such.then_some(level)
-        }
-    }
-
-    fn check_texture(
-        &self,
-        texture: glow::Texture,
-        what: &str,
-        kind: &Kind,
-        size: [u32; 2],
-        fits: impl FnOnce(Level) -> bool,
-    ) -> Result<(), Failure> {
-        let gl = self.context.raw();
-        let wrong = |sentence: String| Err(Failure::new(YORO_ERROR_FORMAT, sentence));
-        // SAFETY: a query.
-        if !unsafe { gl.is_texture(texture) } {
-            return wrong(format!("{what} is {}, no texture of this GL context", texture.0));
-        }
-        let Some(level) = self.level(texture, kind) else {
-            return wrong(format!("{what} is no {}", kind.sentence));
-        };
-        if level.asked && level.size != size {
-            let ([w, h], [x, y]) = (level.size, size);
-            return wrong(format!(
-                "{what} has {w}x{h} pixels, and the source has {x}x{y}: render YoroViews.source"
-            ));
-        }
-        if level.asked && !fits(level) {
-            return wrong(format!("{what} has a format that cannot be sampled so: see YoroGlImages"));
-        }
-        Ok(())
-    }
 }
 
-/// A kind of texture.
-struct Kind {
-    target: u32,
-    binding: u32,
-    /// Its name, and what to do where it is another.
-    sentence: &'static str,
-}
+impl Backend for Gl {
+    fn api(&self) -> &'static str {
+        "OpenGL"
+    }
 
-const PLAIN: Kind = Kind {
-    target: glow::TEXTURE_2D,
-    binding: glow::TEXTURE_BINDING_2D,
-    sentence: "GL_TEXTURE_2D: give one layer without samples",
-};
-const SAMPLES: Kind = Kind {
-    target: glow::TEXTURE_2D_MULTISAMPLE,
-    binding: glow::TEXTURE_BINDING_2D_MULTISAMPLE,
-    sentence: "GL_TEXTURE_2D_MULTISAMPLE: give one with samples, or other YORO_EDGES_",
-};
-
-/// The first level of a texture.
-struct Level {
-    /// Whether the rest was asked for.
-    asked: bool,
-    /// Width and height in pixels.
-    size: [u32; 2],
-    /// GL_FLOAT and others; 0 for depth.
-    color_type: u32,
-    /// Bits.
-    depth: i32,
+    fn capabilities(&self) -> YoroCapabilities {
+        let own = self.context.capabilities();
+        let mut capabilities = YoroCapabilities {
+            struct_size: size_of::<YoroCapabilities>() as u32,
+            api: match own.api {
+                GlApi::Es => YORO_API_OPENGL_ES,
+                GlApi::Desktop => YORO_API_OPENGL,
+            },
+            api_major: own.version.0,
+            api_minor: own.version.1,
+            reserved: 0,
+            compute: own.compute.into(),
+            software: own.software.into(),
+            max_image_size: own.max_texture_size,
+            buffer_bytes: self.context.texture_bytes() as u64,
+            device: [0; 128],
+        };
+        capabilities.set_device(&own.renderer);
+        capabilities
+    }
 }
 
 pub(crate) fn outputs(bits: YoroOutputFlags) -> Result<Outputs, Failure> {

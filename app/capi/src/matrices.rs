@@ -3,10 +3,10 @@
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose};
 
-use crate::result::{Failure, YORO_ERROR_MATRIX, YoroMessages, YoroResult, border};
+use crate::result::{Failure, YORO_ERROR_MATRIX, YoroMessages, YoroResult};
 use crate::types::{Clip, YoroClip, YoroEye, YoroRows, clip, eye, rows_down};
-use crate::versioned::{self, versioned};
-use crate::views::{YoroViews, guard_band, images, views};
+use crate::versioned::versioned;
+use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
 /// The two eyes of a frame by matrices. All are column-major, for column vectors, as GL and Vulkan take them: the
 /// translation of a view matrix is in elements 12 to 14, and element 11 of a projection is -1 (eyes that look along -Z) or
@@ -55,16 +55,8 @@ pub unsafe extern "C" fn yoro_views_from_matrices(
     matrices: *const YoroMatrices,
     views: *mut YoroViews,
 ) -> YoroResult {
-    border(|messages| {
-        // SAFETY: the header asks the caller for it.
-        let matrices = unsafe { versioned::read(matrices, "matrices") }?;
-        *messages = matrices.messages;
-        // SAFETY: as above.
-        unsafe { versioned::check_output(views, "views") }?;
-        let result = matrices.views()?;
-        // SAFETY: as above.
-        unsafe { versioned::write(views, "views", &result) }
-    })
+    // SAFETY: the header asks for pointers to structures of the size that they state.
+    unsafe { fill_views(matrices, "matrices", views, |matrices| matrices.messages, YoroMatrices::views) }
 }
 
 /// What a projection matrix says, of an eye that looks along -Z.

@@ -3,11 +3,11 @@
 use glam::{DMat4, DVec4};
 use yoro::eyes::{DepthRange, DisparityLaw, EyePair, Frustum, GuardBand, Pose, View, Warp};
 
-use crate::result::Failure;
+use crate::result::{Failure, YoroMessages, YoroResult, border};
 use crate::types::{
     Clip, YORO_DEPTH_REVERSED, YORO_DEPTH_STANDARD, YoroDepth, YoroEye, YoroFov, YoroPose, depth, eye,
 };
-use crate::versioned::versioned;
+use crate::versioned::{self, Versioned, versioned};
 
 /// One image: where its eye is, what it covers, and the matrices that render it.
 #[repr(C)]
@@ -127,6 +127,30 @@ impl YoroWarp {
             convention: depth(self.depth)?,
         })
     }
+}
+
+/// Runs the body of a function that fills [`YoroViews`]. `messages` is the callback in `eyes`, and `work_out` does the
+/// work.
+///
+/// # Safety
+/// Both pointers are null or lead to as many bytes as they state.
+pub(crate) unsafe fn fill_views<T: Versioned>(
+    eyes: *const T,
+    what: &'static str,
+    views: *mut YoroViews,
+    messages: impl FnOnce(&T) -> YoroMessages,
+    work_out: impl FnOnce(&T) -> Result<YoroViews, Failure>,
+) -> YoroResult {
+    border(|told| {
+        // SAFETY: the caller gives a pointer to as many bytes as they state.
+        let eyes = unsafe { versioned::read(eyes, what) }?;
+        *told = messages(&eyes);
+        // SAFETY: as above.
+        unsafe { versioned::check_output(views, "views") }?;
+        let result = work_out(&eyes)?;
+        // SAFETY: as above.
+        unsafe { versioned::write(views, "views", &result) }
+    })
 }
 
 /// Metres from which on the band is complete; 0 for none.

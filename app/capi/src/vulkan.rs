@@ -8,14 +8,14 @@ use yoro::vulkan::{
     VulkanError,
 };
 
-use crate::context::{Api, YORO_API_VULKAN, YoroCapabilities, YoroContext, create, enter};
+use crate::context::{Backend, YORO_API_VULKAN, YoroCapabilities, YoroContext, create, enter_as};
 use crate::result::{
-    Failure, YORO_ERROR_API, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_MEMORY,
+    Failure, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_MEMORY,
     YORO_ERROR_NO_CONTEXT, YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE,
     YORO_ERROR_UNSUPPORTED, YORO_ERROR_VALUE, YoroMessages, YoroResult,
 };
 use crate::types::{YoroEdges, edges};
-use crate::versioned::{self, versioned};
+use crate::versioned::{self, Versioned, versioned};
 use crate::views::YoroWarp;
 
 /// vkGetInstanceProcAddr, of the loader or of whoever stands in for it.
@@ -186,9 +186,7 @@ pub unsafe extern "C" fn yoro_vk_create(
     context: *mut *mut YoroContext,
 ) -> YoroResult {
     // SAFETY: the header asks the caller for pointers to what they name, and for handles that belong together.
-    unsafe {
-        create(info, context, |info| info.messages, |info| Ok(Api::Vulkan(Box::new(Vulkan::new(info)?))))
-    }
+    unsafe { create(info, context, |info| info.messages, |info| Vulkan::new(info)) }
 }
 
 /// Makes views and descriptors of images to read: once for each pair of images that is rendered to.
@@ -209,10 +207,7 @@ pub unsafe extern "C" fn yoro_vk_register_source(
 ) -> YoroResult {
     // SAFETY: the header asks the caller for it.
     unsafe {
-        enter(context, |api| {
-            let vulkan = of_vulkan(api)?;
-            let source = versioned::read(source, "source")?;
-            check_id(id)?;
+        register_images(context, source, "source", id, |vulkan, source| {
             let images = SourceImages {
                 color: source.color.checked("color", true)?,
                 depth: source.depth.checked("depth", true)?,
@@ -222,8 +217,7 @@ pub unsafe extern "C" fn yoro_vk_register_source(
                 },
                 size: [source.width, source.height],
             };
-            id.write(vulkan.gather.register_source(&images)?.to_raw());
-            Ok(())
+            Ok(vulkan.gather.register_source(&images)?.to_raw())
         })
     }
 }
@@ -243,17 +237,13 @@ pub unsafe extern "C" fn yoro_vk_register_target(
 ) -> YoroResult {
     // SAFETY: the header asks the caller for it.
     unsafe {
-        enter(context, |api| {
-            let vulkan = of_vulkan(api)?;
-            let target = versioned::read(target, "target")?;
-            check_id(id)?;
+        register_images(context, target, "target", id, |vulkan, target| {
             let images = TargetImages {
                 color: target.color.checked("color", false)?,
                 depth: vulkan.writes_depth.then(|| target.depth.checked("depth", false)).transpose()?,
                 size: [target.width, target.height],
             };
-            id.write(vulkan.gather.register_target(&images)?.to_raw());
-            Ok(())
+            Ok(vulkan.gather.register_target(&images)?.to_raw())
         })
     }
 }
@@ -270,8 +260,8 @@ pub unsafe extern "C" fn yoro_vk_register_target(
 pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: YoroVkSourceId) -> YoroResult {
     // SAFETY: the header asks the caller for it.
     unsafe {
-        enter(context, |api| {
-            of_vulkan(api)?.gather.release_source(SourceId::from_raw(id));
+        enter_vulkan(context, |vulkan| {
+            vulkan.gather.release_source(SourceId::from_raw(id));
             Ok(())
         })
     }
@@ -286,8 +276,8 @@ pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: Y
 pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: YoroVkTargetId) -> YoroResult {
     // SAFETY: the header asks the caller for it.
     unsafe {
-        enter(context, |api| {
-            of_vulkan(api)?.gather.release_target(TargetId::from_raw(id));
+        enter_vulkan(context, |vulkan| {
+            vulkan.gather.release_target(TargetId::from_raw(id));
             Ok(())
         })
     }
@@ -320,8 +310,7 @@ pub unsafe extern "C" fn yoro_vk_record(
 ) -> YoroResult {
     // SAFETY: the header asks the caller for it.
     unsafe {
-        enter(context, |api| {
-            let vulkan = of_vulkan(api)?;
+        enter_vulkan(context, |vulkan| {
             if warp.is_null() || commands == vk::CommandBuffer::null() {
                 return Err(Failure::new(YORO_ERROR_NULL, "warp or commands is NULL: give both"));
             }
@@ -340,21 +329,41 @@ pub unsafe extern "C" fn yoro_vk_record(
     }
 }
 
-fn of_vulkan(api: &mut Api) -> Result<&mut Vulkan, Failure> {
-    match api {
-        Api::Vulkan(vulkan) => Ok(vulkan),
-        Api::Gl(_) => Err(Failure::new(
-            YORO_ERROR_API,
-            "this YoroContext was made for OpenGL: create one with yoro_vk_create",
-        )),
-    }
+/// # Safety
+/// `context` is null or alive.
+unsafe fn enter_vulkan(
+    context: *mut YoroContext,
+    body: impl FnOnce(&mut Vulkan) -> Result<(), Failure>,
+) -> YoroResult {
+    // SAFETY: the contract is the same.
+    unsafe { enter_as(context, "yoro_vk_create", body) }
 }
 
-fn check_id(id: *const u32) -> Result<(), Failure> {
-    match id.is_null() {
-        true => Err(Failure::new(YORO_ERROR_NULL, "id is NULL: say where the number goes")),
-        false => Ok(()),
-    }
+/// Runs the body of a function that registers images: `register` gives their number.
+///
+/// # Safety
+/// `context` is null or alive, `images` is null or leads to as many bytes as it states, and `id` is null or can be
+/// written.
+unsafe fn register_images<T: Versioned>(
+    context: *mut YoroContext,
+    images: *const T,
+    what: &'static str,
+    id: *mut u32,
+    register: impl FnOnce(&mut Vulkan, &T) -> Result<u32, Failure>,
+) -> YoroResult {
+    let body = |vulkan: &mut Vulkan| {
+        // SAFETY: the caller gives a pointer to as many bytes as they state.
+        let images = unsafe { versioned::read(images, what) }?;
+        if id.is_null() {
+            return Err(Failure::new(YORO_ERROR_NULL, "id is NULL: say where the number goes"));
+        }
+        let number = register(vulkan, &images)?;
+        // SAFETY: the caller gives a pointer that can be written.
+        unsafe { id.write(number) };
+        Ok(())
+    };
+    // SAFETY: the caller gives a context that is alive, or null.
+    unsafe { enter_vulkan(context, body) }
 }
 
 /// A pipeline on a device.
@@ -440,8 +449,14 @@ impl Vulkan {
         let gather = unsafe { Gather::new(&host, &options) }?;
         Ok(Vulkan { gather, writes_depth, instance, physical_device: info.physical_device })
     }
+}
 
-    pub(crate) fn capabilities(&self) -> YoroCapabilities {
+impl Backend for Vulkan {
+    fn api(&self) -> &'static str {
+        "Vulkan"
+    }
+
+    fn capabilities(&self) -> YoroCapabilities {
         // SAFETY: the caller's instance lives as long as the context.
         let properties = unsafe { self.instance.get_physical_device_properties(self.physical_device) };
         let mut capabilities = YoroCapabilities {

@@ -1,0 +1,222 @@
+//! Checks of the caller's textures and framebuffer, for development: GL itself says nothing about most mistakes.
+
+use std::num::NonZeroU32;
+
+use glow::HasContext;
+use yoro::eyes::Warp;
+use yoro::gl::{Context, Destination};
+use yoro::synthesis::{Edges, Outputs, Source};
+
+use crate::result::{Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT};
+
+/// Checks that textures and framebuffer are as [`YoroGlImages`](super::YoroGlImages) says. Leaves bindings as they were.
+pub(super) fn check_images(
+    context: &Context,
+    edges: Edges,
+    outputs: Outputs,
+    source: Source,
+    warp: &Warp,
+    target: &Destination,
+) -> Result<(), Failure> {
+    // Errors from before the call are not the call's own.
+    if let Some(errors) = context.take_errors() {
+        return Err(Failure::new(
+            YORO_ERROR_DRIVER,
+            format!("GL already has errors from before the call ({errors}): look for them in the engine"),
+        ));
+    }
+    let size = warp.source_size;
+    let depth_kind = if edges == Edges::Multisample { &MULTISAMPLE } else { &SINGLE_SAMPLE };
+    check_texture(context, source.color, "color_texture", &SINGLE_SAMPLE, size, Level::is_color)?;
+    check_texture(context, source.depth, "depth_texture", depth_kind, size, Level::is_depth)?;
+    if let Some(samples) = source.samples {
+        check_texture(context, samples, "sample_color_texture", &MULTISAMPLE, size, Level::is_color)?;
+    }
+    check_framebuffer(context, outputs, source, target)
+}
+
+fn wrong(sentence: impl Into<String>) -> Failure {
+    Failure::new(YORO_ERROR_FORMAT, sentence.into())
+}
+
+fn check_framebuffer(
+    context: &Context,
+    outputs: Outputs,
+    source: Source,
+    target: &Destination,
+) -> Result<(), Failure> {
+    let Some(framebuffer) = Framebuffer::query(context, target.framebuffer) else {
+        return Err(wrong("framebuffer is no name of a framebuffer of this GL context"));
+    };
+    if framebuffer.status != glow::FRAMEBUFFER_COMPLETE {
+        let status = framebuffer.status;
+        return Err(wrong(format!(
+            "the framebuffer is not complete (GL says 0x{status:04x}): see its attachments"
+        )));
+    }
+    if outputs.depth && framebuffer.depth == Attachment::None {
+        return Err(wrong("the framebuffer has no depth attachment, which YORO_OUTPUT_DEPTH writes"));
+    }
+    for (texture, what) in [
+        (Some(source.color), "color_texture"),
+        (Some(source.depth), "depth_texture"),
+        (source.samples, "sample_color_texture"),
+    ] {
+        let attached = texture.map(Attachment::Texture);
+        if attached == Some(framebuffer.color) || attached == Some(framebuffer.depth) {
+            return Err(wrong(format!(
+                "{what} is attached to the framebuffer: nothing can be drawn into what is read, give the framebuffer \
+                 textures of its own"
+            )));
+        }
+    }
+    let [right, top] = [0, 1].map(|i| target.origin[i].saturating_add(target.size[i]));
+    let level = match framebuffer.color {
+        Attachment::Texture(texture) => Level::query(context, texture, &SINGLE_SAMPLE),
+        _ => None,
+    };
+    let [width, height] = level.map_or([0, 0], |level| level.size);
+    if width > 0 && (right > width || top > height) {
+        return Err(wrong(format!(
+            "the rectangle ends at column {right} and row {top}, beyond the framebuffer's {width}x{height} pixels: see \
+             x and y of YoroGlImages"
+        )));
+    }
+    Ok(())
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Attachment {
+    None,
+    Texture(glow::NativeTexture),
+    Other,
+}
+
+struct Framebuffer {
+    status: u32,
+    color: Attachment,
+    depth: Attachment,
+}
+
+impl Framebuffer {
+    /// None if the context has no such framebuffer.
+    fn query(context: &Context, name: Option<glow::NativeFramebuffer>) -> Option<Framebuffer> {
+        let gl = context.raw();
+        // SAFETY: queries and bindings of the current context. GL refuses an unknown name with an error, which is taken.
+        unsafe {
+            let bound = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, name);
+            let is_known = context.take_errors().is_none();
+            let status = gl.check_framebuffer_status(glow::DRAW_FRAMEBUFFER);
+            let attachment = |attachment| {
+                // The window's framebuffer has other attachments, and none that is a texture.
+                if name.is_none() {
+                    return Attachment::Other;
+                }
+                let query = |what| {
+                    gl.get_framebuffer_attachment_parameter_i32(glow::DRAW_FRAMEBUFFER, attachment, what)
+                        as u32
+                };
+                match query(glow::FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) {
+                    glow::NONE => Attachment::None,
+                    glow::TEXTURE => NonZeroU32::new(query(glow::FRAMEBUFFER_ATTACHMENT_OBJECT_NAME))
+                        .map_or(Attachment::Other, |name| Attachment::Texture(glow::NativeTexture(name))),
+                    _ => Attachment::Other,
+                }
+            };
+            let (color, depth) = (attachment(glow::COLOR_ATTACHMENT0), attachment(glow::DEPTH_ATTACHMENT));
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, bound);
+            is_known.then_some(Framebuffer { status, color, depth })
+        }
+    }
+}
+
+fn check_texture(
+    context: &Context,
+    texture: glow::Texture,
+    what: &str,
+    kind: &TextureKind,
+    size: [u32; 2],
+    fits: impl FnOnce(&Level) -> bool,
+) -> Result<(), Failure> {
+    // SAFETY: a query of the current context.
+    if !unsafe { context.raw().is_texture(texture) } {
+        return Err(wrong(format!("{what} is {}, no texture of this GL context", texture.0)));
+    }
+    let Some(level) = Level::query(context, texture, kind) else {
+        return Err(wrong(format!("{what} is no {}", kind.remedy)));
+    };
+    if level.is_known && level.size != size {
+        let ([w, h], [x, y]) = (level.size, size);
+        return Err(wrong(format!(
+            "{what} has {w}x{h} pixels, and the source has {x}x{y}: render YoroViews.source"
+        )));
+    }
+    if level.is_known && !fits(&level) {
+        return Err(wrong(format!("{what} has a format that cannot be sampled so: see YoroGlImages")));
+    }
+    Ok(())
+}
+
+struct TextureKind {
+    target: u32,
+    binding: u32,
+    /// The target's name, and the remedy for a texture of another target.
+    remedy: &'static str,
+}
+
+const SINGLE_SAMPLE: TextureKind = TextureKind {
+    target: glow::TEXTURE_2D,
+    binding: glow::TEXTURE_BINDING_2D,
+    remedy: "GL_TEXTURE_2D: give one layer without samples",
+};
+const MULTISAMPLE: TextureKind = TextureKind {
+    target: glow::TEXTURE_2D_MULTISAMPLE,
+    binding: glow::TEXTURE_BINDING_2D_MULTISAMPLE,
+    remedy: "GL_TEXTURE_2D_MULTISAMPLE: give one with samples, or other YORO_EDGES_",
+};
+
+/// The first mip level of a texture.
+struct Level {
+    /// False where the driver cannot be asked (before OpenGL ES 3.1); all numbers are 0 then.
+    is_known: bool,
+    /// Width and height in pixels.
+    size: [u32; 2],
+    /// GL_FLOAT and others; 0 for depth.
+    color_type: u32,
+    /// Bits.
+    depth: i32,
+}
+
+impl Level {
+    /// None for a texture of another target.
+    fn query(context: &Context, texture: glow::Texture, kind: &TextureKind) -> Option<Level> {
+        let gl = context.raw();
+        // SAFETY: queries and bindings of the current context. GL refuses a texture of another target with an error,
+        // which is taken.
+        unsafe {
+            let bound = gl.get_parameter_texture(kind.binding);
+            gl.bind_texture(kind.target, Some(texture));
+            let fits = context.take_errors().is_none();
+            let is_known = fits && context.capabilities().compute;
+            let query =
+                |name| if is_known { gl.get_tex_level_parameter_i32(kind.target, 0, name) } else { 0 };
+            let level = Level {
+                is_known,
+                size: [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT].map(|name| query(name) as u32),
+                color_type: query(glow::TEXTURE_RED_TYPE) as u32,
+                depth: query(glow::TEXTURE_DEPTH_SIZE),
+            };
+            gl.bind_texture(kind.target, bound);
+            fits.then_some(level)
+        }
+    }
+
+    fn is_color(&self) -> bool {
+        self.depth == 0 && self.color_type != glow::INT && self.color_type != glow::UNSIGNED_INT
+    }
+
+    fn is_depth(&self) -> bool {
+        self.depth > 0 || self.color_type == glow::FLOAT
+    }
+}
