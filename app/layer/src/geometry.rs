@@ -30,7 +30,13 @@ pub enum GeometryError {
     },
 }
 
-/// A pose of OpenXR in the core's terms.
+/// The pose of a space's origin.
+pub const IDENTITY: sys::Posef = sys::Posef {
+    orientation: sys::Quaternionf { x: 0.0, y: 0.0, z: 0.0, w: 1.0 },
+    position: sys::Vector3f { x: 0.0, y: 0.0, z: 0.0 },
+};
+
+/// Converts a pose of OpenXR.
 pub fn pose(pose: sys::Posef) -> Pose {
     let (p, q) = (pose.position, pose.orientation);
     Pose { position: glam::Vec3::new(p.x, p.y, p.z), orientation: glam::Quat::from_xyzw(q.x, q.y, q.z, q.w) }

@@ -1,19 +1,20 @@
-//! What is known of the application's instance, and what it is told about view configurations.
+//! An instance of the application, and the view configurations that it is offered.
 
 use std::sync::Mutex;
 
 use openxr_sys as sys;
+use smallvec::SmallVec;
 use sys::ViewConfigurationType as Views;
 
 use crate::dispatch::{Dispatch, XrResult, check};
 use crate::lock;
 use crate::settings::{OfferedAs, Settings};
 
-/// By how much the offered view is wider than an eye's where the application asks for its size before there is a session
-/// that could tell: about as much as common headsets' frusta differ.
+/// The estimated width of the offered view in widths of an eye's, before a session can tell. The frusta of common headsets'
+/// eyes differ by about as much.
 const ESTIMATED_WIDTH: f32 = 1.25;
 
-/// Width and height in pixels that are recommended for an image that is not used.
+/// The recommended width and height in pixels of an image that is not used.
 const TINY: u32 = 16;
 
 /// One instance.
@@ -21,13 +22,13 @@ pub struct Instance {
     pub handle: sys::Instance,
     pub next: Dispatch,
     pub settings: Settings,
-    /// The name that the application gives itself.
+    /// The name that the application gives itself in XrApplicationInfo.
     pub application: String,
-    /// It has enabled a graphics interface that the layer knows; without that everything passes through.
+    /// True if the application has enabled a graphics interface that the layer knows. Else everything passes through.
     pub serves: bool,
-    /// The runtime takes depth, too: it has the extension that the application has enabled.
+    /// True if the runtime takes depth: it has the extension, and the application has enabled it.
     pub takes_depth: bool,
-    /// The recommended size of the one view, in pixels: the same in all answers since the first session was made.
+    /// The recommended size of the one view in pixels, known since the first session.
     size: Mutex<Option<[u32; 2]>>,
 }
 
@@ -43,18 +44,21 @@ impl Instance {
         Instance { handle, next, settings, application, serves, takes_depth, size: Mutex::new(None) }
     }
 
-    /// Whether the application is offered one view, on a system that has two.
+    /// True if the application is offered one view: the system has two.
     pub fn offers(&self, system: sys::SystemId) -> bool {
-        let mut types = [Views::PRIMARY_MONO; 16];
-        self.serves
-            && self
-                .own_configurations(system, &mut types)
-                .is_ok_and(|count| types[..count].contains(&Views::PRIMARY_STEREO))
+        self.serves && self.own_configurations(system).is_ok_and(|own| own.contains(&Views::PRIMARY_STEREO))
     }
 
-    fn own_configurations(&self, system: sys::SystemId, types: &mut [Views; 16]) -> XrResult<usize> {
+    /// Returns the view configuration of the runtime that stands behind one of the application's.
+    pub fn runtimes(&self, system: sys::SystemId, kind: Views) -> Views {
+        if kind == Views::PRIMARY_MONO && self.offers(system) { Views::PRIMARY_STEREO } else { kind }
+    }
+
+    /// Returns the runtime's own view configurations, 16 at most.
+    fn own_configurations(&self, system: sys::SystemId) -> XrResult<SmallVec<[Views; 17]>> {
+        let mut types = [Views::PRIMARY_MONO; 16];
         let mut count = 0;
-        // SAFETY: a live instance, and room for as many as is said.
+        // SAFETY: a live instance, and room for 16 types.
         check(unsafe {
             (self.next.enumerate_view_configurations)(
                 self.handle,
@@ -64,34 +68,23 @@ impl Instance {
                 types.as_mut_ptr(),
             )
         })?;
-        Ok((count as usize).min(types.len()))
+        Ok(types.into_iter().take(count as usize).collect())
     }
 
-    /// The list of view configurations with the one of a single view; its length.
-    pub fn configurations(&self, system: sys::SystemId, list: &mut [Views; 17]) -> XrResult<usize> {
-        let mut own = [Views::PRIMARY_MONO; 16];
-        let count = self.own_configurations(system, &mut own)?;
-        let own = &own[..count];
-        // A runtime's own configuration of one view is replaced.
-        let others = own.iter().copied().filter(|&kind| kind != Views::PRIMARY_MONO);
-        let mono = std::iter::once(Views::PRIMARY_MONO);
-        let fill = |list: &mut [Views; 17], all: &mut dyn Iterator<Item = Views>| {
-            let mut length = 0;
-            for (place, kind) in list.iter_mut().zip(all) {
-                *place = kind;
-                length += 1;
-            }
-            length
-        };
-        Ok(match self.settings.offer {
-            _ if !own.contains(&Views::PRIMARY_STEREO) => fill(list, &mut own.iter().copied()),
-            OfferedAs::Only => fill(list, &mut mono.into_iter()),
-            OfferedAs::First => fill(list, &mut mono.chain(others)),
-            OfferedAs::Last => fill(list, &mut others.chain(mono)),
-        })
+    /// Returns the view configurations that the application gets, with the one of a single view.
+    pub fn configurations(&self, system: sys::SystemId) -> XrResult<SmallVec<[Views; 17]>> {
+        let mut list = self.own_configurations(system)?;
+        if !list.contains(&Views::PRIMARY_STEREO) {
+            return Ok(list);
+        }
+        // It replaces a runtime's own configuration of one view.
+        list.retain(|kind| *kind != Views::PRIMARY_MONO && self.settings.offer != OfferedAs::Only);
+        let place = if self.settings.offer == OfferedAs::Last { list.len() } else { 0 };
+        list.insert(place, Views::PRIMARY_MONO);
+        Ok(list)
     }
 
-    /// The runtime's two views.
+    /// Returns the runtime's two views.
     pub fn own_views(&self, system: sys::SystemId) -> XrResult<[sys::ViewConfigurationView; 2]> {
         let view = sys::ViewConfigurationView {
             ty: sys::ViewConfigurationView::TYPE,
@@ -105,7 +98,7 @@ impl Instance {
         };
         let mut views = [view; 2];
         let mut count = 0;
-        // SAFETY: a live instance, and room for as many as is said.
+        // SAFETY: a live instance, and room for two views.
         check(unsafe {
             (self.next.enumerate_view_configuration_views)(
                 self.handle,
@@ -119,7 +112,7 @@ impl Instance {
         Ok(views)
     }
 
-    /// The one view: the dominant eye's, with more pixels.
+    /// Returns the one view: the dominant eye's, with more pixels.
     pub fn view(&self, system: sys::SystemId) -> XrResult<sys::ViewConfigurationView> {
         let own = self.own_views(system)?[self.settings.dominant.index()];
         let size = lock(&self.size).unwrap_or([
@@ -133,7 +126,7 @@ impl Instance {
         })
     }
 
-    /// Both views, where one is tiny.
+    /// Returns two views, of which one is tiny.
     pub fn shrunk_views(&self, system: sys::SystemId) -> XrResult<[sys::ViewConfigurationView; 2]> {
         let mut views = self.own_views(system)?.map(|own| sys::ViewConfigurationView {
             recommended_image_rect_width: TINY.min(own.max_image_rect_width),
@@ -144,7 +137,7 @@ impl Instance {
         Ok(views)
     }
 
-    /// What the first session knows of the view's size; later ones do not change it.
+    /// Sets the size of the one view, if no earlier session has set it.
     pub fn latch_size(&self, size: [u32; 2]) {
         lock(&self.size).get_or_insert(size);
     }

@@ -1,38 +1,40 @@
-//! `XR_APILAYER_YORO_one_view`: an OpenXR API layer between an application that renders one view and a runtime that shows
-//! two.
+//! `XR_APILAYER_YORO_one_view`: an OpenXR API layer that gives stereo to applications that render one view.
 //!
-//! The application is offered the view configuration PRIMARY_MONO: one view, at the dominant eye's pose, that sees what
-//! both eyes see. What it submits in xrEndFrame, colour with depth (XR_KHR_composition_layer_depth), is cropped for the
-//! dominant eye, without a copy, and synthesized for the other one. Applications on Vulkan (XR_KHR_vulkan_enable and
-//! enable2), OpenGL (XR_KHR_opengl_enable by Xlib or EGL) and OpenGL ES (XR_KHR_opengl_es_enable); for all others, and for
-//! those that begin PRIMARY_STEREO, everything passes through; unless the setting `shrink` has them render one of two views
-//! tiny, which is replaced.
+//! An application is offered the view configuration PRIMARY_MONO: one view at the dominant eye's pose that sees what both
+//! eyes see. The layer takes colour and depth of it in xrEndFrame and submits two views to the runtime: the dominant eye's is a
+//! part of the application's image, without a copy, and the other one's is synthesized.
+//! It must never know a scene, a window or a renderer, and never fail a call that would succeed without it.
 //!
-//! Whatever fails here does not fail the application: such a frame shows the same image to both eyes, the log says why
-//! once, and counts.
+//! It serves applications on Vulkan (XR_KHR_vulkan_enable and enable2), OpenGL (XR_KHR_opengl_enable by Xlib or EGL) and
+//! OpenGL ES (XR_KHR_opengl_es_enable). For all others, and for those that begin PRIMARY_STEREO, everything passes through;
+//! with the setting `shrink`, the latter are told to render one of two views tiny, and that one is replaced. A frame that
+//! cannot be synthesized shows the same image to both eyes; the log gives each reason once, and counts.
 //!
-//! * `entry`: the functions that loader and application call; no panic leaves them.
-//! * `dispatch`: those of the next layer or of the runtime.
-//! * `instance`, `session`, `swapchain`: what is known of the application's objects.
+//! * `entry`: the functions that loader and application call.
+//! * `objects`: the application's instances, sessions and swapchains, and the order of locks.
 //! * `frame`: xrEndFrame.
+//! * `session`, `swapchain`, `instance`: one object each. `dispatch`: the functions of the next layer or the runtime.
 //! * `geometry`: the offered view, and the parts of a submitted one.
-//! * `graphics`: synthesis, whatever the application draws with: `vulkan`, on its device and queue, and `gl`, in its
-//!   context.
+//! * `binding`: the graphics interface of a session. `synthesizer`: the synthesis, implemented by `vulkan`, on the application's
+//!   device and queue, and by `gl`, in its context.
+//!
+//! The feature `capture` adds what tests need: pictures of what the runtime gets, and a world that stands still.
 
-mod capture;
+mod binding;
 mod dispatch;
 mod entry;
 mod frame;
 mod geometry;
 mod gl;
-mod graphics;
 mod instance;
 pub mod log;
 mod manifest;
+mod objects;
 mod reason;
 mod session;
 pub mod settings;
 mod swapchain;
+mod synthesizer;
 mod vulkan;
 pub mod xdg;
 
@@ -43,7 +45,7 @@ use log::say;
 pub use entry::xrNegotiateLoaderApiLayerInterface;
 pub use manifest::{DISABLE, ENABLE, Kind, MANIFEST, NAME, manifest};
 
-/// What a panic elsewhere has left is as good as before: nothing is changed in two steps.
+/// Locks a mutex, also after a panic: nothing is changed in two steps, so what a panic has left is sound.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

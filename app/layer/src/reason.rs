@@ -74,33 +74,6 @@ pub enum Reason {
     Panic,
 }
 
-impl Reason {
-    /// The bit of this kind of reason, in a set of those that were told.
-    pub fn bit(&self) -> u32 {
-        1 << match self {
-            Reason::NoDepth => 0,
-            Reason::NoGraphics => 1,
-            Reason::NoViews => 2,
-            Reason::Views(_) => 3,
-            Reason::Geometry(_) => 4,
-            Reason::Unreadable(_) => 5,
-            Reason::Old(_) => 6,
-            Reason::Apart => 7,
-            Reason::Beyond => 8,
-            Reason::Another => 9,
-            Reason::Late => 10,
-            Reason::Vulkan(_) => 11,
-            Reason::Synthesis(_) => 12,
-            Reason::Runtime(..) => 13,
-            Reason::Panic => 14,
-            Reason::NoLibrary(_) => 15,
-            Reason::NotCurrent => 16,
-            Reason::Part => 17,
-            Reason::Gl(_) => 18,
-        }
-    }
-}
-
 impl From<GlError> for Reason {
     fn from(error: GlError) -> Reason {
         Reason::Gl(Arc::new(error))

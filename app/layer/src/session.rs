@@ -1,5 +1,6 @@
-//! What is known of the application's session.
+//! The facts that the layer knows about a session of the application.
 
+use std::ptr;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -8,30 +9,25 @@ use openxr_sys as sys;
 use sys::Handle as _;
 use yoro::eyes::{EyesError, Frustum, Pose};
 
+use crate::binding::Binding;
 use crate::dispatch::{XrResult, check};
-use crate::frame::Frames;
-use crate::geometry::{Offer, frustum, pose};
-use crate::graphics::Binding;
+use crate::geometry::{IDENTITY, Offer, frustum, pose};
 use crate::instance::Instance;
 use crate::lock;
-use crate::swapchain::Swapchain;
 
 /// One session.
 pub struct Session {
     pub handle: sys::Session,
     pub instance: Arc<Instance>,
-    /// None where it is bound to something that the layer does not know.
+    /// None if the layer does not know the graphics interface.
     pub binding: Option<Binding>,
-    /// What the runtime recommends for the dominant eye, in pixels.
+    /// The size in pixels that the runtime recommends for the dominant eye.
     eye_size: [u32; 2],
-    /// [`Session::views`].
+    /// See [`Session::views`].
     views: AtomicUsize,
-    /// What was offered last, or why nothing can be.
+    /// The last offer, or the reason why nothing can be offered.
     pub offer: Mutex<Option<Result<Offer, EyesError>>>,
-    /// The application's swapchains.
-    pub swapchains: Mutex<Vec<Arc<Swapchain>>>,
-    pub frames: Mutex<Frames>,
-    /// When xrBeginFrame returned last.
+    /// When the last xrBeginFrame returned.
     pub begun: Mutex<Option<Instant>>,
 }
 
@@ -52,28 +48,22 @@ impl Session {
             binding,
             eye_size,
             views: AtomicUsize::new(0),
-            offer: Mutex::new(None),
-            swapchains: Mutex::new(Vec::new()),
-            frames: Mutex::default(),
+            offer: Mutex::default(),
             begun: Mutex::default(),
         };
-        if let Some(size) = session.probe() {
+        if let Some(size) = session.size_before_the_first_frame() {
             session.instance.latch_size(size);
         }
         session
     }
 
-    /// The size of the view to offer, from the eyes before the first frame. A runtime may refuse to say.
-    fn probe(&self) -> Option<[u32; 2]> {
-        let identity = sys::Posef {
-            orientation: sys::Quaternionf { x: 0.0, y: 0.0, z: 0.0, w: 1.0 },
-            position: sys::Vector3f { x: 0.0, y: 0.0, z: 0.0 },
-        };
+    /// Returns the size of the offered view, if the runtime locates views before the session begins.
+    fn size_before_the_first_frame(&self) -> Option<[u32; 2]> {
         let info = sys::ReferenceSpaceCreateInfo {
             ty: sys::ReferenceSpaceCreateInfo::TYPE,
-            next: std::ptr::null(),
+            next: ptr::null(),
             reference_space_type: sys::ReferenceSpaceType::VIEW,
-            pose_in_reference_space: identity,
+            pose_in_reference_space: IDENTITY,
         };
         let next = &self.instance.next;
         let mut space = sys::Space::NULL;
@@ -81,39 +71,38 @@ impl Session {
         check(unsafe { (next.create_reference_space)(self.handle, &info, &mut space) }).ok()?;
         let info = sys::ViewLocateInfo {
             ty: sys::ViewLocateInfo::TYPE,
-            next: std::ptr::null(),
+            next: ptr::null(),
             view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
-            // In the space of the views time matters little, and how to ask for the time is an extension's.
-            display_time: sys::Time::from_nanos(self.instance.settings.time.unwrap_or(1)),
+            // In the space of the views any time will do; asking for the present time needs an extension.
+            display_time: self.instance.settings.time(sys::Time::from_nanos(1)),
             space,
         };
-        let mut state = view_state();
+        let mut state = sys::ViewState {
+            ty: sys::ViewState::TYPE,
+            next: ptr::null_mut(),
+            view_state_flags: sys::ViewStateFlags::EMPTY,
+        };
         let located = self.locate(&info, &mut state);
-        // SAFETY: made above, and used no more.
+        // SAFETY: made above, and not used any more.
         unsafe { (next.destroy_space)(space) };
-        // Not valid before there is tracking: fields of view are, and where poses are not, nothing can be said.
+        // Before there is tracking, poses may be invalid, but fields of view are valid.
         self.offer_for(&located.ok()?).ok().map(|offer| offer.size)
     }
 
-    /// The runtime's two views.
+    /// Locates the runtime's two views.
+    ///
+    /// # Errors
+    /// The result of xrLocateViews.
     pub fn locate(&self, info: &sys::ViewLocateInfo, state: &mut sys::ViewState) -> XrResult<[sys::View; 2]> {
         let info = sys::ViewLocateInfo {
             view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
             ..*info
         };
-        let zero = sys::Vector3f { x: 0.0, y: 0.0, z: 0.0 };
-        let view = sys::View {
-            ty: sys::View::TYPE,
-            next: std::ptr::null_mut(),
-            pose: sys::Posef {
-                orientation: sys::Quaternionf { x: 0.0, y: 0.0, z: 0.0, w: 1.0 },
-                position: zero,
-            },
-            fov: sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 },
-        };
+        let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
+        let view = sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov };
         let mut views = [view; 2];
         let mut count = 0;
-        // SAFETY: a live session, and room for as many as is said.
+        // SAFETY: a live session, and room for two views.
         check(unsafe {
             (self.instance.next.locate_views)(self.handle, &info, state, 2, &mut count, views.as_mut_ptr())
         })?;
@@ -122,12 +111,12 @@ impl Session {
 
     fn offer_for(&self, views: &[sys::View; 2]) -> Result<Offer, EyesError> {
         let settings = &self.instance.settings;
-        let views: [(Pose, Frustum); 2] = views.map(|view| (pose(view.pose), frustum(view.fov)));
+        let views = views.map(|view| (pose(view.pose), frustum(view.fov)));
         Offer::new(views, self.eye_size, settings.dominant, settings.guard_band)
     }
 
-    /// The view for the application, from the runtime's two. Where nothing can be synthesized between them it is the
-    /// dominant eye's own.
+    /// Returns the view that the application gets in place of the runtime's two, and remembers the offer. If nothing can be
+    /// synthesized between them, it is the dominant eye's own view.
     pub fn offer(&self, views: &[sys::View; 2]) -> (Pose, Frustum) {
         let offer = self.offer_for(views);
         *lock(&self.offer) = Some(offer);
@@ -135,33 +124,24 @@ impl Session {
         offer.map_or((pose(own.pose), frustum(own.fov)), |offer| (offer.pose, offer.frustum))
     }
 
-    /// It begins.
+    /// Begins the session; for `views` see [`Session::views`].
     pub fn begin(&self, views: usize) {
         self.views.store(views, Ordering::Relaxed);
     }
 
-    /// How many views a projection layer of the application's has that becomes one of both eyes: one, or two of which one is
-    /// tiny. None where everything passes through.
+    /// The number of views in a projection layer that the layer rewrites: 1, or 2 if one of them is tiny. 0 if everything
+    /// passes through.
     pub fn views(&self) -> usize {
         self.views.load(Ordering::Relaxed)
     }
 
-    /// Whether one of two views is tiny, and replaced, if it is begun with two.
+    /// True if one of two views is tiny and replaced, should the application begin with two.
     pub fn shrinks(&self) -> bool {
         self.binding.is_some() && self.instance.settings.shrink
     }
 
-    /// Whether images of the application are read at the end of a frame.
+    /// True if the application's images are read at the end of a frame.
     pub fn reads_images(&self) -> bool {
-        self.binding.is_some() && (self.views() > 0 || self.instance.settings.capture.is_some())
-    }
-}
-
-/// A structure for the runtime to fill.
-pub fn view_state() -> sys::ViewState {
-    sys::ViewState {
-        ty: sys::ViewState::TYPE,
-        next: std::ptr::null_mut(),
-        view_state_flags: sys::ViewStateFlags::EMPTY,
+        self.binding.is_some() && (self.views() > 0 || self.instance.settings.captures())
     }
 }

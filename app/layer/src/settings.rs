@@ -1,23 +1,22 @@
-//! What a user can choose: by a file for all applications and for each one, and by environment variables, on Android system
-//! properties, for one run.
+//! What a user can choose: for one run by environment variables (on Android system properties), in a file for one application
+//! or for all.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
-use serde::Deserialize;
+use openxr_sys as sys;
+use toml::{Table, Value};
 use yoro::eyes::{Eye, GuardBand};
 
 use crate::xdg;
 
-/// Where in the list of view configurations the application finds the one of a single view.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+/// The place of the configuration with one view in the list of view configurations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfferedAs {
-    /// It is the whole list: an application that asks for stereo gets it nevertheless.
+    /// It is the whole list: an application that begins in stereo nevertheless still gets stereo.
     Only,
     /// Before the runtime's own.
-    #[default]
     First,
     /// After the runtime's own.
     Last,
@@ -26,59 +25,149 @@ pub enum OfferedAs {
 /// The settings of one application.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// `offer`, YORO_LAYER_OFFER: `only`, `first` or `last`.
+    /// The place of the configuration with one view.
     pub offer: OfferedAs,
-    /// `dominant`, YORO_LAYER_DOMINANT: `left` or `right`, the eye that the application renders.
+    /// The eye that the application renders.
     pub dominant: Eye,
-    /// `guard_band`, YORO_LAYER_GUARD_BAND: `none`, pixels (`40px`) or metres (`1.0`).
+    /// The width that is rendered beyond both eyes' views.
     pub guard_band: GuardBand,
-    /// `shrink`, YORO_LAYER_SHRINK: `on` or `off`. An application that begins its session in stereo is told that one eye's
-    /// image is tiny, and that image is replaced. Only for applications that make a swapchain for each eye, of the size
-    /// that is recommended for it.
+    /// True if an application that begins in stereo is told that one eye's image is tiny.
     pub shrink: bool,
-    /// YORO_LAYER_CAPTURE: a folder that gets pictures of what the runtime gets, of one frame. For tests.
+    /// YORO_LAYER_CAPTURE: a folder for pictures of what the runtime gets in one frame.
+    #[cfg(feature = "capture")]
     pub capture: Option<PathBuf>,
-    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located, in place of the one that is
-    /// asked for: the world stands still, so that pictures of two runs can be compared. For tests.
+    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located. The world stands still, so that
+    /// pictures of two runs can be compared.
+    #[cfg(feature = "capture")]
     pub time: Option<i64>,
+}
+
+/// A row of the table of settings.
+pub struct Setting {
+    /// The key in the file. The environment variable is `YORO_LAYER_` and this in capitals.
+    pub key: &'static str,
+    /// The values that it takes, as a sentence of an error names them.
+    pub values: &'static str,
+    /// The value if nothing else is said.
+    pub default: &'static str,
+    /// The meaning, in one sentence.
+    pub help: &'static str,
+    /// Sets a value; None if it is not one of `values`.
+    set: fn(&mut Settings, &str) -> Option<()>,
+}
+
+/// All settings of users.
+pub const SETTINGS: [Setting; 4] = [
+    Setting {
+        key: "offer",
+        values: "only, first or last",
+        default: "first",
+        help: "Where the list of view configurations has PRIMARY_MONO: alone, before the runtime's own, or after them",
+        set: |settings, text| {
+            settings.offer = match text {
+                "only" => OfferedAs::Only,
+                "first" => OfferedAs::First,
+                "last" => OfferedAs::Last,
+                _ => return None,
+            };
+            Some(())
+        },
+    },
+    Setting {
+        key: "dominant",
+        values: "left or right",
+        default: "right",
+        help: "The eye that the application renders",
+        set: |settings, text| {
+            settings.dominant = Eye::BOTH.into_iter().find(|eye| eye.name() == text)?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "guard_band",
+        values: "none, pixels such as 40px, or metres such as 1.0",
+        default: "1.0",
+        help: "What is rendered beyond both eyes' views: columns of pixels, or as many as objects at that distance need",
+        set: |settings, text| {
+            // The view is offered before anything is rendered: the guard band cannot depend on the scene.
+            let band = GuardBand::from_str(text).ok()?;
+            settings.guard_band = Some(band).filter(|band| !matches!(band, GuardBand::Auto(_)))?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "shrink",
+        values: "on or off",
+        default: "off",
+        help: "An application that begins in stereo is told that one eye's image is tiny, and that image is replaced. \
+               Only for applications that make a swapchain for each eye, of the size recommended for it",
+        set: |settings, text| {
+            settings.shrink = match text {
+                "on" => true,
+                "off" => false,
+                _ => return None,
+            };
+            Some(())
+        },
+    },
+];
+
+#[cfg(feature = "capture")]
+const TIME: Setting = Setting {
+    key: "time",
+    values: "nanoseconds, more than 0",
+    default: "",
+    help: "The time at which all views and spaces are located",
+    set: |settings, text| {
+        settings.time = Some(text.parse().ok().filter(|time| *time > 0)?);
+        Some(())
+    },
+};
+
+impl Setting {
+    /// Returns the name of the environment variable.
+    pub fn variable(&self) -> String {
+        format!("YORO_LAYER_{}", self.key.to_ascii_uppercase())
+    }
+
+    /// Sets a value that `place` gives to `key`.
+    fn choose(
+        &self,
+        settings: &mut Settings,
+        value: &str,
+        place: &str,
+        key: &str,
+    ) -> Result<(), SettingsError> {
+        (self.set)(settings, value).ok_or_else(|| SettingsError::Value {
+            place: place.to_owned(),
+            key: key.to_owned(),
+            value: value.to_owned(),
+            remedy: self.values,
+        })
+    }
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings {
+        let mut settings = Settings {
             offer: OfferedAs::First,
             dominant: Eye::Right,
-            guard_band: GuardBand::Distance(1.0),
+            guard_band: GuardBand::None,
             shrink: false,
+            #[cfg(feature = "capture")]
             capture: None,
+            #[cfg(feature = "capture")]
             time: None,
+        };
+        for setting in SETTINGS {
+            // A test checks that every default is a value.
+            (setting.set)(&mut settings, setting.default);
         }
+        settings
     }
 }
 
-/// A part of the file: what is not said is as elsewhere.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Choices {
-    offer: Option<String>,
-    dominant: Option<String>,
-    guard_band: Option<String>,
-    shrink: Option<String>,
-}
-
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    offer: Option<String>,
-    dominant: Option<String>,
-    guard_band: Option<String>,
-    shrink: Option<String>,
-    /// By the name that the application gives itself in XrApplicationInfo.
-    #[serde(default)]
-    application: std::collections::BTreeMap<String, Choices>,
-}
-
-/// A setting that is none.
+/// A mistake in the settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsError {
     /// The file cannot be read, or is no TOML of these keys.
@@ -86,24 +175,25 @@ pub enum SettingsError {
     File {
         /// The file.
         path: PathBuf,
-        /// What is wrong, in one line.
+        /// The mistake, in one line.
         reason: String,
     },
-    /// A value out of its range.
+    /// A value that the setting does not take.
     #[error("{place}: {key} is {value:?}; give {remedy}")]
     Value {
         /// The environment or the file.
         place: String,
         /// The variable or the key.
         key: String,
-        /// What it is.
+        /// The value.
         value: String,
-        /// What it can be.
+        /// The values that the setting takes.
         remedy: &'static str,
     },
 }
 
-/// The file of settings: `$XDG_CONFIG_HOME/yoro/layer.toml`, in `~/.config` where that is not set; None without a home.
+/// Returns the path of the settings file, `$XDG_CONFIG_HOME/yoro/layer.toml` (`~/.config` if that is not set); None without
+/// a home.
 pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_CONFIG_HOME", ".config")?.join("yoro/layer.toml"))
 }
@@ -116,8 +206,8 @@ fn variable(name: &str) -> Option<OsString> {
     std::env::var_os(name)
 }
 
-/// On Android YORO_LAYER_OFFER is the system property `debug.yoro.layer.offer`. Empty means unset: a property cannot be
-/// deleted.
+/// On Android YORO_LAYER_OFFER is the system property `debug.yoro.layer.offer`. A property cannot be deleted, so an empty one
+/// counts as unset.
 #[cfg(target_os = "android")]
 fn variable(name: &str) -> Option<OsString> {
     let key = name.strip_prefix("YORO_LAYER_")?.to_ascii_lowercase();
@@ -130,9 +220,41 @@ fn variable(name: &str) -> Option<OsString> {
     (!value.is_empty()).then(|| value.into())
 }
 
+/// Reads the file's text: the keys for all applications, and those for this one.
+fn read_file(text: &str, application: &str) -> Result<[Table; 2], String> {
+    let mut all: Table = text.parse().map_err(|error: toml::de::Error| error.message().to_owned())?;
+    let applications = match all.remove("application") {
+        None => Table::new(),
+        Some(Value::Table(applications)) => applications,
+        Some(_) => return Err("`application` is no table".to_owned()),
+    };
+    check_keys(&all)?;
+    let mut own = Table::new();
+    for (name, section) in applications {
+        let Value::Table(section) = section else {
+            return Err(format!("`application.{name}` is no table"));
+        };
+        check_keys(&section)?;
+        if name == application {
+            own = section;
+        }
+    }
+    Ok([all, own])
+}
+
+fn check_keys(section: &Table) -> Result<(), String> {
+    match section.keys().find(|key| SETTINGS.iter().all(|setting| setting.key != *key)) {
+        None => Ok(()),
+        Some(unknown) => {
+            let keys = SETTINGS.map(|setting| format!("`{}`", setting.key)).join(", ");
+            Err(format!("unknown field `{unknown}`, expected one of {keys}"))
+        }
+    }
+}
+
 impl Settings {
-    /// The settings of an application: the environment's, then the file's for the application, then the file's for all, then
-    /// the defaults. What is wrong is told by the errors, and left at what it would be otherwise.
+    /// Returns the settings of an application: those of the environment before those of the file for this application, before
+    /// those of the file for all, before the defaults. A mistake is returned as an error and changes nothing.
     pub fn of(application: &str) -> (Settings, Vec<SettingsError>) {
         let path = path();
         let text = path.as_deref().map(std::fs::read_to_string);
@@ -154,86 +276,61 @@ impl Settings {
         let mut settings = Settings::default();
         let mut errors = Vec::new();
         if let Some((path, text)) = file {
-            match text
-                .and_then(|text| toml::from_str::<File>(&text).map_err(|error| error.message().to_owned()))
-            {
-                Ok(mut file) => {
-                    let own = file.application.remove(application).unwrap_or_default();
-                    let File { offer, dominant, guard_band, shrink, .. } = file;
-                    settings.choose_of(&Choices { offer, dominant, guard_band, shrink }, &path, &mut errors);
-                    settings.choose_of(&own, &path, &mut errors);
+            match text.and_then(|text| read_file(&text, application)) {
+                Ok(sections) => {
+                    let place = path.display().to_string();
+                    let in_file = |section: &Table, setting: &Setting| match section.get(setting.key)? {
+                        Value::String(text) => Some(text.clone()),
+                        other => Some(other.to_string()),
+                    };
+                    for (section, setting) in
+                        sections.iter().flat_map(|s| SETTINGS.iter().map(move |t| (s, t)))
+                    {
+                        if let Some(value) = in_file(section, setting) {
+                            errors.extend(setting.choose(&mut settings, &value, &place, setting.key).err());
+                        }
+                    }
                 }
                 Err(reason) => errors.push(SettingsError::File { path, reason }),
             }
         }
-        for key in ["offer", "dominant", "guard_band", "shrink"] {
-            let name = format!("YORO_LAYER_{}", key.to_ascii_uppercase());
+        let mut from_environment = |setting: &Setting| {
+            let name = setting.variable();
             if let Some(value) = environment(&name) {
-                settings.choose(key, &value.to_string_lossy(), VARIABLES, &name, &mut errors);
+                let value = value.to_string_lossy();
+                errors.extend(setting.choose(&mut settings, &value, VARIABLES, &name).err());
             }
-        }
-        settings.capture = environment("YORO_LAYER_CAPTURE").map(PathBuf::from);
-        if let Some(time) = environment("YORO_LAYER_TIME") {
-            settings.choose("time", &time.to_string_lossy(), VARIABLES, "YORO_LAYER_TIME", &mut errors);
+        };
+        SETTINGS.iter().for_each(&mut from_environment);
+        #[cfg(feature = "capture")]
+        {
+            from_environment(&TIME);
+            settings.capture = environment("YORO_LAYER_CAPTURE").map(PathBuf::from);
         }
         (settings, errors)
     }
 
-    fn choose_of(&mut self, choices: &Choices, path: &Path, errors: &mut Vec<SettingsError>) {
-        let place = path.display().to_string();
-        let all = [
-            ("offer", &choices.offer),
-            ("dominant", &choices.dominant),
-            ("guard_band", &choices.guard_band),
-            ("shrink", &choices.shrink),
-        ];
-        for (key, value) in all {
-            if let Some(value) = value {
-                self.choose(key, value, &place, key, errors);
-            }
+    /// Returns the time at which views and spaces are located, for the one that is asked for.
+    pub fn time(&self, asked: sys::Time) -> sys::Time {
+        #[cfg(feature = "capture")]
+        if let Some(time) = self.time {
+            return sys::Time::from_nanos(time);
         }
+        asked
     }
 
-    fn choose(&mut self, key: &str, value: &str, place: &str, name: &str, errors: &mut Vec<SettingsError>) {
-        fn set<T>(place: &mut T, value: Option<T>) -> bool {
-            value.map(|value| *place = value).is_some()
-        }
-        let (done, remedy) = match key {
-            "offer" => {
-                let offer = match value {
-                    "only" => Some(OfferedAs::Only),
-                    "first" => Some(OfferedAs::First),
-                    "last" => Some(OfferedAs::Last),
-                    _ => None,
-                };
-                (set(&mut self.offer, offer), "only, first or last")
-            }
-            "dominant" => {
-                let eye = Eye::BOTH.into_iter().find(|eye| eye.name() == value);
-                (set(&mut self.dominant, eye), "left or right")
-            }
-            "guard_band" => (
-                {
-                    // The application renders all of what it is offered.
-                    let fixed =
-                        GuardBand::from_str(value).ok().filter(|band| !matches!(band, GuardBand::Auto(_)));
-                    set(&mut self.guard_band, fixed)
-                },
-                "none, pixels such as 40px, or metres such as 1.0",
-            ),
-            "shrink" => {
-                let shrink = ["off", "on"].into_iter().position(|choice| choice == value);
-                (set(&mut self.shrink, shrink.map(|choice| choice == 1)), "on or off")
-            }
-            _ => {
-                let time = value.parse().ok().filter(|time| *time > 0);
-                (set(&mut self.time, time.map(Some)), "nanoseconds, more than 0")
-            }
-        };
-        if !done {
-            let (place, key, value) = (place.to_owned(), name.to_owned(), value.to_owned());
-            errors.push(SettingsError::Value { place, key, value, remedy });
-        }
+    /// True if pictures are taken.
+    pub fn captures(&self) -> bool {
+        #[cfg(feature = "capture")]
+        return self.capture.is_some();
+        #[cfg(not(feature = "capture"))]
+        false
+    }
+
+    /// Returns the usage of swapchains whose images the layer reads.
+    pub fn usage_to_read(&self) -> sys::SwapchainUsageFlags {
+        let sampled = sys::SwapchainUsageFlags::SAMPLED;
+        if self.captures() { sampled | sys::SwapchainUsageFlags::TRANSFER_SRC } else { sampled }
     }
 }
 
@@ -247,6 +344,27 @@ mod tests {
             environment.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).into())
         });
         (settings, errors.iter().map(ToString::to_string).collect())
+    }
+
+    /// The table in docs/layer.md has the rows of [`SETTINGS`], and no others.
+    #[test]
+    fn the_document_has_the_table_of_settings() {
+        let rows = SETTINGS.map(|Setting { key, values, default, help, .. }| {
+            format!("| `{key}` | {values} | `{default}` | {help} |\n")
+        });
+        let table = format!("| key | values | default | |\n|---|---|---|---|\n{}\n", rows.concat());
+        let document = include_str!("../../../docs/layer.md");
+        assert!(document.contains(&table), "docs/layer.md must have this table:\n{table}");
+    }
+
+    #[test]
+    fn every_default_is_a_value_of_its_setting() {
+        for setting in SETTINGS {
+            assert!((setting.set)(&mut Settings::default(), setting.default).is_some(), "{}", setting.key);
+        }
+        let Settings { offer, dominant, guard_band, shrink, .. } = Settings::default();
+        assert_eq!((offer, dominant), (OfferedAs::First, Eye::Right));
+        assert_eq!((guard_band, shrink), (GuardBand::Distance(1.0), false));
     }
 
     #[test]
@@ -266,17 +384,22 @@ mod tests {
 
     #[test]
     fn mistakes_are_one_sentence_each_and_change_nothing() {
-        let (settings, errors) =
-            resolve("offer = 'mono'", &[("YORO_LAYER_DOMINANT", "middle"), ("YORO_LAYER_TIME", "0")]);
+        let (settings, errors) = resolve(
+            "offer = 'mono'\nguard_band = true",
+            &[("YORO_LAYER_DOMINANT", "middle"), ("YORO_LAYER_TIME", "0")],
+        );
         assert_eq!(settings, Settings::default());
         assert_eq!(
             errors,
             [
                 "/c/yoro/layer.toml: offer is \"mono\"; give only, first or last",
+                "/c/yoro/layer.toml: guard_band is \"true\"; give none, pixels such as 40px, or metres such as 1.0",
                 "the environment: YORO_LAYER_DOMINANT is \"middle\"; give left or right",
                 "the environment: YORO_LAYER_TIME is \"0\"; give nanoseconds, more than 0",
             ]
         );
+        // A number needs no quotes.
+        assert_eq!(resolve("guard_band = 2.5", &[]).0.guard_band, GuardBand::Distance(2.5));
         let (settings, errors) = resolve("ofer = 'only'", &[]);
         assert_eq!(settings, Settings::default());
         assert!(errors[0].starts_with("/c/yoro/layer.toml: unknown field `ofer`"), "{errors:?}");

@@ -1,45 +1,47 @@
-//! The application's swapchains: what is in their images, and when these are released.
+//! The application's swapchains: their images, and when these are released.
 //!
-//! An image is read in xrEndFrame, when the application has released it already. The layer keeps the release to itself
-//! until then: as long as the runtime has not heard of it, the image is the application's side's, in Vulkan in the layout of
-//! an attachment.
+//! The layer reads an image in xrEndFrame, when the application has already released it. So it holds the release back until
+//! then: as long as the runtime does not know of it, the image is not the runtime's, and in Vulkan it is in the layout of an attachment.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
 use openxr_sys as sys;
 
+use crate::binding::Binding;
 use crate::dispatch::{Dispatch, XrResult, check};
-use crate::graphics::{Binding, Image};
+use crate::instance::Instance;
 use crate::lock;
-use crate::session::Session;
+use crate::synthesizer::Image;
 
 /// One swapchain.
 pub struct Swapchain {
     pub handle: sys::Swapchain,
-    pub session: Arc<Session>,
-    /// None when its images cannot be read.
+    pub session: sys::Session,
+    instance: Arc<Instance>,
+    /// None if its images cannot be read.
     pub content: Option<Content>,
     state: Mutex<State>,
 }
 
 /// Images that can be read.
 pub struct Content {
+    /// VkImages, or names of textures.
     pub images: Vec<u64>,
     /// As in XrSwapchainCreateInfo.
     pub format: i64,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Layers.
+    /// The number of layers of each image.
     pub array_size: u32,
 }
 
 impl Content {
-    /// Of a swapchain of a session.
+    /// Asks the runtime for the images of a swapchain that was made by `info`.
     ///
     /// # Errors
-    /// What xrEnumerateSwapchainImages returns.
-    pub fn of(
+    /// The result of xrEnumerateSwapchainImages.
+    pub fn new(
         next: &Dispatch,
         binding: &Binding,
         swapchain: sys::Swapchain,
@@ -53,7 +55,7 @@ impl Content {
         })
     }
 
-    /// One of the images, with a layer of its array.
+    /// Returns one layer of one of the images.
     pub fn image(&self, image: u64, layer: u32) -> Image {
         Image { image, format: self.format, size: self.size, layer, layers: self.array_size }
     }
@@ -64,106 +66,113 @@ impl Content {
 struct State {
     /// Acquired by the application, oldest first.
     acquired: VecDeque<u32>,
-    /// The oldest was waited for.
+    /// True if the application has waited for the oldest of them.
     waited: bool,
     /// Released by the application, but not yet by the layer.
     held: Option<u32>,
 }
 
 impl Swapchain {
-    pub fn new(handle: sys::Swapchain, session: Arc<Session>, content: Option<Content>) -> Swapchain {
+    pub fn new(
+        handle: sys::Swapchain,
+        session: sys::Session,
+        instance: Arc<Instance>,
+        content: Option<Content>,
+    ) -> Swapchain {
         let images = content.as_ref().map_or(0, |content| content.images.len());
         let state = State { acquired: VecDeque::with_capacity(images), ..State::default() };
-        Swapchain { handle, session, content, state: Mutex::new(state) }
+        Swapchain { handle, session, instance, content, state: Mutex::new(state) }
     }
 
-    fn next(&self) -> &Dispatch {
-        &self.session.instance.next
+    /// The functions of the next layer or the runtime.
+    pub fn next(&self) -> &Dispatch {
+        &self.instance.next
     }
 
     /// xrAcquireSwapchainImage.
     ///
     /// # Safety
-    /// As the specification says.
+    /// The arguments are those of the application's call.
     pub unsafe fn acquire(
         &self,
         info: *const sys::SwapchainImageAcquireInfo,
         index: *mut u32,
-    ) -> sys::Result {
+    ) -> XrResult<sys::Result> {
         let mut state = lock(&self.state);
-        if let Err(error) = self.give_up(&mut state) {
-            return error;
-        }
-        // SAFETY: promised by the caller.
-        let result = unsafe { (self.next().acquire_swapchain_image)(self.handle, info, index) };
-        if check(result).is_ok() {
-            // SAFETY: the call has succeeded.
-            state.acquired.push_back(unsafe { *index });
-        }
-        result
+        self.pass_on(&mut state)?;
+        // SAFETY: the application's own arguments.
+        let result = check(unsafe { (self.next().acquire_swapchain_image)(self.handle, info, index) })?;
+        // SAFETY: the runtime has written the index.
+        state.acquired.push_back(unsafe { *index });
+        Ok(result)
     }
 
-    /// xrWaitSwapchainImage.
+    /// xrWaitSwapchainImage. Waiting may take long and locks nothing: an application waits from one thread at a time.
     ///
     /// # Safety
-    /// As the specification says.
-    pub unsafe fn wait(&self, info: *const sys::SwapchainImageWaitInfo) -> sys::Result {
-        // Waiting may take long, and locks nothing: the specification lets the application wait from one thread at a time.
-        if let Err(error) = self.pass_on_release() {
-            return error;
-        }
-        // SAFETY: promised by the caller.
+    /// The arguments are those of the application's call.
+    pub unsafe fn wait(&self, info: *const sys::SwapchainImageWaitInfo) -> XrResult<sys::Result> {
+        self.pass_on_release()?;
+        // SAFETY: the application's own arguments.
         let result = unsafe { (self.next().wait_swapchain_image)(self.handle, info) };
         if result == sys::Result::SUCCESS {
             lock(&self.state).waited = true;
         }
-        result
+        Ok(result)
     }
 
-    /// xrReleaseSwapchainImage: kept back until the end of the frame where images are read.
+    /// xrReleaseSwapchainImage. Where images are read at the end of the frame, the release is held back until then.
     ///
     /// # Safety
-    /// As the specification says.
-    pub unsafe fn release(&self, info: *const sys::SwapchainImageReleaseInfo) -> sys::Result {
+    /// The arguments are those of the application's call.
+    pub unsafe fn release(
+        &self,
+        info: *const sys::SwapchainImageReleaseInfo,
+        reads_images: bool,
+    ) -> XrResult<sys::Result> {
         let mut state = lock(&self.state);
-        if state.waited && self.content.is_some() && self.session.reads_images() {
+        if state.waited && self.content.is_some() && reads_images {
             state.waited = false;
             state.held = state.acquired.pop_front();
-            return sys::Result::SUCCESS;
+            return Ok(sys::Result::SUCCESS);
         }
-        // SAFETY: promised by the caller.
-        let result = unsafe { (self.next().release_swapchain_image)(self.handle, info) };
-        if check(result).is_ok() {
-            state.waited = false;
-            state.acquired.pop_front();
-        }
-        result
+        // SAFETY: the application's own arguments.
+        let result = check(unsafe { (self.next().release_swapchain_image)(self.handle, info) })?;
+        state.waited = false;
+        state.acquired.pop_front();
+        Ok(result)
     }
 
-    /// The image that the application has released last and the runtime has not got yet, if it is one that can be read.
+    /// Returns the image whose release is held back, if it can be read.
     pub fn held(&self) -> Option<(&Content, u64)> {
         let index = lock(&self.state).held?;
         let content = self.content.as_ref()?;
         Some((content, *content.images.get(index as usize)?))
     }
 
-    /// Passes on a release that was kept back.
+    /// Passes on a release that is held back.
     ///
     /// # Errors
-    /// What the runtime returns: the application has not heard of it yet.
+    /// The result of xrReleaseSwapchainImage, which the application does not know yet.
     pub fn pass_on_release(&self) -> XrResult<()> {
-        self.give_up(&mut lock(&self.state))
+        self.pass_on(&mut lock(&self.state))
     }
 
-    fn give_up(&self, state: &mut State) -> XrResult<()> {
+    fn pass_on(&self, state: &mut State) -> XrResult<()> {
         if state.held.take().is_some() {
             let info = sys::SwapchainImageReleaseInfo {
                 ty: sys::SwapchainImageReleaseInfo::TYPE,
                 next: std::ptr::null(),
             };
-            // SAFETY: a live swapchain, with an image that was waited for.
+            // SAFETY: the swapchain is live, and the application has waited for this image.
             check(unsafe { (self.next().release_swapchain_image)(self.handle, &info) })?;
         }
         Ok(())
+    }
+
+    /// Forgets a release that is held back: the swapchain is about to be destroyed, and a frame that ends at the same time
+    /// must not use it any more.
+    pub fn retire(&self) {
+        lock(&self.state).held = None;
     }
 }

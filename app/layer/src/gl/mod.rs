@@ -1,6 +1,9 @@
 //! Synthesis in the application's context of OpenGL or OpenGL ES, which is as it was afterwards.
 
 mod binding;
+#[cfg(feature = "capture")]
+mod read_back;
+mod timer;
 
 use std::mem::ManuallyDrop;
 use std::num::NonZeroU32;
@@ -14,14 +17,9 @@ use yoro::synthesis::{self, GlState, Outputs, Source, Synthesis, SynthesisOption
 pub use binding::{Binding, Current};
 
 use crate::geometry::Rectangle;
-use crate::graphics::{self, Image, Job};
 use crate::reason::Reason;
-
-/// Frames whose times may be pending at the same time.
-const TIMED_FRAMES: usize = 4;
-/// Both in OpenGL and, with GL_EXT_disjoint_timer_query, in OpenGL ES.
-const QUERY_COUNTER_BITS: u32 = 0x8864;
-const GPU_DISJOINT: u32 = 0x8FBB;
+use crate::synthesizer::{self, Image, Job};
+use timer::Timer;
 
 /// The pipeline in the application's context.
 pub struct Synthesizer {
@@ -48,16 +46,9 @@ struct Copy {
     size: [u32; 2],
 }
 
-/// Time stamps before and after the synthesis of each frame. Unlike queries of elapsed time they do not disturb those of
-/// the application.
-struct Timer {
-    queries: [[glow::Query; 2]; TIMED_FRAMES],
-    /// The frame that is timed next, and how many before it are pending.
-    next: usize,
-    pending: usize,
-    /// Whether the clock can be disturbed, and says so.
-    disjoint: bool,
-}
+// SAFETY: objects of a context are used only while it is current, on one thread at a time, and so are the reference counts
+// beside them: `Frames` is locked meanwhile.
+unsafe impl Send for Synthesizer {}
 
 impl Synthesizer {
     /// # Safety
@@ -88,7 +79,7 @@ impl Drop for Synthesizer {
     }
 }
 
-impl graphics::Synthesizer for Synthesizer {
+impl synthesizer::Synthesizer for Synthesizer {
     unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
         // SAFETY: promised by the caller.
         unsafe {
@@ -116,21 +107,10 @@ impl graphics::Synthesizer for Synthesizer {
         });
     }
 
+    #[cfg(feature = "capture")]
     unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
-        // OpenGL ES reads others in their own type.
-        let bytes = [glow::RGBA8, glow::SRGB8_ALPHA8].map(i64::from).contains(&image.format);
-        if !bytes && self.objects.context.capabilities().api == GlApi::Es {
-            return Err(format!("0x{:x} is no format of four bytes", image.format));
-        }
-        // SAFETY: promised by the caller.
-        let rows = unsafe {
-            let _current = self.binding.make_current().map_err(|reason| reason.to_string())?;
-            self.objects.read(image, part).map_err(|reason| reason.to_string())?
-        };
-        let rows = rows.chunks_exact(part.size[0] as usize * 4).rev();
-        Ok(rows
-            .flat_map(|row| row.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]))
-            .collect())
+        // SAFETY: the caller's obligation is the same.
+        unsafe { self.read_rgb(image, part) }
     }
 }
 
@@ -267,29 +247,6 @@ impl Objects {
         }
     }
 
-    /// Four bytes a pixel, rows from the bottom.
-    unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
-        // SAFETY: promised by the caller.
-        let framebuffer = unsafe { self.framebuffer([Some(image), None])? };
-        let gl = self.context.raw();
-        let before = bound_framebuffers(gl);
-        // SAFETY: queries of state that there is, and its own values again.
-        unsafe {
-            let buffer = gl.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING);
-            let stores =
-                [glow::PACK_ALIGNMENT, glow::PACK_ROW_LENGTH, glow::PACK_SKIP_ROWS, glow::PACK_SKIP_PIXELS];
-            let values = stores.map(|name| gl.get_parameter_i32(name));
-            let from = Destination { framebuffer: Some(framebuffer), origin: part.origin, size: part.size };
-            let bytes = self.context.read_rgba8(&from);
-            for (name, value) in stores.into_iter().zip(values) {
-                gl.pixel_store_i32(name, value);
-            }
-            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, buffer);
-            bind_framebuffers(gl, before);
-            Ok(bytes)
-        }
-    }
-
     /// Before it is dropped: what does not delete itself.
     fn delete(&mut self) {
         let gl = self.context.raw();
@@ -302,7 +259,7 @@ impl Objects {
                 gl.delete_texture(copy.texture);
             }
             if let Some(timer) = self.timer.take() {
-                timer.queries.into_iter().flatten().for_each(|query| gl.delete_query(query));
+                timer.delete(gl);
             }
         }
     }
@@ -329,80 +286,6 @@ impl Drop for Silence<'_> {
         if let Some(context) = self.0 {
             // SAFETY: as above; it was enabled before.
             unsafe { context.raw().enable(glow::DEBUG_OUTPUT) };
-        }
-    }
-}
-
-/// The query that ends what is timed.
-struct Timing(glow::Query);
-
-impl Timing {
-    fn end(self, context: &Context) {
-        // SAFETY: a query of this context.
-        unsafe { context.raw().query_counter(self.0, glow::TIMESTAMP) }
-    }
-}
-
-impl Timer {
-    /// None where the driver has no time stamps.
-    ///
-    /// # Safety
-    /// The context is current, and the binding's.
-    unsafe fn new(binding: &Binding, context: &Context) -> Option<Timer> {
-        type GetQuery = unsafe extern "system" fn(u32, u32, *mut i32);
-        if !context.capabilities().timer_queries {
-            return None;
-        }
-        let get_query = binding.load(c"glGetQueryiv");
-        // SAFETY: a function of this name has this type; one integer is written.
-        unsafe {
-            let get_query = std::mem::transmute::<*const std::ffi::c_void, Option<GetQuery>>(get_query)?;
-            let mut bits = 0;
-            get_query(glow::TIMESTAMP, QUERY_COUNTER_BITS, &mut bits);
-            if bits == 0 {
-                return None;
-            }
-            let mut queries = Vec::with_capacity(2 * TIMED_FRAMES);
-            for _ in 0..2 * TIMED_FRAMES {
-                queries.push(context.raw().create_query().ok()?);
-            }
-            let queries = std::array::from_fn(|i| [queries[2 * i], queries[2 * i + 1]]);
-            let disjoint = context.capabilities().api == GlApi::Es;
-            Some(Timer { queries, next: 0, pending: 0, disjoint })
-        }
-    }
-
-    /// None while as many frames are pending as can be.
-    fn begin(&mut self, context: &Context) -> Option<Timing> {
-        if self.pending == TIMED_FRAMES {
-            return None;
-        }
-        let [first, last] = self.queries[self.next % TIMED_FRAMES];
-        self.next += 1;
-        self.pending += 1;
-        // SAFETY: a query of this context, whose last result was read.
-        unsafe { context.raw().query_counter(first, glow::TIMESTAMP) };
-        Some(Timing(last))
-    }
-
-    /// That of the oldest frame that is pending, if it is known. Does not wait.
-    fn time(&mut self, context: &Context) -> Option<Duration> {
-        if self.pending == 0 {
-            return None;
-        }
-        let [first, last] = self.queries[(self.next - self.pending) % TIMED_FRAMES];
-        let gl = context.raw();
-        // SAFETY: queries of this context that have ended; the parameter is there where `disjoint` is set.
-        unsafe {
-            if gl.get_query_parameter_u32(last, glow::QUERY_RESULT_AVAILABLE) == 0 {
-                return None;
-            }
-            self.pending -= 1;
-            let disturbed = self.disjoint && gl.get_parameter_bool(GPU_DISJOINT);
-            let [first, last] =
-                [first, last].map(|query| gl.get_query_parameter_u64(query, glow::QUERY_RESULT));
-            let time = last.checked_sub(first)?;
-            (!disturbed).then_some(Duration::from_nanos(time))
         }
     }
 }

@@ -1,0 +1,78 @@
+//! Swapchains and their images. Each function is called as the specification says of the one of OpenXR.
+
+use std::sync::Arc;
+
+use openxr_sys as sys;
+
+use crate::dispatch::{XrResult, check};
+use crate::lock;
+use crate::objects::{self, LiveSession};
+use crate::swapchain::{Content, Swapchain};
+
+/// Creates a swapchain whose images the layer can read. If the runtime refuses that, it is created as the application wants it.
+pub unsafe fn create(
+    live: &LiveSession,
+    info: *const sys::SwapchainCreateInfo,
+    created: *mut sys::Swapchain,
+) -> XrResult<sys::Result> {
+    let session = &live.session;
+    let next = &session.instance.next;
+    // SAFETY: the application's arguments.
+    unsafe {
+        let asked = *info;
+        let attached =
+            sys::SwapchainUsageFlags::COLOR_ATTACHMENT | sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        let readable = asked.usage_flags.intersects(attached)
+            && (asked.sample_count, asked.face_count) == (1, 1)
+            && !asked.create_flags.contains(sys::SwapchainCreateFlags::PROTECTED_CONTENT);
+        let mut result = sys::Result::ERROR_FEATURE_UNSUPPORTED;
+        let mut content = None;
+        if let Some(binding) = session.binding.filter(|_| readable) {
+            let usage_flags = asked.usage_flags | session.instance.settings.usage_to_read();
+            let more = sys::SwapchainCreateInfo { usage_flags, ..asked };
+            result = (next.create_swapchain)(session.handle, &more, created);
+            if check(result).is_ok() {
+                content = Content::new(next, &binding, *created, &asked).ok();
+            }
+        }
+        if check(result).is_err() {
+            result = check((next.create_swapchain)(session.handle, info, created))?;
+        }
+        let instance = Arc::clone(&session.instance);
+        objects::add_swapchain(Swapchain::new(*created, session.handle, instance, content));
+        Ok(result)
+    }
+}
+
+pub unsafe fn destroy(swapchain: &Swapchain) -> XrResult<sys::Result> {
+    objects::remove_swapchain(swapchain.handle);
+    swapchain.retire();
+    if let (Some(content), Some(live)) = (&swapchain.content, objects::session(swapchain.session)) {
+        lock(&live.frames).forget(content);
+    }
+    // SAFETY: the application's own call.
+    Ok(unsafe { (swapchain.next().destroy_swapchain)(swapchain.handle) })
+}
+
+pub unsafe fn acquire(
+    swapchain: &Swapchain,
+    info: *const sys::SwapchainImageAcquireInfo,
+    index: *mut u32,
+) -> XrResult<sys::Result> {
+    // SAFETY: the application's arguments.
+    unsafe { swapchain.acquire(info, index) }
+}
+
+pub unsafe fn wait(swapchain: &Swapchain, info: *const sys::SwapchainImageWaitInfo) -> XrResult<sys::Result> {
+    // SAFETY: the application's arguments.
+    unsafe { swapchain.wait(info) }
+}
+
+pub unsafe fn release(
+    swapchain: &Swapchain,
+    info: *const sys::SwapchainImageReleaseInfo,
+) -> XrResult<sys::Result> {
+    let reads = objects::session(swapchain.session).is_some_and(|live| live.session.reads_images());
+    // SAFETY: the application's arguments.
+    unsafe { swapchain.release(info, reads) }
+}

@@ -1,0 +1,184 @@
+//! View configurations and views. Each function is called as the specification says of the one of OpenXR.
+
+use openxr_sys as sys;
+use sys::ViewConfigurationType as ViewsOf;
+
+use crate::dispatch::{XrResult, check};
+use crate::geometry::{xr_fov, xr_pose};
+use crate::instance::Instance;
+use crate::objects::LiveSession;
+
+/// Answers a call for an array: its length, or, if there is room, its elements.
+///
+/// # Safety
+/// `count` can be written, and `place` has room for `capacity` elements.
+unsafe fn answer<T: Copy>(
+    list: &[T],
+    capacity: u32,
+    count: *mut u32,
+    place: *mut T,
+) -> XrResult<sys::Result> {
+    // SAFETY: the application's arguments, with as much room as it says.
+    unsafe {
+        *count.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)? = list.len() as u32;
+        match capacity {
+            0 => {}
+            capacity if (capacity as usize) < list.len() => {
+                return Err(sys::Result::ERROR_SIZE_INSUFFICIENT);
+            }
+            _ if place.is_null() => return Err(sys::Result::ERROR_VALIDATION_FAILURE),
+            _ => std::ptr::copy_nonoverlapping(list.as_ptr(), place, list.len()),
+        }
+    }
+    Ok(sys::Result::SUCCESS)
+}
+
+pub unsafe fn enumerate_configurations(
+    instance: &Instance,
+    system: sys::SystemId,
+    capacity: u32,
+    count: *mut u32,
+    types: *mut ViewsOf,
+) -> XrResult<sys::Result> {
+    let list = instance.configurations(system)?;
+    // SAFETY: the application's arguments.
+    unsafe { answer(&list, capacity, count, types) }
+}
+
+pub unsafe fn configuration_properties(
+    instance: &Instance,
+    system: sys::SystemId,
+    kind: ViewsOf,
+    properties: *mut sys::ViewConfigurationProperties,
+) -> XrResult<sys::Result> {
+    let next = instance.next.get_view_configuration_properties;
+    // SAFETY: the application's arguments.
+    unsafe {
+        let result = check(next(instance.handle, system, instance.runtimes(system, kind), properties))?;
+        (*properties).view_configuration_type = kind;
+        Ok(result)
+    }
+}
+
+pub unsafe fn enumerate_views(
+    instance: &Instance,
+    system: sys::SystemId,
+    kind: ViewsOf,
+    capacity: u32,
+    count: *mut u32,
+    views: *mut sys::ViewConfigurationView,
+) -> XrResult<sys::Result> {
+    // SAFETY: the application's arguments.
+    unsafe {
+        let own = match kind {
+            ViewsOf::PRIMARY_MONO if instance.offers(system) => vec![instance.view(system)?],
+            ViewsOf::PRIMARY_STEREO if instance.settings.shrink && instance.offers(system) => {
+                instance.shrunk_views(system)?.to_vec()
+            }
+            _ => {
+                let next = instance.next.enumerate_view_configuration_views;
+                return Ok(next(instance.handle, system, kind, capacity, count, views));
+            }
+        };
+        if views.is_null() || (capacity as usize) < own.len() {
+            return answer(&own, capacity, count, views);
+        }
+        *count.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)? = own.len() as u32;
+        for (i, view) in own.iter().enumerate() {
+            // Type and chain are the application's.
+            let place = &mut *views.add(i);
+            *place = sys::ViewConfigurationView { ty: place.ty, next: place.next, ..*view };
+        }
+        Ok(sys::Result::SUCCESS)
+    }
+}
+
+pub unsafe fn enumerate_blend_modes(
+    instance: &Instance,
+    system: sys::SystemId,
+    kind: ViewsOf,
+    capacity: u32,
+    count: *mut u32,
+    modes: *mut sys::EnvironmentBlendMode,
+) -> XrResult<sys::Result> {
+    let next = instance.next.enumerate_environment_blend_modes;
+    let kind = instance.runtimes(system, kind);
+    // SAFETY: the application's arguments.
+    Ok(unsafe { next(instance.handle, system, kind, capacity, count, modes) })
+}
+
+pub unsafe fn visibility_mask(
+    live: &LiveSession,
+    kind: ViewsOf,
+    view: u32,
+    mask_kind: sys::VisibilityMaskTypeKHR,
+    mask: *mut sys::VisibilityMaskKHR,
+) -> XrResult<sys::Result> {
+    let session = &live.session;
+    let next = session.instance.next.get_visibility_mask;
+    let dominant = session.instance.settings.dominant.index() as u32;
+    // SAFETY: the application's arguments.
+    unsafe {
+        match kind {
+            ViewsOf::PRIMARY_MONO if view != 0 => return Err(sys::Result::ERROR_VALIDATION_FAILURE),
+            ViewsOf::PRIMARY_MONO => {}
+            ViewsOf::PRIMARY_STEREO if session.shrinks() && view == dominant => {}
+            _ => return Ok(next(session.handle, kind, view, mask_kind, mask)),
+        }
+        // One eye may see what is hidden from the other: nothing is hidden in the one view.
+        (*mask).vertex_count_output = 0;
+        (*mask).index_count_output = 0;
+    }
+    Ok(sys::Result::SUCCESS)
+}
+
+pub unsafe fn locate(
+    live: &LiveSession,
+    info: *const sys::ViewLocateInfo,
+    state: *mut sys::ViewState,
+    capacity: u32,
+    count: *mut u32,
+    views: *mut sys::View,
+) -> XrResult<sys::Result> {
+    let session = &live.session;
+    let settings = &session.instance.settings;
+    // SAFETY: the application's arguments.
+    unsafe {
+        let mut asked = *info;
+        asked.display_time = settings.time(asked.display_time);
+        if asked.view_configuration_type != ViewsOf::PRIMARY_MONO {
+            let next = session.instance.next.locate_views;
+            let result = check(next(session.handle, &asked, state, capacity, count, views))?;
+            if session.views() == 2 && capacity >= 2 && !views.is_null() {
+                // The dominant view sees what both eyes see.
+                let (pose, frustum) = session.offer(&[*views, *views.add(1)]);
+                let own = &mut *views.add(settings.dominant.index());
+                (own.pose, own.fov) = (xr_pose(pose), xr_fov(frustum));
+            }
+            return Ok(result);
+        }
+        let state = state.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)?;
+        let located = session.locate(&asked, state)?;
+        let (pose, frustum) = session.offer(&located);
+        let next = views.as_ref().filter(|_| capacity > 0).map_or(std::ptr::null_mut(), |view| view.next);
+        let view = sys::View { ty: sys::View::TYPE, next, pose: xr_pose(pose), fov: xr_fov(frustum) };
+        answer(&[view], capacity, count, views)
+    }
+}
+
+/// xrLocateSpace at the time that the settings for tests name.
+#[cfg(feature = "capture")]
+pub unsafe extern "system" fn locate_space(
+    space: sys::Space,
+    base: sys::Space,
+    time: sys::Time,
+    location: *mut sys::SpaceLocation,
+) -> sys::Result {
+    super::without_panic(|| {
+        // The layer does not keep spaces; a test has one instance.
+        let instance = crate::objects::any_instance().ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
+        let time = instance.settings.time(time);
+        // SAFETY: the application's own arguments.
+        Ok(unsafe { (instance.next.locate_space)(space, base, time, location) })
+    })
+}

@@ -1,0 +1,107 @@
+//! The GPU time of the synthesis.
+
+use std::time::Duration;
+
+use glow::HasContext as _;
+use yoro::gl::{Context, GlApi};
+
+use super::Binding;
+
+/// Frames whose times may be pending at the same time.
+const TIMED_FRAMES: usize = 4;
+/// Both in OpenGL and, with GL_EXT_disjoint_timer_query, in OpenGL ES.
+const QUERY_COUNTER_BITS: u32 = 0x8864;
+const GPU_DISJOINT: u32 = 0x8FBB;
+
+/// Time stamps before and after the synthesis of each frame. Unlike queries of elapsed time they do not disturb those of
+/// the application.
+pub struct Timer {
+    queries: [[glow::Query; 2]; TIMED_FRAMES],
+    /// The frame that is timed next, and how many before it are pending.
+    next: usize,
+    pending: usize,
+    /// Whether the clock can be disturbed, and says so.
+    disjoint: bool,
+}
+
+/// The query that ends what is timed.
+pub struct Timing(glow::Query);
+
+impl Timing {
+    pub fn end(self, context: &Context) {
+        // SAFETY: a query of this context.
+        unsafe { context.raw().query_counter(self.0, glow::TIMESTAMP) }
+    }
+}
+
+impl Timer {
+    /// None where the driver has no time stamps.
+    ///
+    /// # Safety
+    /// The context is current, and the binding's.
+    pub unsafe fn new(binding: &Binding, context: &Context) -> Option<Timer> {
+        type GetQuery = unsafe extern "system" fn(u32, u32, *mut i32);
+        if !context.capabilities().timer_queries {
+            return None;
+        }
+        let get_query = binding.load(c"glGetQueryiv");
+        // SAFETY: a function of this name has this type; one integer is written.
+        unsafe {
+            let get_query = std::mem::transmute::<*const std::ffi::c_void, Option<GetQuery>>(get_query)?;
+            let mut bits = 0;
+            get_query(glow::TIMESTAMP, QUERY_COUNTER_BITS, &mut bits);
+            if bits == 0 {
+                return None;
+            }
+            let mut queries = Vec::with_capacity(2 * TIMED_FRAMES);
+            for _ in 0..2 * TIMED_FRAMES {
+                queries.push(context.raw().create_query().ok()?);
+            }
+            let queries = std::array::from_fn(|i| [queries[2 * i], queries[2 * i + 1]]);
+            let disjoint = context.capabilities().api == GlApi::Es;
+            Some(Timer { queries, next: 0, pending: 0, disjoint })
+        }
+    }
+
+    /// None while as many frames are pending as can be.
+    pub fn begin(&mut self, context: &Context) -> Option<Timing> {
+        if self.pending == TIMED_FRAMES {
+            return None;
+        }
+        let [first, last] = self.queries[self.next % TIMED_FRAMES];
+        self.next += 1;
+        self.pending += 1;
+        // SAFETY: a query of this context, whose last result was read.
+        unsafe { context.raw().query_counter(first, glow::TIMESTAMP) };
+        Some(Timing(last))
+    }
+
+    /// That of the oldest frame that is pending, if it is known. Does not wait.
+    pub fn time(&mut self, context: &Context) -> Option<Duration> {
+        if self.pending == 0 {
+            return None;
+        }
+        let [first, last] = self.queries[(self.next - self.pending) % TIMED_FRAMES];
+        let gl = context.raw();
+        // SAFETY: queries of this context that have ended; the parameter is there where `disjoint` is set.
+        unsafe {
+            if gl.get_query_parameter_u32(last, glow::QUERY_RESULT_AVAILABLE) == 0 {
+                return None;
+            }
+            self.pending -= 1;
+            let disturbed = self.disjoint && gl.get_parameter_bool(GPU_DISJOINT);
+            let [first, last] =
+                [first, last].map(|query| gl.get_query_parameter_u64(query, glow::QUERY_RESULT));
+            let time = last.checked_sub(first)?;
+            (!disturbed).then_some(Duration::from_nanos(time))
+        }
+    }
+    /// Deletes the queries.
+    ///
+    /// # Safety
+    /// The context is current.
+    pub unsafe fn delete(self, gl: &glow::Context) {
+        // SAFETY: queries of this context, which are not used any more.
+        self.queries.into_iter().flatten().for_each(|query| unsafe { gl.delete_query(query) });
+    }
+}

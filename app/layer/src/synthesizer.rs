@@ -1,0 +1,67 @@
+//! The synthesis of one session, whichever graphics interface it uses.
+
+use std::time::Duration;
+
+use yoro::eyes::Warp;
+
+use crate::geometry::Rectangle;
+use crate::reason::Reason;
+
+/// The longest wait for an image of the runtime or for the GPU.
+pub const TIMEOUT: Duration = Duration::from_millis(500);
+
+/// One layer of a swapchain's image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// A VkImage, or the name of a texture.
+    pub image: u64,
+    /// A VkFormat or an internal format of OpenGL, as in XrSwapchainCreateInfo.
+    pub format: i64,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The index in the image's array.
+    pub layer: u32,
+    /// The length of the array. In OpenGL an image of one layer is no array.
+    pub layers: u32,
+}
+
+/// The synthesis of one frame. Rectangles count from the image's row 0: the top in Vulkan, the bottom in OpenGL.
+pub struct Job<'a> {
+    pub color: Image,
+    pub depth: Image,
+    /// The part of both images that is read.
+    pub source: Rectangle,
+    /// How it becomes the other eye.
+    pub warp: &'a Warp,
+    /// The image of the other eye, which begins at its first column and row.
+    pub target: Image,
+    /// The other eye's depth, stored like the source's.
+    pub target_depth: Option<Image>,
+}
+
+/// The synthesis pipeline of a session, with all that it needs.
+pub trait Synthesizer: Send {
+    /// Submits the synthesis of one frame to the GPU, after the application's own work, and does not wait for it. Returns the
+    /// GPU time of an earlier frame, if it has become known.
+    ///
+    /// # Errors
+    /// The reason why nothing was submitted.
+    ///
+    /// # Safety
+    /// The images belong to the session and are not the runtime's at the moment. In Vulkan the source's images are in the
+    /// layouts of attachments; the target's are left in them. No other thread uses the queue or the context.
+    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason>;
+
+    /// Forgets a swapchain's images, which are about to be destroyed.
+    fn forget(&mut self, images: &[u64]);
+
+    /// Reads a rectangle of a colour image as red, green and blue, from the top; waits for it.
+    ///
+    /// # Errors
+    /// The reason why it cannot be read.
+    ///
+    /// # Safety
+    /// As for [`Synthesizer::synthesize`].
+    #[cfg(feature = "capture")]
+    unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String>;
+}
