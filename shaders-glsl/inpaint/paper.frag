@@ -1,5 +1,5 @@
 #version 310 es
-// Algorithm 3, as corrected, on a reprojected image: see synthesis/paper/patch.frag. What the ImBuffer knows there is
+// Algorithm 3, as corrected, on a reprojected image: see stereo/paper/patch.frag. What the ImBuffer knows there is
 // found here by walking to the hole's two ends.
 
 #include "inpaint/holes.glsl"

@@ -8,11 +8,9 @@ use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
 use yoro::gl::{Context, Program, ProgramRecipe, ShaderSource};
-use yoro::synthesis::{
-    self, Edges, Gather, GatherVariant, ImBufferSize, Outputs, PaperOptions, Pipeline, SynthesisOptions,
-};
+use yoro::synthesis::{self, Edges, Gather, GatherVariant, Outputs, SynthesisOptions};
 use yoro_lab::inpaint::{self, PatcherKind, PatcherOptions};
-use yoro_render::stereo::{self, AntiAliasing, Method, StereoOptions};
+use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
 use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::{Scene, ShadingStyle};
 use yoro_shaders::{Assembled, MissingFile};
@@ -50,23 +48,21 @@ const STYLES: [ShadingStyle; 5] = [
 ];
 
 fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
-    let mut options = vec![];
-    for pipeline in Pipeline::ALL {
-        options.push(SynthesisOptions { pipeline, ..Default::default() });
-    }
-    for edges in Edges::ALL {
-        options.push(SynthesisOptions { edges, ..Default::default() });
-    }
-    for (strict, linear_interpolation) in [(false, false), (true, false), (true, true)] {
-        for (divisor, kernel_height) in [(1, 1), (4, 15)] {
-            let imbuffer = ImBufferSize::Divisor(divisor);
-            let paper = PaperOptions { imbuffer, linear_interpolation, kernel_height, strict };
-            options.push(SynthesisOptions { pipeline: Pipeline::Paper, paper, ..Default::default() });
+    let outputs = [(false, false), (false, true), (true, false), (true, true)]
+        .map(|(depth, source_map)| Outputs { depth, source_map, ..Outputs::default() });
+    for outputs in outputs {
+        for edges in Edges::ALL {
+            synthesis::create(gl, &SynthesisOptions { edges, ..SynthesisOptions::default() }, outputs)?;
         }
-    }
-    for options in options {
-        for (depth, source_map) in [(false, false), (false, true), (true, false), (true, true)] {
-            synthesis::create(gl, &options, Outputs { depth, source_map, ..Outputs::default() })?;
+        for (strict, linear_interpolation) in [(false, true), (false, false), (true, false), (true, true)] {
+            for (divisor, kernel_height) in [(1, 1), (4, 15)] {
+                let imbuffer = ImBufferSize::Divisor(divisor);
+                Paper::new(
+                    gl,
+                    outputs,
+                    PaperOptions { imbuffer, linear_interpolation, kernel_height, strict },
+                )?;
+            }
         }
     }
     // This driver would take one of them.

@@ -204,7 +204,7 @@ impl Gl {
             check_current(load)?;
             Context::with_loader(glow::Context::from_loader_function_cstr(load), load)?
         };
-        let options = SynthesisOptions { gl_state, edges, ..SynthesisOptions::default() };
+        let options = SynthesisOptions { edges, gl_state };
         let synthesis = synthesis::create(&context, &options, outputs)?;
         Ok(Gl { context, synthesis, edges, outputs, check: info.check == 1 })
     }

@@ -12,7 +12,8 @@ use yoro::eyes::{DepthConvention, EyePair, EyesError, GuardBand, SynthesisViews,
 use yoro::gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
 };
-use yoro::synthesis::{Offline, SynthesisOptions};
+use yoro::synthesis::Edges;
+use yoro_render::stereo::{Offline, PipelineOptions};
 use yoro_render::{Fxaa, GpuScene, RenderSettings, Renderer, ViewTargets};
 
 /// Why an image group could not be made.
@@ -35,7 +36,7 @@ pub enum GroupError {
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct GroupOptions {
     /// The pipeline that reprojects.
-    pub synthesis: SynthesisOptions,
+    pub synthesis: PipelineOptions,
     /// How much wider the dominant eye is rendered.
     pub guard_band: GuardBand,
     /// FXAA on both rendered images. The reprojected image then moves blended edge pixels with one of their surfaces,
@@ -47,7 +48,7 @@ impl Default for GroupOptions {
     /// Without guard band and anti-aliasing: every pixel is one surface's.
     fn default() -> GroupOptions {
         GroupOptions {
-            synthesis: SynthesisOptions::default(),
+            synthesis: PipelineOptions::default(),
             guard_band: GuardBand::None,
             anti_aliasing: false,
         }
@@ -118,7 +119,7 @@ impl GroupRenderer {
             smooth: target(Format::Rgba8, Filter::Linear)?,
             depth_copy: Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?,
             depth: target(Format::R32F, Filter::Nearest)?,
-            offline: Offline::new(gl, &options.synthesis)?,
+            offline: Offline::new(gl, &options.synthesis, Edges::Hard)?,
             gl: gl.clone(),
         })
     }

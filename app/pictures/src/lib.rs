@@ -4,6 +4,8 @@
 //!
 //! This crate must never know where a picture comes from: a renderer, a headset, a measurement.
 
+mod stored_depth;
+
 use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +13,8 @@ use exr::prelude::{ReadChannels, ReadLayers, Text, WritableImage};
 use image::{DynamicImage, GrayImage, ImageBuffer, ImageFormat, ImageReader, Luma, Rgb, RgbImage};
 
 use yoro_files::{self as files, FileError};
+
+pub use stored_depth::{Nearness, StoredDepth, StoredDepthError};
 
 /// One `f32` a pixel.
 pub type DepthImage = ImageBuffer<Luma<f32>, Vec<f32>>;

@@ -89,6 +89,102 @@ impl Method {
     }
 }
 
+/// Which pipeline synthesizes the other eye.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase", try_from = "String")]
+pub enum Pipeline {
+    /// Fragment shaders that march along the source row.
+    #[default]
+    Gather,
+    /// Algorithms 1 to 3 of the paper.
+    Paper,
+}
+
+impl Pipeline {
+    /// All pipelines, the default first.
+    pub const ALL: [Pipeline; 2] = [Pipeline::Gather, Pipeline::Paper];
+
+    /// Its name in settings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Pipeline::Gather => "gather",
+            Pipeline::Paper => "paper",
+        }
+    }
+}
+
+/// A name that is not the name of a [`Pipeline`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ParsePipelineError {
+    /// A pipeline of earlier versions.
+    #[error(
+        "the pipeline rowgroup was taken out: choose gather, which is closer to the truth on every scene"
+    )]
+    Rowgroup,
+    /// Any other name.
+    #[error("{0:?} is not a pipeline: choose gather or paper")]
+    Unknown(String),
+}
+
+impl FromStr for Pipeline {
+    type Err = ParsePipelineError;
+
+    fn from_str(name: &str) -> Result<Pipeline, ParsePipelineError> {
+        match Pipeline::ALL.into_iter().find(|pipeline| pipeline.name() == name) {
+            Some(pipeline) => Ok(pipeline),
+            None if name == "rowgroup" => Err(ParsePipelineError::Rowgroup),
+            None => Err(ParsePipelineError::Unknown(name.to_owned())),
+        }
+    }
+}
+
+impl TryFrom<String> for Pipeline {
+    type Error = ParsePipelineError;
+
+    fn try_from(name: String) -> Result<Pipeline, ParsePipelineError> {
+        name.parse()
+    }
+}
+
+/// Resolution of the ImBuffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ImBufferSize {
+    /// One ImBuffer pixel per this many image pixels, on both axes: 1, 2, 4, 8 or 16 in the paper.
+    Divisor(u32),
+    /// A fixed size in pixels for the target, whatever the image's size.
+    Fixed([u32; 2]),
+}
+
+/// A text that is no [`ImBufferSize`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("give a divisor from 1 to 64, such as 2, or a size, such as 512x512")]
+pub struct ParseImBufferSizeError;
+
+/// A divisor from 1 to 64 (`2`), or a width and a height from 1 to 8192 (`512x512`).
+impl FromStr for ImBufferSize {
+    type Err = ParseImBufferSizeError;
+
+    fn from_str(text: &str) -> Result<ImBufferSize, ParseImBufferSizeError> {
+        let number = |t: &str| t.parse::<u32>().ok().filter(|n| (1..=8192).contains(n));
+        match text.split_once('x') {
+            Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| ImBufferSize::Fixed([w, h])),
+            None => number(text).filter(|n| *n <= 64).map(ImBufferSize::Divisor),
+        }
+        .ok_or(ParseImBufferSizeError)
+    }
+}
+
+/// As [`FromStr`] reads it.
+impl Display for ImBufferSize {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            ImBufferSize::Divisor(n) => write!(f, "{n}"),
+            ImBufferSize::Fixed([w, h]) => write!(f, "{w}x{h}"),
+        }
+    }
+}
+
 /// When anti-aliasing runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

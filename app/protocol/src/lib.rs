@@ -10,6 +10,7 @@ mod settings;
 pub mod telemetry;
 
 pub use choices::{
-    AntiAliasing, DisplayKind, MAX_POINT_LIGHTS, MSAA, Method, Performance, RendererKind, ScreenSize, Ssao,
+    AntiAliasing, DisplayKind, ImBufferSize, MAX_POINT_LIGHTS, MSAA, Method, ParseImBufferSizeError,
+    ParsePipelineError, Performance, Pipeline, RendererKind, ScreenSize, Ssao,
 };
 pub use settings::{KEYS, Settings, SettingsError};

@@ -10,10 +10,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DisplayKind, MAX_POINT_LIGHTS, MSAA, Method, Performance, RendererKind, ScreenSize, Ssao,
+    AntiAliasing, DisplayKind, ImBufferSize, MAX_POINT_LIGHTS, MSAA, Method, Performance, Pipeline,
+    RendererKind, ScreenSize, Ssao,
 };
 use yoro::eyes::{DEFAULT_IPD, Eye, GuardBand, MAX_IPD};
-use yoro::synthesis::{Edges, ImBufferSize, Pipeline};
+use yoro::synthesis::Edges;
 
 /// Largest settings file in bytes.
 const MAX_FILE: u64 = 1 << 20;

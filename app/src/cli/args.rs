@@ -9,10 +9,10 @@ use clap::builder::RangedU64ValueParser;
 use crate::cli::choices;
 use yoro::eyes::{DEFAULT_IPD, MAX_IPD};
 use yoro::gl::Context;
-use yoro::synthesis::{ImBufferSize, PaperOptions, Pipeline, SynthesisOptions};
 use yoro_context::{Backend, ContextError, Headless};
 use yoro_lab::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
 use yoro_protocol::Settings;
+use yoro_render::stereo::{ImBufferSize, PaperOptions, Pipeline, PipelineOptions};
 use yoro_render::{MSAA, RenderSettings, RendererKind};
 
 /// Where the GL context comes from.
@@ -96,8 +96,8 @@ pub struct SynthesisArgs {
 
 impl SynthesisArgs {
     /// As the library takes them.
-    pub fn options(&self) -> SynthesisOptions {
-        SynthesisOptions {
+    pub fn options(&self) -> PipelineOptions {
+        PipelineOptions {
             pipeline: self.pipeline,
             paper: PaperOptions {
                 imbuffer: self.imbuffer,
@@ -105,7 +105,6 @@ impl SynthesisArgs {
                 kernel_height: self.kernel_height,
                 strict: self.strict,
             },
-            ..SynthesisOptions::default()
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Values that go by a name on the command line, with a line of help for each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use yoro::synthesis::{Edges, Pipeline};
+use yoro::synthesis::Edges;
 use yoro_context::Backend;
 use yoro_lab::bench::Suite;
 use yoro_lab::inpaint::PatcherKind;
 use yoro_render::RendererKind;
-use yoro_render::stereo::{AntiAliasing, Method};
+use yoro_render::stereo::{AntiAliasing, Method, Pipeline};
 use yoro_scene::ShadingStyle;
 
 /// A parser of the values given, by their names.

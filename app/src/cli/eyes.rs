@@ -11,8 +11,8 @@ use yoro::eyes::{
     DEFAULT_IPD, DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose,
     full_overlap_distance, minimum_object_distance,
 };
-use yoro::synthesis::{Edges, NearFieldPolicy, Pipeline};
-use yoro_render::stereo::{AntiAliasing, StereoOptions};
+use yoro::synthesis::Edges;
+use yoro_render::stereo::{AntiAliasing, NearFieldPolicy, Pipeline, StereoOptions};
 use yoro_scene::Viewpoint;
 
 /// The eyes and what they see of the world.

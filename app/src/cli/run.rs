@@ -12,14 +12,13 @@ use crate::cli::outputs;
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::Eye;
 use yoro::gl::Context;
-use yoro::synthesis::Pipeline;
 use yoro_files as files;
 use yoro_lab::machine::Parameter;
 use yoro_lab::picture;
 use yoro_lab::report::RunReport;
 use yoro_lab::run::{Candidate, Plan};
 use yoro_render::RenderSettings;
-use yoro_render::stereo::Method;
+use yoro_render::stereo::{Method, Pipeline};
 use yoro_scenes::{self, BUILTINS};
 
 /// Pictures of the report and of the output folder come from this many viewpoints of each scene.

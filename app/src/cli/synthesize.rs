@@ -12,14 +12,12 @@ use crate::cli::choices;
 use crate::cli::outputs;
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DEFAULT_IPD, DepthConvention, DepthRange, Eye, Warp};
-use yoro::synthesis::{
-    Edges, Nearness, Offline, SourceMapEntry, StoredDepth, StoredDepthError, SynthesisOptions,
-    SynthesizedImage,
-};
+use yoro::synthesis::{Edges, SourceMapEntry};
 use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_lab::inpaint::{Patcher, Reprojected};
-use yoro_lab::picture::{self, DepthImage, DepthSamples, rgb_image};
+use yoro_lab::picture::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
+use yoro_render::stereo::{Offline, SynthesizedImage};
 
 /// What the values of a depth image mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -167,8 +165,7 @@ pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
     let inputs = jobs.iter().flat_map(|job| [job.color.as_path(), job.depth.as_path()]);
     outputs::check(inputs, jobs.iter().flat_map(|job| job.outputs(args.dominant)))?;
     let headless = args.gl.open()?;
-    let options = SynthesisOptions { edges: args.edges, ..args.synthesis.options() };
-    let mut offline = Offline::new(headless.gl(), &options)?;
+    let mut offline = Offline::new(headless.gl(), &args.synthesis.options(), args.edges)?;
     let mut patcher = args.patcher.create(headless.gl())?;
     let bar = progress_bar(jobs.len() as u64);
     let mut written = Vec::new();

@@ -7,10 +7,11 @@ use crate::error::ViewerError;
 use crate::scene_slot::Shown;
 use yoro::eyes::{EyePair, EyesError, GuardBand};
 use yoro::gl::{Context, GlError};
-use yoro::synthesis::{ImBufferSize, Pipeline};
 use yoro_protocol::Settings;
 use yoro_render::RenderSettings;
-use yoro_render::stereo::{self, EyeTarget, GuardBandUse, Method, StereoMethod, StereoOptions};
+use yoro_render::stereo::{
+    self, EyeTarget, GuardBandUse, ImBufferSize, Method, Pipeline, StereoMethod, StereoOptions,
+};
 
 /// The place of the one method.
 pub(crate) struct MethodSlot {

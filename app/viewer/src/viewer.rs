@@ -32,11 +32,10 @@ use crate::scene_slot::{SceneSlot, Shown};
 use crate::tally::Tally;
 use yoro::eyes::{EyePair, MAX_IPD, Pose};
 use yoro::gl::{Context, Destination, GlError, PassTime, Profiling};
-use yoro::synthesis::Pipeline;
 use yoro_lenses::{Content, Hud, Panel, Placement};
 use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
-use yoro_render::stereo::{EyeTarget, Method, StereoOptions};
+use yoro_render::stereo::{EyeTarget, Method, Pipeline, StereoOptions};
 use yoro_render::{RenderSettings, Renderer};
 use yoro_scene::Scene;
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde::Deserialize;
 use yoro::eyes::{DepthConvention, DepthRange, Eye};
-use yoro::synthesis::{Edges, Nearness, StoredDepth, StoredDepthError};
-use yoro_pictures::{DepthSamples, load_color, load_depth};
+use yoro::synthesis::Edges;
+use yoro_pictures::{DepthSamples, Nearness, StoredDepth, StoredDepthError, load_color, load_depth};
 
 /// What the values of the depth picture mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]

@@ -5,9 +5,8 @@ use std::rc::Rc;
 use image::{Rgb, RgbImage};
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro::gl::Context;
-use yoro::synthesis::Pipeline;
 use yoro_context::Headless;
-use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
+use yoro_render::stereo::{self, Method, Pipeline, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_tests::{backends, golden};
 

@@ -39,7 +39,6 @@ pub(super) struct Host {
     /// Whether drawing encodes for sRGB framebuffers can be switched.
     encoding: bool,
     polygon_mode: bool,
-    images: bool,
     nearest: glow::Sampler,
     linear: glow::Sampler,
 }
@@ -115,7 +114,6 @@ impl Host {
             queries: queries.filter(|_| indexed),
             encoding,
             polygon_mode: desktop,
-            images: capabilities.compute,
             nearest: sampler(glow::NEAREST)?,
             linear: sampler(glow::LINEAR)?,
         })
@@ -153,17 +151,6 @@ pub(crate) struct HostState {
     /// Where there are such textures.
     multisample_textures: [Option<glow::Texture>; MULTISAMPLE_UNITS.len()],
     samplers: [Option<glow::Sampler>; UNITS],
-    image: Option<ImageUnit>,
-}
-
-/// What is bound to image unit 0.
-struct ImageUnit {
-    texture: Option<glow::Texture>,
-    level: i32,
-    layered: bool,
-    layer: i32,
-    access: u32,
-    format: u32,
 }
 
 impl Context {
@@ -171,7 +158,7 @@ impl Context {
     /// [`crate::synthesis::Synthesis`] but program, vertex array, framebuffer, viewport, textures and images.
     /// `draw_buffers` is the number of colour attachments that the target has, 1 or 2; with `encode` what is written to
     /// sRGB framebuffers is encoded.
-    pub(crate) fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
+    pub fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
         let (gl, host) = (self.raw(), &self.host);
         // SAFETY: state calls with enums that `Host::new` found to be valid.
         unsafe {
@@ -203,19 +190,19 @@ impl Context {
 
     /// Makes texture unit 0 the active one: new buffers are bound to the active unit, which must not be one that is the
     /// host's alone.
-    pub(crate) fn set_first_unit(&self) {
+    pub fn set_first_unit(&self) {
         // SAFETY: the unit exists.
         unsafe { self.raw().active_texture(glow::TEXTURE0) }
     }
 
     /// Whether the next draws of a pipeline write depth, untested.
-    pub(crate) fn set_depth_write(&self, on: bool) {
+    pub fn set_depth_write(&self, on: bool) {
         // SAFETY: a valid enum.
         unsafe { if on { self.raw().enable(glow::DEPTH_TEST) } else { self.raw().disable(glow::DEPTH_TEST) } }
     }
 
     /// Takes the samplers off again, which would override the filters of whatever is bound next.
-    pub(crate) fn end_synthesis(&self) {
+    pub fn end_synthesis(&self) {
         for unit in 0..UNITS as u32 {
             // SAFETY: the unit exists.
             unsafe { self.raw().bind_sampler(unit, None) }
@@ -248,7 +235,6 @@ impl Context {
                 textures: [None; UNITS],
                 multisample_textures: [None; MULTISAMPLE_UNITS.len()],
                 samplers: [None; UNITS],
-                image: None,
             };
             if let Some(queries) = &host.queries {
                 for i in 1..state.draw_buffers {
@@ -279,17 +265,6 @@ impl Context {
                 }
             }
             gl.active_texture(state.active_unit);
-            state.image = host.images.then(|| {
-                let of_unit = |name| gl.get_parameter_indexed_i32(name, 0);
-                ImageUnit {
-                    texture: texture(of_unit(glow::IMAGE_BINDING_NAME)),
-                    level: of_unit(glow::IMAGE_BINDING_LEVEL),
-                    layered: of_unit(glow::IMAGE_BINDING_LAYERED) != 0,
-                    layer: of_unit(glow::IMAGE_BINDING_LAYER),
-                    access: of_unit(glow::IMAGE_BINDING_ACCESS) as u32,
-                    format: of_unit(glow::IMAGE_BINDING_FORMAT) as u32,
-                }
-            });
             state
         }
     }
@@ -340,10 +315,6 @@ impl Context {
                 }
             }
             gl.active_texture(state.active_unit);
-            if let Some(image) = &state.image {
-                let ImageUnit { texture, level, layered, layer, access, format } = *image;
-                gl.bind_image_texture(0, texture, level, layered, layer, access, format);
-            }
             gl.use_program(state.program);
             gl.bind_vertex_array(state.vertex_array);
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, state.draw_framebuffer);
@@ -378,16 +349,4 @@ impl Context {
             }
         }
     }
-}
-
-/// The texture of a GL name, none for 0.
-#[cfg(not(target_arch = "wasm32"))]
-fn texture(name: i32) -> Option<glow::Texture> {
-    std::num::NonZeroU32::new(name as u32).map(glow::NativeTexture)
-}
-
-/// WebGL has objects instead of names, and no image units.
-#[cfg(target_arch = "wasm32")]
-fn texture(_: i32) -> Option<glow::Texture> {
-    None
 }

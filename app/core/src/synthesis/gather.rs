@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::{Outputs, Source, Synthesis, Uniforms, draw_target, output_defines, set_source, tiles};
+use super::{Outputs, Source, Synthesis, Uniforms, draw_target, set_source, tiles};
 use crate::eyes::Warp;
 use crate::gl::{
     Capabilities, Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource,
@@ -91,7 +91,7 @@ impl Gather {
 
     fn with_defines(gl: &Rc<Context>, outputs: Outputs, variant: &[&'static str]) -> Result<Gather, GlError> {
         let variant: Vec<_> = variant.iter().map(|&name| (name, String::new())).collect();
-        let march: Vec<_> = output_defines(outputs).into_iter().chain(variant.clone()).collect();
+        let march: Vec<_> = outputs.defines().into_iter().chain(variant.clone()).collect();
         let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
         let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);
         Ok(Gather {

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::IVec4;
 use glow::HasContext as _;
 
-use super::{Edges, Outputs, Source, Synthesis, Uniforms, draw_target, output_defines, tiles};
+use super::{Edges, Outputs, Source, Synthesis, Uniforms, draw_target, tiles};
 use crate::eyes::Warp;
 use crate::gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
 
@@ -69,7 +69,7 @@ impl Layers {
         let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
         let edge_defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
         let of_samples = [edge_defines.clone(), vec![("SAMPLE_COLORS", String::new())]].concat();
-        let march = [edge_defines.clone(), output_defines(outputs)].concat();
+        let march = [edge_defines.clone(), outputs.defines()].concat();
         let split = "synthesis/layers/split.frag";
         let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);
         // Backs are stored as the source's colour is: unmixing is right in the space of the resolve.

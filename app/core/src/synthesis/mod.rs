@@ -7,19 +7,13 @@
 //! |---|---|---|
 //! | [`Gather`] | tile bounds, tile spans, march: fragment shaders | ES 3.0 |
 //! | [`Layers`] | [`Gather`] of anti-aliased sources: split, tile bounds, tile spans, march: fragment shaders | ES 3.0, multisample depth ES 3.1 |
-//! | [`Paper`] | Algorithms 1 to 3: fragment, compute per row, fragment | ES 3.1 |
 
 mod gather;
 mod layers;
-mod near_field;
-mod offline;
-mod paper;
 mod preserve;
-mod stored_depth;
 mod uniforms;
 
 use std::rc::Rc;
-use std::str::FromStr;
 
 use crate::eyes::{DepthConvention, Eye, Warp};
 use crate::gl::{Context, Destination, GlError, Program};
@@ -28,10 +22,6 @@ pub use gather::Gather;
 #[doc(hidden)]
 pub use gather::GatherVariant;
 pub use layers::Layers;
-pub use near_field::{FrameMode, NearFieldPolicy};
-pub use offline::{Offline, SynthesizedImage};
-pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
-pub use stored_depth::{Nearness, StoredDepth, StoredDepthError};
 
 #[cfg(feature = "vulkan")]
 pub(crate) use uniforms::Places;
@@ -44,64 +34,6 @@ use preserve::Preserving;
 pub const SOURCE_MAP_HOLE: u32 = 1 << 31;
 /// Source map entries count columns in this fraction of a pixel.
 pub const SOURCE_MAP_FIXED: f32 = 65536.0;
-
-/// Which pipeline synthesizes the other eye.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase", try_from = "String"))]
-pub enum Pipeline {
-    /// Fragment shaders that march along the source row.
-    #[default]
-    Gather,
-    /// Algorithms 1 to 3 of the paper.
-    Paper,
-}
-
-impl Pipeline {
-    /// All pipelines, the default first.
-    pub const ALL: [Pipeline; 2] = [Pipeline::Gather, Pipeline::Paper];
-
-    /// Its name in settings.
-    pub fn name(self) -> &'static str {
-        match self {
-            Pipeline::Gather => "gather",
-            Pipeline::Paper => "paper",
-        }
-    }
-}
-
-/// A name that is not the name of a [`Pipeline`].
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ParsePipelineError {
-    /// A pipeline of earlier versions.
-    #[error(
-        "the pipeline rowgroup was taken out: choose gather, which is closer to the truth on every scene"
-    )]
-    Rowgroup,
-    /// Any other name.
-    #[error("{0:?} is not a pipeline: choose gather or paper")]
-    Unknown(String),
-}
-
-impl FromStr for Pipeline {
-    type Err = ParsePipelineError;
-
-    fn from_str(name: &str) -> Result<Pipeline, ParsePipelineError> {
-        match Pipeline::ALL.into_iter().find(|pipeline| pipeline.name() == name) {
-            Some(pipeline) => Ok(pipeline),
-            None if name == "rowgroup" => Err(ParsePipelineError::Rowgroup),
-            None => Err(ParsePipelineError::Unknown(name.to_owned())),
-        }
-    }
-}
-
-impl TryFrom<String> for Pipeline {
-    type Error = ParsePipelineError;
-
-    fn try_from(name: String) -> Result<Pipeline, ParsePipelineError> {
-        name.parse()
-    }
-}
 
 /// What the source knows of its edges, where a pixel shows more than one surface, and with it what its depth is.
 ///
@@ -161,9 +93,15 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Colour attachments that the target has.
-    fn draw_buffers(self) -> u32 {
+    /// Returns the number of colour attachments that the target has.
+    pub fn draw_buffers(self) -> u32 {
         1 + u32::from(self.source_map)
+    }
+
+    /// Returns the defines that select a shader's outputs, for the last pass of a pipeline.
+    pub fn defines(self) -> Vec<(&'static str, String)> {
+        let defines = [("WRITE_DEPTH", self.depth), ("SOURCE_MAP", self.source_map)];
+        defines.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| (name, String::new())).collect()
     }
 }
 
@@ -216,7 +154,6 @@ pub enum GlState {
 /// | multisample texture of units 0 and 3, with [`Edges::Multisample`] | depth, colour | changed |
 /// | sampler object of units 0 to 4 | yoro's own | none |
 /// | active unit | 0 to 4 | changed |
-/// | image unit 0 ([`Paper`]) | intermediate | changed |
 /// | scissor, stencil and depth test, face culling | off; depth test on for the target with [`Outputs::depth`] | off |
 /// | depth function, depth mask, depth range | `ALWAYS`, on, 0 to 1 | so |
 /// | blending and colour mask, of draw buffer 0 and, with [`Outputs::source_map`] or other than with [`Edges::Hard`], 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | so |
@@ -251,47 +188,30 @@ pub trait Synthesis {
     fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError>;
 }
 
-/// Settings of all pipelines.
+/// How to synthesize: the host's business, and in no file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields, rename_all = "kebab-case"))]
 pub struct SynthesisOptions {
-    /// Which pipeline.
-    pub pipeline: Pipeline,
-    /// What the source knows of its edges; all but [`Edges::Hard`] need [`Pipeline::Gather`]. The host's business, and in
-    /// no file.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    /// What the source knows of its edges.
     pub edges: Edges,
-    /// Knobs of the paper's pipeline.
-    pub paper: PaperOptions,
-    /// What becomes of the host's GL state: the host's business, and in no file.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    /// What becomes of the host's GL state.
     pub gl_state: GlState,
 }
 
-/// Compiles a pipeline. Leaves the context's state as [`Synthesis::prepare`] does, or as it was with
-/// [`GlState::Preserve`].
+/// Compiles the pipeline: [`Gather`] for hard edges, [`Layers`] for the others. Leaves the context's state as
+/// [`Synthesis::prepare`] does, or as it was with [`GlState::Preserve`].
 ///
 /// # Errors
-/// [`GlError::Unsupported`] for a compute pipeline or [`Edges::Multisample`] without OpenGL ES 3.1, and for other edges than
-/// hard ones with another pipeline than [`Pipeline::Gather`].
+/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1; [`GlError::Shader`] when the driver refuses
+/// a shader.
 pub fn create(
     gl: &Rc<Context>,
     options: &SynthesisOptions,
     outputs: Outputs,
 ) -> Result<Box<dyn Synthesis>, GlError> {
     let pipeline = || -> Result<Box<dyn Synthesis>, GlError> {
-        Ok(match (options.pipeline, options.edges) {
-            (Pipeline::Gather, Edges::Hard) => Box::new(Gather::new(gl, outputs)?),
-            (Pipeline::Gather, edges) => Box::new(Layers::new(gl, outputs, edges)?),
-            (Pipeline::Paper, Edges::Hard) => Box::new(Paper::new(gl, outputs, options.paper)?),
-            (other, edges) => {
-                return Err(GlError::Unsupported(format!(
-                    "the pipeline {} takes one sample per pixel, not {} depth; choose the pipeline gather, or hard edges",
-                    other.name(),
-                    edges.name()
-                )));
-            }
+        Ok(match options.edges {
+            Edges::Hard => Box::new(Gather::new(gl, outputs)?),
+            edges => Box::new(Layers::new(gl, outputs, edges)?),
         })
     };
     let draw_buffers = match options.edges {
@@ -355,28 +275,16 @@ impl ForwardLaw {
     }
 }
 
-/// Sets the uniforms and textures that `include/warp.glsl` declares. Texture units 0 and 1.
-fn set_source(program: &Program, source: Source, uniforms: &Uniforms) {
+/// Sets the uniforms and textures that `include/warp.glsl` declares, for a pass of a pipeline. Texture units 0 and 1.
+pub fn set_source(program: &Program, source: Source, uniforms: &Uniforms) {
     program.texture("depth_map", 0, source.depth).texture("color_map", 1, source.color);
     uniforms.set(program);
 }
 
-/// Binds the target and draws the pass that writes it.
-fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
+/// Binds the target and draws the pass that writes it: the last of a pipeline.
+pub fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
     gl.bind_framebuffer(target.framebuffer, target.origin, target.size);
     gl.set_depth_write(outputs.depth);
     gl.draw_screen();
     gl.set_depth_write(false);
-}
-
-/// The defines that select a shader's outputs.
-fn output_defines(outputs: Outputs) -> Vec<(&'static str, String)> {
-    let mut defines = Vec::new();
-    if outputs.depth {
-        defines.push(("WRITE_DEPTH", String::new()));
-    }
-    if outputs.source_map {
-        defines.push(("SOURCE_MAP", String::new()));
-    }
-    defines
 }

@@ -33,7 +33,7 @@ macro_rules! uniforms {
                 &[$((stringify!($name), $glsl, std::mem::offset_of!(Uniforms, $name)),)*];
 
             /// Sets those that the program has.
-            pub(super) fn set(&self, program: &Program) {
+            pub fn set(&self, program: &Program) {
                 $(program.set(stringify!($name), self.$name);)*
             }
         }

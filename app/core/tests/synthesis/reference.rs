@@ -1,6 +1,4 @@
-//! Plain f64 versions of the pipelines, for tests: what the shaders must compute, without tiles or threads.
-
-use yoro::eyes::{Eye, Warp};
+//! A plain f64 version of the pipeline: what the shaders must compute, without tiles.
 
 /// One target pixel: a source column in forward columns, and whether it is a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,20 +16,6 @@ impl Entry {
 }
 
 const MAX_STRETCH: f64 = 2.0;
-
-/// Displaced positions of one source row in forward columns.
-pub fn positions(depth_row: &[f32], warp: &Warp) -> Vec<f64> {
-    let columns = depth_row.len();
-    // For the right eye columns count from the right, in source and target.
-    let mirrored = warp.target_eye == Eye::Right;
-    (0..columns)
-        .map(|x| {
-            let column = if mirrored { columns - 1 - x } else { x };
-            let target = column as f64 + warp.law.offset + warp.law.scale * depth_row[column] as f64;
-            if mirrored { f64::from(warp.target_size[0]) - 1.0 - target } else { target }
-        })
-        .collect()
-}
 
 /// The gather pipeline's march over the whole row for each target pixel.
 pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
@@ -82,41 +66,4 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
             }
         })
         .collect()
-}
-
-/// One ImBuffer entry of Algorithm 2.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ImBufferEntry {
-    Valid(f64),
-    Disocclusion { left: i64, width: i64 },
-}
-
-/// Algorithm 2 at scale 1, as corrected: first writer wins in forward order, the tracker follows the running
-/// maximum, valid entries are never overwritten.
-pub fn paper_row(p: &[f64], width: usize, strict: bool) -> Vec<ImBufferEntry> {
-    let mut entries: Vec<Option<ImBufferEntry>> = vec![None; width];
-    let mut reached = -1i64;
-    for (x, &position) in p.iter().enumerate() {
-        let target = (position + 0.5).floor() as i64;
-        if target < 0 || target >= width as i64 {
-            continue;
-        }
-        if matches!(entries[target as usize], Some(ImBufferEntry::Valid(_))) {
-            continue;
-        }
-        for i in reached + 1..target {
-            entries[i as usize] =
-                Some(ImBufferEntry::Disocclusion { left: reached, width: target - reached });
-        }
-        let source = if strict {
-            x as f64
-        } else {
-            (x as f64 + target as f64 - position).clamp(0.0, (p.len() - 1) as f64)
-        };
-        entries[target as usize] = Some(ImBufferEntry::Valid(source));
-        reached = reached.max(target);
-    }
-    let width = width as i64;
-    let rest = ImBufferEntry::Disocclusion { left: reached, width: width - reached };
-    entries.into_iter().map(|e| e.unwrap_or(rest)).collect()
 }

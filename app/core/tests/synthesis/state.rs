@@ -4,7 +4,8 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::{on_every_backend, options, pair, scene};
+use super::in_memory::{self, InMemory};
+use super::laws::{on_every_backend, pair, scene};
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::gl::{Context, Destination, Filter, Format, GlApi, RenderTarget, Texture};
 use yoro::synthesis::*;
@@ -13,10 +14,9 @@ const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: false };
 /// GL_DEPTH_BOUNDS_TEST_EXT.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
 
-/// Every pipeline that takes textures without samples.
-fn ways() -> Vec<SynthesisOptions> {
-    let anti_aliased = SynthesisOptions { edges: Edges::Nearest, ..SynthesisOptions::default() };
-    Pipeline::ALL.map(options).into_iter().chain([anti_aliased]).collect()
+/// Both kinds of textures without samples.
+fn ways() -> [SynthesisOptions; 2] {
+    [Edges::Hard, Edges::Nearest].map(|edges| SynthesisOptions { edges, ..SynthesisOptions::default() })
 }
 
 fn warp(size: [u32; 2]) -> Warp {
@@ -476,11 +476,13 @@ fn images_in_memory_do_not_depend_on_the_hosts_state() {
         let (rgba, depth) =
             scene(warp.source_size, pair([61, 20], Eye::Right, 0.063, DepthConvention::Standard).depth, 3);
         for options in ways() {
-            let want = Offline::new(gl, &options).unwrap().run(&rgba, &depth, &warp).unwrap();
+            let run = || {
+                InMemory::new(gl, create(gl, &options, in_memory::OUTPUTS).unwrap()).run(&rgba, &depth, &warp)
+            };
+            let want = run();
             let hostile = Hostile::new(gl);
             hostile.set(gl);
-            let got = Offline::new(gl, &options).unwrap().run(&rgba, &depth, &warp).unwrap();
-            assert!(got == want, "{options:?}");
+            assert!(run() == want, "{options:?}");
             hostile.delete(gl);
         }
     });
@@ -658,7 +660,7 @@ fn cost_of_preserving_state() {
             println!(
                 "{}, {}: {:.1} us a call, {:.1} us with the state preserved; to save and restore alone {:.1} us",
                 gl.capabilities().version_string,
-                options.pipeline.name(),
+                options.edges.name(),
                 best[0],
                 best[1],
                 best[2]

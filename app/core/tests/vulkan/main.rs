@@ -2,6 +2,8 @@
 
 mod failures;
 mod harness;
+#[path = "../synthesis/in_memory.rs"]
+mod in_memory;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::{Cell, RefCell};
@@ -11,9 +13,10 @@ use proptest::test_runner::{Config, TestRunner};
 use rand::{Rng, SeedableRng};
 
 use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
+use in_memory::{InMemory, SynthesizedImage};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
 use yoro::gl::{self, Context, Destination, Filter, RenderTarget, Texture};
-use yoro::synthesis::{self, GatherVariant as GlVariant, Offline, Outputs, SourceMapEntry, SynthesisOptions};
+use yoro::synthesis::{self, GatherVariant as GlVariant, Outputs, SourceMapEntry, SynthesisOptions};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
     Frame, Gather, GatherVariant, ImageState, Options, SourceImages, TargetImages, VulkanError,
@@ -256,22 +259,22 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
 /// The same on OpenGL ES.
 struct Gl {
     headless: Headless,
-    offline: [RefCell<Offline>; 2],
+    offline: [RefCell<InMemory>; 2],
 }
 
 impl Gl {
     fn new() -> Gl {
         let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
         let offline = VARIANTS.map(|(_, variant)| {
-            let gather = synthesis::Gather::with_variant(headless.gl(), Offline::OUTPUTS, variant).unwrap();
-            RefCell::new(Offline::with_pipeline(headless.gl(), Box::new(gather)).unwrap())
+            let gather = synthesis::Gather::with_variant(headless.gl(), in_memory::OUTPUTS, variant).unwrap();
+            RefCell::new(InMemory::new(headless.gl(), Box::new(gather)))
         });
         Gl { headless, offline }
     }
 
-    fn run(&self, variant: usize, picture: &Picture) -> synthesis::SynthesizedImage {
+    fn run(&self, variant: usize, picture: &Picture) -> SynthesizedImage {
         let Picture { warp, rgba, depth } = picture;
-        self.offline[variant].borrow_mut().run(rgba, depth, warp).unwrap()
+        self.offline[variant].borrow_mut().run(rgba, depth, warp)
     }
 }
 

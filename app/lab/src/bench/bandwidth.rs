@@ -28,8 +28,8 @@ use crate::metrics::{Channels, MetricsError, SsimWindow, psnr, ssim};
 use crate::picture::{self, DepthImage};
 use yoro::eyes::{DepthConvention, EyePair, SynthesisViews};
 use yoro::gl::Context;
-use yoro::synthesis::Offline;
-use yoro_render::stereo::StereoOptions;
+use yoro::synthesis::Edges;
+use yoro_render::stereo::{Offline, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};
 
 /// Both eyes, side by side.
@@ -103,7 +103,7 @@ pub fn run(
     step: &mut dyn FnMut() -> anyhow::Result<()>,
 ) -> anyhow::Result<Vec<(&'static str, Values)>> {
     let sequence = Sequence::render(gl, prepared, settings, pairs, step)?;
-    let mut receiver = Offline::new(gl, &StereoOptions::default().synthesis)?;
+    let mut receiver = Offline::new(gl, &StereoOptions::default().synthesis, Edges::Hard)?;
     let mut streams: Vec<(&'static str, Values)> =
         [STEREO_RGB, RGB_DEPTH, RGB_DEPTH_PACKED, MONO_RGB].map(|name| (name, Values::new())).to_vec();
     for &quantizer in &options.quantizers {

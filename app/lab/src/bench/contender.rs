@@ -4,8 +4,8 @@ use std::fmt;
 
 use crate::inpaint::PatcherKind;
 use yoro::eyes::GuardBand;
-use yoro::synthesis::{Edges, Pipeline};
-use yoro_render::stereo::{Method, StereoOptions};
+use yoro::synthesis::Edges;
+use yoro_render::stereo::{Method, Pipeline, StereoOptions};
 
 /// What is measured against what: a stereo method, for synthesis with its pipeline; or a patcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -24,9 +24,8 @@ use crate::metrics::{Channels, Comparison, FlickerMeter, psnr};
 use crate::picture;
 use yoro::eyes::{Eye, EyePair};
 use yoro::gl::Context;
-use yoro::synthesis::ImBufferSize;
 use yoro_files::interrupt;
-use yoro_render::stereo::StereoFrame;
+use yoro_render::stereo::{ImBufferSize, StereoFrame};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_scene::{Scene, ShadingStyle, Viewpoint};
 

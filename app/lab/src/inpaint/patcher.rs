@@ -7,8 +7,9 @@ use image::{GrayImage, Luma, Rgb, RgbImage};
 use crate::picture::{DepthImage, rgb_image};
 use yoro::eyes::{DepthConvention, Eye, Warp};
 use yoro::gl::GlError;
-use yoro::synthesis::{SourceMapEntry, SynthesizedImage};
+use yoro::synthesis::SourceMapEntry;
 use yoro_files::FileError;
+use yoro_render::stereo::SynthesizedImage;
 
 /// Value of a mask where nothing of the source is seen.
 pub const HOLE: u8 = 0;

@@ -1,11 +1,15 @@
 //! Settings of the methods.
 
+use std::rc::Rc;
+
+use super::near_field_policy::NearFieldPolicy;
+use super::paper::{Paper, PaperOptions};
 use crate::render::RenderSettings;
 use yoro::eyes::GuardBand;
-use yoro::gl::{Capabilities, GlError};
-use yoro::synthesis::{Edges, NearFieldPolicy, PaperOptions, Pipeline, SynthesisOptions};
+use yoro::gl::{Capabilities, Context, GlError};
+use yoro::synthesis::{self, Edges, Outputs, Synthesis, SynthesisOptions};
 use yoro_protocol::Settings;
-pub use yoro_protocol::{AntiAliasing, Method};
+pub use yoro_protocol::{AntiAliasing, Method, Pipeline};
 
 /// What the forward renderer does not have for a method, if anything.
 fn lacking_forward(method: Method) -> Option<&'static str> {
@@ -44,12 +48,47 @@ impl RenderSettings {
     }
 }
 
+/// The pipeline, and the knobs of the paper's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PipelineOptions {
+    /// The pipeline that synthesizes.
+    pub pipeline: Pipeline,
+    /// Knobs of [`Pipeline::Paper`].
+    pub paper: PaperOptions,
+}
+
+impl PipelineOptions {
+    /// Compiles the pipeline for a source with these edges.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for [`Pipeline::Paper`] or [`Edges::Multisample`] without OpenGL ES 3.1, and for
+    /// [`Pipeline::Paper`] with other edges than hard ones; [`GlError::Shader`] when the driver refuses a shader.
+    pub fn create(
+        &self,
+        gl: &Rc<Context>,
+        edges: Edges,
+        outputs: Outputs,
+    ) -> Result<Box<dyn Synthesis>, GlError> {
+        match self.pipeline {
+            Pipeline::Gather => {
+                synthesis::create(gl, &SynthesisOptions { edges, ..SynthesisOptions::default() }, outputs)
+            }
+            Pipeline::Paper if edges == Edges::Hard => Ok(Box::new(Paper::new(gl, outputs, self.paper)?)),
+            Pipeline::Paper => Err(GlError::Unsupported(format!(
+                "the pipeline paper takes one sample per pixel, not {} depth; choose the pipeline gather, or hard edges",
+                edges.name()
+            ))),
+        }
+    }
+}
+
 /// Settings of all methods.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StereoOptions {
     /// Synthesis pipeline and its knobs.
-    pub synthesis: SynthesisOptions,
+    pub synthesis: PipelineOptions,
     /// What the synthesis takes the rendered eye's edges for; `None` for what fits the renderer: [`StereoOptions::edges`].
     pub edges: Option<Edges>,
     /// How much wider the dominant eye is rendered.
@@ -68,7 +107,7 @@ pub struct StereoOptions {
 impl Default for StereoOptions {
     fn default() -> StereoOptions {
         StereoOptions {
-            synthesis: SynthesisOptions::default(),
+            synthesis: PipelineOptions::default(),
             edges: None,
             guard_band: GuardBand::Distance(1.0),
             anti_aliasing: AntiAliasing::default(),
@@ -110,7 +149,7 @@ impl StereoOptions {
             strict: settings.strict,
         };
         StereoOptions {
-            synthesis: SynthesisOptions { paper, ..options.synthesis },
+            synthesis: PipelineOptions { paper, ..options.synthesis },
             edges: settings.edges,
             guard_band: settings.guard_band.unwrap_or(options.guard_band),
             anti_aliasing: settings.anti_aliasing.unwrap_or(options.anti_aliasing),
@@ -123,7 +162,7 @@ impl StereoOptions {
     /// The default with another pipeline. The paper's pipeline comes as in the paper: no guard band,
     /// anti-aliasing before synthesis.
     pub fn of_pipeline(pipeline: Pipeline) -> StereoOptions {
-        let synthesis = SynthesisOptions { pipeline, ..SynthesisOptions::default() };
+        let synthesis = PipelineOptions { pipeline, ..PipelineOptions::default() };
         let options = StereoOptions { synthesis, ..StereoOptions::default() };
         match pipeline {
             Pipeline::Paper => {

@@ -7,13 +7,12 @@ use super::finish::Finish;
 use super::guard_band::AutoGuardBand;
 use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
 use super::near_field::{Composite, DepthMap, NearFraction};
+use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::options::{AntiAliasing, StereoOptions};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
 use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
 use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
-use yoro::synthesis::{
-    self, Edges, FrameMode, NearFieldPolicy, Outputs, Source, Synthesis, SynthesisOptions,
-};
+use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
 
 /// One render (with a guard band), one synthesis; near objects and mostly near frames as [`StereoOptions`] say.
 pub struct Yoro {
@@ -69,8 +68,7 @@ impl Synthesizer {
         depth: bool,
     ) -> Result<Synthesizer, GlError> {
         let outputs = Outputs { depth, ..Outputs::default() };
-        let options = SynthesisOptions { edges, ..options.synthesis };
-        let synthesis = synthesis::create(gl, &options, outputs)?;
+        let synthesis = options.synthesis.create(gl, edges, outputs)?;
         Ok(Synthesizer { synthesis, image: layer(gl, depth)? })
     }
 }

@@ -5,6 +5,7 @@ use std::rc::Rc;
 use glam::{Quat, Vec3};
 
 use super::near_field::{DepthMap, NearFraction};
+use super::near_field_policy::NearFieldPolicy;
 use super::*;
 use crate::fixture::quad;
 use crate::render::{
@@ -12,7 +13,7 @@ use crate::render::{
 };
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews};
 use yoro::gl::{Destination, Filter, Format, Profiling, RenderTarget};
-use yoro::synthesis::{self, Edges, NearFieldPolicy, Outputs, Source, SynthesisOptions};
+use yoro::synthesis::{self, Edges, Outputs, Source, SynthesisOptions};
 use yoro_context::{Backend, Headless};
 use yoro_scene::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
 

@@ -1,6 +1,6 @@
 //! Depth images of others: what their values mean, made into what synthesis takes.
 
-use crate::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
+use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
 
 /// What the values of a depth image mean.
 #[derive(Clone, Copy, Debug, PartialEq)]

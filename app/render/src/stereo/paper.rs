@@ -1,63 +1,21 @@
 //! The paper's pipeline: Algorithms 1 to 3 with its knobs, in the corrected reading.
 
-use std::fmt::{self, Display};
 use std::rc::Rc;
-use std::str::FromStr;
 
 use glam::{IVec2, Vec2};
 use glow::HasContext;
 
-use super::{Outputs, Source, Synthesis, Uniforms, draw_target, output_defines, set_source};
-use crate::eyes::Warp;
-use crate::gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
+use yoro::eyes::Warp;
+use yoro::gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
+use yoro::synthesis::{Outputs, Source, Synthesis, Uniforms, draw_target, set_source};
+pub use yoro_protocol::{ImBufferSize, ParseImBufferSizeError};
 
 /// Rows per workgroup of Algorithm 2, one invocation each.
 const ROWS: u32 = 64;
 
-/// Resolution of the ImBuffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-pub enum ImBufferSize {
-    /// One ImBuffer pixel per this many image pixels, on both axes: 1, 2, 4, 8 or 16 in the paper.
-    Divisor(u32),
-    /// A fixed size in pixels for the target, whatever the image's size.
-    Fixed([u32; 2]),
-}
-
-/// A text that is no [`ImBufferSize`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("give a divisor from 1 to 64, such as 2, or a size, such as 512x512")]
-pub struct ParseImBufferSizeError;
-
-/// A divisor from 1 to 64 (`2`), or a width and a height from 1 to 8192 (`512x512`).
-impl FromStr for ImBufferSize {
-    type Err = ParseImBufferSizeError;
-
-    fn from_str(text: &str) -> Result<ImBufferSize, ParseImBufferSizeError> {
-        let number = |t: &str| t.parse::<u32>().ok().filter(|n| (1..=8192).contains(n));
-        match text.split_once('x') {
-            Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| ImBufferSize::Fixed([w, h])),
-            None => number(text).filter(|n| *n <= 64).map(ImBufferSize::Divisor),
-        }
-        .ok_or(ParseImBufferSizeError)
-    }
-}
-
-/// As [`FromStr`] reads it.
-impl Display for ImBufferSize {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            ImBufferSize::Divisor(n) => write!(f, "{n}"),
-            ImBufferSize::Fixed([w, h]) => write!(f, "{w}x{h}"),
-        }
-    }
-}
-
 /// Knobs of the paper's pipeline.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields, rename_all = "kebab-case"))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PaperOptions {
     /// Resolution of the ImBuffer, section "(c) Resolution-Independent Intermediate Buffers".
     pub imbuffer: ImBufferSize,
@@ -105,7 +63,7 @@ impl Paper {
         let strict = if options.strict { vec![("STRICT", String::new())] } else { Vec::new() };
         let mut scatter = strict.clone();
         scatter.push(("ROWS", ROWS.to_string()));
-        let mut patch = output_defines(outputs);
+        let mut patch = outputs.defines();
         if options.linear_interpolation && options.imbuffer != ImBufferSize::Divisor(1) {
             patch.push(("LINEAR", String::new()));
         }
@@ -114,9 +72,9 @@ impl Paper {
             gl: gl.clone(),
             outputs,
             options,
-            scatter: Program::new(gl, ShaderSource::Compute("synthesis/paper/scatter.comp"), &scatter)?,
-            reproject: Program::new(gl, ShaderSource::Screen("synthesis/paper/reproject.frag"), &strict)?,
-            patch: Program::new(gl, ShaderSource::Screen("synthesis/paper/patch.frag"), &patch)?,
+            scatter: Program::new(gl, ShaderSource::Compute("stereo/paper/scatter.comp"), &scatter)?,
+            reproject: Program::new(gl, ShaderSource::Screen("stereo/paper/reproject.frag"), &strict)?,
+            patch: Program::new(gl, ShaderSource::Screen("stereo/paper/patch.frag"), &patch)?,
             written_to: map(Format::R32F)?,
             imbuffer: map(Format::R32Ui)?,
             scale: Vec2::ONE,

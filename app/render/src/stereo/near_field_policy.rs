@@ -1,9 +1,8 @@
 //! When to give up synthesis for a frame: most of the view is too near.
 
 /// How the two eyes of a frame are made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum FrameMode {
     /// The second eye is synthesized (objects of the near field rendered for both eyes, if that is on).
     #[default]
@@ -14,9 +13,8 @@ pub enum FrameMode {
 
 /// Switches whole frames to two real renders while much of the view is too near, with hysteresis so that the
 /// mode does not flicker.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields, rename_all = "kebab-case"))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct NearFieldPolicy {
     /// Surfaces nearer than this (metres) are too near.
     pub distance: f32,

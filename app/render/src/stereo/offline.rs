@@ -2,12 +2,13 @@
 
 use std::rc::Rc;
 
-use super::{Outputs, Source, Synthesis, SynthesisOptions, create};
-use crate::eyes::Warp;
-use crate::gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
+use super::options::PipelineOptions;
+use yoro::eyes::Warp;
+use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
+use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
 
 /// A pipeline with textures of its own. Rows of all arrays run from the bottom, as in GL. Whatever state the context is
-/// in, the result is the same; uploads and readbacks change state that [`SynthesisOptions::gl_state`] does not cover.
+/// in, the result is the same.
 pub struct Offline {
     gl: Rc<Context>,
     pipeline: Box<dyn Synthesis>,
@@ -26,28 +27,16 @@ pub struct SynthesizedImage {
 }
 
 impl Offline {
-    /// Compiles the pipeline.
+    /// Compiles the pipeline, for a source with these edges.
     ///
     /// # Errors
-    /// As [`create`].
-    pub fn new(gl: &Rc<Context>, options: &SynthesisOptions) -> Result<Offline, GlError> {
-        Offline::with_pipeline(gl, create(gl, options, Self::OUTPUTS)?)
-    }
-
-    /// What the pipeline must write.
-    #[doc(hidden)]
-    pub const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
-
-    /// As [`Offline::new`], with a pipeline made for [`Offline::OUTPUTS`]: for tests.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses the target.
-    #[doc(hidden)]
-    pub fn with_pipeline(gl: &Rc<Context>, pipeline: Box<dyn Synthesis>) -> Result<Offline, GlError> {
+    /// As [`PipelineOptions::create`].
+    pub fn new(gl: &Rc<Context>, options: &PipelineOptions, edges: Edges) -> Result<Offline, GlError> {
+        let outputs = Outputs { source_map: true, ..Outputs::default() };
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         Ok(Offline {
             gl: gl.clone(),
-            pipeline,
+            pipeline: options.create(gl, edges, outputs)?,
             color: None,
             depth: None,
             target: RenderTarget::new(gl, [1, 1], &formats, None)?,
