@@ -49,6 +49,12 @@ impl Instance {
         self.serves && self.own_configurations(system).is_ok_and(|own| own.contains(&Views::PRIMARY_STEREO))
     }
 
+    /// True if the application is offered one view, or if the runtime fails to list its configurations.
+    pub fn may_offer(&self, system: sys::SystemId) -> bool {
+        self.serves
+            && self.own_configurations(system).map_or(true, |own| own.contains(&Views::PRIMARY_STEREO))
+    }
+
     /// Returns the view configuration of the runtime that stands behind one of the application's.
     pub fn runtimes(&self, system: sys::SystemId, kind: Views) -> Views {
         if kind == Views::PRIMARY_MONO && self.offers(system) { Views::PRIMARY_STEREO } else { kind }

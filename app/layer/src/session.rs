@@ -21,6 +21,8 @@ pub struct Session {
     pub instance: Arc<Instance>,
     /// None if the layer does not know the graphics interface.
     pub binding: Option<Binding>,
+    /// True if PRIMARY_MONO is the layer's: the runtime shows two views of this system.
+    pub offers_mono: bool,
     /// The size in pixels that the runtime recommends for the dominant eye.
     eye_size: [u32; 2],
     /// See [`Session::views`].
@@ -38,12 +40,14 @@ impl Session {
         binding: Option<Binding>,
         system: sys::SystemId,
     ) -> Session {
-        let eye = instance.own_views(system).map(|views| views[instance.settings.dominant.index()]);
-        let eye_size = eye.map_or([1; 2], |eye| {
+        let offers_mono = instance.may_offer(system);
+        let eye = if offers_mono { instance.own_views(system).ok() } else { None };
+        let eye_size = eye.map(|views| views[instance.settings.dominant.index()]).map_or([1; 2], |eye| {
             [eye.recommended_image_rect_width.max(1), eye.recommended_image_rect_height.max(1)]
         });
         let session = Session {
             handle,
+            offers_mono,
             instance,
             binding,
             eye_size,
@@ -51,7 +55,7 @@ impl Session {
             offer: Mutex::default(),
             begun: Mutex::default(),
         };
-        if let Some(size) = session.size_before_the_first_frame() {
+        if offers_mono && let Some(size) = session.size_before_the_first_frame() {
             session.instance.latch_size(size);
         }
         session

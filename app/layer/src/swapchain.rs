@@ -112,7 +112,6 @@ impl Swapchain {
     /// # Safety
     /// The arguments are those of the application's call.
     pub unsafe fn wait(&self, info: *const sys::SwapchainImageWaitInfo) -> XrResult<sys::Result> {
-        self.pass_on_release()?;
         // SAFETY: the application's own arguments.
         let result = unsafe { (self.next().wait_swapchain_image)(self.handle, info) };
         if result == sys::Result::SUCCESS {
@@ -121,7 +120,8 @@ impl Swapchain {
         Ok(result)
     }
 
-    /// xrReleaseSwapchainImage. Where images are read at the end of the frame, the release is held back until then.
+    /// xrReleaseSwapchainImage. Where images are read at the end of the frame, the release is held back until then, or until
+    /// the next acquire.
     ///
     /// # Safety
     /// The arguments are those of the application's call.
@@ -131,7 +131,10 @@ impl Swapchain {
         reads_images: bool,
     ) -> XrResult<sys::Result> {
         let mut state = lock(&self.state);
-        if state.waited && self.content.is_some() && reads_images {
+        // With another image acquired already, this one is not the frame's. Its release must not wait for a later call: the
+        // runtime may use the application's queue in this one, but not in xrWaitSwapchainImage (XR_KHR_vulkan_enable).
+        let is_last = state.acquired.len() == 1;
+        if is_last && state.waited && self.content.is_some() && reads_images {
             state.waited = false;
             state.held = state.acquired.pop_front();
             return Ok(sys::Result::SUCCESS);

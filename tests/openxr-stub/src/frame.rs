@@ -180,6 +180,9 @@ pub unsafe extern "system" fn end_frame(
                 "only OPAQUE is offered",
             ));
         }
+        if info.layers.is_null() && info.layer_count > 0 {
+            return Err(forbidden(sys::Result::ERROR_LAYER_INVALID, "the layers are null"));
+        }
         let mut layers = Vec::new();
         for i in 0..info.layer_count as usize {
             // SAFETY: the array has that many pointers to layers.

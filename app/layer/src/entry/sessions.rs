@@ -52,10 +52,14 @@ pub unsafe fn begin(live: &LiveSession, info: *const sys::SessionBeginInfo) -> X
             say(format_args!("{name}: renders a tiny image for the {other} eye, which is synthesized"));
             return Ok(result);
         }
-        if kind != ViewsOf::PRIMARY_MONO {
-            say(format_args!(
-                "{name}: passed through: it begins its session with {kind:?}, not with one view"
-            ));
+        if kind != ViewsOf::PRIMARY_MONO || !session.offers_mono {
+            if kind == ViewsOf::PRIMARY_MONO {
+                say(format_args!("{name}: passed through: the system itself has one view, not two"));
+            } else {
+                say(format_args!(
+                    "{name}: passed through: it begins its session with {kind:?}, not with one view"
+                ));
+            }
             session.begin(0);
             return Ok(begin(session.handle, info));
         }

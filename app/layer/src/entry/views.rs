@@ -120,8 +120,11 @@ pub unsafe fn visibility_mask(
     // SAFETY: the application's arguments.
     unsafe {
         match kind {
-            ViewsOf::PRIMARY_MONO if view != 0 => return Err(sys::Result::ERROR_VALIDATION_FAILURE),
-            ViewsOf::PRIMARY_MONO => {}
+            ViewsOf::PRIMARY_MONO if session.offers_mono => {
+                if view != 0 {
+                    return Err(sys::Result::ERROR_VALIDATION_FAILURE);
+                }
+            }
             ViewsOf::PRIMARY_STEREO if session.shrinks() && view == dominant => {}
             _ => return Ok(next(session.handle, kind, view, mask_kind, mask)),
         }
@@ -146,10 +149,11 @@ pub unsafe fn locate(
     unsafe {
         let mut asked = *info;
         asked.display_time = settings.time(asked.display_time);
-        if asked.view_configuration_type != ViewsOf::PRIMARY_MONO {
+        if asked.view_configuration_type != ViewsOf::PRIMARY_MONO || !session.offers_mono {
             let next = session.instance.next.locate_views;
             let result = check(next(session.handle, &asked, state, capacity, count, views))?;
-            if session.views() == 2 && capacity >= 2 && !views.is_null() {
+            let stereo = asked.view_configuration_type == ViewsOf::PRIMARY_STEREO;
+            if stereo && session.views() == 2 && capacity >= 2 && !views.is_null() {
                 // The dominant view sees what both eyes see.
                 let (pose, frustum) = session.offer(&[*views, *views.add(1)]);
                 let own = &mut *views.add(settings.dominant.index());

@@ -105,7 +105,9 @@ pub unsafe fn end_frame(
         // SAFETY: the application's layers, or ones like them, which live until the call returns.
         unsafe {
             let layers = rewritten.link(layers, views);
-            next(session.handle, &sys::FrameEndInfo { layers: layers.as_ptr(), ..*info })
+            let rewritten = sys::FrameEndInfo { layers: layers.as_ptr(), ..*info };
+            // A count without layers is the application's mistake, which the runtime reports.
+            next(session.handle, if info.layers.is_null() { info } else { &rewritten })
         }
     };
     let mut result = end(&mut rewritten);

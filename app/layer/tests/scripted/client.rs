@@ -427,13 +427,13 @@ impl<'a> Client<'a> {
         self.running
     }
 
-    /// Makes a swapchain for colour or for depth.
-    pub fn chain(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Outcome<Chain> {
-        let kind = match harness::is_depth(format) {
-            true => sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT,
-            false => sys::SwapchainUsageFlags::COLOR_ATTACHMENT,
+    fn chain_info(&self, format: vk::Format, size: [u32; 2], layers: u32) -> sys::SwapchainCreateInfo {
+        let kind = if harness::is_depth(format) {
+            sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT
+        } else {
+            sys::SwapchainUsageFlags::COLOR_ATTACHMENT
         };
-        let info = sys::SwapchainCreateInfo {
+        sys::SwapchainCreateInfo {
             ty: sys::SwapchainCreateInfo::TYPE,
             next: ptr::null(),
             create_flags: sys::SwapchainCreateFlags::EMPTY,
@@ -445,12 +445,31 @@ impl<'a> Client<'a> {
             face_count: 1,
             array_size: layers,
             mip_count: 1,
-        };
+        }
+    }
+
+    /// Makes a swapchain for colour or for depth.
+    pub fn chain(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Outcome<Chain> {
+        let info = self.chain_info(format, size, layers);
         let mut handle = sys::Swapchain::NULL;
         // SAFETY: complete structures.
         let result = unsafe { (self.xr.create_swapchain)(self.session, &info, &mut handle) };
         check("xrCreateSwapchain", result)?;
         let (result, images) = self.drawing.images(self.xr.enumerate_swapchain_images, handle);
+        check("xrEnumerateSwapchainImages", result)?;
+        Ok(Chain { handle, images })
+    }
+
+    /// Makes a swapchain below the layer, as functions of extensions do that the layer does not know.
+    pub fn chain_below_the_layer(&self) -> Outcome<Chain> {
+        // SAFETY: a live instance of the runtime's, too.
+        let xr = unsafe { Functions::new(runtime(), self.instance) };
+        let info = self.chain_info(vk::Format::R8G8B8A8_SRGB, [64; 2], 1);
+        let mut handle = sys::Swapchain::NULL;
+        // SAFETY: complete structures.
+        let result = unsafe { (xr.create_swapchain)(self.session, &info, &mut handle) };
+        check("xrCreateSwapchain", result)?;
+        let (result, images) = self.drawing.images(xr.enumerate_swapchain_images, handle);
         check("xrEnumerateSwapchainImages", result)?;
         Ok(Chain { handle, images })
     }
@@ -666,13 +685,23 @@ impl<'a> Client<'a> {
                 }
             }
         }
+        self.submit(frame, layers.len(), pointers.as_ptr())
+    }
+
+    /// Ends a frame with this many layers, and with a pointer to them that may be null.
+    pub fn submit(
+        &mut self,
+        frame: Frame,
+        count: usize,
+        layers: *const *const sys::CompositionLayerBaseHeader,
+    ) -> Outcome<()> {
         let info = sys::FrameEndInfo {
             ty: sys::FrameEndInfo::TYPE,
             next: ptr::null(),
             display_time: frame.time,
             environment_blend_mode: sys::EnvironmentBlendMode::OPAQUE,
-            layer_count: layers.len() as u32,
-            layers: pointers.as_ptr(),
+            layer_count: count as u32,
+            layers,
         };
         // SAFETY: complete structures.
         check("xrEndFrame", unsafe { (self.xr.end_frame)(self.session, &info) }).map(|_| ())

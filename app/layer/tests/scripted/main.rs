@@ -485,6 +485,89 @@ fn one_view_is_offered_where_there_are_two() {
     });
 }
 
+/// A system with one view alone, such as a handheld one, works as without the layer.
+#[test]
+fn a_system_with_one_view_passes_through() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let script = Script { stereo: false, ..script() };
+        let seen = watched(script, || drop(run(gpu, &habits).unwrap()));
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.views().len(), 1);
+        assert_eq!(seen.said("passed through: the system itself has one view"), 1, "{}", seen.said);
+        assert!(psnr(&seen.picture(0), &truth(&seen.views()[0], 1)) > 45.0);
+    });
+}
+
+/// Swapchains that a function of an extension has made, such as those of Android surfaces, are the runtime's own.
+#[test]
+fn calls_with_unknown_swapchains_reach_the_runtime() {
+    with_gpu(|gpu| {
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, Habits::PLAIN.name, &[DEPTH]).unwrap();
+            client.create_session().unwrap();
+            let unknown = client.chain_below_the_layer().unwrap();
+            client.acquire(&unknown).unwrap();
+            client.release(&unknown).unwrap();
+            client.destroy_chain(unknown).unwrap();
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+    });
+}
+
+/// XR_KHR_vulkan_enable lets the runtime use the queue in xrReleaseSwapchainImage, but not in xrWaitSwapchainImage.
+#[test]
+fn waiting_for_an_image_releases_no_other_one() {
+    with_gpu(|gpu| {
+        let failed = sys::Result::ERROR_RUNTIME_FAILURE;
+        let fault = Fault {
+            call: "xrReleaseSwapchainImage".into(),
+            nth: 1,
+            and_later: false,
+            result: failed.into_raw(),
+        };
+        watched(Script { faults: vec![fault], ..script() }, || {
+            let work = |client: &mut Client, chains: &Chains| {
+                client.acquire_only(&chains.color)?;
+                client.acquire_only(&chains.color)?;
+                client.wait_image(&chains.color)?;
+                // Where the runtime is called, its error appears.
+                let released = client.release(&chains.color);
+                assert_eq!(released, Err(Failure { call: "xrReleaseSwapchainImage", result: failed }));
+                client.release(&chains.color)?;
+                client.wait_image(&chains.color)?;
+                client.release(&chains.color)
+            };
+            with_session(gpu, &Habits::PLAIN, work).unwrap();
+        });
+    });
+}
+
+/// The layer reads none, and the runtime reports the mistake.
+#[test]
+fn a_count_of_layers_without_layers_is_the_applications_mistake() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let work = |client: &mut Client, chains: &Chains| {
+                for first in [true, false] {
+                    let begun = client.begin_frame()?;
+                    let result = sys::Result::ERROR_LAYER_INVALID;
+                    let mistake = client.submit(begun, 2, std::ptr::null());
+                    assert_eq!(mistake, Err(Failure { call: "xrEndFrame", result }), "first: {first}");
+                    client.end_frame(begun, &[])?;
+                    frames(client, chains, &habits, 2)?;
+                }
+                Ok(())
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert_eq!(seen.counts(), [[4, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "afterwards");
+    });
+}
+
 /// The layer offers depth where the runtime does not take it, and keeps it to itself.
 #[test]
 fn a_runtime_without_depth_will_do() {
