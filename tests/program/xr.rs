@@ -633,7 +633,7 @@ impl Monado {
             let without = std::env::var_os("YORO_TEST_WITHOUT_MONADO").is_some();
             assert!(
                 without,
-                "set YORO_TEST_MONADO to the folder of `cargo xtask monado`, or YORO_TEST_WITHOUT_MONADO=1"
+                "set YORO_TEST_MONADO to the folder of `cargo tools monado`, or YORO_TEST_WITHOUT_MONADO=1"
             );
             return None;
         };
@@ -676,7 +676,7 @@ fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
         let without = std::env::var_os("YORO_TEST_WITHOUT_HELLO_XR").is_some();
         assert!(
             without,
-            "set YORO_TEST_HELLO_XR to the folder of `cargo xtask hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
+            "set YORO_TEST_HELLO_XR to the folder of `cargo tools hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
         );
         return;
     };

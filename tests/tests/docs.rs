@@ -41,6 +41,7 @@ fn paths(text: &str) -> impl Iterator<Item = &str> {
         "scenes/",
         "shaders-glsl/",
         "tests/",
+        "tools/",
         "training/",
         "xtask/",
     ];

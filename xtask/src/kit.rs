@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::bail;
-
-use crate::cargo;
-use crate::folders::target_folder;
+use yoro_tools::cargo;
+use yoro_tools::folders::target_folder;
 
 /// Has it written to `target/kit`; the folder.
 ///

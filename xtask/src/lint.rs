@@ -2,8 +2,7 @@
 
 use anyhow::{Context as _, bail};
 use serde_json::Value;
-
-use crate::cargo;
+use yoro_tools::cargo;
 
 /// What others could take from a registry: the library's core and its shaders.
 const PUBLISHED: [&str; 2] = ["yoro-shaders", "yoro"];

@@ -1,19 +1,11 @@
 //! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`,
-//! `monado`, `hello-xr`, `shader-cost`, `spirv`, `package`, `kit`, `web`.
+//! `package`, `kit`, `web`. What maintainers run is in tools/.
 
 mod android;
-mod apt;
-mod cargo;
-mod folders;
-mod hello_xr;
 mod kit;
 mod lint;
-mod monado;
 mod package;
-mod packages;
 mod setup;
-mod shader_cost;
-mod spirv;
 mod testing;
 mod web;
 
@@ -23,6 +15,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use yoro_tools::cargo;
 
 /// Set up, run and test yoro
 #[derive(Parser)]
@@ -75,24 +68,6 @@ enum Task {
         /// The APK
         file: PathBuf,
     },
-    /// Set up Monado, an OpenXR runtime with a simulated headset, beside the system, and say how to use it
-    Monado,
-    /// Set up hello_xr, Khronos's example of an OpenXR application, beside Monado, and say how to use it
-    HelloXr,
-    /// What the shader programs cost on mobile GPUs, by Mesa's compilers: instructions, registers, waves, fetches, spills
-    ShaderCost {
-        /// Only programs whose names contain this
-        filter: Option<String>,
-        /// These GPUs instead of those of docs/shader-cost.csv
-        #[arg(long = "gpu", value_name = "NAME", value_delimiter = ',')]
-        gpus: Vec<shader_cost::Gpu>,
-        /// Renew docs/shader-cost.csv
-        #[arg(long)]
-        bless: bool,
-        /// What shader-programs of tests/ has written, instead of running it
-        #[arg(long, value_name = "FILE", hide = true)]
-        programs: Option<PathBuf>,
-    },
     /// Make packages of the C library, in target/package: for Linux with pkg-config and CMake files, for Android an AAR
     Package {
         /// Only these [default: all]
@@ -101,8 +76,6 @@ enum Task {
     },
     /// Write the shader kit to target/kit: synthesis for engines that want no library
     Kit,
-    /// Set up, then compile the synthesis shaders for Vulkan: app/core/src/vulkan/spirv
-    Spirv,
     /// The page: every method in a browser's WebGL 2, as files for any static host
     Web {
         /// Then serve them on this machine, to browsers here and, by `adb reverse tcp:8080 tcp:8080`, on a phone or headset
@@ -161,17 +134,8 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             show(&report.to_string());
             return Ok(report.passed());
         }
-        Task::Monado => show(&monado::usage()?),
-        Task::HelloXr => show(&hello_xr::usage()?),
-        Task::ShaderCost { filter, gpus, bless, programs } => {
-            let options = shader_cost::Options { filter, gpus, programs, bless };
-            let (text, passed) = shader_cost::report(&options)?;
-            show(&text);
-            return Ok(passed);
-        }
         Task::Package { targets } => drop(package::package(&targets)?),
         Task::Kit => drop(kit::kit()?),
-        Task::Spirv => spirv::compile()?,
         Task::Web { serve, as_built, port } => {
             let folder = if as_built { web::built()? } else { web::build()? };
             if serve {

@@ -8,8 +8,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{anyhow, bail};
-
-use crate::apt;
+use yoro_tools::apt;
 
 /// Something that the system must have, and who brings it.
 struct Need {

@@ -13,13 +13,13 @@ use tempfile::TempDir;
 /// No run takes this long, not even one of large images at the moments at which synthesis takes seconds.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// The folder of `cargo xtask hello-xr`; None where the tests are told to do without.
+/// The folder of `cargo tools hello-xr`; None where the tests are told to do without.
 fn programs() -> Option<PathBuf> {
     let programs = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from);
     let without = std::env::var_os("YORO_TEST_WITHOUT_HELLO_XR").is_some();
     assert!(
         programs.is_some() || without,
-        "set YORO_TEST_HELLO_XR to the folder of `cargo xtask hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
+        "set YORO_TEST_HELLO_XR to the folder of `cargo tools hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
     );
     programs
 }

@@ -1,31 +1,34 @@
 //! The synthesis programs on compilers of mobile GPUs.
 
-use std::fs;
-use std::process::Command;
+use serde_json::Value;
+use yoro_context::{Backend, Headless};
+use yoro_tests::programs::{self, Variants};
+use yoro_tools::shader_cost::{Compilers, Options, report};
 
 /// Two generations of Adreno and one Mali; all programs on all GPUs take minutes.
-const GPUS: &str = "a650,a740,g57";
+const GPUS: [&str; 3] = ["a650", "a740", "g57"];
 
 #[test]
 fn synthesis_programs_neither_spill_nor_starve_mobile_gpus() {
-    let Some(xtask) = std::env::var_os("YORO_TEST_SHADER_COMPILERS") else {
+    let Some(folder) = std::env::var_os("YORO_TEST_SHADER_COMPILERS") else {
         let without = std::env::var_os("YORO_TEST_WITHOUT_SHADER_COMPILERS").is_some();
         assert!(without, "run `cargo xtask test shader_cost`, or set YORO_TEST_WITHOUT_SHADER_COMPILERS=1");
         return;
     };
-    let printed = Command::new(env!("CARGO_BIN_EXE_shader-programs")).output().unwrap();
-    assert!(printed.status.success(), "{}", String::from_utf8_lossy(&printed.stderr));
-    let folder = tempfile::tempdir().unwrap();
-    let programs = folder.path().join("programs.json");
-    fs::write(&programs, printed.stdout).unwrap();
-    let mut report = Command::new(xtask);
-    report.args(["shader-cost", "synthesis/", "--gpu", GPUS, "--programs"]).arg(&programs);
-    let report = report.output().unwrap();
-    let text = String::from_utf8_lossy(&report.stdout);
-    assert!(report.status.success(), "{text}{}", String::from_utf8_lossy(&report.stderr));
-    for gpu in GPUS.split(',') {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    programs::make(headless.gl(), Variants::Extreme).unwrap();
+    let texts = serde_json::to_value(programs::texts(headless.gl()).unwrap()).unwrap();
+    let Value::Array(programs) = texts else { panic!("no list") };
+    let options = Options {
+        filter: Some("synthesis/".to_owned()),
+        gpus: GPUS.map(|gpu| gpu.parse().unwrap()).to_vec(),
+        bless: false,
+    };
+    let (text, passed) = report(&options, &Compilers::at(folder.into()), programs).unwrap();
+    assert!(passed, "{text}");
+    for gpu in GPUS {
         assert!(text.contains(&format!("({gpu})\n")), "{text}");
     }
     // As OpenGL ES 3.0, as a CPU rasterizer, as a GPU, and with a source map.
-    assert_eq!(text.matches("synthesis/gather/march.frag WRITE_DEPTH ").count(), 4 * GPUS.split(',').count());
+    assert_eq!(text.matches("synthesis/gather/march.frag WRITE_DEPTH ").count(), 4 * GPUS.len());
 }

@@ -1,23 +1,22 @@
 //! Building the APK: by cargo-apk, then packed anew with the completed manifest.
 
-use std::env;
-use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
+use yoro_tools::folders::{root, target_folder};
+use yoro_tools::ndk::stand_in::StandIn;
+use yoro_tools::ndk::target::{PAGE, TARGET_API};
+use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
 
 use super::cargo_apk;
 use super::check::check;
 use super::keystore::Keystore;
 use super::loader::Loaders;
 use super::pack::pack;
-use super::stand_in::StandIn;
-use super::target::{PAGE, TARGET_API};
-use super::toolchain::{self, Rust, Surroundings, Toolchain};
-use crate::folders::{root, target_folder};
+use super::toolchain::{self, Surroundings, Toolchain};
 
 /// `apk_name` of android/Cargo.toml.
 const NAME: &str = "yoro";
@@ -46,7 +45,7 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     if surroundings.names_google() && !against.is_empty() {
         eprintln!("warning: Google's SDK and NDK are not used: {}", against.join("; "));
     }
-    toolchain::ensure(&toolchain, &surroundings, options.yes)?;
+    toolchain::ensure(&toolchain, options.yes)?;
     let target = target_folder()?;
     let cargo_apk = cargo_apk::ensure()?;
     let keystore = Keystore::choose(options.release)?;
@@ -65,17 +64,17 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
         .env_remove("RUSTFLAGS");
     let mut flags = link_flags();
     let (sdk, rust) = match &toolchain {
-        Toolchain::Google { sdk, .. } => (sdk.clone(), surroundings.rust()),
+        Toolchain::Google { sdk, .. } => (sdk.clone(), Rust::own()),
         Toolchain::StandIn => {
             let stand_in = StandIn::make(&target.join("android/stand-in"))?;
             flags.extend(stand_in.link_arguments().map(|argument| format!("-Clink-arg={argument}")));
             command.env("ANDROID_HOME", &stand_in.sdk).env("ANDROID_NDK_ROOT", &stand_in.ndk);
             build_std(&mut command, Panic::Abort);
-            (stand_in.sdk, Rust::with_source(&surroundings))
+            (stand_in.sdk, Rust::with_source())
         }
     };
     let rust = rust.context("no Rust can be found: put cargo and rustc into PATH")?;
-    use_rust(&mut command, &rust)?;
+    rust.use_in(&mut command)?;
     command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
     run(&mut command)?;
 
@@ -108,7 +107,7 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
 pub fn ready_for_tests() -> anyhow::Result<()> {
     let surroundings = Surroundings::here();
     let (toolchain, _) = Toolchain::choose(&surroundings);
-    toolchain::ensure(&toolchain, &surroundings, true)
+    toolchain::ensure(&toolchain, true)
 }
 
 /// What is asked of the linker with any NDK: pages of 16 KiB, and no name that a public library does not have.
@@ -119,53 +118,6 @@ pub fn link_flags() -> Vec<String> {
         .into();
     flags.extend(anonymous_paths());
     flags
-}
-
-/// Has panics name source files without the builder's folders, which are nobody's concern.
-pub fn anonymous_paths() -> Option<String> {
-    let cargo_home = env::var_os("CARGO_HOME")
-        .map(PathBuf::from)
-        .or_else(|| env::home_dir().map(|home| home.join(".cargo")));
-    cargo_home.map(|home| format!("--remap-path-prefix={}=cargo", home.display()))
-}
-
-/// Cargo's subcommands take the first cargo in PATH. What the cargo that started this program has set for its own must not
-/// reach it.
-///
-/// # Errors
-/// When PATH cannot be extended.
-pub fn use_rust(command: &mut Command, rust: &Rust) -> anyhow::Result<()> {
-    let mut path = OsString::from(&rust.programs);
-    if let Some(rest) = env::var_os("PATH") {
-        path = env::join_paths([rust.programs.clone()].into_iter().chain(env::split_paths(&rest)))
-            .context("PATH holds a folder with a colon in its name")?;
-    }
-    command.env("PATH", path).env("RUSTC", rust.programs.join("rustc"));
-    for variable in ["CARGO", "RUSTDOC", "RUSTUP_TOOLCHAIN", "LD_LIBRARY_PATH"] {
-        command.env_remove(variable);
-    }
-    Ok(())
-}
-
-/// What a panic does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Panic {
-    /// It ends the process.
-    Abort,
-    /// It can be caught.
-    Unwind,
-}
-
-/// Has cargo compile std from its source, without backtraces: there are no symbols to show.
-pub fn build_std(command: &mut Command, panic: Panic) {
-    let (crates, features) = match panic {
-        Panic::Abort => ("std,panic_abort", ""),
-        Panic::Unwind => ("std", "panic-unwind"),
-    };
-    command
-        .env("RUSTC_BOOTSTRAP", "1")
-        .env("CARGO_UNSTABLE_BUILD_STD", crates)
-        .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", features);
 }
 
 /// zipalign lists every file: that is shown only when something fails.

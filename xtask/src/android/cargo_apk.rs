@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
+use yoro_tools::folders::target_folder;
 
 use super::keystore;
-use crate::folders::target_folder;
 
 const CARGO_APK: &str = "0.10.0";
 

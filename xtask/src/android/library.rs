@@ -4,12 +4,13 @@ use std::fs;
 use std::process::Command;
 
 use anyhow::Context as _;
+use yoro_tools::folders::target_folder;
+use yoro_tools::ndk::stand_in::{StandIn, make_libraries, make_unwinder};
+use yoro_tools::ndk::target::Architecture;
+use yoro_tools::rust::{Panic, Rust, build_std};
 
-use super::build::{Panic, build_std, link_flags, use_rust};
-use super::stand_in::{StandIn, make_libraries, make_unwinder};
-use super::target::Architecture;
-use super::toolchain::{self, Rust, Surroundings, Toolchain};
-use crate::folders::{root, target_folder};
+use super::build::link_flags;
+use super::toolchain::{self, Surroundings, Toolchain};
 
 /// The oldest Android that a library is for (Android 11): the first whose C library can unwind, which the stand-in NDK,
 /// having no unwinder of its own, relies on.
@@ -22,14 +23,14 @@ pub const API: u32 = 30;
 pub fn cargo(architecture: Architecture) -> anyhow::Result<Command> {
     let surroundings = Surroundings::here();
     let (toolchain, _) = Toolchain::choose(&surroundings);
-    toolchain::ensure(&toolchain, &surroundings, true)?;
+    toolchain::ensure(&toolchain, true)?;
     let mut flags = link_flags();
     flags.push(format!("-Clink-arg=--target={}{API}", architecture.triple));
     let rust = match &toolchain {
         Toolchain::Google { ndk, .. } => {
             let clang = ndk.join("toolchains/llvm/prebuilt/linux-x86_64/bin/clang");
             flags.push(format!("-Clinker={}", clang.display()));
-            surroundings.rust()
+            Rust::own()
         }
         Toolchain::StandIn => {
             let stand_in = StandIn::make(&target_folder()?.join("android/stand-in"))?;
@@ -45,16 +46,14 @@ pub fn cargo(architecture: Architecture) -> anyhow::Result<Command> {
                 ["-fuse-ld=lld".to_owned(), format!("--sysroot={}", folder.display())]
                     .map(|a| format!("-Clink-arg={a}")),
             );
-            Rust::with_source(&surroundings)
+            Rust::with_source()
         }
     };
     let rust = rust.context("no Rust can be found: put cargo and rustc into PATH")?;
-    let mut command = Command::new(rust.programs.join("cargo"));
-    command.current_dir(root()).env_remove("RUSTFLAGS");
+    let mut command = rust.cargo()?;
     if toolchain == Toolchain::StandIn {
         build_std(&mut command, Panic::Unwind);
     }
-    use_rust(&mut command, &rust)?;
     command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
     Ok(command)
 }

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use goblin::elf::{Elf, header};
-
-use super::target::ARCHITECTURES;
+use yoro_tools::ndk::target::ARCHITECTURES;
 
 /// The name that the application looks for.
 pub const FILE: &str = "libopenxr_loader.so";

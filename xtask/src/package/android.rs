@@ -5,12 +5,14 @@ use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use yoro_tools::folders::{root, target_folder};
+use yoro_tools::ndk::target::{ARCHITECTURES, Architecture};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use super::{VERSION, build};
-use crate::android::{ARCHITECTURES, Architecture, LIBRARY_API, library_cargo};
-use crate::folders::{root, target_folder};
+
+use crate::android::{LIBRARY_API, library_cargo};
 
 /// Soname and file: Android's packages know no versions of libraries.
 const LIBRARY: &str = "libyoro.so";
@@ -47,7 +49,7 @@ pub fn pack(files: &[(String, Vec<u8>)], packed: &Path) -> anyhow::Result<()> {
         zip.start_file(name.as_str(), SimpleFileOptions::default())?;
         zip.write_all(content)?;
     }
-    crate::packages::write(packed, zip.finish()?.into_inner())?;
+    yoro_tools::packages::write(packed, zip.finish()?.into_inner())?;
     println!("{}", packed.display());
     Ok(())
 }

@@ -6,11 +6,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use yoro_tools::folders::{root, target_folder};
+use yoro_tools::ndk::target::{ARCHITECTURES, Architecture};
 
 use super::android::{android_manifest, pack, read};
 use super::{VERSION, compile};
-use crate::android::{ARCHITECTURES, Architecture, library_cargo};
-use crate::folders::{root, target_folder};
+
+use crate::android::library_cargo;
 
 const LIBRARY: &str = "libyoro_layer.so";
 const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
+use yoro_tools::arm64;
+use yoro_tools::cargo::cargo;
+use yoro_tools::folders::{root, target_folder};
 
 use super::texts::{cmake, cmake_version, pkg_config, soname, with_links};
 use super::{Built, VERSION, build, copy, write};
-use crate::android::{ARM64_TRIPLE, arm64_cargo};
-use crate::cargo::cargo;
-use crate::folders::{root, target_folder};
 
 /// For this machine.
 pub fn native(folder: &Path) -> anyhow::Result<PathBuf> {
@@ -21,8 +21,8 @@ pub fn native(folder: &Path) -> anyhow::Result<PathBuf> {
 
 /// For arm64, by this machine's clang and Debian's libraries for arm64.
 pub fn aarch64(folder: &Path) -> anyhow::Result<PathBuf> {
-    let cargo = arm64_cargo()?;
-    let built = build(cargo, Some(ARM64_TRIPLE), &soname(), &target_folder()?.join("android/arm64/capi"))?;
+    let cargo = arm64::cargo()?;
+    let built = build(cargo, Some(arm64::TRIPLE), &soname(), &target_folder()?.join("android/arm64/capi"))?;
     archive(&built, "aarch64", "llvm-strip", folder)
 }
 

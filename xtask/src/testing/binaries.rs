@@ -8,8 +8,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 use serde_json::Value;
-
-use crate::cargo;
+use yoro_tools::cargo;
 
 /// A test program.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,10 +7,12 @@ use std::thread::{Scope, ScopedJoinHandle};
 use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
+use yoro_tools::shader_cost::Compilers;
+use yoro_tools::{apt, arm64, hello_xr, monado};
 
 use super::summary::Summary;
-use crate::shader_cost::Compilers;
-use crate::{android, apt, hello_xr, monado, package, setup, web};
+
+use crate::{android, package, setup, web};
 
 /// What is here.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +33,7 @@ pub struct Equipment {
     monado: Equipped,
     /// The folder of an OpenXR application for it.
     hello_xr: Equipped,
-    /// This program, for which there are compilers for mobile GPUs.
+    /// The folder of compilers for mobile GPUs.
     shader_compilers: Equipped,
     /// This program, which has built the page.
     web: Equipped,
@@ -191,7 +193,7 @@ pub struct Preparation<'scope> {
     /// Monado, and hello_xr, which begins with it.
     xr: Option<ScopedJoinHandle<'scope, ([Equipped; 2], Duration)>>,
     shader_compilers: Option<ScopedJoinHandle<'scope, (Equipped, Duration)>>,
-    host: Option<ScopedJoinHandle<'scope, (anyhow::Result<android::Host>, Duration)>>,
+    host: Option<ScopedJoinHandle<'scope, (anyhow::Result<arm64::Host>, Duration)>>,
     webxr: Option<ScopedJoinHandle<'scope, (Equipped, Duration)>>,
 }
 
@@ -209,7 +211,7 @@ impl System {
         let osmesa = setup::ensure()?.osmesa;
         let vulkan = !wanted.vulkan || setup::vulkan();
         let apk = wanted.apk.then(android::ready_for_tests);
-        let arm64 = wants_arm64(wanted).then(android::Host::ready);
+        let arm64 = wants_arm64(wanted).then(arm64::Host::ready);
         let absent = if wanted.browser { Equipped::Missing } else { Equipped::NotWanted };
         let browser = setup::browser(wanted.browser).map_or(absent, Equipped::At);
         Ok(Self { osmesa, vulkan, apk, arm64, browser })
@@ -247,8 +249,8 @@ impl<'scope> Preparation<'scope> {
         };
         let wants_xr = wanted.monado || wanted.hello_xr;
         let fetch_compilers = || {
-            let program = Compilers::make().and_then(|_| Ok(env::current_exe()?));
-            Equipped::or_missing(program, "shader compilers for mobile GPUs cannot be set up here")
+            let folder = Compilers::make().map(|compilers| compilers.folder().to_owned());
+            Equipped::or_missing(folder, "shader compilers for mobile GPUs cannot be set up here")
         };
         let fetch_webxr =
             || Equipped::or_missing(web::emulator(), "the WebXR emulator cannot be fetched here");
@@ -258,7 +260,7 @@ impl<'scope> Preparation<'scope> {
             xr: wants_xr.then(|| scope.spawn(move || timed(fetch_xr))),
             shader_compilers: wanted.shader_compilers.then(|| scope.spawn(move || timed(fetch_compilers))),
             webxr: wanted.web.then(|| scope.spawn(move || timed(fetch_webxr))),
-            host: wants_arm64(wanted).then(|| scope.spawn(|| timed(android::Host::fetch))),
+            host: wants_arm64(wanted).then(|| scope.spawn(|| timed(arm64::Host::fetch))),
         })
     }
 

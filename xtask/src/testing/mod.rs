@@ -17,9 +17,9 @@ use std::thread;
 use std::time::Instant;
 
 use anyhow::bail;
+use yoro_tools::cargo::cargo;
+use yoro_tools::folders::target_folder;
 
-use crate::cargo::cargo;
-use crate::folders::target_folder;
 use binaries::Program;
 use equipment::{Equipment, Preparation, Wanted};
 use plan::{Job, Times, plan};

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
-
-use crate::folders::target_folder;
+use yoro_tools::folders::target_folder;
 
 const PACKAGE: &str = "iwer@2.5.0";
 

@@ -5,14 +5,12 @@ mod serve;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
-
-use crate::android::{Panic, Rust, Surroundings, anonymous_paths, build_std, use_rust};
-use crate::cargo::{announce, cargo};
-use crate::folders::{root, target_folder};
+use yoro_tools::cargo::{announce, cargo};
+use yoro_tools::folders::{root, target_folder};
+use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
 
 pub use emulator::emulator;
 pub use serve::serve;
@@ -42,7 +40,7 @@ pub fn build() -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let target = target_folder()?;
     // Its profile has the name of the page's folder.
-    let module = compile(&Surroundings::here(), &target.join("wasm"))?;
+    let module = compile(&target.join("wasm"))?;
     let (folder, unfinished) = (target.join("web"), target.join("web.part"));
     remove(&unfinished)?;
     copy(&root().join("app/web/page"), &unfinished)?;
@@ -62,27 +60,24 @@ pub fn build() -> anyhow::Result<PathBuf> {
 
 /// Whether there are a Rust and a linker for it.
 pub fn can_be_built() -> bool {
-    let here = Surroundings::here();
-    Rust::for_target(&here, TRIPLE).is_some_and(|(rust, _)| rust.wasm_linker(&here).is_some())
+    Rust::for_target(TRIPLE).is_some_and(|(rust, _)| rust.wasm_linker().is_some())
 }
 
 /// Compiles the module; its file.
-fn compile(surroundings: &Surroundings, target: &Path) -> anyhow::Result<PathBuf> {
-    let (rust, with_std) = Rust::for_target(surroundings, TRIPLE).with_context(|| {
+fn compile(target: &Path) -> anyhow::Result<PathBuf> {
+    let (rust, with_std) = Rust::for_target(TRIPLE).with_context(|| {
         format!(
             "no Rust can compile for browsers: rustup target add {TRIPLE}, or rustup component add rust-src, or \
              apt-get install rustc-web cargo-web rust-web-src"
         )
     })?;
     let arguments = ["build", "--package", "yoro-web", "--profile", "web", "--target", TRIPLE];
-    let mut command = Command::new(rust.programs.join("cargo"));
-    command.args(arguments).current_dir(root()).env("CARGO_TARGET_DIR", target).env_remove("RUSTFLAGS");
+    let mut command = rust.cargo()?;
+    command.args(arguments).env("CARGO_TARGET_DIR", target);
     if with_std {
         build_std(&mut command, Panic::Abort);
     }
-    use_rust(&mut command, &rust)?;
-    let linker =
-        rust.wasm_linker(surroundings).context("there is no linker for WebAssembly: apt-get install lld")?;
+    let linker = rust.wasm_linker().context("there is no linker for WebAssembly: apt-get install lld")?;
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     command.env("CARGO_ENCODED_RUSTFLAGS", anonymous_paths().unwrap_or_default());
     announce(&arguments);

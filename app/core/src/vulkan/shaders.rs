@@ -1,4 +1,4 @@
-//! The shaders of the passes as SPIR-V, compiled beforehand from the files of `yoro-shaders`: `cargo xtask spirv`.
+//! The shaders of the passes as SPIR-V, compiled beforehand from the files of `yoro-shaders`: `cargo tools spirv`.
 
 use crate::synthesis::Edges;
 
@@ -82,7 +82,7 @@ mod tests {
     const GLSLANG: &str = "glslangValidator";
     /// Vulkan 1.0's SPIR-V, optimized for size, without names and lines.
     const ARGUMENTS: [&str; 3] = ["-V", "-Os", "-g0"];
-    const REMEDY: &str = "run `cargo xtask spirv`";
+    const REMEDY: &str = "run `cargo tools spirv`";
 
     fn folder() -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv")

@@ -14,7 +14,7 @@ use yoro::gl::{Context, Destination, Filter, Format, RenderTarget};
 use yoro::synthesis::{Gather, Source, Synthesis, Uniforms};
 use yoro_render::{PreparedScene, RenderSettings, Selection, ViewTargets};
 
-/// The committed table of `cargo xtask shader-cost`.
+/// The committed table of `cargo tools shader-cost`.
 const TABLE: &str = include_str!("../../../../docs/shader-cost.csv");
 /// Pixels of a tile, one fragment of the first two passes.
 const TILE: [u32; 2] = [16, 8];
@@ -132,7 +132,7 @@ impl Listing {
             // Mali's waves have 16 lanes; its rows do not say so.
             Some(Listing { all, loops, lanes: row[7].parse().unwrap_or(16) })
         };
-        find().with_context(|| format!("docs/shader-cost.csv has no readable row {gpu},{program}: renew it with cargo xtask shader-cost --bless"))
+        find().with_context(|| format!("docs/shader-cost.csv has no readable row {gpu},{program}: renew it with cargo tools shader-cost --bless"))
     }
 
     /// What stands outside of the loops.

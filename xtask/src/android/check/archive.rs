@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::io::{Cursor, Read as _};
 
 use anyhow::Context as _;
+use yoro_tools::ndk::target::{ARCHITECTURES, PAGE};
 use zip::{CompressionMethod, ZipArchive};
 
-use super::super::target::{ARCHITECTURES, PAGE};
 use super::report::{Report, some};
 
 /// Mapped out of the APK.

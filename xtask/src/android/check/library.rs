@@ -6,10 +6,10 @@ use goblin::elf::program_header::{PF_W, PF_X, PT_GNU_RELRO, PT_LOAD, PT_TLS};
 use goblin::elf::section_header::SHN_UNDEF;
 use goblin::elf::sym::STB_WEAK;
 use goblin::elf::{Elf, Sym, dynamic, header};
+use yoro_tools::ndk::target::{ARCHITECTURES, Architecture, MIN_API, PAGE};
 
 use super::super::loader;
-use super::super::symbols::Public;
-use super::super::target::{ARCHITECTURES, Architecture, MIN_API, PAGE};
+use super::public::Public;
 use super::report::{Report, some};
 
 /// What NativeActivity looks for.
@@ -141,7 +141,7 @@ fn symbols(
     let unknown: Vec<&str> = undefined.iter().filter(|name| !offered.contains(**name)).copied().collect();
     let problem = (!unknown.is_empty()).then(|| {
         let lists = match public {
-            Public::Lists => " (or missing in xtask/android/symbols)",
+            Public::Lists => " (or missing in tools/ndk/symbols)",
             Public::Stubs(_) => "",
         };
         format!("{} not public since API {MIN_API} in what it needs{lists}", some(&unknown))

@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
+use yoro_tools::ndk::target::{ARCHITECTURES, MIN_API, TARGET_API};
 
 use super::super::manifest::{NATIVE_LIBRARIES, PROPERTIES};
-use super::super::target::{ARCHITECTURES, MIN_API, TARGET_API};
 use super::super::toolchain;
 use super::archive::Archive;
 use super::report::Report;

@@ -3,6 +3,7 @@
 mod archive;
 mod library;
 mod manifest;
+mod public;
 mod report;
 mod signature;
 
@@ -11,9 +12,9 @@ use std::path::Path;
 
 use anyhow::{Context as _, bail};
 
-use super::symbols::Public;
 use super::toolchain::Surroundings;
 pub use archive::Archive;
+use public::Public;
 use report::Report;
 
 /// A release with its built-in scenes is smaller than this, in bytes.

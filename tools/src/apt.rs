@@ -1,9 +1,9 @@
-//! Programs of the system, and apt, which brings them.
+//! What is needed of the system, and apt, which brings it.
 
 use std::env;
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal as _, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -18,6 +18,67 @@ pub fn turn() -> MutexGuard<'static, ()> {
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// One thing that is needed, and where it is or how to get it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Need {
+    /// Its name, for people.
+    pub what: &'static str,
+    /// Where it is, or what is wrong.
+    pub found: Result<String, String>,
+    /// What to do when it is missing.
+    pub remedy: String,
+    /// Debian's packages that bring it.
+    pub packages: &'static [&'static str],
+}
+
+impl Need {
+    /// A program in PATH.
+    pub fn program(name: &'static str, packages: &'static [&'static str]) -> Self {
+        let found = find_program(name).map(|path| path.display().to_string());
+        Self {
+            what: name,
+            found: found.ok_or_else(|| "not in PATH".to_owned()),
+            remedy: format!("apt-get install {}", packages.join(" ")),
+            packages,
+        }
+    }
+
+    /// A file or folder.
+    pub fn file(what: &'static str, path: &Path, remedy: &str, packages: &'static [&'static str]) -> Self {
+        let shown = path.display();
+        Self {
+            what,
+            found: if path.exists() { Ok(shown.to_string()) } else { Err(format!("{shown} is missing")) },
+            remedy: remedy.to_owned(),
+            packages,
+        }
+    }
+}
+
+/// Installs what is missing, after asking unless `yes`.
+///
+/// # Errors
+/// When something is still missing: what, and the remedy.
+pub fn provide(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
+    let missing = || needs().into_iter().filter(|need| need.found.is_err()).collect::<Vec<_>>();
+    let at_first = missing();
+    let groups: Vec<&[&str]> =
+        at_first.iter().map(|need| need.packages).filter(|packages| !packages.is_empty()).collect();
+    if !groups.is_empty() && find_program("apt-get").is_some() {
+        consent(&groups.concat(), yes)?;
+        if let Err(error) = install(&groups) {
+            eprintln!("warning: {error:#}");
+        }
+    }
+    let still = missing();
+    if still.is_empty() {
+        return Ok(());
+    }
+    let sentences: Vec<String> =
+        still.iter().map(|need| format!("{} is missing ({})", need.what, need.remedy)).collect();
+    bail!("{}", sentences.join(", "))
+}
+
 /// The file that a command's name stands for.
 pub fn find_program(name: impl AsRef<OsStr>) -> Option<PathBuf> {
     let path = env::var_os("PATH")?;
@@ -29,11 +90,11 @@ pub fn installs_by_itself() -> bool {
     is_root() && find_program("apt-get").is_some()
 }
 
-/// The packages are to be installed: because `yes` was said beforehand, or is said now.
+/// Asks whether to install packages, unless `yes`.
 ///
 /// # Errors
 /// When nobody is there to be asked, or the answer is no; the remedy is in it.
-pub fn consent(packages: &[&str], yes: bool) -> anyhow::Result<()> {
+fn consent(packages: &[&str], yes: bool) -> anyhow::Result<()> {
     let list = packages.join(" ");
     if yes {
         return Ok(());

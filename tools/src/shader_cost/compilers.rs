@@ -114,6 +114,16 @@ impl Compilers {
         Ok(compilers)
     }
 
+    /// Those that [`make`](Self::make) has left in a folder.
+    pub fn at(folder: PathBuf) -> Self {
+        Self { folder }
+    }
+
+    /// Where they are.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     fn root(&self) -> PathBuf {
         self.folder.join("root")
     }

@@ -16,8 +16,8 @@ use super::symbols::{LISTS, listed};
 use super::target::{ARCHITECTURES, Architecture, MIN_API, TARGET_API};
 use crate::apt::find_program;
 
-const CRTBEGIN: &str = include_str!("../../android/crtbegin_so.c");
-const UNWIND: &str = include_str!("../../android/unwind.c");
+const CRTBEGIN: &str = include_str!("../../ndk/crtbegin_so.c");
+const UNWIND: &str = include_str!("../../ndk/unwind.c");
 /// Debian's build of Android's framework: it defines what manifests and resources may say.
 pub const FRAMEWORK: &str = "/usr/share/android-framework-res/framework-res.apk";
 

@@ -9,12 +9,8 @@ pub const PAGE: u64 = 16 * 1024;
 
 /// The processors that the APK carries libraries for.
 pub const ARCHITECTURES: [Architecture; 2] = [
-    Architecture {
-        triple: "aarch64-linux-android",
-        abi: "arm64-v8a",
-        machine: goblin::elf::header::EM_AARCH64,
-    },
-    Architecture { triple: "x86_64-linux-android", abi: "x86_64", machine: goblin::elf::header::EM_X86_64 },
+    Architecture { triple: "aarch64-linux-android", abi: "arm64-v8a", machine: 183 },
+    Architecture { triple: "x86_64-linux-android", abi: "x86_64", machine: 62 },
 ];
 
 /// A processor, by its names.

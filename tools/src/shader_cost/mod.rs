@@ -1,4 +1,4 @@
-//! `cargo xtask shader-cost`: what the shader programs cost on mobile GPUs, by Mesa's compilers and without the GPUs.
+//! `cargo tools shader-cost`: what the shader programs cost on mobile GPUs, by Mesa's compilers and without the GPUs.
 //!
 //! The library makes all programs in a context of this machine, `shader-programs` of tests/ prints their texts, and
 //! [`Compilers`] compile them. What is found is held against `docs/shader-cost.csv`; docs/performance.md says how to read it.
@@ -10,7 +10,7 @@ mod table;
 
 use std::collections::VecDeque;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
 use std::thread;
 
@@ -20,8 +20,8 @@ use serde_json::Value;
 pub use compilers::Compilers;
 pub use gpus::Gpu;
 
-use crate::folders::{root, target_folder};
-use crate::{cargo, packages, setup};
+use crate::folders::root;
+use crate::{cargo, packages};
 use compilers::Run;
 use gpus::{GPUS, IN_TABLE};
 use table::{Row, Table};
@@ -55,7 +55,7 @@ enum Fault {
 }
 
 /// Where people find the following.
-const EXCEPTIONS_IN: &str = "xtask/src/shader_cost/mod.rs";
+const EXCEPTIONS_IN: &str = "tools/src/shader_cost/mod.rs";
 
 const EXCEPTIONS: [Exception; 2] = [
     Exception {
@@ -82,24 +82,26 @@ pub struct Options {
     pub filter: Option<String>,
     /// Instead of those of the table.
     pub gpus: Vec<Gpu>,
-    /// A file that `shader-programs` has written, instead of running it.
-    pub programs: Option<PathBuf>,
     /// Renew the table.
     pub bless: bool,
 }
 
-/// Compiles, prints and compares; the text, and whether no program has a fault.
+/// Compiles programs, JSON as `shader-programs` writes it, and compares the figures with the table. Returns a text, and
+/// true if no program has a fault.
 ///
 /// # Errors
-/// When the compilers cannot be had or do not work, or no program is called so.
-pub fn report(options: &Options) -> anyhow::Result<(String, bool)> {
+/// When the compilers do not work, or no program is called so.
+pub fn report(
+    options: &Options,
+    compilers: &Compilers,
+    programs: Vec<Value>,
+) -> anyhow::Result<(String, bool)> {
     let gpus = if options.gpus.is_empty() { GPUS[..IN_TABLE].to_vec() } else { options.gpus.clone() };
-    let compilers = Compilers::make()?;
-    let programs = chosen(programs(options.programs.as_deref())?, options.filter.as_deref())?;
+    let programs = chosen(programs, options.filter.as_deref())?;
     let names: Vec<String> = programs.iter().map(|program| text_of(program, "name")).collect();
-    let file = target_folder()?.join(format!("shader-cost/programs-{}.json", std::process::id()));
+    let file = compilers.folder().join(format!("programs-{}.json", std::process::id()));
     packages::write(&file, serde_json::to_string(&programs)?)?;
-    let runs = compile(&compilers, &gpus, &file);
+    let runs = compile(compilers, &gpus, &file);
     fs::remove_file(&file).ok();
     let mut found = Table::default();
     let mut faults = Vec::new();
@@ -146,17 +148,13 @@ pub fn report(options: &Options) -> anyhow::Result<(String, bool)> {
     Ok((text, faults.is_empty()))
 }
 
-/// Texts of all programs.
-fn programs(file: Option<&Path>) -> anyhow::Result<Vec<Value>> {
-    let text = match file {
-        Some(file) => {
-            fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))?
-        }
-        None => {
-            setup::ensure()?;
-            cargo::output(&["run", "--quiet", "--package", "yoro-tests", "--bin", "shader-programs"])?
-        }
-    };
+/// Returns the texts of all programs, as `shader-programs` of tests/ writes them.
+///
+/// # Errors
+/// When it does not compile or run.
+pub fn programs() -> anyhow::Result<Vec<Value>> {
+    cargo::succeeds(&["xtask", "setup"], &[]);
+    let text = cargo::output(&["run", "--quiet", "--package", "yoro-tests", "--bin", "shader-programs"])?;
     serde_json::from_str(&text).context("shader-programs has written something else than a list of programs")
 }
 

@@ -40,6 +40,7 @@ pub struct Gpu {
     pub name: &'static str,
     /// What it is, for people.
     pub title: &'static str,
+    /// Mesa's compiler for it.
     pub compiler: Compiler,
     /// What FD_GPU_ID or PAN_GPU_ID says.
     pub id: &'static str,

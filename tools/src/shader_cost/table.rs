@@ -213,7 +213,7 @@ impl Table {
 
     /// As [`Table::parse`] reads it.
     pub fn to_text(&self) -> String {
-        let mut text = format!("# Mesa {}; cargo xtask shader-cost --bless\n{COLUMNS}\n", self.mesa);
+        let mut text = format!("# Mesa {}; cargo tools shader-cost --bless\n{COLUMNS}\n", self.mesa);
         let optional = |number: Option<u32>| number.map_or_else(String::new, |number| number.to_string());
         for row in &self.rows {
             // Writing to a string cannot fail.

@@ -10,11 +10,12 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use super::build::{Panic, build_std, use_rust};
-use super::toolchain::{self, Rust, Surroundings};
-use crate::folders::{root, target_folder};
+use crate::apt::{self, Need};
+use crate::folders::target_folder;
 use crate::packages::{self, PrivateApt, quoted, write_launcher};
+use crate::rust::{Panic, Rust, build_std, source};
 
+/// Rust's name of the target.
 pub const TRIPLE: &str = "aarch64-unknown-linux-gnu";
 /// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs; libgcc's package has a number in its name.
 const PACKAGES: [&str; 5] = ["libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri", "libc6-dev"];
@@ -32,7 +33,11 @@ impl Host {
     /// # Errors
     /// When something cannot be had on this machine.
     pub fn ready() -> anyhow::Result<()> {
-        toolchain::ensure_cross(&Surroundings::here(), TRIPLE)
+        let needs = || {
+            let rust = Rust::for_target(TRIPLE).map(|(rust, _)| rust);
+            vec![Need::program("clang", &["clang"]), Need::program("ld.lld", &["lld"]), source(rust.as_ref())]
+        };
+        apt::provide(needs, true)
     }
 
     /// Fetches what it runs in.
@@ -49,7 +54,7 @@ impl Host {
     /// # Errors
     /// When it does not compile although everything is there.
     pub fn build(&self) -> anyhow::Result<PathBuf> {
-        let program = build(&Surroundings::here(), &self.system, &self.folder.join("build"))?;
+        let program = build(&self.system, &self.folder.join("build"))?;
         let launcher = self.folder.join("yoro-android-host");
         // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
         let text = format!(
@@ -123,18 +128,16 @@ fn newest_libgcc(names: &str) -> Option<String> {
 pub fn cargo() -> anyhow::Result<Command> {
     Host::ready()?;
     let system = Host::fetch()?.system;
-    command(&Surroundings::here(), &system, Panic::Unwind)
+    command(&system, Panic::Unwind)
 }
 
-fn command(surroundings: &Surroundings, system: &System, panic: Panic) -> anyhow::Result<Command> {
-    let (rust, with_std) = Rust::for_target(surroundings, TRIPLE)
-        .with_context(|| format!("no Rust can compile for {TRIPLE}"))?;
-    let mut command = Command::new(rust.programs.join("cargo"));
-    command.current_dir(root()).env_remove("RUSTFLAGS");
+fn command(system: &System, panic: Panic) -> anyhow::Result<Command> {
+    let (rust, with_std) =
+        Rust::for_target(TRIPLE).with_context(|| format!("no Rust can compile for {TRIPLE}"))?;
+    let mut command = rust.cargo()?;
     if with_std {
         build_std(&mut command, panic);
     }
-    use_rust(&mut command, &rust)?;
     let flags = [
         "-Clinker=clang".to_owned(),
         "-Clink-arg=--target=aarch64-linux-gnu".to_owned(),
@@ -146,8 +149,8 @@ fn command(surroundings: &Surroundings, system: &System, panic: Panic) -> anyhow
 }
 
 /// Compiles the host for arm64; the program.
-fn build(surroundings: &Surroundings, system: &System, target: &Path) -> anyhow::Result<PathBuf> {
-    let mut command = command(surroundings, system, Panic::Abort)?;
+fn build(system: &System, target: &Path) -> anyhow::Result<PathBuf> {
+    let mut command = command(system, Panic::Abort)?;
     let arguments =
         ["build", "--package", "yoro-android-host", "--package", "yoro-openxr-stub", "--target", TRIPLE];
     command.args(arguments).env("CARGO_TARGET_DIR", target).env("CARGO_PROFILE_DEV_PANIC", "abort");

@@ -1,0 +1,66 @@
+//! `cargo tools`: what maintainers run.
+
+mod spirv;
+
+use std::io::{self, Write as _};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use yoro_tools::{hello_xr, monado, shader_cost};
+
+/// What maintainers of yoro run
+#[derive(Parser)]
+#[command(name = "cargo tools", bin_name = "cargo tools", arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Print what the shader programs cost on mobile GPUs, by Mesa's compilers: instructions, registers, waves, fetches, spills
+    ShaderCost {
+        /// Only programs whose names contain this
+        filter: Option<String>,
+        /// These GPUs instead of those of docs/shader-cost.csv
+        #[arg(long = "gpu", value_name = "NAME", value_delimiter = ',')]
+        gpus: Vec<shader_cost::Gpu>,
+        /// Renew docs/shader-cost.csv
+        #[arg(long)]
+        bless: bool,
+    },
+    /// Compile the synthesis shaders for Vulkan: app/core/src/vulkan/spirv
+    Spirv,
+    /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
+    Monado,
+    /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
+    HelloXr,
+}
+
+fn main() -> ExitCode {
+    match perform(Arguments::parse().task) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Returns false if a shader has a fault.
+fn perform(task: Task) -> anyhow::Result<bool> {
+    let (text, passed) = match task {
+        Task::ShaderCost { filter, gpus, bless } => {
+            let compilers = shader_cost::Compilers::make()?;
+            let options = shader_cost::Options { filter, gpus, bless };
+            shader_cost::report(&options, &compilers, shader_cost::programs()?)?
+        }
+        Task::Spirv => (spirv::compile()?, true),
+        Task::Monado => (monado::usage()?, true),
+        Task::HelloXr => (hello_xr::usage()?, true),
+    };
+    // A reader such as `head` may have gone before the end.
+    let _ = io::stdout().write_all(text.as_bytes());
+    Ok(passed)
+}

@@ -1,0 +1,5 @@
+//! Building for Android without Google's SDK and NDK.
+
+pub mod stand_in;
+pub mod symbols;
+pub mod target;

@@ -1,0 +1,196 @@
+//! Rust for other machines than this one: with rustup's std for them, or with std compiled from its source.
+
+use std::env;
+use std::ffi::OsString;
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use anyhow::Context as _;
+
+use crate::apt::{Need, find_program};
+use crate::folders::root;
+
+/// A cargo and its rustc.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rust {
+    /// The folder of the programs.
+    programs: PathBuf,
+    sysroot: PathBuf,
+    /// Major and minor.
+    version: (u32, u32),
+}
+
+/// What a panic does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Panic {
+    /// It ends the process.
+    Abort,
+    /// It can be caught.
+    Unwind,
+}
+
+impl Rust {
+    /// The user's own.
+    pub fn own() -> Option<Self> {
+        // Cargo names itself to what it runs; behind rustup's proxy that is the real one.
+        let cargo = env::var_os("CARGO").map(PathBuf::from).or_else(|| find_program("cargo"))?;
+        Self::at(cargo.parent()?.to_owned())
+    }
+
+    fn at(programs: PathBuf) -> Option<Self> {
+        if !programs.join("cargo").is_file() {
+            return None;
+        }
+        let ask = |arguments: &[&str]| {
+            let output = Command::new(programs.join("rustc")).args(arguments).output().ok()?;
+            output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+        };
+        let version = version(&ask(&["--version"])?)?;
+        let sysroot = PathBuf::from(ask(&["--print", "sysroot"])?);
+        Some(Self { programs, sysroot, version })
+    }
+
+    /// A Rust that can compile std: the user's own, where it has std's source, or Debian's.
+    pub fn with_source() -> Option<Self> {
+        let fits = |rust: &Self| rust.is_new_enough() && rust.has_source();
+        Self::own().filter(fits).or_else(|| Self::at("/usr/bin".into()).filter(fits))
+    }
+
+    /// A Rust that can compile for `triple`, and whether it has to compile std, too.
+    pub fn for_target(triple: &str) -> Option<(Self, bool)> {
+        let prebuilt = Self::own().filter(|rust| rust.has_target(triple)).map(|rust| (rust, false));
+        prebuilt.or_else(|| Some((Self::with_source()?, true)))
+    }
+
+    /// True if it has std for `triple`.
+    pub fn has_target(&self, triple: &str) -> bool {
+        self.sysroot.join("lib/rustlib").join(triple).join("lib").is_dir()
+    }
+
+    fn has_source(&self) -> bool {
+        self.sysroot.join("lib/rustlib/src/rust/library/std/Cargo.toml").is_file()
+    }
+
+    fn is_new_enough(&self) -> bool {
+        version(env!("CARGO_PKG_RUST_VERSION")).is_some_and(|minimum| self.version >= minimum)
+    }
+
+    /// LLVM's linker for WebAssembly: the one that comes with this Rust or with the user's, else the system's. Debian's
+    /// Rust has none of its own.
+    pub fn wasm_linker(&self) -> Option<PathBuf> {
+        let own = self.rust_lld().or_else(|| Self::own()?.rust_lld());
+        own.or_else(|| find_program("wasm-ld"))
+    }
+
+    fn rust_lld(&self) -> Option<PathBuf> {
+        let hosts = fs::read_dir(self.sysroot.join("lib/rustlib")).ok()?;
+        hosts.flatten().map(|host| host.path().join("bin/rust-lld")).find(|file| file.is_file())
+    }
+
+    /// Its cargo, in the workspace's root. Flags for this machine's processor are left out.
+    ///
+    /// # Errors
+    /// When PATH cannot be extended.
+    pub fn cargo(&self) -> anyhow::Result<Command> {
+        let mut command = Command::new(self.programs.join("cargo"));
+        command.current_dir(root()).env_remove("RUSTFLAGS");
+        self.use_in(&mut command)?;
+        Ok(command)
+    }
+
+    /// Has a command use this Rust: cargo's subcommands take the first cargo in PATH. What the cargo that started this
+    /// program has set for its own must not reach it.
+    ///
+    /// # Errors
+    /// When PATH cannot be extended.
+    pub fn use_in(&self, command: &mut Command) -> anyhow::Result<()> {
+        let mut path = OsString::from(&self.programs);
+        if let Some(rest) = env::var_os("PATH") {
+            path = env::join_paths([self.programs.clone()].into_iter().chain(env::split_paths(&rest)))
+                .context("PATH holds a folder with a colon in its name")?;
+        }
+        command.env("PATH", path).env("RUSTC", self.programs.join("rustc"));
+        for variable in ["CARGO", "RUSTDOC", "RUSTUP_TOOLCHAIN", "LD_LIBRARY_PATH"] {
+            command.env_remove(variable);
+        }
+        Ok(())
+    }
+}
+
+/// Has cargo compile std from its source, without backtraces: there are no symbols to show.
+pub fn build_std(command: &mut Command, panic: Panic) {
+    let (crates, features) = match panic {
+        Panic::Abort => ("std,panic_abort", ""),
+        Panic::Unwind => ("std", "panic-unwind"),
+    };
+    command
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("CARGO_UNSTABLE_BUILD_STD", crates)
+        .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", features);
+}
+
+/// The rustc flag by which panics name source files without the builder's folders, which are nobody's concern.
+pub fn anonymous_paths() -> Option<String> {
+    let cargo_home = env::var_os("CARGO_HOME")
+        .map(PathBuf::from)
+        .or_else(|| env::home_dir().map(|home| home.join(".cargo")));
+    cargo_home.map(|home| format!("--remap-path-prefix={}=cargo", home.display()))
+}
+
+/// The need for std's source, which `rust` has.
+pub fn source(rust: Option<&Rust>) -> Need {
+    let minimum = env!("CARGO_PKG_RUST_VERSION");
+    let found = rust.map(|rust| {
+        let (major, minor) = rust.version;
+        format!("{} ({major}.{minor})", rust.programs.join("rustc").display())
+    });
+    Need {
+        what: "std's source",
+        found: found.ok_or_else(|| format!("no Rust since {minimum} has it")),
+        remedy: "apt-get install rustc-web cargo-web rust-web-src (Debian 12 with its security updates), \
+                 or rustup component add rust-src"
+            .to_owned(),
+        packages: &["rustc-web", "cargo-web", "rust-web-src"],
+    }
+}
+
+/// Reads `1.96` of `rustc 1.96.0 (ac68faa20 2026-05-25)`.
+fn version(text: &str) -> Option<(u32, u32)> {
+    let number = text.split_whitespace().find(|word| word.starts_with(|c: char| c.is_ascii_digit()))?;
+    let mut parts = number.split('.');
+    Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn rust(sysroot: &Path, version: (u32, u32)) -> Rust {
+        Rust { programs: sysroot.join("bin"), sysroot: sysroot.to_owned(), version }
+    }
+
+    #[test]
+    fn versions_are_read() {
+        assert_eq!(
+            version("rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)"),
+            Some((1, 96))
+        );
+        assert_eq!(version("1.95"), Some((1, 95)));
+        assert_eq!(version("rustc unknown"), None);
+    }
+
+    #[test]
+    fn std_needs_a_source_and_a_new_rust() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        assert!(!rust(at, (9, 0)).has_source());
+        fs::create_dir_all(at.join("lib/rustlib/src/rust/library/std")).unwrap();
+        fs::write(at.join("lib/rustlib/src/rust/library/std/Cargo.toml"), "").unwrap();
+        assert!(rust(at, (9, 0)).has_source());
+        assert!(rust(at, (1, 95)).is_new_enough() && rust(at, (2, 0)).is_new_enough());
+        assert!(!rust(at, (1, 85)).is_new_enough());
+    }
+}
