@@ -10,8 +10,8 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use android_activity::{AndroidApp, MainEvent, PollEvent, WindowManagerFlags};
-use yoro::gl::{Context, Destination};
 use yoro_context::android::{Window, WindowError};
+use yoro_gl::{Context, Destination};
 use yoro_lenses::{MotionSample, Screen};
 use yoro_protocol::DisplayKind;
 use yoro_protocol::telemetry::DeviceState;

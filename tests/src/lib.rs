@@ -8,8 +8,8 @@ pub mod scene;
 use std::rc::Rc;
 
 use anyhow::Context as _;
-use yoro::gl::Context;
 use yoro_context::{Backend, Headless};
+use yoro_gl::Context;
 
 /// Set by `cargo xtask test` on systems that have no OSMesa any more (Mesa 25.1 dropped it).
 const WITHOUT_OSMESA: &str = "YORO_TEST_WITHOUT_OSMESA";

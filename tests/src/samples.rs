@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use glow::HasContext as _;
-use yoro::gl::{Context, Filter, Format, Texture};
 use yoro::synthesis::Source;
+use yoro_gl::{Context, Filter, Format, Texture};
 
 /// The standard pattern of four samples: places in the pixel, in pixels from its upper left corner.
 pub const STANDARD: [[f64; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];

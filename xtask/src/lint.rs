@@ -4,8 +4,8 @@ use anyhow::{Context as _, bail};
 use serde_json::Value;
 use yoro_tools::cargo;
 
-/// What others could take from a registry: the library's core and its shaders.
-const PUBLISHED: [&str; 2] = ["yoro-shaders", "yoro"];
+/// What others could take from a registry: the library's core and what it stands on.
+const PUBLISHED: [&str; 3] = ["yoro-shaders", "yoro-gl", "yoro"];
 
 /// Looks at everything, even when something was found.
 ///

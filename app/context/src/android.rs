@@ -8,7 +8,7 @@ use glow::HasContext as _;
 use khronos_egl as egl;
 use ndk::native_window::NativeWindow;
 
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 
 use crate::{Binding, Graphics};
 

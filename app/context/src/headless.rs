@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_void};
 use std::rc::Rc;
 
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 
 use crate::{Binding, Graphics, egl, osmesa};
 

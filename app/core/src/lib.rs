@@ -1,8 +1,8 @@
 //! Render one eye, synthesize the other: stereo from the colour and depth of a single view.
 //!
 //! [`eyes`] says where the eyes are and how pixels move between them; [`synthesis`] takes two textures of one eye and
-//! draws the other; [`gl`] is what both stand on, objects over [`glow`] in a context that the caller lends. With the
-//! feature `vulkan`, `yoro::vulkan` records the same passes into a command buffer.
+//! draws the other, on OpenGL (feature `gl`, a default) in a context that the caller lends. With the feature `vulkan`,
+//! `yoro::vulkan` records the same passes into a command buffer.
 //!
 //! An engine renders [`eyes::SynthesisViews::source`] with its own code, gives colour and depth to
 //! [`synthesis::Synthesis::synthesize`], and has the other eye in its own framebuffer:
@@ -36,7 +36,11 @@
 //! This crate must never know a scene, a renderer, a window, a file or a command line: an engine brings its own.
 
 pub mod eyes;
-pub mod gl;
+/// What a host on OpenGL needs of `yoro-gl`: its context in a wrapper, and where to draw.
+#[cfg(feature = "gl")]
+pub mod gl {
+    pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError};
+}
 pub mod synthesis;
 #[cfg(feature = "vulkan")]
 pub mod vulkan;

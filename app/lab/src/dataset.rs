@@ -9,10 +9,10 @@ use image::{Luma, RgbImage};
 use crate::inpaint::{InpaintError, Reprojected};
 use crate::picture::{self, DepthImage};
 use yoro::eyes::{DepthConvention, EyePair, EyesError, GuardBand, SynthesisViews, View};
-use yoro::gl::{
+use yoro::synthesis::Edges;
+use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
 };
-use yoro::synthesis::Edges;
 use yoro_render::stereo::{Offline, PipelineOptions};
 use yoro_render::{Fxaa, GpuScene, RenderSettings, Renderer, ViewTargets};
 

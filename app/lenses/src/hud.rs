@@ -11,7 +11,7 @@ use embedded_graphics::text::{Baseline, Text};
 use glam::{Vec3, Vec4};
 
 use yoro::eyes::{Eye, EyePair};
-use yoro::gl::{
+use yoro_gl::{
     Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
 };
 

@@ -6,7 +6,7 @@ use glam::{Mat4, Quat, Vec2, Vec4};
 
 use crate::optics::{Optics, mesh_strip};
 use yoro::eyes::{Eye, Frustum};
-use yoro::gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
+use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
 use yoro_render::stereo::StereoFrame;
 
 /// How much further from the axis red and blue light is seen through a lens than green, for which lenses are
@@ -80,8 +80,8 @@ mod tests {
     use super::*;
     use crate::optics::{Distortion, MESH_RESOLUTION, Rotation, Screen};
     use crate::params::ViewerParams;
-    use yoro::gl::{Filter, Format, RenderTarget};
     use yoro_context::{Backend, Headless};
+    use yoro_gl::{Filter, Format, RenderTarget};
 
     const WINDOW: [u32; 2] = [320, 180];
 

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 use yoro_scene::Scene;
 
 use crate::render::{GpuScene, RenderSettings, Renderer};

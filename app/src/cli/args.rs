@@ -8,8 +8,8 @@ use clap::builder::RangedU64ValueParser;
 
 use crate::cli::choices;
 use yoro::eyes::{DEFAULT_IPD, MAX_IPD};
-use yoro::gl::Context;
 use yoro_context::{Backend, ContextError, Headless};
+use yoro_gl::Context;
 use yoro_lab::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
 use yoro_protocol::Settings;
 use yoro_render::stereo::{ImBufferSize, PaperOptions, Pipeline, PipelineOptions};

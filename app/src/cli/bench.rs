@@ -11,8 +11,8 @@ use crate::cli::eyes;
 use crate::cli::machine;
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DEFAULT_IPD, Eye, EyeOptions};
-use yoro::gl::Context;
 use yoro_files::interrupt::Interrupted;
+use yoro_gl::Context;
 use yoro_lab::bench::record::{Header, PassClock, VERSION};
 use yoro_lab::bench::{
     self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, process,

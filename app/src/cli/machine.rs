@@ -3,7 +3,7 @@
 use std::fs;
 use std::time::{Duration, SystemTime};
 
-use yoro::gl::Capabilities;
+use yoro_gl::Capabilities;
 use yoro_lab::machine::Machine;
 
 /// Describes this machine, this moment and this command line.

@@ -8,9 +8,9 @@ use glam::{EulerRot, Quat};
 
 use crate::cli::args::{self, GlArgs, RendererSettingArgs, SettingsArgs};
 use crate::cli::terminal::progress_bar;
-use yoro::gl::{Destination, Filter, Format, RenderTarget};
 use yoro_files as files;
 use yoro_files::interrupt;
+use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lab::picture::{self, PictureError, rgb_image};
 use yoro_lenses::{Rotation, Screen};
 use yoro_protocol::Settings;

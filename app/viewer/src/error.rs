@@ -1,6 +1,6 @@
 //! Why the viewer cannot go on.
 
-use yoro::gl::GlError;
+use yoro_gl::GlError;
 use yoro_lenses::ParamsError;
 use yoro_render::stereo::StereoError;
 

@@ -6,7 +6,7 @@ use crate::adaptive::{Controller, Load, Quality};
 use crate::error::ViewerError;
 use crate::scene_slot::Shown;
 use yoro::eyes::{EyePair, EyesError, GuardBand};
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 use yoro_protocol::Settings;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{

@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use crate::frame::SceneState;
 use crate::loading::{Loader, SceneSource};
 use yoro::eyes::Pose;
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_scene::{Scene, Viewpoint};
 

@@ -3,7 +3,7 @@
 use glam::Quat;
 
 use crate::questionnaire::Questionnaire;
-use yoro::gl::PassTime;
+use yoro_gl::PassTime;
 use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 use yoro_render::stereo::GuardBandUse;

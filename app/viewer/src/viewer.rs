@@ -31,7 +31,7 @@ use crate::method_slot::MethodSlot;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::tally::Tally;
 use yoro::eyes::{EyePair, MAX_IPD, Pose};
-use yoro::gl::{Context, Destination, GlError, PassTime, Profiling};
+use yoro_gl::{Context, Destination, GlError, PassTime, Profiling};
 use yoro_lenses::{Content, Hud, Panel, Placement};
 use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};

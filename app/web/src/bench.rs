@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use wasm_bindgen::prelude::*;
 use yoro::eyes::Eye;
-use yoro::gl::{PassTime, Profiling};
+use yoro_gl::{PassTime, Profiling};
 use yoro_render::stereo::{Method, Pipeline, StereoFrame, StereoMethod};
 
 use crate::page::{Page, sentence};

@@ -3,7 +3,7 @@
 use glam::{Quat, Vec3};
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, Eye, EyePair, Pose};
-use yoro::gl::Destination;
+use yoro_gl::Destination;
 use yoro_lenses::{LensPass, Optics, ViewerParams, neck_offset};
 use yoro_render::stereo::StereoFrame;
 

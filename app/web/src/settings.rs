@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DEFAULT_IPD, DepthRange, Eye, EyeOptions, EyePair, MAX_IPD, Pose};
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoMethod, StereoOptions};
 use yoro_render::{RenderSettings, RendererKind};
 

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use glam::Vec4;
-use yoro::gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
+use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
 
 /// The programs that show images; they fill a rectangle, scaled to it.
 pub struct Show {

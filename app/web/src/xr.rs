@@ -2,7 +2,7 @@
 
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, EyePair, GuardBand};
-use yoro::gl::{Destination, Format, GlError, RenderTarget};
+use yoro_gl::{Destination, Format, GlError, RenderTarget};
 use yoro_lenses::{Content, Hud, Placement};
 use yoro_render::DepthCopy;
 use yoro_render::stereo::{DepthTarget, EyeTarget, Method, StereoFrame, StereoMethod};

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use glam::{EulerRot, Quat};
 use image::RgbImage;
-use yoro::gl::{Destination, Filter, Format, RenderTarget};
 use yoro_context::{Backend, Headless};
+use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lab::metrics::{Channels, psnr};
 use yoro_lenses::{Rotation, Screen};
 use yoro_protocol::Settings;

@@ -4,8 +4,8 @@ use std::rc::Rc;
 
 use image::{Rgb, RgbImage};
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
-use yoro::gl::Context;
 use yoro_context::Headless;
+use yoro_gl::Context;
 use yoro_render::stereo::{self, Method, Pipeline, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_tests::{backends, golden};

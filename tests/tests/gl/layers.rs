@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro::synthesis::{Edges, Layers, Outputs, SOURCE_MAP_HOLE, Source, Synthesis as _};
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_tests::on_every_backend;
 use yoro_tests::samples::{Multisampled, STANDARD, Samples};
 

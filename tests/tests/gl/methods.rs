@@ -5,7 +5,7 @@ use std::rc::Rc;
 use anyhow::ensure;
 use glam::Quat;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum};
-use yoro::gl::Context;
+use yoro_gl::Context;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::{Scene, ShadingStyle};

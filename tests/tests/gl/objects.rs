@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
-use yoro::gl::Context;
 use yoro_context::Headless;
+use yoro_gl::Context;
 use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::ShadingStyle;

@@ -1,6 +1,6 @@
 //! Every shader file compiles in every variant.
 
-use yoro::gl::{Program, ShaderSource};
+use yoro_gl::{Program, ShaderSource};
 use yoro_tests::on_every_backend;
 use yoro_tests::programs::{self, Variants};
 

@@ -5,9 +5,9 @@ use std::rc::Rc;
 
 use image::{Rgb, RgbImage, imageops};
 use yoro::eyes::{EyeOptions, GuardBand, Pose, Warp};
-use yoro::gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro::synthesis::{self, Edges, Layers, Outputs, Source, Synthesis, SynthesisOptions};
 use yoro_context::Headless;
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_lab::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_lab::metrics::{Channels, Quality};
 use yoro_render::{GpuScene, RenderSettings, Renderer};

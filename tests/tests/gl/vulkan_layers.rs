@@ -6,11 +6,11 @@ use std::process::Command;
 use std::rc::Rc;
 
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro::synthesis::{Edges, Layers, Outputs, Source, Synthesis as _};
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{Frame, Gather, Host, ImageState, Options, SourceImages, TargetImages, VulkanError};
 use yoro_context::Headless;
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_tests::backends;
 use yoro_tests::samples::{Multisampled, Samples};
 

@@ -3,9 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{IVec2, Vec2, Vec4};
 
-use super::ForwardLaw;
+use super::forward::ForwardLaw;
 use crate::eyes::Warp;
-use crate::gl::Program;
 
 /// Columns and rows of a tile; `include/tiles.glsl`.
 const TILE: [u32; 2] = [16, 8];
@@ -33,7 +32,8 @@ macro_rules! uniforms {
                 &[$((stringify!($name), $glsl, std::mem::offset_of!(Uniforms, $name)),)*];
 
             /// Sets those that the program has.
-            pub fn set(&self, program: &Program) {
+            #[cfg(feature = "gl")]
+            pub fn set(&self, program: &yoro_gl::Program) {
                 $(program.set(stringify!($name), self.$name);)*
             }
         }

@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use yoro::eyes::Warp;
-use yoro::gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro::synthesis::{Outputs, Source, Synthesis};
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 
 /// What a pipeline writes to be run in memory.
 pub const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };

@@ -9,9 +9,9 @@ use rand::{Rng, SeedableRng};
 
 use crate::in_memory::InMemory;
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::gl::Context;
 use yoro::synthesis::{SOURCE_MAP_HOLE, Synthesis};
 use yoro_context::{Backend, Headless};
+use yoro_gl::Context;
 
 /// A pipeline under test, by name.
 pub struct Subject {

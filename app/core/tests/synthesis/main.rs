@@ -13,8 +13,8 @@ use in_memory::{InMemory, OUTPUTS, SynthesizedImage};
 use laws::{Subject, on_every_backend, pair, positions, row, scene};
 use reference::Entry;
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::gl::Context;
 use yoro::synthesis::*;
+use yoro_gl::Context;
 
 laws!(variants());
 

@@ -7,8 +7,8 @@ use glow::HasContext;
 use super::in_memory::{self, InMemory};
 use super::laws::{on_every_backend, pair, scene};
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
-use yoro::gl::{Context, Destination, Filter, Format, GlApi, RenderTarget, Texture};
 use yoro::synthesis::*;
+use yoro_gl::{Context, Destination, Filter, Format, GlApi, RenderTarget, Texture};
 
 const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: false };
 /// GL_DEPTH_BOUNDS_TEST_EXT.

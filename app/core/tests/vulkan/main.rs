@@ -15,13 +15,13 @@ use rand::{Rng, SeedableRng};
 use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
 use in_memory::{InMemory, SynthesizedImage};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::gl::{self, Context, Destination, Filter, RenderTarget, Texture};
 use yoro::synthesis::{self, GatherVariant as GlVariant, Outputs, SourceMapEntry, SynthesisOptions};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
     Frame, Gather, GatherVariant, ImageState, Options, SourceImages, TargetImages, VulkanError,
 };
 use yoro_context::{Backend, Headless};
+use yoro_gl::{self as gl, Context, Destination, Filter, RenderTarget, Texture};
 
 /// Counts this thread's allocations in Rust.
 struct Counting;

@@ -27,8 +27,8 @@ use crate::dataset::{GroupOptions, GroupRenderer};
 use crate::metrics::{Channels, MetricsError, SsimWindow, psnr, ssim};
 use crate::picture::{self, DepthImage};
 use yoro::eyes::{DepthConvention, EyePair, SynthesisViews};
-use yoro::gl::Context;
 use yoro::synthesis::Edges;
+use yoro_gl::Context;
 use yoro_render::stereo::{Offline, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};
 

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use yoro::eyes::{DepthConvention, EyePair};
-use yoro::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 use yoro_render::{PreparedScene, RenderSettings, Selection, ViewTargets};
 
 /// Longest edge in pixels of the image that is looked at: what is smaller on the screen is as good as not there.

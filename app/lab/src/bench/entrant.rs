@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::process;
 use yoro::eyes::{EyePair, GuardBand};
-use yoro::gl::{Context, GlError, Profiling};
+use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
     self, GuardBandUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
 };

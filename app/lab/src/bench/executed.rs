@@ -10,8 +10,8 @@ use anyhow::Context as _;
 
 use super::record::metric;
 use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
-use yoro::gl::{Context, Destination, Filter, Format, RenderTarget};
 use yoro::synthesis::{Gather, Source, Synthesis, Uniforms};
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
 use yoro_render::{PreparedScene, RenderSettings, Selection, ViewTargets};
 
 /// The committed table of `cargo tools shader-cost`.

@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use yoro::eyes::{DepthConvention, EyePair, GuardBand};
-use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro::synthesis::{self, Outputs, SOURCE_MAP_HOLE, Source, Synthesis, SynthesisOptions};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_render::PreparedScene;
 use yoro_render::stereo::StereoError;
 use yoro_render::{RenderSettings, Selection, ViewTargets};

@@ -26,7 +26,7 @@ mod tests;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use yoro::gl::Context;
+use yoro_gl::Context;
 
 pub use patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID};
 

@@ -6,9 +6,9 @@ use image::{GrayImage, Luma, Rgb, RgbImage};
 
 use crate::picture::{DepthImage, rgb_image};
 use yoro::eyes::{DepthConvention, Eye, Warp};
-use yoro::gl::GlError;
 use yoro::synthesis::SourceMapEntry;
 use yoro_files::FileError;
+use yoro_gl::GlError;
 use yoro_render::stereo::SynthesizedImage;
 
 /// Value of a mask where nothing of the source is seen.

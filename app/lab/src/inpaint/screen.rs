@@ -10,7 +10,7 @@ use super::patcher::{
     HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID, nearest_rows,
 };
 use yoro::eyes::Eye;
-use yoro::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
+use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
 /// One fragment shader, drawn once or until the holes are closed, on textures of its own.
 pub(super) struct Screen {

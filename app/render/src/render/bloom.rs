@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glam::{Vec2, Vec4};
 
-use yoro::gl::{
+use yoro_gl::{
     Blend, Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
 

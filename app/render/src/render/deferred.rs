@@ -16,7 +16,7 @@ use super::ssao::{SsaoPass, SsaoTargets};
 use super::tonemap::TonemapPass;
 use super::uniforms::Lights;
 use yoro::eyes::{DepthConvention, View};
-use yoro::gl::{Context, Filter, Format, GlError, RenderTarget, Texture};
+use yoro_gl::{Context, Filter, Format, GlError, RenderTarget, Texture};
 
 /// Scene-referred colour of one view, and what it is made with.
 pub struct LightTargets {
@@ -152,7 +152,7 @@ impl Deferred {
     /// Compiles what all views need; [`Deferred::prepare`] does the rest.
     ///
     /// # Errors
-    /// As [`yoro::gl::Program::new`].
+    /// As [`yoro_gl::Program::new`].
     pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Deferred, GlError> {
         let mut hdr = Vec::new();
         if !gl.capabilities().float_render_targets {
@@ -179,7 +179,7 @@ impl Deferred {
     /// Compiles what views of these kinds need; nothing is done for what is there already.
     ///
     /// # Errors
-    /// As [`yoro::gl::Program::new`].
+    /// As [`yoro_gl::Program::new`].
     pub fn prepare(&mut self, scene: &GpuScene, layout: Layout, roles: &[RoleKind]) -> Result<(), GlError> {
         let geometry = &mut self.geometry[layout.index()];
         if geometry.is_none() {

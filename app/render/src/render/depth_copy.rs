@@ -6,7 +6,7 @@ use glam::IVec2;
 
 use super::role::RoleKind;
 use super::transparent::DepthImage;
-use yoro::gl::{Context, Destination, GlError, Program, RasterState, ShaderSource};
+use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource};
 
 /// Copies window depth into the depth attachment of a framebuffer of whatever depth format.
 pub struct DepthCopy {

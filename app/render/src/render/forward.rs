@@ -21,7 +21,7 @@ use super::settings::RenderSettings;
 use super::shadow::ShadowMap;
 use super::uniforms::{Lights, nearer, set_view};
 use yoro::eyes::{Eye, View};
-use yoro::gl::{
+use yoro_gl::{
     Context, DepthTest, Destination, Filter, Format, GlError, MultisampleTarget, Program, RasterState,
     RenderTarget, ShaderSource, Texture, TileTarget,
 };

@@ -195,8 +195,8 @@ fn a_synthesized_eye_goes_on_as_an_image() {
         rig.targets.keep_samples(true, true);
         rig.render(&view(DepthConvention::Standard), Selection::All);
         small.size = [100, 90];
-        let formats = [(yoro::gl::Format::Rgba8, yoro::gl::Filter::Linear)];
-        let image = RenderTarget::new(gl, small.size, &formats, Some(yoro::gl::Format::Depth32F)).unwrap();
+        let formats = [(yoro_gl::Format::Rgba8, yoro_gl::Filter::Linear)];
+        let image = RenderTarget::new(gl, small.size, &formats, Some(yoro_gl::Format::Depth32F)).unwrap();
         image.bind();
         gl.clear(Some(1.0));
         gl.fill([0, 0], small.size, [0.2, 0.4, 0.6, 1.0]);

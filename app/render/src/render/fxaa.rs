@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glam::IVec2;
 
-use yoro::gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
+use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
 
 /// Smooths edges (FXAA). Runs on one eye's image, after synthesis, so that no blended edge colour is moved.
 ///

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::{Mat4, Vec4};
 
 use yoro::eyes::{DepthConvention, Eye};
-use yoro::gl::{Context, Filter, Format, GlError, RenderTarget};
+use yoro_gl::{Context, Filter, Format, GlError, RenderTarget};
 
 /// Colour attachments of the g-buffer: albedo and roughness, normal and reflectance, emission and material.
 const COLOR_FORMATS: [(Format, Filter); 3] = [(Format::Rgba8, Filter::Nearest); 3];

@@ -9,7 +9,7 @@ use super::g_buffer::{Layout, Seam};
 use super::scene::{Features, GpuScene};
 use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{DepthRange, Eye, View};
-use yoro::gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
+use yoro_gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
 
 /// Draws the opaque triangles of a scene into what is bound.
 ///

@@ -5,7 +5,7 @@ use glam::{IVec4, Vec2, Vec3};
 use super::g_buffer::Layout;
 use super::uniforms::Lights;
 use yoro::eyes::{Eye, Frustum, View};
-use yoro::gl::Program;
+use yoro_gl::Program;
 
 /// Tiles of an image: columns and rows. One number for each, in uniforms, fits every driver and every size.
 const COLUMNS: usize = 16;

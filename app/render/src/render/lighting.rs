@@ -8,7 +8,7 @@ use super::settings::{MAX_POINT_LIGHTS, RenderSettings};
 use super::shadow::ShadowMap;
 use super::uniforms::{Lights, set_view};
 use yoro::eyes::View;
-use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
+use yoro_gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
 /// Lights each pixel once.
 ///

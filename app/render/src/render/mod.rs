@@ -54,7 +54,7 @@ use uniforms::Lights;
 pub(crate) use uniforms::depth_test;
 
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Frustum, View};
-use yoro::gl::{Context, Destination, GlError, RenderTarget, Texture};
+use yoro_gl::{Context, Destination, GlError, RenderTarget, Texture};
 
 /// Columns of a view of which not all are needed, each `[first, end]` from the left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -283,7 +283,7 @@ impl Renderer {
     /// roles.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for another scene than the renderer was made for; as [`yoro::gl::Program::new`].
+    /// [`GlError::Unsupported`] for another scene than the renderer was made for; as [`yoro_gl::Program::new`].
     pub(crate) fn prepare(
         &mut self,
         scene: &GpuScene,

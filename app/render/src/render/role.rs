@@ -5,7 +5,7 @@ use glam::{IVec2, Vec2};
 use super::g_buffer::Layout;
 use super::scene::FREE_UNIT;
 use yoro::eyes::{DisparityLaw, Eye, View};
-use yoro::gl::{Program, Texture};
+use yoro_gl::{Program, Texture};
 
 /// First texture unit for what a role reads: behind g-buffer, occlusion and shadow map.
 const ROLE_UNIT: u32 = FREE_UNIT + 2;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{Vec3, Vec4};
 
 use super::cluster::{self, Batch, Cluster};
-use yoro::gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
+use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
 use yoro_scene::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
 /// What a material has; each combination that a scene uses is a shader variant of its own.

@@ -1,6 +1,6 @@
 //! What the renderer does and how well.
 
-use yoro::gl::{Capabilities, GlError};
+use yoro_gl::{Capabilities, GlError};
 pub use yoro_protocol::{MAX_POINT_LIGHTS, MSAA, RendererKind};
 use yoro_protocol::{Settings, Ssao};
 

@@ -7,9 +7,7 @@ use glam::{Mat4, Quat, Vec3};
 use super::cluster::{Culler, Selection};
 use super::scene::{Features, GpuScene};
 use yoro::eyes::Pose;
-use yoro::gl::{
-    Blend, Context, DepthTest, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
-};
+use yoro_gl::{Blend, Context, DepthTest, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 use yoro_scene::{Bounds, Viewpoint};
 
 /// Metres around the viewpoints within which a large scene has shadows.

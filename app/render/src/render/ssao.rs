@@ -8,7 +8,7 @@ use glam::{IVec3, Vec2, Vec4};
 use super::role::{Role, RoleKind};
 use super::uniforms::{pixel_rays, set_view};
 use yoro::eyes::View;
-use yoro::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
 /// Samples per pixel; even.
 const SAMPLES: usize = 12;

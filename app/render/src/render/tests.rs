@@ -10,8 +10,8 @@ use bloom::BloomPass;
 use deferred::{first_renderable, hdr_format};
 use tonemap::TonemapPass;
 use yoro::eyes::{DepthRange, Frustum, Pose};
-use yoro::gl::{Filter, Format, Program, ShaderSource};
 use yoro_context::{Backend, Headless};
+use yoro_gl::{Filter, Format, Program, ShaderSource};
 use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
 const SIZE: [u32; 2] = [144, 112];
@@ -117,7 +117,7 @@ impl Rig {
 pub fn depths(gl: &Rc<Context>, targets: &ViewTargets, view: &View) -> Vec<f32> {
     let formats = [(Format::R32F, Filter::Nearest)];
     let copy = RenderTarget::new(gl, view.size, &formats, None).unwrap();
-    gl.set_raster_state(&yoro::gl::RasterState::SCREEN);
+    gl.set_raster_state(&yoro_gl::RasterState::SCREEN);
     copy.bind();
     let program = Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
     program.bind().texture("source", 0, targets.depth().raw());

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::IVec2;
 
 use super::bloom;
-use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
+use yoro_gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
 /// Adds bloom, applies exposure and the tone curve, encodes as sRGB.
 ///

@@ -13,9 +13,7 @@ use super::scene::{FREE_UNIT, Features, GpuScene};
 use super::settings::RenderSettings;
 use super::uniforms::{depth_test, eye_to_clip, nearer};
 use yoro::eyes::View;
-use yoro::gl::{
-    Blend, Context, DepthTest, Destination, GlError, Program, RasterState, ShaderSource, Texture,
-};
+use yoro_gl::{Blend, Context, DepthTest, Destination, GlError, Program, RasterState, ShaderSource, Texture};
 
 /// Draws what is blended, from back to front, over an image.
 ///

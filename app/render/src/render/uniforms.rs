@@ -5,7 +5,7 @@ use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 use super::cluster::Culler;
 use super::settings::MAX_POINT_LIGHTS;
 use yoro::eyes::{DepthConvention, View};
-use yoro::gl::{DepthTest, Program};
+use yoro_gl::{DepthTest, Program};
 use yoro_scene::{PointLight, Sky};
 
 /// World axes around the eye to clip space.

@@ -7,7 +7,7 @@ use super::method::{EyeTarget, StereoError, StereoMethod};
 use super::options::{AntiAliasing, StereoOptions};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, ViewTargets};
 use yoro::eyes::{DepthConvention, Eye, EyePair};
-use yoro::gl::{Context, GlError, Texture};
+use yoro_gl::{Context, GlError, Texture};
 
 /// Two full renders.
 pub struct Conventional {

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::method::EyeTarget;
 use crate::render::{DepthImage, Fxaa, GpuScene, RenderSettings, Renderer};
 use yoro::eyes::View;
-use yoro::gl::{Context, Destination, GlError, RenderTarget};
+use yoro_gl::{Context, Destination, GlError, RenderTarget};
 
 /// Transparent objects, then anti-aliasing or a plain copy of a part of an image into the
 /// frame.

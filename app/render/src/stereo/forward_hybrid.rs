@@ -8,7 +8,7 @@ use super::method::{EyeTarget, StereoError, StereoMethod};
 use super::options::{AntiAliasing, StereoOptions};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, ViewTargets};
 use yoro::eyes::{DepthConvention, Eye, EyePair};
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 
 /// Two renders of what is near, one of what is far.
 ///

@@ -8,7 +8,7 @@ use super::options::{AntiAliasing, StereoOptions};
 use super::single_pass::side_by_side;
 use crate::render::{DepthImage, GpuScene, Layout, RenderSettings, Renderer, ViewTargets};
 use yoro::eyes::{Eye, EyePair};
-use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
 /// One culling and one draw call per visible range of opaque triangles, for both eyes.
 pub struct ForwardSinglePass {

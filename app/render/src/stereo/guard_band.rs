@@ -8,8 +8,8 @@ use super::method::GuardBandUse;
 use super::readback::Readback;
 use crate::render::Columns;
 use yoro::eyes::{Eye, EyePair, SynthesisViews};
-use yoro::gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 use yoro::synthesis::Uniforms;
+use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 
 /// Bytes of a profile; `stereo/border_profile.frag`.
 const BYTES: usize = CELLS * BANDS * 4;

@@ -16,7 +16,7 @@ use crate::render::{
     RoleKind, depth_test,
 };
 use yoro::eyes::{DepthConvention, Eye, EyePair, EyesError, GuardBand, Pose, View};
-use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro_gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
 /// The far field starts this much nearer than the near field ends, so that no crack opens where a surface that is
 /// seen at an angle passes from one to the other.

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::render::{DepthCopy, GpuScene, Renderer};
 use yoro::eyes::{Eye, EyePair, EyesError};
-use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
 /// Why a stereo frame could not be rendered.
 #[derive(Debug, thiserror::Error)]

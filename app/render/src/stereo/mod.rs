@@ -24,7 +24,7 @@ mod tests;
 use std::rc::Rc;
 
 use crate::render::RenderSettings;
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 
 use conventional::Conventional;
 use forward_hybrid::ForwardHybrid;

@@ -7,7 +7,7 @@ use super::method::{EyeTarget, StereoError, StereoMethod};
 use super::options::{AntiAliasing, StereoOptions};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, ViewTargets};
 use yoro::eyes::{DepthConvention, EyePair, GuardBand, View};
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 
 /// One render from where the dominant eye is, in the union of both frusta; each eye gets its own part of it, which is
 /// the same image where the frusta are the same.

@@ -7,7 +7,7 @@ use glam::IVec2;
 use super::readback::Readback;
 use crate::render::ViewTargets;
 use yoro::eyes::{DepthConvention, DepthRange};
-use yoro::gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
+use yoro_gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
 /// Composites a near layer over a far one by depth.
 pub(super) struct Composite {

@@ -4,8 +4,8 @@ use std::rc::Rc;
 
 use super::options::PipelineOptions;
 use yoro::eyes::Warp;
-use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
 /// A pipeline with textures of its own. Rows of all arrays run from the bottom, as in GL. Whatever state the context is
 /// in, the result is the same.

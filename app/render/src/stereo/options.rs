@@ -6,8 +6,8 @@ use super::near_field_policy::NearFieldPolicy;
 use super::paper::{Paper, PaperOptions};
 use crate::render::RenderSettings;
 use yoro::eyes::GuardBand;
-use yoro::gl::{Capabilities, Context, GlError};
 use yoro::synthesis::{self, Edges, Outputs, Synthesis, SynthesisOptions};
+use yoro_gl::{Capabilities, Context, GlError};
 use yoro_protocol::Settings;
 pub use yoro_protocol::{AntiAliasing, Method, Pipeline};
 

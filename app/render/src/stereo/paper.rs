@@ -6,8 +6,8 @@ use glam::{IVec2, Vec2};
 use glow::HasContext;
 
 use yoro::eyes::Warp;
-use yoro::gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
 use yoro::synthesis::{Outputs, Source, Synthesis, Uniforms, draw_target, set_source};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
 pub use yoro_protocol::{ImBufferSize, ParseImBufferSizeError};
 
 /// Rows per workgroup of Algorithm 2, one invocation each.

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use yoro::gl::{Context, Filter, Format, GlError, PixelBuffer, RenderTarget};
+use yoro_gl::{Context, Filter, Format, GlError, PixelBuffer, RenderTarget};
 
 /// An RGBA8 image that is drawn once a frame and read two frames later, when the GPU is done with it wherever the display
 /// keeps it from running further behind. A `T` says what was drawn.

@@ -16,7 +16,7 @@ use crate::render::{
     Reprojection, Role, RoleKind,
 };
 use yoro::eyes::{DepthConvention, DisparityLaw, EyePair, GuardBand};
-use yoro::gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
 /// Two g-buffers; ambient occlusion and lighting once, and again for disocclusions.
 ///

@@ -10,7 +10,7 @@ use crate::render::{
     DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings, Renderer, Role, Seam,
 };
 use yoro::eyes::{DepthConvention, Eye, EyePair};
-use yoro::gl::{Context, GlError};
+use yoro_gl::{Context, GlError};
 
 /// One culling and one draw call per visible range of triangles, for both eyes.
 ///

@@ -11,8 +11,8 @@ use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::options::{AntiAliasing, StereoOptions};
 use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
 use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
-use yoro::gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
 /// One render (with a guard band), one synthesis; near objects and mostly near frames as [`StereoOptions`] say.
 pub struct Yoro {

@@ -12,9 +12,9 @@ use crate::render::{
     Columns, DepthCopy, GpuScene, Layout, Renderer, RendererKind, Seam, Selection, ViewTargets,
 };
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews};
-use yoro::gl::{Destination, Filter, Format, Profiling, RenderTarget};
 use yoro::synthesis::{self, Edges, Outputs, Source, SynthesisOptions};
 use yoro_context::{Backend, Headless};
+use yoro_gl::{Destination, Filter, Format, Profiling, RenderTarget};
 use yoro_scene::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
 
 const SIZE: [u32; 2] = [160, 120];

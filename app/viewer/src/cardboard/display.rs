@@ -11,7 +11,7 @@ use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, Eye, EyePair, MAX_IPD, Pose};
-use yoro::gl::{Context, Destination};
+use yoro_gl::{Context, Destination};
 use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};

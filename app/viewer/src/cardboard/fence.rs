@@ -4,7 +4,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use glow::HasContext as _;
-use yoro::gl::Context;
+use yoro_gl::Context;
 
 /// A GPU that takes longer for a frame is not waited for: it may have hung, or lost its context.
 const PATIENCE: Duration = Duration::from_millis(250);

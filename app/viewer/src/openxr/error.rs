@@ -4,7 +4,7 @@ use openxr as xr;
 use xr::sys;
 
 use super::runtime::NotFound;
-use yoro::gl::GlError;
+use yoro_gl::GlError;
 
 /// Why a headset cannot be used, or can no longer be used. Each is one sentence with the remedy.
 #[derive(Debug, thiserror::Error)]

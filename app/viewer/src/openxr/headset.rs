@@ -12,8 +12,8 @@ use super::runtime::Runtime;
 use super::session::{Progress, Session};
 use crate::event::Event;
 use crate::viewer::Viewer;
-use yoro::gl::Context;
 use yoro_context::Graphics;
+use yoro_gl::Context;
 
 /// The pause before the first new session; it doubles with each that fails.
 const PAUSE: Duration = Duration::from_millis(500);

@@ -10,8 +10,8 @@ use xr::sys;
 use super::error::{XrError, call, check};
 use super::graphics::make_current;
 use yoro::eyes::Eye;
-use yoro::gl::{Context, Destination, ForeignTarget};
 use yoro_context::Graphics;
+use yoro_gl::{Context, Destination, ForeignTarget};
 
 /// A compositor that holds an image for longer than this is stuck.
 const PATIENCE: Duration = Duration::from_secs(3);

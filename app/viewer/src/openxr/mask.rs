@@ -7,7 +7,7 @@ use openxr as xr;
 
 use super::error::{XrError, call};
 use yoro::eyes::{Eye, Frustum};
-use yoro::gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
+use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
 
 /// The hidden parts of both eyes.
 pub(super) struct Mask {
@@ -79,8 +79,8 @@ impl Mask {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use yoro::gl::{Filter, Format, RenderTarget};
     use yoro_context::{Backend, Headless};
+    use yoro_gl::{Filter, Format, RenderTarget};
 
     #[test]
     fn hidden_triangles_are_black_and_nothing_else() {

@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use glow::HasContext as _;
 
-use yoro::gl::{
+use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
 };
 use yoro_render::stereo::{EyeTarget, StereoFrame};

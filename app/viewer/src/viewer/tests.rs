@@ -7,8 +7,8 @@ use glam::{Quat, Vec3};
 
 use super::*;
 use crate::cardboard::{Cardboard, HeldHead};
-use yoro::gl::{Filter, Format, RenderTarget};
 use yoro_context::{Backend, Headless};
+use yoro_gl::{Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
 
 const WINDOW: [u32; 2] = [320, 180];

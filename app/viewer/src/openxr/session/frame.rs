@@ -9,8 +9,8 @@ use crate::openxr::description::Capture;
 use crate::openxr::error::{XrError, check};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair};
-use yoro::gl::Destination;
 use yoro_context::Graphics;
+use yoro_gl::Destination;
 use yoro_render::stereo::{DepthTarget, EyeTarget};
 
 /// What is shown of a frame.

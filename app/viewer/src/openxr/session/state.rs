@@ -13,7 +13,7 @@ use crate::openxr::input::Input;
 use crate::openxr::mask::Mask;
 use crate::openxr::storage::Storage;
 use yoro::eyes::EyesError;
-use yoro::gl::Context;
+use yoro_gl::Context;
 use yoro_protocol::Performance;
 use yoro_render::DepthCopy;
 

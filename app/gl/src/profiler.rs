@@ -9,7 +9,7 @@ use glow::HasContext;
 #[cfg(target_arch = "wasm32")]
 use web_time::Instant;
 
-use super::{Capabilities, GlApi};
+use crate::{Capabilities, GlApi};
 
 /// EXT_disjoint_timer_query: whether the clock was disturbed since the last question.
 const GPU_DISJOINT: u32 = 0x8FBB;
@@ -33,7 +33,7 @@ pub enum Profiling {
 /// Measured time of one pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassTime {
-    /// Name given to [`super::Context::pass`].
+    /// Name given to [`crate::Context::pass`].
     pub name: &'static str,
     /// Time on the GPU or, on a CPU rasterizer, on the wall clock.
     pub time: Duration,
@@ -47,7 +47,7 @@ enum Record {
 }
 
 /// Passes do not nest for timer queries: an inner pass of a timed one is part of it.
-pub(super) struct Profiler {
+pub(crate) struct Profiler {
     mode: Profiling,
     queries: bool,
     api: GlApi,
@@ -62,7 +62,7 @@ pub(super) struct Profiler {
 }
 
 impl Profiler {
-    pub(super) fn new(capabilities: &Capabilities) -> Profiler {
+    pub(crate) fn new(capabilities: &Capabilities) -> Profiler {
         Profiler {
             mode: Profiling::Off,
             queries: capabilities.timer_queries,
@@ -76,7 +76,7 @@ impl Profiler {
         }
     }
 
-    pub(super) fn set(&mut self, gl: &glow::Context, mode: Profiling) {
+    pub(crate) fn set(&mut self, gl: &glow::Context, mode: Profiling) {
         self.mode = mode;
         self.take(gl);
     }
@@ -89,7 +89,7 @@ impl Profiler {
         }
     }
 
-    pub(super) fn begin(&mut self, gl: &glow::Context, name: &'static str) {
+    pub(crate) fn begin(&mut self, gl: &glow::Context, name: &'static str) {
         self.depth += 1;
         if !self.is_on() || self.depth > 1 {
             return;
@@ -112,7 +112,7 @@ impl Profiler {
 
     /// What is drawn in this pass would leave the result of its query undefined, and WebGL would not even draw it: ends
     /// the query.
-    pub(super) fn make_undefined(&mut self, gl: &glow::Context) {
+    pub(crate) fn make_undefined(&mut self, gl: &glow::Context) {
         if self.depth > 0
             && let Some((_, record)) = self.records.last_mut()
             && let Record::Query(query) = *record
@@ -123,7 +123,7 @@ impl Profiler {
         }
     }
 
-    pub(super) fn end(&mut self, gl: &glow::Context) {
+    pub(crate) fn end(&mut self, gl: &glow::Context) {
         self.depth -= 1;
         if !self.is_on() || self.depth > 0 {
             return;
@@ -141,13 +141,13 @@ impl Profiler {
         }
     }
 
-    pub(super) fn delete(&mut self, gl: &glow::Context) {
+    pub(crate) fn delete(&mut self, gl: &glow::Context) {
         self.take(gl);
         // SAFETY: each query was created here and is deleted once.
         self.pool.drain(..).for_each(|query| unsafe { gl.delete_query(query) });
     }
 
-    pub(super) fn take(&mut self, gl: &glow::Context) -> Vec<PassTime> {
+    pub(crate) fn take(&mut self, gl: &glow::Context) -> Vec<PassTime> {
         let mut times = Vec::with_capacity(self.records.len());
         while let Some(mut frame) = self.frames.pop_front() {
             read(gl, &mut frame, &mut self.pool, &mut times);
@@ -156,7 +156,7 @@ impl Profiler {
         times
     }
 
-    pub(super) fn end_frame(&mut self, gl: &glow::Context, times: &mut Vec<PassTime>) -> u32 {
+    pub(crate) fn end_frame(&mut self, gl: &glow::Context, times: &mut Vec<PassTime>) -> u32 {
         if self.records.is_empty() {
             return 0;
         }

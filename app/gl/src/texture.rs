@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::{Context, GlError};
+use crate::{Context, GlError};
 
 /// Pixel formats in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

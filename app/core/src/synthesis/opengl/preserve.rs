@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::{Source, Synthesis};
 use crate::eyes::Warp;
-use crate::gl::{Context, Destination, GlError};
+use yoro_gl::{Context, Destination, GlError};
 
 /// Saves the state before each call of a pipeline and sets it back afterwards, also when the call fails.
 pub(super) struct Preserving {

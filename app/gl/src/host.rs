@@ -1,10 +1,10 @@
 //! State of a host's renderer: what synthesis must not depend on, and how it is given back.
 //!
-//! The table in the documentation of [`crate::synthesis::Synthesis`] is the contract that this file keeps.
+//! The table in the documentation of `yoro::synthesis::Synthesis` is the contract that this file keeps.
 
 use glow::HasContext;
 
-use super::{Capabilities, Context, GlApi, GlError};
+use crate::{Capabilities, Context, GlApi, GlError};
 
 /// Texture units in use, counted from 0.
 const UNITS: usize = 5;
@@ -18,19 +18,19 @@ const DRAW_BUFFERS: usize = 2;
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
 
 /// glIsEnabledi: capability, index.
-pub(super) type IsEnabledIndexed = unsafe extern "system" fn(u32, u32) -> u8;
+pub(crate) type IsEnabledIndexed = unsafe extern "system" fn(u32, u32) -> u8;
 /// glGetBooleani_v: state, index, values.
-pub(super) type GetBooleanIndexed = unsafe extern "system" fn(u32, u32, *mut u8);
+pub(crate) type GetBooleanIndexed = unsafe extern "system" fn(u32, u32, *mut u8);
 
 /// Queries of single draw buffers, for which glow has no wrapper.
 #[derive(Clone, Copy)]
-pub(super) struct IndexedQueries {
-    pub(super) is_enabled: IsEnabledIndexed,
-    pub(super) get_boolean: GetBooleanIndexed,
+pub(crate) struct IndexedQueries {
+    pub(crate) is_enabled: IsEnabledIndexed,
+    pub(crate) get_boolean: GetBooleanIndexed,
 }
 
 /// What a context has of the state that drawing depends on, and the samplers that synthesis reads through.
-pub(super) struct Host {
+pub(crate) struct Host {
     /// Capabilities (`glEnable`) that are off while a pipeline runs. No more than 32.
     switches: Vec<u32>,
     /// Blending and colour masks are per draw buffer and can be set so: OpenGL ES 3.2 and the desktop.
@@ -44,7 +44,7 @@ pub(super) struct Host {
 }
 
 impl Host {
-    pub(super) fn new(
+    pub(crate) fn new(
         gl: &glow::Context,
         capabilities: &Capabilities,
         queries: Option<IndexedQueries>,
@@ -119,7 +119,7 @@ impl Host {
         })
     }
 
-    pub(super) fn delete(&self, gl: &glow::Context) {
+    pub(crate) fn delete(&self, gl: &glow::Context) {
         // SAFETY: created in `new`, deleted once.
         unsafe {
             gl.delete_sampler(self.nearest);
@@ -129,7 +129,7 @@ impl Host {
 }
 
 /// The state that synthesis changes, as it was.
-pub(crate) struct HostState {
+pub struct HostState {
     /// Bit `i`: whether switch `i` of [`Host::switches`] was on.
     switches: u32,
     /// How many of the following belong to synthesis.
@@ -155,7 +155,7 @@ pub(crate) struct HostState {
 
 impl Context {
     /// Sets all state that a pipeline relies on and does not set for each pass: everything in the table of
-    /// [`crate::synthesis::Synthesis`] but program, vertex array, framebuffer, viewport, textures and images.
+    /// `yoro::synthesis::Synthesis` but program, vertex array, framebuffer, viewport, textures and images.
     /// `draw_buffers` is the number of colour attachments that the target has, 1 or 2; with `encode` what is written to
     /// sRGB framebuffers is encoded.
     pub fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
@@ -211,7 +211,7 @@ impl Context {
 
     /// Remembers all state that synthesis into a target with this many colour attachments, 1 or 2, changes. Some 50
     /// queries; allocates nothing.
-    pub(crate) fn save_state(&self, draw_buffers: u32) -> HostState {
+    pub fn save_state(&self, draw_buffers: u32) -> HostState {
         let (gl, host) = (self.raw(), &self.host);
         // SAFETY: queries of state that `Host::new` found to be there, into arrays of the length that GL writes.
         unsafe {
@@ -270,7 +270,7 @@ impl Context {
     }
 
     /// Sets the state as it was at [`Context::save_state`].
-    pub(crate) fn restore_state(&self, state: &HostState) {
+    pub fn restore_state(&self, state: &HostState) {
         let (gl, host) = (self.raw(), &self.host);
         // SAFETY: values that the context itself gave for the same state; what was bound is bound still or deleted
         // by nobody since.
@@ -325,7 +325,7 @@ impl Context {
     }
 
     /// Unsets what redirects or shifts uploads of tightly packed pixels.
-    pub(super) fn set_tight_unpack(&self) {
+    pub(crate) fn set_tight_unpack(&self) {
         let gl = self.raw();
         // SAFETY: values that are the defaults, but for the alignment.
         unsafe {
@@ -338,7 +338,7 @@ impl Context {
     }
 
     /// As [`Context::set_tight_unpack`], for reading back.
-    pub(super) fn set_tight_pack(&self) {
+    pub(crate) fn set_tight_pack(&self) {
         let gl = self.raw();
         // SAFETY: as there.
         unsafe {

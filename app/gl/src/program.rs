@@ -7,7 +7,7 @@ use glam::{IVec2, IVec3, IVec4, Mat3, Mat4, Vec2, Vec3, Vec4};
 use glow::HasContext;
 use yoro_shaders::{Assembled, MissingFile};
 
-use super::{Context, GlApi, GlError, Texture};
+use crate::{Context, GlApi, GlError, Texture};
 
 /// Which files and defines make a program.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::{Context, Format, GlError, RenderTarget};
+use crate::{Context, Format, GlError, RenderTarget};
 
 /// One attachment.
 enum Image {
@@ -26,9 +26,9 @@ pub struct MultisampleTarget {
 }
 
 impl MultisampleTarget {
-    /// A target of `size` pixels with this many samples in each ([`super::Capabilities::check_samples`]), of formats of
+    /// A target of `size` pixels with this many samples in each ([`crate::Capabilities::check_samples`]), of formats of
     /// 4 bytes that can be rendered to. `readable` ones are textures, for shaders that read single samples
-    /// ([`super::Capabilities::multisample_textures`]).
+    /// ([`crate::Capabilities::multisample_textures`]).
     ///
     /// # Errors
     /// [`GlError::Unsupported`] when the driver has not this many samples, no multisample textures, or cannot render to
@@ -257,7 +257,7 @@ impl TileTarget {
     /// A framebuffer for this many samples, around nothing yet.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] without [`super::Capabilities::tile_samples`]; [`GlError::Object`] when the driver
+    /// [`GlError::Unsupported`] without [`crate::Capabilities::tile_samples`]; [`GlError::Object`] when the driver
     /// refuses.
     pub fn new(gl: &Rc<Context>, samples: u32) -> Result<TileTarget, GlError> {
         let capabilities = gl.capabilities();

@@ -1,6 +1,9 @@
-//! Objects over glow: programs, textures, framebuffers, meshes, timers, capabilities.
+//! Objects over [`glow`]: programs, textures, framebuffers, meshes, timers, capabilities.
 //!
-//! Objects delete themselves when dropped and are counted in their [`Context`], so that leaks show in a test.
+//! A [`Context`] wraps the context that the caller lends; everything else is made in it, deletes itself when dropped, and is
+//! counted, so that leaks show in a test.
+//!
+//! This crate must never know eyes, synthesis, a scene or a window.
 
 mod capabilities;
 mod framebuffer;
@@ -22,6 +25,7 @@ use glow::HasContext;
 
 pub use capabilities::{Capabilities, GlApi};
 pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
+pub use host::HostState;
 pub use mesh::Mesh;
 pub use multisample::{MultisampleTarget, TileTarget};
 pub use pixel_buffer::PixelBuffer;
@@ -130,7 +134,7 @@ impl Context {
 
     /// As [`Context::new`], with what glow has no wrapper for: multiview, the bits of timer queries, and queries of the
     /// state of single draw buffers, without which the second one is given back its state as the first has it
-    /// ([`crate::synthesis::GlState::Preserve`] with [`crate::synthesis::Outputs::source_map`]). `load` gives entry
+    /// ([`Context::save_state`]). `load` gives entry
     /// points by name, null for those that do not exist.
     ///
     /// # Errors

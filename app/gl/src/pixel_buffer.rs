@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::{Context, GlError};
+use crate::{Context, GlError};
 
 /// A pixel pack buffer of fixed length.
 pub struct PixelBuffer {
@@ -35,7 +35,7 @@ impl PixelBuffer {
     }
 
     /// The GL name.
-    pub(super) fn raw(&self) -> glow::Buffer {
+    pub(crate) fn raw(&self) -> glow::Buffer {
         self.raw
     }
 

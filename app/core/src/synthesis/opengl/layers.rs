@@ -5,9 +5,11 @@ use std::rc::Rc;
 use glam::IVec4;
 use glow::HasContext as _;
 
-use super::{Edges, Outputs, Source, Synthesis, Uniforms, draw_target, tiles};
+use super::{Outputs, Source, Synthesis, draw_target};
 use crate::eyes::Warp;
-use crate::gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
+use crate::synthesis::edges::Edges;
+use crate::synthesis::uniforms::{Uniforms, tiles};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
 
 /// Colour attachments of the targets: of the split pass two.
 pub(super) const DRAW_BUFFERS: u32 = 2;

@@ -2,7 +2,7 @@
 
 use glow::HasContext;
 
-use super::{Format, GlError};
+use crate::{Format, GlError};
 
 /// The two families of GL that run the shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub struct Capabilities {
     /// And while both eyes are drawn at once, too: GL_EXT_multiview_timer_query. Without it GL_OVR_multiview leaves
     /// their results undefined.
     pub multiview_timer_queries: bool,
-    /// GL_OVR_multiview2 and, outside of browsers, its entry point ([`super::Context::with_loader`]).
+    /// GL_OVR_multiview2 and, outside of browsers, its entry point ([`crate::Context::with_loader`]).
     pub multiview: bool,
     /// gl_ClipDistance: GL_EXT_clip_cull_distance on ES, core on the desktop.
     pub clip_distances: bool,
@@ -90,7 +90,7 @@ const TIMER_QUERIES: &str = match cfg!(target_arch = "wasm32") {
 };
 
 /// Whether the context has an extension, by its name in the registry of OpenGL. WebGL names it without `GL_`.
-pub(super) fn has_extension(gl: &glow::Context, name: &str) -> bool {
+pub(crate) fn has_extension(gl: &glow::Context, name: &str) -> bool {
     let name = if cfg!(target_arch = "wasm32") { name.trim_start_matches("GL_") } else { name };
     gl.supported_extensions().contains(name)
 }
@@ -114,7 +114,7 @@ unsafe fn renderer(gl: &glow::Context) -> String {
 
 impl Capabilities {
     /// `counts_time` is asked only where there are timer queries.
-    pub(super) fn query(
+    pub(crate) fn query(
         gl: &glow::Context,
         multiview_loaded: bool,
         counts_time: impl FnOnce() -> bool,

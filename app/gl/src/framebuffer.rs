@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::{Context, Filter, Format, GlError, PixelBuffer, Texture};
+use crate::{Context, Filter, Format, GlError, PixelBuffer, Texture};
 
 /// A rectangle of a framebuffer to draw into.
 #[derive(Clone, Copy, Debug, PartialEq)]

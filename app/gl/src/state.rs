@@ -2,7 +2,7 @@
 
 use glow::HasContext;
 
-use super::Context;
+use crate::Context;
 
 /// More rows than any framebuffer has.
 const TALLEST: i32 = 1 << 20;

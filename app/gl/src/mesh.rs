@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::{Context, GlError};
+use crate::{Context, GlError};
 
 /// A vertex array with one interleaved vertex buffer of floats and 32-bit indices.
 pub struct Mesh {

@@ -2,9 +2,10 @@
 
 use std::rc::Rc;
 
-use super::{Outputs, Source, Synthesis, Uniforms, draw_target, set_source, tiles};
+use super::{Outputs, Source, Synthesis, draw_target, set_source};
 use crate::eyes::Warp;
-use crate::gl::{
+use crate::synthesis::uniforms::{Uniforms, tiles};
+use yoro_gl::{
     Capabilities, Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource,
 };
 

@@ -1,0 +1,41 @@
+//! What the source knows of its edges.
+
+/// What the source knows of its edges, where a pixel shows more than one surface, and with it what its depth is.
+///
+/// | | source | synthesized eye |
+/// |---|---|---|
+/// | [`Edges::Hard`] | one sample per pixel | one surface per pixel; silhouettes blended by where they cross it |
+/// | [`Edges::Nearest`], [`Edges::Sample`] | resolved colour, one depth per pixel | anti-aliased; the share of each surface is estimated from colour and depth around |
+/// | [`Edges::Multisample`] | resolved colour, depth of all samples | anti-aliased; with the samples' colours, too, nothing is estimated |
+///
+/// Depth that was averaged over samples belongs to no surface, and gives halos by each of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Edges {
+    /// One sample per pixel: every pixel shows one surface.
+    #[default]
+    Hard,
+    /// Resolved (anti-aliased) colour; depth of each pixel's nearest sample.
+    Nearest,
+    /// Resolved colour; depth of each pixel's first sample, as drivers resolve it, or of its middle.
+    Sample,
+    /// Depth of every sample, in a multisample texture of 2 or 4 samples in the standard pattern; colour resolved, and
+    /// optionally of every sample, too (`Source::samples`). Needs OpenGL ES 3.1.
+    Multisample,
+}
+
+impl Edges {
+    /// All of them, the default first.
+    pub const ALL: [Edges; 4] = [Edges::Hard, Edges::Nearest, Edges::Sample, Edges::Multisample];
+
+    /// Its name in settings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Edges::Hard => "hard",
+            Edges::Nearest => "nearest",
+            Edges::Sample => "sample",
+            Edges::Multisample => "multisample",
+        }
+    }
+}

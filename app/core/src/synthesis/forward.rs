@@ -1,0 +1,30 @@
+//! Forward columns: the direction in which the shaders count.
+
+use crate::eyes::{DepthConvention, Eye, Warp};
+
+/// The disparity law in forward columns (`include/warp.glsl`): mirrored for the right eye, so that a larger
+/// displacement always means nearer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ForwardLaw {
+    pub offset: f64,
+    pub scale: f64,
+    pub mirrored: bool,
+    pub far: f64,
+    pub near: f64,
+}
+
+impl ForwardLaw {
+    pub fn new(warp: &Warp) -> ForwardLaw {
+        let mirrored = warp.target_eye == Eye::Right;
+        let (offset, scale) = if mirrored {
+            (warp.target_size[0] as f64 - warp.source_size[0] as f64 - warp.law.offset, -warp.law.scale)
+        } else {
+            (warp.law.offset, warp.law.scale)
+        };
+        let (near, far) = match warp.convention {
+            DepthConvention::Standard => (0.0, 1.0),
+            DepthConvention::Reversed => (1.0, 0.0),
+        };
+        ForwardLaw { offset, scale, mirrored, far: offset + scale * far, near: offset + scale * near }
+    }
+}
