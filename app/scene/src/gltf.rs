@@ -53,8 +53,7 @@ pub struct GltfScene {
 ///
 /// # Errors
 /// [`SceneError`] for files that are damaged, incomplete or need extensions that change geometry (Draco, meshopt).
-pub fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
-    file_size(path)?;
+pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     let unusable = |what: String| SceneError::unusable(path, what);
     let damaged = |what: &str| unusable(format!("{what}; export the model again"));
     let bytes = read_file(path)?;

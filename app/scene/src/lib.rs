@@ -10,11 +10,11 @@ mod error;
 pub mod export;
 #[cfg(test)]
 mod file_tests;
-pub mod gltf;
+mod gltf;
 pub mod load;
 pub mod model;
 mod mtl;
-pub mod obj;
+mod obj;
 mod palette;
 pub mod path;
 mod polygon;

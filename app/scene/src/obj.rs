@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
 
-use super::error::{MAX_ELEMENTS, SceneError, file_size};
+use super::error::{MAX_ELEMENTS, SceneError};
 use super::model::{Alpha, Material, Model, Vertex};
 use super::mtl::{self, MapStatement, MtlEntry};
 use super::palette::{paint, palette};
-use super::polygon::triangulate;
+use super::polygon::Triangulator;
 use super::repair::{RawMesh, assemble};
 use super::textures::{AlphaUse, Built, Recipe, Source, TextureSet, find_file};
 
@@ -35,8 +35,7 @@ const FACES_PER_MODEL: usize = 1 << 16;
 ///
 /// # Errors
 /// [`SceneError`] for a file that cannot be read or understood, and for textures that are there but damaged.
-pub fn load_obj(path: &Path) -> Result<Model, SceneError> {
-    file_size(path)?;
+pub(crate) fn load_obj(path: &Path) -> Result<Model, SceneError> {
     let file = yoro_files::open(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
     let mut input = Normalizer::new(path, BufReader::with_capacity(1 << 20, file));
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
@@ -216,12 +215,13 @@ fn raw_mesh(
         let polygons = std::mem::take(&mut indices);
         let mut at = 0;
         let mut points = Vec::new();
+        let mut triangulator = Triangulator::default();
         for arity in mesh.face_arities {
             let corners = &polygons[at..at + arity as usize];
             at += arity as usize;
             points.clear();
             points.extend(corners.iter().map(|&i| vertices[i as usize].position));
-            triangulate(&points, |t| indices.extend(t.map(|k| corners[k])));
+            indices.extend(triangulator.triangulate(&points).iter().map(|&k| corners[k as usize]));
         }
     }
     if painted {

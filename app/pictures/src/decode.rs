@@ -1,0 +1,167 @@
+//! Image files in.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use exr::prelude::{ReadChannels, ReadLayers};
+use image::{DynamicImage, GrayImage, ImageFormat, ImageReader, Rgb, RgbImage};
+
+use yoro_files as files;
+
+use crate::{DepthImage, MAX_SIZE, PictureError, srgb};
+
+/// Reads a colour image. 16-bit samples are rounded to 8, grey is repeated, alpha is dropped without blending
+/// (what engines leave there is seldom coverage), and EXR, which is linear, is encoded as sRGB.
+pub fn load_color(path: &Path) -> Result<RgbImage, PictureError> {
+    Ok(match decode(path)? {
+        DynamicImage::ImageRgb8(image) => image,
+        image @ (DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)) => {
+            let linear = image.into_rgb32f();
+            RgbImage::from_fn(linear.width(), linear.height(), |x, y| {
+                Rgb(linear.get_pixel(x, y).0.map(srgb::from_linear))
+            })
+        }
+        image => image.into_rgb8(),
+    })
+}
+
+/// A depth file as read.
+#[derive(Clone, Debug)]
+pub struct DepthFile {
+    /// The values; row 0 is the top.
+    pub image: DepthImage,
+    /// What the values are.
+    pub samples: DepthSamples,
+}
+
+/// What the values of a [`DepthFile`] are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthSamples {
+    /// Integers divided by their maximum: 0 to 1.
+    Normalized {
+        /// 8 or 16.
+        bits: u8,
+    },
+    /// Floating point, unchanged.
+    Float,
+}
+
+/// Reads a depth image: grey (or red = green = blue) with 8 or 16 bits as 0 to 1, or one channel of an EXR file
+/// unchanged. Of an EXR file the first layer with a channel named Z, depth, Y or R is taken (a prefix like
+/// `ViewLayer.` does not count), or the only channel of the first layer.
+pub fn load_depth(path: &Path) -> Result<DepthFile, PictureError> {
+    let bytes = files::read(path)?;
+    if image::guess_format(&bytes).is_ok_and(|format| format == ImageFormat::OpenExr) {
+        return Ok(DepthFile { image: decode_exr_channel(path, &bytes)?, samples: DepthSamples::Float });
+    }
+    let image = decode_bytes(path, bytes)?;
+    let bits = if image.color().bytes_per_pixel() / image.color().channel_count() == 1 { 8 } else { 16 };
+    let (width, height) = (image.width(), image.height());
+    let wide = image.color().has_color().then(|| image.to_rgb16());
+    if let Some(wide) = &wide
+        && wide.pixels().any(|p| p.0[0] != p.0[1] || p.0[0] != p.0[2])
+    {
+        return Err(PictureError::NotGrey { path: path.into() });
+    }
+    // The conversions between 8 and 16 bits are exact (times 257), and of equal channels the first is the grey.
+    let values: Vec<f32> = match wide {
+        Some(wide) => wide.pixels().map(|p| f32::from(p.0[0]) / 65535.0).collect(),
+        None => image.into_luma16().pixels().map(|p| f32::from(p.0[0]) / 65535.0).collect(),
+    };
+    let image = DepthImage::from_raw(width, height, values).expect("one value for each pixel");
+    Ok(DepthFile { image, samples: DepthSamples::Normalized { bits } })
+}
+
+/// Reads a mask as grey, 8 bits.
+pub fn load_mask(path: &Path) -> Result<GrayImage, PictureError> {
+    Ok(decode(path)?.into_luma8())
+}
+
+fn decode(path: &Path) -> Result<DynamicImage, PictureError> {
+    decode_bytes(path, files::read(path)?)
+}
+
+fn decode_bytes(path: &Path, bytes: Vec<u8>) -> Result<DynamicImage, PictureError> {
+    let damaged =
+        |error: image::ImageError| PictureError::Damaged { path: path.into(), reason: error.to_string() };
+    let format = image::guess_format(&bytes)
+        .ok()
+        // TGA has no signature; anything else without one is not what its name says.
+        .or_else(|| ImageFormat::from_path(path).ok().filter(|format| *format == ImageFormat::Tga))
+        .filter(ImageFormat::reading_enabled)
+        .ok_or_else(|| PictureError::UnknownFormat { path: path.into() })?;
+    // The decoders are compiled once for each type of reader: this is the one that `image` itself uses.
+    let reader = || ImageReader::with_format(Cursor::new(bytes.as_slice()), format);
+    let (width, height) = reader().into_dimensions().map_err(damaged)?;
+    check_size(path, width as usize, height as usize)?;
+    let mut reader = reader();
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(4 << 30);
+    reader.limits(limits);
+    reader.decode().map_err(damaged)
+}
+
+fn check_size(path: &Path, width: usize, height: usize) -> Result<(), PictureError> {
+    if width.max(height) > MAX_SIZE as usize {
+        return Err(PictureError::TooLarge { path: path.into(), width, height });
+    }
+    Ok(())
+}
+
+fn decode_exr_channel(path: &Path, bytes: &[u8]) -> Result<DepthImage, PictureError> {
+    let damaged =
+        |error: exr::error::Error| PictureError::Damaged { path: path.into(), reason: error.to_string() };
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(damaged)?;
+    for header in &meta.headers {
+        check_size(path, header.layer_size.width(), header.layer_size.height())?;
+    }
+    let file = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(damaged)?;
+    let window = file.attributes.display_window;
+    let found = || -> String {
+        let names = file.layer_data.iter().flat_map(|layer| &layer.channel_data.list);
+        names.map(|channel| channel.name.to_string()).collect::<Vec<_>>().join(", ")
+    };
+    let (layer, channel) = file
+        .layer_data
+        .iter()
+        .find_map(|layer| depth_channel(&layer.channel_data.list).map(|channel| (layer, channel)))
+        .ok_or_else(|| PictureError::NoDepthChannel { path: path.into(), found: found() })?;
+    if layer.size != window.size || layer.attributes.layer_position != window.position {
+        return Err(PictureError::Cropped { path: path.into() });
+    }
+    let (width, height) = (layer.size.width() as u32, layer.size.height() as u32);
+    let values: Vec<f32> = channel.sample_data.values_as_f32().collect();
+    if let Some(at) = values.iter().position(|value| value.is_nan()) {
+        let (x, y) = (at as u32 % width, at as u32 / width);
+        return Err(PictureError::NotANumber { path: path.into(), x, y });
+    }
+    DepthImage::from_raw(width, height, values).ok_or_else(|| PictureError::Damaged {
+        path: path.into(),
+        reason: "a channel has fewer samples than pixels".into(),
+    })
+}
+
+type ExrChannel = exr::image::AnyChannel<exr::image::FlatSamples>;
+
+fn depth_channel(channels: &[ExrChannel]) -> Option<&ExrChannel> {
+    let called = |wanted: &str| {
+        channels.iter().find(|channel| {
+            let name = channel.name.to_string();
+            name.rsplit('.').next().is_some_and(|last| last.eq_ignore_ascii_case(wanted))
+        })
+    };
+    // The red of a colour picture is not depth.
+    let red = || called("R").filter(|_| called("G").is_none() && called("B").is_none());
+    let only = match channels {
+        [only] => Some(only),
+        _ => None,
+    };
+    called("Z").or_else(|| called("depth")).or_else(|| called("Y")).or_else(red).or(only)
+}
