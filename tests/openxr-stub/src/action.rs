@@ -1,14 +1,15 @@
 //! Actions: what controllers do, as the script says.
 
 use std::collections::HashMap;
+use std::ffi::c_char;
 
 use openxr_sys as sys;
-use sys::Handle;
+use sys::{Handle, Result as Code};
 
-use crate::instance::{fill, fill_text, text};
+use crate::instance::text;
 use crate::log::Entry;
 use crate::script::State;
-use crate::world::{Answer, DONE, Instance, Refusal, World, enter, forbidden};
+use crate::world::{Answer, Array, DONE, Instance, Refusal, World, forbid_if, forbidden, found};
 
 /// Every action of an instance.
 #[derive(Default)]
@@ -44,7 +45,7 @@ impl Actions {
 
     fn get(&self, action: sys::Action) -> Result<&Action, Refusal> {
         let known = self.actions.get(&action.into_raw());
-        known.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not an action"))
+        found(known, "not an action")
     }
 
     /// The session is gone.
@@ -58,87 +59,73 @@ impl Actions {
 fn check_name(name: &str, localized: &str) -> Result<(), Refusal> {
     let good = !name.is_empty()
         && name.bytes().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || b"-_.".contains(&c));
-    if !good {
-        return Err(forbidden(sys::Result::ERROR_NAME_INVALID, format!("{name:?} is no name")));
-    }
-    if localized.is_empty() {
-        return Err(forbidden(
-            sys::Result::ERROR_LOCALIZED_NAME_INVALID,
-            format!("{name} has no localized name"),
-        ));
-    }
+    forbid_if(!good, Code::ERROR_NAME_INVALID, format!("{name:?} is no name"))?;
+    forbid_if(
+        localized.is_empty(),
+        Code::ERROR_LOCALIZED_NAME_INVALID,
+        format!("{name} has no localized name"),
+    )?;
     Ok(())
 }
 
-pub unsafe extern "system" fn create_action_set(
+pub fn create_action_set(
+    world: &mut World,
     instance: sys::Instance,
-    info: *const sys::ActionSetCreateInfo,
-    out: *mut sys::ActionSet,
-) -> sys::Result {
-    enter("xrCreateActionSet", |world| {
-        // SAFETY: as the caller says.
-        let info = unsafe { &*info };
-        let name = text(&info.action_set_name);
-        check_name(&name, &text(&info.localized_action_set_name))?;
-        let known = world.instance(instance)?;
-        if known.actions.sets.values().any(|set| set.name == name) {
-            return Err(forbidden(sys::Result::ERROR_NAME_DUPLICATED, format!("{name} exists")));
-        }
-        let handle = world.new_handle();
-        world.instance(instance)?.actions.sets.insert(handle, Set { name });
-        // SAFETY: as the caller says.
-        unsafe { *out = sys::ActionSet::from_raw(handle) };
-        DONE
-    })
+    info: &sys::ActionSetCreateInfo,
+    out: &mut sys::ActionSet,
+) -> Answer {
+    let name = text(&info.action_set_name);
+    check_name(&name, &text(&info.localized_action_set_name))?;
+    let known = world.instance(instance)?;
+    forbid_if(
+        known.actions.sets.values().any(|set| set.name == name),
+        Code::ERROR_NAME_DUPLICATED,
+        format!("{name} exists"),
+    )?;
+    let handle = world.new_handle();
+    world.instance(instance)?.actions.sets.insert(handle, Set { name });
+    *out = sys::ActionSet::from_raw(handle);
+    DONE
 }
 
-pub unsafe extern "system" fn destroy_action_set(set: sys::ActionSet) -> sys::Result {
-    enter("xrDestroyActionSet", |world| {
-        let removed = world.instance.as_mut().and_then(|i| i.actions.sets.remove(&set.into_raw()));
-        removed.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not an action set"))?;
-        DONE
-    })
+pub fn destroy_action_set(world: &mut World, set: sys::ActionSet) -> Answer {
+    let removed = world.instance.as_mut().and_then(|i| i.actions.sets.remove(&set.into_raw()));
+    found(removed, "not an action set")?;
+    DONE
 }
 
-pub unsafe extern "system" fn create_action(
+pub fn create_action(
+    world: &mut World,
     set: sys::ActionSet,
-    info: *const sys::ActionCreateInfo,
-    out: *mut sys::Action,
-) -> sys::Result {
-    enter("xrCreateAction", |world| {
-        // SAFETY: as the caller says.
-        let info = unsafe { &*info };
-        let name = text(&info.action_name);
-        check_name(&name, &text(&info.localized_action_name))?;
-        let actions = &world.current()?.actions;
-        let set = set.into_raw();
-        if !actions.sets.contains_key(&set) {
-            return Err(forbidden(sys::Result::ERROR_HANDLE_INVALID, "not an action set"));
-        }
-        if actions.attached.contains(&set) {
-            return Err(forbidden(
-                sys::Result::ERROR_ACTIONSETS_ALREADY_ATTACHED,
-                format!("{name} comes after the set was attached"),
-            ));
-        }
-        if actions.actions.values().any(|action| action.set == set && action.name == name) {
-            return Err(forbidden(sys::Result::ERROR_NAME_DUPLICATED, format!("{name} exists")));
-        }
-        let handle = world.new_handle();
-        let action = Action { set, name, kind: info.action_type };
-        world.current()?.actions.actions.insert(handle, action);
-        // SAFETY: as the caller says.
-        unsafe { *out = sys::Action::from_raw(handle) };
-        DONE
-    })
+    info: &sys::ActionCreateInfo,
+    out: &mut sys::Action,
+) -> Answer {
+    let name = text(&info.action_name);
+    check_name(&name, &text(&info.localized_action_name))?;
+    let actions = &world.current()?.actions;
+    let set = set.into_raw();
+    forbid_if(!actions.sets.contains_key(&set), Code::ERROR_HANDLE_INVALID, "not an action set")?;
+    forbid_if(
+        actions.attached.contains(&set),
+        Code::ERROR_ACTIONSETS_ALREADY_ATTACHED,
+        format!("{name} comes after the set was attached"),
+    )?;
+    forbid_if(
+        actions.actions.values().any(|action| action.set == set && action.name == name),
+        Code::ERROR_NAME_DUPLICATED,
+        format!("{name} exists"),
+    )?;
+    let handle = world.new_handle();
+    let action = Action { set, name, kind: info.action_type };
+    world.current()?.actions.actions.insert(handle, action);
+    *out = sys::Action::from_raw(handle);
+    DONE
 }
 
-pub unsafe extern "system" fn destroy_action(action: sys::Action) -> sys::Result {
-    enter("xrDestroyAction", |world| {
-        let removed = world.instance.as_mut().and_then(|i| i.actions.actions.remove(&action.into_raw()));
-        removed.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not an action"))?;
-        DONE
-    })
+pub fn destroy_action(world: &mut World, action: sys::Action) -> Answer {
+    let removed = world.instance.as_mut().and_then(|i| i.actions.actions.remove(&action.into_raw()));
+    found(removed, "not an action")?;
+    DONE
 }
 
 /// Profiles that the stub knows, and the extension that each belongs to.
@@ -152,61 +139,50 @@ const PROFILES: [(&str, Option<&str>); 5] = [
 /// Profiles that some runtimes know, and that an application may try.
 const TRIED: [&str; 1] = ["/interaction_profiles/bytedance/pico4s_controller"];
 
-pub unsafe extern "system" fn suggest_bindings(
+pub fn suggest_bindings(
+    world: &mut World,
     instance: sys::Instance,
-    suggested: *const sys::InteractionProfileSuggestedBinding,
-) -> sys::Result {
-    enter("xrSuggestInteractionProfileBindings", |world| {
-        // SAFETY: as the caller says.
-        let suggested = unsafe { &*suggested };
-        let known = world.instance(instance)?;
-        let profile = known.path(suggested.interaction_profile).unwrap_or_default().to_owned();
-        let extension = match PROFILES.iter().find(|(name, _)| *name == profile) {
-            Some((_, extension)) => *extension,
-            None if TRIED.contains(&profile.as_str()) => {
-                return Err(sys::Result::ERROR_PATH_UNSUPPORTED.into());
-            }
-            None => {
-                return Err(forbidden(
-                    sys::Result::ERROR_PATH_UNSUPPORTED,
-                    format!("{profile:?} is no profile"),
-                ));
-            }
-        };
-        if let Some(extension) = extension
-            && !known.extensions.iter().any(|enabled| enabled == extension)
-        {
-            return Err(forbidden(
-                sys::Result::ERROR_PATH_UNSUPPORTED,
-                format!("{profile} without {extension}"),
-            ));
+    suggested: &sys::InteractionProfileSuggestedBinding,
+) -> Answer {
+    let known = world.instance(instance)?;
+    let profile = known.path(suggested.interaction_profile).unwrap_or_default().to_owned();
+    let extension = match PROFILES.iter().find(|(name, _)| *name == profile) {
+        Some((_, extension)) => *extension,
+        None if TRIED.contains(&profile.as_str()) => {
+            return Err(Code::ERROR_PATH_UNSUPPORTED.into());
         }
-        if !known.actions.attached.is_empty() {
-            return Err(forbidden(
-                sys::Result::ERROR_ACTIONSETS_ALREADY_ATTACHED,
-                "bindings come after the sets were attached",
-            ));
+        None => {
+            return Err(forbidden(Code::ERROR_PATH_UNSUPPORTED, format!("{profile:?} is no profile")));
         }
-        let mut bindings = Vec::new();
-        for i in 0..suggested.count_suggested_bindings as usize {
-            // SAFETY: the array has that many bindings.
-            let binding = unsafe { &*suggested.suggested_bindings.add(i) };
-            known.actions.check(binding.action)?;
-            let path = known.path(binding.binding).unwrap_or_default().to_owned();
-            let part = path.strip_prefix("/user/hand/left/").or(path.strip_prefix("/user/hand/right/"));
-            if !part.is_some_and(|part| part_exists(&profile, part, path.contains("left"))) {
-                return Err(forbidden(
-                    sys::Result::ERROR_PATH_UNSUPPORTED,
-                    format!("{profile} has no {path:?}"),
-                ));
-            }
-            bindings.push((binding.action.into_raw(), path));
-        }
-        let paths = bindings.iter().map(|(_, path)| path.clone()).collect();
-        known.actions.bindings.insert(profile.clone(), bindings);
-        world.log.write(&Entry::Bindings { profile, paths });
-        DONE
-    })
+    };
+    if let Some(extension) = extension
+        && !known.extensions.iter().any(|enabled| enabled == extension)
+    {
+        return Err(forbidden(Code::ERROR_PATH_UNSUPPORTED, format!("{profile} without {extension}")));
+    }
+    forbid_if(
+        !known.actions.attached.is_empty(),
+        Code::ERROR_ACTIONSETS_ALREADY_ATTACHED,
+        "bindings come after the sets were attached",
+    )?;
+    let mut bindings = Vec::new();
+    for i in 0..suggested.count_suggested_bindings as usize {
+        // SAFETY: the array has that many bindings.
+        let binding = unsafe { &*suggested.suggested_bindings.add(i) };
+        known.actions.check(binding.action)?;
+        let path = known.path(binding.binding).unwrap_or_default().to_owned();
+        let part = path.strip_prefix("/user/hand/left/").or(path.strip_prefix("/user/hand/right/"));
+        forbid_if(
+            !part.is_some_and(|part| part_exists(&profile, part, path.contains("left"))),
+            Code::ERROR_PATH_UNSUPPORTED,
+            format!("{profile} has no {path:?}"),
+        )?;
+        bindings.push((binding.action.into_raw(), path));
+    }
+    let paths = bindings.iter().map(|(_, path)| path.clone()).collect();
+    known.actions.bindings.insert(profile.clone(), bindings);
+    world.log.write(&Entry::Bindings { profile, paths });
+    DONE
 }
 
 /// Whether a controller has the part, as the specification lists them.
@@ -247,102 +223,87 @@ fn part_exists(profile: &str, part: &str, left: bool) -> bool {
     }
 }
 
-pub unsafe extern "system" fn attach_action_sets(
+pub fn attach_action_sets(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::SessionActionSetsAttachInfo,
-) -> sys::Result {
-    enter("xrAttachSessionActionSets", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        let info = unsafe { &*info };
-        let actions = &mut world.current()?.actions;
-        if !actions.attached.is_empty() {
-            return Err(forbidden(
-                sys::Result::ERROR_ACTIONSETS_ALREADY_ATTACHED,
-                "sets are attached once to a session",
-            ));
-        }
-        for i in 0..info.count_action_sets as usize {
-            // SAFETY: the array has that many handles.
-            let set = unsafe { *info.action_sets.add(i) }.into_raw();
-            if !actions.sets.contains_key(&set) {
-                return Err(forbidden(sys::Result::ERROR_HANDLE_INVALID, "not an action set"));
-            }
-            actions.attached.push(set);
-        }
-        world.session(session)?.attached = true;
-        // The controllers are found when it is known what they are for.
-        world.current()?.events.push_back(crate::world::Event::Profile);
-        DONE
-    })
+    info: &sys::SessionActionSetsAttachInfo,
+) -> Answer {
+    world.session(session)?;
+    let actions = &mut world.current()?.actions;
+    forbid_if(
+        !actions.attached.is_empty(),
+        Code::ERROR_ACTIONSETS_ALREADY_ATTACHED,
+        "sets are attached once to a session",
+    )?;
+    for i in 0..info.count_action_sets as usize {
+        // SAFETY: the array has that many handles.
+        let set = unsafe { *info.action_sets.add(i) }.into_raw();
+        forbid_if(!actions.sets.contains_key(&set), Code::ERROR_HANDLE_INVALID, "not an action set")?;
+        actions.attached.push(set);
+    }
+    world.session(session)?.attached = true;
+    // The controllers are found when it is known what they are for.
+    world.current()?.events.push_back(crate::world::Event::Profile);
+    DONE
 }
 
-pub unsafe extern "system" fn sync_actions(
-    session: sys::Session,
-    info: *const sys::ActionsSyncInfo,
-) -> sys::Result {
-    enter("xrSyncActions", |world| {
-        let focused = world.session(session)?.state == State::Focused;
-        // SAFETY: as the caller says.
-        let info = unsafe { &*info };
-        let mut active = Vec::new();
-        for i in 0..info.count_active_action_sets as usize {
-            // SAFETY: the array has that many sets.
-            let set = unsafe { &*info.active_action_sets.add(i) }.action_set.into_raw();
-            if !world.current()?.actions.attached.contains(&set) {
-                return Err(forbidden(sys::Result::ERROR_ACTIONSET_NOT_ATTACHED, "the set is not attached"));
-            }
-            active.push(set);
+pub fn sync_actions(world: &mut World, session: sys::Session, info: &sys::ActionsSyncInfo) -> Answer {
+    let focused = world.session(session)?.state == State::Focused;
+    let mut active = Vec::new();
+    for i in 0..info.count_active_action_sets as usize {
+        // SAFETY: the array has that many sets.
+        let set = unsafe { &*info.active_action_sets.add(i) }.action_set.into_raw();
+        forbid_if(
+            !world.current()?.actions.attached.contains(&set),
+            Code::ERROR_ACTIONSET_NOT_ATTACHED,
+            "the set is not attached",
+        )?;
+        active.push(set);
+    }
+    let (frame, time) = (world.frame(), world.time());
+    let bound: Vec<(u64, String)> = match &world.profile {
+        Some(profile) => world.instance.as_ref().and_then(|i| i.actions.bindings.get(profile)).cloned(),
+        None => None,
+    }
+    .unwrap_or_default();
+    let values: Vec<[f32; 2]> = bound.iter().map(|(_, path)| world.script.input(path, frame)).collect();
+    let actions = &mut world.current()?.actions;
+    actions.active = if focused { active } else { Vec::new() };
+    actions.values.retain(|key, _| bound.contains(key));
+    for (key, value) in bound.into_iter().zip(values) {
+        let value = if focused { value } else { [0.0; 2] };
+        let history = actions.values.entry(key).or_default();
+        if history[0] != value {
+            actions.changed_at = time.as_nanos();
         }
-        let (frame, time) = (world.frame(), world.time());
-        let bound: Vec<(u64, String)> = match &world.profile {
-            Some(profile) => world.instance.as_ref().and_then(|i| i.actions.bindings.get(profile)).cloned(),
-            None => None,
-        }
-        .unwrap_or_default();
-        let values: Vec<[f32; 2]> = bound.iter().map(|(_, path)| world.script.input(path, frame)).collect();
-        let actions = &mut world.current()?.actions;
-        actions.active = if focused { active } else { Vec::new() };
-        actions.values.retain(|key, _| bound.contains(key));
-        for (key, value) in bound.into_iter().zip(values) {
-            let value = if focused { value } else { [0.0; 2] };
-            let history = actions.values.entry(key).or_default();
-            if history[0] != value {
-                actions.changed_at = time.as_nanos();
-            }
-            *history = [value, history[0]];
-        }
-        if !focused {
-            return Ok(sys::Result::SESSION_NOT_FOCUSED);
-        }
-        world.success()
-    })
+        *history = [value, history[0]];
+    }
+    if !focused {
+        return Ok(Code::SESSION_NOT_FOCUSED);
+    }
+    world.success()
 }
 
 /// The values of an action now and at the synchronisation before; none where nothing is bound to it.
 fn state(
     world: &mut World,
     session: sys::Session,
-    info: *const sys::ActionStateGetInfo,
+    info: &sys::ActionStateGetInfo,
     kind: sys::ActionType,
 ) -> Result<Option<[[f32; 2]; 2]>, Refusal> {
     world.session(session)?;
-    // SAFETY: the functions that come here get a valid structure.
-    let info = unsafe { &*info };
     let instance = world.current()?;
     let action = instance.actions.get(info.action)?;
-    if action.kind != kind {
-        return Err(forbidden(
-            sys::Result::ERROR_ACTION_TYPE_MISMATCH,
-            format!("{} is asked for as {kind:?}", action.name),
-        ));
-    }
-    if !instance.actions.attached.contains(&action.set) {
-        return Err(forbidden(
-            sys::Result::ERROR_ACTIONSET_NOT_ATTACHED,
-            format!("the set of {} is not attached", action.name),
-        ));
-    }
+    forbid_if(
+        action.kind != kind,
+        Code::ERROR_ACTION_TYPE_MISMATCH,
+        format!("{} is asked for as {kind:?}", action.name),
+    )?;
+    forbid_if(
+        !instance.actions.attached.contains(&action.set),
+        Code::ERROR_ACTIONSET_NOT_ATTACHED,
+        format!("the set of {} is not attached", action.name),
+    )?;
     if !instance.actions.active.contains(&action.set) {
         return Ok(None);
     }
@@ -375,86 +336,71 @@ fn put_state<T: PartialEq + Copy>(
     DONE
 }
 
-pub unsafe extern "system" fn get_action_state_boolean(
+pub fn get_action_state_boolean(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::ActionStateGetInfo,
-    out: *mut sys::ActionStateBoolean,
-) -> sys::Result {
-    enter("xrGetActionStateBoolean", |world| {
-        let values = state(world, session, info, sys::ActionType::BOOLEAN_INPUT)?;
-        let time = sys::Time::from_nanos(world.current()?.actions.changed_at);
-        // SAFETY: as the caller says.
-        let out = unsafe { &mut *out };
-        put_state(values.map(|both| both.map(|value| value[0] >= 0.5)), false, |now, changed, active| {
-            out.current_state = now.into();
-            (out.changed_since_last_sync, out.is_active, out.last_change_time) = (changed, active, time);
-        })
+    info: &sys::ActionStateGetInfo,
+    out: &mut sys::ActionStateBoolean,
+) -> Answer {
+    let values = state(world, session, info, sys::ActionType::BOOLEAN_INPUT)?;
+    let time = sys::Time::from_nanos(world.current()?.actions.changed_at);
+    put_state(values.map(|both| both.map(|value| value[0] >= 0.5)), false, |now, changed, active| {
+        out.current_state = now.into();
+        (out.changed_since_last_sync, out.is_active, out.last_change_time) = (changed, active, time);
     })
 }
 
-pub unsafe extern "system" fn get_action_state_float(
+pub fn get_action_state_float(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::ActionStateGetInfo,
-    out: *mut sys::ActionStateFloat,
-) -> sys::Result {
-    enter("xrGetActionStateFloat", |world| {
-        let values = state(world, session, info, sys::ActionType::FLOAT_INPUT)?;
-        let time = sys::Time::from_nanos(world.current()?.actions.changed_at);
-        // SAFETY: as the caller says.
-        let out = unsafe { &mut *out };
-        put_state(values.map(|both| both.map(|value| value[0])), 0.0, |now, changed, active| {
-            out.current_state = now;
-            (out.changed_since_last_sync, out.is_active, out.last_change_time) = (changed, active, time);
-        })
+    info: &sys::ActionStateGetInfo,
+    out: &mut sys::ActionStateFloat,
+) -> Answer {
+    let values = state(world, session, info, sys::ActionType::FLOAT_INPUT)?;
+    let time = sys::Time::from_nanos(world.current()?.actions.changed_at);
+    put_state(values.map(|both| both.map(|value| value[0])), 0.0, |now, changed, active| {
+        out.current_state = now;
+        (out.changed_since_last_sync, out.is_active, out.last_change_time) = (changed, active, time);
     })
 }
 
-pub unsafe extern "system" fn get_action_state_vector2f(
+pub fn get_action_state_vector2f(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::ActionStateGetInfo,
-    out: *mut sys::ActionStateVector2f,
-) -> sys::Result {
-    enter("xrGetActionStateVector2f", |world| {
-        let values = state(world, session, info, sys::ActionType::VECTOR2F_INPUT)?;
-        let time = sys::Time::from_nanos(world.current()?.actions.changed_at);
-        // SAFETY: as the caller says.
-        let out = unsafe { &mut *out };
-        put_state(values, [0.0; 2], |[x, y], changed, active| {
-            out.current_state = sys::Vector2f { x, y };
-            (out.changed_since_last_sync, out.is_active, out.last_change_time) = (changed, active, time);
-        })
+    info: &sys::ActionStateGetInfo,
+    out: &mut sys::ActionStateVector2f,
+) -> Answer {
+    let values = state(world, session, info, sys::ActionType::VECTOR2F_INPUT)?;
+    let time = sys::Time::from_nanos(world.current()?.actions.changed_at);
+    put_state(values, [0.0; 2], |[x, y], changed, active| {
+        out.current_state = sys::Vector2f { x, y };
+        (out.changed_since_last_sync, out.is_active, out.last_change_time) = (changed, active, time);
     })
 }
 
-pub unsafe extern "system" fn get_action_state_pose(
+pub fn get_action_state_pose(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::ActionStateGetInfo,
-    out: *mut sys::ActionStatePose,
-) -> sys::Result {
-    enter("xrGetActionStatePose", |world| {
-        let values = state(world, session, info, sys::ActionType::POSE_INPUT)?;
-        // SAFETY: as the caller says.
-        unsafe { (*out).is_active = values.is_some().into() };
-        DONE
-    })
+    info: &sys::ActionStateGetInfo,
+    out: &mut sys::ActionStatePose,
+) -> Answer {
+    let values = state(world, session, info, sys::ActionType::POSE_INPUT)?;
+    out.is_active = values.is_some().into();
+    DONE
 }
 
-pub unsafe extern "system" fn get_current_interaction_profile(
+pub fn get_current_interaction_profile(
+    world: &mut World,
     session: sys::Session,
     _: sys::Path,
-    out: *mut sys::InteractionProfileState,
-) -> sys::Result {
-    enter("xrGetCurrentInteractionProfile", |world| {
-        if !world.session(session)?.attached {
-            return Err(forbidden(sys::Result::ERROR_ACTIONSET_NOT_ATTACHED, "no set is attached"));
-        }
-        let profile = world.profile.clone();
-        let instance = world.current()?;
-        let known = profile.and_then(|profile| instance.paths.iter().position(|path| *path == profile));
-        // SAFETY: as the caller says.
-        unsafe { (*out).interaction_profile = sys::Path::from_raw(known.map_or(0, |i| i as u64 + 1)) };
-        DONE
-    })
+    out: &mut sys::InteractionProfileState,
+) -> Answer {
+    forbid_if(!world.session(session)?.attached, Code::ERROR_ACTIONSET_NOT_ATTACHED, "no set is attached")?;
+    let profile = world.profile.clone();
+    let instance = world.current()?;
+    let known = profile.and_then(|profile| instance.paths.iter().position(|path| *path == profile));
+    out.interaction_profile = sys::Path::from_raw(known.map_or(0, |i| i as u64 + 1));
+    DONE
 }
 
 fn bound_paths(instance: &Instance, action: sys::Action, profile: Option<&str>) -> Vec<sys::Path> {
@@ -466,65 +412,51 @@ fn bound_paths(instance: &Instance, action: sys::Action, profile: Option<&str>) 
         .collect()
 }
 
-pub unsafe extern "system" fn enumerate_bound_sources(
+pub fn enumerate_bound_sources(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::BoundSourcesForActionEnumerateInfo,
-    capacity: u32,
-    count: *mut u32,
-    sources: *mut sys::Path,
-) -> sys::Result {
-    enter("xrEnumerateBoundSourcesForAction", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        let action = unsafe { (*info).action };
-        let profile = world.profile.clone();
-        let instance = world.current()?;
-        instance.actions.check(action)?;
-        let paths = bound_paths(instance, action, profile.as_deref());
-        // SAFETY: as the caller says.
-        unsafe { fill(capacity, count, sources, &paths, |to, from| *to = *from) }
-    })
+    info: &sys::BoundSourcesForActionEnumerateInfo,
+    sources: Array<sys::Path>,
+) -> Answer {
+    world.session(session)?;
+    let action = info.action;
+    let profile = world.profile.clone();
+    let instance = world.current()?;
+    instance.actions.check(action)?;
+    let paths = bound_paths(instance, action, profile.as_deref());
+    sources.fill(&paths, |to, from| *to = *from)
 }
 
-pub unsafe extern "system" fn get_input_source_localized_name(
+pub fn get_input_source_localized_name(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::InputSourceLocalizedNameGetInfo,
-    capacity: u32,
-    count: *mut u32,
-    buffer: *mut std::ffi::c_char,
-) -> sys::Result {
-    enter("xrGetInputSourceLocalizedName", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        let path = unsafe { (*info).source_path };
-        let name = world.current()?.path(path).unwrap_or_default().to_owned();
-        // SAFETY: as the caller says.
-        unsafe { fill_text(capacity, count, buffer, &name) }
-    })
+    info: &sys::InputSourceLocalizedNameGetInfo,
+    buffer: Array<c_char>,
+) -> Answer {
+    world.session(session)?;
+    let path = info.source_path;
+    let name = world.current()?.path(path).unwrap_or_default().to_owned();
+    buffer.fill_text(&name)
 }
 
-pub unsafe extern "system" fn apply_haptic_feedback(
+pub fn apply_haptic_feedback(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::HapticActionInfo,
+    info: &sys::HapticActionInfo,
     _: *const sys::HapticBaseHeader,
-) -> sys::Result {
-    enter("xrApplyHapticFeedback", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        world.current()?.actions.check(unsafe { (*info).action })?;
-        world.log.write(&Entry::Request { what: "haptic".into(), value: 1.0 });
-        world.success()
-    })
+) -> Answer {
+    world.session(session)?;
+    world.current()?.actions.check(info.action)?;
+    world.log.write(&Entry::Request { what: "haptic".into(), value: 1.0 });
+    world.success()
 }
 
-pub unsafe extern "system" fn stop_haptic_feedback(
+pub fn stop_haptic_feedback(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::HapticActionInfo,
-) -> sys::Result {
-    enter("xrStopHapticFeedback", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        world.current()?.actions.check(unsafe { (*info).action })?;
-        world.success()
-    })
+    info: &sys::HapticActionInfo,
+) -> Answer {
+    world.session(session)?;
+    world.current()?.actions.check(info.action)?;
+    world.success()
 }

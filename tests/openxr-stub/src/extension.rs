@@ -1,135 +1,112 @@
 //! Functions of extensions.
 
 use openxr_sys as sys;
+use sys::Result as Code;
 
-use crate::instance::fill;
 use crate::log::Entry;
 use crate::session::views_of;
-use crate::world::{DONE, Event, enter, forbidden};
+use crate::world::{Answer, Array, DONE, Event, World, forbid_if};
 
-pub unsafe extern "system" fn enumerate_display_refresh_rates(
+pub fn enumerate_display_refresh_rates(
+    world: &mut World,
     session: sys::Session,
-    capacity: u32,
-    count: *mut u32,
-    rates: *mut f32,
-) -> sys::Result {
-    enter("xrEnumerateDisplayRefreshRatesFB", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        unsafe { fill(capacity, count, rates, &world.script.refresh_rates, |to, from| *to = *from) }
-    })
+    rates: Array<f32>,
+) -> Answer {
+    world.session(session)?;
+    rates.fill(&world.script.refresh_rates, |to, from| *to = *from)
 }
 
-pub unsafe extern "system" fn get_display_refresh_rate(session: sys::Session, rate: *mut f32) -> sys::Result {
-    enter("xrGetDisplayRefreshRateFB", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        unsafe { *rate = world.refresh_rate };
-        DONE
-    })
+pub fn get_display_refresh_rate(world: &mut World, session: sys::Session, rate: &mut f32) -> Answer {
+    world.session(session)?;
+    *rate = world.refresh_rate;
+    DONE
 }
 
-pub unsafe extern "system" fn request_display_refresh_rate(session: sys::Session, rate: f32) -> sys::Result {
-    enter("xrRequestDisplayRefreshRateFB", |world| {
-        world.session(session)?;
-        if rate != 0.0 && !world.script.refresh_rates.contains(&rate) {
-            return Err(forbidden(
-                sys::Result::ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
-                format!("{rate} Hz is not offered"),
-            ));
-        }
-        world.log.write(&Entry::Request { what: "refresh-rate".into(), value: rate.into() });
-        if rate != 0.0 && rate != world.refresh_rate {
-            let before = std::mem::replace(&mut world.refresh_rate, rate);
-            world.current()?.events.push_back(Event::RefreshRate(before, rate));
-        }
-        DONE
-    })
+pub fn request_display_refresh_rate(world: &mut World, session: sys::Session, rate: f32) -> Answer {
+    world.session(session)?;
+    forbid_if(
+        rate != 0.0 && !world.script.refresh_rates.contains(&rate),
+        Code::ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
+        format!("{rate} Hz is not offered"),
+    )?;
+    world.log.write(&Entry::Request { what: "refresh-rate".into(), value: rate.into() });
+    if rate != 0.0 && rate != world.refresh_rate {
+        let before = std::mem::replace(&mut world.refresh_rate, rate);
+        world.current()?.events.push_back(Event::RefreshRate(before, rate));
+    }
+    DONE
 }
 
-pub unsafe extern "system" fn set_performance_level(
+pub fn set_performance_level(
+    world: &mut World,
     session: sys::Session,
     domain: sys::PerfSettingsDomainEXT,
     level: sys::PerfSettingsLevelEXT,
-) -> sys::Result {
-    enter("xrPerfSettingsSetPerformanceLevelEXT", |world| {
-        world.session(session)?;
-        let what = if domain == sys::PerfSettingsDomainEXT::CPU { "cpu-level" } else { "gpu-level" };
-        world.log.write(&Entry::Request { what: what.into(), value: level.into_raw().into() });
-        DONE
-    })
+) -> Answer {
+    world.session(session)?;
+    let what = if domain == sys::PerfSettingsDomainEXT::CPU { "cpu-level" } else { "gpu-level" };
+    world.log.write(&Entry::Request { what: what.into(), value: level.into_raw().into() });
+    DONE
 }
 
 /// The type of [`set_android_application_thread`], which the bindings have on Android alone.
 pub type SetAndroidApplicationThreadKHR =
     unsafe extern "system" fn(sys::Session, sys::AndroidThreadTypeKHR, u32) -> sys::Result;
 
-pub unsafe extern "system" fn set_android_application_thread(
+pub fn set_android_application_thread(
+    world: &mut World,
     session: sys::Session,
     kind: sys::AndroidThreadTypeKHR,
     thread: u32,
-) -> sys::Result {
-    enter("xrSetAndroidApplicationThreadKHR", |world| {
-        world.session(session)?;
-        if !std::path::Path::new(&format!("/proc/self/task/{thread}")).exists() {
-            return Err(forbidden(
-                sys::Result::ERROR_ANDROID_THREAD_SETTINGS_ID_INVALID_KHR,
-                format!("there is no thread {thread}"),
-            ));
-        }
-        world.log.write(&Entry::Request { what: "thread".into(), value: kind.into_raw().into() });
-        DONE
-    })
+) -> Answer {
+    world.session(session)?;
+    forbid_if(
+        !std::path::Path::new(&format!("/proc/self/task/{thread}")).exists(),
+        Code::ERROR_ANDROID_THREAD_SETTINGS_ID_INVALID_KHR,
+        format!("there is no thread {thread}"),
+    )?;
+    world.log.write(&Entry::Request { what: "thread".into(), value: kind.into_raw().into() });
+    DONE
 }
 
 /// Triangles that cut off the outer upper corner, in the view's plane at distance 1.
-pub unsafe extern "system" fn get_visibility_mask(
+pub fn get_visibility_mask(
+    world: &mut World,
     session: sys::Session,
     configuration: sys::ViewConfigurationType,
     view: u32,
     kind: sys::VisibilityMaskTypeKHR,
-    mask: *mut sys::VisibilityMaskKHR,
-) -> sys::Result {
-    enter("xrGetVisibilityMaskKHR", |world| {
-        world.session(session)?;
-        if view >= views_of(world, configuration)? {
-            return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, format!("there is no view {view}")));
-        }
-        // SAFETY: as the caller says.
-        let mask = unsafe { &mut *mask };
-        let [left, right, up, down] =
-            world.script.eyes[view as usize].fov_degrees.map(|a| a.to_radians().tan());
-        let (outer, inner) = if view == 0 { (left, right) } else { (right, left) };
-        let cut = [outer + 0.25 * (inner - outer), up + 0.25 * (down - up)];
-        let corner = [[outer, up], [cut[0], up], [outer, cut[1]]];
-        let outline = [corner[2], corner[1], [inner, up], [inner, down], [outer, down]];
-        let (vertices, indices): (Vec<[f32; 2]>, Vec<u32>) = match kind {
-            _ if !world.script.visibility_mask => Default::default(),
-            sys::VisibilityMaskTypeKHR::HIDDEN_TRIANGLE_MESH => (corner.into(), orient(&corner, [0, 1, 2])),
-            sys::VisibilityMaskTypeKHR::VISIBLE_TRIANGLE_MESH => (
-                outline.into(),
-                [[0, 1, 2], [0, 2, 3], [0, 3, 4]].into_iter().flat_map(|t| orient(&outline, t)).collect(),
-            ),
-            _ => (outline.into(), (0..5).collect()),
-        };
-        // SAFETY: as the caller says, here and below.
-        unsafe {
-            fill(
-                mask.vertex_capacity_input,
-                &raw mut mask.vertex_count_output,
-                mask.vertices,
-                &vertices,
-                |to, [x, y]| *to = sys::Vector2f { x: *x, y: *y },
-            )?;
-            fill(
-                mask.index_capacity_input,
-                &raw mut mask.index_count_output,
-                mask.indices,
-                &indices,
-                |to, from| *to = *from,
-            )
-        }
-    })
+    mask: &mut sys::VisibilityMaskKHR,
+) -> Answer {
+    world.session(session)?;
+    forbid_if(
+        view >= views_of(world, configuration)?,
+        Code::ERROR_VALIDATION_FAILURE,
+        format!("there is no view {view}"),
+    )?;
+    let [left, right, up, down] = world.script.eyes[view as usize].fov_degrees.map(|a| a.to_radians().tan());
+    let (outer, inner) = if view == 0 { (left, right) } else { (right, left) };
+    let cut = [outer + 0.25 * (inner - outer), up + 0.25 * (down - up)];
+    let corner = [[outer, up], [cut[0], up], [outer, cut[1]]];
+    let outline = [corner[2], corner[1], [inner, up], [inner, down], [outer, down]];
+    let (vertices, indices): (Vec<[f32; 2]>, Vec<u32>) = match kind {
+        _ if !world.script.visibility_mask => Default::default(),
+        sys::VisibilityMaskTypeKHR::HIDDEN_TRIANGLE_MESH => (corner.into(), orient(&corner, [0, 1, 2])),
+        sys::VisibilityMaskTypeKHR::VISIBLE_TRIANGLE_MESH => (
+            outline.into(),
+            [[0, 1, 2], [0, 2, 3], [0, 3, 4]].into_iter().flat_map(|t| orient(&outline, t)).collect(),
+        ),
+        _ => (outline.into(), (0..5).collect()),
+    };
+    // SAFETY: the mask says how much room it has.
+    let (to_vertices, to_indices) = unsafe {
+        (
+            Array::new(mask.vertex_capacity_input, &raw mut mask.vertex_count_output, mask.vertices),
+            Array::new(mask.index_capacity_input, &raw mut mask.index_count_output, mask.indices),
+        )
+    };
+    to_vertices.fill(&vertices, |to, [x, y]| *to = sys::Vector2f { x: *x, y: *y })?;
+    to_indices.fill(&indices, |to, from| *to = *from)
 }
 
 /// The corners of a triangle counter-clockwise.

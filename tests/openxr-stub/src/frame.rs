@@ -5,13 +5,13 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use openxr_sys as sys;
-use sys::Handle;
+use sys::{Handle, Result as Code};
 
 use crate::log::{Depth, Entry, Image, Layer, View};
 use crate::script::At;
 use crate::session::{Frame, views_of};
 use crate::space::{compose, inverse, pose, raw_pose};
-use crate::world::{DONE, Refusal, World, enter, forbidden};
+use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden};
 
 /// When the stub's time begins.
 const BEGINNING_NS: i64 = 1_000_000_000;
@@ -35,178 +35,149 @@ impl World {
     }
 }
 
-pub unsafe extern "system" fn wait_frame(
-    session: sys::Session,
-    _: *const sys::FrameWaitInfo,
-    out: *mut sys::FrameState,
-) -> sys::Result {
+/// Lets time go on before a frame.
+pub fn pace() {
     let pace = *PACE.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(pace) = pace {
         pace();
     } else if IS_BLANK.load(Ordering::Relaxed) {
         std::thread::sleep(LOADING_PAUSE);
     }
-    enter("xrWaitFrame", |world| {
-        running(world, session)?;
-        let should_render_from = world.script.should_render_from;
-        world.frames += 1;
-        let number = world.frame();
-        world.happen(|at| matches!(at, At::Frame(n) if *n == number));
-        let time = world.time();
-        let period = sys::Duration::from_nanos(world.period_ns());
-        let known = world.session(session)?;
-        if known.frames.waited.is_some() {
-            return Err(forbidden(
-                sys::Result::ERROR_CALL_ORDER_INVALID,
-                "the last frame that was waited for has not begun: a real runtime would wait for ever",
-            ));
-        }
-        let visible = matches!(known.state, crate::script::State::Visible | crate::script::State::Focused);
-        let should_render = visible && known.frames.count >= should_render_from;
-        known.frames.count += 1;
-        known.frames.waited = Some(Frame { number, time, should_render });
-        // SAFETY: as the caller says.
-        let out = unsafe { &mut *out };
-        out.predicted_display_time = time;
-        out.predicted_display_period = period;
-        out.should_render = should_render.into();
-        world.success()
-    })
 }
 
-pub unsafe extern "system" fn begin_frame(
+pub fn wait_frame(
+    world: &mut World,
     session: sys::Session,
-    _: *const sys::FrameBeginInfo,
-) -> sys::Result {
-    enter("xrBeginFrame", |world| {
-        running(world, session)?;
-        let frames = &mut world.session(session)?.frames;
-        let frame = frames
-            .waited
-            .take()
-            .ok_or_else(|| forbidden(sys::Result::ERROR_CALL_ORDER_INVALID, "no frame was waited for"))?;
-        if frames.begun.replace(frame).is_some() {
-            return Ok(sys::Result::FRAME_DISCARDED);
-        }
-        world.success()
-    })
+    _: *const sys::FrameWaitInfo,
+    out: &mut sys::FrameState,
+) -> Answer {
+    running(world, session)?;
+    let should_render_from = world.script.should_render_from;
+    world.frames += 1;
+    let number = world.frame();
+    world.happen(|at| matches!(at, At::Frame(n) if *n == number));
+    let time = world.time();
+    let period = sys::Duration::from_nanos(world.period_ns());
+    let known = world.session(session)?;
+    forbid_if(
+        known.frames.waited.is_some(),
+        Code::ERROR_CALL_ORDER_INVALID,
+        "the last frame that was waited for has not begun: a real runtime would wait for ever",
+    )?;
+    let visible = matches!(known.state, crate::script::State::Visible | crate::script::State::Focused);
+    let should_render = visible && known.frames.count >= should_render_from;
+    known.frames.count += 1;
+    known.frames.waited = Some(Frame { number, time, should_render });
+    out.predicted_display_time = time;
+    out.predicted_display_period = period;
+    out.should_render = should_render.into();
+    world.success()
+}
+
+pub fn begin_frame(world: &mut World, session: sys::Session, _: *const sys::FrameBeginInfo) -> Answer {
+    running(world, session)?;
+    let frames = &mut world.session(session)?.frames;
+    let frame = frames
+        .waited
+        .take()
+        .ok_or_else(|| forbidden(Code::ERROR_CALL_ORDER_INVALID, "no frame was waited for"))?;
+    if frames.begun.replace(frame).is_some() {
+        return Ok(Code::FRAME_DISCARDED);
+    }
+    world.success()
 }
 
 /// Frames are for running sessions.
 fn running(world: &mut World, session: sys::Session) -> Result<(), Refusal> {
-    if world.session(session)?.views == 0 {
-        return Err(forbidden(sys::Result::ERROR_SESSION_NOT_RUNNING, "it is not running"));
-    }
+    forbid_if(world.session(session)?.views == 0, Code::ERROR_SESSION_NOT_RUNNING, "it is not running")?;
     Ok(())
 }
 
-pub unsafe extern "system" fn locate_views(
+pub fn locate_views(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::ViewLocateInfo,
-    state: *mut sys::ViewState,
-    capacity: u32,
-    count: *mut u32,
-    out: *mut sys::View,
-) -> sys::Result {
-    enter("xrLocateViews", |world| {
-        // SAFETY: as the caller says.
-        let (info, state) = unsafe { (&*info, &mut *state) };
-        world.session(session)?;
-        if info.display_time.as_nanos() <= 0 {
-            return Err(forbidden(sys::Result::ERROR_TIME_INVALID, "the time is not positive"));
-        }
-        let number = views_of(world, info.view_configuration_type)?;
-        let base = world.space_pose(info.space)?;
-        let frame = world.frame();
-        let tracked = !world.script.untracked.contains(&frame);
-        state.view_state_flags = if tracked {
-            sys::ViewStateFlags::ORIENTATION_VALID
-                | sys::ViewStateFlags::POSITION_VALID
-                | sys::ViewStateFlags::ORIENTATION_TRACKED
-                | sys::ViewStateFlags::POSITION_TRACKED
-        } else {
-            sys::ViewStateFlags::EMPTY
-        };
-        let head = compose(inverse(base), world.head());
-        let (ipd, length) = (world.script.ipd(frame), world.script.quaternion_length(frame));
-        let views: Vec<(sys::Posef, sys::Fovf)> = (0..number as usize)
-            .map(|i| {
-                let eye = world.script.eyes[i];
-                // Left, right; outwards is to the left for the left eye.
-                let side = if i == 0 { -1.0 } else { 1.0 };
-                let (offset, cant) =
-                    if number == 1 { (0.0, 0.0) } else { (side * ipd / 2.0, -side * eye.cant_degrees) };
-                let turn = glam::Quat::from_rotation_y(cant.to_radians());
-                let view = compose(head, (turn, glam::Vec3::new(offset, 0.0, 0.0)));
-                let [left, right, up, down] = eye.fov_degrees.map(f32::to_radians);
-                let fov = sys::Fovf { angle_left: left, angle_right: right, angle_up: up, angle_down: down };
-                (raw_pose((view.0 * length, view.1)), fov)
-            })
-            .collect();
-        // SAFETY: as the caller says.
-        unsafe {
-            crate::instance::fill(capacity, count, out, &views, |to, (pose, fov)| {
-                to.pose = *pose;
-                to.fov = *fov;
-            })
-        }?;
-        world.success()
-    })
+    info: &sys::ViewLocateInfo,
+    state: &mut sys::ViewState,
+    out: Array<sys::View>,
+) -> Answer {
+    world.session(session)?;
+    forbid_if(info.display_time.as_nanos() <= 0, Code::ERROR_TIME_INVALID, "the time is not positive")?;
+    let number = views_of(world, info.view_configuration_type)?;
+    let base = world.space_pose(info.space)?;
+    let frame = world.frame();
+    let tracked = !world.script.untracked.contains(&frame);
+    state.view_state_flags = if tracked {
+        sys::ViewStateFlags::ORIENTATION_VALID
+            | sys::ViewStateFlags::POSITION_VALID
+            | sys::ViewStateFlags::ORIENTATION_TRACKED
+            | sys::ViewStateFlags::POSITION_TRACKED
+    } else {
+        sys::ViewStateFlags::EMPTY
+    };
+    let head = compose(inverse(base), world.head());
+    let (ipd, length) = (world.script.ipd(frame), world.script.quaternion_length(frame));
+    let views: Vec<(sys::Posef, sys::Fovf)> = (0..number as usize)
+        .map(|i| {
+            let eye = world.script.eyes[i];
+            // Left, right; outwards is to the left for the left eye.
+            let side = if i == 0 { -1.0 } else { 1.0 };
+            let (offset, cant) =
+                if number == 1 { (0.0, 0.0) } else { (side * ipd / 2.0, -side * eye.cant_degrees) };
+            let turn = glam::Quat::from_rotation_y(cant.to_radians());
+            let view = compose(head, (turn, glam::Vec3::new(offset, 0.0, 0.0)));
+            let [left, right, up, down] = eye.fov_degrees.map(f32::to_radians);
+            let fov = sys::Fovf { angle_left: left, angle_right: right, angle_up: up, angle_down: down };
+            (raw_pose((view.0 * length, view.1)), fov)
+        })
+        .collect();
+    out.fill(&views, |to, (pose, fov)| (to.pose, to.fov) = (*pose, *fov))?;
+    world.success()
 }
 
-pub unsafe extern "system" fn end_frame(
-    session: sys::Session,
-    info: *const sys::FrameEndInfo,
-) -> sys::Result {
-    enter("xrEndFrame", |world| {
-        running(world, session)?;
-        // SAFETY: as the caller says.
-        let info = unsafe { &*info };
-        let views = world.session(session)?.views;
-        let frame = world
-            .session(session)?
-            .frames
-            .begun
-            .ok_or_else(|| forbidden(sys::Result::ERROR_CALL_ORDER_INVALID, "no frame has begun"))?;
-        if info.display_time != frame.time {
-            return Err(forbidden(
-                sys::Result::ERROR_TIME_INVALID,
-                format!("it was predicted for {:?} and is submitted for {:?}", frame.time, info.display_time),
-            ));
-        }
-        if info.environment_blend_mode != sys::EnvironmentBlendMode::OPAQUE {
-            return Err(forbidden(
-                sys::Result::ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED,
-                "only OPAQUE is offered",
-            ));
-        }
-        if info.layers.is_null() && info.layer_count > 0 {
-            return Err(forbidden(sys::Result::ERROR_LAYER_INVALID, "the layers are null"));
-        }
-        let mut layers = Vec::new();
-        for i in 0..info.layer_count as usize {
-            // SAFETY: the array has that many pointers to layers.
-            let layer = unsafe { *info.layers.add(i) };
-            if layer.is_null() {
-                return Err(forbidden(sys::Result::ERROR_LAYER_INVALID, "a layer is null"));
-            }
-            // SAFETY: a layer, of the type that it says.
-            layers.push(unsafe { submitted(world, layer, views) }?);
-        }
-        world.picture(|world| is_picture(world, &layers));
-        write_pictures(world, &layers, frame.number)?;
-        world.log.write(&Entry::Frame { frame: frame.number, should_render: frame.should_render, layers });
-        let unbind = world.script.unbind_context;
-        let instance = world.current()?;
-        let Some(known) = &mut instance.session else { return DONE };
-        known.frames.begun = None;
-        known.frames.ended += 1;
-        known.settle(&mut instance.events);
-        if unbind {
-            known.graphics.unbind();
-        }
-        world.success()
-    })
+pub fn end_frame(world: &mut World, session: sys::Session, info: &sys::FrameEndInfo) -> Answer {
+    running(world, session)?;
+    let views = world.session(session)?.views;
+    let frame = world
+        .session(session)?
+        .frames
+        .begun
+        .ok_or_else(|| forbidden(Code::ERROR_CALL_ORDER_INVALID, "no frame has begun"))?;
+    forbid_if(
+        info.display_time != frame.time,
+        Code::ERROR_TIME_INVALID,
+        format!("it was predicted for {:?} and is submitted for {:?}", frame.time, info.display_time),
+    )?;
+    forbid_if(
+        info.environment_blend_mode != sys::EnvironmentBlendMode::OPAQUE,
+        Code::ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED,
+        "only OPAQUE is offered",
+    )?;
+    forbid_if(
+        info.layers.is_null() && info.layer_count > 0,
+        Code::ERROR_LAYER_INVALID,
+        "the layers are null",
+    )?;
+    let mut layers = Vec::new();
+    for i in 0..info.layer_count as usize {
+        // SAFETY: the array has that many pointers to layers.
+        let layer = unsafe { *info.layers.add(i) };
+        forbid_if(layer.is_null(), Code::ERROR_LAYER_INVALID, "a layer is null")?;
+        // SAFETY: a layer, of the type that it says.
+        layers.push(unsafe { submitted(world, layer, views) }?);
+    }
+    world.picture(|world| is_picture(world, &layers));
+    write_pictures(world, &layers, frame.number)?;
+    world.log.write(&Entry::Frame { frame: frame.number, should_render: frame.should_render, layers });
+    let unbind = world.script.unbind_context;
+    let instance = world.current()?;
+    let Some(known) = &mut instance.session else { return DONE };
+    known.frames.begun = None;
+    known.frames.ended += 1;
+    known.settle(&mut instance.events);
+    if unbind {
+        known.graphics.unbind();
+    }
+    world.success()
 }
 
 /// Checks a layer and puts down what it shows.
@@ -218,19 +189,18 @@ unsafe fn submitted(
     layer: *const sys::CompositionLayerBaseHeader,
     expected: u32,
 ) -> Result<Layer, Refusal> {
-    // SAFETY: as the caller says.
+    // SAFETY: every layer begins with this header.
     let header = unsafe { &*layer };
     world.space_pose(header.space)?;
     match header.ty {
         sys::StructureType::COMPOSITION_LAYER_PROJECTION => {
             // SAFETY: of this type.
             let projection = unsafe { &*layer.cast::<sys::CompositionLayerProjection>() };
-            if projection.view_count != expected {
-                return Err(forbidden(
-                    sys::Result::ERROR_VALIDATION_FAILURE,
-                    format!("{} views instead of {expected}", projection.view_count),
-                ));
-            }
+            forbid_if(
+                projection.view_count != expected,
+                Code::ERROR_VALIDATION_FAILURE,
+                format!("{} views instead of {expected}", projection.view_count),
+            )?;
             let mut views = Vec::new();
             for i in 0..projection.view_count as usize {
                 // SAFETY: the array has that many views.
@@ -245,21 +215,25 @@ unsafe fn submitted(
             let image = submitted_image(world, &quad.sub_image, false)?;
             Ok(Layer::Quad { image, size: [quad.size.width, quad.size.height] })
         }
-        other => Err(forbidden(sys::Result::ERROR_LAYER_INVALID, format!("{other:?} is not offered"))),
+        other => Err(forbidden(Code::ERROR_LAYER_INVALID, format!("{other:?} is not offered"))),
     }
 }
 
 fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView) -> Result<View, Refusal> {
-    if view.ty != sys::CompositionLayerProjectionView::TYPE {
-        return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, "the view's type is wrong"));
-    }
+    forbid_if(
+        view.ty != sys::CompositionLayerProjectionView::TYPE,
+        Code::ERROR_VALIDATION_FAILURE,
+        "the view's type is wrong",
+    )?;
     let (orientation, position) = pose(&view.pose)?;
     let fov = [view.fov.angle_left, view.fov.angle_right, view.fov.angle_up, view.fov.angle_down];
     let [left, right, up, down] = fov;
     let limit = std::f32::consts::FRAC_PI_2;
-    if !(left < right && down < up && fov.iter().all(|angle| angle.abs() < limit)) {
-        return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, format!("the frustum {fov:?} is none")));
-    }
+    forbid_if(
+        !(left < right && down < up && fov.iter().all(|angle| angle.abs() < limit)),
+        Code::ERROR_VALIDATION_FAILURE,
+        format!("the frustum {fov:?} is none"),
+    )?;
     let image = submitted_image(world, &view.sub_image, false)?;
     let mut depth = None;
     let mut next = view.next.cast::<sys::BaseInStructure>();
@@ -269,12 +243,11 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
         if structure.ty == sys::CompositionLayerDepthInfoKHR::TYPE {
             // SAFETY: of this type.
             let info = unsafe { &*next.cast::<sys::CompositionLayerDepthInfoKHR>() };
-            if !world.current()?.extensions.iter().any(|e| e == "XR_KHR_composition_layer_depth") {
-                return Err(forbidden(
-                    sys::Result::ERROR_VALIDATION_FAILURE,
-                    "depth is submitted without XR_KHR_composition_layer_depth",
-                ));
-            }
+            forbid_if(
+                !world.current()?.extensions.iter().any(|e| e == "XR_KHR_composition_layer_depth"),
+                Code::ERROR_VALIDATION_FAILURE,
+                "depth is submitted without XR_KHR_composition_layer_depth",
+            )?;
             let range = [info.min_depth, info.max_depth];
             let near_far = [info.near_z, info.far_z];
             let sane = (0.0..=1.0).contains(&range[0])
@@ -283,12 +256,11 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
                 && near_far[0] > 0.0
                 && near_far[1] > 0.0
                 && near_far[0] != near_far[1];
-            if !sane {
-                return Err(forbidden(
-                    sys::Result::ERROR_VALIDATION_FAILURE,
-                    format!("depth {range:?} stands for {near_far:?} m"),
-                ));
-            }
+            forbid_if(
+                !sane,
+                Code::ERROR_VALIDATION_FAILURE,
+                format!("depth {range:?} stands for {near_far:?} m"),
+            )?;
             let image = submitted_image(world, &info.sub_image, true)?;
             // JSON knows no infinity.
             depth = Some(Depth { image, range, near_far: near_far.map(|z| z.min(f32::MAX)) });
@@ -308,16 +280,18 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
 fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: bool) -> Result<Image, Refusal> {
     let ahead = world.script.acquires_ahead;
     let swapchain = world.swapchain(image.swapchain)?;
-    let refuse = |what: String| Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, what));
+    let refuse = |what: String| Err(forbidden(Code::ERROR_VALIDATION_FAILURE, what));
     if swapchain.is_depth() != depth {
         return refuse(format!("the swapchain's format {:#x} is of the other kind", swapchain.format));
     }
     if !ahead && !swapchain.acquired.is_empty() {
         return refuse("an image of the swapchain is still acquired".into());
     }
-    if swapchain.released.is_none() {
-        return Err(forbidden(sys::Result::ERROR_LAYER_INVALID, "no image of the swapchain was released"));
-    }
+    forbid_if(
+        swapchain.released.is_none(),
+        Code::ERROR_LAYER_INVALID,
+        "no image of the swapchain was released",
+    )?;
     if image.image_array_index >= swapchain.layers {
         return refuse(format!("layer {} of {}", image.image_array_index, swapchain.layers));
     }
@@ -328,12 +302,11 @@ fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: boo
         && extent.height > 0
         && offset.x + extent.width <= swapchain.size[0] as i32
         && offset.y + extent.height <= swapchain.size[1] as i32;
-    if !inside {
-        return Err(forbidden(
-            sys::Result::ERROR_SWAPCHAIN_RECT_INVALID,
-            format!("{:?} of {:?}", image.image_rect, swapchain.size),
-        ));
-    }
+    forbid_if(
+        !inside,
+        Code::ERROR_SWAPCHAIN_RECT_INVALID,
+        format!("{:?} of {:?}", image.image_rect, swapchain.size),
+    )?;
     Ok(Image {
         swapchain: image.swapchain.into_raw(),
         layer: image.image_array_index,
@@ -377,7 +350,7 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
         };
         for (name, image) in images {
             let Some(pixels) = read(world, image) else {
-                return Err(forbidden(sys::Result::ERROR_RUNTIME_FAILURE, "the image cannot be read"));
+                return Err(forbidden(Code::ERROR_RUNTIME_FAILURE, "the image cannot be read"));
             };
             let path = pictures.folder.join(format!("{name}.png"));
             let size = [image.rect[2] as u32, image.rect[3] as u32];

@@ -5,11 +5,11 @@ use std::ffi::{CStr, c_char};
 use std::ptr;
 
 use openxr_sys as sys;
-use sys::Handle;
+use sys::{Handle, Result as Code};
 
 use crate::log::Entry;
 use crate::script::{At, State};
-use crate::world::{Answer, DONE, Event, Instance, enter, forbidden};
+use crate::world::{Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden};
 
 /// What negotiation gives.
 pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
@@ -47,280 +47,210 @@ pub fn put_text(target: &mut [c_char], text: &str) {
     }
 }
 
-/// The two calls with which arrays are asked for: their length, then their content.
-///
-/// # Safety
-/// `count` can be written; `items` has room for `capacity` of them.
-pub unsafe fn fill<T, V>(
-    capacity: u32,
-    count: *mut u32,
-    items: *mut T,
-    values: &[V],
-    write: impl Fn(&mut T, &V),
+pub fn enumerate_instance_extension_properties(
+    world: &mut World,
+    layer: *const c_char,
+    properties: Array<sys::ExtensionProperties>,
 ) -> Answer {
-    // SAFETY: as the caller says.
-    unsafe { *count = values.len() as u32 };
-    if capacity == 0 {
-        return DONE;
+    if !layer.is_null() {
+        return Err(Code::ERROR_API_LAYER_NOT_PRESENT.into());
     }
-    if (capacity as usize) < values.len() {
-        return Err(sys::Result::ERROR_SIZE_INSUFFICIENT.into());
-    }
-    for (i, value) in values.iter().enumerate() {
-        // SAFETY: there is room for it.
-        write(unsafe { &mut *items.add(i) }, value);
-    }
+    let offered: Vec<sys::ExtensionProperties> = EXTENSIONS
+        .iter()
+        .filter(|(name, _)| !world.script.missing_extensions.iter().any(|missing| missing == name))
+        .map(|(name, version)| {
+            let mut property = sys::ExtensionProperties {
+                ty: sys::ExtensionProperties::TYPE,
+                next: ptr::null_mut(),
+                extension_name: [0; sys::MAX_EXTENSION_NAME_SIZE],
+                extension_version: *version,
+            };
+            put_text(&mut property.extension_name, name);
+            property
+        })
+        .collect();
+    properties.fill(&offered, |to, from| {
+        to.extension_name = from.extension_name;
+        to.extension_version = from.extension_version;
+    })
+}
+
+pub fn enumerate_api_layer_properties(
+    _: &mut World,
+    _: u32,
+    count: &mut u32,
+    _: *mut sys::ApiLayerProperties,
+) -> Answer {
+    *count = 0;
     DONE
 }
 
-/// # Safety
-/// As the specification says for each of these functions; so for all in this crate.
-pub unsafe extern "system" fn enumerate_instance_extension_properties(
-    layer: *const c_char,
-    capacity: u32,
-    count: *mut u32,
-    properties: *mut sys::ExtensionProperties,
-) -> sys::Result {
-    enter("xrEnumerateInstanceExtensionProperties", |world| {
-        if !layer.is_null() {
-            return Err(sys::Result::ERROR_API_LAYER_NOT_PRESENT.into());
-        }
-        let offered: Vec<sys::ExtensionProperties> = EXTENSIONS
-            .iter()
-            .filter(|(name, _)| !world.script.missing_extensions.iter().any(|missing| missing == name))
-            .map(|(name, version)| {
-                let mut property = sys::ExtensionProperties {
-                    ty: sys::ExtensionProperties::TYPE,
-                    next: ptr::null_mut(),
-                    extension_name: [0; sys::MAX_EXTENSION_NAME_SIZE],
-                    extension_version: *version,
-                };
-                put_text(&mut property.extension_name, name);
-                property
-            })
-            .collect();
-        // SAFETY: as the caller says.
-        unsafe {
-            fill(capacity, count, properties, &offered, |to, from| {
-                to.extension_name = from.extension_name;
-                to.extension_version = from.extension_version;
-            })
-        }
-    })
+pub fn create_instance(world: &mut World, info: &sys::InstanceCreateInfo, out: &mut sys::Instance) -> Answer {
+    forbid_if(
+        info.ty != sys::InstanceCreateInfo::TYPE,
+        Code::ERROR_VALIDATION_FAILURE,
+        "the structure's type is wrong",
+    )?;
+    forbid_if(world.instance.is_some(), Code::ERROR_LIMIT_REACHED, "there is an instance already")?;
+    let api = info.application_info.api_version;
+    if api.major() != 1 || api.minor() > NEWEST.minor() {
+        return Err(Code::ERROR_API_VERSION_UNSUPPORTED.into());
+    }
+    let application = text(&info.application_info.application_name);
+    forbid_if(application.is_empty(), Code::ERROR_NAME_INVALID, "the application has no name")?;
+    if info.enabled_api_layer_count > 0 {
+        return Err(Code::ERROR_API_LAYER_NOT_PRESENT.into());
+    }
+    let mut extensions = Vec::new();
+    for i in 0..info.enabled_extension_count as usize {
+        // SAFETY: the array has that many texts.
+        let name = unsafe { CStr::from_ptr(*info.enabled_extension_names.add(i)) };
+        let name = name.to_string_lossy().into_owned();
+        let known = EXTENSIONS.iter().any(|(known, _)| *known == name);
+        forbid_if(
+            !known || world.script.missing_extensions.contains(&name),
+            Code::ERROR_EXTENSION_NOT_PRESENT,
+            format!("{name} is not offered"),
+        )?;
+        extensions.push(name);
+    }
+    let mut android = false;
+    let mut next = info.next.cast::<sys::BaseInStructure>();
+    while !next.is_null() {
+        // SAFETY: a chain of structures.
+        let structure = unsafe { &*next };
+        android |= structure.ty == sys::StructureType::INSTANCE_CREATE_INFO_ANDROID_KHR;
+        next = structure.next;
+    }
+    let handle = world.new_handle();
+    let api = format!("{}.{}.{}", api.major(), api.minor(), api.patch());
+    world.log.write(&Entry::Instance { application, api, extensions: extensions.clone(), android });
+    world.instance = Some(Instance {
+        handle,
+        extensions,
+        lost: false,
+        requirements_asked: false,
+        events: VecDeque::new(),
+        paths: Vec::new(),
+        actions: Default::default(),
+        session: None,
+        spaces: HashMap::new(),
+        swapchains: HashMap::new(),
+        local_yaw: 0.0,
+    });
+    *out = sys::Instance::from_raw(handle);
+    DONE
 }
 
-pub unsafe extern "system" fn enumerate_api_layer_properties(
-    _: u32,
-    count: *mut u32,
-    _: *mut sys::ApiLayerProperties,
-) -> sys::Result {
-    enter("xrEnumerateApiLayerProperties", |_| {
-        // SAFETY: as the caller says.
-        unsafe { *count = 0 };
-        DONE
-    })
+pub fn destroy_instance(world: &mut World, instance: sys::Instance) -> Answer {
+    world.any_instance(instance)?;
+    world.instance = None;
+    let counts = world.counts();
+    world.log.write(&Entry::Destroyed { what: "instance".into() });
+    world.log.write(&Entry::Calls { counts });
+    DONE
 }
 
-pub unsafe extern "system" fn create_instance(
-    info: *const sys::InstanceCreateInfo,
-    out: *mut sys::Instance,
-) -> sys::Result {
-    enter("xrCreateInstance", |world| {
-        // SAFETY: as the caller says, here and below.
-        let info = unsafe { &*info };
-        if info.ty != sys::InstanceCreateInfo::TYPE {
-            return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, "the structure's type is wrong"));
-        }
-        if world.instance.is_some() {
-            return Err(forbidden(sys::Result::ERROR_LIMIT_REACHED, "there is an instance already"));
-        }
-        let api = info.application_info.api_version;
-        if api.major() != 1 || api.minor() > NEWEST.minor() {
-            return Err(sys::Result::ERROR_API_VERSION_UNSUPPORTED.into());
-        }
-        let application = text(&info.application_info.application_name);
-        if application.is_empty() {
-            return Err(forbidden(sys::Result::ERROR_NAME_INVALID, "the application has no name"));
-        }
-        if info.enabled_api_layer_count > 0 {
-            return Err(sys::Result::ERROR_API_LAYER_NOT_PRESENT.into());
-        }
-        let mut extensions = Vec::new();
-        for i in 0..info.enabled_extension_count as usize {
-            // SAFETY: the array has that many texts.
-            let name = unsafe { CStr::from_ptr(*info.enabled_extension_names.add(i)) };
-            let name = name.to_string_lossy().into_owned();
-            let known = EXTENSIONS.iter().any(|(known, _)| *known == name);
-            if !known || world.script.missing_extensions.contains(&name) {
-                return Err(forbidden(
-                    sys::Result::ERROR_EXTENSION_NOT_PRESENT,
-                    format!("{name} is not offered"),
-                ));
-            }
-            extensions.push(name);
-        }
-        let mut android = false;
-        let mut next = info.next.cast::<sys::BaseInStructure>();
-        while !next.is_null() {
-            // SAFETY: a chain of structures.
-            let structure = unsafe { &*next };
-            android |= structure.ty == sys::StructureType::INSTANCE_CREATE_INFO_ANDROID_KHR;
-            next = structure.next;
-        }
-        let handle = world.new_handle();
-        let api = format!("{}.{}.{}", api.major(), api.minor(), api.patch());
-        world.log.write(&Entry::Instance { application, api, extensions: extensions.clone(), android });
-        world.instance = Some(Instance {
-            handle,
-            extensions,
-            lost: false,
-            requirements_asked: false,
-            events: VecDeque::new(),
-            paths: Vec::new(),
-            actions: Default::default(),
-            session: None,
-            spaces: HashMap::new(),
-            swapchains: HashMap::new(),
-            local_yaw: 0.0,
-        });
-        // SAFETY: as the caller says.
-        unsafe { *out = sys::Instance::from_raw(handle) };
-        DONE
-    })
-}
-
-pub unsafe extern "system" fn destroy_instance(instance: sys::Instance) -> sys::Result {
-    enter("xrDestroyInstance", |world| {
-        world.any_instance(instance)?;
-        world.instance = None;
-        let counts = world.counts();
-        world.log.write(&Entry::Destroyed { what: "instance".into() });
-        world.log.write(&Entry::Calls { counts });
-        DONE
-    })
-}
-
-pub unsafe extern "system" fn get_instance_properties(
+pub fn get_instance_properties(
+    world: &mut World,
     instance: sys::Instance,
-    properties: *mut sys::InstanceProperties,
-) -> sys::Result {
-    enter("xrGetInstanceProperties", |world| {
-        world.instance(instance)?;
-        // SAFETY: as the caller says.
-        let properties = unsafe { &mut *properties };
-        properties.runtime_version = sys::Version::new(0, 1, 0);
-        put_text(&mut properties.runtime_name, "yoro's simulated runtime");
-        DONE
-    })
+    properties: &mut sys::InstanceProperties,
+) -> Answer {
+    world.instance(instance)?;
+    properties.runtime_version = sys::Version::new(0, 1, 0);
+    put_text(&mut properties.runtime_name, "yoro's simulated runtime");
+    DONE
 }
 
-pub unsafe extern "system" fn result_to_string(
+pub fn result_to_string(
+    world: &mut World,
     instance: sys::Instance,
     value: sys::Result,
     buffer: *mut c_char,
-) -> sys::Result {
-    enter("xrResultToString", |world| {
-        world.instance(instance)?;
-        // SAFETY: the buffer has this size.
-        let buffer = unsafe { std::slice::from_raw_parts_mut(buffer, sys::MAX_RESULT_STRING_SIZE) };
-        put_text(buffer, &format!("{value:?}"));
-        DONE
-    })
+) -> Answer {
+    world.instance(instance)?;
+    // SAFETY: the buffer has this size.
+    let buffer = unsafe { std::slice::from_raw_parts_mut(buffer, sys::MAX_RESULT_STRING_SIZE) };
+    put_text(buffer, &format!("{value:?}"));
+    DONE
 }
 
-pub unsafe extern "system" fn structure_type_to_string(
+pub fn structure_type_to_string(
+    world: &mut World,
     instance: sys::Instance,
     value: sys::StructureType,
     buffer: *mut c_char,
-) -> sys::Result {
-    enter("xrStructureTypeToString", |world| {
-        world.instance(instance)?;
-        // SAFETY: the buffer has this size.
-        let buffer = unsafe { std::slice::from_raw_parts_mut(buffer, sys::MAX_STRUCTURE_NAME_SIZE) };
-        put_text(buffer, &format!("{value:?}"));
-        DONE
-    })
+) -> Answer {
+    world.instance(instance)?;
+    // SAFETY: the buffer has this size.
+    let buffer = unsafe { std::slice::from_raw_parts_mut(buffer, sys::MAX_STRUCTURE_NAME_SIZE) };
+    put_text(buffer, &format!("{value:?}"));
+    DONE
 }
 
-pub unsafe extern "system" fn get_system(
+pub fn get_system(
+    world: &mut World,
     instance: sys::Instance,
-    info: *const sys::SystemGetInfo,
-    out: *mut sys::SystemId,
-) -> sys::Result {
-    enter("xrGetSystem", |world| {
-        world.instance(instance)?;
-        // SAFETY: as the caller says.
-        if unsafe { (*info).form_factor } != sys::FormFactor::HEAD_MOUNTED_DISPLAY {
-            return Err(sys::Result::ERROR_FORM_FACTOR_UNSUPPORTED.into());
-        }
-        if world.unavailable < world.script.unavailable {
-            world.unavailable += 1;
-            return Err(sys::Result::ERROR_FORM_FACTOR_UNAVAILABLE.into());
-        }
-        // SAFETY: as the caller says.
-        unsafe { *out = sys::SystemId::from_raw(SYSTEM) };
-        DONE
-    })
+    info: &sys::SystemGetInfo,
+    out: &mut sys::SystemId,
+) -> Answer {
+    world.instance(instance)?;
+    if info.form_factor != sys::FormFactor::HEAD_MOUNTED_DISPLAY {
+        return Err(Code::ERROR_FORM_FACTOR_UNSUPPORTED.into());
+    }
+    if world.unavailable < world.script.unavailable {
+        world.unavailable += 1;
+        return Err(Code::ERROR_FORM_FACTOR_UNAVAILABLE.into());
+    }
+    *out = sys::SystemId::from_raw(SYSTEM);
+    DONE
 }
 
-pub unsafe extern "system" fn get_system_properties(
+pub fn get_system_properties(
+    world: &mut World,
     instance: sys::Instance,
     system: sys::SystemId,
-    properties: *mut sys::SystemProperties,
-) -> sys::Result {
-    enter("xrGetSystemProperties", |world| {
-        world.instance(instance)?;
-        check_system(system)?;
-        // SAFETY: as the caller says.
-        let properties = unsafe { &mut *properties };
-        properties.system_id = system;
-        properties.vendor_id = 0;
-        put_text(&mut properties.system_name, "simulated headset");
-        properties.graphics_properties = sys::SystemGraphicsProperties {
-            max_swapchain_image_height: 4096,
-            max_swapchain_image_width: 4096,
-            max_layer_count: 16,
-        };
-        properties.tracking_properties =
-            sys::SystemTrackingProperties { orientation_tracking: sys::TRUE, position_tracking: sys::TRUE };
-        DONE
-    })
+    properties: &mut sys::SystemProperties,
+) -> Answer {
+    world.instance(instance)?;
+    check_system(system)?;
+    properties.system_id = system;
+    properties.vendor_id = 0;
+    put_text(&mut properties.system_name, "simulated headset");
+    properties.graphics_properties = sys::SystemGraphicsProperties {
+        max_swapchain_image_height: 4096,
+        max_swapchain_image_width: 4096,
+        max_layer_count: 16,
+    };
+    properties.tracking_properties =
+        sys::SystemTrackingProperties { orientation_tracking: sys::TRUE, position_tracking: sys::TRUE };
+    DONE
 }
 
 /// There is one system.
 pub fn check_system(system: sys::SystemId) -> Result<(), crate::world::Refusal> {
-    if system.into_raw() != SYSTEM {
-        return Err(forbidden(sys::Result::ERROR_SYSTEM_INVALID, "not a system"));
-    }
+    forbid_if(system.into_raw() != SYSTEM, Code::ERROR_SYSTEM_INVALID, "not a system")?;
     Ok(())
 }
 
-pub unsafe extern "system" fn string_to_path(
+pub fn string_to_path(
+    world: &mut World,
     instance: sys::Instance,
-    string: *const c_char,
-    path: *mut sys::Path,
-) -> sys::Result {
-    enter("xrStringToPath", |world| {
-        let instance = world.instance(instance)?;
-        // SAFETY: a text.
-        let string = unsafe { CStr::from_ptr(string) }.to_string_lossy().into_owned();
-        let good = string.starts_with('/')
-            && !string.ends_with('/')
-            && string.bytes().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || b"/-_.".contains(&c));
-        if !good {
-            return Err(forbidden(
-                sys::Result::ERROR_PATH_FORMAT_INVALID,
-                format!("{string:?} is not a path"),
-            ));
-        }
-        let index = instance.paths.iter().position(|known| *known == string).unwrap_or_else(|| {
-            instance.paths.push(string);
-            instance.paths.len() - 1
-        });
-        // SAFETY: as the caller says.
-        unsafe { *path = sys::Path::from_raw(index as u64 + 1) };
-        DONE
-    })
+    string: &CStr,
+    path: &mut sys::Path,
+) -> Answer {
+    let instance = world.instance(instance)?;
+    let string = string.to_string_lossy().into_owned();
+    let good = string.starts_with('/')
+        && !string.ends_with('/')
+        && string.bytes().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || b"/-_.".contains(&c));
+    forbid_if(!good, Code::ERROR_PATH_FORMAT_INVALID, format!("{string:?} is not a path"))?;
+    let index = instance.paths.iter().position(|known| *known == string).unwrap_or_else(|| {
+        instance.paths.push(string);
+        instance.paths.len() - 1
+    });
+    *path = sys::Path::from_raw(index as u64 + 1);
+    DONE
 }
 
 impl Instance {
@@ -331,27 +261,15 @@ impl Instance {
     }
 }
 
-/// # Safety
-/// `count` can be written; `buffer` has room for `capacity` characters.
-pub unsafe fn fill_text(capacity: u32, count: *mut u32, buffer: *mut c_char, text: &str) -> Answer {
-    let characters: Vec<c_char> = text.bytes().chain([0]).map(|c| c as c_char).collect();
-    // SAFETY: as the caller says.
-    unsafe { fill(capacity, count, buffer, &characters, |to, from| *to = *from) }
-}
-
-pub unsafe extern "system" fn path_to_string(
+pub fn path_to_string(
+    world: &mut World,
     instance: sys::Instance,
     path: sys::Path,
-    capacity: u32,
-    count: *mut u32,
-    buffer: *mut c_char,
-) -> sys::Result {
-    enter("xrPathToString", |world| {
-        let text = world.instance(instance)?.path(path).map(str::to_owned);
-        let text = text.ok_or_else(|| forbidden(sys::Result::ERROR_PATH_INVALID, "not a path"))?;
-        // SAFETY: as the caller says.
-        unsafe { fill_text(capacity, count, buffer, &text) }
-    })
+    buffer: Array<c_char>,
+) -> Answer {
+    let text = world.instance(instance)?.path(path).map(str::to_owned);
+    let text = text.ok_or_else(|| forbidden(Code::ERROR_PATH_INVALID, "not a path"))?;
+    buffer.fill_text(&text)
 }
 
 /// Writes a structure of an event into the buffer for all of them.
@@ -362,97 +280,92 @@ fn tell<T: Copy>(buffer: &mut sys::EventDataBuffer, event: T) -> Answer {
     DONE
 }
 
-pub unsafe extern "system" fn poll_event(
-    instance: sys::Instance,
-    buffer: *mut sys::EventDataBuffer,
-) -> sys::Result {
-    enter("xrPollEvent", |world| {
-        world.any_instance(instance)?;
-        // SAFETY: as the caller says.
-        let buffer = unsafe { &mut *buffer };
-        if buffer.ty != sys::EventDataBuffer::TYPE {
-            return Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, "the buffer's type is wrong"));
+pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::EventDataBuffer) -> Answer {
+    world.any_instance(instance)?;
+    forbid_if(
+        buffer.ty != sys::EventDataBuffer::TYPE,
+        Code::ERROR_VALIDATION_FAILURE,
+        "the buffer's type is wrong",
+    )?;
+    let (now, frames) = (world.time(), world.frame());
+    let known = world.any_instance(instance)?;
+    // Of a lost instance nothing but its loss is told.
+    if known.lost {
+        known.events.retain(|event| matches!(event, Event::InstanceLoss));
+        if known.events.is_empty() {
+            return Err(Code::ERROR_INSTANCE_LOST.into());
         }
-        let (now, frames) = (world.time(), world.frame());
+    }
+    let session = sys::Session::from_raw(known.session.as_ref().map_or(0, |session| session.handle));
+    let next = ptr::null();
+    let Some(event) = known.events.pop_front() else {
+        world.idle_polls += 1;
+        let polls = world.idle_polls;
+        world.happen(|at| matches!(at, At::Poll(n) if *n <= polls));
         let known = world.any_instance(instance)?;
-        // Of a lost instance nothing but its loss is told.
-        if known.lost {
-            known.events.retain(|event| matches!(event, Event::InstanceLoss));
-            if known.events.is_empty() {
-                return Err(sys::Result::ERROR_INSTANCE_LOST.into());
-            }
+        if let Some(session) = &mut known.session {
+            session.put_on_again(polls, &mut known.events);
         }
-        let session = sys::Session::from_raw(known.session.as_ref().map_or(0, |session| session.handle));
-        let next = ptr::null();
-        let Some(event) = known.events.pop_front() else {
-            world.idle_polls += 1;
-            let polls = world.idle_polls;
-            world.happen(|at| matches!(at, At::Poll(n) if *n <= polls));
-            let known = world.any_instance(instance)?;
+        return Ok(Code::EVENT_UNAVAILABLE);
+    };
+    match event {
+        Event::State(state) => {
             if let Some(session) = &mut known.session {
-                session.put_on_again(polls, &mut known.events);
+                session.told = state;
             }
-            return Ok(sys::Result::EVENT_UNAVAILABLE);
-        };
-        match event {
-            Event::State(state) => {
-                if let Some(session) = &mut known.session {
-                    session.told = state;
-                }
-                world.log.write(&Entry::State { state });
-                world.happen(|at| matches!(at, At::State(s) if *s == state));
-                let ty = sys::EventDataSessionStateChanged::TYPE;
-                let state = raw_state(state);
-                tell(buffer, sys::EventDataSessionStateChanged { ty, next, session, state, time: now })
-            }
-            Event::InstanceLoss => {
-                let ty = sys::EventDataInstanceLossPending::TYPE;
-                tell(buffer, sys::EventDataInstanceLossPending { ty, next, loss_time: now })
-            }
-            Event::ReferenceSpace(yaw) => {
-                let turn = glam::Quat::from_rotation_y(yaw);
-                tell(
-                    buffer,
-                    sys::EventDataReferenceSpaceChangePending {
-                        ty: sys::EventDataReferenceSpaceChangePending::TYPE,
-                        next,
-                        session,
-                        reference_space_type: sys::ReferenceSpaceType::LOCAL,
-                        change_time: now,
-                        pose_valid: sys::TRUE,
-                        pose_in_previous_space: crate::space::raw_pose((turn, glam::Vec3::ZERO)),
-                    },
-                )
-            }
-            Event::Profile => {
-                let ty = sys::EventDataInteractionProfileChanged::TYPE;
-                tell(buffer, sys::EventDataInteractionProfileChanged { ty, next, session })
-            }
-            Event::RefreshRate(from, to) => tell(
+            world.log.write(&Entry::State { state });
+            world.happen(|at| matches!(at, At::State(s) if *s == state));
+            let ty = sys::EventDataSessionStateChanged::TYPE;
+            let state = raw_state(state);
+            tell(buffer, sys::EventDataSessionStateChanged { ty, next, session, state, time: now })
+        }
+        Event::InstanceLoss => {
+            let ty = sys::EventDataInstanceLossPending::TYPE;
+            tell(buffer, sys::EventDataInstanceLossPending { ty, next, loss_time: now })
+        }
+        Event::ReferenceSpace(yaw) => {
+            let turn = glam::Quat::from_rotation_y(yaw);
+            tell(
                 buffer,
-                sys::EventDataDisplayRefreshRateChangedFB {
-                    ty: sys::EventDataDisplayRefreshRateChangedFB::TYPE,
-                    next,
-                    from_display_refresh_rate: from,
-                    to_display_refresh_rate: to,
-                },
-            ),
-            Event::Mask => tell(
-                buffer,
-                sys::EventDataVisibilityMaskChangedKHR {
-                    ty: sys::EventDataVisibilityMaskChangedKHR::TYPE,
+                sys::EventDataReferenceSpaceChangePending {
+                    ty: sys::EventDataReferenceSpaceChangePending::TYPE,
                     next,
                     session,
-                    view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
-                    view_index: frames % 2,
+                    reference_space_type: sys::ReferenceSpaceType::LOCAL,
+                    change_time: now,
+                    pose_valid: sys::TRUE,
+                    pose_in_previous_space: crate::space::raw_pose((turn, glam::Vec3::ZERO)),
                 },
-            ),
-            Event::Lost => {
-                let ty = sys::EventDataEventsLost::TYPE;
-                tell(buffer, sys::EventDataEventsLost { ty, next, lost_event_count: 1 })
-            }
+            )
         }
-    })
+        Event::Profile => {
+            let ty = sys::EventDataInteractionProfileChanged::TYPE;
+            tell(buffer, sys::EventDataInteractionProfileChanged { ty, next, session })
+        }
+        Event::RefreshRate(from, to) => tell(
+            buffer,
+            sys::EventDataDisplayRefreshRateChangedFB {
+                ty: sys::EventDataDisplayRefreshRateChangedFB::TYPE,
+                next,
+                from_display_refresh_rate: from,
+                to_display_refresh_rate: to,
+            },
+        ),
+        Event::Mask => tell(
+            buffer,
+            sys::EventDataVisibilityMaskChangedKHR {
+                ty: sys::EventDataVisibilityMaskChangedKHR::TYPE,
+                next,
+                session,
+                view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
+                view_index: frames % 2,
+            },
+        ),
+        Event::Lost => {
+            let ty = sys::EventDataEventsLost::TYPE;
+            tell(buffer, sys::EventDataEventsLost { ty, next, lost_event_count: 1 })
+        }
+    }
 }
 
 fn raw_state(state: State) -> sys::SessionState {
@@ -468,20 +381,15 @@ fn raw_state(state: State) -> sys::SessionState {
     }
 }
 
-pub unsafe extern "system" fn initialize_loader(
-    info: *const sys::LoaderInitInfoBaseHeaderKHR,
-) -> sys::Result {
-    enter("xrInitializeLoaderKHR", |world| {
-        // SAFETY: as the caller says.
-        let ty = unsafe { (*info).ty };
-        let refuse = |what: &str| Err(forbidden(sys::Result::ERROR_VALIDATION_FAILURE, what));
-        if ty != sys::StructureType::LOADER_INIT_INFO_ANDROID_KHR {
-            return refuse("not Android's structure");
-        }
-        // Some keep the context of the first time, others fail: nobody says what a second time means.
-        if std::mem::replace(&mut world.is_initialized, true) {
-            return refuse("it is initialised already");
-        }
-        DONE
-    })
+pub fn initialize_loader(world: &mut World, info: &sys::LoaderInitInfoBaseHeaderKHR) -> Answer {
+    let ty = info.ty;
+    let refuse = |what: &str| Err(forbidden(Code::ERROR_VALIDATION_FAILURE, what));
+    if ty != sys::StructureType::LOADER_INIT_INFO_ANDROID_KHR {
+        return refuse("not Android's structure");
+    }
+    // Some keep the context of the first time, others fail: nobody says what a second time means.
+    if std::mem::replace(&mut world.is_initialized, true) {
+        return refuse("it is initialised already");
+    }
+    DONE
 }

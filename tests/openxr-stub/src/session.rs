@@ -3,13 +3,13 @@
 use std::collections::VecDeque;
 
 use openxr_sys as sys;
-use sys::Handle;
+use sys::{Handle, Result as Code};
 
 use crate::graphics::{self, Graphics};
-use crate::instance::{check_system, fill};
+use crate::instance::check_system;
 use crate::log::Entry;
 use crate::script::State;
-use crate::world::{DONE, Event, Refusal, World, enter, forbidden};
+use crate::world::{Answer, Array, DONE, Event, Refusal, World, forbid_if, forbidden, found};
 
 pub struct Session {
     pub handle: u64,
@@ -96,123 +96,102 @@ impl Session {
     }
 }
 
-pub unsafe extern "system" fn get_graphics_requirements(
+pub fn get_graphics_requirements(
+    world: &mut World,
     instance: sys::Instance,
     system: sys::SystemId,
-    requirements: *mut sys::GraphicsRequirementsOpenGLESKHR,
-) -> sys::Result {
-    enter("xrGetOpenGLESGraphicsRequirementsKHR", |world| {
-        let instance = world.instance(instance)?;
-        check_system(system)?;
-        instance.requirements_asked = true;
-        // SAFETY: as the caller says.
-        let requirements = unsafe { &mut *requirements };
-        requirements.min_api_version_supported = sys::Version::new(3, 0, 0);
-        requirements.max_api_version_supported = sys::Version::new(3, 2, 0);
-        DONE
-    })
+    requirements: &mut sys::GraphicsRequirementsOpenGLESKHR,
+) -> Answer {
+    let instance = world.instance(instance)?;
+    check_system(system)?;
+    instance.requirements_asked = true;
+    requirements.min_api_version_supported = sys::Version::new(3, 0, 0);
+    requirements.max_api_version_supported = sys::Version::new(3, 2, 0);
+    DONE
 }
 
 /// Of Vulkan nothing else is offered: the application makes instance and device itself, as it likes.
-pub unsafe extern "system" fn get_vulkan_graphics_requirements(
+pub fn get_vulkan_graphics_requirements(
+    world: &mut World,
     instance: sys::Instance,
     system: sys::SystemId,
-    requirements: *mut sys::GraphicsRequirementsVulkanKHR,
-) -> sys::Result {
-    enter("xrGetVulkanGraphicsRequirementsKHR", |world| {
-        let instance = world.instance(instance)?;
-        check_system(system)?;
-        instance.requirements_asked = true;
-        // SAFETY: as the caller says.
-        let requirements = unsafe { &mut *requirements };
-        requirements.min_api_version_supported = sys::Version::new(1, 0, 0);
-        requirements.max_api_version_supported = sys::Version::new(1, 4, 0);
-        DONE
-    })
+    requirements: &mut sys::GraphicsRequirementsVulkanKHR,
+) -> Answer {
+    let instance = world.instance(instance)?;
+    check_system(system)?;
+    instance.requirements_asked = true;
+    requirements.min_api_version_supported = sys::Version::new(1, 0, 0);
+    requirements.max_api_version_supported = sys::Version::new(1, 4, 0);
+    DONE
 }
 
-pub unsafe extern "system" fn create_session(
+pub fn create_session(
+    world: &mut World,
     instance: sys::Instance,
-    info: *const sys::SessionCreateInfo,
-    out: *mut sys::Session,
-) -> sys::Result {
-    enter("xrCreateSession", |world| {
-        let known = world.instance(instance)?;
-        // SAFETY: as the caller says.
-        let info = unsafe { &*info };
-        check_system(info.system_id)?;
-        if known.session.is_some() {
-            return Err(forbidden(sys::Result::ERROR_LIMIT_REACHED, "there is a session already"));
-        }
-        if !known.requirements_asked {
-            return Err(forbidden(
-                sys::Result::ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
-                "the graphics requirements were not asked for",
-            ));
-        }
-        // SAFETY: a chain of structures.
-        let (binding, graphics) = unsafe { graphics::bind(info.next, &known.extensions) }?;
-        let handle = world.new_handle();
-        world.log.write(&Entry::Session { binding: binding.into() });
-        let known = world.instance(instance)?;
-        let mut session = Session {
-            handle,
-            lost: false,
-            loss_pending: false,
-            views: 0,
-            state: State::Idle,
-            told: State::Idle,
-            level: State::Focused,
-            put_on_again_at: None,
-            exiting: false,
-            frames: FrameCalls::default(),
-            attached: false,
-            graphics,
-        };
-        session.go(State::Idle, &mut known.events);
-        session.go(State::Ready, &mut known.events);
-        known.session = Some(session);
-        // SAFETY: as the caller says.
-        unsafe { *out = sys::Session::from_raw(handle) };
-        DONE
-    })
+    info: &sys::SessionCreateInfo,
+    out: &mut sys::Session,
+) -> Answer {
+    let known = world.instance(instance)?;
+    check_system(info.system_id)?;
+    forbid_if(known.session.is_some(), Code::ERROR_LIMIT_REACHED, "there is a session already")?;
+    forbid_if(
+        !known.requirements_asked,
+        Code::ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
+        "the graphics requirements were not asked for",
+    )?;
+    // SAFETY: a chain of structures.
+    let (binding, graphics) = unsafe { graphics::bind(info.next, &known.extensions) }?;
+    let handle = world.new_handle();
+    world.log.write(&Entry::Session { binding: binding.into() });
+    let known = world.instance(instance)?;
+    let mut session = Session {
+        handle,
+        lost: false,
+        loss_pending: false,
+        views: 0,
+        state: State::Idle,
+        told: State::Idle,
+        level: State::Focused,
+        put_on_again_at: None,
+        exiting: false,
+        frames: FrameCalls::default(),
+        attached: false,
+        graphics,
+    };
+    session.go(State::Idle, &mut known.events);
+    session.go(State::Ready, &mut known.events);
+    known.session = Some(session);
+    *out = sys::Session::from_raw(handle);
+    DONE
 }
 
-pub unsafe extern "system" fn destroy_session(session: sys::Session) -> sys::Result {
-    enter("xrDestroySession", |world| {
-        let known = world.instance.as_mut();
-        let known = known.filter(|i| i.session.as_ref().is_some_and(|s| s.handle == session.into_raw()));
-        let known = known.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not a session"))?;
-        known.session = None;
-        known.spaces.clear();
-        known.swapchains.clear();
-        known.events.retain(|event| !matches!(event, Event::State(_)));
-        known.actions.detach();
-        world.log.write(&Entry::Destroyed { what: "session".into() });
-        DONE
-    })
+pub fn destroy_session(world: &mut World, session: sys::Session) -> Answer {
+    let known = world.instance.as_mut();
+    let known = known.filter(|i| i.session.as_ref().is_some_and(|s| s.handle == session.into_raw()));
+    let known = found(known, "not a session")?;
+    known.session = None;
+    known.spaces.clear();
+    known.swapchains.clear();
+    known.events.retain(|event| !matches!(event, Event::State(_)));
+    known.actions.detach();
+    world.log.write(&Entry::Destroyed { what: "session".into() });
+    DONE
 }
 
-pub unsafe extern "system" fn begin_session(
-    session: sys::Session,
-    info: *const sys::SessionBeginInfo,
-) -> sys::Result {
-    enter("xrBeginSession", |world| {
-        // SAFETY: as the caller says.
-        let configuration = unsafe { (*info).primary_view_configuration_type };
-        let views = views_of(world, configuration)?;
-        let known = world.session(session)?;
-        if known.views > 0 {
-            return Err(forbidden(sys::Result::ERROR_SESSION_RUNNING, "it is running"));
-        }
-        if known.state != State::Ready {
-            return Err(forbidden(sys::Result::ERROR_SESSION_NOT_READY, format!("it is {:?}", known.state)));
-        }
-        known.views = views;
-        known.frames = FrameCalls::default();
-        world.log.write(&Entry::Begun { views });
-        world.success()
-    })
+pub fn begin_session(world: &mut World, session: sys::Session, info: &sys::SessionBeginInfo) -> Answer {
+    let configuration = info.primary_view_configuration_type;
+    let views = views_of(world, configuration)?;
+    let known = world.session(session)?;
+    forbid_if(known.views > 0, Code::ERROR_SESSION_RUNNING, "it is running")?;
+    forbid_if(
+        known.state != State::Ready,
+        Code::ERROR_SESSION_NOT_READY,
+        format!("it is {:?}", known.state),
+    )?;
+    known.views = views;
+    known.frames = FrameCalls::default();
+    world.log.write(&Entry::Begun { views });
+    world.success()
 }
 
 /// How many views a configuration has.
@@ -221,129 +200,103 @@ pub fn views_of(world: &World, configuration: sys::ViewConfigurationType) -> Res
         sys::ViewConfigurationType::PRIMARY_STEREO if world.script.stereo => Ok(2),
         sys::ViewConfigurationType::PRIMARY_MONO if world.script.mono => Ok(1),
         other => Err(forbidden(
-            sys::Result::ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED,
+            Code::ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED,
             format!("{other:?} is not offered"),
         )),
     }
 }
 
-pub unsafe extern "system" fn end_session(session: sys::Session) -> sys::Result {
-    enter("xrEndSession", |world| {
-        let known = world.session(session)?;
-        if known.views == 0 {
-            return Err(forbidden(sys::Result::ERROR_SESSION_NOT_RUNNING, "it is not running"));
-        }
-        if known.state != State::Stopping {
-            return Err(forbidden(
-                sys::Result::ERROR_SESSION_NOT_STOPPING,
-                format!("it is {:?}", known.state),
-            ));
-        }
-        known.views = 0;
-        let instance = world.current()?;
-        let (events, Some(known)) = (&mut instance.events, &mut instance.session) else { return DONE };
-        known.go(State::Idle, events);
-        if known.exiting {
-            known.go(State::Exiting, events);
-        }
-        world.success()
-    })
+pub fn end_session(world: &mut World, session: sys::Session) -> Answer {
+    let known = world.session(session)?;
+    forbid_if(known.views == 0, Code::ERROR_SESSION_NOT_RUNNING, "it is not running")?;
+    forbid_if(
+        known.state != State::Stopping,
+        Code::ERROR_SESSION_NOT_STOPPING,
+        format!("it is {:?}", known.state),
+    )?;
+    known.views = 0;
+    let instance = world.current()?;
+    let (events, Some(known)) = (&mut instance.events, &mut instance.session) else { return DONE };
+    known.go(State::Idle, events);
+    if known.exiting {
+        known.go(State::Exiting, events);
+    }
+    world.success()
 }
 
-pub unsafe extern "system" fn request_exit_session(session: sys::Session) -> sys::Result {
-    enter("xrRequestExitSession", |world| {
-        if world.session(session)?.views == 0 {
-            return Err(forbidden(sys::Result::ERROR_SESSION_NOT_RUNNING, "it is not running"));
-        }
-        world.log.write(&Entry::Request { what: "exit".into(), value: 1.0 });
-        let instance = world.current()?;
-        if let Some(known) = instance.session.as_mut().filter(|known| known.state != State::Stopping) {
-            known.stop(&mut instance.events, None);
-        }
-        world.success()
-    })
+pub fn request_exit_session(world: &mut World, session: sys::Session) -> Answer {
+    forbid_if(world.session(session)?.views == 0, Code::ERROR_SESSION_NOT_RUNNING, "it is not running")?;
+    world.log.write(&Entry::Request { what: "exit".into(), value: 1.0 });
+    let instance = world.current()?;
+    if let Some(known) = instance.session.as_mut().filter(|known| known.state != State::Stopping) {
+        known.stop(&mut instance.events, None);
+    }
+    world.success()
 }
 
-pub unsafe extern "system" fn enumerate_view_configurations(
+pub fn enumerate_view_configurations(
+    world: &mut World,
     instance: sys::Instance,
     system: sys::SystemId,
-    capacity: u32,
-    count: *mut u32,
-    types: *mut sys::ViewConfigurationType,
-) -> sys::Result {
-    enter("xrEnumerateViewConfigurations", |world| {
-        world.instance(instance)?;
-        check_system(system)?;
-        let offered: Vec<_> = [
-            (sys::ViewConfigurationType::PRIMARY_STEREO, world.script.stereo),
-            (sys::ViewConfigurationType::PRIMARY_MONO, world.script.mono),
-        ]
-        .into_iter()
-        .filter_map(|(configuration, offered)| offered.then_some(configuration))
-        .collect();
-        // SAFETY: as the caller says.
-        unsafe { fill(capacity, count, types, &offered, |to, from| *to = *from) }
-    })
+    types: Array<sys::ViewConfigurationType>,
+) -> Answer {
+    world.instance(instance)?;
+    check_system(system)?;
+    let offered: Vec<_> = [
+        (sys::ViewConfigurationType::PRIMARY_STEREO, world.script.stereo),
+        (sys::ViewConfigurationType::PRIMARY_MONO, world.script.mono),
+    ]
+    .into_iter()
+    .filter_map(|(configuration, offered)| offered.then_some(configuration))
+    .collect();
+    types.fill(&offered, |to, from| *to = *from)
 }
 
-pub unsafe extern "system" fn get_view_configuration_properties(
+pub fn get_view_configuration_properties(
+    world: &mut World,
     instance: sys::Instance,
     system: sys::SystemId,
     configuration: sys::ViewConfigurationType,
-    properties: *mut sys::ViewConfigurationProperties,
-) -> sys::Result {
-    enter("xrGetViewConfigurationProperties", |world| {
-        world.instance(instance)?;
-        check_system(system)?;
-        views_of(world, configuration)?;
-        // SAFETY: as the caller says.
-        let properties = unsafe { &mut *properties };
-        properties.view_configuration_type = configuration;
-        properties.fov_mutable = sys::TRUE;
-        DONE
-    })
+    properties: &mut sys::ViewConfigurationProperties,
+) -> Answer {
+    world.instance(instance)?;
+    check_system(system)?;
+    views_of(world, configuration)?;
+    properties.view_configuration_type = configuration;
+    properties.fov_mutable = sys::TRUE;
+    DONE
 }
 
-pub unsafe extern "system" fn enumerate_view_configuration_views(
+pub fn enumerate_view_configuration_views(
+    world: &mut World,
     instance: sys::Instance,
     system: sys::SystemId,
     configuration: sys::ViewConfigurationType,
-    capacity: u32,
-    count: *mut u32,
-    views: *mut sys::ViewConfigurationView,
-) -> sys::Result {
-    enter("xrEnumerateViewConfigurationViews", |world| {
-        world.instance(instance)?;
-        check_system(system)?;
-        let number = views_of(world, configuration)? as usize;
-        let sizes: Vec<[u32; 2]> = world.script.eyes[..number].iter().map(|eye| eye.size).collect();
-        // SAFETY: as the caller says.
-        unsafe {
-            fill(capacity, count, views, &sizes, |view, [width, height]| {
-                view.recommended_image_rect_width = *width;
-                view.recommended_image_rect_height = *height;
-                view.max_image_rect_width = 4096;
-                view.max_image_rect_height = 4096;
-                view.recommended_swapchain_sample_count = 1;
-                view.max_swapchain_sample_count = 1;
-            })
-        }
+    views: Array<sys::ViewConfigurationView>,
+) -> Answer {
+    world.instance(instance)?;
+    check_system(system)?;
+    let number = views_of(world, configuration)? as usize;
+    let sizes: Vec<[u32; 2]> = world.script.eyes[..number].iter().map(|eye| eye.size).collect();
+    views.fill(&sizes, |view, [width, height]| {
+        view.recommended_image_rect_width = *width;
+        view.recommended_image_rect_height = *height;
+        view.max_image_rect_width = 4096;
+        view.max_image_rect_height = 4096;
+        view.recommended_swapchain_sample_count = 1;
+        view.max_swapchain_sample_count = 1;
     })
 }
 
-pub unsafe extern "system" fn enumerate_environment_blend_modes(
+pub fn enumerate_environment_blend_modes(
+    world: &mut World,
     instance: sys::Instance,
     system: sys::SystemId,
     configuration: sys::ViewConfigurationType,
-    capacity: u32,
-    count: *mut u32,
-    modes: *mut sys::EnvironmentBlendMode,
-) -> sys::Result {
-    enter("xrEnumerateEnvironmentBlendModes", |world| {
-        world.instance(instance)?;
-        check_system(system)?;
-        views_of(world, configuration)?;
-        // SAFETY: as the caller says.
-        unsafe { fill(capacity, count, modes, &[sys::EnvironmentBlendMode::OPAQUE], |to, from| *to = *from) }
-    })
+    modes: Array<sys::EnvironmentBlendMode>,
+) -> Answer {
+    world.instance(instance)?;
+    check_system(system)?;
+    views_of(world, configuration)?;
+    modes.fill(&[sys::EnvironmentBlendMode::OPAQUE], |to, from| *to = *from)
 }

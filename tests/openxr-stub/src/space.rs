@@ -2,10 +2,9 @@
 
 use glam::{Quat, Vec3};
 use openxr_sys as sys;
-use sys::Handle;
+use sys::{Handle, Result as Code};
 
-use crate::instance::fill;
-use crate::world::{DONE, Refusal, World, enter, forbidden};
+use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, found};
 
 /// A turn, then a shift: from a space to the one that it lies in.
 pub type Pose = (Quat, Vec3);
@@ -41,9 +40,11 @@ pub fn raw_pose((turn, position): Pose) -> sys::Posef {
 pub fn pose(raw: &sys::Posef) -> Result<Pose, Refusal> {
     let turn = Quat::from_xyzw(raw.orientation.x, raw.orientation.y, raw.orientation.z, raw.orientation.w);
     let position = Vec3::new(raw.position.x, raw.position.y, raw.position.z);
-    if !((turn.length() - 1.0).abs() < 0.01 && position.is_finite()) {
-        return Err(forbidden(sys::Result::ERROR_POSE_INVALID, format!("{turn:?}, {position:?} is no pose")));
-    }
+    forbid_if(
+        !((turn.length() - 1.0).abs() < 0.01 && position.is_finite()),
+        Code::ERROR_POSE_INVALID,
+        format!("{turn:?}, {position:?} is no pose"),
+    )?;
     Ok((turn.normalize(), position))
 }
 
@@ -55,7 +56,7 @@ impl World {
         let instance = self.current()?;
         let local = Quat::from_rotation_y(instance.local_yaw);
         let known = instance.spaces.get(&space.into_raw());
-        let known = known.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not a space"))?;
+        let known = found(known, "not a space")?;
         let origin = match known.kind {
             Kind::Reference(sys::ReferenceSpaceType::VIEW) => head,
             Kind::Reference(sys::ReferenceSpaceType::LOCAL) => (local, position),
@@ -86,104 +87,82 @@ impl World {
     }
 }
 
-pub unsafe extern "system" fn enumerate_reference_spaces(
+pub fn enumerate_reference_spaces(
+    world: &mut World,
     session: sys::Session,
-    capacity: u32,
-    count: *mut u32,
-    out: *mut sys::ReferenceSpaceType,
-) -> sys::Result {
-    enter("xrEnumerateReferenceSpaces", |world| {
-        world.session(session)?;
-        let types = world.reference_spaces()?;
-        // SAFETY: as the caller says.
-        unsafe { fill(capacity, count, out, &types, |to, from| *to = *from) }
-    })
+    out: Array<sys::ReferenceSpaceType>,
+) -> Answer {
+    world.session(session)?;
+    let types = world.reference_spaces()?;
+    out.fill(&types, |to, from| *to = *from)
 }
 
-pub unsafe extern "system" fn create_reference_space(
+pub fn create_reference_space(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::ReferenceSpaceCreateInfo,
-    out: *mut sys::Space,
-) -> sys::Result {
-    enter("xrCreateReferenceSpace", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        let info = unsafe { &*info };
-        if !world.reference_spaces()?.contains(&info.reference_space_type) {
-            return Err(forbidden(
-                sys::Result::ERROR_REFERENCE_SPACE_UNSUPPORTED,
-                format!("{:?} is not offered", info.reference_space_type),
-            ));
-        }
-        let offset = pose(&info.pose_in_reference_space)?;
-        let space = world.add_space(Kind::Reference(info.reference_space_type), offset)?;
-        // SAFETY: as the caller says.
-        unsafe { *out = space };
-        DONE
-    })
+    info: &sys::ReferenceSpaceCreateInfo,
+    out: &mut sys::Space,
+) -> Answer {
+    world.session(session)?;
+    forbid_if(
+        !world.reference_spaces()?.contains(&info.reference_space_type),
+        Code::ERROR_REFERENCE_SPACE_UNSUPPORTED,
+        format!("{:?} is not offered", info.reference_space_type),
+    )?;
+    let offset = pose(&info.pose_in_reference_space)?;
+    let space = world.add_space(Kind::Reference(info.reference_space_type), offset)?;
+    *out = space;
+    DONE
 }
 
-pub unsafe extern "system" fn create_action_space(
+pub fn create_action_space(
+    world: &mut World,
     session: sys::Session,
-    info: *const sys::ActionSpaceCreateInfo,
-    out: *mut sys::Space,
-) -> sys::Result {
-    enter("xrCreateActionSpace", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        let info = unsafe { &*info };
-        let offset = pose(&info.pose_in_action_space)?;
-        let instance = world.current()?;
-        instance.actions.check(info.action)?;
-        let left = instance.path(info.subaction_path).is_some_and(|path| path.contains("left"));
-        let space = world.add_space(Kind::Hand(if left { -1.0 } else { 1.0 }), offset)?;
-        // SAFETY: as the caller says.
-        unsafe { *out = space };
-        DONE
-    })
+    info: &sys::ActionSpaceCreateInfo,
+    out: &mut sys::Space,
+) -> Answer {
+    world.session(session)?;
+    let offset = pose(&info.pose_in_action_space)?;
+    let instance = world.current()?;
+    instance.actions.check(info.action)?;
+    let left = instance.path(info.subaction_path).is_some_and(|path| path.contains("left"));
+    let space = world.add_space(Kind::Hand(if left { -1.0 } else { 1.0 }), offset)?;
+    *out = space;
+    DONE
 }
 
-pub unsafe extern "system" fn destroy_space(space: sys::Space) -> sys::Result {
-    enter("xrDestroySpace", |world| {
-        // What is lost can still be destroyed, and what was destroyed with its session is gone.
-        let known = world.instance.as_mut().and_then(|instance| instance.spaces.remove(&space.into_raw()));
-        known.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not a space"))?;
-        DONE
-    })
+pub fn destroy_space(world: &mut World, space: sys::Space) -> Answer {
+    // What is lost can still be destroyed, and what was destroyed with its session is gone.
+    let known = world.instance.as_mut().and_then(|instance| instance.spaces.remove(&space.into_raw()));
+    found(known, "not a space")?;
+    DONE
 }
 
-pub unsafe extern "system" fn locate_space(
+pub fn locate_space(
+    world: &mut World,
     space: sys::Space,
     base: sys::Space,
     time: sys::Time,
-    out: *mut sys::SpaceLocation,
-) -> sys::Result {
-    enter("xrLocateSpace", |world| {
-        world.its_session()?;
-        if time.as_nanos() <= 0 {
-            return Err(forbidden(sys::Result::ERROR_TIME_INVALID, "the time is not positive"));
-        }
-        let (space, base) = (world.space_pose(space)?, world.space_pose(base)?);
-        // SAFETY: as the caller says.
-        let out = unsafe { &mut *out };
-        out.location_flags = sys::SpaceLocationFlags::ORIENTATION_VALID
-            | sys::SpaceLocationFlags::POSITION_VALID
-            | sys::SpaceLocationFlags::ORIENTATION_TRACKED
-            | sys::SpaceLocationFlags::POSITION_TRACKED;
-        out.pose = raw_pose(compose(inverse(base), space));
-        world.success()
-    })
+    out: &mut sys::SpaceLocation,
+) -> Answer {
+    world.its_session()?;
+    forbid_if(time.as_nanos() <= 0, Code::ERROR_TIME_INVALID, "the time is not positive")?;
+    let (space, base) = (world.space_pose(space)?, world.space_pose(base)?);
+    out.location_flags = sys::SpaceLocationFlags::ORIENTATION_VALID
+        | sys::SpaceLocationFlags::POSITION_VALID
+        | sys::SpaceLocationFlags::ORIENTATION_TRACKED
+        | sys::SpaceLocationFlags::POSITION_TRACKED;
+    out.pose = raw_pose(compose(inverse(base), space));
+    world.success()
 }
 
-pub unsafe extern "system" fn get_reference_space_bounds_rect(
+pub fn get_reference_space_bounds_rect(
+    world: &mut World,
     session: sys::Session,
     _: sys::ReferenceSpaceType,
-    bounds: *mut sys::Extent2Df,
-) -> sys::Result {
-    enter("xrGetReferenceSpaceBoundsRect", |world| {
-        world.session(session)?;
-        // SAFETY: as the caller says.
-        unsafe { *bounds = sys::Extent2Df::default() };
-        Ok(sys::Result::SPACE_BOUNDS_UNAVAILABLE)
-    })
+    bounds: &mut sys::Extent2Df,
+) -> Answer {
+    world.session(session)?;
+    *bounds = sys::Extent2Df::default();
+    Ok(Code::SPACE_BOUNDS_UNAVAILABLE)
 }

@@ -1,4 +1,4 @@
-//! Which functions there are.
+//! The functions of the runtime, by their names.
 
 use std::ffi::{CStr, c_char};
 use std::mem;
@@ -6,110 +6,217 @@ use std::mem;
 use openxr_sys as sys;
 use sys::{Handle, pfn};
 
-use crate::world::{DONE, enter, forbidden};
+use crate::extension::SetAndroidApplicationThreadKHR;
+use crate::world::{Array, DONE, enter, forbidden};
 use crate::{action, extension, frame, instance, session, space, swapchain};
 
-/// A function by its name, and the extension that it needs.
-fn find(name: &str) -> Option<(pfn::VoidFunction, Option<&'static str>)> {
-    use extension::SetAndroidApplicationThreadKHR;
-    use pfn::*;
+/// The type of a parameter in C.
+macro_rules! parameter {
+    (: $type:ty) => { $type };
+    (out $type:ty) => { *mut $type };
+    ($in_or_text:tt $type:ty) => { *const $type };
+}
 
-    macro_rules! table {
-        ($($name:literal $type:ident $function:path $(, $extension:literal)?;)*) => {
-            match name {
-                $($name => {
-                    let function: $type = $function;
-                    // SAFETY: functions are called by the type that belongs to their name.
-                    let function = unsafe { mem::transmute::<$type, VoidFunction>(function) };
-                    #[allow(unused_mut, unused_assignments)]
-                    let mut extension = None;
-                    $(extension = Some($extension);)?
-                    Some((function, extension))
-                })*
-                _ => None,
+/// The argument that the Rust function gets for it.
+macro_rules! argument {
+    (: $name:ident) => {
+        $name
+    };
+    // SAFETY: applications give strings that end in zero.
+    (text $name:ident) => {
+        unsafe { CStr::from_ptr($name) }
+    };
+    // SAFETY: applications give complete structures.
+    (in $name:ident) => {
+        unsafe { &*$name }
+    };
+    // SAFETY: applications give structures and places that can be written.
+    (out $name:ident) => {
+        unsafe { &mut *$name }
+    };
+}
+
+/// Makes a C function for each line: the name without `xr`, the Rust function, its parameters (values, structures that are read or
+/// written, texts), and after a semicolon an array that is asked for by capacity and count. After the parentheses comes the
+/// extension that the function needs.
+macro_rules! table {
+    ($($call:ident = $module:ident::$function:ident(
+        $($parameter:ident $how:tt $type:ty),* $(; $array:ident: $item:ty)?
+    ) $(, $extension:literal)?;)*) => {
+        /// Returns a function by its name, and the extension that it needs.
+        fn find(name: &str) -> Option<(pfn::VoidFunction, Option<&'static str>)> {
+            use sys::{pfn::*, *};
+            $(if name == concat!("xr", stringify!($call)) {
+                unsafe extern "system" fn call(
+                    $($parameter: parameter!($how $type),)*
+                    $(capacity: u32, count: *mut u32, $array: *mut $item,)?
+                ) -> sys::Result {
+                    enter(concat!("xr", stringify!($call)), |world| {
+                        // SAFETY: applications give room for as many elements as they say.
+                        $(let $array = unsafe { Array::<$item>::new(capacity, count, $array) };)?
+                        $module::$function(world, $(argument!($how $parameter),)* $($array)?)
+                    })
+                }
+                let function: $call = call;
+                // SAFETY: functions are called by the type that belongs to their name.
+                let function = unsafe { mem::transmute::<$call, VoidFunction>(function) };
+                return Some((function, None$(.or(Some($extension)))?));
+            })*
+            if name == "xrGetInstanceProcAddr" {
+                let function: GetInstanceProcAddr = get_instance_proc_addr;
+                // SAFETY: as above.
+                return Some((unsafe { mem::transmute::<GetInstanceProcAddr, VoidFunction>(function) }, None));
             }
-        };
-    }
-    table! {
-        "xrGetInstanceProcAddr" GetInstanceProcAddr get_instance_proc_addr;
-        "xrEnumerateInstanceExtensionProperties" EnumerateInstanceExtensionProperties
-            instance::enumerate_instance_extension_properties;
-        "xrEnumerateApiLayerProperties" EnumerateApiLayerProperties instance::enumerate_api_layer_properties;
-        "xrInitializeLoaderKHR" InitializeLoaderKHR instance::initialize_loader;
-        "xrCreateInstance" CreateInstance instance::create_instance;
-        "xrDestroyInstance" DestroyInstance instance::destroy_instance;
-        "xrGetInstanceProperties" GetInstanceProperties instance::get_instance_properties;
-        "xrResultToString" ResultToString instance::result_to_string;
-        "xrStructureTypeToString" StructureTypeToString instance::structure_type_to_string;
-        "xrGetSystem" GetSystem instance::get_system;
-        "xrGetSystemProperties" GetSystemProperties instance::get_system_properties;
-        "xrPollEvent" PollEvent instance::poll_event;
-        "xrStringToPath" StringToPath instance::string_to_path;
-        "xrPathToString" PathToString instance::path_to_string;
-        "xrCreateSession" CreateSession session::create_session;
-        "xrDestroySession" DestroySession session::destroy_session;
-        "xrBeginSession" BeginSession session::begin_session;
-        "xrEndSession" EndSession session::end_session;
-        "xrRequestExitSession" RequestExitSession session::request_exit_session;
-        "xrEnumerateViewConfigurations" EnumerateViewConfigurations session::enumerate_view_configurations;
-        "xrGetViewConfigurationProperties" GetViewConfigurationProperties
-            session::get_view_configuration_properties;
-        "xrEnumerateViewConfigurationViews" EnumerateViewConfigurationViews
-            session::enumerate_view_configuration_views;
-        "xrEnumerateEnvironmentBlendModes" EnumerateEnvironmentBlendModes
-            session::enumerate_environment_blend_modes;
-        "xrEnumerateReferenceSpaces" EnumerateReferenceSpaces space::enumerate_reference_spaces;
-        "xrCreateReferenceSpace" CreateReferenceSpace space::create_reference_space;
-        "xrCreateActionSpace" CreateActionSpace space::create_action_space;
-        "xrLocateSpace" LocateSpace space::locate_space;
-        "xrDestroySpace" DestroySpace space::destroy_space;
-        "xrGetReferenceSpaceBoundsRect" GetReferenceSpaceBoundsRect space::get_reference_space_bounds_rect;
-        "xrEnumerateSwapchainFormats" EnumerateSwapchainFormats swapchain::enumerate_swapchain_formats;
-        "xrCreateSwapchain" CreateSwapchain swapchain::create_swapchain;
-        "xrDestroySwapchain" DestroySwapchain swapchain::destroy_swapchain;
-        "xrEnumerateSwapchainImages" EnumerateSwapchainImages swapchain::enumerate_swapchain_images;
-        "xrAcquireSwapchainImage" AcquireSwapchainImage swapchain::acquire_swapchain_image;
-        "xrWaitSwapchainImage" WaitSwapchainImage swapchain::wait_swapchain_image;
-        "xrReleaseSwapchainImage" ReleaseSwapchainImage swapchain::release_swapchain_image;
-        "xrWaitFrame" WaitFrame frame::wait_frame;
-        "xrBeginFrame" BeginFrame frame::begin_frame;
-        "xrLocateViews" LocateViews frame::locate_views;
-        "xrEndFrame" EndFrame frame::end_frame;
-        "xrCreateActionSet" CreateActionSet action::create_action_set;
-        "xrDestroyActionSet" DestroyActionSet action::destroy_action_set;
-        "xrCreateAction" CreateAction action::create_action;
-        "xrDestroyAction" DestroyAction action::destroy_action;
-        "xrSuggestInteractionProfileBindings" SuggestInteractionProfileBindings action::suggest_bindings;
-        "xrAttachSessionActionSets" AttachSessionActionSets action::attach_action_sets;
-        "xrGetCurrentInteractionProfile" GetCurrentInteractionProfile
-            action::get_current_interaction_profile;
-        "xrSyncActions" SyncActions action::sync_actions;
-        "xrGetActionStateBoolean" GetActionStateBoolean action::get_action_state_boolean;
-        "xrGetActionStateFloat" GetActionStateFloat action::get_action_state_float;
-        "xrGetActionStateVector2f" GetActionStateVector2f action::get_action_state_vector2f;
-        "xrGetActionStatePose" GetActionStatePose action::get_action_state_pose;
-        "xrEnumerateBoundSourcesForAction" EnumerateBoundSourcesForAction action::enumerate_bound_sources;
-        "xrGetInputSourceLocalizedName" GetInputSourceLocalizedName action::get_input_source_localized_name;
-        "xrApplyHapticFeedback" ApplyHapticFeedback action::apply_haptic_feedback;
-        "xrStopHapticFeedback" StopHapticFeedback action::stop_haptic_feedback;
-        "xrGetOpenGLESGraphicsRequirementsKHR" GetOpenGLESGraphicsRequirementsKHR
-            session::get_graphics_requirements, "XR_KHR_opengl_es_enable";
-        "xrGetVulkanGraphicsRequirementsKHR" GetVulkanGraphicsRequirementsKHR
-            session::get_vulkan_graphics_requirements, "XR_KHR_vulkan_enable";
-        "xrGetVulkanGraphicsRequirements2KHR" GetVulkanGraphicsRequirements2KHR
-            session::get_vulkan_graphics_requirements, "XR_KHR_vulkan_enable2";
-        "xrEnumerateDisplayRefreshRatesFB" EnumerateDisplayRefreshRatesFB
-            extension::enumerate_display_refresh_rates, "XR_FB_display_refresh_rate";
-        "xrGetDisplayRefreshRateFB" GetDisplayRefreshRateFB
-            extension::get_display_refresh_rate, "XR_FB_display_refresh_rate";
-        "xrRequestDisplayRefreshRateFB" RequestDisplayRefreshRateFB
-            extension::request_display_refresh_rate, "XR_FB_display_refresh_rate";
-        "xrPerfSettingsSetPerformanceLevelEXT" PerfSettingsSetPerformanceLevelEXT
-            extension::set_performance_level, "XR_EXT_performance_settings";
-        "xrGetVisibilityMaskKHR" GetVisibilityMaskKHR extension::get_visibility_mask, "XR_KHR_visibility_mask";
-        "xrSetAndroidApplicationThreadKHR" SetAndroidApplicationThreadKHR
-            extension::set_android_application_thread, "XR_KHR_android_thread_settings";
-    }
+            None
+        }
+    };
+}
+
+table! {
+    EnumerateInstanceExtensionProperties = instance::enumerate_instance_extension_properties(
+        layer: *const c_char; properties: ExtensionProperties
+    );
+    EnumerateApiLayerProperties = instance::enumerate_api_layer_properties(
+        unused: u32, count out u32, unused1: *mut ApiLayerProperties
+    );
+    InitializeLoaderKHR = instance::initialize_loader(info in LoaderInitInfoBaseHeaderKHR);
+    CreateInstance = instance::create_instance(info in InstanceCreateInfo, result out Instance);
+    DestroyInstance = instance::destroy_instance(instance: Instance);
+    GetInstanceProperties = instance::get_instance_properties(
+        instance: Instance, properties out InstanceProperties
+    );
+    ResultToString = instance::result_to_string(instance: Instance, value: Result, buffer: *mut c_char);
+    StructureTypeToString = instance::structure_type_to_string(
+        instance: Instance, value: StructureType, buffer: *mut c_char
+    );
+    GetSystem = instance::get_system(instance: Instance, info in SystemGetInfo, result out SystemId);
+    GetSystemProperties = instance::get_system_properties(
+        instance: Instance, system: SystemId, properties out SystemProperties
+    );
+    PollEvent = instance::poll_event(instance: Instance, buffer out EventDataBuffer);
+    StringToPath = instance::string_to_path(instance: Instance, string text c_char, path out Path);
+    PathToString = instance::path_to_string(instance: Instance, path: Path; buffer: c_char);
+    CreateSession = session::create_session(instance: Instance, info in SessionCreateInfo, result out Session);
+    DestroySession = session::destroy_session(session: Session);
+    BeginSession = session::begin_session(session: Session, info in SessionBeginInfo);
+    EndSession = session::end_session(session: Session);
+    RequestExitSession = session::request_exit_session(session: Session);
+    EnumerateViewConfigurations = session::enumerate_view_configurations(
+        instance: Instance, system: SystemId; types: ViewConfigurationType
+    );
+    GetViewConfigurationProperties = session::get_view_configuration_properties(
+        instance: Instance, system: SystemId, configuration: ViewConfigurationType,
+        properties out ViewConfigurationProperties
+    );
+    EnumerateViewConfigurationViews = session::enumerate_view_configuration_views(
+        instance: Instance, system: SystemId, configuration: ViewConfigurationType;
+        views: ViewConfigurationView
+    );
+    EnumerateEnvironmentBlendModes = session::enumerate_environment_blend_modes(
+        instance: Instance, system: SystemId, configuration: ViewConfigurationType;
+        modes: EnvironmentBlendMode
+    );
+    EnumerateReferenceSpaces = space::enumerate_reference_spaces(session: Session; list: ReferenceSpaceType);
+    CreateReferenceSpace = space::create_reference_space(
+        session: Session, info in ReferenceSpaceCreateInfo, result out Space
+    );
+    CreateActionSpace = space::create_action_space(
+        session: Session, info in ActionSpaceCreateInfo, result out Space
+    );
+    LocateSpace = space::locate_space(space: Space, base: Space, time: Time, result out SpaceLocation);
+    DestroySpace = space::destroy_space(space: Space);
+    GetReferenceSpaceBoundsRect = space::get_reference_space_bounds_rect(
+        session: Session, unused: ReferenceSpaceType, bounds out Extent2Df
+    );
+    EnumerateSwapchainFormats = swapchain::enumerate_swapchain_formats(session: Session; formats: i64);
+    CreateSwapchain = swapchain::create_swapchain(
+        session: Session, info in SwapchainCreateInfo, result out Swapchain
+    );
+    DestroySwapchain = swapchain::destroy_swapchain(swapchain: Swapchain);
+    EnumerateSwapchainImages = swapchain::enumerate_swapchain_images(
+        swapchain: Swapchain; images: SwapchainImageBaseHeader
+    );
+    AcquireSwapchainImage = swapchain::acquire_swapchain_image(
+        swapchain: Swapchain, unused: *const SwapchainImageAcquireInfo, index out u32
+    );
+    WaitSwapchainImage = swapchain::wait_swapchain_image(
+        swapchain: Swapchain, unused: *const SwapchainImageWaitInfo
+    );
+    ReleaseSwapchainImage = swapchain::release_swapchain_image(
+        swapchain: Swapchain, unused: *const SwapchainImageReleaseInfo
+    );
+    WaitFrame = frame::wait_frame(session: Session, unused: *const FrameWaitInfo, result out FrameState);
+    BeginFrame = frame::begin_frame(session: Session, unused: *const FrameBeginInfo);
+    LocateViews = frame::locate_views(
+        session: Session, info in ViewLocateInfo, state out ViewState; list: View
+    );
+    EndFrame = frame::end_frame(session: Session, info in FrameEndInfo);
+    CreateActionSet = action::create_action_set(
+        instance: Instance, info in ActionSetCreateInfo, result out ActionSet
+    );
+    DestroyActionSet = action::destroy_action_set(set: ActionSet);
+    CreateAction = action::create_action(set: ActionSet, info in ActionCreateInfo, result out Action);
+    DestroyAction = action::destroy_action(action: Action);
+    SuggestInteractionProfileBindings = action::suggest_bindings(
+        instance: Instance, suggested in InteractionProfileSuggestedBinding
+    );
+    AttachSessionActionSets = action::attach_action_sets(
+        session: Session, info in SessionActionSetsAttachInfo
+    );
+    GetCurrentInteractionProfile = action::get_current_interaction_profile(
+        session: Session, unused: Path, result out InteractionProfileState
+    );
+    SyncActions = action::sync_actions(session: Session, info in ActionsSyncInfo);
+    GetActionStateBoolean = action::get_action_state_boolean(
+        session: Session, info in ActionStateGetInfo, result out ActionStateBoolean
+    );
+    GetActionStateFloat = action::get_action_state_float(
+        session: Session, info in ActionStateGetInfo, result out ActionStateFloat
+    );
+    GetActionStateVector2f = action::get_action_state_vector2f(
+        session: Session, info in ActionStateGetInfo, result out ActionStateVector2f
+    );
+    GetActionStatePose = action::get_action_state_pose(
+        session: Session, info in ActionStateGetInfo, result out ActionStatePose
+    );
+    EnumerateBoundSourcesForAction = action::enumerate_bound_sources(
+        session: Session, info in BoundSourcesForActionEnumerateInfo; sources: Path
+    );
+    GetInputSourceLocalizedName = action::get_input_source_localized_name(
+        session: Session, info in InputSourceLocalizedNameGetInfo; buffer: c_char
+    );
+    ApplyHapticFeedback = action::apply_haptic_feedback(
+        session: Session, info in HapticActionInfo, unused: *const HapticBaseHeader
+    );
+    StopHapticFeedback = action::stop_haptic_feedback(session: Session, info in HapticActionInfo);
+    GetOpenGLESGraphicsRequirementsKHR = session::get_graphics_requirements(
+        instance: Instance, system: SystemId, requirements out GraphicsRequirementsOpenGLESKHR
+    ), "XR_KHR_opengl_es_enable";
+    GetVulkanGraphicsRequirementsKHR = session::get_vulkan_graphics_requirements(
+        instance: Instance, system: SystemId, requirements out GraphicsRequirementsVulkanKHR
+    ), "XR_KHR_vulkan_enable";
+    GetVulkanGraphicsRequirements2KHR = session::get_vulkan_graphics_requirements(
+        instance: Instance, system: SystemId, requirements out GraphicsRequirementsVulkanKHR
+    ), "XR_KHR_vulkan_enable2";
+    EnumerateDisplayRefreshRatesFB = extension::enumerate_display_refresh_rates(
+        session: Session; rates: f32
+    ), "XR_FB_display_refresh_rate";
+    GetDisplayRefreshRateFB = extension::get_display_refresh_rate(
+        session: Session, rate out f32
+    ), "XR_FB_display_refresh_rate";
+    RequestDisplayRefreshRateFB = extension::request_display_refresh_rate(
+        session: Session, rate: f32
+    ), "XR_FB_display_refresh_rate";
+    PerfSettingsSetPerformanceLevelEXT = extension::set_performance_level(
+        session: Session, domain: PerfSettingsDomainEXT, level: PerfSettingsLevelEXT
+    ), "XR_EXT_performance_settings";
+    GetVisibilityMaskKHR = extension::get_visibility_mask(
+        session: Session, configuration: ViewConfigurationType, view: u32, kind: VisibilityMaskTypeKHR,
+        mask out VisibilityMaskKHR
+    ), "XR_KHR_visibility_mask";
+    SetAndroidApplicationThreadKHR = extension::set_android_application_thread(
+        session: Session, kind: AndroidThreadTypeKHR, thread: u32
+    ), "XR_KHR_android_thread_settings";
 }
 
 /// Without an instance only these are there.

@@ -2,12 +2,13 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::ffi::c_char;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
 use glam::{Quat, Vec3};
 use openxr_sys as sys;
-use sys::Handle;
+use sys::{Handle, Result as Code};
 
 use crate::action::Actions;
 use crate::log::{Entry, Log};
@@ -15,6 +16,53 @@ use crate::script::{At, Script, State, What};
 use crate::session::Session;
 use crate::space::Space;
 use crate::swapchain::Swapchain;
+
+/// An array that an application asks for: first its length, then its elements.
+pub struct Array<T> {
+    pub capacity: u32,
+    count: *mut u32,
+    pub items: *mut T,
+}
+
+impl<T> Array<T> {
+    /// # Safety
+    /// `count` can be written; `items` has room for `capacity` of them.
+    pub unsafe fn new(capacity: u32, count: *mut u32, items: *mut T) -> Array<T> {
+        Array { capacity, count, items }
+    }
+
+    /// # Safety
+    /// The items are structures of this type.
+    pub unsafe fn cast<U>(self) -> Array<U> {
+        Array { capacity: self.capacity, count: self.count, items: self.items.cast() }
+    }
+
+    /// Writes the length, and the elements if there is room.
+    pub fn fill<V>(self, values: &[V], write: impl Fn(&mut T, &V)) -> Answer {
+        // SAFETY: `new` demands a place for the count, and room for `capacity` items.
+        unsafe {
+            *self.count = values.len() as u32;
+            if self.capacity == 0 {
+                return DONE;
+            }
+            if (self.capacity as usize) < values.len() {
+                return Err(Code::ERROR_SIZE_INSUFFICIENT.into());
+            }
+            for (i, value) in values.iter().enumerate() {
+                write(&mut *self.items.add(i), value);
+            }
+        }
+        DONE
+    }
+}
+
+impl Array<c_char> {
+    /// The same for a text, which ends in zero.
+    pub fn fill_text(self, text: &str) -> Answer {
+        let characters: Vec<c_char> = text.bytes().chain([0]).map(|c| c as c_char).collect();
+        self.fill(&characters, |to, from| *to = *from)
+    }
+}
 
 /// Why a call fails; with a violation, the application is to blame.
 pub struct Refusal {
@@ -33,8 +81,18 @@ pub fn forbidden(result: sys::Result, what: impl Into<String>) -> Refusal {
     Refusal { result, violation: Some(what.into()) }
 }
 
+/// Refuses a call if the application has done something that it must not do.
+pub fn forbid_if(is_wrong: bool, result: sys::Result, what: impl Into<String>) -> Result<(), Refusal> {
+    if is_wrong { Err(forbidden(result, what)) } else { Ok(()) }
+}
+
+/// Refuses a call with a handle that is not known.
+pub fn found<T>(object: Option<T>, what: &str) -> Result<T, Refusal> {
+    object.ok_or_else(|| forbidden(Code::ERROR_HANDLE_INVALID, what))
+}
+
 pub type Answer = Result<sys::Result, Refusal>;
-pub const DONE: Answer = Ok(sys::Result::SUCCESS);
+pub const DONE: Answer = Ok(Code::SUCCESS);
 
 /// The process: script and log are there as long as it is, also over several instances.
 pub struct World {
@@ -106,6 +164,9 @@ pub fn begin(script: Script) {
 
 /// Every call comes through here: it is counted, may fail as the script says, and is logged where it is forbidden.
 pub fn enter(call: &str, work: impl FnOnce(&mut World) -> Answer) -> sys::Result {
+    if call == "xrWaitFrame" {
+        crate::frame::pace();
+    }
     IS_INSIDE.set(true);
     let result = entered(call, work);
     IS_INSIDE.set(false);
@@ -167,25 +228,23 @@ impl World {
     /// The instance, whether or not it is lost.
     pub fn any_instance(&mut self, handle: sys::Instance) -> Result<&mut Instance, Refusal> {
         let instance = self.instance.as_mut().filter(|instance| instance.handle == handle.into_raw());
-        instance.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not an instance"))
+        found(instance, "not an instance")
     }
 
     pub fn instance(&mut self, handle: sys::Instance) -> Result<&mut Instance, Refusal> {
         let instance = self.any_instance(handle)?;
         if instance.lost {
-            return Err(sys::Result::ERROR_INSTANCE_LOST.into());
+            return Err(Code::ERROR_INSTANCE_LOST.into());
         }
         Ok(instance)
     }
 
     /// The instance of an object that is not the instance itself.
     pub fn current(&mut self) -> Result<&mut Instance, Refusal> {
-        let instance = self
-            .instance
-            .as_mut()
-            .ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "no instance"))?;
+        let instance =
+            self.instance.as_mut().ok_or_else(|| forbidden(Code::ERROR_HANDLE_INVALID, "no instance"))?;
         if instance.lost {
-            return Err(sys::Result::ERROR_INSTANCE_LOST.into());
+            return Err(Code::ERROR_INSTANCE_LOST.into());
         }
         Ok(instance)
     }
@@ -193,9 +252,9 @@ impl World {
     /// The session, if neither it nor its instance is lost.
     pub fn session(&mut self, handle: sys::Session) -> Result<&mut Session, Refusal> {
         let session = self.current()?.session.as_mut().filter(|s| s.handle == handle.into_raw());
-        let session = session.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "not a session"))?;
+        let session = found(session, "not a session")?;
         if session.lost {
-            return Err(sys::Result::ERROR_SESSION_LOST.into());
+            return Err(Code::ERROR_SESSION_LOST.into());
         }
         Ok(session)
     }
@@ -203,9 +262,9 @@ impl World {
     /// The session of an object that belongs to one.
     pub fn its_session(&mut self) -> Result<&mut Session, Refusal> {
         let session = self.current()?.session.as_mut();
-        let session = session.ok_or_else(|| forbidden(sys::Result::ERROR_HANDLE_INVALID, "no session"))?;
+        let session = found(session, "no session")?;
         if session.lost {
-            return Err(sys::Result::ERROR_SESSION_LOST.into());
+            return Err(Code::ERROR_SESSION_LOST.into());
         }
         Ok(session)
     }
@@ -213,7 +272,7 @@ impl World {
     /// Whether the session will be lost: the result of calls that go well.
     pub fn success(&mut self) -> Answer {
         let pending = self.its_session().is_ok_and(|session| session.loss_pending);
-        Ok(if pending { sys::Result::SESSION_LOSS_PENDING } else { sys::Result::SUCCESS })
+        Ok(if pending { Code::SESSION_LOSS_PENDING } else { Code::SUCCESS })
     }
 
     /// The script's number of the last frame that was waited for.

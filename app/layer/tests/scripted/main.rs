@@ -774,7 +774,7 @@ fn no_fault_of_the_runtime_fails_another_call() {
             "xrDestroyInstance",
             "xrGetInstanceProcAddr",
             "xrGetSystem",
-            "xrGetVulkanGraphicsRequirementsKHR",
+            "xrGetVulkanGraphicsRequirements2KHR",
             "xrPollEvent",
         ];
         let making = ["xrCreateSwapchain", "xrEnumerateSwapchainImages"];

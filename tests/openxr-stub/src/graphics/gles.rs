@@ -6,10 +6,11 @@ use std::ptr;
 
 use glow::HasContext as _;
 use openxr_sys as sys;
+use sys::Result as Code;
 
 use super::{Graphics, Texture};
 use crate::script::POISON;
-use crate::world::{Refusal, forbidden};
+use crate::world::{Refusal, forbid_if};
 
 const EGL_LIBRARIES: [&str; 2] = ["libEGL.so.1", "libEGL.so"];
 
@@ -55,12 +56,11 @@ pub unsafe fn binding(
         sys::StructureType::GRAPHICS_BINDING_EGL_MNDX if enabled("XR_MNDX_egl_enable") => {
             // SAFETY: of this type.
             let binding = unsafe { &*start.cast::<sys::GraphicsBindingEGLMNDX>() };
-            if binding.get_proc_address.is_none() {
-                return Err(forbidden(
-                    sys::Result::ERROR_VALIDATION_FAILURE,
-                    "the binding has no getProcAddress",
-                ));
-            }
+            forbid_if(
+                binding.get_proc_address.is_none(),
+                Code::ERROR_VALIDATION_FAILURE,
+                "the binding has no getProcAddress",
+            )?;
             ("egl", binding.display as *const c_void, binding.context as *const c_void)
         }
         sys::StructureType::GRAPHICS_BINDING_OPENGL_ES_ANDROID_KHR => {
@@ -70,9 +70,11 @@ pub unsafe fn binding(
         }
         _ => return Ok(None),
     };
-    if display.is_null() || context.is_null() {
-        return Err(forbidden(sys::Result::ERROR_GRAPHICS_DEVICE_INVALID, "display or context is null"));
-    }
+    forbid_if(
+        display.is_null() || context.is_null(),
+        Code::ERROR_GRAPHICS_DEVICE_INVALID,
+        "display or context is null",
+    )?;
     Ok(Some((name, display, context)))
 }
 
@@ -80,7 +82,7 @@ impl Gles {
     pub fn new(display: *const c_void, context: *const c_void) -> Result<Gles, Refusal> {
         // SAFETY: the application uses this library already.
         let library = EGL_LIBRARIES.iter().find_map(|name| unsafe { libloading::Library::new(name).ok() });
-        let library = library.ok_or(sys::Result::ERROR_RUNTIME_FAILURE)?;
+        let library = library.ok_or(Code::ERROR_RUNTIME_FAILURE)?;
         // SAFETY: EGL's functions have these types, and the library stays.
         let functions = unsafe {
             (
@@ -91,7 +93,7 @@ impl Gles {
         };
         std::mem::forget(library);
         let (Ok(get_proc_address), Ok(get_current_context), Ok(make_current)) = functions else {
-            return Err(sys::Result::ERROR_RUNTIME_FAILURE.into());
+            return Err(Code::ERROR_RUNTIME_FAILURE.into());
         };
         Ok(Gles { gl: None, get_proc_address, get_current_context, make_current, display, context })
     }

@@ -6,8 +6,9 @@ mod vulkan;
 use std::ffi::c_void;
 
 use openxr_sys as sys;
+use sys::Result as Code;
 
-use crate::world::{Refusal, forbidden};
+use crate::world::{Refusal, forbid_if, forbidden};
 
 /// The extensions with which an application tells its graphics.
 pub const OPENGL_ES: &str = "XR_KHR_opengl_es_enable";
@@ -54,12 +55,11 @@ pub unsafe fn bind(
 ) -> Result<(&'static str, Box<dyn Graphics>), Refusal> {
     let enabled = |name: &str| extensions.iter().any(|extension| extension == name);
     let vulkan = VULKAN.into_iter().any(enabled);
-    if !enabled(OPENGL_ES) && !vulkan {
-        return Err(forbidden(
-            sys::Result::ERROR_GRAPHICS_DEVICE_INVALID,
-            "no extension for graphics is enabled",
-        ));
-    }
+    forbid_if(
+        !enabled(OPENGL_ES) && !vulkan,
+        Code::ERROR_GRAPHICS_DEVICE_INVALID,
+        "no extension for graphics is enabled",
+    )?;
     let mut next = next.cast::<sys::BaseInStructure>();
     while !next.is_null() {
         // SAFETY: as the caller says.
@@ -77,5 +77,5 @@ pub unsafe fn bind(
         }
         next = structure.next;
     }
-    Err(forbidden(sys::Result::ERROR_GRAPHICS_DEVICE_INVALID, "there is no graphics binding"))
+    Err(forbidden(Code::ERROR_GRAPHICS_DEVICE_INVALID, "there is no graphics binding"))
 }

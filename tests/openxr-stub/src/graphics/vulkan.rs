@@ -7,6 +7,7 @@ use std::ffi::c_void;
 use ash::vk;
 use ash::vk::Handle as _;
 use openxr_sys as sys;
+use sys::Result as Code;
 
 use super::{Graphics, Texture};
 use crate::script::POISON;
@@ -36,15 +37,14 @@ impl Vulkan {
         // SAFETY: the application's handles, which it keeps until the session is destroyed; the loader stays, because the
         // application has it.
         unsafe {
-            let entry = ash::Entry::load().map_err(|_| sys::Result::ERROR_RUNTIME_FAILURE)?;
+            let entry = ash::Entry::load().map_err(|_| Code::ERROR_RUNTIME_FAILURE)?;
             let instance = vk::Instance::from_raw(raw(binding.instance));
             let instance = ash::Instance::load(entry.static_fn(), instance);
             let device = vk::Device::from_raw(raw(binding.device));
             let device = ash::Device::load(instance.fp_v1_0(), device);
             let queue = device.get_device_queue(binding.queue_family_index, binding.queue_index);
             let info = vk::CommandPoolCreateInfo::default().queue_family_index(binding.queue_family_index);
-            let pool =
-                device.create_command_pool(&info, None).map_err(|_| sys::Result::ERROR_RUNTIME_FAILURE)?;
+            let pool = device.create_command_pool(&info, None).map_err(|_| Code::ERROR_RUNTIME_FAILURE)?;
             let physical_device = vk::PhysicalDevice::from_raw(raw(binding.physical_device));
             Ok(Vulkan { instance, physical_device, device, queue, pool, images: HashMap::new() })
         }
