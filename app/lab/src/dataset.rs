@@ -14,7 +14,7 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
 };
 use yoro_render::stereo::{Offline, PipelineOptions};
-use yoro_render::{Fxaa, GpuScene, RenderSettings, Renderer, ViewTargets};
+use yoro_render::{Fxaa, GpuScene, Renderer, ViewTargets};
 
 /// Why an image group could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -102,19 +102,15 @@ pub struct GroupRenderer {
 }
 
 impl GroupRenderer {
-    /// Compiles the pipeline and makes the targets. `settings` are the renderer's.
+    /// Compiles the pipeline and makes the targets.
     ///
     /// # Errors
     /// [`GlError`] when the driver cannot run the pipeline.
-    pub fn new(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &GroupOptions,
-    ) -> Result<GroupRenderer, GlError> {
+    pub fn new(gl: &Rc<Context>, options: &GroupOptions) -> Result<GroupRenderer, GlError> {
         let target = |format, filter| RenderTarget::new(gl, [1, 1], &[(format, filter)], None);
         Ok(GroupRenderer {
             options: *options,
-            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
+            targets: ViewTargets::default(),
             fxaa: options.anti_aliasing.then(|| Fxaa::new(gl)).transpose()?,
             smooth: target(Format::Rgba8, Filter::Linear)?,
             depth_copy: Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?,
@@ -138,7 +134,8 @@ impl GroupRenderer {
         let views = pair.synthesis(self.options.guard_band)?;
         let truth = self.render_view(renderer, scene, &views.target)?;
         let source = self.render_view(renderer, scene, &views.source)?;
-        let depth = self.read_depth()?;
+        let depth: Vec<f32> =
+            self.depth.read_rgba32f(0, [0, 0], views.source.size).into_iter().map(|texel| texel[0]).collect();
         let result = self.offline.run(&source, &depth, &views.warp)?;
         let [width, height] = views.source.size;
         let flipped = depth.chunks_exact(width as usize).rev().flatten().copied().collect();
@@ -153,31 +150,25 @@ impl GroupRenderer {
         })
     }
 
-    /// RGBA of one view, rows from the bottom; its depth stays in the targets.
+    /// Returns RGBA of one view, rows from the bottom, and leaves its depth in `self.depth`.
     fn render_view(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         view: &View,
     ) -> Result<Vec<u8>, GlError> {
-        renderer.render_all(&mut self.targets, scene, view, true)?;
-        let mut color = self.targets.color_target();
+        let rendered = renderer.render_all(&mut self.targets, scene, view)?;
+        self.depth.resize(view.size)?;
+        self.depth.bind();
+        self.gl.set_raster_state(&RasterState::SCREEN);
+        self.depth_copy.bind().texture("source", 0, rendered.depth.raw());
+        self.gl.draw_screen();
+        let mut color = rendered.color;
         if let Some(fxaa) = &self.fxaa {
             self.smooth.resize(view.size)?;
             fxaa.run(color.color(0), [0, 0], &Destination::whole(&self.smooth));
             color = &self.smooth;
         }
         Ok(color.read_rgba8(0, [0, 0], view.size))
-    }
-
-    /// The depth of the view that was rendered last, rows from the bottom.
-    fn read_depth(&mut self) -> Result<Vec<f32>, GlError> {
-        let size = self.targets.size();
-        self.depth.resize(size)?;
-        self.depth.bind();
-        self.gl.set_raster_state(&RasterState::SCREEN);
-        self.depth_copy.bind().texture("source", 0, self.targets.depth().raw());
-        self.gl.draw_screen();
-        Ok(self.depth.read_rgba32f(0, [0, 0], size).into_iter().map(|texel| texel[0]).collect())
     }
 }

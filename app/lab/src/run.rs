@@ -127,7 +127,7 @@ impl<'a> Field<'a> {
         let keys = spread(loaded.viewpoints.len(), plan.viewpoints);
         let pairs: Vec<EyePair> = keys.iter().map(|&k| plan.eyes.pair(loaded.viewpoints[k].pose())).collect();
         let mut prepared = PreparedScene::new(gl, loaded, settings)?;
-        let mut finder = BlankFinder::new(gl, settings)?;
+        let mut finder = BlankFinder::new(gl)?;
         for (key, pair) in keys.iter().zip(&pairs) {
             ensure!(
                 !finder.is_blank(&mut prepared, pair)?,

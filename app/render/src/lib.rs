@@ -13,6 +13,6 @@ pub mod stereo;
 
 pub use prepared::PreparedScene;
 pub use render::{
-    Columns, DepthCopy, DepthImage, Fxaa, GpuScene, MAX_POINT_LIGHTS, MSAA, RenderSettings, Renderer,
-    RendererKind, Selection, ViewTargets,
+    DeferredRenderer, DepthCopy, DepthImage, ForwardRenderer, Fxaa, GpuScene, MAX_POINT_LIGHTS, MSAA,
+    RenderSettings, RenderedView, Renderer, RendererKind, Selection, ViewTargets,
 };

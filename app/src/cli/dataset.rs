@@ -235,7 +235,7 @@ impl<'a> Job<'a> {
         let scene: Scene = yoro_scenes::load(self.name, args.seed, args.style)?;
         let path = CameraPath::new(path.unwrap_or(&scene.viewpoints));
         let PreparedScene { scene, mut renderer } = PreparedScene::new(gl, scene, &settings)?;
-        let mut groups = GroupRenderer::new(gl, &settings, &group_options(args))?;
+        let mut groups = GroupRenderer::new(gl, &group_options(args))?;
         bar.set_message(self.name.to_owned());
         for &index in &self.missing {
             stop(args)?;

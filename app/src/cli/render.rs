@@ -200,7 +200,7 @@ fn warn_of_blank(
     prepared: &mut PreparedScene,
     heads: &[Pose],
 ) -> anyhow::Result<()> {
-    let mut finder = BlankFinder::new(gl, prepared.renderer.settings())?;
+    let mut finder = BlankFinder::new(gl)?;
     let mut blank = 0;
     for &head in heads {
         interrupt::check()?;

@@ -31,7 +31,7 @@ fn large(gl: &Rc<Context>, name: &str) -> anyhow::Result<ImageGroup> {
     let settings = RenderSettings::default();
     let scene = GpuScene::upload(gl, scene)?;
     let mut renderer = Renderer::new(gl, &settings, &scene)?;
-    let mut groups = GroupRenderer::new(gl, &settings, &GroupOptions::default())?;
+    let mut groups = GroupRenderer::new(gl, &GroupOptions::default())?;
     let eyes = EyeOptions { size: [GRID * SIZE; 2], ..EyeOptions::default() };
     Ok(groups.render(&mut renderer, &scene, &eyes.pair(head))?)
 }

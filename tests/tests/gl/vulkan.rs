@@ -21,7 +21,7 @@ const SIZE: [u32; 2] = [256, 256];
 fn scenes_are_those_of_opengl() {
     let headless = Headless::open(backends()[0]).unwrap();
     let (gl, settings) = (headless.gl(), RenderSettings::default());
-    let mut groups = GroupRenderer::new(gl, &settings, &GroupOptions::default()).unwrap();
+    let mut groups = GroupRenderer::new(gl, &GroupOptions::default()).unwrap();
     for name in ["talk", "stage"] {
         let scene = yoro_scenes::build(name, yoro_scenes::DEFAULT_SEED).unwrap();
         let head = scene.viewpoints[0].pose();

@@ -29,8 +29,8 @@ use crate::picture::{self, DepthImage};
 use yoro::eyes::{DepthConvention, EyePair, SynthesisViews};
 use yoro::synthesis::Edges;
 use yoro_gl::Context;
+use yoro_render::PreparedScene;
 use yoro_render::stereo::{Offline, StereoOptions};
-use yoro_render::{PreparedScene, RenderSettings};
 
 /// Both eyes, side by side.
 pub const STEREO_RGB: &str = "stereo-rgb";
@@ -97,12 +97,11 @@ pub type Values = BTreeMap<String, Vec<Option<f64>>>;
 pub fn run(
     gl: &Rc<Context>,
     prepared: &mut PreparedScene,
-    settings: &RenderSettings,
     pairs: &[EyePair],
     options: &BandwidthOptions,
     step: &mut dyn FnMut() -> anyhow::Result<()>,
 ) -> anyhow::Result<Vec<(&'static str, Values)>> {
-    let sequence = Sequence::render(gl, prepared, settings, pairs, step)?;
+    let sequence = Sequence::render(gl, prepared, pairs, step)?;
     let mut receiver = Offline::new(gl, &StereoOptions::default().synthesis, Edges::Hard)?;
     let mut streams: Vec<(&'static str, Values)> =
         [STEREO_RGB, RGB_DEPTH, RGB_DEPTH_PACKED, MONO_RGB].map(|name| (name, Values::new())).to_vec();
@@ -151,7 +150,6 @@ impl Sequence {
     fn render(
         gl: &Rc<Context>,
         prepared: &mut PreparedScene,
-        settings: &RenderSettings,
         pairs: &[EyePair],
         step: &mut dyn FnMut() -> anyhow::Result<()>,
     ) -> anyhow::Result<Sequence> {
@@ -161,7 +159,7 @@ impl Sequence {
             guard_band: defaults.guard_band,
             anti_aliasing: true,
         };
-        let mut renderer = GroupRenderer::new(gl, settings, &options)?;
+        let mut renderer = GroupRenderer::new(gl, &options)?;
         let mut rendered = Vec::new();
         for pair in pairs {
             let group = renderer.render(&mut prepared.renderer, &prepared.scene, pair)?;

@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::{DepthConvention, EyePair};
+use yoro::eyes::EyePair;
 use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
-use yoro_render::{PreparedScene, RenderSettings, Selection, ViewTargets};
+use yoro_render::{PreparedScene, Selection, ViewTargets};
 
 /// Longest edge in pixels of the image that is looked at: what is smaller on the screen is as good as not there.
 const EDGE: u32 = 256;
@@ -18,14 +18,14 @@ pub struct BlankFinder {
 }
 
 impl BlankFinder {
-    /// Makes the targets. `settings` are the renderer's.
+    /// Makes the targets.
     ///
     /// # Errors
     /// [`GlError`] when the driver refuses a program or a target.
-    pub fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<BlankFinder, GlError> {
+    pub fn new(gl: &Rc<Context>) -> Result<BlankFinder, GlError> {
         Ok(BlankFinder {
             gl: gl.clone(),
-            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
+            targets: ViewTargets::default(),
             copy: Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?,
             depth: RenderTarget::new(gl, [1, 1], &[(Format::R32F, Filter::Nearest)], None)?,
         })
@@ -42,11 +42,12 @@ impl BlankFinder {
         if longest > EDGE {
             view.size = view.size.map(|n| (n * EDGE / longest).max(1));
         }
-        prepared.renderer.render(&mut self.targets, &prepared.scene, &view, Selection::All)?;
+        let PreparedScene { renderer, scene } = prepared;
+        let rendered = renderer.render(&mut self.targets, scene, &view, Selection::All)?;
         self.depth.resize(view.size)?;
         self.depth.bind();
         self.gl.set_raster_state(&RasterState::SCREEN);
-        self.copy.bind().texture("source", 0, self.targets.depth().raw());
+        self.copy.bind().texture("source", 0, rendered.depth.raw());
         self.gl.draw_screen();
         let far = view.depth.clear_value();
         Ok(self.depth.read_rgba32f(0, [0, 0], view.size).iter().all(|texel| texel[0] == far))

@@ -9,10 +9,10 @@ use std::rc::Rc;
 use anyhow::Context as _;
 
 use super::record::metric;
-use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
+use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
 use yoro::synthesis::{Gather, Source, Synthesis, Uniforms};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
-use yoro_render::{PreparedScene, RenderSettings, Selection, ViewTargets};
+use yoro_render::{PreparedScene, Selection, ViewTargets};
 
 /// The committed table of `cargo tools shader-cost`.
 const TABLE: &str = include_str!("../../../../docs/shader-cost.csv");
@@ -241,12 +241,12 @@ impl Meter {
     ///
     /// # Errors
     /// When the driver refuses it, or has no OpenGL ES 3.1; when the table lacks a program.
-    pub fn new(gl: &Rc<Context>, settings: &RenderSettings, device: Device) -> anyhow::Result<Meter> {
+    pub fn new(gl: &Rc<Context>, device: Device) -> anyhow::Result<Meter> {
         Ok(Meter {
             device,
             programs: Programs::of(device.gpu)?,
             gather: Gather::counting(gl)?,
-            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
+            targets: ViewTargets::default(),
             counts: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
         })
     }
@@ -261,9 +261,10 @@ impl Meter {
         pair: &EyePair,
     ) -> anyhow::Result<Vec<(&'static str, f64)>> {
         let views = pair.synthesis(GuardBand::Distance(1.0))?;
-        prepared.renderer.render(&mut self.targets, &prepared.scene, &views.source, Selection::All)?;
+        let PreparedScene { renderer, scene } = prepared;
+        let rendered = renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
         self.counts.resize(pair.size)?;
-        let source = Source::new(self.targets.color().raw(), self.targets.depth().raw());
+        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
         self.gather.synthesize(source, &views.warp, &Destination::whole(&self.counts))?;
         let pixels = self.counts.read_rgba8(0, [0, 0], pair.size);
         let counts = Counts { pixels: &pixels, size: pair.size };

@@ -2,12 +2,12 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::{DepthConvention, EyePair, GuardBand};
+use yoro::eyes::{EyePair, GuardBand};
 use yoro::synthesis::{self, Outputs, SOURCE_MAP_HOLE, Source, Synthesis, SynthesisOptions};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_render::PreparedScene;
 use yoro_render::stereo::StereoError;
-use yoro_render::{RenderSettings, Selection, ViewTargets};
+use yoro_render::{Selection, ViewTargets};
 
 /// Finds holes from the depth of the dominant eye's own image, without a guard band: one mask for all contenders,
 /// whatever they do about holes. The outer border is part of it.
@@ -22,11 +22,11 @@ impl HoleFinder {
     ///
     /// # Errors
     /// [`GlError`] when the driver refuses a program or a target.
-    pub fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<HoleFinder, GlError> {
+    pub fn new(gl: &Rc<Context>) -> Result<HoleFinder, GlError> {
         let outputs = Outputs { source_map: true, ..Outputs::default() };
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         Ok(HoleFinder {
-            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
+            targets: ViewTargets::default(),
             synthesis: synthesis::create(gl, &SynthesisOptions::default(), outputs)?,
             map: RenderTarget::new(gl, [1, 1], &formats, None)?,
         })
@@ -38,9 +38,10 @@ impl HoleFinder {
     /// [`StereoError`] for eyes that cannot be synthesized, or when GL refuses.
     pub fn find(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> Result<Vec<bool>, StereoError> {
         let views = pair.synthesis(GuardBand::None)?;
-        prepared.renderer.render(&mut self.targets, &prepared.scene, &views.source, Selection::All)?;
+        let PreparedScene { renderer, scene } = prepared;
+        let rendered = renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
         self.map.resize(pair.size)?;
-        let source = Source::new(self.targets.color().raw(), self.targets.depth().raw());
+        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
         self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.map))?;
         let entries = self.map.read_u32(1, [0, 0], pair.size);
         let rows = entries.chunks_exact(pair.size[0] as usize).rev();

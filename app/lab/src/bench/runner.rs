@@ -138,7 +138,7 @@ impl<'a> Runner<'a> {
         if !matches!(job.source, Source::Named(_)) {
             return Ok(());
         }
-        let mut finder = BlankFinder::new(self.gl, &job.render)?;
+        let mut finder = BlankFinder::new(self.gl)?;
         let views = match job.measure {
             Measure::Frames { .. } | Measure::Patchers | Measure::Executed(_) => {
                 Views::spread(job, prepared)?
@@ -216,7 +216,7 @@ impl<'a> Runner<'a> {
                 keep,
             )?;
             if keep {
-                self.compare(job, prepared, &views, &field, &images, &mut measurements)?;
+                self.compare(prepared, &views, &field, &images, &mut measurements)?;
                 for ((contender, _), images) in field.entrants.iter().zip(&images) {
                     self.save_picture(job, *contender, &images[0])?;
                 }
@@ -270,14 +270,13 @@ impl<'a> Runner<'a> {
     /// Holds the images against those of the conventional method, which comes first.
     fn compare(
         &self,
-        job: &Job,
         prepared: &mut PreparedScene,
         views: &Views,
         field: &Field,
         images: &[Vec<RgbImage>],
         measurements: &mut [Measurement],
     ) -> anyhow::Result<()> {
-        let mut finder = HoleFinder::new(self.gl, &job.render)?;
+        let mut finder = HoleFinder::new(self.gl)?;
         for (i, pair) in views.pairs.iter().enumerate() {
             let holes = finder.find(prepared, pair)?;
             for at in 1..field.entrants.len() {
@@ -330,7 +329,7 @@ impl<'a> Runner<'a> {
     fn flicker(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
         let views = Views::along_path(job, prepared, views::STEP)?;
         let mut field = self.field(job, prepared, &views, false)?;
-        let mut finder = HoleFinder::new(self.gl, &job.render)?;
+        let mut finder = HoleFinder::new(self.gl)?;
         let mut measurements = field.measurements(job, 0);
         let mut last: Option<(Vec<RgbImage>, Vec<bool>)> = None;
         self.bar.set_message(job.setting.to_string());
@@ -397,8 +396,7 @@ impl<'a> Runner<'a> {
             bar.inc(1);
             Ok(interrupt::check()?)
         };
-        let streams =
-            bandwidth::run(self.gl, prepared, &job.render, &views.pairs, &job.bandwidth, &mut step)?;
+        let streams = bandwidth::run(self.gl, prepared, &views.pairs, &job.bandwidth, &mut step)?;
         let mut facts = views.facts(job, prepared);
         // Each value is that of a whole sequence at one quantizer.
         facts.frames = job.bandwidth.quantizers.iter().map(|quantizer| format!("QP {quantizer}")).collect();
@@ -414,7 +412,7 @@ impl<'a> Runner<'a> {
 
     fn executed(&mut self, job: &Job, device: &Device, prepared: &mut PreparedScene) -> anyhow::Result<()> {
         let views = Views::spread(job, prepared)?;
-        let mut meter = Meter::new(self.gl, &job.render, *device)?;
+        let mut meter = Meter::new(self.gl, *device)?;
         let mut measurement = Measurement {
             setting: job.setting.clone(),
             contender: device.name.to_owned(),
@@ -443,7 +441,7 @@ impl<'a> Runner<'a> {
                 Err(error) => first.push(left_out(job, contender, &error)),
             }
         }
-        let mut renderer = GroupRenderer::new(self.gl, &job.render, &GroupOptions::default())?;
+        let mut renderer = GroupRenderer::new(self.gl, &GroupOptions::default())?;
         let mut groups: Vec<ImageGroup> = Vec::new();
         for pair in &views.pairs {
             interrupt::check()?;

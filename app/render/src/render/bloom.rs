@@ -23,13 +23,13 @@ fn level_size(size: [u32; 2], level: usize) -> [u32; 2] {
 }
 
 impl BloomTargets {
-    /// Targets for a view of `size` pixels.
+    /// Makes targets, which are fitted to a view before they are drawn.
     ///
     /// # Errors
     /// As [`RenderTarget::new`].
-    pub fn new(gl: &Rc<Context>, size: [u32; 2], format: Format) -> Result<BloomTargets, GlError> {
-        let level = |i| RenderTarget::new(gl, level_size(size, i), &[(format, Filter::Linear)], None);
-        Ok(BloomTargets { levels: [level(0)?, level(1)?, level(2)?, level(3)?, level(4)?] })
+    pub fn new(gl: &Rc<Context>, format: Format) -> Result<BloomTargets, GlError> {
+        let level = || RenderTarget::new(gl, [1, 1], &[(format, Filter::Linear)], None);
+        Ok(BloomTargets { levels: [level()?, level()?, level()?, level()?, level()?] })
     }
 
     /// Fits the targets to a view of `size` pixels.

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use glam::{Mat4, Vec3, Vec4};
 
+use super::uniforms::eye_to_clip;
+use yoro::eyes::View;
 use yoro_scene::{Bounds, Model, Vertex};
 
 /// A part with more triangles than this is split.
@@ -167,6 +169,16 @@ pub struct Culler {
 }
 
 impl Culler {
+    /// A culler for all that a view shows.
+    pub fn of_view(view: &View) -> Culler {
+        Culler::selecting(view, Selection::All)
+    }
+
+    /// A culler for what a view shows of a selection.
+    pub fn selecting(view: &View, selection: Selection) -> Culler {
+        Culler::new(view.pose.position, &eye_to_clip(view), selection)
+    }
+
     /// A culler for the clip volume of `eye_to_clip`, which takes positions relative to `eye`.
     pub fn new(eye: Vec3, eye_to_clip: &Mat4, selection: Selection) -> Culler {
         let m = eye_to_clip.transpose();
@@ -226,8 +238,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use super::*;
-    use crate::render::uniforms::eye_to_clip;
-    use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
+    use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose};
     use yoro_scene::{Material, Part};
 
     fn random_model(rng: &mut Pcg64) -> Model {
@@ -322,7 +333,7 @@ mod tests {
         let (mut hidden, mut culled) = (0, 0);
         for _ in 0..300 {
             let view = random_view(&mut rng);
-            let culler = Culler::new(view.pose.position, &eye_to_clip(&view), Selection::All);
+            let culler = Culler::of_view(&view);
             let matrix = view.view_projection();
             for _ in 0..20 {
                 let mut coordinate = |r: f32| rng.random_range(-r..r);

@@ -2,35 +2,36 @@
 
 use std::rc::Rc;
 
-use super::Columns;
 use super::bloom::{BloomPass, BloomTargets};
 use super::cluster::Culler;
+use super::common::Common;
 use super::g_buffer::{GBuffer, Layout};
 use super::geometry::GeometryPass;
 use super::lighting::LightingPass;
+use super::request::{Columns, ViewRequest};
 use super::role::{Role, RoleKind};
-use super::scene::GpuScene;
+use super::scene::{FREE_UNIT, GpuScene};
 use super::settings::RenderSettings;
-use super::shadow::ShadowMap;
 use super::ssao::{SsaoPass, SsaoTargets};
 use super::tonemap::TonemapPass;
-use super::uniforms::Lights;
-use yoro::eyes::{DepthConvention, View};
-use yoro_gl::{Context, Filter, Format, GlError, RenderTarget, Texture};
+use super::transparent::{DepthImage, Onto};
+use super::{Renderer, ViewImages, ViewRenderer, of_columns};
+use yoro::eyes::View;
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
 /// Scene-referred colour of one view, and what it is made with.
 pub struct LightTargets {
     ssao: Option<SsaoTargets>,
     hdr: RenderTarget,
-    /// Which columns are lit; all if none.
-    pub columns: Option<Columns>,
+    /// The columns that are lit; all if none.
+    columns: Option<Columns>,
 }
 
 impl LightTargets {
-    pub fn new(gl: &Rc<Context>, size: [u32; 2], settings: &RenderSettings) -> Result<LightTargets, GlError> {
+    pub fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<LightTargets, GlError> {
         Ok(LightTargets {
-            ssao: settings.ssao.then(|| SsaoTargets::new(gl, size, settings.ssao_scale())).transpose()?,
-            hdr: RenderTarget::new(gl, size, &[(hdr_format(gl), Filter::Linear)], None)?,
+            ssao: settings.ssao.then(|| SsaoTargets::new(gl, settings.ssao_scale())).transpose()?,
+            hdr: RenderTarget::new(gl, [1, 1], &[(hdr_format(gl), Filter::Linear)], None)?,
             columns: None,
         })
     }
@@ -40,7 +41,7 @@ impl LightTargets {
         self.hdr.resize(size)
     }
 
-    /// Which columns are lit.
+    /// The columns that are lit.
     fn lit_columns(&self) -> Columns {
         let all = [0, self.hdr.size()[0]];
         self.columns.unwrap_or(Columns { drawn: all, always: all })
@@ -49,12 +50,6 @@ impl LightTargets {
     /// Scene-referred colour, filtered linearly.
     pub fn hdr(&self) -> &Texture {
         self.hdr.color(0)
-    }
-
-    /// The framebuffer of [`LightTargets::hdr`].
-    #[cfg(test)]
-    pub fn target(&self) -> &RenderTarget {
-        &self.hdr
     }
 }
 
@@ -65,14 +60,10 @@ pub struct FinishTargets {
 }
 
 impl FinishTargets {
-    pub fn new(
-        gl: &Rc<Context>,
-        size: [u32; 2],
-        settings: &RenderSettings,
-    ) -> Result<FinishTargets, GlError> {
+    pub fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<FinishTargets, GlError> {
         Ok(FinishTargets {
-            bloom: settings.bloom.then(|| BloomTargets::new(gl, size, hdr_format(gl))).transpose()?,
-            color: RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Linear)], None)?,
+            bloom: settings.bloom.then(|| BloomTargets::new(gl, hdr_format(gl))).transpose()?,
+            color: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None)?,
         })
     }
 
@@ -94,24 +85,14 @@ pub struct DeferredTargets {
     pub finish: FinishTargets,
 }
 
-impl DeferredTargets {
-    pub fn new(
-        gl: &Rc<Context>,
-        size: [u32; 2],
-        convention: DepthConvention,
-        settings: &RenderSettings,
-    ) -> Result<DeferredTargets, GlError> {
-        Ok(DeferredTargets {
-            g_buffer: GBuffer::new(gl, Layout::Single, size, convention)?,
-            light: LightTargets::new(gl, size, settings)?,
-            finish: FinishTargets::new(gl, size, settings)?,
-        })
+impl ViewImages for DeferredTargets {
+    fn color(&self) -> &RenderTarget {
+        self.finish.color()
     }
 
-    pub fn fit(&mut self, view: &View) -> Result<(), GlError> {
-        self.g_buffer.fit(view.size, view.depth.convention)?;
-        self.light.resize(view.size)?;
-        self.finish.resize(view.size)
+    /// 24 bits for standard depth, float for reversed depth.
+    fn depth(&self) -> &Texture {
+        self.g_buffer.target().depth()
     }
 }
 
@@ -135,10 +116,9 @@ struct LightPasses {
     lighting: LightingPass,
 }
 
-/// The passes, made for a scene's style and materials.
-pub struct Deferred {
-    gl: Rc<Context>,
-    settings: RenderSettings,
+/// Renders views of one scene the deferred way: passes made for the scene's style and materials.
+pub struct DeferredRenderer {
+    common: Common,
     ssao_radius: f32,
     /// By [`Layout::index`].
     geometry: [Option<GeometryPass>; Layout::COUNT],
@@ -148,12 +128,16 @@ pub struct Deferred {
     tonemap: TonemapPass,
 }
 
-impl Deferred {
-    /// Compiles what all views need; [`Deferred::prepare`] does the rest.
+impl DeferredRenderer {
+    /// Compiles what single views need; [`DeferredRenderer::prepare`] does the rest.
     ///
     /// # Errors
-    /// As [`yoro_gl::Program::new`].
-    pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Deferred, GlError> {
+    /// [`GlError`] when the driver refuses a program or a target.
+    pub(crate) fn new(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        scene: &GpuScene,
+    ) -> Result<DeferredRenderer, GlError> {
         let mut hdr = Vec::new();
         if !gl.capabilities().float_render_targets {
             hdr.push(("NO_FLOAT_TARGETS", String::new()));
@@ -165,32 +149,42 @@ impl Deferred {
         if settings.bloom {
             hdr.push(("BLOOM", String::new()));
         }
-        Ok(Deferred {
-            gl: gl.clone(),
-            settings: settings.clone(),
+        let mut renderer = DeferredRenderer {
+            common: Common::new(gl, settings, scene)?,
             ssao_radius,
             geometry: [const { None }; Layout::COUNT],
             light: [const { None }; RoleKind::COUNT],
             bloom,
             tonemap: TonemapPass::new(gl, &hdr)?,
-        })
+        };
+        renderer.prepare(scene, Layout::Single, &[RoleKind::Whole])?;
+        Ok(renderer)
     }
 
     /// Compiles what views of these kinds need; nothing is done for what is there already.
     ///
     /// # Errors
     /// As [`yoro_gl::Program::new`].
-    pub fn prepare(&mut self, scene: &GpuScene, layout: Layout, roles: &[RoleKind]) -> Result<(), GlError> {
+    pub(crate) fn prepare(
+        &mut self,
+        scene: &GpuScene,
+        layout: Layout,
+        roles: &[RoleKind],
+    ) -> Result<(), GlError> {
+        let Common { gl, settings, transparent, .. } = &mut self.common;
+        if layout == Layout::Layered {
+            transparent.prepare_layered(scene, settings)?;
+        }
         let geometry = &mut self.geometry[layout.index()];
         if geometry.is_none() {
-            *geometry = Some(GeometryPass::deferred(&self.gl, scene, layout)?);
+            *geometry = Some(GeometryPass::deferred(gl, scene, layout)?);
         }
         for &role in roles {
             let light = &mut self.light[role.index()];
             if light.is_none() {
-                let (radius, scale) = (self.ssao_radius, self.settings.ssao_scale());
-                let ssao = self.settings.ssao.then(|| SsaoPass::new(&self.gl, radius, scale, role));
-                let lighting = LightingPass::new(&self.gl, scene, &self.settings, role)?;
+                let scale = settings.ssao_scale();
+                let ssao = settings.ssao.then(|| SsaoPass::new(gl, self.ssao_radius, scale, role));
+                let lighting = LightingPass::new(gl, scene, settings, role)?;
                 *light = Some(LightPasses { ssao: ssao.transpose()?, lighting });
             }
         }
@@ -198,17 +192,19 @@ impl Deferred {
     }
 
     /// Fills a g-buffer with what the culler of its one view lets through.
-    pub fn draw_selected(&self, g_buffer: &GBuffer, scene: &GpuScene, view: &View, culler: &Culler) {
+    fn draw_selected(&self, g_buffer: &GBuffer, scene: &GpuScene, view: &View, culler: &Culler) {
         let Some(pass) = &self.geometry[Layout::Single.index()] else { return };
-        self.gl.pass("g-buffer", || {
+        let gl = &self.common.gl;
+        gl.pass("g-buffer", || {
             g_buffer.target().bind();
-            self.gl.clear(Some(view.depth.clear_value()));
+            gl.clear(Some(view.depth.clear_value()));
             pass.draw_selected(scene, view, culler);
         });
     }
 
-    /// As [`super::Renderer::draw`].
-    pub fn draw(
+    /// Clears a g-buffer and draws one view, or both eyes, into it. Only what lies in `slice` (metres) is drawn;
+    /// `mark` may mark pixels before that. The g-buffer fits the views, and its layout is prepared.
+    pub(crate) fn draw(
         &self,
         g_buffer: &GBuffer,
         scene: &GpuScene,
@@ -219,10 +215,10 @@ impl Deferred {
         let (Some(pass), Some(view)) = (&self.geometry[g_buffer.layout().index()], views.first()) else {
             return;
         };
-        let target = g_buffer.target();
-        self.gl.pass("g-buffer", || {
+        let (gl, target) = (&self.common.gl, g_buffer.target());
+        gl.pass("g-buffer", || {
             target.bind();
-            self.gl.clear(Some(view.depth.clear_value()));
+            gl.clear(Some(view.depth.clear_value()));
             mark(target);
             if let Some(slice) = slice {
                 target.bind();
@@ -231,16 +227,14 @@ impl Deferred {
         });
     }
 
-    /// As [`super::Renderer::light`], by these lights.
-    #[allow(clippy::too_many_arguments, reason = "a pass names what it reads")]
-    pub fn light(
+    /// Lights a view of a g-buffer: ambient occlusion and scene-referred colour. The targets fit the view, and its
+    /// role is prepared.
+    pub(crate) fn light(
         &self,
         targets: &LightTargets,
         g_buffer: &GBuffer,
-        shadow: Option<&ShadowMap>,
         scene: &GpuScene,
         view: &View,
-        lights: &Lights,
         role: Role,
     ) {
         let Some(passes) = &self.light[role.kind().index()] else { return };
@@ -250,18 +244,98 @@ impl Deferred {
             pass.run(ssao, g_buffer, view, targets.lit_columns().always, role);
             occlusion = Some(ssao.result().color(0));
         }
-        passes.lighting.run(&targets.hdr, g_buffer, occlusion, shadow, scene, view, lights, role);
+        let (lights, shadow) = (self.common.lights(scene, &[*view]), self.common.shadow.as_ref());
+        passes.lighting.run(&targets.hdr, g_buffer, occlusion, shadow, scene, view, &lights, role);
     }
 
-    /// As [`super::Renderer::finish`].
-    pub fn finish(&self, targets: &FinishTargets, light: &LightTargets) {
-        let exposure = self.settings.exposure;
+    /// Bloom and tone mapping: scene-referred to display-referred colour.
+    pub(crate) fn finish(&self, targets: &FinishTargets, light: &LightTargets) {
         let Columns { drawn, always } = light.lit_columns();
         let mut glow = None;
         if let (Some(pass), Some(bloom)) = (&self.bloom, &targets.bloom) {
             pass.run(bloom, light.hdr(), always);
             glow = Some(bloom.result());
         }
-        self.tonemap.run(&targets.color, (light.hdr(), drawn), glow, exposure);
+        self.tonemap.run(&targets.color, (light.hdr(), drawn), glow, self.common.settings.exposure);
+    }
+
+    /// Draws the transparent part of a scene, if there is any, over a finished image of `view`, whose window depth is
+    /// `depth`: a rendered image, or one that is synthesized from such.
+    pub(crate) fn draw_transparent(
+        &self,
+        to: &Destination,
+        depth: DepthImage,
+        scene: &GpuScene,
+        view: &View,
+    ) {
+        if !scene.has_transparent() {
+            return;
+        }
+        let lights = self.common.lights(scene, &[*view]);
+        self.common.transparent.run(Onto::Image(to, depth), scene, view, &Culler::of_view(view), |program| {
+            program.set("exposure", self.common.settings.exposure);
+            if let Some(shadow) = &self.common.shadow {
+                shadow.set(program, FREE_UNIT + 1, view.pose.position);
+            }
+            lights.set(program, &scene.sky);
+        });
+    }
+}
+
+impl ViewRenderer for DeferredRenderer {
+    type Targets = DeferredTargets;
+
+    fn of(renderer: &mut Renderer) -> Option<&mut DeferredRenderer> {
+        match renderer {
+            Renderer::Deferred(renderer) => Some(renderer),
+            Renderer::Forward(_) => None,
+        }
+    }
+
+    fn common(&self) -> &Common {
+        &self.common
+    }
+
+    fn targets(gl: &Rc<Context>, settings: &RenderSettings) -> Result<DeferredTargets, GlError> {
+        Ok(DeferredTargets {
+            g_buffer: GBuffer::new(gl, Layout::Single)?,
+            light: LightTargets::new(gl, settings)?,
+            finish: FinishTargets::new(gl, settings)?,
+        })
+    }
+
+    fn render(
+        &self,
+        targets: &mut DeferredTargets,
+        scene: &GpuScene,
+        view: &View,
+        request: &ViewRequest,
+    ) -> Result<(), GlError> {
+        targets.g_buffer.fit(view.size, view.depth.convention)?;
+        targets.light.resize(view.size)?;
+        targets.finish.resize(view.size)?;
+        targets.light.columns = request.columns;
+        let drawn = request.bounds(view);
+        let seen = drawn.map_or(*view, |drawn| of_columns(view, drawn));
+        let culler = Culler::selecting(&seen, request.selection);
+        self.common.gl.within_columns(drawn, || {
+            self.draw_selected(&targets.g_buffer, scene, view, &culler);
+            self.light(&targets.light, &targets.g_buffer, scene, view, Role::Whole);
+        });
+        self.finish(&targets.finish, &targets.light);
+        Ok(())
+    }
+
+    fn render_all(
+        &self,
+        targets: &mut DeferredTargets,
+        scene: &GpuScene,
+        view: &View,
+        _depth: bool,
+    ) -> Result<(), GlError> {
+        self.render(targets, scene, view, &ViewRequest::default())?;
+        let (to, depth) = (Destination::whole(targets.color()), DepthImage::whole(targets.depth()));
+        self.draw_transparent(&to, depth, scene, view);
+        Ok(())
     }
 }

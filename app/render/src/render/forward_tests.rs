@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::tests::{Rig, STYLES, depths, open, picture, scene, settings, view};
 use super::*;
 use crate::fixture::quad;
-use yoro::eyes::{Frustum, Pose};
+use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose};
 use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 
 const SIZE: [u32; 2] = [96, 64];
@@ -13,6 +13,25 @@ const SIZE: [u32; 2] = [96, 64];
 /// Without what only the deferred renderer has.
 fn with_samples(msaa: u32) -> RenderSettings {
     RenderSettings { renderer: RendererKind::Forward, msaa, bloom: false, ssao: false, ..settings() }
+}
+
+/// A view in whose samples drawing resumes.
+const RESUMED: ViewRequest = ViewRequest {
+    selection: Selection::All,
+    columns: None,
+    depth: PixelDepth::Nearest,
+    samples: KeptSamples { color: true, depth: true },
+};
+
+/// A scene with its forward renderer and targets.
+fn forward(
+    gl: &Rc<Context>,
+    scene: Scene,
+    settings: &RenderSettings,
+) -> (GpuScene, ForwardRenderer, ForwardTargets) {
+    let scene = GpuScene::upload(gl, scene).unwrap();
+    let renderer = ForwardRenderer::new(gl, settings, &scene).unwrap();
+    (scene, renderer, ForwardRenderer::targets(gl, settings).unwrap())
 }
 
 /// Surfaces of one colour each, whatever lights them, at rising distances: a wall that fills the view last.
@@ -94,9 +113,10 @@ fn an_edge_is_the_mean_of_its_samples() {
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
         let mut rig = Rig::new(head.gl(), scene.clone(), &with_samples(4));
         let view = straight_on(convention);
-        let picture = rig.render(&view, Selection::All);
+        let drawn = rig.draw(&view, Selection::All);
+        let picture = drawn.color.read_rgba8(0, [0, 0], SIZE);
         let (bright, dark) = (pixel(&picture, 2, 32).to_vec(), pixel(&picture, 93, 32).to_vec());
-        let depths = depths(head.gl(), &rig.targets, &view);
+        let depths = depths(head.gl(), drawn.depth, &view);
         let mut seen = [0; 5];
         let mut sum = 0.0;
         for (p, depth) in picture.chunks(4).zip(&depths) {
@@ -128,15 +148,12 @@ fn without_multisample_textures_only_depth_at_edges_differs() {
         let scene = GpuScene::upload(gl, scene(style)).unwrap();
         let view = view(DepthConvention::Reversed);
         let [(color, depth), (expected_color, expected_depth)] = [false, true].map(|readable| {
-            let passes = Forward::build(gl, &settings, &scene, readable).unwrap();
-            let renderer = Renderer::with(gl, &settings, &scene, Passes::Forward(Box::new(passes))).unwrap();
-            let images = ForwardTargets::build(gl, Layout::Single, [1, 1], &settings, readable).unwrap();
-            let mut targets = ViewTargets { images: Images::Forward(Box::new(images)) };
-            targets.keep_samples(true, true);
-            renderer.render(&mut targets, &scene, &view, Selection::All).unwrap();
+            let renderer = ForwardRenderer::build(gl, &settings, &scene, readable).unwrap();
+            let mut targets = ForwardTargets::build(gl, Layout::Single, &settings, readable).unwrap();
+            renderer.render(&mut targets, &scene, &view, &RESUMED).unwrap();
             assert_eq!(targets.depth_samples().is_some(), readable);
-            let color = targets.color_target().read_rgba8(0, [0, 0], view.size);
-            (color, depths(gl, &targets, &view))
+            let color = targets.color().read_rgba8(0, [0, 0], view.size);
+            (color, depths(gl, targets.depth(), &view))
         });
         if style == ShadingStyle::Realistic {
             assert!(color == expected_color);
@@ -160,15 +177,13 @@ fn transparent_surfaces_meet_each_sample_by_itself() {
         (DARK, Alpha::Opaque, WALL),
         (glass, Alpha::Blend(0.5), pane),
     ]);
-    let mut rig = Rig::new(gl, scene, &with_samples(4));
+    let (scene, renderer, mut targets) = forward(gl, scene, &with_samples(4));
     let view = straight_on(DepthConvention::Standard);
-    rig.targets.keep_samples(true, true);
-    rig.render(&view, Selection::All);
-    rig.renderer.go_on(&rig.targets, &rig.scene, &view, None, false).unwrap();
-    let later = rig.targets.color_target().read_rgba8(0, [0, 0], SIZE);
-    rig.targets.keep_samples(false, false);
-    rig.renderer.render_all(&mut rig.targets, &rig.scene, &view, false).unwrap();
-    let picture = rig.targets.color_target().read_rgba8(0, [0, 0], SIZE);
+    renderer.render(&mut targets, &scene, &view, &RESUMED).unwrap();
+    renderer.resume_samples(&targets, &scene, &view, None, false);
+    let later = targets.color().read_rgba8(0, [0, 0], SIZE);
+    renderer.render_all(&mut targets, &scene, &view, false).unwrap();
+    let picture = targets.color().read_rgba8(0, [0, 0], SIZE);
     assert!(picture == later, "after the opaque surfaces were averaged, as before");
     let (bright, dark) = (pixel(&picture, 2, 32).to_vec(), pixel(&picture, 93, 32).to_vec());
     let seen_through = pixel(&picture, 65, 32).to_vec();
@@ -186,14 +201,13 @@ fn transparent_surfaces_meet_each_sample_by_itself() {
 }
 
 #[test]
-fn a_synthesized_eye_goes_on_as_an_image() {
+fn drawing_resumes_over_a_synthesized_eye() {
     let head = open();
     let gl = head.gl();
     for msaa in [1, 4] {
-        let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &with_samples(msaa));
+        let (scene, renderer, mut targets) = forward(gl, scene(ShadingStyle::Realistic), &with_samples(msaa));
         let mut small = view(DepthConvention::Standard);
-        rig.targets.keep_samples(true, true);
-        rig.render(&view(DepthConvention::Standard), Selection::All);
+        renderer.render(&mut targets, &scene, &small, &RESUMED).unwrap();
         small.size = [100, 90];
         let formats = [(yoro_gl::Format::Rgba8, yoro_gl::Filter::Linear)];
         let image = RenderTarget::new(gl, small.size, &formats, Some(yoro_gl::Format::Depth32F)).unwrap();
@@ -202,12 +216,10 @@ fn a_synthesized_eye_goes_on_as_an_image() {
         gl.fill([0, 0], small.size, [0.2, 0.4, 0.6, 1.0]);
         // Nothing to draw: the image stays as it is.
         let nothing = Some(Selection::Nearer { from: EYE_FAR, distance: 0.01 });
-        rig.renderer.go_on_with(&rig.targets, &image, &rig.scene, &small, nothing, true).unwrap();
+        renderer.resume_samples_with(&targets, &image, &scene, &small, nothing, true);
         assert!(image.read_rgba8(0, [0, 0], small.size).chunks(4).all(|p| p[..3] == [51, 102, 153]));
         // All of it: opaque surfaces over the image.
-        rig.renderer
-            .go_on_with(&rig.targets, &image, &rig.scene, &small, Some(Selection::All), true)
-            .unwrap();
+        renderer.resume_samples_with(&targets, &image, &scene, &small, Some(Selection::All), true);
         let drawn = image.read_rgba8(0, [0, 0], small.size);
         let kept = drawn.chunks(4).filter(|p| p[..3] == [51, 102, 153]).count();
         assert!(kept > 500 && kept < 7000, "{kept} pixels of the image are left");
@@ -228,15 +240,14 @@ fn what_is_drawn_over_an_image_meets_soft_edges() {
         let view = straight_on(convention);
         let [(_, image), (renderer, targets)] = [1, 4].map(|samples| {
             let settings = with_samples(samples);
-            let renderer = Renderer::new(gl, &settings, &scene).unwrap();
-            let mut targets = ViewTargets::new(gl, SIZE, convention, &settings).unwrap();
-            renderer.render(&mut targets, &scene, &view, Selection::All).unwrap();
+            let renderer = ForwardRenderer::new(gl, &settings, &scene).unwrap();
+            let mut targets = ForwardRenderer::targets(gl, &settings).unwrap();
+            renderer.render(&mut targets, &scene, &view, &ViewRequest::default()).unwrap();
             (renderer, targets)
         });
-        let Images::Forward(image) = &image.images else { unreachable!() };
-        let before = image.resolved().read_rgba8(0, [0, 0], SIZE);
-        renderer.go_on_with(&targets, image.resolved(), &scene, &view, None, false).unwrap();
-        let after = image.resolved().read_rgba8(0, [0, 0], SIZE);
+        let before = image.resolved.read_rgba8(0, [0, 0], SIZE);
+        renderer.resume_samples_with(&targets, &image.resolved, &scene, &view, None, false);
+        let after = image.resolved.read_rgba8(0, [0, 0], SIZE);
         let (bright, dark) = (pixel(&before, 2, 32).to_vec(), pixel(&before, 93, 32).to_vec());
         let through = pixel(&after, 93, 32);
         // Half of what the pane, of display colour 2 through - dark, does to the bright surface.
@@ -318,7 +329,7 @@ fn every_variant_compiles_and_draws_forward() {
             let settings = RenderSettings { bloom, ..with_samples(msaa) };
             let mut rig = Rig::new(gl, scene, &settings);
             let view = view(DepthConvention::Standard);
-            rig.renderer.render_all(&mut rig.targets, &rig.scene, &view, true).unwrap();
+            rig.renderer.render_all(&mut rig.targets, &rig.scene, &view).unwrap();
             assert_eq!(gl.take_errors(), None, "{style:?}, {msaa} samples");
         }
     }
@@ -328,19 +339,32 @@ fn every_variant_compiles_and_draws_forward() {
 fn what_it_cannot_do_is_refused() {
     let head = open();
     let gl = head.gl();
-    let refusal = |settings: &RenderSettings| {
-        ViewTargets::new(gl, [8, 8], DepthConvention::Standard, settings).err().unwrap().to_string()
-    };
+    let refusal =
+        |settings: &RenderSettings| ForwardRenderer::targets(gl, settings).err().unwrap().to_string();
     assert!(refusal(&with_samples(3)).contains("choose 1, 2 or 4"));
     for samples in [2, 4].into_iter().filter(|n| !gl.capabilities().samples.contains(n)) {
         assert!(refusal(&with_samples(samples)).contains("choose one of 1"));
     }
-    let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
-    let mut targets = ViewTargets::new(gl, [8, 8], DepthConvention::Standard, &with_samples(4)).unwrap();
+}
+
+/// One object holds the targets of whichever renderer draws into it.
+#[test]
+fn targets_follow_the_renderers_kind_and_settings() {
+    let head = open();
+    let gl = head.gl();
+    let all = [settings(), with_samples(1), with_samples(4)];
+    let scene = GpuScene::upload(gl, scene(ShadingStyle::Realistic)).unwrap();
     let view = view(DepthConvention::Standard);
-    let error = rig.renderer.render(&mut targets, &rig.scene, &view, Selection::All).unwrap_err();
-    assert!(error.to_string().contains("same settings"), "{error}");
-    rig.render(&view, Selection::All);
+    let mut shared = ViewTargets::default();
+    for settings in all.iter().chain(&all) {
+        let renderer = Renderer::new(gl, settings, &scene).unwrap();
+        let mut own = ViewTargets::default();
+        let [expected, drawn] = [&mut own, &mut shared].map(|targets| {
+            let drawn = renderer.render(targets, &scene, &view, Selection::All).unwrap();
+            drawn.color.read_rgba8(0, [0, 0], view.size)
+        });
+        assert!(expected == drawn, "{}", settings.summary());
+    }
 }
 
 /// OpenGL ES 3.0 again: they read the resolved depth, which nobody else may want.
@@ -352,12 +376,10 @@ fn outlines_have_a_depth_where_samples_cannot_be_read() {
     let scene = GpuScene::upload(gl, scene(ShadingStyle::Anime)).unwrap();
     let view = view(DepthConvention::Standard);
     let [unwanted, wanted] = [false, true].map(|depth| {
-        let passes = Forward::build(gl, &settings, &scene, false).unwrap();
-        let renderer = Renderer::with(gl, &settings, &scene, Passes::Forward(Box::new(passes))).unwrap();
-        let images = ForwardTargets::build(gl, Layout::Single, [1, 1], &settings, false).unwrap();
-        let mut targets = ViewTargets { images: Images::Forward(Box::new(images)) };
+        let renderer = ForwardRenderer::build(gl, &settings, &scene, false).unwrap();
+        let mut targets = ForwardTargets::build(gl, Layout::Single, &settings, false).unwrap();
         renderer.render_all(&mut targets, &scene, &view, depth).unwrap();
-        targets.color_target().read_rgba8(0, [0, 0], view.size)
+        targets.color().read_rgba8(0, [0, 0], view.size)
     });
     assert!(unwanted == wanted);
     assert_eq!(gl.take_errors(), None);
@@ -367,10 +389,10 @@ fn outlines_have_a_depth_where_samples_cannot_be_read() {
 #[should_panic(expected = "rendered without its depth")]
 fn a_depth_that_was_not_asked_for_is_not_to_be_had() {
     let head = open();
-    let mut rig = Rig::new(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
-    rig.render(&view(DepthConvention::Standard), Selection::All);
-    rig.targets.depth();
-    rig.targets.keep_depth(false);
-    rig.render(&view(DepthConvention::Standard), Selection::All);
-    rig.targets.depth();
+    let (scene, renderer, mut targets) = forward(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
+    for depth in [PixelDepth::Nearest, PixelDepth::Unread] {
+        let request = ViewRequest { depth, ..ViewRequest::default() };
+        renderer.render(&mut targets, &scene, &view(DepthConvention::Standard), &request).unwrap();
+        targets.depth();
+    }
 }

@@ -114,17 +114,13 @@ pub struct GBuffer {
 }
 
 impl GBuffer {
-    /// A g-buffer for views of `size` pixels.
+    /// Makes a g-buffer, which is fitted to its views before they are drawn.
     ///
     /// # Errors
     /// As [`RenderTarget::new`]; [`GlError::Unsupported`] when the driver cannot do the layout.
-    pub fn new(
-        gl: &Rc<Context>,
-        layout: Layout,
-        size: [u32; 2],
-        convention: DepthConvention,
-    ) -> Result<GBuffer, GlError> {
-        let target = target(gl, layout, size, convention)?;
+    pub fn new(gl: &Rc<Context>, layout: Layout) -> Result<GBuffer, GlError> {
+        let convention = DepthConvention::Standard;
+        let target = target(gl, layout, [1, 1], convention)?;
         Ok(GBuffer { gl: gl.clone(), layout, convention, target })
     }
 

@@ -3,7 +3,7 @@
 use glam::{IVec4, Vec2, Vec3};
 
 use super::g_buffer::Layout;
-use super::uniforms::Lights;
+use super::lights::Lights;
 use yoro::eyes::{Eye, Frustum, View};
 use yoro_gl::Program;
 
@@ -88,8 +88,7 @@ impl Reach {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::cluster::{Culler, Selection};
-    use crate::render::uniforms::eye_to_clip;
+    use crate::render::cluster::Culler;
     use glam::Quat;
     use yoro::eyes::{DepthRange, Pose};
     use yoro_scene::PointLight;
@@ -113,7 +112,7 @@ mod tests {
                 range: 1.1,
             })
             .collect();
-        let culler = Culler::new(pose.position, &eye_to_clip(&view), Selection::All);
+        let culler = Culler::of_view(&view);
         let lights = Lights::choose(&scene, pose.position, &[culler], 24);
         let tiles = LightTiles::new(&lights, Layout::Single, &[view]);
         let mask = |x: f32, y: f32| {

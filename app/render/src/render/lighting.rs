@@ -2,11 +2,12 @@
 
 use std::rc::Rc;
 
+use super::lights::Lights;
 use super::role::{Role, RoleKind};
 use super::scene::GpuScene;
 use super::settings::{MAX_POINT_LIGHTS, RenderSettings};
 use super::shadow::ShadowMap;
-use super::uniforms::{Lights, set_view};
+use super::uniforms::set_view;
 use yoro::eyes::View;
 use yoro_gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 

@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{Vec3, Vec4};
 
-use super::cluster::{self, Batch, Cluster};
+use super::cluster::{self, Batch, Cluster, Culler};
+use yoro::eyes::{DepthRange, View};
 use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
 use yoro_scene::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
@@ -205,6 +206,12 @@ impl GpuScene {
     /// Whether anything is blended.
     pub fn has_transparent(&self) -> bool {
         self.batches.iter().any(|batch| self.materials[batch.material].blended)
+    }
+
+    /// True if anything opaque may be seen in a slice of a view (near and far plane in metres).
+    pub(crate) fn is_seen(&self, view: &View, [near, far]: [f32; 2]) -> bool {
+        let culler = Culler::of_view(&View { depth: DepthRange { near, far, ..view.depth }, ..*view });
+        self.opaque().any(|(_, clusters)| clusters.iter().any(|c| culler.sees(&c.bounds)))
     }
 
     /// The defines of the scene's shading style.

@@ -25,18 +25,13 @@ pub struct SsaoTargets {
 }
 
 impl SsaoTargets {
-    /// Targets for a view of `size` pixels, smaller by `scale`.
+    /// Makes targets that are smaller by `scale` than the views they are fitted to.
     ///
     /// # Errors
     /// As [`RenderTarget::new`].
-    pub fn new(gl: &Rc<Context>, size: [u32; 2], scale: u32) -> Result<SsaoTargets, GlError> {
-        let formats = [(Format::Rgba8, Filter::Nearest)];
-        let size = size.map(|n| n.div_ceil(scale));
-        Ok(SsaoTargets {
-            raw: RenderTarget::new(gl, size, &formats, None)?,
-            blurred: RenderTarget::new(gl, size, &formats, None)?,
-            scale,
-        })
+    pub fn new(gl: &Rc<Context>, scale: u32) -> Result<SsaoTargets, GlError> {
+        let target = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None);
+        Ok(SsaoTargets { raw: target()?, blurred: target()?, scale })
     }
 
     /// Fits the targets to a view of `size` pixels.

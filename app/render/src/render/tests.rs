@@ -9,9 +9,9 @@ use crate::fixture::quad;
 use bloom::BloomPass;
 use deferred::{first_renderable, hdr_format};
 use tonemap::TonemapPass;
-use yoro::eyes::{DepthRange, Frustum, Pose};
+use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Filter, Format, Program, ShaderSource};
+use yoro_gl::{Destination, Filter, Format, Program, ShaderSource};
 use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
 const SIZE: [u32; 2] = [144, 112];
@@ -103,24 +103,35 @@ impl Rig {
     pub fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Rig {
         let scene = GpuScene::upload(gl, scene).unwrap();
         let renderer = Renderer::new(gl, settings, &scene).unwrap();
-        let targets = ViewTargets::new(gl, SIZE, DepthConvention::Standard, settings).unwrap();
-        Rig { scene, renderer, targets }
+        Rig { scene, renderer, targets: ViewTargets::default() }
+    }
+
+    pub fn draw(&mut self, view: &View, selection: Selection) -> RenderedView<'_> {
+        self.renderer.render(&mut self.targets, &self.scene, view, selection).unwrap()
     }
 
     pub fn render(&mut self, view: &View, selection: Selection) -> Vec<u8> {
-        self.renderer.render(&mut self.targets, &self.scene, view, selection).unwrap();
-        self.targets.color_target().read_rgba8(0, [0, 0], view.size)
+        self.draw(view, selection).color.read_rgba8(0, [0, 0], view.size)
     }
 }
 
-/// Window depth of each pixel, as rendered last.
-pub fn depths(gl: &Rc<Context>, targets: &ViewTargets, view: &View) -> Vec<f32> {
+/// Draws transparent surfaces over a view that the deferred renderer rendered, and reads it.
+fn draw_transparent(rig: &mut Rig, view: &View) -> Vec<u8> {
+    let rendered = rig.renderer.render(&mut rig.targets, &rig.scene, view, Selection::All).unwrap();
+    let Renderer::Deferred(renderer) = &rig.renderer else { unreachable!() };
+    let (to, depth) = (Destination::whole(rendered.color), DepthImage::whole(rendered.depth));
+    renderer.draw_transparent(&to, depth, &rig.scene, view);
+    rendered.color.read_rgba8(0, [0, 0], view.size)
+}
+
+/// Window depth of each pixel.
+pub fn depths(gl: &Rc<Context>, depth: &Texture, view: &View) -> Vec<f32> {
     let formats = [(Format::R32F, Filter::Nearest)];
     let copy = RenderTarget::new(gl, view.size, &formats, None).unwrap();
     gl.set_raster_state(&yoro_gl::RasterState::SCREEN);
     copy.bind();
     let program = Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
-    program.bind().texture("source", 0, targets.depth().raw());
+    program.bind().texture("source", 0, depth.raw());
     gl.draw_screen();
     copy.read_rgba32f(0, [0, 0], view.size).iter().map(|t| t[0]).collect()
 }
@@ -191,10 +202,7 @@ fn every_variant_compiles_and_draws() {
         }
         let mut rig = Rig::new(gl, scene, &settings());
         let view = view(DepthConvention::Standard);
-        rig.render(&view, Selection::All);
-        let depth = DepthImage::whole(rig.targets.depth());
-        let to = Destination::whole(rig.targets.color_target());
-        rig.renderer.draw_transparent(&to, depth, &rig.scene, &view).unwrap();
+        draw_transparent(&mut rig, &view);
         assert_eq!(gl.take_errors(), None, "{style:?}");
     }
     for style in STYLES {
@@ -242,8 +250,7 @@ fn depth_is_what_the_view_says() {
     let mut rig = Rig::new(gl, wall, &settings());
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
         let view = View { pose: Pose { position: EYE, ..Pose::IDENTITY }, ..view(convention) };
-        rig.render(&view, Selection::All);
-        let depths = depths(gl, &rig.targets, &view);
+        let depths = depths(gl, rig.draw(&view, Selection::All).depth, &view);
         let row = &depths[SIZE[0] as usize * 50..][..SIZE[0] as usize];
         assert!((view.depth.distance(row[40]) - 2.5).abs() < 1e-3, "{convention:?}");
         assert_eq!(row[110], view.depth.clear_value(), "{convention:?}: nothing was drawn there");
@@ -256,21 +263,20 @@ fn targets_follow_the_size_and_nothing_leaks() {
     let gl = head.gl();
     let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
     let fxaa = Fxaa::new(gl).unwrap();
+    let smooth = RenderTarget::new(gl, SIZE, &[(Format::Rgba8, Filter::Linear)], None).unwrap();
     let (small, mut large) = (view(DepthConvention::Standard), view(DepthConvention::Standard));
     large.size = [301, 97];
     let first = rig.render(&small, Selection::All);
     let objects = gl.object_count();
     for _ in 0..5 {
-        let picture = rig.render(&large, Selection::All);
-        assert_eq!(picture.len(), 301 * 97 * 4);
-        assert_eq!(rig.targets.size(), large.size);
+        let picture = rig.draw(&large, Selection::All);
+        assert_eq!((picture.color.size(), picture.depth.size()), (large.size, large.size));
         assert_eq!(rig.render(&small, Selection::All), first, "a repeated frame is identical");
-        let Images::Deferred(targets) = &rig.targets.images else { unreachable!() };
-        fxaa.run(targets.finish.color().color(0), [0, 0], &Destination::whole(targets.light.target()));
+        fxaa.run(rig.draw(&small, Selection::All).color.color(0), [0, 0], &Destination::whole(&smooth));
     }
     assert_eq!(gl.object_count(), objects);
     assert_eq!(gl.take_errors(), None);
-    drop((rig, fxaa));
+    drop((rig, fxaa, smooth));
     assert_eq!(gl.object_count(), 0, "everything is deleted");
 }
 
@@ -282,10 +288,12 @@ fn nearer_and_farther_composite_to_the_whole() {
     let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings);
     let view = view(DepthConvention::Standard);
     let whole = rig.render(&view, Selection::All);
-    let near = rig.render(&view, Selection::Nearer { from: EYE, distance: 3.0 });
-    let near_depth = depths(gl, &rig.targets, &view);
-    let far = rig.render(&view, Selection::Farther { from: EYE, distance: 3.0 });
-    let far_depth = depths(gl, &rig.targets, &view);
+    let [(near, near_depth), (far, far_depth)] =
+        [Selection::Nearer { from: EYE, distance: 3.0 }, Selection::Farther { from: EYE, distance: 3.0 }]
+            .map(|selection| {
+                let drawn = rig.draw(&view, selection);
+                (drawn.color.read_rgba8(0, [0, 0], SIZE), depths(gl, drawn.depth, &view))
+            });
     let drawn = near_depth.iter().filter(|&&d| d < 1.0).count();
     assert!(drawn > 500 && drawn < near_depth.len() - 500, "{drawn} pixels are near");
     let composite: Vec<u8> = (0..near_depth.len())
@@ -309,10 +317,7 @@ fn transparent_surfaces_are_hidden_by_nearer_ones_only() {
         let mut rig = Rig::new(gl, scene, &settings());
         let view = view(convention);
         let before = rig.render(&view, Selection::All);
-        let depth = DepthImage::whole(rig.targets.depth());
-        let to = Destination::whole(rig.targets.color_target());
-        rig.renderer.draw_transparent(&to, depth, &rig.scene, &view).unwrap();
-        let after = rig.targets.color_target().read_rgba8(0, [0, 0], SIZE);
+        let after = draw_transparent(&mut rig, &view);
         let changed: Vec<usize> =
             (0..before.len() / 4).filter(|i| before[4 * i..][..3] != after[4 * i..][..3]).collect();
         assert!(changed.len() > 300, "{convention:?}: {}", changed.len());
@@ -327,13 +332,14 @@ fn fxaa_of_a_crop_is_the_crop_of_fxaa() {
     let head = open();
     let gl = head.gl();
     let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
-    let raw = rig.render(&view(DepthConvention::Standard), Selection::All);
+    let source = rig.draw(&view(DepthConvention::Standard), Selection::All).color;
+    let raw = source.read_rgba8(0, [0, 0], SIZE);
     let fxaa = Fxaa::new(gl).unwrap();
     let target = |size| RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
     let (whole, part) = (target(SIZE), target([100, 90]));
-    fxaa.run(rig.targets.color(), [0, 0], &Destination::whole(&whole));
+    fxaa.run(source.color(0), [0, 0], &Destination::whole(&whole));
     let to = Destination { framebuffer: Some(part.raw()), origin: [10, 20], size: [80, 60] };
-    fxaa.run(rig.targets.color(), [32, 16], &to);
+    fxaa.run(source.color(0), [32, 16], &to);
     let smooth = whole.read_rgba8(0, [32, 16], [80, 60]);
     assert_eq!(smooth, part.read_rgba8(0, [10, 20], [80, 60]));
     let whole = whole.read_rgba8(0, [0, 0], SIZE);

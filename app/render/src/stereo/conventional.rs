@@ -2,22 +2,22 @@
 
 use std::rc::Rc;
 
-use super::finish::Finish;
-use super::method::{EyeTarget, StereoError, StereoMethod};
-use super::options::{AntiAliasing, StereoOptions};
-use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, ViewTargets};
-use yoro::eyes::{DepthConvention, Eye, EyePair};
+use super::finish::{EyeImage, Finish};
+use super::frame::{Frame, FrameMethod};
+use super::method::StereoError;
+use super::options::StereoOptions;
+use crate::render::{RenderSettings, ViewImages, ViewRenderer};
 use yoro_gl::{Context, GlError, Texture};
 
 /// Two full renders.
-pub struct Conventional {
-    targets: ViewTargets,
-    /// Whether [`Conventional::depth`] is wanted.
+pub struct Conventional<R: ViewRenderer> {
+    targets: R::Targets,
+    /// True if [`Conventional::depth`] is wanted.
     keeps_depth: bool,
     finish: Finish,
 }
 
-impl Conventional {
+impl<R: ViewRenderer> Conventional<R> {
     /// Makes the targets.
     ///
     /// # Errors
@@ -26,33 +26,13 @@ impl Conventional {
         gl: &Rc<Context>,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<Conventional, GlError> {
-        Ok(Conventional {
-            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
-            keeps_depth: false,
-            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
-        })
-    }
-
-    /// Renders one eye to where it is wanted.
-    fn render_eye(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        eye: Eye,
-        to: &EyeTarget,
-    ) -> Result<(), StereoError> {
-        let view = pair.view(eye);
-        let keeps_depth = self.keeps_depth && eye == pair.dominant;
-        renderer.render_all(&mut self.targets, scene, &view, keeps_depth || to.depth.is_some())?;
-        self.finish.color(self.targets.color_target(), [0, 0], &to.color);
-        Finish::depth(|| DepthImage::whole(self.targets.depth()), to);
-        Ok(())
+    ) -> Result<Conventional<R>, GlError> {
+        let finish = Finish::new(gl, settings, options)?;
+        Ok(Conventional { targets: R::targets(gl, settings)?, keeps_depth: false, finish })
     }
 
     /// With [`Conventional::depth`] after each frame.
-    pub(super) fn keeping_depth(self) -> Conventional {
+    pub(super) fn keeping_depth(self) -> Conventional<R> {
         Conventional { keeps_depth: true, ..self }
     }
 
@@ -62,17 +42,16 @@ impl Conventional {
     }
 }
 
-impl StereoMethod for Conventional {
-    fn render_to(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
+impl<R: ViewRenderer> FrameMethod for Conventional<R> {
+    type Renderer = R;
+
+    fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
+        let dominant = frame.pair.dominant;
         // The dominant eye last, so that its depth is at hand.
-        for eye in [pair.dominant.other(), pair.dominant] {
-            self.render_eye(renderer, scene, pair, eye, &to[eye.index()])?;
+        for eye in [dominant.other(), dominant] {
+            let depth = frame.wants_depth(eye) || (self.keeps_depth && eye == dominant);
+            frame.renderer.render_all(&mut self.targets, frame.scene, &frame.pair.view(eye), depth)?;
+            self.finish.run(&EyeImage::whole(&self.targets, depth), frame.to(eye));
         }
         Ok(())
     }

@@ -1,61 +1,75 @@
-//! The last steps of an eye.
+//! The last step of an eye.
 
 use std::rc::Rc;
 
 use super::method::EyeTarget;
-use crate::render::{DepthImage, Fxaa, GpuScene, RenderSettings, Renderer};
-use yoro::eyes::View;
+use super::options::{AntiAliasing, StereoOptions};
+use crate::render::{DepthImage, Fxaa, RenderSettings, ViewImages};
 use yoro_gl::{Context, Destination, GlError, RenderTarget};
 
-/// Transparent objects, then anti-aliasing or a plain copy of a part of an image into the
-/// frame.
+/// The image of an eye, ready but for anti-aliasing.
+#[derive(Clone, Copy)]
+pub(super) struct EyeImage<'a> {
+    pub(super) color: &'a RenderTarget,
+    /// Pixel of `color` that belongs to the lower left pixel of the eye.
+    pub(super) origin: [u32; 2],
+    /// Window depth, if somebody wants it.
+    pub(super) depth: Option<DepthImage<'a>>,
+}
+
+impl<'a> EyeImage<'a> {
+    /// All of a rendered view, with its depth if that is wanted.
+    pub(super) fn whole(view: &'a impl ViewImages, depth: bool) -> EyeImage<'a> {
+        let depth = depth.then(|| DepthImage::whole(view.depth()));
+        EyeImage { color: view.color(), origin: [0, 0], depth }
+    }
+}
+
+/// Anti-aliasing or a plain copy of an eye's image to where it goes.
 pub(super) struct Finish {
     gl: Rc<Context>,
     fxaa: Option<Fxaa>,
 }
 
 impl Finish {
-    /// With anti-aliasing or without; images whose edges are smooth already, by several samples in each pixel, are always
-    /// copied.
+    /// With anti-aliasing unless the options say that there is none.
     pub(super) fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,
-        anti_alias: bool,
+        options: &StereoOptions,
     ) -> Result<Finish, GlError> {
-        let fxaa = anti_alias && settings.samples() == 1;
+        Finish::smoothing(gl, settings, options.anti_aliasing != AntiAliasing::Off)
+    }
+
+    /// With anti-aliasing or without. Images whose edges are smooth already, by several samples in each pixel, are always
+    /// copied.
+    pub(super) fn smoothing(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        smooth: bool,
+    ) -> Result<Finish, GlError> {
+        let fxaa = smooth && settings.samples() == 1;
         Ok(Finish { gl: gl.clone(), fxaa: fxaa.then(|| Fxaa::new(gl)).transpose()? })
     }
 
-    /// Draws the transparent part of the scene over a rendered eye and fills `to` from it.
-    pub(super) fn eye(
-        &self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        view: &View,
-        color: &RenderTarget,
-        depth: DepthImage,
-        to: &EyeTarget,
-    ) -> Result<(), GlError> {
-        if scene.has_transparent() {
-            renderer.draw_transparent(&Destination::whole(color), depth, scene, view)?;
-        }
-        self.color(color, [0, 0], &to.color);
-        Finish::depth(|| depth, to);
-        Ok(())
+    /// Hands an eye's colour and depth to where they go.
+    pub(super) fn run(&self, eye: &EyeImage, to: &EyeTarget) {
+        self.color(eye.color, eye.origin, &to.color);
+        Finish::depth(eye.depth, to);
     }
 
-    /// Fills `to` from the part of `from` whose lower left corner is `crop`.
-    pub(super) fn color(&self, from: &RenderTarget, crop: [u32; 2], to: &Destination) {
+    /// Fills `to` from the part of `from` whose lower left corner is `origin`.
+    pub(super) fn color(&self, from: &RenderTarget, origin: [u32; 2], to: &Destination) {
         match &self.fxaa {
-            Some(fxaa) => fxaa.run(from.color(0), crop, to),
-            None => self.gl.pass("copy", || from.copy_color(crop, to)),
+            Some(fxaa) => fxaa.run(from.color(0), origin, to),
+            None => self.gl.pass("copy", || from.copy_color(origin, to)),
         }
     }
 
-    /// Hands an eye's depth to whoever wants it; if nobody does, it is not looked for.
-    pub(super) fn depth<'a>(from: impl FnOnce() -> DepthImage<'a>, to: &EyeTarget) {
-        if let Some(depth) = &to.depth {
-            depth.copy.run(from(), &depth.to);
+    /// Hands an eye's depth to whoever wants it.
+    pub(super) fn depth(from: Option<DepthImage>, to: &EyeTarget) {
+        if let (Some(from), Some(to)) = (from, &to.depth) {
+            to.copy.run(from, &to.to);
         }
     }
 }

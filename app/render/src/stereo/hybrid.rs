@@ -8,43 +8,69 @@ use std::rc::Rc;
 
 use glam::IVec2;
 
-use super::finish::Finish;
-use super::method::{EyeTarget, StereoError, StereoMethod};
-use super::options::{AntiAliasing, StereoOptions};
+use super::finish::{EyeImage, Finish};
+use super::frame::{Frame, FrameMethod};
+use super::method::StereoError;
+use super::options::StereoOptions;
 use crate::render::{
-    DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings, Renderer, Role,
-    RoleKind, depth_test,
+    DeferredRenderer, DepthImage, FinishTargets, ForwardRenderer, ForwardTargets, GBuffer, GpuScene, Layout,
+    LightTargets, RenderSettings, Role, RoleKind, ViewRenderer, depth_test,
 };
-use yoro::eyes::{DepthConvention, Eye, EyePair, EyesError, GuardBand, Pose, View};
-use yoro_gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Pose, View};
+use yoro_gl::{Context, Destination, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
 /// The far field starts this much nearer than the near field ends, so that no crack opens where a surface that is
 /// seen at an angle passes from one to the other.
 const OVERLAP: f32 = 0.95;
 
-/// What is drawn for each eye and what for both, as near and far plane in metres; `None` for nothing.
+/// Two renders of what is near, one of what is far. Where nothing is far the frame is that of two full renders and costs
+/// as much.
+pub struct Hybrid<T> {
+    threshold: f32,
+    targets: T,
+    finish: Finish,
+}
+
+impl<T: FieldTargets> Hybrid<T> {
+    /// Makes the targets.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses a target or a program.
+    pub fn new(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        options: &StereoOptions,
+    ) -> Result<Hybrid<T>, GlError> {
+        let finish = Finish::new(gl, settings, options)?;
+        Ok(Hybrid { threshold: options.split_disparity, targets: T::new(gl, settings)?, finish })
+    }
+}
+
+impl<T: FieldTargets> FrameMethod for Hybrid<T> {
+    type Renderer = T::Renderer;
+
+    fn compile(&mut self, renderer: &mut T::Renderer, scene: &GpuScene) -> Result<(), GlError> {
+        T::compile(renderer, scene)
+    }
+
+    fn render_frame(&mut self, frame: &Frame<T::Renderer>) -> Result<(), StereoError> {
+        let fields = Fields::new(frame.pair, self.threshold, frame.scene)?;
+        self.targets.draw(frame, &fields)?;
+        for eye in Eye::BOTH {
+            self.finish.run(&self.targets.eye(frame, &fields, eye)?, frame.to(eye));
+        }
+        Ok(())
+    }
+}
+
+/// Near and far plane in metres of what is drawn for each eye and of what is drawn for both; `None` for nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Split {
-    pub(super) near: Option<[f32; 2]>,
-    pub(super) far: Option<[f32; 2]>,
+struct Split {
+    near: Option<[f32; 2]>,
+    far: Option<[f32; 2]>,
 }
 
 impl Split {
-    /// As [`Split::new`], but all is near where nothing of the scene is far.
-    pub(super) fn of_scene(
-        pair: &EyePair,
-        threshold: f32,
-        renderer: &Renderer,
-        scene: &GpuScene,
-        far_view: &View,
-    ) -> Split {
-        let split = Split::new(pair, threshold);
-        match split.far.filter(|&slice| renderer.sees_any(scene, far_view, slice)) {
-            Some(_) => split,
-            None => Split { near: Some([pair.depth.near, pair.depth.far]), far: None },
-        }
-    }
-
     /// Splits where the disparity is `threshold` pixels: `z = f_px * IPD / threshold`.
     fn new(pair: &EyePair, threshold: f32) -> Split {
         let (near, far) = (pair.depth.near, pair.depth.far);
@@ -56,14 +82,74 @@ impl Split {
     }
 }
 
-/// Two renders of what is near, one of what is far.
+/// The far field of a frame, and where each eye's image lies in it.
+pub(super) struct Fields {
+    split: Split,
+    /// Both frusta, from between the eyes.
+    view: View,
+    /// Pixel of the far field that belongs to each eye's lower left pixel.
+    crops: [IVec2; 2],
+}
+
+impl Fields {
+    /// Splits a frame, unless nothing of the scene is far: then all is near.
+    fn new(pair: &EyePair, threshold: f32, scene: &GpuScene) -> Result<Fields, EyesError> {
+        let union = pair.synthesis(GuardBand::None)?.source;
+        let view = View { pose: Pose { position: pair.middle(), ..union.pose }, ..union };
+        let mut split = Split::new(pair, threshold);
+        if !split.far.is_some_and(|slice| scene.is_seen(&view, slice)) {
+            split = Split { near: Some([pair.depth.near, pair.depth.far]), far: None };
+        }
+        Ok(Fields { split, crops: crops(pair, &view), view })
+    }
+}
+
+/// Pixel of the far field that belongs to each eye's lower left pixel, to the nearest whole pixel: where frusta differ
+/// by a fraction, the far field is off by at most half a pixel, which is what it leaves out anyway.
+fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
+    Eye::BOTH.map(|eye| {
+        let (frustum, size) = (&pair.frusta[eye.index()], far.size.map(|n| n as f32));
+        let x = (frustum.left - far.frustum.left) / far.frustum.width() * size[0];
+        let y = (frustum.bottom - far.frustum.bottom) / far.frustum.height() * size[1];
+        // The union is rounded up to whole pixels, so that the eye's image always lies inside.
+        let last = |whole: u32, part: u32| (whole - part.min(whole)) as i32;
+        IVec2::new(
+            (x.round() as i32).clamp(0, last(far.size[0], pair.size[0])),
+            (y.round() as i32).clamp(0, last(far.size[1], pair.size[1])),
+        )
+    })
+}
+
+/// The images of near and far field, for one kind of renderer.
+pub(super) trait FieldTargets: Sized {
+    /// The kind of renderer.
+    type Renderer: ViewRenderer;
+
+    fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<Self, GlError>;
+
+    /// As [`FrameMethod::compile`].
+    fn compile(_renderer: &mut Self::Renderer, _scene: &GpuScene) -> Result<(), GlError> {
+        Ok(())
+    }
+
+    /// Draws what both eyes need: the far field, if there is one.
+    fn draw(&mut self, frame: &Frame<Self::Renderer>, fields: &Fields) -> Result<(), GlError>;
+
+    /// Completes the image of one eye, after [`FieldTargets::draw`].
+    fn eye(
+        &mut self,
+        frame: &Frame<Self::Renderer>,
+        fields: &Fields,
+        eye: Eye,
+    ) -> Result<EyeImage<'_>, GlError>;
+}
+
+/// G-buffers of the near fields and of the far field.
 ///
 /// Before the far field is drawn, its pixels that the near field hides from both eyes are marked in its depth buffer:
-/// they are neither rasterized nor lit. Each eye's lighting skips the pixels that show the far field. Where nothing is
-/// far the frame is that of two full renders and costs as much.
-pub struct Hybrid {
+/// they are neither rasterized nor lit. Each eye's lighting skips the pixels that show the far field.
+pub(super) struct DeferredFields {
     gl: Rc<Context>,
-    threshold: f32,
     /// By [`Eye::index`].
     near: [GBuffer; 2],
     far: GBuffer,
@@ -73,34 +159,9 @@ pub struct Hybrid {
     image: FinishTargets,
     hidden: Program,
     far_depth: Program,
-    finish: Finish,
 }
 
-impl Hybrid {
-    /// Makes the targets.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses a target or a program.
-    pub fn new(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<Hybrid, GlError> {
-        let g_buffer = || GBuffer::new(gl, Layout::Single, [1, 1], DepthConvention::Standard);
-        Ok(Hybrid {
-            gl: gl.clone(),
-            threshold: options.split_disparity,
-            near: [g_buffer()?, g_buffer()?],
-            far: g_buffer()?,
-            far_light: LightTargets::new(gl, [1, 1], settings)?,
-            light: LightTargets::new(gl, [1, 1], settings)?,
-            image: FinishTargets::new(gl, [1, 1], settings)?,
-            hidden: Program::new(gl, ShaderSource::Screen("stereo/hidden.frag"), &[])?,
-            far_depth: Program::new(gl, ShaderSource::Screen("stereo/far_depth.frag"), &[])?,
-            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
-        })
-    }
-
+impl DeferredFields {
     /// Marks the far field's pixels that the near field hides from both eyes.
     fn mark_hidden(&self, far: &RenderTarget, view: &View, crops: &[IVec2; 2]) {
         self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
@@ -134,75 +195,110 @@ impl Hybrid {
     }
 }
 
-/// The far field's view: both frusta, from between the eyes.
-pub(super) fn far_view(pair: &EyePair) -> Result<View, EyesError> {
-    let union = pair.synthesis(GuardBand::None)?.source;
-    Ok(View { pose: Pose { position: pair.middle(), ..union.pose }, ..union })
-}
+impl FieldTargets for DeferredFields {
+    type Renderer = DeferredRenderer;
 
-/// Pixel of the far field that belongs to each eye's lower left pixel, to the nearest whole pixel: where frusta differ
-/// by a fraction, the far field is off by at most half a pixel, which is what it leaves out anyway.
-pub(super) fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
-    Eye::BOTH.map(|eye| {
-        let (frustum, size) = (&pair.frusta[eye.index()], far.size.map(|n| n as f32));
-        let x = (frustum.left - far.frustum.left) / far.frustum.width() * size[0];
-        let y = (frustum.bottom - far.frustum.bottom) / far.frustum.height() * size[1];
-        // The union is rounded up to whole pixels, so that the eye's image always lies inside.
-        let last = |whole: u32, part: u32| (whole - part.min(whole)) as i32;
-        IVec2::new(
-            (x.round() as i32).clamp(0, last(far.size[0], pair.size[0])),
-            (y.round() as i32).clamp(0, last(far.size[1], pair.size[1])),
-        )
-    })
-}
-
-impl StereoMethod for Hybrid {
-    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        let roles = [RoleKind::Whole, RoleKind::NearField, RoleKind::FarField];
-        Ok(renderer.prepare(scene, Layout::Single, &roles)?)
+    fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<DeferredFields, GlError> {
+        let g_buffer = || GBuffer::new(gl, Layout::Single);
+        Ok(DeferredFields {
+            gl: gl.clone(),
+            near: [g_buffer()?, g_buffer()?],
+            far: g_buffer()?,
+            far_light: LightTargets::new(gl, settings)?,
+            light: LightTargets::new(gl, settings)?,
+            image: FinishTargets::new(gl, settings)?,
+            hidden: Program::new(gl, ShaderSource::Screen("stereo/hidden.frag"), &[])?,
+            far_depth: Program::new(gl, ShaderSource::Screen("stereo/far_depth.frag"), &[])?,
+        })
     }
 
-    fn render_to(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.prepare(renderer, scene)?;
-        let far_view = far_view(pair)?;
-        let crops = crops(pair, &far_view);
-        let split = Split::of_scene(pair, self.threshold, renderer, scene, &far_view);
+    fn compile(renderer: &mut DeferredRenderer, scene: &GpuScene) -> Result<(), GlError> {
+        let roles = [RoleKind::Whole, RoleKind::NearField, RoleKind::FarField];
+        renderer.prepare(scene, Layout::Single, &roles)
+    }
+
+    fn draw(&mut self, frame: &Frame<DeferredRenderer>, fields: &Fields) -> Result<(), GlError> {
+        let Frame { renderer, scene, pair, .. } = frame;
+        let Fields { split, view, crops } = fields;
         self.light.resize(pair.size)?;
         self.image.resize(pair.size)?;
-        for eye in Eye::BOTH {
-            let near = &mut self.near[eye.index()];
+        for (near, eye) in self.near.iter_mut().zip(Eye::BOTH) {
             near.fit(pair.size, pair.depth.convention)?;
             renderer.draw(near, scene, &[pair.view(eye)], split.near, |_| {});
         }
         if split.far.is_some() {
-            self.far.fit(far_view.size, pair.depth.convention)?;
-            self.far_light.resize(far_view.size)?;
-            let mark = |target: &RenderTarget| self.mark_hidden(target, &far_view, &crops);
-            renderer.draw(&self.far, scene, &[far_view], split.far, mark);
-            renderer.light(&self.far_light, &self.far, scene, &far_view, Role::FarField);
-        }
-        for eye in Eye::BOTH {
-            let (view, near, crop) = (pair.view(eye), &self.near[eye.index()], crops[eye.index()]);
-            let role = match split.far {
-                Some(_) => Role::NearField { far: self.far_light.hdr(), crop },
-                None => Role::Whole,
-            };
-            renderer.light(&self.light, near, scene, &view, role);
-            renderer.finish(&self.image, &self.light);
-            let to = &to[eye.index()];
-            if split.far.is_some() && (scene.has_transparent() || to.depth.is_some()) {
-                self.merge_depth(near.target(), &view, crop);
-            }
-            let depth = DepthImage::whole(near.target().depth());
-            self.finish.eye(renderer, scene, &view, self.image.color(), depth, to)?;
+            self.far.fit(view.size, pair.depth.convention)?;
+            self.far_light.resize(view.size)?;
+            let mark = |target: &RenderTarget| self.mark_hidden(target, view, crops);
+            renderer.draw(&self.far, scene, &[*view], split.far, mark);
+            renderer.light(&self.far_light, &self.far, scene, view, Role::FarField);
         }
         Ok(())
+    }
+
+    fn eye(
+        &mut self,
+        frame: &Frame<DeferredRenderer>,
+        fields: &Fields,
+        eye: Eye,
+    ) -> Result<EyeImage<'_>, GlError> {
+        let Frame { renderer, scene, pair, .. } = frame;
+        let (view, near, crop) = (pair.view(eye), &self.near[eye.index()], fields.crops[eye.index()]);
+        let is_split = fields.split.far.is_some();
+        let mut role = Role::Whole;
+        if is_split {
+            role = Role::NearField { far: self.far_light.hdr(), crop };
+        }
+        renderer.light(&self.light, near, scene, &view, role);
+        renderer.finish(&self.image, &self.light);
+        if is_split && (scene.has_transparent() || frame.wants_depth(eye)) {
+            self.merge_depth(near.target(), &view, crop);
+        }
+        let (color, depth) = (self.image.color(), DepthImage::whole(near.target().depth()));
+        renderer.draw_transparent(&Destination::whole(color), depth, scene, &view);
+        Ok(EyeImage { color, origin: [0, 0], depth: Some(depth) })
+    }
+}
+
+/// The samples of an eye and of the far field.
+///
+/// Each eye begins with its part of the far field, colour and depth; its near field is drawn over that, sample by sample,
+/// so that its edges are as smooth as any.
+pub(super) struct ForwardFields {
+    eye: ForwardTargets,
+    far: ForwardTargets,
+}
+
+impl FieldTargets for ForwardFields {
+    type Renderer = ForwardRenderer;
+
+    fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<ForwardFields, GlError> {
+        let targets = || ForwardRenderer::targets(gl, settings);
+        Ok(ForwardFields { eye: targets()?, far: targets()? })
+    }
+
+    fn draw(&mut self, frame: &Frame<ForwardRenderer>, fields: &Fields) -> Result<(), GlError> {
+        match fields.split.far {
+            Some(slice) => frame.renderer.render_far(&mut self.far, frame.scene, &fields.view, slice),
+            None => Ok(()),
+        }
+    }
+
+    fn eye(
+        &mut self,
+        frame: &Frame<ForwardRenderer>,
+        fields: &Fields,
+        eye: Eye,
+    ) -> Result<EyeImage<'_>, GlError> {
+        let (renderer, scene, view) = (frame.renderer, frame.scene, frame.pair.view(eye));
+        let depth = frame.wants_depth(eye);
+        if fields.split.far.is_some() {
+            let far = (&self.far, fields.crops[eye.index()].as_uvec2().to_array());
+            renderer.render_near(&mut self.eye, scene, &view, fields.split.near, far, depth)?;
+        } else {
+            renderer.render_all(&mut self.eye, scene, &view, depth)?;
+        }
+        Ok(EyeImage::whole(&self.eye, depth))
     }
 }
 

@@ -3,8 +3,7 @@
 mod border;
 mod conventional;
 mod finish;
-mod forward_hybrid;
-mod forward_single_pass;
+mod frame;
 mod guard_band;
 mod hybrid;
 mod method;
@@ -13,6 +12,7 @@ mod near_field;
 mod near_field_policy;
 mod offline;
 mod options;
+mod overlay;
 mod paper;
 mod readback;
 mod shading_reprojection;
@@ -23,22 +23,43 @@ mod tests;
 
 use std::rc::Rc;
 
-use crate::render::RenderSettings;
+use crate::render::{DeferredRenderer, ForwardRenderer, RenderSettings, RendererKind, ViewRenderer};
 use yoro_gl::{Context, GlError};
 
 use conventional::Conventional;
-use forward_hybrid::ForwardHybrid;
-use forward_single_pass::ForwardSinglePass;
-use hybrid::Hybrid;
+use hybrid::{DeferredFields, FieldTargets, ForwardFields, Hybrid};
 pub use method::{DepthTarget, EyeTarget, GuardBandUse, StereoError, StereoFrame, StereoMethod};
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
 pub use options::{AntiAliasing, Method, Pipeline, PipelineOptions, StereoOptions};
+use overlay::{DeferredOverlay, ForwardOverlay, Overlay};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 use shading_reprojection::ShadingReprojection;
-use single_pass::SinglePass;
-use synthesized::Yoro;
+use single_pass::{DeferredPair, ForwardPair, PairTargets, SinglePass};
+use synthesized::Synthesized;
+
+/// A kind of renderer with what the methods do differently for it.
+trait StereoRenderer: ViewRenderer + 'static {
+    /// Both eyes in one set of draw calls.
+    type Pair: PairTargets<Renderer = Self>;
+    /// The near field for each eye and the far field for both.
+    type Fields: FieldTargets<Renderer = Self>;
+    /// What comes after synthesis.
+    type Overlay: Overlay<Renderer = Self>;
+}
+
+impl StereoRenderer for DeferredRenderer {
+    type Pair = DeferredPair;
+    type Fields = DeferredFields;
+    type Overlay = DeferredOverlay;
+}
+
+impl StereoRenderer for ForwardRenderer {
+    type Pair = ForwardPair;
+    type Fields = ForwardFields;
+    type Overlay = ForwardOverlay;
+}
 
 /// Makes a method; all that does not depend on the scene is compiled here ([`StereoMethod::prepare`] does the rest).
 ///
@@ -51,17 +72,26 @@ pub fn create(
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
     settings.supports(method, gl.capabilities())?;
+    match settings.renderer {
+        RendererKind::Deferred => create_for::<DeferredRenderer>(gl, method, settings, options),
+        RendererKind::Forward => create_for::<ForwardRenderer>(gl, method, settings, options),
+    }
+}
+
+fn create_for<R: StereoRenderer>(
+    gl: &Rc<Context>,
+    method: Method,
+    settings: &RenderSettings,
+    options: &StereoOptions,
+) -> Result<Box<dyn StereoMethod>, GlError> {
     Ok(match method {
-        Method::Conventional => Box::new(Conventional::new(gl, settings, options)?),
-        Method::Instanced if settings.is_forward() => {
-            Box::new(ForwardSinglePass::new(gl, settings, options)?)
-        }
-        Method::Instanced => Box::new(SinglePass::instanced(gl, settings, options)?),
-        Method::Multiview => Box::new(SinglePass::multiview(gl, settings, options)?),
-        Method::Hybrid if settings.is_forward() => Box::new(ForwardHybrid::new(gl, settings, options)?),
-        Method::Hybrid => Box::new(Hybrid::new(gl, settings, options)?),
+        Method::Conventional => Box::new(Conventional::<R>::new(gl, settings, options)?),
+        Method::Instanced => Box::new(SinglePass::<R::Pair>::instanced(gl, settings, options)?),
+        // The deferred renderer alone has these two: `RenderSettings::supports`.
+        Method::Multiview => Box::new(SinglePass::<DeferredPair>::multiview(gl, settings, options)?),
         Method::ShadingReprojection => Box::new(ShadingReprojection::new(gl, settings, options)?),
-        Method::Mono => Box::new(Mono::new(gl, settings, options)?),
-        Method::Yoro => Box::new(Yoro::new(gl, settings, options)?),
+        Method::Hybrid => Box::new(Hybrid::<R::Fields>::new(gl, settings, options)?),
+        Method::Mono => Box::new(Mono::<R>::new(gl, settings, options)?),
+        Method::Yoro => Box::new(Synthesized::<R>::new(gl, settings, options)?),
     })
 }

@@ -3,21 +3,21 @@
 use std::rc::Rc;
 
 use super::finish::Finish;
-use super::method::{EyeTarget, StereoError, StereoMethod};
-use super::options::{AntiAliasing, StereoOptions};
-use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, ViewTargets};
-use yoro::eyes::{DepthConvention, EyePair, GuardBand, View};
+use super::frame::{Frame, FrameMethod};
+use super::method::StereoError;
+use super::options::StereoOptions;
+use crate::render::{DepthImage, RenderSettings, ViewImages, ViewRenderer};
+use yoro::eyes::{Eye, EyePair, GuardBand, View};
 use yoro_gl::{Context, GlError};
 
 /// One render from where the dominant eye is, in the union of both frusta; each eye gets its own part of it, which is
 /// the same image where the frusta are the same.
-pub struct Mono {
-    gl: Rc<Context>,
-    targets: ViewTargets,
+pub struct Mono<R: ViewRenderer> {
+    targets: R::Targets,
     finish: Finish,
 }
 
-impl Mono {
+impl<R: ViewRenderer> Mono<R> {
     /// Makes the targets.
     ///
     /// # Errors
@@ -26,39 +26,35 @@ impl Mono {
         gl: &Rc<Context>,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<Mono, GlError> {
-        Ok(Mono {
-            gl: gl.clone(),
-            targets: ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings)?,
-            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
-        })
+    ) -> Result<Mono<R>, GlError> {
+        Ok(Mono { targets: R::targets(gl, settings)?, finish: Finish::new(gl, settings, options)? })
     }
 }
 
-impl StereoMethod for Mono {
-    fn render_to(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..*pair };
+impl<R: ViewRenderer> FrameMethod for Mono<R> {
+    type Renderer = R;
+
+    fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
+        let Frame { renderer, scene, pair, .. } = frame;
+        let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..**pair };
         let views = here.synthesis(GuardBand::None)?;
-        let wants_depth = to.iter().any(|eye| eye.depth.is_some());
+        let wants_depth = Eye::BOTH.iter().any(|eye| frame.wants_depth(*eye));
         renderer.render_all(&mut self.targets, scene, &views.source, wants_depth)?;
-        let color = self.targets.color_target();
-        let depth = |origin| DepthImage { origin, ..DepthImage::whole(self.targets.depth()) };
-        let [dominant, other] = [pair.dominant, pair.dominant.other()].map(|eye| &to[eye.index()]);
-        let (crop, other_crop) = (views.dominant_crop, origin_in(&views.source, &views.target));
-        self.finish.color(color, crop, &dominant.color);
-        if other_crop == crop {
-            self.gl.pass("copy", || self.gl.copy(&dominant.color, &other.color));
+        let color = self.targets.color();
+        let [dominant, other] = [pair.dominant, pair.dominant.other()].map(|eye| frame.to(eye));
+        let (origin, other_origin) = (views.dominant_crop, origin_in(&views.source, &views.target));
+        self.finish.color(color, origin, &dominant.color);
+        if other_origin == origin {
+            let gl = &renderer.common().gl;
+            gl.pass("copy", || gl.copy(&dominant.color, &other.color));
         } else {
-            self.finish.color(color, other_crop, &other.color);
+            self.finish.color(color, other_origin, &other.color);
         }
-        Finish::depth(|| depth(crop), dominant);
-        Finish::depth(|| depth(other_crop), other);
+        if wants_depth {
+            let depth = DepthImage::whole(self.targets.depth());
+            Finish::depth(Some(DepthImage { origin, ..depth }), dominant);
+            Finish::depth(Some(DepthImage { origin: other_origin, ..depth }), other);
+        }
         Ok(())
     }
 }

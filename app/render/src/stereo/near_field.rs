@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::IVec2;
 
 use super::readback::Readback;
-use crate::render::ViewTargets;
+use crate::render::ViewImages;
 use yoro::eyes::{DepthConvention, DepthRange};
 use yoro_gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
@@ -25,7 +25,7 @@ impl Composite {
     pub(super) fn run(
         &self,
         (far_color, far_depth): (&Texture, &Texture),
-        near: &ViewTargets,
+        near: &impl ViewImages,
         convention: DepthConvention,
         to: &RenderTarget,
     ) {
@@ -36,7 +36,7 @@ impl Composite {
                 .bind()
                 .texture("far_color", 0, far_color.raw())
                 .texture("far_depth", 1, far_depth.raw())
-                .texture("near_color", 2, near.color().raw())
+                .texture("near_color", 2, near.color().color(0).raw())
                 .texture("near_depth", 3, near.depth().raw())
                 .set("reversed", convention == DepthConvention::Reversed);
             self.gl.draw_screen();

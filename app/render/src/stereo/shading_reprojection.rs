@@ -8,15 +8,18 @@ use std::rc::Rc;
 
 use glam::Vec2;
 
-use super::finish::Finish;
-use super::method::{EyeTarget, StereoError, StereoMethod};
-use super::options::{AntiAliasing, StereoOptions};
+use super::finish::{EyeImage, Finish};
+use super::frame::{Frame, FrameMethod};
+use super::method::StereoError;
+use super::options::StereoOptions;
 use crate::render::{
-    DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings, Renderer,
+    DeferredRenderer, DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings,
     Reprojection, Role, RoleKind,
 };
-use yoro::eyes::{DepthConvention, DisparityLaw, EyePair, GuardBand};
-use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro::eyes::{DisparityLaw, EyePair, GuardBand};
+use yoro_gl::{
+    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+};
 
 /// Two g-buffers; ambient occlusion and lighting once, and again for disocclusions.
 ///
@@ -45,16 +48,16 @@ impl ShadingReprojection {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<ShadingReprojection, GlError> {
-        let g_buffer = || GBuffer::new(gl, Layout::Single, [1, 1], DepthConvention::Standard);
-        let light = || LightTargets::new(gl, [1, 1], settings);
+        let g_buffer = || GBuffer::new(gl, Layout::Single);
+        let light = || LightTargets::new(gl, settings);
         Ok(ShadingReprojection {
             gl: gl.clone(),
             g_buffers: [g_buffer()?, g_buffer()?],
             light: [light()?, light()?],
-            image: FinishTargets::new(gl, [1, 1], settings)?,
+            image: FinishTargets::new(gl, settings)?,
             disocclusion: RenderTarget::new(gl, [1, 1], &[(Format::Rg8, Filter::Linear)], None)?,
             find: Program::new(gl, ShaderSource::Screen("stereo/disocclusion.frag"), &[])?,
-            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
+            finish: Finish::new(gl, settings, options)?,
         })
     }
 
@@ -84,19 +87,15 @@ impl ShadingReprojection {
     }
 }
 
-impl StereoMethod for ShadingReprojection {
-    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        Ok(renderer.prepare(scene, Layout::Single, &[RoleKind::Whole, RoleKind::Reprojected])?)
+impl FrameMethod for ShadingReprojection {
+    type Renderer = DeferredRenderer;
+
+    fn compile(&mut self, renderer: &mut DeferredRenderer, scene: &GpuScene) -> Result<(), GlError> {
+        renderer.prepare(scene, Layout::Single, &[RoleKind::Whole, RoleKind::Reprojected])
     }
 
-    fn render_to(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.prepare(renderer, scene)?;
+    fn render_frame(&mut self, frame: &Frame<DeferredRenderer>) -> Result<(), StereoError> {
+        let Frame { renderer, scene, pair, .. } = frame;
         // The law for the dominant eye's own image instead of one with both frusta: what is outside is shaded.
         let views = pair.synthesis(GuardBand::None)?;
         let [left, bottom] = views.dominant_crop;
@@ -126,8 +125,9 @@ impl StereoMethod for ShadingReprojection {
             }
             renderer.light(&self.light[i], g_buffer, scene, &view, role);
             renderer.finish(&self.image, &self.light[i]);
-            let depth = DepthImage::whole(g_buffer.target().depth());
-            self.finish.eye(renderer, scene, &view, self.image.color(), depth, &to[eye.index()])?;
+            let (color, depth) = (self.image.color(), DepthImage::whole(g_buffer.target().depth()));
+            renderer.draw_transparent(&Destination::whole(color), depth, scene, &view);
+            self.finish.run(&EyeImage { color, origin: [0, 0], depth: Some(depth) }, frame.to(eye));
         }
         Ok(())
     }

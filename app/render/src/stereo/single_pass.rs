@@ -1,36 +1,46 @@
-//! Both eyes in one set of draw calls: instancing into a double-wide g-buffer, or GL_OVR_multiview2 into a layered
-//! one. What comes after the g-buffer runs for each eye.
+//! Both eyes in one set of draw calls: instancing into double-wide targets, or GL_OVR_multiview2 into a layered g-buffer.
+//! What comes after the surfaces runs for each eye.
 
 use std::rc::Rc;
 
-use super::finish::Finish;
-use super::method::{EyeTarget, StereoError, StereoMethod};
-use super::options::{AntiAliasing, Method, StereoOptions};
+use super::finish::{EyeImage, Finish};
+use super::frame::{Frame, FrameMethod};
+use super::method::StereoError;
+use super::options::{Method, StereoOptions};
 use crate::render::{
-    DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings, Renderer, Role, Seam,
+    DeferredRenderer, DepthImage, FinishTargets, ForwardRenderer, ForwardTargets, GBuffer, GpuScene, Layout,
+    LightTargets, RenderSettings, Role, Seam, ViewImages, ViewRenderer,
 };
-use yoro::eyes::{DepthConvention, Eye, EyePair};
-use yoro_gl::{Context, GlError};
+use yoro::eyes::{Eye, View};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
 /// One culling and one draw call per visible range of triangles, for both eyes.
 ///
 /// Against two renders it saves the CPU half of its draw calls and, with multiview where the hardware shares it, some
 /// vertex work; every pixel is still rasterized and shaded for each eye.
-pub struct SinglePass {
-    layout: Layout,
-    g_buffer: GBuffer,
-    /// Of the eye that is being lit.
-    light: LightTargets,
-    image: FinishTargets,
+pub struct SinglePass<T> {
+    targets: T,
     finish: Finish,
 }
 
-/// Both eyes side by side, as the driver keeps them apart best.
-pub(super) fn side_by_side(gl: &Context) -> Layout {
-    Layout::DoubleWide(if gl.capabilities().clip_distances { Seam::ClipDistance } else { Seam::Discard })
+/// The images of both eyes at once, for one kind of renderer.
+pub(super) trait PairTargets: Sized {
+    /// The kind of renderer.
+    type Renderer: ViewRenderer;
+
+    fn new(gl: &Rc<Context>, layout: Layout, settings: &RenderSettings) -> Result<Self, GlError>;
+
+    /// As [`FrameMethod::compile`].
+    fn compile(&self, renderer: &mut Self::Renderer, scene: &GpuScene) -> Result<(), GlError>;
+
+    /// Draws the surfaces of both eyes.
+    fn draw(&mut self, frame: &Frame<Self::Renderer>, views: &[View; 2]) -> Result<(), GlError>;
+
+    /// Ends the image of one eye, after [`PairTargets::draw`].
+    fn eye(&mut self, frame: &Frame<Self::Renderer>, view: &View, eye: Eye) -> Result<EyeImage<'_>, GlError>;
 }
 
-impl SinglePass {
+impl<T: PairTargets> SinglePass<T> {
     /// Single-pass stereo by instancing, with clip distances where the driver has them.
     ///
     /// # Errors
@@ -39,8 +49,9 @@ impl SinglePass {
         gl: &Rc<Context>,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<SinglePass, GlError> {
-        SinglePass::new(gl, side_by_side(gl), settings, options)
+    ) -> Result<SinglePass<T>, GlError> {
+        let seam = if gl.capabilities().clip_distances { Seam::ClipDistance } else { Seam::Discard };
+        SinglePass::new(gl, Layout::DoubleWide(seam), settings, options)
     }
 
     /// Single-pass stereo by multiview.
@@ -51,7 +62,7 @@ impl SinglePass {
         gl: &Rc<Context>,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<SinglePass, GlError> {
+    ) -> Result<SinglePass<T>, GlError> {
         settings.supports(Method::Multiview, gl.capabilities())?;
         SinglePass::new(gl, Layout::Layered, settings, options)
     }
@@ -61,48 +72,130 @@ impl SinglePass {
         layout: Layout,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<SinglePass, GlError> {
-        Ok(SinglePass {
-            layout,
-            g_buffer: GBuffer::new(gl, layout, [1, 1], DepthConvention::Standard)?,
-            light: LightTargets::new(gl, [1, 1], settings)?,
-            image: FinishTargets::new(gl, [1, 1], settings)?,
-            finish: Finish::new(gl, settings, options.anti_aliasing != AntiAliasing::Off)?,
-        })
+    ) -> Result<SinglePass<T>, GlError> {
+        let finish = Finish::new(gl, settings, options)?;
+        Ok(SinglePass { targets: T::new(gl, layout, settings)?, finish })
     }
 }
 
-impl StereoMethod for SinglePass {
-    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        let role = Role::of_eye(self.layout, [1, 1], Eye::Left).kind();
-        Ok(renderer.prepare(scene, self.layout, &[role])?)
+impl<T: PairTargets> FrameMethod for SinglePass<T> {
+    type Renderer = T::Renderer;
+
+    fn compile(&mut self, renderer: &mut T::Renderer, scene: &GpuScene) -> Result<(), GlError> {
+        self.targets.compile(renderer, scene)
     }
 
-    fn render_to(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.prepare(renderer, scene)?;
+    fn render_frame(&mut self, frame: &Frame<T::Renderer>) -> Result<(), StereoError> {
+        let views = Eye::BOTH.map(|eye| frame.pair.view(eye));
+        self.targets.draw(frame, &views)?;
+        for eye in Eye::BOTH {
+            self.finish.run(&self.targets.eye(frame, &views[eye.index()], eye)?, frame.to(eye));
+        }
+        Ok(())
+    }
+}
+
+/// The g-buffer of both eyes.
+pub(super) struct DeferredPair {
+    layout: Layout,
+    g_buffer: GBuffer,
+    /// Of the eye that is being lit.
+    light: LightTargets,
+    image: FinishTargets,
+}
+
+impl PairTargets for DeferredPair {
+    type Renderer = DeferredRenderer;
+
+    fn new(gl: &Rc<Context>, layout: Layout, settings: &RenderSettings) -> Result<DeferredPair, GlError> {
+        Ok(DeferredPair {
+            layout,
+            g_buffer: GBuffer::new(gl, layout)?,
+            light: LightTargets::new(gl, settings)?,
+            image: FinishTargets::new(gl, settings)?,
+        })
+    }
+
+    fn compile(&self, renderer: &mut DeferredRenderer, scene: &GpuScene) -> Result<(), GlError> {
+        let role = Role::of_eye(self.layout, [1, 1], Eye::Left).kind();
+        renderer.prepare(scene, self.layout, &[role])
+    }
+
+    fn draw(&mut self, frame: &Frame<DeferredRenderer>, views: &[View; 2]) -> Result<(), GlError> {
+        let pair = frame.pair;
         self.g_buffer.fit(pair.size, pair.depth.convention)?;
         self.light.resize(pair.size)?;
         self.image.resize(pair.size)?;
-        let views = Eye::BOTH.map(|eye| pair.view(eye));
-        renderer.draw(&self.g_buffer, scene, &views, Some([pair.depth.near, pair.depth.far]), |_| {});
-        for eye in Eye::BOTH {
-            let view = &views[eye.index()];
-            let role = Role::of_eye(self.layout, pair.size, eye);
-            renderer.light(&self.light, &self.g_buffer, scene, view, role);
-            renderer.finish(&self.image, &self.light);
-            let depth = DepthImage {
-                texture: self.g_buffer.target().depth(),
-                origin: self.layout.origin(pair.size, eye),
-                layer: (self.layout == Layout::Layered).then_some(eye.index() as u32),
-            };
-            self.finish.eye(renderer, scene, view, self.image.color(), depth, &to[eye.index()])?;
-        }
+        let all = Some([pair.depth.near, pair.depth.far]);
+        frame.renderer.draw(&self.g_buffer, frame.scene, views, all, |_| {});
         Ok(())
+    }
+
+    fn eye(
+        &mut self,
+        frame: &Frame<DeferredRenderer>,
+        view: &View,
+        eye: Eye,
+    ) -> Result<EyeImage<'_>, GlError> {
+        let (renderer, scene) = (frame.renderer, frame.scene);
+        let role = Role::of_eye(self.layout, view.size, eye);
+        renderer.light(&self.light, &self.g_buffer, scene, view, role);
+        renderer.finish(&self.image, &self.light);
+        let depth = DepthImage {
+            texture: self.g_buffer.target().depth(),
+            origin: self.layout.origin(view.size, eye),
+            layer: (self.layout == Layout::Layered).then_some(eye.index() as u32),
+        };
+        let color = self.image.color();
+        renderer.draw_transparent(&Destination::whole(color), depth, scene, view);
+        Ok(EyeImage { color, origin: [0, 0], depth: Some(depth) })
+    }
+}
+
+/// The samples of both eyes.
+pub(super) struct ForwardPair {
+    targets: ForwardTargets,
+    /// An eye by itself, for anti-aliasing that looks beyond its border.
+    alone: Option<RenderTarget>,
+}
+
+impl PairTargets for ForwardPair {
+    type Renderer = ForwardRenderer;
+
+    fn new(gl: &Rc<Context>, layout: Layout, settings: &RenderSettings) -> Result<ForwardPair, GlError> {
+        let formats = [(Format::Rgba8, Filter::Linear)];
+        let alone = (settings.samples() == 1).then(|| RenderTarget::new(gl, [1, 1], &formats, None));
+        let targets = ForwardTargets::new(gl, layout, settings)?;
+        Ok(ForwardPair { targets, alone: alone.transpose()? })
+    }
+
+    fn compile(&self, renderer: &mut ForwardRenderer, scene: &GpuScene) -> Result<(), GlError> {
+        renderer.prepare(scene, self.targets.layout())
+    }
+
+    fn draw(&mut self, frame: &Frame<ForwardRenderer>, views: &[View; 2]) -> Result<(), GlError> {
+        let wants_depth = Eye::BOTH.iter().any(|eye| frame.wants_depth(*eye));
+        frame.renderer.render_both(&mut self.targets, frame.scene, views, wants_depth)
+    }
+
+    fn eye(
+        &mut self,
+        frame: &Frame<ForwardRenderer>,
+        view: &View,
+        eye: Eye,
+    ) -> Result<EyeImage<'_>, GlError> {
+        frame.renderer.develop(&self.targets, view, eye, false);
+        let mut color = self.targets.color();
+        let mut origin = self.targets.origin(view.size, eye);
+        if let Some(alone) = &mut self.alone {
+            alone.resize(view.size)?;
+            color.copy_color(origin, &Destination::whole(alone));
+            (color, origin) = (alone, [0, 0]);
+        }
+        let depth = frame.wants_depth(eye).then(|| {
+            let origin = self.targets.layout().origin(view.size, eye);
+            DepthImage { origin, ..DepthImage::whole(self.targets.depth()) }
+        });
+        Ok(EyeImage { color, origin, depth })
     }
 }

@@ -2,33 +2,41 @@
 
 use std::rc::Rc;
 
+use super::StereoRenderer;
 use super::conventional::Conventional;
 use super::finish::Finish;
+use super::frame::{Frame, FrameMethod};
 use super::guard_band::AutoGuardBand;
-use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
-use super::near_field::{Composite, DepthMap, NearFraction};
+use super::method::{GuardBandUse, StereoError};
+use super::near_field::{DepthMap, NearFraction};
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
-use super::options::{AntiAliasing, StereoOptions};
-use crate::render::{DepthImage, GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
-use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
+use super::options::{AntiAliasing, PipelineOptions, StereoOptions};
+use super::overlay::{Over, Overlay, Smooth};
+use crate::render::{GpuScene, KeptSamples, PixelDepth, RenderSettings, Selection, ViewImages, ViewRequest};
+use yoro::eyes::{GuardBand, SynthesisViews};
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
 /// One render (with a guard band), one synthesis; near objects and mostly near frames as [`StereoOptions`] say.
-pub struct Yoro {
-    gl: Rc<Context>,
+pub struct Synthesized<R: StereoRenderer> {
     options: StereoOptions,
     edges: Edges,
-    targets: ViewTargets,
-    /// Without and with depth of the synthesized eye; those that were asked for so far.
-    synthesizers: [Option<Synthesizer>; 2],
+    targets: R::Targets,
+    synthesizers: Synthesizers,
     auto_guard_band: Option<AutoGuardBand>,
-    /// The rendered eye after anti-aliasing, when that comes before synthesis.
-    smooth: Option<RenderTarget>,
-    before: Finish,
-    after: Finish,
-    near_layer: Option<NearLayer>,
-    switch: Option<Switch>,
+    /// Where anti-aliasing comes before synthesis.
+    smooth: Option<Smooth>,
+    overlay: R::Overlay,
+    finish: Finish,
+    switch: Option<Switch<R>>,
+}
+
+/// Pipelines without and with depth of the synthesized eye: those that were asked for so far.
+struct Synthesizers {
+    gl: Rc<Context>,
+    options: PipelineOptions,
+    edges: Edges,
+    made: [Option<Synthesizer>; 2],
 }
 
 /// A pipeline, and what it writes: the synthesized eye before transparent objects and anti-aliasing.
@@ -37,43 +45,31 @@ struct Synthesizer {
     image: RenderTarget,
 }
 
-/// The hybrid near field of the deferred renderer: its own targets for the near objects, and for what they are composited
-/// into.
-struct NearLayer {
-    targets: ViewTargets,
-    composite: Composite,
-    /// Dominant eye with guard band, other eye.
-    layers: [RenderTarget; 2],
-}
-
 /// The automatic switch to two real renders.
-struct Switch {
+struct Switch<R: StereoRenderer> {
     policy: NearFieldPolicy,
     mode: FrameMode,
     fraction: NearFraction,
-    conventional: Conventional,
+    conventional: Conventional<R>,
 }
 
-fn layer(gl: &Rc<Context>, depth: bool) -> Result<RenderTarget, GlError> {
-    // A float depth texture can hold both conventions.
-    let depth = depth.then_some(Format::Depth32F);
-    RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], depth)
-}
-
-impl Synthesizer {
-    fn new(
-        gl: &Rc<Context>,
-        options: &StereoOptions,
-        edges: Edges,
-        depth: bool,
-    ) -> Result<Synthesizer, GlError> {
+impl Synthesizers {
+    /// Returns the pipeline with depth or without, which is made if there is none yet.
+    fn get(&mut self, depth: bool) -> Result<&mut Synthesizer, GlError> {
+        let slot = &mut self.made[usize::from(depth)];
+        if let Some(made) = slot {
+            return Ok(made);
+        }
         let outputs = Outputs { depth, ..Outputs::default() };
-        let synthesis = options.synthesis.create(gl, edges, outputs)?;
-        Ok(Synthesizer { synthesis, image: layer(gl, depth)? })
+        // A float depth texture can hold both conventions.
+        let format = depth.then_some(Format::Depth32F);
+        let image = RenderTarget::new(&self.gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], format)?;
+        let synthesis = self.options.create(&self.gl, self.edges, outputs)?;
+        Ok(slot.insert(Synthesizer { synthesis, image }))
     }
 }
 
-impl Yoro {
+impl<R: StereoRenderer> Synthesized<R> {
     /// Compiles the pipeline and makes the targets.
     ///
     /// # Errors
@@ -82,15 +78,7 @@ impl Yoro {
         gl: &Rc<Context>,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<Yoro, GlError> {
-        let targets = || ViewTargets::new(gl, [1, 1], DepthConvention::Standard, settings);
-        let smooth = (options.anti_aliasing == AntiAliasing::Before && settings.samples() == 1)
-            .then(|| RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None));
-        let layered = options.near_field.filter(|_| !settings.is_forward());
-        let near_layer = layered.map(|_| -> Result<_, GlError> {
-            let layers = [layer(gl, true)?, layer(gl, true)?];
-            Ok(NearLayer { targets: targets()?, composite: Composite::new(gl)?, layers })
-        });
+    ) -> Result<Synthesized<R>, GlError> {
         let edges = options.edges(settings, gl.capabilities())?;
         let reads_samples = edges == Edges::Multisample && gl.capabilities().multisample_textures;
         let switch = options.policy.map(|policy| -> Result<_, GlError> {
@@ -101,36 +89,71 @@ impl Yoro {
                 conventional: Conventional::new(gl, settings, options)?.keeping_depth(),
             })
         });
-        let mut source = targets()?;
-        source.set_first_sample(edges == Edges::Sample);
-        let auto = matches!(options.guard_band, GuardBand::Auto(_)).then(|| AutoGuardBand::new(gl));
-        let mut yoro = Yoro {
-            gl: gl.clone(),
-            options: *options,
+        let has_near = options.near_field.is_some();
+        let is_smooth = options.anti_aliasing == AntiAliasing::Before && settings.samples() == 1;
+        let is_auto = matches!(options.guard_band, GuardBand::Auto(_));
+        let options = *options;
+        let mut synthesizers =
+            Synthesizers { gl: gl.clone(), options: options.synthesis, edges, made: [None, None] };
+        synthesizers.get(has_near)?;
+        Ok(Synthesized {
+            options,
             edges,
-            targets: source,
-            synthesizers: [None, None],
-            auto_guard_band: auto.transpose()?,
-            smooth: smooth.transpose()?,
-            before: Finish::new(gl, settings, options.anti_aliasing == AntiAliasing::Before)?,
-            after: Finish::new(gl, settings, options.anti_aliasing == AntiAliasing::After)?,
-            near_layer: near_layer.transpose()?,
+            targets: R::targets(gl, settings)?,
+            synthesizers,
+            auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
+            smooth: is_smooth.then(|| Smooth::new(gl)).transpose()?,
+            overlay: R::Overlay::new(gl, settings, has_near)?,
+            finish: Finish::smoothing(gl, settings, options.anti_aliasing == AntiAliasing::After)?,
             switch: switch.transpose()?,
+        })
+    }
+
+    /// Renders both eyes if the last frames were mostly too near; true if it did.
+    fn render_both(&mut self, frame: &Frame<R>) -> Result<bool, StereoError> {
+        let Some(switch) = &mut self.switch else { return Ok(false) };
+        if let Some(fraction) = switch.fraction.take() {
+            switch.mode = switch.policy.next(switch.mode, fraction);
+        }
+        if switch.mode != FrameMode::BothRendered {
+            return Ok(false);
+        }
+        if let Some(auto) = &mut self.auto_guard_band {
+            auto.interrupt();
+        }
+        switch.conventional.render_frame(frame)?;
+        let (pair, depth) = (frame.pair, DepthMap::Resolved(switch.conventional.depth()));
+        switch.fraction.measure(depth, [0, 0], pair.size, &pair.depth, switch.policy.distance);
+        Ok(true)
+    }
+
+    /// Renders the dominant eye, without near objects, as far as it is seen.
+    fn render_dominant(
+        &mut self,
+        frame: &Frame<R>,
+        views: &SynthesisViews,
+        over: &Over,
+    ) -> Result<(), GlError> {
+        let from = frame.pair.middle();
+        let near_field = self.options.near_field;
+        let multisample = self.edges == Edges::Multisample;
+        // With near objects, which are drawn after synthesis, another depth is handed on.
+        let hands_on = frame.wants_depth(frame.pair.dominant) && near_field.is_none();
+        let reads_depth = !multisample || self.auto_guard_band.is_some() || hands_on;
+        let request = ViewRequest {
+            selection: near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance }),
+            columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(frame.pair, views)),
+            depth: match self.edges {
+                _ if !reads_depth => PixelDepth::Unread,
+                Edges::Sample => PixelDepth::FirstSample,
+                _ => PixelDepth::Nearest,
+            },
+            samples: KeptSamples { color: over.is_any(), depth: over.is_any() || multisample },
         };
-        yoro.make_synthesizer(options.near_field.is_some())?;
-        Ok(yoro)
-    }
-
-    /// Whether something is drawn over the synthesized eye, tested against its depth.
-    fn goes_on(&self, scene: &GpuScene) -> bool {
-        scene.has_transparent() || self.options.near_field.is_some()
-    }
-
-    /// Makes the pipeline with or without depth, if there is none yet.
-    fn make_synthesizer(&mut self, depth: bool) -> Result<(), GlError> {
-        let slot = &mut self.synthesizers[usize::from(depth)];
-        if slot.is_none() {
-            *slot = Some(Synthesizer::new(&self.gl, &self.options, self.edges, depth)?);
+        frame.renderer.render(&mut self.targets, frame.scene, &views.source, &request)?;
+        if let Some(smooth) = &mut self.smooth {
+            smooth.image.resize(views.source.size)?;
+            smooth.run(self.targets.color());
         }
         Ok(())
     }
@@ -140,196 +163,64 @@ impl Yoro {
         self.targets.depth_samples().filter(|_| self.edges == Edges::Multisample)
     }
 
-    /// Renders the dominant eye and synthesizes the other, with its depth or without. `to`: where the dominant eye is
-    /// wanted.
-    fn synthesize(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        views: &SynthesisViews,
-        depth: bool,
-        to: &EyeTarget,
-    ) -> Result<(), StereoError> {
-        let from = pair.middle();
-        let selection = match self.options.near_field {
-            Some(distance) => Selection::Farther { from, distance },
-            None => Selection::All,
-        };
-        let goes_on = self.goes_on(scene);
-        self.make_synthesizer(depth)?;
-        let columns = self.auto_guard_band.as_mut().map(|auto| auto.columns(pair, views));
-        self.targets.set_columns(columns);
-        let multisample = self.edges == Edges::Multisample;
-        self.targets.keep_samples(goes_on, goes_on || multisample);
-        // With near objects, which are drawn after synthesis, another depth is handed on.
-        let handed_on = to.depth.is_some() && self.options.near_field.is_none();
-        self.targets.keep_depth(!multisample || self.auto_guard_band.is_some() || handed_on);
-        renderer.render(&mut self.targets, scene, &views.source, selection)?;
-        let mut color = self.targets.color();
-        if let Some(smooth) = &mut self.smooth {
-            smooth.resize(views.source.size)?;
-            self.before.color(self.targets.color_target(), [0, 0], &Destination::whole(smooth));
-            color = smooth.color(0);
-        }
-        let source = Source {
-            color: color.raw(),
-            depth: self.depth_samples().unwrap_or_else(|| self.targets.depth().raw()),
-            samples: self.targets.color_samples(),
-        };
-        if let Some(Synthesizer { synthesis, image }) = &mut self.synthesizers[usize::from(depth)] {
-            image.resize(pair.size)?;
-            synthesis.synthesize(source, &views.warp, &Destination::whole(image))?;
-        }
+    /// Starts to measure what later frames depend on: how wide the guard band must be, and how much of the view is near.
+    fn measure(&mut self, frame: &Frame<R>, views: &SynthesisViews) {
+        let samples = self.depth_samples();
         if let Some(auto) = &mut self.auto_guard_band {
             auto.measure(self.targets.depth(), views);
         }
-        Ok(())
-    }
-}
-
-impl Yoro {
-    /// Draws near objects and transparent ones into the samples of the rendered eye, then into those of the other eye,
-    /// which begins as it was synthesized; ends both eyes. `depth`: as for [`Yoro::synthesize`].
-    fn complete_forward(
-        &mut self,
-        renderer: &Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        views: &SynthesisViews,
-        depth: bool,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        let Some(Synthesizer { image: other, .. }) = &self.synthesizers[usize::from(depth)] else {
-            return Ok(());
-        };
-        let from = pair.middle();
-        let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
-        let goes_on = self.goes_on(scene);
-        let [dominant_to, other_to] = [pair.dominant, pair.dominant.other()].map(|eye| &to[eye.index()]);
-        let near_depth = |to: &EyeTarget| near.is_some() && to.depth.is_some();
-        // The eye is rendered once more from here on, and smoothed again if it was before.
-        if goes_on {
-            renderer.go_on(&self.targets, scene, &views.source, near, near_depth(dominant_to))?;
-        }
-        let dominant = match &self.smooth {
-            Some(smooth) => {
-                if goes_on {
-                    let whole = Destination::whole(smooth);
-                    self.before.color(self.targets.color_target(), [0, 0], &whole);
-                }
-                smooth
-            }
-            None => self.targets.color_target(),
-        };
-        self.after.color(dominant, views.dominant_crop, &dominant_to.color);
-        let origin = views.dominant_crop;
-        Finish::depth(|| DepthImage { origin, ..DepthImage::whole(self.targets.depth()) }, dominant_to);
-        if goes_on {
-            let depth = near_depth(other_to);
-            renderer.go_on_with(&self.targets, other, scene, &views.target, near, depth)?;
-        }
-        self.after.color(other, [0, 0], &other_to.color);
-        Finish::depth(|| DepthImage::whole(other.depth()), other_to);
-        Ok(())
-    }
-}
-
-impl Yoro {
-    /// Composites near objects, draws transparent ones over both eyes, and ends both. `depth`: as for
-    /// [`Yoro::synthesize`].
-    fn complete_deferred(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        views: &SynthesisViews,
-        depth: bool,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        let Some(Synthesizer { image, .. }) = &self.synthesizers[usize::from(depth)] else { return Ok(()) };
-        let mut dominant = self.smooth.as_ref().unwrap_or(self.targets.color_target());
-        let mut dominant_depth = self.targets.depth();
-        let mut other = image;
-        if let (Some(near), Some(distance)) = (&mut self.near_layer, self.options.near_field) {
-            let selection = Selection::Nearer { from: pair.middle(), distance };
-            let far = [(dominant.color(0), dominant_depth), (other.color(0), other.depth())];
-            for (i, view) in [&views.source, &views.target].into_iter().enumerate() {
-                renderer.render(&mut near.targets, scene, view, selection)?;
-                near.layers[i].resize(view.size)?;
-                near.composite.run(far[i], &near.targets, pair.depth.convention, &near.layers[i]);
-            }
-            dominant = &near.layers[0];
-            dominant_depth = near.layers[0].depth();
-            other = &near.layers[1];
-        }
-        // From here on nothing reads the guard band.
-        let origins = [views.dominant_crop, [0, 0]];
-        let eyes = [pair.dominant, pair.dominant.other()];
-        if scene.has_transparent() {
-            let images = [(dominant, dominant_depth), (other, other.depth())];
-            for (((image, depth), origin), eye) in images.into_iter().zip(origins).zip(eyes) {
-                // Depth is read in the shader, so only the colour of the layer may be attached.
-                let onto = Destination { origin, size: pair.size, ..image.color_only() };
-                let depth = DepthImage { origin, ..DepthImage::whole(depth) };
-                renderer.draw_transparent(&onto, depth, scene, &pair.view(eye))?;
-            }
-        }
-        let [dominant_to, other_to] = eyes.map(|eye| &to[eye.index()]);
-        self.after.color(dominant, views.dominant_crop, &dominant_to.color);
-        let cropped = DepthImage { origin: views.dominant_crop, ..DepthImage::whole(dominant_depth) };
-        Finish::depth(|| cropped, dominant_to);
-        self.after.color(other, [0, 0], &other_to.color);
-        Finish::depth(|| DepthImage::whole(other.depth()), other_to);
-        Ok(())
-    }
-}
-
-impl StereoMethod for Yoro {
-    fn prepare(&mut self, _renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        Ok(self.make_synthesizer(self.goes_on(scene))?)
-    }
-
-    fn render_to(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        if let Some(switch) = &mut self.switch {
-            if let Some(fraction) = switch.fraction.take() {
-                switch.mode = switch.policy.next(switch.mode, fraction);
-            }
-            if switch.mode == FrameMode::BothRendered {
-                if let Some(auto) = &mut self.auto_guard_band {
-                    auto.interrupt();
-                }
-                switch.conventional.render_to(renderer, scene, pair, to)?;
-                let depth = DepthMap::Resolved(switch.conventional.depth());
-                switch.fraction.measure(depth, [0, 0], pair.size, &pair.depth, switch.policy.distance);
-                return Ok(());
-            }
-        }
-        let views = pair.synthesis(self.options.guard_band)?;
-        let reads_depth = self.goes_on(scene) || to[pair.dominant.other().index()].depth.is_some();
-        let dominant_to = &to[pair.dominant.index()];
-        self.synthesize(renderer, scene, pair, &views, reads_depth, dominant_to)?;
-        let samples = self.depth_samples();
         if let Some(switch) = &mut self.switch {
             // Of the far layer alone when near objects have their own: what they hide is not too near.
             let resolved = || DepthMap::Resolved(self.targets.depth());
             let depth = samples.map_or_else(resolved, DepthMap::Samples);
-            let distance = switch.policy.distance;
+            let (pair, distance) = (frame.pair, switch.policy.distance);
             switch.fraction.measure(depth, views.dominant_crop, pair.size, &pair.depth, distance);
         }
-        match renderer.settings().is_forward() {
-            true => self.complete_forward(renderer, scene, pair, &views, reads_depth, to),
-            false => self.complete_deferred(renderer, scene, pair, &views, reads_depth, to),
-        }
+    }
+}
+
+impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
+    type Renderer = R;
+
+    fn compile(&mut self, _renderer: &mut R, scene: &GpuScene) -> Result<(), GlError> {
+        let depth = scene.has_transparent() || self.options.near_field.is_some();
+        self.synthesizers.get(depth)?;
+        Ok(())
     }
 
-    fn guard_band(&self) -> Option<GuardBandUse> {
+    fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
+        if self.render_both(frame)? {
+            return Ok(());
+        }
+        let pair = frame.pair;
+        let [dominant, other] = [pair.dominant, pair.dominant.other()];
+        let views = pair.synthesis(self.options.guard_band)?;
+        let from = pair.middle();
+        let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
+        let over = Over { near, transparent: frame.scene.has_transparent() };
+        self.render_dominant(frame, &views, &over)?;
+        let depth_samples = self.depth_samples();
+        let color = self.smooth.as_ref().map_or(self.targets.color(), |smooth| &smooth.image);
+        let source = Source {
+            color: color.color(0).raw(),
+            depth: depth_samples.unwrap_or_else(|| self.targets.depth().raw()),
+            samples: self.targets.color_samples(),
+        };
+        let Synthesizer { synthesis, image } =
+            self.synthesizers.get(over.is_any() || frame.wants_depth(other))?;
+        image.resize(pair.size)?;
+        synthesis.synthesize(source, &views.warp, &Destination::whole(image))?;
+        self.measure(frame, &views);
+        let (targets, smooth) = (&self.targets, self.smooth.as_ref());
+        let rendered = self.overlay.over_rendered(frame, &views, &over, targets, smooth)?;
+        self.finish.run(&rendered, frame.to(dominant));
+        let image = &self.synthesizers.get(over.is_any() || frame.wants_depth(other))?.image;
+        let synthesized = self.overlay.over_synthesized(frame, &views, &over, targets, image)?;
+        self.finish.run(&synthesized, frame.to(other));
+        Ok(())
+    }
+
+    fn guard_band_use(&self) -> Option<GuardBandUse> {
         self.auto_guard_band.as_ref()?.last()
     }
 }

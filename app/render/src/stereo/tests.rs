@@ -9,7 +9,8 @@ use super::near_field_policy::NearFieldPolicy;
 use super::*;
 use crate::fixture::quad;
 use crate::render::{
-    Columns, DepthCopy, GpuScene, Layout, Renderer, RendererKind, Seam, Selection, ViewTargets,
+    Columns, DepthCopy, GpuScene, KeptSamples, Layout, PixelDepth, Renderer, RendererKind, Seam, ViewImages,
+    ViewRequest,
 };
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews};
 use yoro::synthesis::{self, Edges, Outputs, Source, SynthesisOptions};
@@ -96,13 +97,14 @@ fn every_seam_separates_the_eyes() {
         let settings = RenderSettings { shadow_map_size: 256, ..RenderSettings::default() };
         let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
         let mut rig = Rig::new(gl, &settings);
-        let mut conventional = Conventional::new(gl, &settings, &options).unwrap();
+        let mut conventional = Conventional::<DeferredRenderer>::new(gl, &settings, &options).unwrap();
         for seam in [Seam::ClipDistance, Seam::Discard] {
             if seam == Seam::ClipDistance && !gl.capabilities().clip_distances {
                 eprintln!("SKIPPED: {backend:?} has no clip distances");
                 continue;
             }
-            let mut method = SinglePass::new(gl, Layout::DoubleWide(seam), &settings, &options).unwrap();
+            let mut method =
+                SinglePass::<DeferredPair>::new(gl, Layout::DoubleWide(seam), &settings, &options).unwrap();
             for size in [SIZE, [97, 60]] {
                 let pair = EyePair { size, ..pair(Eye::Left, DepthConvention::Reversed) };
                 let expected = rig.render(&mut conventional, &pair);
@@ -123,7 +125,7 @@ fn disocclusions_are_shaded_as_by_two_renders_and_the_rest_is_close() {
     let gl = head.gl();
     let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
     let mut rig = Rig::new(gl, &local());
-    let mut conventional = Conventional::new(gl, &local(), &options).unwrap();
+    let mut conventional = Conventional::<DeferredRenderer>::new(gl, &local(), &options).unwrap();
     let mut method = ShadingReprojection::new(gl, &local(), &options).unwrap();
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
         for dominant in Eye::BOTH {
@@ -174,7 +176,7 @@ fn ambient_occlusion_is_right_at_the_rims_of_disocclusions() {
     for ssao_half_size in [false, true] {
         let settings = RenderSettings { ssao: true, ssao_half_size, ..local() };
         let mut rig = Rig::new(gl, &settings);
-        let mut conventional = Conventional::new(gl, &settings, &options).unwrap();
+        let mut conventional = Conventional::<DeferredRenderer>::new(gl, &settings, &options).unwrap();
         let mut method = ShadingReprojection::new(gl, &settings, &options).unwrap();
         let pair = pair(Eye::Right, DepthConvention::Standard);
         let expected = rig.render(&mut conventional, &pair);
@@ -194,8 +196,8 @@ fn mono_shows_each_eye_its_own_part_of_the_view() {
     let (gl, settings) = (head.gl(), local());
     let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
     let mut rig = Rig::new(gl, &settings);
-    let mut conventional = Conventional::new(gl, &settings, &options).unwrap();
-    let mut mono = Mono::new(gl, &settings, &options).unwrap();
+    let mut conventional = Conventional::<DeferredRenderer>::new(gl, &settings, &options).unwrap();
+    let mut mono = Mono::<DeferredRenderer>::new(gl, &settings, &options).unwrap();
     let plain = pair(Eye::Right, DepthConvention::Standard);
     let [left, right] = rig.render(&mut mono, &plain);
     assert!(left == right, "the same image where the frusta are the same");
@@ -239,12 +241,12 @@ fn a_band_as_wide_as_it_must_be_gives_the_picture_of_a_whole_one() {
             asymmetric.frusta[0].left *= 1.2;
             asymmetric.frusta[1].right *= 1.2;
             for pair in [pair(dominant, DepthConvention::Standard), asymmetric.evened()] {
-                let mut method = Yoro::new(gl, &settings, &auto_band()).unwrap();
+                let mut method = create(gl, Method::Yoro, &settings, &auto_band()).unwrap();
                 // What a frame shows is known two frames later.
-                let [whole, _, part] = [(); 3].map(|()| rig.render(&mut method, &pair));
+                let [whole, _, part] = [(); 3].map(|()| rig.render(&mut *method, &pair));
                 let looked = method.guard_band().unwrap();
                 assert!(looked.columns == looked.most && looked.most > 30, "{looked:?}");
-                (0..2).for_each(|_| drop(rig.render(&mut method, &pair)));
+                (0..2).for_each(|_| drop(rig.render(&mut *method, &pair)));
                 let used = method.guard_band().unwrap();
                 assert!(used.columns > 3 && used.columns < 20 && used.undrawn == 0, "{used:?}");
                 let [rendered, other] = [dominant, dominant.other()].map(Eye::index);
@@ -265,7 +267,7 @@ fn a_head_that_moves_sees_what_a_whole_band_shows() {
     let whole = StereoOptions { guard_band: GuardBand::Distance(0.2), ..StereoOptions::default() };
     for (dominant, sense) in [(Eye::Left, 1.0), (Eye::Left, -1.0), (Eye::Right, 1.0), (Eye::Right, -1.0)] {
         let [mut whole, mut auto] =
-            [whole, auto_band()].map(|options| Yoro::new(gl, &local(), &options).unwrap());
+            [whole, auto_band()].map(|options| create(gl, Method::Yoro, &local(), &options).unwrap());
         let mut narrow = 0;
         for frame in 0..20 {
             // 0.4 degrees and 3 mm a frame.
@@ -276,8 +278,8 @@ fn a_head_that_moves_sees_what_a_whole_band_shows() {
             };
             let still = pair(dominant, DepthConvention::Standard);
             let moved = EyePair::parallel(pose, still.frusta[0], still.ipd(), still.depth, SIZE, dominant);
-            let expected = rig.render(&mut whole, &moved);
-            let images = rig.render(&mut auto, &moved);
+            let expected = rig.render(&mut *whole, &moved);
+            let images = rig.render(&mut *auto, &moved);
             let [rendered, other] = [dominant, dominant.other()].map(Eye::index);
             assert!(images[rendered] == expected[rendered], "{dominant:?}, frame {frame}");
             let share = equal_share(&images[other], &expected[other]);
@@ -310,16 +312,16 @@ fn what_comes_to_the_border_is_filled_counted_and_drawn_two_frames_later() {
             Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() }
         });
         let pair = pair(Eye::Right, DepthConvention::Standard);
-        let mut method = Yoro::new(gl, &settings, &auto_band()).unwrap();
+        let mut method = create(gl, Method::Yoro, &settings, &auto_band()).unwrap();
         for _ in 0..5 {
-            rigs[0].render(&mut method, &pair);
+            rigs[0].render(&mut *method, &pair);
         }
         let narrow = method.guard_band().unwrap();
         assert!(narrow.columns <= 10 && narrow.undrawn == 0, "{narrow:?}");
-        let [[filled, _], _, [drawn, _]] = [(); 3].map(|()| rigs[1].render(&mut method, &pair));
+        let [[filled, _], _, [drawn, _]] = [(); 3].map(|()| rigs[1].render(&mut *method, &pair));
         let used = method.guard_band().unwrap();
         assert!(used.columns <= 10 && used.undrawn > 500, "{renderer:?}: {used:?}");
-        (0..2).for_each(|_| drop(rigs[1].render(&mut method, &pair)));
+        (0..2).for_each(|_| drop(rigs[1].render(&mut *method, &pair)));
         let used = method.guard_band().unwrap();
         assert!(used.columns >= 20 && used.undrawn == 0, "{renderer:?}: {used:?}");
         // The board goes on to the border, as it does where it was drawn.
@@ -376,15 +378,15 @@ fn the_nearest_depth_is_taken_of_the_samples_where_something_reads_it() {
         (of(Edges::Hard), nobody, 1),
         (of(Edges::Sample), nobody, 0),
     ] {
-        let mut method = Yoro::new(gl, &forward(), &options).unwrap();
-        let taken = depths_taken(gl, &mut rig, &mut method, wanted);
+        let mut method = create(gl, Method::Yoro, &forward(), &options).unwrap();
+        let taken = depths_taken(gl, &mut rig, &mut *method, wanted);
         assert_eq!(taken, expected, "{wanted:?}, {options:?}");
     }
     // Everything is too near: the third frame is rendered twice, and the switch reads the dominant eye's depth.
     let policy = Some(NearFieldPolicy { distance: 400.0, ..NearFieldPolicy::default() });
-    let mut method = Yoro::new(gl, &forward(), &StereoOptions { policy, ..plain }).unwrap();
+    let mut method = create(gl, Method::Yoro, &forward(), &StereoOptions { policy, ..plain }).unwrap();
     assert_eq!(
-        [nobody, nobody, nobody, both].map(|wanted| depths_taken(gl, &mut rig, &mut method, wanted)),
+        [nobody, nobody, nobody, both].map(|wanted| depths_taken(gl, &mut rig, &mut *method, wanted)),
         [0, 0, 1, 2]
     );
     assert_eq!(gl.take_errors(), None);
@@ -397,9 +399,9 @@ fn whoever_reads_the_nearest_depth_changes_no_picture() {
     for near_field in [None, Some(1.6)] {
         let options = StereoOptions { near_field, ..StereoOptions::default() };
         let mut rig = Rig::new(gl, &forward());
-        let mut method = Yoro::new(gl, &forward(), &options).unwrap();
+        let mut method = create(gl, Method::Yoro, &forward(), &options).unwrap();
         let [unread, read] = [[false; 2], [true; 2]].map(|wanted| {
-            depths_taken(gl, &mut rig, &mut method, wanted);
+            depths_taken(gl, &mut rig, &mut *method, wanted);
             Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE))
         });
         assert!(unread == read, "{near_field:?}");
@@ -412,11 +414,13 @@ fn the_first_samples_tell_how_much_is_near_as_the_nearest_do() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
-        let rig = Rig::new(gl, &forward());
-        let mut targets = ViewTargets::new(gl, SIZE, convention, &forward()).unwrap();
-        targets.keep_samples(false, true);
+        let scene = GpuScene::upload(gl, scene()).unwrap();
+        let renderer = ForwardRenderer::new(gl, &forward(), &scene).unwrap();
+        let mut targets = ForwardRenderer::targets(gl, &forward()).unwrap();
         let view = pair(Eye::Left, convention).view(Eye::Left);
-        rig.renderer.render(&mut targets, &rig.scene, &view, Selection::All).unwrap();
+        let samples = KeptSamples { color: false, depth: true };
+        let request = ViewRequest { samples, ..ViewRequest::default() };
+        renderer.render(&mut targets, &scene, &view, &request).unwrap();
         let samples = DepthMap::Samples(targets.depth_samples().unwrap());
         let mut fraction = NearFraction::new(gl, true).unwrap();
         let [first, nearest] = [samples, DepthMap::Resolved(targets.depth())].map(|depth| {
@@ -431,19 +435,18 @@ fn the_first_samples_tell_how_much_is_near_as_the_nearest_do() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Both eyes as [`Yoro`] makes them of samples, of which only some columns are drawn: the rendered one, the other one.
+/// Both eyes as [`Synthesized`] makes them of samples when only some columns are drawn: the rendered one, the other one.
 fn of_columns(
     gl: &Rc<Context>,
-    (renderer, scene): (&Renderer, &GpuScene),
+    (renderer, scene): (&ForwardRenderer, &GpuScene),
     pair: &EyePair,
     views: &SynthesisViews,
     columns: Option<Columns>,
 ) -> [Vec<u8>; 2] {
-    let mut targets = ViewTargets::new(gl, SIZE, pair.depth.convention, renderer.settings()).unwrap();
-    targets.set_columns(columns);
-    targets.keep_samples(true, true);
-    targets.keep_depth(false);
-    renderer.render(&mut targets, scene, &views.source, Selection::All).unwrap();
+    let mut targets = ForwardRenderer::targets(gl, &forward()).unwrap();
+    let (depth, samples) = (PixelDepth::Unread, KeptSamples { color: true, depth: true });
+    let request = ViewRequest { columns, depth, samples, ..ViewRequest::default() };
+    renderer.render(&mut targets, scene, &views.source, &request).unwrap();
     let (depth, samples) = (targets.depth_samples().unwrap(), targets.color_samples());
     assert!(samples.is_some(), "nothing is added to their average");
     let options = SynthesisOptions { edges: Edges::Multisample, ..SynthesisOptions::default() };
@@ -451,11 +454,11 @@ fn of_columns(
         synthesis::create(gl, &options, Outputs { depth: true, ..Outputs::default() }).unwrap();
     let formats = [(Format::Rgba8, Filter::Linear)];
     let other = RenderTarget::new(gl, pair.size, &formats, Some(Format::Depth32F)).unwrap();
-    let source = Source { color: targets.color().raw(), depth, samples };
+    let source = Source { color: targets.color().color(0).raw(), depth, samples };
     synthesis.synthesize(source, &views.warp, &Destination::whole(&other)).unwrap();
-    renderer.go_on(&targets, scene, &views.source, None, false).unwrap();
-    let rendered = targets.color_target().read_rgba8(0, views.dominant_crop, pair.size);
-    renderer.go_on_with(&targets, &other, scene, &views.target, None, false).unwrap();
+    renderer.resume_samples(&targets, scene, &views.source, None, false);
+    let rendered = targets.color().read_rgba8(0, views.dominant_crop, pair.size);
+    renderer.resume_samples_with(&targets, &other, scene, &views.target, None, false);
     [rendered, other.read_rgba8(0, [0, 0], pair.size)]
 }
 
@@ -470,7 +473,7 @@ fn samples_beside_the_columns_that_are_drawn_are_seen_by_nobody() {
         quad(&mut scene.model, 3, Vec3::new(x, -0.5, -2.5), Vec3::X * 3.0, Vec3::Y);
     }
     let scene = GpuScene::upload(gl, scene).unwrap();
-    let renderer = Renderer::new(gl, &forward(), &scene).unwrap();
+    let renderer = ForwardRenderer::new(gl, &forward(), &scene).unwrap();
     for dominant in Eye::BOTH {
         for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
             let pair = pair(dominant, convention);

@@ -1,0 +1,65 @@
+//! What renderers of both kinds have of a scene.
+
+use std::rc::Rc;
+
+use super::cluster::Culler;
+use super::lights::Lights;
+use super::scene::GpuScene;
+use super::settings::RenderSettings;
+use super::shadow::ShadowMap;
+use super::transparent::TransparentPass;
+use yoro::eyes::View;
+use yoro_gl::{Context, GlError};
+
+/// A scene's shadow map and transparent surfaces, with the settings to render them.
+pub struct Common {
+    pub(crate) gl: Rc<Context>,
+    pub(super) settings: RenderSettings,
+    pub(super) shadow: Option<ShadowMap>,
+    pub(super) transparent: TransparentPass,
+    scene_id: u64,
+}
+
+impl Common {
+    /// Draws the shadow map and compiles the programs of transparent surfaces.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses a program or a target.
+    pub(super) fn new(
+        gl: &Rc<Context>,
+        settings: &RenderSettings,
+        scene: &GpuScene,
+    ) -> Result<Common, GlError> {
+        let has_shadow = scene.has_sun() && settings.shadow_map_size > 0;
+        Ok(Common {
+            gl: gl.clone(),
+            settings: settings.clone(),
+            shadow: has_shadow.then(|| ShadowMap::new(gl, scene, settings.shadow_map_size)).transpose()?,
+            transparent: TransparentPass::new(gl, scene, settings)?,
+            scene_id: scene.id,
+        })
+    }
+
+    /// Refuses another scene than the renderer was made for.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] with the scene's name.
+    pub fn check_scene(&self, scene: &GpuScene) -> Result<(), GlError> {
+        if scene.id == self.scene_id {
+            return Ok(());
+        }
+        Err(GlError::Unsupported(format!(
+            "this renderer was made for another scene than {}; make one for each scene",
+            scene.name
+        )))
+    }
+
+    /// The point lights of one view or of both eyes, relative to the first.
+    pub(super) fn lights(&self, scene: &GpuScene, views: &[View]) -> Lights {
+        // One culler for each eye; that of a single view is there twice, and not used.
+        let cullers: [Culler; 2] =
+            std::array::from_fn(|i| Culler::of_view(views.get(i).unwrap_or(&views[0])));
+        let eye = views[0].pose.position;
+        Lights::choose(&scene.lights, eye, &cullers[..views.len()], self.settings.point_lights)
+    }
+}

@@ -1,0 +1,278 @@
+//! The passes of the forward renderer.
+
+use glam::{IVec2, Vec2, Vec3};
+
+use super::ViewImages;
+use super::bloom;
+use super::cluster::Culler;
+use super::forward::ForwardRenderer;
+use super::forward_targets::ForwardTargets;
+use super::g_buffer::Layout;
+use super::light_tiles::LightTiles;
+use super::lighting::line_width;
+use super::lights::Lights;
+use super::request::{KeptSamples, PixelDepth};
+use super::scene::{FREE_UNIT, GpuScene};
+use super::shadow::ShadowMap;
+use super::transparent::Onto;
+use super::uniforms::{nearer, set_view};
+use yoro::eyes::{Eye, View};
+use yoro_gl::{DepthTest, Program, RasterState, RenderTarget, Texture};
+
+/// The light of a frame's views.
+pub struct Illumination<'a> {
+    pub scene: &'a GpuScene,
+    pub shadow: Option<&'a ShadowMap>,
+    /// Relative to `eye`.
+    pub lights: Lights,
+    pub tiles: LightTiles,
+    pub eye: Vec3,
+    pub exposure: f32,
+}
+
+impl Illumination<'_> {
+    /// Sets what `include/shade.glsl` needs in a program that is bound.
+    fn set(&self, program: &Program) {
+        program.set("exposure", self.exposure);
+        if let Some(shadow) = self.shadow {
+            shadow.set(program, FREE_UNIT, self.eye);
+        }
+        self.lights.set(program, &self.scene.sky);
+        self.tiles.set(program);
+    }
+}
+
+/// A part of the opaque surfaces.
+pub enum Part<'a> {
+    /// What a culler lets through, in one view.
+    Selected(&'a Culler),
+    /// What lies between two distances in metres.
+    Slice([f32; 2]),
+}
+
+impl ForwardRenderer {
+    /// Returns the light of these views in an image of this layout, for positions relative to one of them.
+    pub(super) fn illuminate<'a>(
+        &'a self,
+        layout: Layout,
+        scene: &'a GpuScene,
+        views: &[View],
+        from: &View,
+    ) -> Illumination<'a> {
+        let (lights, eye) = (self.common.lights(scene, views), from.pose.position);
+        Illumination {
+            scene,
+            shadow: self.common.shadow.as_ref(),
+            tiles: LightTiles::new(&lights, layout, views),
+            lights: lights.seen_from(eye),
+            eye,
+            exposure: self.common.settings.exposure,
+        }
+    }
+
+    /// Empties the targets and draws a part of the scene, and the sky behind it.
+    pub(super) fn draw_on_sky(
+        &self,
+        targets: &ForwardTargets,
+        scene: &GpuScene,
+        views: &[View],
+        part: &Part,
+    ) {
+        let view = &views[0];
+        self.common.gl.pass("forward", || {
+            targets.bind(targets.layout().texture_size(view.size));
+            targets.draws_depth();
+            self.common.gl.clear(Some(view.depth.clear_value()));
+            let light = self.illuminate(targets.layout(), scene, views, view);
+            self.draw(targets, &light, views, part);
+            self.draw_sky(targets, &light, views);
+        });
+    }
+
+    /// Draws the transparent surfaces of each view.
+    pub(super) fn draw_transparent(&self, targets: &ForwardTargets, scene: &GpuScene, views: &[View]) {
+        if !scene.has_transparent() {
+            return;
+        }
+        for (view, eye) in views.iter().zip(Eye::BOTH) {
+            self.bind_eye(targets, view, eye);
+            let (light, all) = (self.illuminate(targets.layout(), scene, views, view), Culler::of_view(view));
+            self.common.transparent.run(Onto::Bound, scene, view, &all, |program| light.set(program));
+        }
+    }
+
+    /// Begins with an image and its depth instead of nothing: the rectangle of the view's size whose lower left corner is
+    /// pixel `crop`.
+    pub(super) fn load(
+        &self,
+        targets: &ForwardTargets,
+        (color, depth): (&Texture, &Texture),
+        crop: [u32; 2],
+        view: &View,
+    ) {
+        targets.bind(view.size);
+        targets.draws_depth();
+        self.copy((color, depth), crop);
+    }
+
+    /// Makes the edges soft against which the rest is tested, after [`ForwardRenderer::load`] of an image whose own edges are.
+    pub(super) fn soften(&self, targets: &ForwardTargets, depth: &Texture, view: &View) {
+        let Some(program) = &self.soften else { return };
+        targets.bind(view.size);
+        self.common.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+        self.common.gl.set_alpha_to_coverage(true);
+        self.common.gl.mask_color();
+        program.bind().texture("depth_map", 0, depth.raw()).set("offset", IVec2::ZERO);
+        set_view(program, view);
+        self.common.gl.draw_screen();
+        self.common.gl.set_alpha_to_coverage(false);
+    }
+
+    /// Fills what is bound by colour and depth of an image, from pixel `crop` on.
+    fn copy(&self, (color, depth): (&Texture, &Texture), crop: [u32; 2]) {
+        self.common.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+        self.load
+            .bind()
+            .texture("color_map", 0, color.raw())
+            .texture("depth_map", 1, depth.raw())
+            .set("offset", IVec2::from(crop.map(|n| n as i32)));
+        self.common.gl.draw_screen();
+    }
+
+    /// Draws opaque surfaces, lit, where nothing in the targets hides them.
+    pub(super) fn draw(&self, targets: &ForwardTargets, light: &Illumination, views: &[View], part: &Part) {
+        let (Some(pass), Some(view)) = (&self.geometry[targets.layout().index()], views.first()) else {
+            return;
+        };
+        targets.bind(targets.layout().texture_size(view.size));
+        targets.draws_depth();
+        pass.programs().for_each(|program| light.set(program.bind()));
+        match part {
+            Part::Selected(culler) => pass.draw_selected(light.scene, view, culler),
+            Part::Slice(slice) => pass.draw(light.scene, views, *slice),
+        }
+    }
+
+    /// Draws the sky where nothing was drawn.
+    pub(super) fn draw_sky(&self, targets: &ForwardTargets, light: &Illumination, views: &[View]) {
+        let state = RasterState { depth: DepthTest::Equal, ..RasterState::SCREEN };
+        for (view, eye) in views.iter().zip(Eye::BOTH) {
+            let origin = targets.layout().origin(view.size, eye);
+            self.bind_eye(targets, view, eye);
+            self.common.gl.set_raster_state(&state);
+            let far = view.depth.clear_value();
+            self.common.gl.set_depth_window([far, far]);
+            light.set(self.sky.bind());
+            set_view(&self.sky, view);
+            self.sky
+                .set("view_origin", Vec2::from(origin.map(|n| n as f32)))
+                .set("view_texel", 1.0 / Vec2::from(view.size.map(|n| n as f32)));
+            self.common.gl.draw_screen();
+            self.common.gl.set_depth_window([0.0, 1.0]);
+        }
+    }
+
+    /// Binds the targets with the viewport of one of their views.
+    pub(super) fn bind_eye(&self, targets: &ForwardTargets, view: &View, eye: Eye) {
+        targets.bind(view.size);
+        let origin = targets.layout().origin(view.size, eye);
+        self.common.gl.set_viewport(origin, view.size);
+    }
+
+    /// Averages the samples, and takes their nearest depth if `depth` is wanted, or if outlines need it; samples that are not
+    /// kept are given up.
+    pub(super) fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool) {
+        let depth = depth || (self.ink && !targets.is_readable());
+        if let Some(tile) = targets.tile() {
+            if !depth {
+                tile.discard_depth();
+            }
+        } else if targets.samples().is_some() {
+            self.resolve_to(targets, &targets.resolved, view, depth);
+        }
+        if depth {
+            targets.has_resolved_depth();
+        }
+    }
+
+    /// Does the same as [`ForwardRenderer::resolve`] into another image, which has the view's size, 8-bit colour and float
+    /// depth.
+    pub(super) fn resolve_to(&self, targets: &ForwardTargets, to: &RenderTarget, view: &View, depth: bool) {
+        let gl = &self.common.gl;
+        let Some(samples) = targets.samples() else {
+            let (color, depth) = (targets.resolved.color(0), targets.depth());
+            gl.pass("resolve", || {
+                to.bind();
+                self.copy((color, depth), [0, 0]);
+            });
+            return;
+        };
+        let KeptSamples { color, depth: kept_depth } = targets.request.samples;
+        let nearest = depth && targets.is_readable() && targets.request.depth != PixelDepth::FirstSample;
+        let reads_depth = self.ink || nearest;
+        gl.pass("resolve", || {
+            samples.resolve_color(to);
+            if depth && !nearest {
+                samples.resolve_depth(to);
+            }
+            samples.discard(!(color || self.ink), !(kept_depth || reads_depth));
+        });
+        if let (true, Some(program), Some(map)) = (nearest, &self.nearest, samples.depth()) {
+            gl.pass("nearest depth", || {
+                to.bind();
+                gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+                gl.mask_color();
+                program
+                    .bind()
+                    .texture_multisample("depth_map", 0, map)
+                    .set("nearer", nearer(view.depth.convention));
+                gl.draw_screen();
+                gl.set_raster_state(&RasterState::SCREEN);
+            });
+        }
+    }
+
+    /// Adds bloom and outlines to an eye's image, where there are any. With `again` the bloom is that of the time before.
+    /// [`ViewImages::color`] is that eye's then, until another eye is developed.
+    pub(crate) fn develop(&self, targets: &ForwardTargets, view: &View, eye: Eye, again: bool) {
+        let (Some(program), Some(to)) = (&self.develop, &targets.developed) else { return };
+        let source = targets.resolved.color(0);
+        let origin = targets.layout().origin(view.size, eye);
+        let bloom = self.bloom.as_ref().zip(targets.bloom.as_ref());
+        if let Some((pass, bloom)) = bloom.filter(|_| !again) {
+            let columns = targets.request.columns.map_or([0, view.size[0]], |columns| columns.always);
+            pass.run_display_referred(
+                bloom,
+                source,
+                (origin, view.size),
+                columns,
+                self.common.settings.exposure,
+            );
+        }
+        self.common.gl.pass("develop", || {
+            self.common.gl.set_raster_state(&RasterState::SCREEN);
+            to.bind();
+            program
+                .bind()
+                .texture("source", 0, source.raw())
+                .set("view_origin", IVec2::from(origin.map(|n| n as i32)))
+                .set("view_size", IVec2::from(view.size.map(|n| n as i32)))
+                .set("line_width", line_width(view));
+            if let Some((_, bloom)) = bloom {
+                program
+                    .texture("bloom", 1, bloom.result().raw())
+                    .set("bloom_strength", bloom::STRENGTH * self.common.settings.exposure);
+            }
+            if self.ink {
+                match targets.samples().and_then(|s| s.depth().zip(s.color())) {
+                    Some((depth, color)) => program
+                        .texture_multisample("depth_map", 2, depth)
+                        .texture_multisample("color_map", 3, color),
+                    None => program.texture("depth_map", 2, targets.depth().raw()),
+                };
+            }
+            set_view(program, view);
+            self.common.gl.draw_screen();
+        });
+    }
+}

@@ -1,0 +1,217 @@
+//! The images that the forward renderer draws into.
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use super::ViewImages;
+use super::bloom::BloomTargets;
+use super::deferred::hdr_format;
+use super::g_buffer::Layout;
+use super::request::ViewRequest;
+use super::settings::RenderSettings;
+use yoro::eyes::Eye;
+use yoro_gl::{
+    Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,
+};
+
+/// Float for both conventions: what begins with a synthesized image has its depth format.
+const DEPTH: Format = Format::Depth32F;
+
+/// The images of one view, or of both eyes side by side.
+///
+/// A pixel costs 8 bytes for each sample, where they leave the tile, 8 bytes of resolved colour and depth, and with
+/// bloom or outlines 4 bytes of developed colour.
+pub struct ForwardTargets {
+    gl: Rc<Context>,
+    layout: Layout,
+    /// The samples, where a pixel has several.
+    samples: Option<MultisampleTarget>,
+    /// The samples where they can stay in tiles.
+    tile: Option<TileTarget>,
+    /// True if they do in the frame that is drawn.
+    in_tile: bool,
+    /// Average colour, nearest depth.
+    pub(super) resolved: RenderTarget,
+    pub(super) bloom: Option<BloomTargets>,
+    /// Colour of one eye with bloom and outlines, if there are any.
+    pub(super) developed: Option<RenderTarget>,
+    /// What the view in the targets was rendered for.
+    pub(super) request: ViewRequest,
+    /// True if the resolved depth is that of what was drawn.
+    has_depth: Cell<bool>,
+    /// One column of colour, which is repeated beside the columns that are drawn.
+    column: Option<RenderTarget>,
+}
+
+impl ForwardTargets {
+    /// Makes targets, which are fitted to the views that are rendered.
+    ///
+    /// # Errors
+    /// As [`MultisampleTarget::new`] and [`RenderTarget::new`]; [`GlError::Unsupported`] when the driver has not as many
+    /// samples as the settings say.
+    pub(crate) fn new(
+        gl: &Rc<Context>,
+        layout: Layout,
+        settings: &RenderSettings,
+    ) -> Result<ForwardTargets, GlError> {
+        ForwardTargets::build(gl, layout, settings, gl.capabilities().multisample_textures)
+    }
+
+    /// As [`ForwardTargets::new`], `readable` by shaders sample by sample or not.
+    pub(super) fn build(
+        gl: &Rc<Context>,
+        layout: Layout,
+        settings: &RenderSettings,
+        readable: bool,
+    ) -> Result<ForwardTargets, GlError> {
+        settings.supported(gl.capabilities())?;
+        let bloom = settings.bloom.then(|| BloomTargets::new(gl, hdr_format(gl)));
+        let size = layout.texture_size([1, 1]);
+        let samples = (settings.samples() > 1)
+            .then(|| MultisampleTarget::new(gl, size, settings.samples(), Format::Rgba8, DEPTH, readable));
+        let tile = (settings.samples() > 1 && gl.capabilities().tile_samples)
+            .then(|| TileTarget::new(gl, settings.samples()));
+        let formats = [(Format::Rgba8, Filter::Linear)];
+        Ok(ForwardTargets {
+            gl: gl.clone(),
+            layout,
+            samples: samples.transpose()?,
+            tile: tile.transpose()?,
+            in_tile: false,
+            resolved: RenderTarget::new(gl, size, &formats, Some(DEPTH))?,
+            bloom: bloom.transpose()?,
+            developed: None,
+            request: ViewRequest::default(),
+            has_depth: Cell::new(false),
+            column: None,
+        })
+    }
+
+    /// Fits the targets to views of `size` pixels; nothing is done when they fit already. With `is_developed` there is room
+    /// for bloom and outlines. With `in_tile` no sample is needed once they are drawn, so that all may stay in tiles.
+    ///
+    /// # Errors
+    /// As [`ForwardTargets::new`].
+    pub fn fit(&mut self, size: [u32; 2], is_developed: bool, in_tile: bool) -> Result<(), GlError> {
+        let whole = self.layout.texture_size(size);
+        self.resolved.resize(whole)?;
+        self.in_tile = false;
+        if in_tile && let Some(tile) = &mut self.tile {
+            self.in_tile = tile.fit(&self.resolved).is_ok();
+        }
+        if let Some(samples) = self.samples.as_mut().filter(|_| !self.in_tile) {
+            samples.resize(whole)?;
+        }
+        self.bloom.as_mut().map_or(Ok(()), |t| t.resize(size))?;
+        match &mut self.developed {
+            Some(_) if !is_developed => self.developed = None,
+            Some(target) => target.resize(size)?,
+            None if is_developed => {
+                let formats = [(Format::Rgba8, Filter::Linear)];
+                self.developed = Some(RenderTarget::new(&self.gl, size, &formats, None)?);
+            }
+            None => {}
+        }
+        Ok(())
+    }
+
+    /// Fills the resolved colour left of the columns `[first, end]` with the first of them, and right of them with the last.
+    ///
+    /// # Errors
+    /// As [`RenderTarget::new`].
+    pub fn repeat_columns(&mut self, [first, end]: [u32; 2]) -> Result<(), GlError> {
+        let [width, height] = self.resolved.size();
+        if self.column.is_none() {
+            let formats = [(Format::Rgba8, Filter::Nearest)];
+            self.column = Some(RenderTarget::new(&self.gl, [1, height], &formats, None)?);
+        }
+        let Some(column) = &mut self.column else { return Ok(()) };
+        column.resize([1, height])?;
+        let column = Destination::whole(column);
+        let part = |x: u32, width: u32| Destination {
+            origin: [x, 0],
+            size: [width, height],
+            ..Destination::whole(&self.resolved)
+        };
+        self.gl.pass("repeat", || {
+            for (from, to, columns) in [(first, 0, first), (end - 1, end, width - end)] {
+                if columns > 0 {
+                    // OpenGL ES copies nothing within one image.
+                    self.gl.copy(&part(from, 1), &column);
+                    self.gl.copy(&column, &part(to, columns));
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// The views that the targets hold.
+    pub(crate) fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// The lower left corner of an eye of `size` pixels in [`ViewImages::color`].
+    pub(crate) fn origin(&self, size: [u32; 2], eye: Eye) -> [u32; 2] {
+        if self.developed.is_some() { [0, 0] } else { self.layout.origin(size, eye) }
+    }
+
+    /// The tile's samples, if they stay in it.
+    pub(super) fn tile(&self) -> Option<&TileTarget> {
+        self.tile.as_ref().filter(|_| self.in_tile)
+    }
+
+    /// The samples that leave the tiles, if a pixel has several.
+    pub(super) fn samples(&self) -> Option<&MultisampleTarget> {
+        self.samples.as_ref()
+    }
+
+    /// True if shaders can read each sample.
+    pub(super) fn is_readable(&self) -> bool {
+        self.samples.as_ref().is_some_and(|samples| samples.depth().is_some())
+    }
+
+    /// Notes that depth is drawn: the resolved one is another until it is resolved again, if there are samples.
+    pub(super) fn draws_depth(&self) {
+        self.has_depth.set(self.samples.is_none());
+    }
+
+    /// Notes that the resolved depth is that of what was drawn.
+    pub(super) fn has_resolved_depth(&self) {
+        self.has_depth.set(true);
+    }
+
+    /// Binds what is drawn into, with a viewport for an image of `size` pixels.
+    pub(super) fn bind(&self, size: [u32; 2]) {
+        match (&self.samples, self.tile()) {
+            (_, Some(tile)) => tile.bind(size),
+            (Some(samples), _) => samples.bind(size),
+            (None, _) => self.gl.bind_framebuffer(Some(self.resolved.raw()), [0, 0], size),
+        }
+    }
+}
+
+impl ViewImages for ForwardTargets {
+    /// Display-referred sRGB, filtered linearly. Alpha is luma; with several samples that of what is cut out is undefined.
+    fn color(&self) -> &RenderTarget {
+        self.developed.as_ref().unwrap_or(&self.resolved)
+    }
+
+    /// The nearest depth of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0), and
+    /// where samples stayed in tiles.
+    ///
+    /// # Panics
+    /// When it was not asked for since the last surface was drawn.
+    fn depth(&self) -> &Texture {
+        assert!(self.has_depth.get(), "this view was rendered without its depth");
+        self.resolved.depth()
+    }
+
+    fn depth_samples(&self) -> Option<glow::Texture> {
+        self.samples().filter(|_| self.request.samples.depth)?.depth()
+    }
+
+    /// The samples' colour, unless bloom or outlines are added to their average.
+    fn color_samples(&self) -> Option<glow::Texture> {
+        self.samples().filter(|_| self.request.samples.color && self.developed.is_none())?.color()
+    }
+}

@@ -1,0 +1,56 @@
+//! What a renderer is asked for.
+
+use super::cluster::Selection;
+use yoro::eyes::View;
+
+/// Columns of a view of which not all are needed, each `[first, end]` from the left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Columns {
+    /// The columns to draw. In the others depth is the far plane's, and colour that of the nearest column that is drawn.
+    pub drawn: [u32; 2],
+    /// The columns that are drawn in every frame. Ambient occlusion and bloom do not reach into them from beside, so that
+    /// they do not depend on what is drawn there.
+    pub always: [u32; 2],
+}
+
+/// The depth that is read of a view once it is rendered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PixelDepth {
+    /// None: a renderer with several samples in each pixel spends nothing on it.
+    Unread,
+    /// The nearest of each pixel's samples.
+    #[default]
+    Nearest,
+    /// That of each pixel's first sample, as drivers resolve it: what there is without multisample textures.
+    FirstSample,
+}
+
+/// Samples that are still needed once a view is rendered, to be read or to draw into them. The others never leave the
+/// tiles of a tile-based GPU, as far as its driver can help it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct KeptSamples {
+    /// The samples' colour.
+    pub color: bool,
+    /// The samples' depth.
+    pub depth: bool,
+}
+
+/// The part of a scene that is drawn, and what is read of it afterwards. The default is all opaque surfaces, and their depth.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ViewRequest {
+    /// The objects to draw.
+    pub selection: Selection,
+    /// The columns to draw; all if none.
+    pub columns: Option<Columns>,
+    /// The depth to make.
+    pub depth: PixelDepth,
+    /// The samples to keep.
+    pub samples: KeptSamples,
+}
+
+impl ViewRequest {
+    /// The columns to which drawing is bounded; none if they are all columns of the view.
+    pub(super) fn bounds(&self, view: &View) -> Option<[u32; 2]> {
+        self.columns.map(|columns| columns.drawn).filter(|drawn| *drawn != [0, view.size[0]])
+    }
+}

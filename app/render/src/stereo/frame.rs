@@ -1,0 +1,79 @@
+//! A frame as methods see it: the renderer is of the kind that the method was made for.
+
+use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
+use crate::render::{GpuScene, Renderer, ViewRenderer};
+use yoro::eyes::{Eye, EyePair};
+use yoro_gl::GlError;
+
+/// What a frame is rendered from, and where it goes.
+pub(super) struct Frame<'a, R> {
+    pub(super) renderer: &'a R,
+    pub(super) scene: &'a GpuScene,
+    pub(super) pair: &'a EyePair,
+    to: &'a [EyeTarget<'a>; 2],
+}
+
+impl<R> Frame<'_, R> {
+    /// Returns where an eye goes.
+    pub(super) fn to(&self, eye: Eye) -> &EyeTarget<'_> {
+        &self.to[eye.index()]
+    }
+
+    /// True if somebody wants an eye's depth.
+    pub(super) fn wants_depth(&self, eye: Eye) -> bool {
+        self.to(eye).depth.is_some()
+    }
+}
+
+/// A stereo method for one kind of renderer.
+pub(super) trait FrameMethod {
+    /// The kind of renderer.
+    type Renderer: ViewRenderer;
+
+    /// Compiles what the method needs for the materials of a scene; nothing is done for what is there already.
+    fn compile(&mut self, _renderer: &mut Self::Renderer, _scene: &GpuScene) -> Result<(), GlError> {
+        Ok(())
+    }
+
+    /// Renders both eyes to where they go.
+    fn render_frame(&mut self, frame: &Frame<Self::Renderer>) -> Result<(), StereoError>;
+
+    /// As [`StereoMethod::guard_band`].
+    fn guard_band_use(&self) -> Option<GuardBandUse> {
+        None
+    }
+}
+
+/// Returns a renderer as one of the kind that a method was made for, for this scene.
+fn of_kind<'a, R: ViewRenderer>(renderer: &'a mut Renderer, scene: &GpuScene) -> Result<&'a mut R, GlError> {
+    let renderer = R::of(renderer).ok_or_else(|| {
+        GlError::Unsupported(
+            "the stereo method was made for another kind of renderer: make both with the same settings"
+                .into(),
+        )
+    })?;
+    renderer.common().check_scene(scene)?;
+    Ok(renderer)
+}
+
+impl<M: FrameMethod> StereoMethod for M {
+    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
+        Ok(self.compile(of_kind(renderer, scene)?, scene)?)
+    }
+
+    fn guard_band(&self) -> Option<GuardBandUse> {
+        self.guard_band_use()
+    }
+
+    fn render_to(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError> {
+        let renderer = of_kind(renderer, scene)?;
+        self.compile(renderer, scene)?;
+        self.render_frame(&Frame { renderer, scene, pair, to })
+    }
+}
