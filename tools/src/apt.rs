@@ -60,6 +60,9 @@ impl Need {
 /// # Errors
 /// When something is still missing: what, and the remedy.
 pub fn provide(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
+    /// What one thread installs is not missing for the next.
+    static PROVIDING: Mutex<()> = Mutex::new(());
+    let _providing = PROVIDING.lock().unwrap_or_else(PoisonError::into_inner);
     let missing = || needs().into_iter().filter(|need| need.found.is_err()).collect::<Vec<_>>();
     let at_first = missing();
     let groups: Vec<&[&str]> =

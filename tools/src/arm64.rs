@@ -21,52 +21,44 @@ pub const TRIPLE: &str = "aarch64-unknown-linux-gnu";
 const PACKAGES: [&str; 5] = ["libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri", "libc6-dev"];
 const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 
-/// What the host is made of, besides its source.
-pub struct Host {
-    folder: PathBuf,
-    system: System,
+/// Installs, without asking, what compiling for arm64 needs, and fetches what its programs run in; the folder.
+///
+/// # Errors
+/// When something cannot be had on this machine.
+pub fn fetch() -> anyhow::Result<PathBuf> {
+    let needs = || {
+        let rust = Rust::for_target(TRIPLE).map(|(rust, _)| rust);
+        vec![Need::program("clang", &["clang"]), Need::program("ld.lld", &["lld"]), source(rust.as_ref())]
+    };
+    apt::provide(needs, true)?;
+    let folder = folder()?;
+    System::make(&folder)?;
+    Ok(folder)
 }
 
-impl Host {
-    /// Installs, without asking, what compiling it needs.
-    ///
-    /// # Errors
-    /// When something cannot be had on this machine.
-    pub fn ready() -> anyhow::Result<()> {
-        let needs = || {
-            let rust = Rust::for_target(TRIPLE).map(|(rust, _)| rust);
-            vec![Need::program("clang", &["clang"]), Need::program("ld.lld", &["lld"]), source(rust.as_ref())]
-        };
-        apt::provide(needs, true)
-    }
+/// Compiles the simulated Android host; its launcher: `launcher APK SCRIPT ...`.
+///
+/// # Errors
+/// When it does not compile although everything is there.
+pub fn build_host() -> anyhow::Result<PathBuf> {
+    let folder = folder()?;
+    let system = System::make(&folder)?;
+    let program = build(&system, &folder.join("build"))?;
+    let launcher = folder.join("yoro-android-host");
+    // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
+    let text = format!(
+        "# The simulated Android host for arm64, in qemu's user mode.\n\
+         exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
+        quoted(&system.qemu),
+        quoted(&system.root),
+        quoted(&program)
+    );
+    write_launcher(&launcher, &text)?;
+    Ok(launcher)
+}
 
-    /// Fetches what it runs in.
-    ///
-    /// # Errors
-    /// When it cannot be had on this machine.
-    pub fn fetch() -> anyhow::Result<Self> {
-        let folder = target_folder()?.join("android/arm64");
-        Ok(Self { system: System::make(&folder)?, folder })
-    }
-
-    /// Compiles it; its launcher: `launcher APK SCRIPT ...`.
-    ///
-    /// # Errors
-    /// When it does not compile although everything is there.
-    pub fn build(&self) -> anyhow::Result<PathBuf> {
-        let program = build(&self.system, &self.folder.join("build"))?;
-        let launcher = self.folder.join("yoro-android-host");
-        // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
-        let text = format!(
-            "# The simulated Android host for arm64, in qemu's user mode.\n\
-             exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
-            quoted(&self.system.qemu),
-            quoted(&self.system.root),
-            quoted(&program)
-        );
-        write_launcher(&launcher, &text)?;
-        Ok(launcher)
-    }
+fn folder() -> anyhow::Result<PathBuf> {
+    Ok(target_folder()?.join("android/arm64"))
 }
 
 /// A small Debian for arm64 in a folder, and qemu.
@@ -87,7 +79,7 @@ impl System {
                     .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
             }
             let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], None)?;
-            for package in fetch(&apt)? {
+            for package in download(&apt)? {
                 // qemu's packages have a program of several megabytes for every processor that there is.
                 let is_qemu =
                     package.file_name().is_some_and(|name| name.to_string_lossy().starts_with("qemu-user"));
@@ -104,7 +96,7 @@ impl System {
 }
 
 /// Downloads the packages and all that they need; their files.
-fn fetch(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
+fn download(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
     apt.update()?;
     let libgcc = newest_libgcc(&apt.names("libgcc-")?)
         .context("this distribution has no libgcc-dev for the linker")?;
@@ -126,9 +118,7 @@ fn newest_libgcc(names: &str) -> Option<String> {
 /// # Errors
 /// When something cannot be had on this machine.
 pub fn cargo() -> anyhow::Result<Command> {
-    Host::ready()?;
-    let system = Host::fetch()?.system;
-    command(&system, Panic::Unwind)
+    command(&System::make(&fetch()?)?, Panic::Unwind)
 }
 
 fn command(system: &System, panic: Panic) -> anyhow::Result<Command> {

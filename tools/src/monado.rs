@@ -6,6 +6,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context as _, bail};
 
@@ -54,6 +55,9 @@ pub fn usage() -> anyhow::Result<String> {
 /// # Errors
 /// When it cannot be had on this machine.
 pub fn make() -> anyhow::Result<PathBuf> {
+    /// hello_xr begins with Monado, too.
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     if !cfg!(target_arch = "x86_64") {
         bail!("it is fetched for x86_64 only");
     }

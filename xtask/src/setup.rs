@@ -112,11 +112,11 @@ pub fn ensure() -> anyhow::Result<Libraries> {
     }
 }
 
-/// The browser that the tests of report pages use; on demand it is installed where apt has one.
-pub fn browser(install: bool) -> Option<PathBuf> {
+/// The browser that the tests of pages use; it is installed where apt has one.
+pub fn browser() -> Option<PathBuf> {
     let find = || ["chromium", "chromium-browser", "google-chrome"].into_iter().find_map(apt::find_program);
     find().or_else(|| {
-        apt::find_program("apt-get").filter(|_| install)?;
+        apt::find_program("apt-get")?;
         if let Err(error) = apt::install(&[&["chromium"]]) {
             eprintln!("warning: {error:#}");
         }

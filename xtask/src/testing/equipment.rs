@@ -1,357 +1,234 @@
-//! What some tests need, and others can do without: it is fetched and installed while cargo compiles the tests.
+//! Programs and packages that some tests need: fetched while cargo compiles the tests, and built when that is done.
 
-use std::env;
 use std::path::PathBuf;
 use std::process::Command;
 use std::thread::{Scope, ScopedJoinHandle};
-use std::time::{Duration, Instant};
 
-use anyhow::anyhow;
+use anyhow::{Context as _, anyhow, bail};
 use yoro_tools::shader_cost::Compilers;
 use yoro_tools::{apt, arm64, hello_xr, monado};
 
+use super::binaries::Program;
 use super::summary::Summary;
-
 use crate::{android, package, setup, web};
 
-/// What is here.
-#[derive(Clone, Debug, Default)]
-pub struct Equipment {
-    /// Mesa's rasterizer without a window system.
-    osmesa: bool,
-    /// A Vulkan driver and the validation layer.
-    vulkan: bool,
-    /// The Android application.
-    apk: Equipped,
-    /// The OpenXR API layer for Android.
-    layer: Equipped,
-    /// The simulated Android host for arm64.
-    arm64: Equipped,
-    /// A browser for report pages.
-    browser: Equipped,
-    /// The folder of Monado, an OpenXR runtime.
-    monado: Equipped,
-    /// The folder of an OpenXR application for it.
-    hello_xr: Equipped,
-    /// The folder of compilers for mobile GPUs.
-    shader_compilers: Equipped,
-    /// This program, which has built the page.
-    web: Equipped,
-    /// A script that plays a headset to browsers.
-    webxr: Equipped,
+/// Something that some tests need.
+struct Item {
+    /// For people.
+    what: &'static str,
+    /// Tests are told where it is by `YORO_TEST_variable`, or by `YORO_TEST_WITHOUT_variable` that they are left out.
+    variable: &'static str,
+    /// The tests that need it: their package, and a part of their names.
+    users: &'static [(&'static str, &'static str)],
+    /// Installs and fetches it, or what it is built from. Where that fails, its tests are left out.
+    fetch: fn() -> anyhow::Result<PathBuf>,
+    /// Builds it. Where that fails, nothing is tested.
+    build: Option<fn() -> anyhow::Result<PathBuf>>,
 }
 
-/// Is a file for tests here?
-#[derive(Clone, Debug, Default)]
-enum Equipped {
-    /// No test that runs asks for it.
-    #[default]
-    NotWanted,
-    /// It cannot be had on this machine: its tests are left out.
-    Missing,
-    /// Here.
-    At(PathBuf),
-}
+static ITEMS: [Item; 9] = [
+    Item {
+        what: "the page",
+        variable: "WEB",
+        users: &[("yoro-app", "web::")],
+        fetch: || {
+            if web::can_be_built() { Ok(PathBuf::new()) } else { bail!("no Rust can compile for browsers") }
+        },
+        build: Some(|| web::build().and_then(|_| Ok(std::env::current_exe()?))),
+    },
+    Item {
+        what: "the WebXR emulator",
+        variable: "WEBXR",
+        users: &[("yoro-app", "web::")],
+        fetch: web::emulator,
+        build: None,
+    },
+    Item {
+        what: "Chromium",
+        variable: "CHROMIUM",
+        // Which of the program's tests open a page is not told by their names.
+        users: &[("yoro-app", "")],
+        fetch: || setup::browser().context("it cannot be installed"),
+        build: None,
+    },
+    Item {
+        what: "Monado",
+        variable: "MONADO",
+        users: &[("yoro-app", "monado")],
+        fetch: monado::make,
+        build: None,
+    },
+    Item {
+        what: "hello_xr",
+        variable: "HELLO_XR",
+        users: &[("yoro-layer", "hello_xr"), ("yoro-app", "through_the_layer")],
+        fetch: hello_xr::make,
+        build: None,
+    },
+    Item {
+        what: "shader compilers for mobile GPUs",
+        variable: "SHADER_COMPILERS",
+        users: &[("yoro-tests", "shader_cost::")],
+        fetch: || Ok(Compilers::make()?.folder().to_owned()),
+        build: None,
+    },
+    Item {
+        what: "the APK (cargo xtask doctor)",
+        variable: "APK",
+        users: &[("yoro-android-host", "")],
+        fetch: || android::ready_for_tests().map(|()| PathBuf::new()),
+        build: Some(|| {
+            android::apk(&android::Options { release: true, yes: true, openxr_loaders: Vec::new() })
+        }),
+    },
+    Item {
+        what: "the Android layer",
+        variable: "ANDROID_LAYER",
+        users: &[("yoro-android-host", "layer")],
+        fetch: || android::ready_for_tests().map(|()| PathBuf::new()),
+        build: Some(package::layer_for_tests),
+    },
+    Item {
+        what: "the simulated Android host for arm64",
+        variable: "ARM64_HOST",
+        users: &[("yoro-android-host", "arm64")],
+        fetch: arm64::fetch,
+        build: Some(arm64::build_host),
+    },
+];
 
-impl Equipped {
-    /// Tells the tests: by `YORO_TEST_name` where it is, or by `YORO_TEST_WITHOUT_name` that they are left out.
-    fn tell(&self, name: &str, command: &mut Command) {
-        match self {
-            Self::At(path) => command.env(format!("YORO_TEST_{name}"), path),
-            Self::Missing | Self::NotWanted => command.env(format!("YORO_TEST_WITHOUT_{name}"), "1"),
-        };
-    }
-
-    fn or_missing(result: anyhow::Result<PathBuf>, what: &str) -> Self {
-        match result {
-            Ok(path) => Self::At(path),
-            Err(error) => {
-                eprintln!("warning: {what}, so that its tests are left out: {error:#}");
-                Self::Missing
-            }
-        }
-    }
-}
-
-impl Equipment {
-    /// Tells the tests what is here.
-    pub fn tell(&self, command: &mut Command) {
-        if !self.osmesa {
-            command.env("YORO_TEST_WITHOUT_OSMESA", "1");
-        }
-        if !self.vulkan {
-            command.env("YORO_TEST_WITHOUT_VULKAN", "1");
-        }
-        self.apk.tell("APK", command);
-        self.layer.tell("ANDROID_LAYER", command);
-        self.arm64.tell("ARM64_HOST", command);
-        self.browser.tell("CHROMIUM", command);
-        self.monado.tell("MONADO", command);
-        self.hello_xr.tell("HELLO_XR", command);
-        self.shader_compilers.tell("SHADER_COMPILERS", command);
-        self.web.tell("WEB", command);
-        self.webxr.tell("WEBXR", command);
-    }
-
-    /// What cannot be had, a sentence each.
-    pub fn absent(&self) -> Vec<&'static str> {
-        let missing = |equipped: &Equipped| matches!(equipped, Equipped::Missing);
-        let sentences = [
-            (!self.osmesa, "OSMesa is not here"),
-            (!self.vulkan, "Vulkan or its validation layer is not here"),
-            (missing(&self.apk), "The APK cannot be built here (cargo xtask doctor)"),
-            (
-                missing(&self.arm64),
-                "The simulated Android host for arm64 cannot be set up here (see the warning above)",
-            ),
-            (missing(&self.browser), "Chromium is not here"),
-            (missing(&self.monado), "Monado cannot be set up here (see the warning above)"),
-            (missing(&self.hello_xr), "hello_xr cannot be set up here (see the warning above)"),
-            (
-                missing(&self.shader_compilers),
-                "Shader compilers for mobile GPUs cannot be set up here (see the warning above)",
-            ),
-            (missing(&self.web), "The page cannot be built here (see the warning above)"),
-            (missing(&self.webxr), "The WebXR emulator cannot be fetched here (see the warning above)"),
-        ];
-        sentences.into_iter().filter(|(absent, _)| *absent).map(|(_, sentence)| sentence).collect()
+impl Item {
+    fn is_for(&self, package: &str, test: &str) -> bool {
+        self.users.iter().any(|(user, part)| *user == package && test.contains(part))
     }
 }
 
-/// Which of it tests ask for. All of them need the system's libraries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
-    /// The Android application.
-    pub apk: bool,
-    /// The OpenXR API layer for Android, which is of no use without the application.
-    pub layer: bool,
-    /// The simulated Android host for arm64, which is of no use without the application.
-    pub arm64: bool,
-    /// An OpenXR runtime.
-    pub monado: bool,
-    /// An OpenXR application, which is of no use without the runtime.
-    pub hello_xr: bool,
-    /// A browser, even if it has to be installed.
-    pub browser: bool,
-    /// Compilers for mobile GPUs.
-    pub shader_compilers: bool,
-    /// A Vulkan driver and the validation layer.
-    pub vulkan: bool,
-    /// The page.
-    pub web: bool,
+/// True if a test needs any of it.
+pub fn is_needed(package: &str, test: &str) -> bool {
+    ITEMS.iter().any(|item| item.is_for(package, test))
 }
 
-impl Wanted {
-    /// For all tests.
-    pub const ALL: Self = Self {
-        apk: true,
-        layer: true,
-        arm64: true,
-        monado: true,
-        hello_xr: true,
-        browser: true,
-        shader_compilers: true,
-        vulkan: true,
-        web: true,
+/// Patterns of the table that fit no test: the tests have other names by now.
+pub fn stale(programs: &[Program]) -> Vec<String> {
+    let users = ITEMS.iter().flat_map(|item| item.users);
+    let fits = |(package, part): &(&str, &str)| {
+        programs
+            .iter()
+            .any(|(binary, names)| binary.package == *package && names.iter().any(|name| name.contains(part)))
     };
-    const NONE: Self = Self {
-        apk: false,
-        layer: false,
-        arm64: false,
-        monado: false,
-        hello_xr: false,
-        browser: false,
-        shader_compilers: false,
-        vulkan: false,
-        web: false,
-    };
-
-    /// For tests with these packages and names. A few chosen ones are not worth the wait for a browser's installation.
-    pub fn by<'a>(tests: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
-        let mut wanted = Self::NONE;
-        for (package, name) in tests {
-            wanted.apk |= package == "yoro-android-host";
-            wanted.layer |= package == "yoro-android-host" && name.contains("layer");
-            wanted.arm64 |= package == "yoro-android-host" && name.contains("arm64");
-            wanted.monado |= package == "yoro-app" && name.contains("monado");
-            wanted.web |= package == "yoro-app" && name.starts_with("web::");
-            wanted.hello_xr |= package == "yoro-layer" && name.contains("hello_xr");
-            wanted.hello_xr |= package == "yoro-app" && name.contains("through_the_layer");
-            wanted.shader_compilers |= package == "yoro-tests" && name.starts_with("shader_cost::");
-            wanted.vulkan |= package == "yoro"
-                || package == "yoro-layer"
-                || (package == "yoro-tests" && name.starts_with("vulkan::"));
-        }
-        wanted
-    }
+    users.filter(|user| !fits(user)).map(|(package, part)| format!("{package} {part}")).collect()
 }
 
-/// Installing and fetching that goes on.
+/// Installing and fetching that goes on in threads.
 pub struct Preparation<'scope> {
-    wanted: Wanted,
-    system: ScopedJoinHandle<'scope, (anyhow::Result<System>, Duration)>,
-    /// Monado, and hello_xr, which begins with it.
-    xr: Option<ScopedJoinHandle<'scope, ([Equipped; 2], Duration)>>,
-    shader_compilers: Option<ScopedJoinHandle<'scope, (Equipped, Duration)>>,
-    host: Option<ScopedJoinHandle<'scope, (anyhow::Result<arm64::Host>, Duration)>>,
-    webxr: Option<ScopedJoinHandle<'scope, (Equipped, Duration)>>,
+    system: Option<ScopedJoinHandle<'scope, anyhow::Result<Libraries>>>,
+    items: Vec<(&'static Item, ScopedJoinHandle<'scope, anyhow::Result<PathBuf>>)>,
 }
 
-/// What the system's package manager has brought.
-struct System {
+/// Which of the system's libraries are here that the program can do without.
+#[derive(Clone, Copy, Debug, Default)]
+struct Libraries {
     osmesa: bool,
     vulkan: bool,
-    apk: Option<anyhow::Result<()>>,
-    arm64: Option<anyhow::Result<()>>,
-    browser: Equipped,
 }
 
-impl System {
-    fn install(wanted: Wanted) -> anyhow::Result<Self> {
-        let osmesa = setup::ensure()?.osmesa;
-        let vulkan = !wanted.vulkan || setup::vulkan();
-        let apk = wanted.apk.then(android::ready_for_tests);
-        let arm64 = wants_arm64(wanted).then(arm64::Host::ready);
-        let absent = if wanted.browser { Equipped::Missing } else { Equipped::NotWanted };
-        let browser = setup::browser(wanted.browser).map_or(absent, Equipped::At);
-        Ok(Self { osmesa, vulkan, apk, arm64, browser })
-    }
-}
-
-/// A machine of arm64 runs that library by itself.
-fn wants_arm64(wanted: Wanted) -> bool {
-    cfg!(target_arch = "x86_64") && wanted.apk && wanted.arm64
-}
-
-fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
-    let start = Instant::now();
-    (work(), start.elapsed())
+/// What is here.
+#[derive(Debug, Default)]
+pub struct Equipment {
+    libraries: Libraries,
+    /// By variable; `None` for what cannot be had.
+    items: Vec<(&'static str, Option<PathBuf>)>,
+    /// A sentence for each thing that cannot be had.
+    pub absent: Vec<String>,
 }
 
 impl<'scope> Preparation<'scope> {
-    /// Begins, in threads: one for the system's packages, since only one at a time can be installed, and one for each of
-    /// the folders of unpacked packages.
+    /// Begins for the chosen tests, or for all tests.
     ///
     /// # Errors
     /// When a library is missing that somebody else has to install.
-    pub fn begin(scope: &'scope Scope<'scope, '_>, wanted: Wanted) -> anyhow::Result<Self> {
+    pub fn begin(scope: &'scope Scope<'scope, '_>, programs: Option<&[Program]>) -> anyhow::Result<Self> {
         // sudo may ask for a password, and others say what to install: not behind cargo's back.
         if !apt::installs_by_itself() {
             setup::ensure()?;
         }
-        let fetch_xr = move || {
-            let monado = Equipped::or_missing(monado::make(), "Monado cannot be set up here");
-            let hello_xr = match wanted.hello_xr {
-                true => Equipped::or_missing(hello_xr::make(), "hello_xr cannot be set up here"),
-                false => Equipped::NotWanted,
-            };
-            [monado, hello_xr]
+        let libraries = || Ok(Libraries { osmesa: setup::ensure()?.osmesa, vulkan: setup::vulkan() });
+        let wanted = |item: &&Item| match programs {
+            None => true,
+            // A few chosen tests are not worth the wait for a browser: they use the one that is there.
+            Some(programs) => {
+                let is_user =
+                    |(binary, names): &Program| names.iter().any(|name| item.is_for(&binary.package, name));
+                item.variable != "CHROMIUM" && programs.iter().any(is_user)
+            }
         };
-        let wants_xr = wanted.monado || wanted.hello_xr;
-        let fetch_compilers = || {
-            let folder = Compilers::make().map(|compilers| compilers.folder().to_owned());
-            Equipped::or_missing(folder, "shader compilers for mobile GPUs cannot be set up here")
-        };
-        let fetch_webxr =
-            || Equipped::or_missing(web::emulator(), "the WebXR emulator cannot be fetched here");
-        Ok(Self {
-            wanted,
-            system: scope.spawn(move || timed(|| System::install(wanted))),
-            xr: wants_xr.then(|| scope.spawn(move || timed(fetch_xr))),
-            shader_compilers: wanted.shader_compilers.then(|| scope.spawn(move || timed(fetch_compilers))),
-            webxr: wanted.web.then(|| scope.spawn(move || timed(fetch_webxr))),
-            host: wants_arm64(wanted).then(|| scope.spawn(|| timed(arm64::Host::fetch))),
-        })
+        let items = ITEMS.iter().filter(wanted).map(|item| (item, scope.spawn(item.fetch))).collect();
+        Ok(Self { system: Some(scope.spawn(libraries)), items })
     }
 
-    /// Waits for the rest, and builds what has to be built of it.
+    /// Waits for the system's libraries, which all tests need.
     ///
     /// # Errors
-    /// When a library is missing, or something cannot be built although everything for it is there.
-    pub fn finish(self, summary: &mut Summary) -> anyhow::Result<Equipment> {
-        let start = Instant::now();
-        let (system, taken) = join(self.system)?;
-        summary.beside("system libraries, tools, browser", taken);
-        let system = system?;
-        let [mut monado, mut hello_xr] = [Equipped::NotWanted, Equipped::NotWanted];
-        if let Some(handle) = self.xr {
-            let (equipped, taken) = join(handle)?;
-            summary.beside("Monado, hello_xr", taken);
-            [monado, hello_xr] = equipped;
+    /// When one is missing.
+    pub fn libraries(&mut self) -> anyhow::Result<Equipment> {
+        let mut equipment = Equipment::default();
+        if let Some(system) = self.system.take() {
+            equipment.libraries = join(system)?;
         }
-        let mut shader_compilers = Equipped::NotWanted;
-        if let Some(handle) = self.shader_compilers {
-            let (equipped, taken) = join(handle)?;
-            summary.beside("shader compilers", taken);
-            shader_compilers = equipped;
+        for (here, what) in [
+            (equipment.libraries.osmesa, "OSMesa"),
+            (equipment.libraries.vulkan, "Vulkan or its validation layer"),
+        ] {
+            if !here {
+                equipment.absent.push(format!("{what} is not here: what needs it was left out"));
+            }
         }
-        let mut webxr = Equipped::NotWanted;
-        if let Some(handle) = self.webxr {
-            let (equipped, taken) = join(handle)?;
-            summary.beside("WebXR emulator", taken);
-            webxr = equipped;
-        }
-        let mut host = None;
-        if let Some(handle) = self.host {
-            let (fetched, taken) = join(handle)?;
-            summary.beside("Debian for arm64", taken);
-            host = Some(fetched);
-        }
-        summary.phase("waiting for the set-up", start.elapsed());
+        Ok(equipment)
+    }
 
-        let apk = match system.apk {
-            None => Equipped::NotWanted,
-            Some(Ok(())) => {
-                let options = android::Options { release: true, yes: true, openxr_loaders: Vec::new() };
-                Equipped::At(summary.measure("building the APK", || android::apk(&options))?)
-            }
-            Some(Err(error)) => Equipped::or_missing(Err(error), "the APK cannot be built here"),
-        };
-        let layer = match apk {
-            Equipped::At(_) if self.wanted.layer => {
-                Equipped::At(summary.measure("building the Android layer", package::layer_for_tests)?)
-            }
-            _ => Equipped::NotWanted,
-        };
-        let host = match (system.arm64, host) {
-            (Some(Err(error)), _) => Some(Err(error)),
-            (_, host) => host,
-        };
-        let arm64 = match host.filter(|_| matches!(apk, Equipped::At(_))) {
-            None => Equipped::NotWanted,
-            Some(Ok(host)) => Equipped::At(summary.measure("building the arm64 host", || host.build())?),
-            Some(Err(error)) => Equipped::or_missing(Err(error), "the arm64 library cannot be run here"),
-        };
-        let web = match webxr {
-            Equipped::NotWanted => Equipped::NotWanted,
-            _ if !web::can_be_built() => Equipped::or_missing(
-                Err(anyhow!("no Rust can compile for browsers")),
-                "the page cannot be built here",
-            ),
-            _ => {
-                summary.measure("building the page", web::build)?;
-                Equipped::At(env::current_exe()?)
-            }
-        };
-        let System { osmesa, vulkan, browser, .. } = system;
-        Ok(Equipment {
-            osmesa,
-            vulkan,
-            apk,
-            layer,
-            arm64,
-            browser,
-            monado,
-            hello_xr,
-            shader_compilers,
-            web,
-            webxr,
-        })
+    /// Waits for the rest, and builds what has to be built.
+    ///
+    /// # Errors
+    /// When something cannot be built although everything for it is there.
+    pub fn finish(self, equipment: &mut Equipment, summary: &mut Summary) -> anyhow::Result<()> {
+        for (item, fetching) in self.items {
+            let fetched = summary.measure(&format!("waiting for {}", item.what), || join(fetching));
+            let path = match (fetched, item.build) {
+                (Ok(_), Some(build)) => Some(summary.measure(&format!("building {}", item.what), build)?),
+                (Ok(path), None) => Some(path),
+                (Err(error), _) => {
+                    let sentence = format!("{} cannot be had here: its tests were left out", item.what);
+                    eprintln!("warning: {sentence}: {error:#}");
+                    equipment.absent.push(sentence);
+                    None
+                }
+            };
+            equipment.items.push((item.variable, path));
+        }
+        Ok(())
     }
 }
 
-fn join<T>(handle: ScopedJoinHandle<'_, T>) -> anyhow::Result<T> {
-    handle.join().map_err(|_| anyhow!("the set-up has failed in an unexpected way: see above"))
+fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T> {
+    handle.join().map_err(|_| anyhow!("the set-up has failed in an unexpected way: see above"))?
+}
+
+impl Equipment {
+    /// Tells a test program what is here.
+    pub fn tell(&self, command: &mut Command) {
+        if !self.libraries.osmesa {
+            command.env("YORO_TEST_WITHOUT_OSMESA", "1");
+        }
+        if !self.libraries.vulkan {
+            command.env("YORO_TEST_WITHOUT_VULKAN", "1");
+        }
+        for (variable, path) in &self.items {
+            match path {
+                Some(path) => command.env(format!("YORO_TEST_{variable}"), path),
+                None => command.env(format!("YORO_TEST_WITHOUT_{variable}"), "1"),
+            };
+        }
+    }
 }
 
 #[cfg(test)]
@@ -359,48 +236,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_tests_ask_for_is_told_by_their_names() {
-        assert_eq!(Wanted::by([("yoro-lab", "monado::arm64"), ("yoro-app", "shader_cost::x")]), Wanted::NONE);
-        assert_eq!(Wanted::by([("yoro-android-host", "boots")]), Wanted { apk: true, ..Wanted::NONE });
-        let tests = [
-            ("yoro-android-host", "the_arm64_library"),
-            ("yoro-android-host", "through_the_layer"),
-            ("yoro-app", "xr::monado_shows"),
-            ("yoro-layer", "monado_and_hello_xr"),
-            ("yoro-tests", "shader_cost::synthesis"),
-            ("yoro-tests", "vulkan::scenes"),
-            ("yoro-app", "web::a_headset_shows_both_eyes"),
-        ];
-        assert_eq!(Wanted::by(tests), Wanted { browser: false, ..Wanted::ALL });
+    fn tests_are_known_by_package_and_name() {
+        let needed = |package: &str, name: &str| {
+            let items = ITEMS.iter().filter(|item| item.is_for(package, name));
+            items.map(|item| item.variable).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(needed("yoro-lab", "monado::arm64"), "");
+        assert_eq!(needed("yoro-android-host", "the_arm64_library"), "APK ARM64_HOST");
+        assert_eq!(needed("yoro-layer", "monado_and_hello_xr"), "HELLO_XR");
+        assert_eq!(needed("yoro-app", "web::a_headset"), "WEB WEBXR CHROMIUM");
     }
 
     #[test]
     fn tests_are_told_what_is_here_and_what_is_not() {
         let equipment = Equipment {
-            osmesa: true,
-            vulkan: true,
-            apk: Equipped::At("yoro.apk".into()),
+            libraries: Libraries { osmesa: true, vulkan: false },
+            items: vec![("APK", Some("yoro.apk".into())), ("MONADO", None)],
             ..Equipment::default()
         };
         let mut command = Command::new("test");
         equipment.tell(&mut command);
         let set: Vec<_> = command.get_envs().filter_map(|(name, _)| name.to_str()).collect();
-        assert_eq!(
-            set,
-            [
-                "YORO_TEST_APK",
-                "YORO_TEST_WITHOUT_ANDROID_LAYER",
-                "YORO_TEST_WITHOUT_ARM64_HOST",
-                "YORO_TEST_WITHOUT_CHROMIUM",
-                "YORO_TEST_WITHOUT_HELLO_XR",
-                "YORO_TEST_WITHOUT_MONADO",
-                "YORO_TEST_WITHOUT_SHADER_COMPILERS",
-                "YORO_TEST_WITHOUT_WEB",
-                "YORO_TEST_WITHOUT_WEBXR"
-            ]
-        );
-        assert!(equipment.absent().is_empty());
-        let missing = Equipment { apk: Equipped::Missing, ..equipment };
-        assert_eq!(missing.absent(), ["The APK cannot be built here (cargo xtask doctor)"]);
+        assert_eq!(set, ["YORO_TEST_APK", "YORO_TEST_WITHOUT_MONADO", "YORO_TEST_WITHOUT_VULKAN"]);
     }
 }

@@ -1,34 +1,45 @@
-//! All tests of the workspace: cargo compiles them, and processes of their own run them on all processors.
+//! All tests of the workspace: cargo compiles them, and several processes at a time run them.
 //!
-//! Mesa's rasterizer crashes now and then when two threads of one process draw; two processes do not disturb each other.
+//! Beyond `cargo test`: two processes run at a time, since Mesa's rasterizer crashes now and then when two threads of one
+//! process draw; a crash fails one test and the others still run; what fails runs once more, alone; what tests need is fetched
+//! and built. cargo-nextest would do most of it, but depends on 400 packages, which a clean clone would compile first.
 
 mod binaries;
 mod equipment;
-mod plan;
-mod runner;
+mod process;
 mod summary;
-mod transcript;
 
+use std::collections::VecDeque;
 use std::env;
-use std::fs;
 use std::num::NonZeroUsize;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
-use std::time::Instant;
 
 use anyhow::bail;
 use yoro_tools::cargo::cargo;
 use yoro_tools::folders::target_folder;
 
 use binaries::Program;
-use equipment::{Equipment, Preparation, Wanted};
-use plan::{Job, Times, plan};
-use runner::{Jobs, News};
+use equipment::{Equipment, Preparation};
+use process::{Finished, Outcome, shown};
 use summary::Summary;
-use transcript::{Line, Outcome, Reading, shown};
 
-/// What the tests of documentation are called among programs.
-const DOCUMENTATION: &str = "documentation";
+/// Tests that must not run beside others, by a part of `program name`.
+///
+/// Almost none have to: each has folders of its own, ports are pipes, and time is measured in processor time or is simulated.
+const ALONE: [&str; 2] = [
+    // With a second large scene a small machine would have no room for both.
+    "yoro-app::program memory::",
+    // In qemu beside others, the first frames take longer than a minute.
+    "yoro-android-host::apk the_arm64_library",
+];
+/// Tests from outside take seconds: a process runs so many of them.
+const INTEGRATION: usize = 4;
+/// Unit tests take milliseconds.
+const UNIT: usize = 60;
+/// More failures than this are no accident, and not retried.
+const RETRIED: usize = 8;
 
 /// Which tests, and how.
 #[derive(Clone, Debug, Default)]
@@ -53,48 +64,34 @@ impl Options {
     }
 }
 
-/// Runs all tests of the workspace, or those whose names contain one of the filters, and sums up.
-///
-/// # Errors
-/// When a test fails twice or does not compile, or nothing is to be run.
-pub fn test(options: &Options) -> anyhow::Result<()> {
-    let mut summary = Summary::begin();
-    let (programs, equipment) = prepare(options, &mut summary)?;
-    let chosen: usize = programs.iter().map(|(_, names)| names.len()).sum();
-    if options.all() {
-        for part in plan::stale(&programs) {
-            eprintln!("warning: no test is called {part}: correct the table in xtask/src/testing/plan.rs");
-        }
-    }
-    let times_file = target_folder()?.join("test-times");
-    let mut times = Times::parse(&fs::read_to_string(&times_file).unwrap_or_default());
-    // Looking for those takes seconds in each library: a name that is found elsewhere is not looked for there.
-    let documentation = options.packages.is_empty() && (options.filters.is_empty() || chosen == 0);
-    let plan = plan(&programs, documentation, &times);
-    let tests = Tests { programs: &programs, equipment: &equipment, options };
-    let processors =
-        options.jobs.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
-    eprintln!("{chosen} tests in {processors} processes at a time");
-    let start = Instant::now();
-    for (jobs, workers) in [(plan.together, processors), (plan.alone, 1)] {
-        runner::run(&tests, jobs, workers, |news| tests.tell(news, chosen, &mut summary, &mut times));
-    }
-    let again = tests.again(&summary);
-    if !again.is_empty() {
-        println!("\nwhat failed, a second time and alone:");
-        runner::run(&tests, again, 1, |news| tests.tell_again(news, &mut summary));
-    }
-    summary.phase("running the tests", start.elapsed());
-    if let Err(error) = fs::write(&times_file, times.to_text()) {
-        eprintln!("warning: {} cannot be written: {error}", times_file.display());
-    }
-    conclude(&summary, &equipment, options)
+/// What one process runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Job {
+    /// Some tests of the program at this place among all.
+    Tests(usize, Vec<String>),
+    /// The tests in the documentation of all libraries.
+    Documentation,
 }
 
-/// Compiles the tests and meanwhile installs and fetches what they need; programs with the names of the chosen tests.
-fn prepare(options: &Options, summary: &mut Summary) -> anyhow::Result<(Vec<Program>, Equipment)> {
-    thread::scope(|scope| {
-        let early = options.all().then(|| Preparation::begin(scope, Wanted::ALL)).transpose()?;
+/// All jobs, in groups that run one after the other.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Plan {
+    /// Whatever needs no equipment.
+    first: Vec<Job>,
+    /// Whatever needs some.
+    equipped: Vec<Job>,
+    /// [`ALONE`].
+    alone: Vec<Job>,
+}
+
+/// Compiles and runs all tests of the workspace, or those that are chosen, and sums up.
+///
+/// # Errors
+/// When a test fails twice or does not compile, or none is chosen.
+pub fn test(options: &Options) -> anyhow::Result<()> {
+    let mut summary = Summary::begin();
+    let equipment = thread::scope(|scope| {
+        let preparation = options.all().then(|| Preparation::begin(scope, None)).transpose()?;
         let binaries = summary.measure("compiling the tests", || binaries::compile(&options.packages))?;
         let mut programs = Vec::new();
         for binary in binaries {
@@ -102,117 +99,125 @@ fn prepare(options: &Options, summary: &mut Summary) -> anyhow::Result<(Vec<Prog
             names.retain(|name| options.takes(name));
             programs.push((binary, names));
         }
-        let preparation = match early {
+        let mut preparation = match preparation {
             Some(preparation) => preparation,
-            None => {
-                let all = programs.iter().flat_map(|(binary, names)| {
-                    names.iter().map(|name| (binary.package.as_str(), name.as_str()))
-                });
-                Preparation::begin(scope, Wanted::by(all))?
-            }
+            None => Preparation::begin(scope, Some(&programs))?,
         };
-        Ok((programs, preparation.finish(summary)?))
-    })
+        if options.all() {
+            for part in stale(&programs) {
+                eprintln!("warning: no test is called {part}: correct the table in xtask/src/testing");
+            }
+        }
+        let equipment = summary.measure("waiting for the libraries", || preparation.libraries())?;
+        let mut run = Run::new(&programs, options, equipment)?;
+        let plan = plan(&programs, options);
+        let workers =
+            options.jobs.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+        run.all(plan.first, workers, "running tests", &mut summary);
+        preparation.finish(&mut run.equipment, &mut summary)?;
+        run.all(plan.equipped, workers, "running tests with equipment", &mut summary);
+        run.all(plan.alone, 1, "running tests alone", &mut summary);
+        run.retry(&mut summary);
+        Ok::<Equipment, anyhow::Error>(run.equipment)
+    })?;
+    for sentence in &equipment.absent {
+        println!("{sentence}");
+    }
+    if options.bless {
+        println!("golden images renewed: look at `git diff --stat tests/golden` and at the pictures");
+    }
+    print!("{summary}");
+    if summary.count() == 0 {
+        bail!("no test is called so: say less of its name");
+    }
+    if !summary.failed.is_empty() {
+        bail!("{} tests failed: see above", summary.failed.len());
+    }
+    Ok(())
 }
 
-/// More failures than this are no accident.
-const AGAIN: usize = 8;
+fn is_alone(program: &str, name: &str) -> bool {
+    ALONE.iter().any(|part| format!("{program} {name}").contains(part))
+}
 
-/// How chosen tests are run, and what is told of them.
-struct Tests<'a> {
+/// Patterns of the tables that fit no test: the tests have other names by now.
+fn stale(programs: &[Program]) -> Vec<String> {
+    let fits = |part: &&&str| {
+        programs.iter().any(|(binary, names)| {
+            names.iter().any(|name| format!("{} {name}", binary.label).contains(**part))
+        })
+    };
+    let alone = ALONE.iter().filter(|part| !fits(part)).map(|part| (*part).to_owned());
+    alone.chain(equipment::stale(programs)).collect()
+}
+
+/// Divides the tests among processes; tests from outside go first, since they are longer.
+fn plan(programs: &[Program], options: &Options) -> Plan {
+    let mut plan = Plan::default();
+    let chosen = programs.iter().any(|(_, names)| !names.is_empty());
+    // Looking for these takes seconds in each library: a name that is found elsewhere is not looked for there.
+    if options.packages.is_empty() && (options.filters.is_empty() || !chosen) {
+        plan.first.push(Job::Documentation);
+    }
+    let mut order: Vec<usize> = (0..programs.len()).collect();
+    order.sort_by_key(|&program| !programs[program].0.integration);
+    for program in order {
+        let (binary, names) = &programs[program];
+        let (alone, beside): (Vec<_>, Vec<_>) =
+            names.iter().cloned().partition(|name| is_alone(&binary.label, name));
+        plan.alone.extend(alone.into_iter().map(|name| Job::Tests(program, vec![name])));
+        let (equipped, first): (Vec<_>, Vec<_>) =
+            beside.into_iter().partition(|name| equipment::is_needed(&binary.package, name));
+        let size = if binary.integration { INTEGRATION } else { UNIT };
+        let jobs = |names: Vec<String>| {
+            names.chunks(size).map(|names| Job::Tests(program, names.to_vec())).collect::<Vec<_>>()
+        };
+        plan.first.extend(jobs(first));
+        plan.equipped.extend(jobs(equipped));
+    }
+    plan
+}
+
+/// What processes are started with.
+struct Run<'a> {
     programs: &'a [Program],
-    equipment: &'a Equipment,
     options: &'a Options,
+    equipment: Equipment,
+    folder: std::path::PathBuf,
 }
 
-impl Tests<'_> {
-    fn program(&self, job: &Job) -> &str {
+impl<'a> Run<'a> {
+    fn new(programs: &'a [Program], options: &'a Options, equipment: Equipment) -> anyhow::Result<Self> {
+        Ok(Self { programs, options, equipment, folder: target_folder()? })
+    }
+
+    fn program(&self, job: &Job) -> &'a str {
         match job {
-            Job::Tests { binary, .. } => &self.programs[*binary].0.label,
-            Job::Documentation => DOCUMENTATION,
+            Job::Tests(program, _) => &self.programs[*program].0.label,
+            Job::Documentation => "documentation",
         }
     }
 
-    /// Prints a line for each test, and what a failing one's process has printed.
-    fn tell(&self, news: News<Job>, chosen: usize, summary: &mut Summary, times: &mut Times) {
-        let (job, reading, lines, wall, processor) = match news {
-            News::Slow(name, seconds) => return println!("still running after {seconds} s: {name}"),
-            News::Ended { job, reading, lines, wall, processor } => (job, reading, lines, wall, processor),
-        };
-        let program = self.program(&job);
-        summary.process(program, wall, processor);
-        for result in &reading.results {
-            summary.test(program, &result.name, result.outcome, result.seconds);
-            let word = match result.outcome {
-                Outcome::Passed => "ok",
-                Outcome::Failed => "FAILED",
-                Outcome::Ignored => "ignored",
-            };
-            if result.outcome == Outcome::Passed {
-                times.set(program, &result.name, result.seconds);
-            }
-            let (count, seconds) = (summary.count(), result.seconds);
-            println!("[{count:4}/{chosen}] {word:7} {seconds:6.2} s  {program} {}", result.name);
-        }
-        // Tests say so where they were told to do without something, many of them the same.
-        let is_told = |text: &str| text.contains("LEFT OUT: ") || text.contains("SKIPPED: ");
-        lines.iter().filter(|line| is_told(&line.text)).for_each(|line| summary.left_out(line.text.trim()));
-        show_failure(&reading, &lines);
-    }
-
-    /// The tests that failed, each in a process of its own; none if there are many.
-    fn again(&self, summary: &Summary) -> Vec<Job> {
-        let failures = summary.failures();
-        let jobs = self.programs.iter().enumerate().flat_map(|(binary, (program, names))| {
-            let failed = |name: &&String| failures.contains(&format!("{} {name}", program.label));
-            names.iter().filter(failed).map(move |name| Job::Tests { binary, names: vec![name.clone()] })
-        });
-        if failures.len() > AGAIN { Vec::new() } else { jobs.collect() }
-    }
-
-    /// Prints what became of a test in its second run.
-    fn tell_again(&self, news: News<Job>, summary: &mut Summary) {
-        let News::Ended { job, reading, lines, .. } = news else { return };
-        for result in &reading.results {
-            let full = format!("{} {}", self.program(&job), result.name);
-            let passed = result.outcome == Outcome::Passed;
-            println!("{:7} {:6.2} s  {full}", if passed { "ok" } else { "FAILED" }, result.seconds);
-            if passed {
-                summary.unsteady(&full);
-            }
-        }
-        show_failure(&reading, &lines);
-    }
-}
-
-/// Prints what a process of tests printed, if one of them failed.
-fn show_failure(reading: &Reading, lines: &[Line]) {
-    if reading.results.iter().any(|result| result.outcome == Outcome::Failed) {
-        print!("{}", shown(lines));
-    }
-    if let Some(trouble) = &reading.trouble {
-        println!("    {trouble}");
-    }
-}
-
-impl Jobs for Tests<'_> {
-    type Job = Job;
-
-    fn command(&self, job: &Job) -> Command {
-        let mut command = match job {
-            Job::Tests { binary, names } => {
-                let mut command = self.programs[*binary].0.command();
+    fn process(&self, job: &Job) -> Finished {
+        let (mut command, names) = match job {
+            Job::Tests(program, names) => {
+                let mut command = self.programs[*program].0.command();
                 // What is printed before a crash is not lost.
                 command.args(["--exact", "--test-threads=1", "--nocapture"]).args(names);
-                command
+                (command, Some(names.as_slice()))
             }
             Job::Documentation => {
                 let mut command = cargo();
-                command.args(["test", "--workspace", "--doc", "--no-fail-fast"]);
-                command.arg("--").args(&self.options.filters).stdin(Stdio::null());
-                command
+                command.args(["test", "--workspace", "--doc", "--no-fail-fast", "--"]);
+                command.args(&self.options.filters).stdin(Stdio::null());
+                (command, None)
             }
         };
+        self.prepare(&mut command);
+        process::run(command, names, &self.folder)
+    }
+
+    fn prepare(&self, command: &mut Command) {
         // Golden images are made by Mesa's rasterizer; a GPU's own rounding is another question.
         if env::var_os("LIBGL_ALWAYS_SOFTWARE").is_none() {
             command.env("LIBGL_ALWAYS_SOFTWARE", "1");
@@ -220,42 +225,112 @@ impl Jobs for Tests<'_> {
         if self.options.bless {
             command.env("YORO_BLESS", "1");
         }
-        self.equipment.tell(&mut command);
-        command
+        self.equipment.tell(command);
     }
 
-    fn names<'a>(&self, job: &'a Job) -> Option<&'a [String]> {
-        match job {
-            Job::Tests { names, .. } => Some(names),
-            Job::Documentation => None,
+    /// Runs jobs in so many processes at a time, and prints what became of the tests.
+    fn all(&self, jobs: Vec<Job>, workers: usize, what: &str, summary: &mut Summary) {
+        let total: usize = self.programs.iter().map(|(_, names)| names.len()).sum();
+        let queue = Mutex::new(VecDeque::from(jobs));
+        let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+        let (sender, receiver) = mpsc::channel();
+        let start = std::time::Instant::now();
+        thread::scope(|scope| {
+            for _ in 0..workers {
+                let (sender, queue) = (sender.clone(), &queue);
+                scope.spawn(move || {
+                    while let Some(job) = next() {
+                        let finished = self.process(&job);
+                        // After a crash the others still run.
+                        if let (Job::Tests(program, _), false) = (&job, finished.rest.is_empty()) {
+                            let rest = Job::Tests(*program, finished.rest.clone());
+                            queue.lock().unwrap_or_else(PoisonError::into_inner).push_front(rest);
+                        }
+                        sender.send((job, finished)).ok();
+                    }
+                });
+            }
+            drop(sender);
+            for (job, finished) in receiver {
+                let program = self.program(&job);
+                tell(program, &finished, |i| format!("[{:4}/{total}] ", summary.count() + i + 1));
+                summary.add(program, &finished);
+            }
+        });
+        summary.phase(what, start.elapsed());
+    }
+
+    /// Runs what failed once more, alone.
+    fn retry(&self, summary: &mut Summary) {
+        if summary.failed.is_empty() || summary.failed.len() > RETRIED {
+            return;
         }
-    }
-
-    fn again(&self, job: &Job, names: Vec<String>) -> Job {
-        match job {
-            Job::Tests { binary, .. } => Job::Tests { binary: *binary, names },
-            Job::Documentation => Job::Documentation,
+        println!("\nwhat failed, a second time and alone:");
+        for (program, (binary, names)) in self.programs.iter().enumerate() {
+            for name in names {
+                if summary.failed.contains(&format!("{} {name}", binary.label)) {
+                    let finished = self.process(&Job::Tests(program, vec![name.clone()]));
+                    summary.add_retry(&binary.label, &finished);
+                    tell(&binary.label, &finished, |_| String::new());
+                }
+            }
         }
     }
 }
 
-/// Prints the sums, and what was left out.
-fn conclude(summary: &Summary, equipment: &Equipment, options: &Options) -> anyhow::Result<()> {
-    print!("{summary}");
-    for what in equipment.absent() {
-        println!("{what}: what needs it was left out");
+/// Prints a line for each test, and everything that a process with a failed test has printed.
+fn tell(program: &str, finished: &Finished, count: impl Fn(usize) -> String) {
+    for (i, test) in finished.tests.iter().enumerate() {
+        let word = match test.outcome {
+            Outcome::Passed => "ok",
+            Outcome::Failed => "FAILED",
+            Outcome::Ignored => "ignored",
+        };
+        println!("{}{word:7} {:6.2} s  {program} {}", count(i), test.seconds, test.name);
     }
-    if options.bless {
-        println!("golden images renewed: look at `git diff --stat tests/golden` and at the pictures");
+    if finished.tests.iter().any(|test| test.outcome == Outcome::Failed) {
+        print!("{}", shown(&finished.lines));
     }
-    for name in summary.flaky() {
-        println!("FLAKY: {name} failed and passed alone: what it printed is above");
+    if let Some(trouble) = &finished.trouble {
+        println!("    {trouble}");
     }
-    if !summary.failures().is_empty() {
-        bail!("these tests failed: {}", summary.failures().join(", "));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::binaries::tests::binary;
+    use super::*;
+
+    fn names(names: &[&str]) -> Vec<String> {
+        names.iter().map(|&name| name.to_owned()).collect()
     }
-    if summary.ran() == 0 {
-        bail!("no test is called so: say less of its name");
+
+    #[test]
+    fn long_tests_go_first_and_equipped_ones_last() {
+        let programs = [
+            (binary("yoro", "lib"), names(&["a", "b"])),
+            (binary("yoro-render", "test"), names(&["1", "2", "3", "4", "5"])),
+            (binary("yoro-app", "test"), names(&["memory::largest", "xr::memory"])),
+        ];
+        let plan = plan(&programs, &Options::default());
+        let first = [
+            Job::Documentation,
+            Job::Tests(1, names(&["1", "2", "3", "4"])),
+            Job::Tests(1, names(&["5"])),
+            Job::Tests(0, names(&["a", "b"])),
+        ];
+        assert_eq!(plan.first, first);
+        assert_eq!(plan.equipped, [Job::Tests(2, names(&["xr::memory"]))]);
+        assert_eq!(plan.alone, [Job::Tests(2, names(&["memory::largest"]))]);
+        assert_eq!(stale(&programs)[0], ALONE[1]);
     }
-    Ok(())
+
+    #[test]
+    fn documentation_is_searched_only_for_names_that_are_nowhere_else() {
+        let planned = |filter: &str, found: &[&str]| {
+            let options = Options { filters: names(&[filter]), ..Options::default() };
+            plan(&[(binary("yoro", "lib"), names(found))], &options).first.contains(&Job::Documentation)
+        };
+        assert_eq!((planned("a", &["a"]), planned("src/lib.rs", &[])), (false, true));
+    }
 }

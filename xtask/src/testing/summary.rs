@@ -4,160 +4,129 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::{Duration, Instant};
 
-use super::transcript::Outcome;
+use super::process::{Finished, Outcome};
 
-/// So many of the slowest tests are shown.
+/// This many of the slowest tests are shown.
 const SLOWEST: usize = 10;
 
-/// Sums, while tests run.
+/// The sums of a run.
 #[derive(Debug)]
 pub struct Summary {
     start: Instant,
-    phases: Vec<Phase>,
-    programs: BTreeMap<String, Program>,
-    tests: Vec<(f64, String)>,
-    ignored: usize,
-    failures: Vec<String>,
-    /// Failed beside others, passed alone.
+    /// Names and seconds.
+    phases: Vec<(String, f64)>,
+    /// By program: tests, and seconds in their processes.
+    programs: BTreeMap<String, (usize, f64)>,
+    /// Seconds and names of tests.
+    passed: Vec<(f64, String)>,
+    /// By `program test`.
+    pub failed: Vec<String>,
+    /// Tests that failed beside others and passed alone.
     flaky: Vec<String>,
-    /// What tests had to do without, and how often it was said.
+    ignored: usize,
+    /// What tests had to do without, and how many said so.
     left_out: BTreeMap<String, usize>,
 }
 
-/// A part of the time.
-#[derive(Debug)]
-struct Phase {
-    what: &'static str,
-    taken: Duration,
-    /// While others went on.
-    beside: bool,
-}
-
-/// Sums of a test program.
-#[derive(Debug, Default)]
-struct Program {
-    tests: usize,
-    wall: f64,
-    processor: f64,
-}
-
 impl Summary {
-    /// The time begins.
+    /// Starts the clock.
     pub fn begin() -> Self {
         Self {
             start: Instant::now(),
             phases: Vec::new(),
             programs: BTreeMap::new(),
-            tests: Vec::new(),
-            ignored: 0,
-            failures: Vec::new(),
+            passed: Vec::new(),
+            failed: Vec::new(),
             flaky: Vec::new(),
+            ignored: 0,
             left_out: BTreeMap::new(),
         }
     }
 
-    /// Something has taken its time.
-    pub fn phase(&mut self, what: &'static str, taken: Duration) {
-        self.phases.push(Phase { what, taken, beside: false });
-    }
-
-    /// Something has taken its time while something else went on.
-    pub fn beside(&mut self, what: &'static str, taken: Duration) {
-        self.phases.push(Phase { what, taken, beside: true });
-    }
-
     /// Does something, and notes its time.
-    pub fn measure<T>(&mut self, what: &'static str, work: impl FnOnce() -> T) -> T {
+    pub fn measure<T>(&mut self, what: &str, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
         self.phase(what, start.elapsed());
         result
     }
 
-    /// A test has ended.
-    pub fn test(&mut self, program: &str, name: &str, outcome: Outcome, seconds: f64) {
-        let full = format!("{program} {name}");
-        match outcome {
-            Outcome::Passed => {}
-            Outcome::Failed => self.failures.push(full.clone()),
-            Outcome::Ignored => {
-                self.ignored += 1;
-                return;
+    /// Notes a time.
+    pub fn phase(&mut self, what: &str, taken: Duration) {
+        self.phases.push((what.to_owned(), taken.as_secs_f64()));
+    }
+
+    /// Adds a process of a test program.
+    pub fn add(&mut self, program: &str, finished: &Finished) {
+        let (tests, seconds) = self.programs.entry(program.to_owned()).or_default();
+        *tests += finished.tests.len();
+        *seconds += finished.seconds;
+        for test in &finished.tests {
+            let full = format!("{program} {}", test.name);
+            match test.outcome {
+                Outcome::Passed => self.passed.push((test.seconds, full)),
+                Outcome::Failed => self.failed.push(full),
+                Outcome::Ignored => self.ignored += 1,
             }
         }
-        self.programs.entry(program.to_owned()).or_default().tests += 1;
-        self.tests.push((seconds, full));
+        // Many tests say the same.
+        for text in finished.lines.iter().map(|line| line.text.trim()) {
+            if let Some(at) = text.find("LEFT OUT: ").or_else(|| text.find("SKIPPED: ")) {
+                *self.left_out.entry(text[at..].to_owned()).or_default() += 1;
+            }
+        }
     }
 
-    /// A process of a test program has ended.
-    pub fn process(&mut self, program: &str, wall: f64, processor: f64) {
-        let program = self.programs.entry(program.to_owned()).or_default();
-        program.wall += wall;
-        program.processor += processor;
+    /// Adds the second run of failed tests: those that passed now are no failures, but flaky.
+    pub fn add_retry(&mut self, program: &str, finished: &Finished) {
+        for test in finished.tests.iter().filter(|test| test.outcome == Outcome::Passed) {
+            let full = format!("{program} {}", test.name);
+            self.failed.retain(|failed| *failed != full);
+            self.passed.push((test.seconds, full.clone()));
+            self.flaky.push(full);
+        }
     }
 
-    /// A test says what it has to do without.
-    pub fn left_out(&mut self, text: &str) {
-        *self.left_out.entry(text.to_owned()).or_default() += 1;
-    }
-
-    /// A test that had failed has passed now: no failure, and told of.
-    pub fn unsteady(&mut self, full: &str) {
-        self.failures.retain(|failure| failure != full);
-        self.flaky.push(full.to_owned());
-    }
-
-    /// The names of those that failed and passed in their second run.
-    pub fn flaky(&self) -> &[String] {
-        &self.flaky
-    }
-
-    /// How many tests have ended.
+    /// The number of tests that have ended.
     pub fn count(&self) -> usize {
-        self.tests.len() + self.ignored
-    }
-
-    /// The tests that ran.
-    pub fn ran(&self) -> usize {
-        self.tests.len()
-    }
-
-    /// The names of those that failed.
-    pub fn failures(&self) -> &[String] {
-        &self.failures
+        self.passed.len() + self.failed.len() + self.ignored
     }
 }
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\nwhere the time went                          s")?;
-        for Phase { what, taken, beside } in &self.phases {
-            let beside = if *beside { "  beside the compiling" } else { "" };
-            writeln!(f, "  {what:36} {:8.1}{beside}", taken.as_secs_f64())?;
+        writeln!(f, "\nwhere the time went                                      s")?;
+        for (what, seconds) in self.phases.iter().filter(|(_, seconds)| *seconds >= 0.05) {
+            writeln!(f, "  {what:48} {seconds:8.1}")?;
         }
-        writeln!(f, "\nprogram                               tests  processor s   in processes s")?;
+        writeln!(f, "\nprogram                                 tests   in processes s")?;
         let mut programs: Vec<_> = self.programs.iter().collect();
-        programs.sort_by(|a, b| b.1.wall.total_cmp(&a.1.wall));
-        for (name, Program { tests, wall, processor }) in programs {
-            writeln!(f, "  {name:36}{tests:5}{processor:13.1}{wall:17.1}")?;
+        programs.sort_by(|a, b| b.1.1.total_cmp(&a.1.1));
+        for (name, (tests, seconds)) in programs {
+            writeln!(f, "  {name:38}{tests:5}{seconds:17.1}")?;
         }
-        writeln!(f, "\nslowest tests                                s")?;
-        let mut tests: Vec<_> = self.tests.iter().collect();
+        writeln!(f, "\nslowest tests")?;
+        let mut tests: Vec<_> = self.passed.iter().collect();
         tests.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (seconds, name) in tests.into_iter().take(SLOWEST) {
-            writeln!(f, "{seconds:46.1}  {name}")?;
-        }
-        if !self.left_out.is_empty() {
-            writeln!(f, "\ntests said")?;
+            writeln!(f, "{seconds:8.1} s  {name}")?;
         }
         for (text, count) in &self.left_out {
-            writeln!(f, "  {count:4} x  {text}")?;
+            writeln!(f, "{count:6} x  {text}")?;
         }
-        let failed = self.failures.len();
+        for name in &self.flaky {
+            writeln!(f, "FLAKY: {name} failed, and passed alone: see above what it printed")?;
+        }
+        for name in &self.failed {
+            writeln!(f, "FAILED: {name}")?;
+        }
+        // As libtest ends.
         writeln!(
             f,
-            "\n{} passed, {failed} failed, {} ignored in {:.0} s",
-            self.ran() - failed,
+            "\ntest result: {}. {} passed; {} failed; {} ignored; finished in {:.2}s",
+            if self.failed.is_empty() { "ok" } else { "FAILED" },
+            self.passed.len(),
+            self.failed.len(),
             self.ignored,
             self.start.elapsed().as_secs_f64()
         )
@@ -166,45 +135,35 @@ impl fmt::Display for Summary {
 
 #[cfg(test)]
 mod tests {
+    use super::super::process::Test;
     use super::*;
 
-    #[test]
-    fn tests_are_summed_up() {
-        let mut summary = Summary::begin();
-        summary.beside("Monado", Duration::from_secs(30));
-        assert_eq!(summary.measure("compiling", || 7), 7);
-        for i in 0..12 {
-            summary.test("yoro", &format!("test{i}"), Outcome::Passed, f64::from(i));
-        }
-        summary.test("yoro-app::program", "xr::bad", Outcome::Failed, 100.0);
-        summary.test("yoro-app::program", "xr::left", Outcome::Ignored, 0.0);
-        summary.process("yoro", 1.0, 0.5);
-        summary.process("yoro", 2.0, 1.5);
-        assert_eq!((summary.count(), summary.ran()), (14, 13));
-        assert_eq!(summary.failures(), ["yoro-app::program xr::bad"]);
-        let text = summary.to_string();
-        assert!(text.contains("\n12 passed, 1 failed, 1 ignored in 0 s\n"), "{text}");
-        assert!(
-            text.contains("Monado                                   30.0  beside the compiling\n"),
-            "{text}"
-        );
-        let yoro = text.lines().find(|line| line.starts_with("  yoro ")).unwrap();
-        assert_eq!(yoro.split_whitespace().collect::<Vec<_>>(), ["yoro", "12", "2.0", "3.0"]);
-        let slowest: Vec<_> = text.lines().skip_while(|line| !line.starts_with("slowest")).skip(1).collect();
-        assert!(slowest[0].ends_with("100.0  yoro-app::program xr::bad"), "{text}");
-        assert!(slowest[9].ends_with("3.0  yoro test3") && slowest[10].is_empty(), "{text}");
+    fn finished(names: &[&str], outcome: Outcome, seconds: f64) -> Finished {
+        let test = |&name: &&str| Test { name: name.to_owned(), outcome, seconds };
+        Finished { tests: names.iter().map(test).collect(), seconds, ..Finished::default() }
     }
 
     #[test]
-    fn a_test_that_passes_alone_is_flaky_and_what_is_said_often_is_told_once() {
+    fn tests_are_summed_up_as_libtest_does() {
         let mut summary = Summary::begin();
-        for name in ["a", "b"] {
-            summary.test("yoro", name, Outcome::Failed, 1.0);
-            summary.left_out("SKIPPED: no GPU");
-        }
-        summary.unsteady("yoro a");
-        assert_eq!((summary.failures(), summary.flaky()), (&["yoro b".into()][..], &["yoro a".into()][..]));
+        assert_eq!(summary.measure("compiling", || 7), 7);
+        summary.add("yoro", &finished(&["a", "b"], Outcome::Passed, 1.0));
+        summary.add("yoro", &finished(&["c"], Outcome::Ignored, 2.0));
+        summary.add("yoro-app::program", &finished(&["bad", "worse"], Outcome::Failed, 9.0));
+        assert_eq!(summary.count(), 5);
+        summary.add_retry("yoro-app::program", &finished(&["bad"], Outcome::Passed, 100.0));
+        assert_eq!(summary.failed, ["yoro-app::program worse"]);
         let text = summary.to_string();
-        assert!(text.contains("\ntests said\n     2 x  SKIPPED: no GPU\n\n1 passed, 1 failed"), "{text}");
+        assert!(
+            text.contains("\ntest result: FAILED. 3 passed; 1 failed; 1 ignored; finished in 0."),
+            "{text}"
+        );
+        assert!(text.contains("\nFLAKY: yoro-app::program bad failed"), "{text}");
+        assert!(
+            text.contains("slowest tests\n   100.0 s  yoro-app::program bad\n     1.0 s  yoro a\n"),
+            "{text}"
+        );
+        let yoro = text.lines().find(|line| line.starts_with("  yoro ")).unwrap();
+        assert_eq!(yoro.split_whitespace().collect::<Vec<_>>(), ["yoro", "3", "3.0"]);
     }
 }
