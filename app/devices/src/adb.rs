@@ -54,7 +54,7 @@ pub struct Listed {
     pub state: State,
 }
 
-/// Why a device cannot be measured on: one sentence with the remedy.
+/// Why a device cannot be measured on: one sentence with the remedy. A variant's only text is the device's serial number.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeviceError {
@@ -94,34 +94,22 @@ pub enum DeviceError {
         serials: Vec<String>,
     },
     /// A serial that is not connected.
-    #[error("{serial} is not connected: yoro device list shows which devices are")]
-    Unknown {
-        /// What was asked for.
-        serial: String,
-    },
+    #[error("{0} is not connected: yoro device list shows which devices are")]
+    Unknown(String),
     /// See [`State::Unauthorized`].
-    #[error("{serial} does not trust this computer yet: unlock it and accept the key that it shows")]
-    Unauthorized {
-        /// What adb calls it.
-        serial: String,
-    },
+    #[error("{0} does not trust this computer yet: unlock it and accept the key that it shows")]
+    Unauthorized(String),
     /// See [`State::Offline`].
     #[error(
-        "{serial} is offline: plug it in again, or connect anew (adb reconnect offline, over Wi-Fi adb connect {})",
-        quoted(serial)
+        "{} is offline: plug it in again, or connect anew (adb reconnect offline, over Wi-Fi adb connect {})",
+        .0, quoted(.0)
     )]
-    Offline {
-        /// What adb calls it.
-        serial: String,
-    },
+    Offline(String),
     /// See [`State::NoPermission`].
     #[error(
-        "this user may not open {serial}: install the udev rules for Android (Debian and Ubuntu: apt install android-sdk-platform-tools-common), then plug it in again"
+        "this user may not open {0}: install the udev rules for Android (Debian and Ubuntu: apt install android-sdk-platform-tools-common), then plug it in again"
     )]
-    NoPermission {
-        /// What adb calls it.
-        serial: String,
-    },
+    NoPermission(String),
     /// See [`State::Other`].
     #[error("{serial} is in the state \"{state}\": start Android on it")]
     NotReady {
@@ -131,17 +119,11 @@ pub enum DeviceError {
         state: String,
     },
     /// It was there, and is gone.
-    #[error("{serial} was lost: connect it again and give the same command")]
-    Lost {
-        /// What adb calls it.
-        serial: String,
-    },
+    #[error("{0} was lost: connect it again and give the same command")]
+    Lost(String),
     /// The application is not there.
-    #[error("yoro is not installed on {serial}: yoro device install does it")]
-    NotInstalled {
-        /// What adb calls it.
-        serial: String,
-    },
+    #[error("yoro is not installed on {0}: yoro device install does it")]
+    NotInstalled(String),
     /// Another application is not there.
     #[error(
         "{package} is not installed on {serial}: adb -s {} shell pm list packages prints what is",
@@ -154,37 +136,25 @@ pub enum DeviceError {
         package: String,
     },
     /// Installing failed for lack of storage.
-    #[error("the storage of {serial} is full: remove something from it, then install again")]
-    StorageFull {
-        /// What adb calls it.
-        serial: String,
-    },
+    #[error("the storage of {0} is full: remove something from it, then install again")]
+    StorageFull(String),
     /// Another key signed what is installed.
     #[error(
-        "the yoro on {serial} is signed with another key: adb -s {} uninstall io.github.yoro, then install again",
-        quoted(serial)
+        "the yoro on {} is signed with another key: adb -s {} uninstall io.github.yoro, then install again",
+        .0, quoted(.0)
     )]
-    OtherKey {
-        /// What adb calls it.
-        serial: String,
-    },
+    OtherKey(String),
     /// The device, or its user, does not let a computer install anything.
     #[error(
-        "{serial} does not let this computer install anything: confirm the installation on its screen; on phones by Xiaomi turn on \"Install via USB\" in the developer options first"
+        "{0} does not let this computer install anything: confirm the installation on its screen; on phones by Xiaomi turn on \"Install via USB\" in the developer options first"
     )]
-    InstallRestricted {
-        /// What adb calls it.
-        serial: String,
-    },
+    InstallRestricted(String),
     /// A newer version is there.
     #[error(
-        "a newer yoro is on {serial}: adb -s {} uninstall io.github.yoro, then install again",
-        quoted(serial)
+        "a newer yoro is on {}: adb -s {} uninstall io.github.yoro, then install again",
+        .0, quoted(.0)
     )]
-    Downgrade {
-        /// What adb calls it.
-        serial: String,
-    },
+    Downgrade(String),
     /// The APK has no code for the device's processor.
     #[error(
         "{} has no code for the processor of {serial}: make it for all processors by cargo xtask apk --release",
@@ -219,30 +189,21 @@ pub enum DeviceError {
     },
     /// The state of the battery is not the battery's.
     #[error(
-        "what {serial} says of its battery was set by hand (dumpsys battery set or unplug): adb -s {} shell dumpsys battery reset",
-        quoted(serial)
+        "what {} says of its battery was set by hand (dumpsys battery set or unplug): adb -s {} shell dumpsys battery reset",
+        .0, quoted(.0)
     )]
-    BatteryHeld {
-        /// What adb calls it.
-        serial: String,
-    },
+    BatteryHeld(String),
     /// Battery saver.
     #[error(
-        "the battery saver of {serial} is on, which slows it down: turn it off (adb -s {} shell settings put global low_power 0)",
-        quoted(serial)
+        "the battery saver of {} is on, which slows it down: turn it off (adb -s {} shell settings put global low_power 0)",
+        .0, quoted(.0)
     )]
-    BatterySaver {
-        /// What adb calls it.
-        serial: String,
-    },
+    BatterySaver(String),
     /// A screen lock that nobody opens while nobody is there.
     #[error(
-        "{serial} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its screen lock to none or swipe for the time of the measurement"
+        "{0} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its screen lock to none or swipe for the time of the measurement"
     )]
-    Locked {
-        /// What adb calls it.
-        serial: String,
-    },
+    Locked(String),
     /// It does not cool down.
     #[error(
         "{serial} has {celsius:.1} C and does not cool down to {wanted:.1} C: let it rest in a cooler place, then give the same command"
@@ -440,7 +401,7 @@ pub fn choose(adb: &dyn Adb, serials: &[String], all: bool) -> Result<Vec<Box<dy
     let listed = adb.devices()?;
     let find = |serial: &String| {
         let found = listed.iter().find(|device| device.serial == *serial);
-        found.ok_or_else(|| DeviceError::Unknown { serial: serial.clone() })
+        found.ok_or_else(|| DeviceError::Unknown(serial.clone()))
     };
     let open = |chosen: &[&Listed]| {
         let opened = chosen.iter().map(|device| ready(device).map(|()| adb.open(&device.serial)));
@@ -491,9 +452,9 @@ fn ready(device: &Listed) -> Result<(), DeviceError> {
     let serial = device.serial.clone();
     match &device.state {
         State::Ready => Ok(()),
-        State::Unauthorized => Err(DeviceError::Unauthorized { serial }),
-        State::Offline => Err(DeviceError::Offline { serial }),
-        State::NoPermission => Err(DeviceError::NoPermission { serial }),
+        State::Unauthorized => Err(DeviceError::Unauthorized(serial)),
+        State::Offline => Err(DeviceError::Offline(serial)),
+        State::NoPermission => Err(DeviceError::NoPermission(serial)),
         State::Other(state) => Err(DeviceError::NotReady { serial, state: state.clone() }),
     }
 }

@@ -32,9 +32,11 @@ use toml::{Table, Value};
 
 use super::adb::{Device, DeviceError};
 use super::capture::{self, CaptureError, Fault, FaultKind, Outcome, RUN_FILE, RunInfo, Writer};
+use super::latin::balanced_square;
 use super::phone::{self, Battery};
 use super::pins::{Pins, Wanted};
 use super::run::{self, Found, Plan};
+use super::table::toml_mistake;
 use yoro_files::interrupt;
 use yoro_files::{self as files, FileError};
 use yoro_protocol::Method;
@@ -229,11 +231,8 @@ impl Experiment {
     pub fn read(path: &Path) -> Result<Experiment, ExperimentError> {
         let text = String::from_utf8_lossy(&files::read(path)?).into_owned();
         let format = |what: String| ExperimentError::Format { path: path.into(), what };
-        let experiment: Experiment = toml::from_str(&text).map_err(|error| {
-            let line =
-                error.span().map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
-            format(format!("line {line}: {}", error.message().trim().replace('\n', " ")))
-        })?;
+        let experiment: Experiment =
+            toml::from_str(&text).map_err(|error| format(toml_mistake(&text, &error)))?;
         experiment.check().map_err(format)?;
         Ok(experiment)
     }
@@ -295,7 +294,7 @@ impl Experiment {
             .fold(self.seed, |hash, byte| hash.wrapping_mul(0x100_0000_01b3).wrapping_add(u64::from(byte)));
         let mut random = Pcg64Mcg::seed_from_u64(own);
         let mut names: Vec<usize> = (0..self.method.len()).collect();
-        let rows = latin_rows(names.len());
+        let rows = balanced_square(names.len());
         let mut shift = 0;
         if self.order == Order::Balanced {
             names.shuffle(&mut random);
@@ -370,19 +369,6 @@ impl Experiment {
     }
 }
 
-/// The rows of a balanced Latin square; for odd numbers also their mirror images, without which it is not balanced.
-fn latin_rows(n: usize) -> Vec<Vec<usize>> {
-    // 0, 1, n-1, 2, n-2, ...
-    let first: Vec<usize> =
-        (0..n).map(|i| if i % 2 == 1 { i.div_ceil(2) } else { (n - i / 2) % n }).collect();
-    let rows = (0..n).map(|shift| first.iter().map(|place| (place + shift) % n).collect::<Vec<_>>());
-    let mut rows: Vec<Vec<usize>> = rows.collect();
-    if n % 2 == 1 {
-        rows.extend(rows.clone().into_iter().map(|row| row.into_iter().rev().collect()));
-    }
-    rows
-}
-
 /// A name as part of the name of a file.
 pub fn file_name(text: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-._".contains(c) { c } else { '-' };
@@ -432,7 +418,7 @@ pub fn conduct(
     let found = run::look(device, phone::PACKAGE)?;
     // It is unlocked now, but nobody is there when it is locked again, by a restart at the latest.
     if phone::keyguard(device)?.secure {
-        return Err(DeviceError::Locked { serial: device.serial().into() });
+        return Err(DeviceError::Locked(device.serial().into()));
     }
     if experiment.power {
         run::refuse_charger(device)?;
@@ -497,7 +483,7 @@ impl Conductor<'_> {
                     return Err(DeviceError::Interrupted);
                 }
                 Outcome::Interrupted { .. } => {
-                    return Err(DeviceError::Lost { serial: self.device.serial().into() });
+                    return Err(DeviceError::Lost(self.device.serial().into()));
                 }
             }
         }
@@ -683,30 +669,6 @@ mod tests {
             .map(|i| format!("[[method]]\nname = \"m{i}\"\nsettings = {{ method = \"mono\" }}\n"))
             .collect();
         read(&format!("{SMALL}repetitions = 4\n{methods}")).unwrap()
-    }
-
-    #[test]
-    fn latin_squares_are_balanced() {
-        for n in 1..=9 {
-            let rows = latin_rows(n);
-            let mut after = std::collections::BTreeMap::new();
-            for place in 0..n {
-                let mut column: Vec<usize> = rows.iter().map(|row| row[place]).collect();
-                column.sort_unstable();
-                column.dedup();
-                assert_eq!(column.len(), n);
-            }
-            for row in &rows {
-                assert_eq!(row.iter().collect::<BTreeSet<_>>().len(), n);
-                row.windows(2).for_each(|pair| *after.entry([pair[0], pair[1]]).or_insert(0) += 1);
-            }
-            assert_eq!(after.len(), n * (n - 1), "{n}: each comes after each other one");
-            assert_eq!(
-                after.values().collect::<BTreeSet<_>>().len(),
-                usize::from(n > 1),
-                "{n}: equally often"
-            );
-        }
     }
 
     #[test]

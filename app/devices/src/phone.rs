@@ -299,7 +299,7 @@ pub fn start_other(device: &dyn Device, package: &str, activity: &str) -> Result
 fn start_by(device: &dyn Device, words: &[&str], component: &str) -> Result<(), DeviceError> {
     let said = device.shell(words)?;
     if said.contains("does not exist") && component == ACTIVITY {
-        return Err(DeviceError::NotInstalled { serial: device.serial().into() });
+        return Err(DeviceError::NotInstalled(device.serial().into()));
     }
     match said.lines().rfind(|line| line.starts_with("Error")) {
         Some(reason) => Err(DeviceError::Refused {

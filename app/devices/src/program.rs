@@ -122,10 +122,10 @@ impl AdbProgram {
             words.split(": ").map(str::trim).find_map(Unreached::of).map(|why| {
                 let serial = serial.to_owned();
                 match why {
-                    Unreached::Unauthorized => DeviceError::Unauthorized { serial },
-                    Unreached::Offline => DeviceError::Offline { serial },
-                    Unreached::NoPermission => DeviceError::NoPermission { serial },
-                    Unreached::Lost => DeviceError::Lost { serial },
+                    Unreached::Unauthorized => DeviceError::Unauthorized(serial),
+                    Unreached::Offline => DeviceError::Offline(serial),
+                    Unreached::NoPermission => DeviceError::NoPermission(serial),
+                    Unreached::Lost => DeviceError::Lost(serial),
                     Unreached::Server => DeviceError::Server { reason: words.trim().into() },
                 }
             })
@@ -307,12 +307,12 @@ impl Device for ProgramDevice {
         let word =
             all.split_once("Failure [").and_then(|(_, word)| word.split([':', ']']).next()).map(str::trim);
         Err(match word.unwrap_or_default() {
-            "INSTALL_FAILED_INSUFFICIENT_STORAGE" => DeviceError::StorageFull { serial },
-            "INSTALL_FAILED_UPDATE_INCOMPATIBLE" => DeviceError::OtherKey { serial },
-            "INSTALL_FAILED_USER_RESTRICTED" => DeviceError::InstallRestricted { serial },
-            "INSTALL_FAILED_VERSION_DOWNGRADE" => DeviceError::Downgrade { serial },
+            "INSTALL_FAILED_INSUFFICIENT_STORAGE" => DeviceError::StorageFull(serial),
+            "INSTALL_FAILED_UPDATE_INCOMPATIBLE" => DeviceError::OtherKey(serial),
+            "INSTALL_FAILED_USER_RESTRICTED" => DeviceError::InstallRestricted(serial),
+            "INSTALL_FAILED_VERSION_DOWNGRADE" => DeviceError::Downgrade(serial),
             "INSTALL_FAILED_NO_MATCHING_ABIS" => DeviceError::NoAbi { serial, apk: apk.into() },
-            _ if all.contains("No space left on device") => DeviceError::StorageFull { serial },
+            _ if all.contains("No space left on device") => DeviceError::StorageFull(serial),
             "" => DeviceError::Install { serial, apk: apk.into(), reason: said.reason() },
             word => DeviceError::Install { serial, apk: apk.into(), reason: word.into() },
         })

@@ -135,15 +135,15 @@ pub struct Found {
 pub fn look(device: &dyn Device, package: &str) -> Result<Found, DeviceError> {
     let serial = || device.serial().to_owned();
     let application = phone::version(device, package)?.ok_or_else(|| match package {
-        PACKAGE => DeviceError::NotInstalled { serial: serial() },
+        PACKAGE => DeviceError::NotInstalled(serial()),
         package => DeviceError::NoPackage { serial: serial(), package: package.into() },
     })?;
     if phone::saves_battery(device)? {
-        return Err(DeviceError::BatterySaver { serial: serial() });
+        return Err(DeviceError::BatterySaver(serial()));
     }
     let keyguard = phone::keyguard(device)?;
     if keyguard.secure && keyguard.showing {
-        return Err(DeviceError::Locked { serial: serial() });
+        return Err(DeviceError::Locked(serial()));
     }
     Ok(Found { info: phone::info(device)?, application })
 }
@@ -156,7 +156,7 @@ pub fn refuse_charger(device: &dyn Device) -> Result<(), DeviceError> {
     let battery = phone::battery(device)?;
     let serial = device.serial().to_owned();
     if battery.held {
-        return Err(DeviceError::BatteryHeld { serial });
+        return Err(DeviceError::BatteryHeld(serial));
     }
     if battery.plugged() {
         return Err(DeviceError::PluggedIn { serial, address: phone::wifi_address(device) });

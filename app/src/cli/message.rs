@@ -27,7 +27,7 @@ fn option(error: &anyhow::Error) -> Option<String> {
             return match error {
                 DeviceError::NoAdb { .. } | DeviceError::Start { .. } => Some("--adb FILE".into()),
                 DeviceError::Several { .. } => Some("--serial SERIAL, --all".into()),
-                DeviceError::NotInstalled { serial } => Some(format!("--serial {}", quoted(serial))),
+                DeviceError::NotInstalled(serial) => Some(format!("--serial {}", quoted(serial))),
                 DeviceError::PluggedIn { .. } => Some("--serial SERIAL, --plugged".into()),
                 _ => None,
             };

@@ -23,6 +23,7 @@ use serde::Deserialize;
 
 use crate::adb::DeviceError;
 use crate::capture;
+use crate::table::toml_mistake;
 use yoro_files as files;
 
 /// Devices, and what happens to them.
@@ -268,15 +269,11 @@ impl Script {
 
     fn of_file(path: &Path) -> Result<Script, DeviceError> {
         let bytes = files::read(path)?;
-        let refused =
-            |what: String| DeviceError::Replay { path: path.into(), reason: what.trim().replace('\n', " ") };
+        let refused = |reason: String| DeviceError::Replay { path: path.into(), reason };
         let text =
             String::from_utf8(bytes).map_err(|_| refused("this is no text: give a TOML file".into()))?;
-        let mut script: Script = toml::from_str(&text).map_err(|error| {
-            let line =
-                error.span().map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
-            refused(format!("line {line}: {}", error.message()))
-        })?;
+        let mut script: Script =
+            toml::from_str(&text).map_err(|error| refused(toml_mistake(&text, &error)))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         script.state = script.state.map(|state| folder.join(state));
         for log in script.device.iter_mut().flat_map(|phone| &mut phone.logs) {

@@ -195,9 +195,9 @@ impl World {
         self.advance(self.now + COMMAND_S);
         match self.state() {
             Some(State::Ready) => Ok(()),
-            Some(State::Unauthorized) => Err(DeviceError::Unauthorized { serial }),
-            Some(_) => Err(DeviceError::Offline { serial }),
-            None => Err(DeviceError::Lost { serial }),
+            Some(State::Unauthorized) => Err(DeviceError::Unauthorized(serial)),
+            Some(_) => Err(DeviceError::Offline(serial)),
+            None => Err(DeviceError::Lost(serial)),
         }
     }
 
@@ -483,7 +483,7 @@ impl World {
     pub fn install(&mut self) -> Result<(), DeviceError> {
         self.reach()?;
         if self.script.storage_full {
-            return Err(DeviceError::StorageFull { serial: self.script.serial.clone() });
+            return Err(DeviceError::StorageFull(self.script.serial.clone()));
         }
         self.installed = true;
         Ok(())

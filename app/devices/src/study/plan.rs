@@ -9,6 +9,8 @@ use rand_pcg::Pcg32;
 use serde::Serialize;
 
 use super::error::StudyError;
+use crate::latin::balanced_square;
+use crate::table::csv_text;
 use yoro_files as files;
 
 /// A method as the study calls it.
@@ -109,16 +111,14 @@ impl Plan {
 
     /// As a table: `participant,trial,scene,method,settings`, the settings as `key=value` with spaces between.
     pub fn to_csv(&self) -> String {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        let mut write = |cells: [&str; 5]| table.write_record(cells).expect("memory takes it");
-        write(["participant", "trial", "scene", "method", "settings"]);
-        for trial in &self.trials {
+        let head = ["participant", "trial", "scene", "method", "settings"].map(str::to_owned);
+        let rows = self.trials.iter().map(|trial| {
             let settings: Vec<String> =
                 trial.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
-            let number = trial.trial.to_string();
-            write([&trial.participant, &number, &trial.scene, &trial.method, &settings.join(" ")]);
-        }
-        String::from_utf8(table.into_inner().expect("memory takes it")).expect("all cells are text")
+            let Trial { participant, scene, method, .. } = trial.clone();
+            [participant, trial.trial.to_string(), scene, method, settings.join(" ")]
+        });
+        csv_text(std::iter::once(head).chain(rows))
     }
 }
 
@@ -154,20 +154,6 @@ pub fn read_trials(path: &Path) -> Result<Trials, StudyError> {
     Ok(trials)
 }
 
-/// Rows in each of which every number below `n` is once; taken together each is equally often at each place, and
-/// equally often right after each other one. `n` rows, or twice as many where `n` is odd (but for 1).
-fn balanced_square(n: usize) -> Vec<Vec<usize>> {
-    // 0, 1, n - 1, 2, n - 2, ...: the differences of neighbours are all different.
-    let first: Vec<usize> =
-        (0..n).map(|i| if i % 2 == 1 { i.div_ceil(2) } else { (n - i / 2) % n }).collect();
-    let mut rows: Vec<Vec<usize>> =
-        (0..n).map(|row| first.iter().map(|number| (number + row) % n).collect()).collect();
-    if n % 2 == 1 && n > 1 {
-        rows.extend(rows.clone().into_iter().map(|row| row.into_iter().rev().collect()));
-    }
-    rows
-}
-
 fn least_common_multiple(a: usize, b: usize) -> usize {
     let (mut x, mut y) = (a, b);
     while y > 0 {
@@ -200,19 +186,6 @@ mod tests {
 
     fn all_equal(counts: &BTreeMap<impl Ord, usize>, keys: usize) -> bool {
         counts.len() == keys && counts.values().all(|count| Some(count) == counts.values().next())
-    }
-
-    #[test]
-    fn squares_are_balanced() {
-        for n in 1..=9 {
-            let square = balanced_square(n);
-            assert_eq!(square.len(), if n % 2 == 1 && n > 1 { 2 * n } else { n });
-            let places =
-                square.iter().flat_map(|row| row.iter().enumerate().map(|(place, number)| (place, *number)));
-            assert!(all_equal(&counts(places), n * n), "{n}: {square:?}");
-            let neighbours = square.iter().flat_map(|row| row.windows(2).map(|pair| (pair[0], pair[1])));
-            assert!(n == 1 || all_equal(&counts(neighbours), n * (n - 1)), "{n}: {square:?}");
-        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::error::StudyError;
 use super::plan::Trials;
 use crate::log::{self, Kind};
+use crate::table::{csv_mistake, csv_text};
 use yoro_files as files;
 use yoro_protocol::telemetry::{LOG_TAG, Rating};
 
@@ -48,14 +49,8 @@ impl Ratings {
         let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
         let row_error = |line: u64, what: String| StudyError::Row { path: path.into(), line, what };
         let csv_error = |error: csv::Error| {
-            let line = error.position().map_or(1, csv::Position::line);
-            let what = match error.kind() {
-                csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                    format!("{len} cells where the header has {expected_len}: complete the row")
-                }
-                _ => "this is not a row of a table: save the file as CSV in UTF-8".into(),
-            };
-            row_error(line, what)
+            let (line, what) = csv_mistake(&error);
+            row_error(line, format!("{what}: correct the row"))
         };
         let header = table.headers().map_err(csv_error)?.clone();
         let mut at = [0; COLUMNS.len()];
@@ -148,10 +143,8 @@ impl Collected {
         for rating in &self.ratings {
             pipelines.entry(&rating.method).or_default().insert(rating.pipeline.as_deref());
         }
-        let mut table = csv::Writer::from_writer(Vec::new());
-        let mut write = |cells: [&str; 6]| table.write_record(cells).expect("memory takes it");
-        write(["participant", "trial", "method", "scene", "question", "rating"]);
-        for r in &self.ratings {
+        let head = ["participant", "trial", "method", "scene", "question", "rating"].map(str::to_owned);
+        let rows = self.ratings.iter().map(|r| {
             let method = match &r.pipeline {
                 Some(pipeline) if pipelines[r.method.as_str()].len() > 1 => {
                     format!("{}-{pipeline}", r.method)
@@ -159,10 +152,10 @@ impl Collected {
                 _ => r.method.clone(),
             };
             let trial = r.trial.map(|trial| trial.to_string()).unwrap_or_default();
-            let participant = r.participant.as_deref().unwrap_or_default();
-            write([participant, &trial, &method, &r.scene, &r.question, &r.rating.to_string()]);
-        }
-        String::from_utf8(table.into_inner().expect("memory takes it")).expect("all cells are text")
+            let participant = r.participant.clone().unwrap_or_default();
+            [participant, trial, method, r.scene.clone(), r.question.clone(), r.rating.to_string()]
+        });
+        csv_text(std::iter::once(head).chain(rows))
     }
 }
 

@@ -1,0 +1,293 @@
+//! What one run on a device leaves behind: a folder with `run.json`, `log.txt` and `samples.csv`.
+//!
+//! `run.json` is a [`RunInfo`]; `log.txt` holds the raw lines of logcat as they came; `samples.csv` one [`Sample`] a
+//! row, under the column names of the OVR Metrics Tool where that has the quantity in a documented unit. An empty cell
+//! is a value that the device does not give. While a run lasts, both grow line by line; `run.json` is replaced as a
+//! whole whenever there is news, and says until the end that the run was cut off.
+
+mod sample;
+#[cfg(test)]
+mod tests;
+mod writer;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::table::csv_mistake;
+use yoro_files::{self as files, FileError};
+
+pub use sample::Sample;
+pub use writer::Writer;
+
+/// Version of the folder's format.
+pub const VERSION: u32 = 1;
+/// What the run was and how it went.
+pub const RUN_FILE: &str = "run.json";
+/// The raw lines of logcat.
+pub const LOG_FILE: &str = "log.txt";
+/// The samples.
+pub const SAMPLES_FILE: &str = "samples.csv";
+
+/// Why a capture cannot be read or written: one sentence.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CaptureError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The folder holds no run.
+    #[error("{} is no capture (it has no {RUN_FILE}): name a folder that yoro device has written", folder.display())]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// There is no run in any of the folders.
+    #[error("there is no capture in {folders}: name folders that yoro device has written")]
+    None {
+        /// The folders, with commas.
+        folders: String,
+    },
+    /// A run is there already.
+    #[error("{} holds a run already: name another folder", folder.display())]
+    Exists {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Written by another version.
+    #[error(
+        "{} has version {version} of the capture format and this yoro reads version {VERSION}: use the yoro that wrote it",
+        path.display()
+    )]
+    Version {
+        /// Its `run.json`.
+        path: PathBuf,
+        /// What it says.
+        version: u64,
+    },
+    /// `run.json` is damaged.
+    #[error("{} is damaged ({what}): leave the run out, or measure it again", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A row of `samples.csv` is damaged.
+    #[error(
+        "{}, line {line}: {what}; remove the line, or make the samples anew from the log beside it by yoro device logcat",
+        path.display()
+    )]
+    Row {
+        /// The file.
+        path: PathBuf,
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong.
+        what: String,
+    },
+}
+
+/// The device that a run was made on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeviceInfo {
+    /// Serial number; what adb calls the device where it does not tell one.
+    pub serial: String,
+    /// Manufacturer.
+    pub manufacturer: String,
+    /// Model.
+    pub model: String,
+    /// Android's version, such as `14`.
+    pub android: String,
+    /// Nominal capacity of the battery in milliampere-hours, if the device tells.
+    pub capacity_mah: Option<f64>,
+    /// Not a device but the replay of logs: said wherever results of it appear.
+    pub simulated: bool,
+}
+
+/// How a run has ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", tag = "state")]
+pub enum Outcome {
+    /// It lasted as long as it should.
+    Complete,
+    /// It is not over, or was cut off: by Ctrl-C, or by a device that did not come back.
+    Interrupted {
+        /// One sentence.
+        reason: String,
+    },
+    /// It could not be made, or is worth nothing.
+    Failed {
+        /// One sentence.
+        reason: String,
+    },
+}
+
+/// What can go wrong in a run without ending it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultKind {
+    /// The device was lost and found again.
+    Disconnected,
+    /// A charger was plugged in: the battery's current is not the device's.
+    PluggedIn,
+    /// The device does not give the battery's current.
+    NoCurrent,
+    /// The device gives milliamperes in place of microamperes; the figures are corrected.
+    CurrentInMilliamperes,
+    /// The device's current is positive while it discharges; the figures are corrected.
+    CurrentSign,
+    /// The device's clock jumped.
+    ClockJump,
+    /// Lines of the log were cut or damaged.
+    DamagedLines,
+    /// Lines that should be there, one a second, are missing.
+    MissingLines,
+    /// The device was started anew.
+    Rebooted,
+    /// The application ended, or crashed, and was started again.
+    Restarted,
+    /// The device throttled, or was too warm at the start.
+    TooWarm,
+    /// The device gives the voltage in whole volts.
+    VoltageInVolts,
+    /// The power is such that no device has it: one of its factors is wrong.
+    ImplausiblePower,
+    /// The device did not let a value be held fixed.
+    NotPinned,
+    /// The display did not have the refresh rate that it was to be held at.
+    RefreshRate,
+}
+
+/// Something that went wrong in a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fault {
+    /// Kind.
+    pub kind: FaultKind,
+    /// When, in seconds since the run began; none for what concerns all of it.
+    pub at_s: Option<f64>,
+    /// One sentence with the figures.
+    pub detail: String,
+}
+
+/// What a run was and how it went.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunInfo {
+    /// [`VERSION`].
+    pub version: u32,
+    /// Where it ran.
+    pub device: DeviceInfo,
+    /// Name of the experiment that it is part of.
+    pub experiment: Option<String>,
+    /// Name of the method in tables: a stereo method, or what the experiment calls its settings.
+    pub method: String,
+    /// Scene.
+    pub scene: String,
+    /// Which repetition, from 1: runs of the same number, scene and device are paired.
+    pub repetition: u32,
+    /// Place in the order of the experiment, from 1.
+    pub order: u32,
+    /// Settings of the viewer other than the defaults.
+    pub settings: BTreeMap<String, String>,
+    /// When it began, in seconds since 1970 by this computer's clock.
+    pub started_unix_s: f64,
+    /// How long it should last without warm-up, in seconds.
+    pub duration_s: f64,
+    /// Seconds at its begin that count for nothing.
+    pub warm_up_s: f64,
+    /// Temperature of the battery at the start in degrees Celsius.
+    pub start_celsius: Option<f64>,
+    /// Version of the application.
+    pub application: Option<String>,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// What went wrong on the way.
+    pub faults: Vec<Fault>,
+}
+
+/// One run as it lies on disk.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Capture {
+    /// What it was.
+    pub info: RunInfo,
+    /// Second by second, warm-up included, in order of time.
+    pub samples: Vec<Sample>,
+}
+
+/// Reads the run in `folder`. A last row that was cut off in writing is left out.
+///
+/// # Errors
+/// [`CaptureError`].
+pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
+    let info = read_info(folder)?;
+    let path = folder.join(SAMPLES_FILE);
+    let bytes = files::read(&path)?;
+    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+    let mut samples = Vec::new();
+    if whole > 0 {
+        let mut table = csv::Reader::from_reader(&bytes[..whole]);
+        let damaged = |(line, what)| CaptureError::Row { path: path.clone(), line, what };
+        let header = table.headers().map_err(|error| damaged(csv_mistake(&error)))?.clone();
+        for row in table.records() {
+            let row = row.map_err(|error| damaged(csv_mistake(&error)))?;
+            let line = row.position().map_or(0, csv::Position::line);
+            samples.push(Sample::read(&header, &row).map_err(|what| damaged((line, what)))?);
+        }
+    }
+    Ok(Capture { info, samples })
+}
+
+/// What the run in `folder` was.
+///
+/// # Errors
+/// [`CaptureError`].
+pub fn read_info(folder: &Path) -> Result<RunInfo, CaptureError> {
+    let path = folder.join(RUN_FILE);
+    if folder.is_dir() && !path.exists() {
+        return Err(CaptureError::Foreign { folder: folder.into() });
+    }
+    let bytes = files::read(&path)?;
+    let damaged =
+        |error: serde_json::Error| CaptureError::Damaged { path: path.clone(), what: error.to_string() };
+    let value: serde_json::Value = serde_json::from_slice(&bytes).map_err(damaged)?;
+    match value.get("version").and_then(serde_json::Value::as_u64) {
+        Some(version) if version != u64::from(VERSION) => {
+            Err(CaptureError::Version { path: path.clone(), version })
+        }
+        _ => serde_json::from_value(value).map_err(damaged),
+    }
+}
+
+/// The folders of all runs in `folders` and below, sorted, each once. Links to folders are not followed.
+///
+/// # Errors
+/// [`CaptureError`]: also where a folder does not exist, or there is no run at all.
+pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
+    let mut found = Vec::new();
+    for folder in folders {
+        for file in files::find(folder, &["json"])? {
+            if file.file_name().is_some_and(|name| name == RUN_FILE) {
+                found.push(folder.join(file.parent().unwrap_or(Path::new(""))));
+            }
+        }
+    }
+    found.sort();
+    found.dedup();
+    if found.is_empty() {
+        let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+        return Err(CaptureError::None { folders: names.join(", ") });
+    }
+    Ok(found)
+}
+
+/// Reads all runs in `folders` and below, in order of their paths.
+///
+/// # Errors
+/// The first that [`find`] or [`read`] gives.
+pub fn read_all(folders: &[PathBuf]) -> Result<Vec<Capture>, CaptureError> {
+    find(folders)?.iter().map(|folder| read(folder)).collect()
+}

@@ -1,0 +1,138 @@
+//! Writes a run while it lasts.
+
+use std::fs::{File, OpenOptions};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::{CaptureError, Fault, LOG_FILE, Outcome, RUN_FILE, RunInfo, SAMPLES_FILE, Sample};
+use yoro_files::{self as files, FileError};
+
+/// Writes a run while it lasts.
+#[derive(Debug)]
+pub struct Writer {
+    folder: PathBuf,
+    info: RunInfo,
+    log: File,
+    samples: File,
+    /// Keys of [`Sample::other`] that have a column.
+    others: Vec<String>,
+}
+
+impl Writer {
+    /// Begins a run in a folder, which is made. Until [`Writer::finish`], the run counts as cut off.
+    ///
+    /// # Errors
+    /// [`CaptureError`]: also where the folder holds a run already.
+    pub fn create(folder: &Path, mut info: RunInfo) -> Result<Writer, CaptureError> {
+        files::create_folder(folder)?;
+        if folder.join(RUN_FILE).exists() {
+            return Err(CaptureError::Exists { folder: folder.into() });
+        }
+        info.outcome = Outcome::Interrupted { reason: "the program that captured it was ended".into() };
+        let new = |name: &str| {
+            let path = folder.join(name);
+            File::create(&path).map_err(|source| FileError::Write { path, source })
+        };
+        let writer = Writer {
+            folder: folder.into(),
+            info,
+            log: new(LOG_FILE)?,
+            samples: new(SAMPLES_FILE)?,
+            others: Vec::new(),
+        };
+        writer.append(&writer.samples, SAMPLES_FILE, &Sample::header(&[]))?;
+        writer.renew()?;
+        Ok(writer)
+    }
+
+    /// What the run is, up to now.
+    pub fn info(&self) -> &RunInfo {
+        &self.info
+    }
+
+    /// Where it lies.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Adds a line of the log.
+    ///
+    /// # Errors
+    /// [`CaptureError::File`].
+    pub fn log(&mut self, line: &str) -> Result<(), CaptureError> {
+        self.append(&self.log, LOG_FILE, &format!("{line}\n"))
+    }
+
+    /// Adds a sample. A key that no sample had before becomes a column of the whole table.
+    ///
+    /// # Errors
+    /// [`CaptureError`].
+    pub fn sample(&mut self, sample: &Sample) -> Result<(), CaptureError> {
+        let before = self.others.len();
+        for key in sample.other.keys() {
+            if !self.others.contains(key) {
+                self.others.push(key.clone());
+            }
+        }
+        if self.others.len() > before {
+            self.widen(before)?;
+        }
+        self.append(&self.samples, SAMPLES_FILE, &sample.row(&self.others))
+    }
+
+    /// Notes that something went wrong.
+    ///
+    /// # Errors
+    /// [`CaptureError::File`].
+    pub fn fault(&mut self, fault: Fault) -> Result<(), CaptureError> {
+        self.info.faults.push(fault);
+        self.renew()
+    }
+
+    /// Ends the run.
+    ///
+    /// # Errors
+    /// [`CaptureError::File`].
+    pub fn finish(mut self, outcome: Outcome) -> Result<RunInfo, CaptureError> {
+        self.info.outcome = outcome;
+        self.renew()?;
+        Ok(self.info)
+    }
+
+    /// Changes what the run says of itself.
+    ///
+    /// # Errors
+    /// [`CaptureError::File`].
+    pub fn change(&mut self, change: impl FnOnce(&mut RunInfo)) -> Result<(), CaptureError> {
+        change(&mut self.info);
+        self.renew()
+    }
+
+    fn renew(&self) -> Result<(), CaptureError> {
+        Ok(files::write_with(&self.folder.join(RUN_FILE), |out| {
+            serde_json::to_writer_pretty(&mut *out, &self.info)?;
+            out.write_all(b"\n")
+        })?)
+    }
+
+    /// A row in one piece: a reader never sees half a line.
+    fn append(&self, mut file: &File, name: &str, text: &str) -> Result<(), CaptureError> {
+        let failed = |source| FileError::Write { path: self.folder.join(name), source };
+        Ok(file.write_all(text.as_bytes()).map_err(failed)?)
+    }
+
+    /// Writes the table anew with empty cells in the columns that are new since there were `before` of the others.
+    fn widen(&mut self, before: usize) -> Result<(), CaptureError> {
+        let path = self.folder.join(SAMPLES_FILE);
+        let text = String::from_utf8_lossy(&files::read(&path)?).into_owned();
+        let header = Sample::header(&self.others);
+        let commas = ",".repeat(self.others.len() - before);
+        files::write_with(&path, |out| {
+            out.write_all(header.as_bytes())?;
+            text.lines().skip(1).try_for_each(|row| writeln!(out, "{row}{commas}"))
+        })?;
+        let open = OpenOptions::new().append(true).open(&path);
+        self.samples = open.map_err(|source| FileError::Write { path, source })?;
+        Ok(())
+    }
+}
