@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use statrs::function::{erf::erfc, gamma::ln_gamma};
 
-use yoro_protocol::telemetry::stats::Summary;
+use crate::stats::Summary;
 
 /// An interval of plausible values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

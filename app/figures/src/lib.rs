@@ -14,6 +14,7 @@ pub mod page;
 pub mod palette;
 pub mod paper;
 pub mod plot;
+pub mod stats;
 pub mod text;
 
 pub use error::ReportError;

@@ -11,7 +11,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::palette::{self, Look, Shape};
 use crate::inference::Interval;
-use yoro_protocol::telemetry::stats::percentile;
+use crate::stats::percentile;
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]

@@ -120,31 +120,5 @@ pub fn patcher() -> impl TypedValueParser<Value = PatcherKind> {
 
 /// The suites of `yoro bench`.
 pub fn suite() -> impl TypedValueParser<Value = Suite> {
-    choice(Suite::ALL.into_iter().chain([Suite::All]), Suite::name, |suite| match suite {
-        Suite::Scenes => "Frame time and quality of every method on eight scenes",
-        Suite::Complexity => "Frame time of every method as the number of triangles grows",
-        Suite::Styles => "Quality in each shading style",
-        Suite::Ipd => "Quality as the distance between the eyes grows from 50 to 75 mm",
-        Suite::Distance => "Quality as an object, equally large on the screen, moves from 0.5 to 3 m",
-        Suite::Patchers => "Quality and time of the patchers on the same reprojected images",
-        Suite::Imbuffer => {
-            "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation"
-        }
-        Suite::Lights => {
-            "Frame time of every method with four lights: the paper's setting for single-pass instancing"
-        }
-        Suite::Resolution => "Frame time and quality of every method from 512 to 2048 pixels per eye",
-        Suite::AntiAliasing => {
-            "Quality and frame time by what edges are made of: one sample per pixel, FXAA, MSAA with each kind of depth"
-        }
-        Suite::Flicker => "Flicker of the synthesized eye from frame to frame along a camera path",
-        Suite::GuardBand => "Width, frame time and quality at the border by guard band, along a camera path",
-        Suite::Bandwidth => {
-            "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path"
-        }
-        Suite::ShaderCost => {
-            "Estimate of what the synthesis takes on three mobile GPUs that need not be here"
-        }
-        Suite::All => "All of them, one after the other",
-    })
+    choice(Suite::ALL.iter().copied().chain([Suite::All]), Suite::name, Suite::about)
 }

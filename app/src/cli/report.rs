@@ -4,36 +4,44 @@ use std::path::PathBuf;
 
 use yoro_files as files;
 use yoro_lab::bench::Results;
-use yoro_lab::report::bench::BenchReport;
+use yoro_lab::report::bench::{BenchReport, Places};
 
 /// Turn results of `yoro bench` into a self-contained page, Markdown tables and figures
 #[derive(clap::Args, Clone, Debug)]
 pub struct ReportArgs {
     /// Result files (JSON lines) of `yoro bench`; suites measured on several machines stand side by side
     #[arg(required = true, value_name = "FILE.jsonl")]
-    results: Vec<PathBuf>,
+    files: Vec<PathBuf>,
     /// Folder for report.html, results.md (all tables) and summary.md (the main ones)
     #[arg(long, default_value = "out", value_name = "FOLDER")]
     out: PathBuf,
     /// Also write the figures as SVG files into this folder, and link them in results.md
     #[arg(long, value_name = "FOLDER")]
     figures: Option<PathBuf>,
+    /// Also write the tables of each suite into a file of its own, SUITE.md, in this folder
+    #[arg(long, value_name = "FOLDER")]
+    results: Option<PathBuf>,
 }
 
 /// Reads the results, writes the report and prints where it is.
 pub fn run(args: &ReportArgs) -> anyhow::Result<()> {
-    let results = args.results.iter().map(|path| Results::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let results = args.files.iter().map(|path| Results::read(path)).collect::<Result<Vec<_>, _>>()?;
     let report = BenchReport::new(results)?;
     // Figures are drawn for a while; a folder that cannot be is told at once.
-    for folder in [Some(&args.out), args.figures.as_ref()].into_iter().flatten() {
+    for folder in [Some(&args.out), args.figures.as_ref(), args.results.as_ref()].into_iter().flatten() {
         files::create_folder(folder)?;
     }
-    let written = report.write(&args.out, args.figures.as_deref())?;
+    let places =
+        Places { report: &args.out, figures: args.figures.as_deref(), results: args.results.as_deref() };
+    let written = report.write(places)?;
     println!("page:    {}", written.page.display());
     println!("tables:  {}", written.results.display());
     println!("summary: {}", written.summary.display());
     if let Some(folder) = &args.figures {
         println!("figures: {} in {}", written.figures.len(), folder.display());
+    }
+    if let Some(folder) = &args.results {
+        println!("suites:  {} in {}", written.suites.len(), folder.display());
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::capture::{Capture, Fault, FaultKind, Outcome, Sample};
 use crate::phone::LEAST_MILLIVOLTS;
-use yoro_protocol::telemetry::stats::median;
+use yoro_figures::stats::median;
 
 /// Voltage by which the paper turns battery percent into energy.
 pub const PAPER_VOLTS: f64 = 3.7;
@@ -340,7 +340,7 @@ impl Run {
         let Some(value) = value else { return };
         self.values.insert(quantity, value);
         let values: Vec<f64> = seconds.iter().map(|(_, value)| *value).collect();
-        let std = yoro_protocol::telemetry::stats::Summary::of(&values).map(|summary| summary.std);
+        let std = yoro_figures::stats::Summary::of(&values).map(|summary| summary.std);
         self.std_over_seconds.extend(std.map(|std| (quantity, std)));
     }
 

@@ -17,80 +17,55 @@ use yoro_render::{RenderSettings, RendererKind};
 use yoro_scene::ShadingStyle;
 use yoro_scenes::BUILTINS;
 
-/// An experiment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Suite {
-    /// Frame time and quality of every method on eight scenes
-    Scenes,
-    /// Frame time of every method as the number of triangles grows
-    Complexity,
-    /// Quality in each shading style
-    Styles,
-    /// Quality as the distance between the eyes grows from 50 to 75 mm
-    Ipd,
-    /// Quality as an object, equally large on the screen, moves from 0.5 to 3 m
-    Distance,
-    /// Quality and time of the patchers on the same reprojected images
-    Patchers,
-    /// Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation
-    Imbuffer,
-    /// Frame time of every method with four lights: the paper's setting for single-pass instancing
-    Lights,
-    /// Frame time and quality of every method from 512 to 2048 pixels per eye
-    Resolution,
-    /// Quality and frame time by what edges are made of: one sample per pixel, FXAA, MSAA with each kind of depth
-    AntiAliasing,
-    /// Flicker of the synthesized eye from frame to frame along a camera path
-    Flicker,
-    /// Width, frame time and quality at the border by guard band, along a camera path
-    GuardBand,
-    /// Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path
-    Bandwidth,
-    /// Estimate of what the synthesis takes on three mobile GPUs that need not be here
-    ShaderCost,
-    /// All of them, one after the other
-    All,
+/// Defines [`Suite`] from one list: the variant, its name on the command line and in files, and what it measures.
+macro_rules! suites {
+    ($($variant:ident $name:literal $about:literal,)*) => {
+        /// An experiment.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Suite {
+            $(#[doc = $about] $variant,)*
+            /// All of them, one after the other
+            All,
+        }
+
+        impl Suite {
+            /// All suites, in the order of the paper.
+            pub const ALL: &[Suite] = &[$(Suite::$variant),*];
+
+            /// Returns its name on the command line and in files.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Suite::$variant => $name,)*
+                    Suite::All => "all",
+                }
+            }
+
+            /// Returns what it measures, in a line.
+            pub fn about(self) -> &'static str {
+                match self {
+                    $(Suite::$variant => $about,)*
+                    Suite::All => "All of them, one after the other",
+                }
+            }
+        }
+    };
 }
 
-impl Suite {
-    /// All suites, in the order of the paper.
-    pub const ALL: [Suite; 14] = [
-        Suite::Scenes,
-        Suite::Complexity,
-        Suite::Styles,
-        Suite::Ipd,
-        Suite::Distance,
-        Suite::Patchers,
-        Suite::Imbuffer,
-        Suite::Lights,
-        Suite::Resolution,
-        Suite::AntiAliasing,
-        Suite::Flicker,
-        Suite::GuardBand,
-        Suite::Bandwidth,
-        Suite::ShaderCost,
-    ];
-
-    /// Its name on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Suite::Scenes => "scenes",
-            Suite::Complexity => "complexity",
-            Suite::Styles => "styles",
-            Suite::Ipd => "ipd",
-            Suite::Distance => "distance",
-            Suite::Patchers => "patchers",
-            Suite::Imbuffer => "imbuffer",
-            Suite::Lights => "lights",
-            Suite::Resolution => "resolution",
-            Suite::AntiAliasing => "anti-aliasing",
-            Suite::Flicker => "flicker",
-            Suite::GuardBand => "guard-band",
-            Suite::Bandwidth => "bandwidth",
-            Suite::ShaderCost => "shader-cost",
-            Suite::All => "all",
-        }
-    }
+suites! {
+    Scenes "scenes" "Frame time and quality of every method on eight scenes",
+    Complexity "complexity" "Frame time of every method as the number of triangles grows",
+    Styles "styles" "Quality in each shading style",
+    Ipd "ipd" "Quality as the distance between the eyes grows from 50 to 75 mm",
+    Distance "distance" "Quality as an object, equally large on the screen, moves from 0.5 to 3 m",
+    Patchers "patchers" "Quality and time of the patchers on the same reprojected images",
+    Imbuffer "imbuffer" "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation",
+    Lights "lights" "Frame time of every method with four lights: the paper's setting for single-pass instancing",
+    Resolution "resolution" "Frame time and quality of every method from 512 to 2048 pixels per eye",
+    AntiAliasing "anti-aliasing" "Quality and frame time by what edges are made of: one sample per pixel, FXAA, MSAA with each kind of depth",
+    Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
+    GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
+    Bandwidth "bandwidth" "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path",
+    ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs that need not be here",
 }
 
 /// What is taken of a setting.
@@ -309,8 +284,8 @@ impl Choices {
                 })
             }
             Suite::All => {
-                let each = Suite::ALL.map(|suite| self.jobs(suite, object));
-                Ok(each.into_iter().collect::<anyhow::Result<Vec<_>>>()?.concat())
+                let each = Suite::ALL.iter().map(|suite| self.jobs(*suite, object));
+                Ok(each.collect::<anyhow::Result<Vec<_>>>()?.concat())
             }
         }
     }

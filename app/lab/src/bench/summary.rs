@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use super::bandwidth;
 use super::contender::Contender;
 use super::record::{Measurement, Results, Setting, metric};
-use yoro_protocol::telemetry::stats::median;
+use yoro_figures::stats::{self, median, unique};
 
 /// A column: heading, metric, decimals, how its values become one.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
@@ -33,7 +33,7 @@ const COLUMNS: [Column; 18] = [
 ];
 
 fn mean(values: &[f64]) -> Option<f64> {
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    stats::mean(values.iter().copied())
 }
 
 /// One block for each setting, one line for each contender; then who could not take part.
@@ -62,12 +62,7 @@ fn block(results: &Results, setting: &Setting) -> String {
         let of_contender = measured.iter().filter(|m| m.contender == contender);
         of_contender.flat_map(|m| m.finite(metric)).collect()
     };
-    let mut contenders: Vec<&str> = Vec::new();
-    for measurement in &measured {
-        if !contenders.contains(&measurement.contender.as_str()) {
-            contenders.push(&measurement.contender);
-        }
-    }
+    let contenders = unique(measured.iter().map(|measurement| measurement.contender.as_str()));
     let columns: Vec<&Column> =
         COLUMNS.iter().filter(|c| measured.iter().any(|m| m.values.contains_key(c.1))).collect();
     let width = contenders.iter().map(|name| name.len()).max().unwrap_or(0);

@@ -75,7 +75,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::machine::{Machine, Parameter};
     use yoro::eyes::Eye;
-    use yoro_protocol::telemetry::stats::Summary;
+    use yoro_figures::stats::Summary;
 
     use image::{Rgb, RgbImage};
 

@@ -7,7 +7,7 @@ use crate::machine::{Machine, Parameter};
 use crate::metrics::{Channels, MetricsError, Quality, error_map};
 use yoro::eyes::Eye;
 use yoro_figures::paper::{self, PaperScene};
-use yoro_protocol::telemetry::stats::Summary;
+use yoro_figures::stats::{Summary, geometric_mean, unique};
 
 /// How the quality figures are made; printed wherever they are.
 pub const QUALITY_METHOD: &str = "PSNR in dB over red, green and blue, data range 255. SSIM as the mean of red, \
@@ -188,21 +188,15 @@ impl RunReport {
     /// The means of the rows, in the order in which the methods first occur.
     pub fn means(&self) -> Vec<MethodMean> {
         let rows = self.rows();
-        let mut methods: Vec<&str> = Vec::new();
-        for row in &rows {
-            if !methods.contains(&row.method.as_str()) {
-                methods.push(&row.method);
-            }
-        }
+        let methods = unique(rows.iter().map(|row| row.method.as_str()));
         let mean = |method: &str| {
             let rows: Vec<&Row> = rows.iter().filter(|row| row.method == method).collect();
-            let logs: f64 = rows.iter().map(|row| row.cost_ratio.ln()).sum();
             Some(MethodMean {
                 method: method.to_string(),
                 scenes: rows.len(),
                 quality: Quality::mean(rows.iter().map(|row| &row.quality))?,
                 same_image: Quality::mean(rows.iter().map(|row| &row.same_image))?,
-                cost_ratio: (logs / rows.len() as f64).exp(),
+                cost_ratio: geometric_mean(rows.iter().map(|row| row.cost_ratio))?,
             })
         };
         methods.into_iter().filter_map(mean).collect()

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::bench::record::{Header, Results, SceneFacts, Setting, metric};
-use yoro_protocol::telemetry::stats::{Summary, percentile};
+use crate::report::bench::sections::CONVENTIONAL;
+use yoro_figures::stats::{Summary, geometric_mean, mean, median, percentile, unique};
 
 /// One suite as measured under one set of conditions.
 pub struct Suite {
@@ -83,7 +84,7 @@ impl Measured {
 
     /// The median of those values.
     pub fn median(&self, metric: &str) -> Option<f64> {
-        percentile(&self.samples(metric), 50.0)
+        median(&self.samples(metric))
     }
 
     /// The metric over the baseline's, frame by frame within each round: what slows a machine down for a while
@@ -108,7 +109,7 @@ impl SettingData {
 
     /// Two full renders.
     pub fn conventional(&self) -> Option<&Measured> {
-        self.find("conventional")
+        self.find(CONVENTIONAL)
     }
 
     /// The time of a stereo frame over that of two full renders.
@@ -150,6 +151,11 @@ impl Suite {
         self.contenders().into_iter().filter(has).collect()
     }
 
+    /// The same without two full renders, which the others are held against.
+    pub fn compared(&self, metric: &str) -> Vec<&str> {
+        self.measured(metric).into_iter().filter(|name| *name != CONVENTIONAL).collect()
+    }
+
     /// Why a contender could not take part anywhere, if so.
     pub fn reason(&self, contender: &str) -> Option<&str> {
         if self.settings.iter().any(|setting| setting.find(contender).is_some()) {
@@ -162,6 +168,16 @@ impl Suite {
     /// A contender's value in each setting, where it has one.
     pub fn values(&self, contender: &str, value: impl Fn(&Measured) -> Option<f64>) -> Vec<f64> {
         self.settings.iter().filter_map(|setting| value(setting.find(contender)?)).collect()
+    }
+
+    /// The mean over the settings of a contender's means of a metric.
+    pub fn mean(&self, contender: &str, metric: &str) -> Option<f64> {
+        mean(self.values(contender, |measured| measured.mean(metric)))
+    }
+
+    /// The geometric mean over the settings of a contender's frame time over two full renders.
+    pub fn mean_cost(&self, contender: &str) -> Option<f64> {
+        geometric_mean(self.settings.iter().filter_map(|setting| Some(setting.cost(contender)?.median)))
     }
 
     /// The points of a sweep, ascending, each once.
@@ -186,30 +202,10 @@ impl Suite {
     pub fn curve(&self, value: impl Fn(&SettingData) -> Option<f64>) -> Vec<(f64, f64)> {
         let at = |point: f64| {
             let here = self.settings.iter().filter(|setting| setting.setting.point == Some(point));
-            mean(here.filter_map(&value).collect())
+            mean(here.filter_map(&value))
         };
         self.points().into_iter().filter_map(|point| Some((point, at(point)?))).collect()
     }
-}
-
-/// The mean; `None` of nothing.
-pub fn mean(values: Vec<f64>) -> Option<f64> {
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-}
-
-/// The geometric mean; `None` of nothing.
-pub fn geometric_mean(values: Vec<f64>) -> Option<f64> {
-    mean(values.into_iter().map(f64::ln).collect()).map(f64::exp)
-}
-
-fn unique<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut found = Vec::new();
-    for name in names {
-        if !found.contains(&name) {
-            found.push(name);
-        }
-    }
-    found
 }
 
 /// Whether figures of two files may stand in one table.

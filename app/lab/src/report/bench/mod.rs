@@ -19,6 +19,8 @@ use data::Suite;
 use sections::Section;
 use yoro::eyes::Eye;
 use yoro_figures::page::{self, Template};
+use yoro_figures::stats::unique;
+use yoro_figures::text::slug;
 use yoro_files as files;
 
 const TEMPLATE: Template =
@@ -41,6 +43,25 @@ struct Pictured {
     viewpoint: Viewpoint,
 }
 
+/// How the paper's figures are told from ours.
+const PAPERS_MARK: &str = "What is *in italics*, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): \
+its own scenes, six phones and a Quest 2.";
+
+/// How frame times are taken; printed wherever they are.
+const TIME_METHOD: &str = "Frame times: wall clock of a whole stereo frame up to glFinish. Methods take turns within \
+each round, so that ratios pair frames of the same round; means of ratios over scenes are geometric.";
+
+/// Where a report goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Places<'a> {
+    /// Folder of the page and of the tables in one file.
+    pub report: &'a Path,
+    /// Folder of the figures as SVG files, if they are wanted.
+    pub figures: Option<&'a Path>,
+    /// Folder of a Markdown file for each suite, if they are wanted.
+    pub results: Option<&'a Path>,
+}
+
 /// What was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
@@ -52,6 +73,8 @@ pub struct Written {
     pub summary: PathBuf,
     /// The figures, as SVG.
     pub figures: Vec<PathBuf>,
+    /// The tables of each suite.
+    pub suites: Vec<PathBuf>,
 }
 
 impl BenchReport {
@@ -96,6 +119,7 @@ impl BenchReport {
         let page = context! {
             sections => sections.iter().map(section).collect::<Result<Vec<_>, _>>()?,
             quality_method => QUALITY_METHOD,
+            time_method => TIME_METHOD,
             picture_note => pictures.note,
             scenes => self
                 .pictures
@@ -122,24 +146,60 @@ impl BenchReport {
 
     /// All tables, with `figures` (if given) as the folder from which pictures are linked.
     pub fn to_markdown(&self, figures: Option<&str>) -> String {
-        let mut out = String::from(
-            "What is *in italics*, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): its own \
-             scenes, six phones and a Quest 2.\n",
-        );
+        let mut out = format!("{PAPERS_MARK}\n");
         for (suite, section) in sections::sections(&self.suites) {
             self.heading(&mut out, suite, &section);
-            if let Some(folder) = figures {
-                for figure in &section.figures {
-                    let _ = writeln!(out, "![{}]({folder}/{}.svg)", figure.title, figure.id);
-                    let _ = writeln!(out, "\n*{}. {}*\n", figure.title, figure.caption);
-                }
-            }
-            for table in &section.tables {
-                let _ = writeln!(out, "{}", table.markdown());
-            }
-            self.source(&mut out, suite);
+            self.content(&mut out, suite, &section, figures);
         }
         out
+    }
+
+    /// The tables of each suite as a document of its own, by the suite's name: at its head machine, command and method.
+    /// `figures` as in [`BenchReport::to_markdown`].
+    pub fn to_documents(&self, figures: Option<&str>) -> Vec<(String, String)> {
+        let sections = sections::sections(&self.suites);
+        let names = unique(sections.iter().map(|(suite, _)| suite.name.as_str()));
+        names.into_iter().map(|name| (name.to_owned(), self.document(&sections, name, figures))).collect()
+    }
+
+    fn document(&self, sections: &[(&Suite, Section)], name: &str, figures: Option<&str>) -> String {
+        let of_suite: Vec<_> = sections.iter().filter(|(suite, _)| suite.name == name).collect();
+        let titles = unique(of_suite.iter().map(|(_, section)| section.title.to_lowercase()));
+        let title = match &of_suite[..] {
+            [(_, section)] => section.title.clone(),
+            _ => format!("{}{}: {}", name[..1].to_uppercase(), &name[1..], titles.join(", ")),
+        };
+        let mut out = format!(
+            "# {title}\n\n<!-- Written by yoro report --results: change nothing here by hand. -->\n\n"
+        );
+        for suite in self.suites.iter().filter(|suite| suite.name == name) {
+            source(&mut out, suite);
+        }
+        let _ = writeln!(out, "\n{QUALITY_METHOD}\n\n{TIME_METHOD}\n\n{PAPERS_MARK}");
+        for (suite, section) in &of_suite {
+            match of_suite.len() {
+                1 => {
+                    let _ = writeln!(out, "\n{}\n", section.intro);
+                }
+                _ => self.heading(&mut out, suite, section),
+            }
+            self.content(&mut out, suite, section, figures);
+        }
+        out
+    }
+
+    /// A section's figures, tables and source.
+    fn content(&self, out: &mut String, suite: &Suite, section: &Section, figures: Option<&str>) {
+        if let Some(folder) = figures {
+            for figure in &section.figures {
+                let _ = writeln!(out, "![{}]({folder}/{}.svg)", figure.title, figure.id);
+                let _ = writeln!(out, "\n*{}. {}*\n", figure.title, figure.caption);
+            }
+        }
+        for table in &section.tables {
+            let _ = writeln!(out, "{}", table.markdown());
+        }
+        source(out, suite);
     }
 
     /// The first table of each experiment.
@@ -149,7 +209,7 @@ impl BenchReport {
             if let Some(table) = section.tables.first() {
                 self.heading(&mut out, suite, &section);
                 let _ = writeln!(out, "{}", table.markdown());
-                self.source(&mut out, suite);
+                source(&mut out, suite);
             }
         }
         out
@@ -158,15 +218,6 @@ impl BenchReport {
     fn heading(&self, out: &mut String, suite: &Suite, section: &Section) {
         let place = self.place(suite).map(|place| format!(" ({place})")).unwrap_or_default();
         let _ = writeln!(out, "\n## {}{place}\n\n{}\n", section.title, section.intro);
-    }
-
-    fn source(&self, out: &mut String, suite: &Suite) {
-        let machine = &suite.header.machine;
-        let _ = writeln!(
-            out,
-            "`{}` on {}, {} cores, {}, {}.",
-            machine.command, machine.cpu, machine.cores, machine.gl_renderer, machine.date
-        );
     }
 
     /// The GL renderer, where another one measured the same suite; with its version, where only that differs.
@@ -182,38 +233,55 @@ impl BenchReport {
         }
     }
 
-    /// Writes `report.html`, `results.md` and `summary.md` into `folder`, and the figures as SVG files into another
-    /// folder if one is given.
+    /// Writes `report.html`, `results.md` and `summary.md`, and where they are wanted the figures as SVG files and a
+    /// `SUITE.md` for each suite.
     ///
     /// # Errors
     /// [`ReportError`]; files that were there before stay then.
-    pub fn write(&self, folder: &Path, figures: Option<&Path>) -> Result<Written, ReportError> {
-        let written = Written {
-            page: folder.join("report.html"),
-            results: folder.join("results.md"),
-            summary: folder.join("summary.md"),
-            figures: Vec::new(),
-        };
+    pub fn write(&self, places: Places) -> Result<Written, ReportError> {
         // Everything is made before anything is written.
+        let link = |from: &Path| places.figures.map(|figures| link_from(from, figures));
         let page = self.to_html()?;
-        let link = figures.map(|figures| link_from(folder, figures));
-        let results = self.to_markdown(link.as_deref());
+        let results = self.to_markdown(link(places.report).as_deref());
         let mut drawn = Vec::new();
-        if let Some(to) = figures {
+        if let Some(to) = places.figures {
             for (_, section) in sections::sections(&self.suites) {
                 for figure in &section.figures {
                     drawn.push((to.join(format!("{}.svg", figure.id)), figure.svg()?));
                 }
             }
         }
-        for (path, svg) in &drawn {
-            files::write(path, svg.as_bytes())?;
+        let mut suites = Vec::new();
+        if let Some(to) = places.results {
+            let documents = self.to_documents(link(to).as_deref());
+            suites.extend(documents.into_iter().map(|(name, text)| (to.join(slug(&name) + ".md"), text)));
         }
+        for (path, text) in drawn.iter().chain(&suites) {
+            files::write(path, text.as_bytes())?;
+        }
+        let paths = |files: Vec<(PathBuf, String)>| files.into_iter().map(|(path, _)| path).collect();
+        let written = Written {
+            page: places.report.join("report.html"),
+            results: places.report.join("results.md"),
+            summary: places.report.join("summary.md"),
+            figures: paths(drawn),
+            suites: paths(suites),
+        };
         files::write(&written.results, results.as_bytes())?;
         files::write(&written.summary, self.to_summary().as_bytes())?;
         files::write(&written.page, page.as_bytes())?;
-        Ok(Written { figures: drawn.into_iter().map(|(path, _)| path).collect(), ..written })
+        Ok(written)
     }
+}
+
+/// Writes with what a suite was measured: command, machine, date.
+fn source(out: &mut String, suite: &Suite) {
+    let machine = &suite.header.machine;
+    let _ = writeln!(
+        out,
+        "`{}` on {}, {} cores, {}, {}.",
+        machine.command, machine.cpu, machine.cores, machine.gl_renderer, machine.date
+    );
 }
 
 /// Renderer and version of GL that a suite was measured with.
@@ -256,7 +324,7 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictured>, ReportError> {
         let names = file.measurements().filter(|m| m.setting == facts.setting && m.round == 0);
         let names = names.map(|measurement| measurement.contender.as_str());
         let mut views = Vec::new();
-        for name in names.filter(|name| !["conventional", "mono"].contains(name)) {
+        for name in names.filter(|name| ![sections::CONVENTIONAL, sections::MONO].contains(name)) {
             if folder.join(format!("{name}.png")).is_file() {
                 views.push((name.to_owned(), load(name)?));
             }

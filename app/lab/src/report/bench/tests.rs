@@ -405,13 +405,25 @@ fn files_are_written_and_linked() {
     let dir = tempfile::tempdir().unwrap();
     let report = report(dir.path());
     let docs = dir.path().join("docs");
-    let written = report.write(&docs, Some(&dir.path().join("docs/figures"))).unwrap();
-    let results = std::fs::read_to_string(&written.results).unwrap();
-    assert!(results.contains("![Frame time over two full renders](figures/frame-time-ratio.svg)"));
-    for figure in &written.figures {
-        assert!(figure.is_file());
+    let (figures, results) = (docs.join("figures"), docs.join("results"));
+    let places = Places { report: &docs, figures: Some(&figures), results: Some(&results) };
+    let written = report.write(places).unwrap();
+    let read = |path: &Path| std::fs::read_to_string(path).unwrap();
+    let link = "figures/frame-time-ratio.svg)";
+    assert!(read(&written.results).contains(&format!("![Frame time over two full renders]({link}")));
+    for path in written.figures.iter().chain(&written.suites) {
+        assert!(path.is_file());
     }
     assert!(written.page.is_file() && written.summary.is_file());
+    // A file for each suite, those of one with all its sections, with machine and method at the head.
+    assert_eq!(written.suites.len(), 12);
+    let scenes = read(&results.join("scenes.md"));
+    assert!(scenes.starts_with("# Scenes: frame time, image quality, overhead\n"), "{scenes}");
+    assert!(scenes.contains("## Image quality\n") && scenes.contains(&format!("(../{link}")));
+    let head = scenes.split("## Frame time").next().unwrap();
+    assert!(head.contains("`yoro bench all") && head.contains("Example & Sons") && head.contains("glFinish"));
+    let ipd = read(&results.join("ipd.md"));
+    assert!(ipd.starts_with("# Distance between the eyes\n") && !ipd.contains("## "), "{ipd}");
     assert_eq!(link_from(Path::new("/a/out"), Path::new("/a/docs/f")), "../docs/f");
 }
 

@@ -4,11 +4,12 @@ use super::cells::percent;
 use super::section::Section;
 use super::tables::push_refusals;
 use crate::bench::bandwidth;
-use crate::report::bench::data::{Measured, SettingData, Suite, mean};
+use crate::report::bench::data::{Measured, SettingData, Suite};
 use yoro_figures::bd_rate::bd_rate;
 use yoro_figures::grid::{Cell, Table};
 use yoro_figures::paper;
 use yoro_figures::plot::{Axis, Panel, Series};
+use yoro_figures::stats::mean;
 use yoro_figures::text::{fixed, slug};
 
 /// The share of the anchor's qualities that a curve must reach to be compared.
@@ -146,7 +147,7 @@ fn rate_table(suite: &Suite) -> Table {
         }
     }
     push_refusals(&mut table, suite);
-    let papers = mean(paper::BANDWIDTH.iter().map(|(_, depth, stereo)| depth / stereo - 1.0).collect());
+    let papers = mean(paper::BANDWIDTH.iter().map(|(_, depth, stereo)| depth / stereo - 1.0));
     table.note = format!(
         "Mean difference here {}; the paper's {}. The paper names neither quantizer nor resolution: its rates stand \
          in each scene's first row.",

@@ -9,7 +9,7 @@ use yoro_figures::text::fixed;
 /// Name of the contender that everything costs in proportion to: two full renders.
 pub const CONVENTIONAL: &str = "conventional";
 /// Name of the baseline of quality: the same image to both eyes.
-const MONO: &str = "mono";
+pub const MONO: &str = "mono";
 /// What labels of the paper's curves begin with.
 pub const PAPERS: &str = "the paper's ";
 

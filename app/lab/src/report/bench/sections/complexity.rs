@@ -4,11 +4,12 @@ use super::cells::{CONVENTIONAL, PAPERS, cell, milliseconds};
 use super::section::Section;
 use super::tables::{push_refusals, sweep_table};
 use crate::bench::record::metric;
-use crate::report::bench::data::{Suite, geometric_mean, mean};
+use crate::report::bench::data::Suite;
 use yoro_figures::bd_rate::line_through;
 use yoro_figures::grid::{Cell, Table};
 use yoro_figures::paper::{self, COMPLEXITY};
 use yoro_figures::plot::{Axis, Panel, Series};
+use yoro_figures::stats::{geometric_mean, mean};
 use yoro_figures::text::{fixed, short_count};
 
 /// The paper's frame times of conventional rendering, by [`COMPLEXITY`]'s triangles.
@@ -112,9 +113,9 @@ fn slopes(suite: &Suite) -> Table {
         let system = COMPLEXITY.systems.iter().find(|(method, _)| *method == name);
         let paper_slope = system.and_then(|(_, times)| slope_of(&papers(*times)));
         let paper_ratio = system.and_then(|(_, times)| {
-            mean(times.iter().zip(PAPERS_CONVENTIONAL).map(|(ms, conventional)| ms / conventional).collect())
+            mean(times.iter().zip(PAPERS_CONVENTIONAL).map(|(ms, conventional)| ms / conventional))
         });
-        let ratios = ratios(suite, name).into_iter().map(|(_, ratio)| ratio).collect();
+        let ratios = ratios(suite, name).into_iter().map(|(_, ratio)| ratio);
         table.push(vec![
             Cell::plain(name),
             cell(name, slope.map(milliseconds)),

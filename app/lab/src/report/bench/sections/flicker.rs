@@ -5,7 +5,7 @@ use super::dots::scene_dots;
 use super::section::Section;
 use super::tables::{means_table, scene_table};
 use crate::bench::record::metric;
-use crate::report::bench::data::{SettingData, Suite, mean};
+use crate::report::bench::data::{SettingData, Suite};
 use yoro_figures::grid::Cell;
 use yoro_figures::plot::Axis;
 use yoro_figures::text::fixed;
@@ -45,7 +45,7 @@ pub fn section(suite: &Suite) -> Section {
         &columns,
     );
     let changes = [metric::CHANGE, metric::CHANGE_HOLES, metric::CHANGE_EDGES, metric::CHANGE_REST];
-    let changes = changes.map(|name| mean(suite.values(CONVENTIONAL, |measured| measured.mean(name))));
+    let changes = changes.map(|name| suite.mean(CONVENTIONAL, name));
     if changes.iter().any(Option::is_some) {
         let mut cells = vec![Cell::plain("the scene's own change")];
         cells.extend(changes.map(|change| Cell::base(fixed(change, 3))));
@@ -64,7 +64,7 @@ pub fn section(suite: &Suite) -> Section {
             let holes = fixed(measured.mean(metric::FLICKER_HOLES), 2).unwrap_or_else(|| "–".into());
             Some(format!("{:.2} / {holes}", measured.mean(metric::FLICKER)?))
         },
-        |name| fixed(mean(suite.values(name, |measured| measured.mean(metric::FLICKER))), 2),
+        |name| fixed(suite.mean(name, metric::FLICKER), 2),
         of_scenes,
     );
     table.drop_last_column();

@@ -1,58 +1,55 @@
 //! What is shown of each suite, a file for each experiment: figures with the paper's curves beside ours, and tables.
 
-mod anti_aliasing;
 mod bandwidth;
 mod cells;
 mod complexity;
-mod distance;
 mod dots;
-mod few_lights;
 mod flicker;
 mod frame_time;
-mod imbuffer;
-mod ipd;
+mod labels;
 mod other;
 mod overhead;
 mod patchers;
 mod quality;
-mod resolution;
 mod section;
-mod styles;
 mod sweeps;
 mod tables;
 
+use crate::bench;
 use crate::report::bench::data::Suite;
 
+pub use cells::{CONVENTIONAL, MONO};
 pub use section::Section;
 
 type MakeSection = fn(&Suite) -> Section;
 
 /// Suites by name in the paper's order, with what makes their sections. One suite can have several: the paper
 /// looks at frame time, quality and overhead of the same eight scenes in three places.
-const ORDER: [(&str, MakeSection); 14] = [
-    ("scenes", frame_time::section),
-    ("complexity", complexity::section),
-    ("scenes", quality::section),
-    ("scenes", overhead::section),
-    ("lights", few_lights::section),
-    ("styles", styles::section),
-    ("ipd", ipd::section),
-    ("distance", distance::section),
-    ("patchers", patchers::section),
-    ("imbuffer", imbuffer::section),
-    ("resolution", resolution::section),
-    ("anti-aliasing", anti_aliasing::section),
-    ("flicker", flicker::section),
-    ("bandwidth", bandwidth::section),
+const ORDER: [(bench::Suite, MakeSection); 14] = [
+    (bench::Suite::Scenes, frame_time::section),
+    (bench::Suite::Complexity, complexity::section),
+    (bench::Suite::Scenes, quality::section),
+    (bench::Suite::Scenes, overhead::section),
+    (bench::Suite::Lights, frame_time::few_lights),
+    (bench::Suite::Styles, labels::styles),
+    (bench::Suite::Ipd, sweeps::ipd),
+    (bench::Suite::Distance, sweeps::distance),
+    (bench::Suite::Patchers, patchers::section),
+    (bench::Suite::Imbuffer, sweeps::imbuffer),
+    (bench::Suite::Resolution, sweeps::resolution),
+    (bench::Suite::AntiAliasing, labels::anti_aliasing),
+    (bench::Suite::Flicker, flicker::section),
+    (bench::Suite::Bandwidth, bandwidth::section),
 ];
 
 /// The sections of all suites in the paper's order, each with its suite; suites of other names come last.
 pub fn sections(suites: &[Suite]) -> Vec<(&Suite, Section)> {
     let mut sections = Vec::new();
-    for (name, make) in ORDER {
-        sections.extend(suites.iter().filter(|suite| suite.name == name).map(|suite| (suite, make(suite))));
+    for (kind, make) in ORDER {
+        let of_kind = suites.iter().filter(|suite| suite.name == kind.name());
+        sections.extend(of_kind.map(|suite| (suite, make(suite))));
     }
-    let known = |suite: &&Suite| ORDER.iter().any(|(name, _)| *name == suite.name);
+    let known = |suite: &&Suite| ORDER.iter().any(|(kind, _)| kind.name() == suite.name);
     sections.extend(suites.iter().filter(|suite| !known(suite)).map(|suite| (suite, other::section(suite))));
     sections.retain(|(_, section)| !section.figures.is_empty() || !section.tables.is_empty());
     // The same experiment on another machine needs another anchor.

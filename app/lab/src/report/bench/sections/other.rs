@@ -5,19 +5,14 @@ use super::section::Section;
 use super::tables::push_refusals;
 use crate::report::bench::data::Suite;
 use yoro_figures::grid::{Cell, Table};
+use yoro_figures::stats::unique;
 use yoro_figures::text::{fixed, slug};
 
 /// Every metric of a suite that has no section of its own.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(&slug(&suite.name), &format!("Suite {}", suite.name), "");
-    let mut metrics: Vec<&str> = Vec::new();
-    for measured in suite.settings.iter().flat_map(|setting| &setting.contenders) {
-        for name in measured.metrics() {
-            if !metrics.contains(&name) {
-                metrics.push(name);
-            }
-        }
-    }
+    let measured = suite.settings.iter().flat_map(|setting| &setting.contenders);
+    let metrics = unique(measured.flat_map(|measured| measured.metrics()));
     let mut columns = vec!["<setting", "<method"];
     columns.extend(&metrics);
     let mut table = Table::new("Means", &columns);

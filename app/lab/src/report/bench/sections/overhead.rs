@@ -6,10 +6,11 @@ use super::section::Section;
 use super::tables::means_table;
 use crate::bench::record::PassClock;
 use crate::bench::record::metric;
-use crate::report::bench::data::{SettingData, Suite, mean};
+use crate::report::bench::data::{SettingData, Suite};
 use yoro_figures::grid::{Cell, Table};
 use yoro_figures::paper;
 use yoro_figures::plot::Axis;
+use yoro_figures::stats::{mean, unique};
 use yoro_figures::text::fixed;
 
 /// The section on CPU time and memory of the suite `scenes`.
@@ -21,7 +22,7 @@ pub fn section(suite: &Suite) -> Section {
          its applications; power and temperature are a phone's matter.",
     );
     let contenders = suite.measured(metric::CPU_MS);
-    let others: Vec<&str> = contenders.iter().copied().filter(|name| *name != CONVENTIONAL).collect();
+    let others = suite.compared(metric::CPU_MS);
     let papers = |value: fn(&paper::Overhead) -> [f64; 3]| {
         move |setting: &SettingData| -> Vec<(&'static str, f64)> {
             let scene = paper::SCENES.iter().position(|scene| scene.name == setting.stands_for());
@@ -72,25 +73,19 @@ pub fn section(suite: &Suite) -> Section {
 
 /// Times of passes, medians over the scenes' medians.
 fn pass_table(suite: &Suite) -> Table {
-    let mut passes: Vec<String> = Vec::new();
-    for measured in suite.settings.iter().flat_map(|setting| &setting.contenders) {
-        for name in measured.metrics() {
-            let pass = name.strip_prefix(metric::PASS_MS);
-            passes.extend(pass.map(str::to_owned).filter(|pass| !passes.contains(pass)));
-        }
-    }
+    let measured = suite.settings.iter().flat_map(|setting| &setting.contenders);
+    let metrics = unique(measured.flat_map(|measured| measured.metrics()));
+    let passes: Vec<&str> =
+        metrics.into_iter().filter_map(|name| name.strip_prefix(metric::PASS_MS)).collect();
+    let has_passes = |name: &&str| {
+        passes.iter().any(|pass| !suite.values(name, |m| m.median(&pass_metric(pass))).is_empty())
+    };
+    let contenders: Vec<&str> = suite.contenders().into_iter().filter(has_passes).collect();
     let mut columns = vec!["<pass, ms".to_owned()];
-    let contenders: Vec<&str> = suite
-        .contenders()
-        .into_iter()
-        .filter(|name| {
-            passes.iter().any(|pass| !suite.values(name, |m| m.median(&pass_metric(pass))).is_empty())
-        })
-        .collect();
     columns.extend(contenders.iter().map(|name| name.to_string()));
     let mut table = Table::new("Time of each pass, means over the scenes of the medians", &columns);
     for pass in &passes {
-        let mut cells = vec![Cell::plain(pass)];
+        let mut cells = vec![Cell::plain(*pass)];
         for name in &contenders {
             cells.push(cell(name, fixed(mean(suite.values(name, |m| m.median(&pass_metric(pass)))), 2)));
         }

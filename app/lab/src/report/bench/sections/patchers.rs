@@ -4,10 +4,11 @@ use super::cells::{cell, milliseconds};
 use super::section::Section;
 use super::tables::{metric_table, push_refusals};
 use crate::bench::record::metric;
-use crate::report::bench::data::{Suite, mean};
+use crate::report::bench::data::Suite;
 use yoro_figures::grid::{Cell, Table};
 use yoro_figures::paper;
 use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
+use yoro_figures::stats::mean;
 use yoro_figures::text::fixed;
 
 /// The section of the suite `patchers`.
@@ -36,9 +37,7 @@ pub fn section(suite: &Suite) -> Section {
         });
         Panel::Dots { value: axis, rows: rows.collect() }
     };
-    let of_suite = |metric_name: &'static str| {
-        move |name: &str| mean(suite.values(name, |measured| measured.mean(metric_name)))
-    };
+    let of_suite = |metric_name: &'static str| move |name: &str| suite.mean(name, metric_name);
     let caption = "Means over the scenes. More is better.";
     let panel = dots(Axis::new("PSNR, dB"), &of_suite(metric::PSNR), |p| p.psnr);
     section.figure("psnr", "PSNR", caption, panel);
@@ -62,7 +61,7 @@ pub fn section(suite: &Suite) -> Section {
     ];
     let mut table = Table::new("Means over the scenes", &columns);
     for name in &contenders {
-        let value = |metric_name| mean(suite.values(name, |measured| measured.mean(metric_name)));
+        let value = |metric_name| suite.mean(name, metric_name);
         let paper = paper_of(name);
         table.push(vec![
             Cell::plain(*name),

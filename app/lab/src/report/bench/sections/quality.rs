@@ -1,15 +1,16 @@
 //! Image quality.
 
-use super::cells::{CONVENTIONAL, paper_scene, psnr_ssim};
+use super::cells::{paper_scene, psnr_ssim};
 use super::dots::scene_dots;
 use super::section::Section;
 use super::sweeps::QUALITY_FIGURES;
 use super::tables::{means_table, metric_table, scene_table};
 use crate::bench::record::metric;
-use crate::report::bench::data::{Suite, mean};
+use crate::report::bench::data::Suite;
 use yoro_figures::grid::Table;
 use yoro_figures::paper;
 use yoro_figures::plot::Axis;
+use yoro_figures::stats::mean;
 use yoro_figures::text::fixed;
 
 fn paper_quality(scene: &paper::PaperScene, name: &str) -> Option<f64> {
@@ -30,11 +31,10 @@ pub fn section(suite: &Suite) -> Section {
     );
     quality_figures(&mut section, suite);
     // The ground truth has no likeness to itself worth a column.
-    let contenders: Vec<&str> =
-        suite.measured(metric::SSIM).into_iter().filter(|name| *name != CONVENTIONAL).collect();
+    let contenders = suite.compared(metric::SSIM);
     let mean_of = |name: &str| {
-        let ssim = mean(suite.values(name, |measured| measured.mean(metric::SSIM)))?;
-        let psnr = fixed(mean(suite.values(name, |measured| measured.mean(metric::PSNR))), 2);
+        let ssim = suite.mean(name, metric::SSIM)?;
+        let psnr = fixed(suite.mean(name, metric::PSNR), 2);
         Some(format!("{} / {ssim:.4}", psnr.unwrap_or_else(|| "∞".into())))
     };
     let average = paper::AVERAGE;
@@ -62,12 +62,10 @@ pub fn section(suite: &Suite) -> Section {
 
 fn quality_figures(section: &mut Section, suite: &Suite) {
     for (name, axis, caption) in QUALITY_FIGURES {
-        let contenders: Vec<&str> =
-            suite.measured(name).into_iter().filter(|name| *name != CONVENTIONAL).collect();
         let panel = scene_dots(
             suite,
             Axis::new(axis),
-            &contenders,
+            &suite.compared(name),
             |setting, contender| setting.find(contender)?.mean(name),
             |setting| {
                 let value = paper_scene(setting).and_then(|scene| paper_quality(scene, name));
@@ -95,11 +93,8 @@ fn parts_table(suite: &Suite, contenders: &[&str]) -> Table {
         ("elsewhere: FLIP", metric::VISIBLE_FLIP, 4),
     ];
     let mut table = means_table(suite, "Holes and the rest, means over the scenes", contenders, &columns);
-    let shares: Vec<f64> = suite
-        .contenders()
-        .iter()
-        .flat_map(|name| suite.values(name, |m| m.mean(metric::HOLE_SHARE)))
-        .collect();
+    let contenders = suite.contenders();
+    let shares = contenders.iter().flat_map(|name| suite.values(name, |m| m.mean(metric::HOLE_SHARE)));
     if let Some(share) = mean(shares) {
         table.note = format!(
             "Holes: what the dominant eye's own image does not show, {:.2} % of the pixels. FLIP: less is better.",

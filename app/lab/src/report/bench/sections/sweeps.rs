@@ -1,4 +1,4 @@
-//! Curves and tables over the points of a sweep.
+//! Suites that sweep a number: curves and tables over its points.
 
 use super::cells::{CONVENTIONAL, PAPERS};
 use super::section::Section;
@@ -6,6 +6,7 @@ use super::tables::sweep_table;
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
 use yoro_figures::grid::{Cell, Column};
+use yoro_figures::paper;
 use yoro_figures::plot::{Axis, Panel, Series};
 use yoro_figures::text::fixed;
 
@@ -17,7 +18,7 @@ pub const QUALITY_FIGURES: [(&str, &str, &str); 3] = [
 ];
 
 /// Curves of quality over a sweep, with the paper's where it has some.
-pub fn quality_sweep(
+fn quality_sweep(
     section: &mut Section,
     suite: &Suite,
     x: &Axis,
@@ -25,8 +26,7 @@ pub fn quality_sweep(
     label: impl Fn(f64) -> String,
 ) {
     for (name, axis, caption) in QUALITY_FIGURES {
-        let contenders: Vec<&str> =
-            suite.measured(name).into_iter().filter(|name| *name != CONVENTIONAL).collect();
+        let contenders = suite.compared(name);
         let mut series = vec![Series {
             method: "yoro-paper".into(),
             papers: true,
@@ -65,7 +65,7 @@ pub fn quality_sweep(
 }
 
 /// Curves and a table of the frame time over a sweep.
-pub fn time_sweep(section: &mut Section, suite: &Suite, x: Axis, label: impl Fn(f64) -> String) {
+fn time_sweep(section: &mut Section, suite: &Suite, x: Axis, label: impl Fn(f64) -> String) {
     let contenders = suite.measured(metric::FRAME_MS);
     let curves = |value: &dyn Fn(&SettingData, &str) -> Option<f64>, without: &str| -> Vec<Series> {
         let names = contenders.iter().rev().filter(|name| **name != without);
@@ -90,4 +90,65 @@ pub fn time_sweep(section: &mut Section, suite: &Suite, x: Axis, label: impl Fn(
         Panel::Curves { x, y, series },
     );
     section.table(sweep_table(suite, "Median frame time, ms", metric::FRAME_MS, &quantity, label));
+}
+
+/// The section of the suite `ipd`.
+pub fn ipd(suite: &Suite) -> Section {
+    let mut section = Section::new(
+        "ipd",
+        "Distance between the eyes",
+        "Quality of the synthesized eye against the interpupillary distance.",
+    );
+    let papers = |name: &str| -> Vec<(f64, f64)> {
+        match name {
+            metric::SSIM => paper::IPD.iter().map(|point| (point.0, point.1)).collect(),
+            metric::PSNR => paper::IPD.iter().map(|point| (point.0, point.2)).collect(),
+            _ => Vec::new(),
+        }
+    };
+    quality_sweep(&mut section, suite, &Axis::new("IPD, mm"), papers, |point| format!("{point}"));
+    section
+}
+
+/// The section of the suite `distance`.
+pub fn distance(suite: &Suite) -> Section {
+    let (ssim, psnr) = paper::DISTANCE;
+    let mut section = Section::new(
+        "distance",
+        "Distance of the object",
+        &format!(
+            "Quality against the distance of one irregular object, scaled so that it keeps its size on the screen. \
+             The paper shows its curve as a picture only; its text says SSIM {ssim} and {psnr} dB for 0.5 to 3 m."
+        ),
+    );
+    quality_sweep(&mut section, suite, &Axis::new("distance, m"), |_| Vec::new(), |point| format!("{point}"));
+    section
+}
+
+/// The section of the suite `imbuffer`.
+pub fn imbuffer(suite: &Suite) -> Section {
+    let mut section = Section::new(
+        "imbuffer",
+        "ImBuffer",
+        "The paper's pipeline with a smaller ImBuffer: its width and height are the image's over the divisor, with \
+         and without linear interpolation.",
+    );
+    let x = Axis::new("ImBuffer divisor").logarithmic();
+    quality_sweep(&mut section, suite, &x, |_| Vec::new(), |point| format!("1/{point}"));
+    time_sweep(&mut section, suite, x, |point| format!("1/{point}"));
+    section
+}
+
+/// The section of the suite `resolution`.
+pub fn resolution(suite: &Suite) -> Section {
+    let mut section = Section::new(
+        "resolution",
+        "Resolution",
+        "Cost and quality against the width of each eye's image. The paper measured at its devices' own resolution \
+         only.",
+    );
+    let x = Axis::new("width of an eye, pixels");
+    time_sweep(&mut section, suite, x.clone(), |point| format!("{point}"));
+    quality_sweep(&mut section, suite, &x, |_| Vec::new(), |point| format!("{point}"));
+    section
 }

@@ -2,10 +2,10 @@
 
 use super::cells::{cell, milliseconds};
 use crate::bench::record::metric;
-use crate::report::bench::data::{SettingData, Suite, mean};
+use crate::report::bench::data::{SettingData, Suite};
 use yoro_figures::grid::{Cell, Table};
+use yoro_figures::stats::{mean, percentile};
 use yoro_figures::text::{fixed, short_count};
-use yoro_protocol::telemetry::stats::percentile;
 
 /// A table with a row for each setting and a column for each contender; then the mean, and those that were not
 /// measured.
@@ -14,7 +14,7 @@ pub fn scene_table(
     title: &str,
     contenders: &[&str],
     text: impl Fn(&SettingData, &str) -> Option<String>,
-    mean: impl Fn(&str) -> Option<String>,
+    mean_text: impl Fn(&str) -> Option<String>,
     paper: (&str, impl Fn(&SettingData) -> Option<String>, Option<String>),
 ) -> Table {
     let mut columns = vec!["<scene".to_owned(), "triangles".to_owned()];
@@ -32,7 +32,7 @@ pub fn scene_table(
         table.push(cells);
     }
     let mut cells = vec![Cell::plain(format!("mean of {}", suite.settings.len())), Cell::plain("")];
-    cells.extend(contenders.iter().map(|name| cell(name, mean(name))));
+    cells.extend(contenders.iter().map(|name| cell(name, mean_text(name))));
     cells.push(Cell::paper(paper.2));
     table.push_first(cells);
     push_refusals(&mut table, suite);
@@ -130,7 +130,7 @@ pub fn sweep_table(
                 let measured = setting.find(name)?;
                 if times { measured.median(metric_name) } else { measured.mean(metric_name) }
             };
-            let value = mean(here.filter_map(value).collect());
+            let value = mean(here.filter_map(value));
             let decimals = if metric_name.contains("ssim") { 4 } else { 2 };
             let text = if times { value.map(milliseconds) } else { fixed(value, decimals) };
             cells.push(cell(name, text));
@@ -159,7 +159,7 @@ pub fn means_table(
     for name in contenders {
         let mut cells = vec![Cell::plain(*name)];
         for (_, metric_name, decimals) in &measured {
-            cells.push(cell(name, fixed(mean(suite.values(name, |m| m.mean(metric_name))), *decimals)));
+            cells.push(cell(name, fixed(suite.mean(name, metric_name), *decimals)));
         }
         table.push(cells);
     }

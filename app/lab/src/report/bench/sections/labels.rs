@@ -1,0 +1,120 @@
+//! Suites whose settings have a label: the shading style, or what edges are made of.
+
+use super::cells::{CONVENTIONAL, cell};
+use super::dots::papers_mark;
+use super::section::Section;
+use super::sweeps::QUALITY_FIGURES;
+use super::tables::{metric_table, push_refusals};
+use crate::bench::record::metric;
+use crate::report::bench::data::{SettingData, Suite};
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::paper;
+use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
+use yoro_figures::stats::mean;
+
+/// In what the sections of this kind differ.
+struct Labels {
+    /// Heading of the labels' column.
+    column: &'static str,
+    /// Title of the table with a row for each label.
+    title: &'static str,
+    /// Title of the table with all settings.
+    details: &'static str,
+    /// The paper's SSIM and PSNR in dB by label; empty where it has none.
+    papers: &'static [(&'static str, f64, f64)],
+    /// Whether frame times were measured.
+    timed: bool,
+}
+
+/// The section of the suite `styles`.
+pub fn styles(suite: &Suite) -> Section {
+    let section = Section::new(
+        "styles",
+        "Shading styles",
+        "The same synthesis under five styles of shading. In the paper each style is another scene of its own.",
+    );
+    let labels = Labels {
+        column: "<style",
+        title: "PSNR in dB / SSIM, means over the scenes",
+        details: "Every scene and style in full",
+        papers: &paper::STYLES,
+        timed: false,
+    };
+    fill(section, suite, &labels)
+}
+
+/// The section of the suite `anti-aliasing`.
+pub fn anti_aliasing(suite: &Suite) -> Section {
+    let section = Section::new(
+        "anti-aliasing",
+        "Anti-aliasing",
+        "Each synthesized eye against the same eye rendered in the same way: with one sample per pixel, with FXAA after \
+         synthesis, and with MSAA, where the synthesis is told nothing of the edges (hard), the nearest or the first \
+         sample's depth, or the depth of all samples.",
+    );
+    let labels = Labels {
+        column: "<edges",
+        title: "PSNR in dB / SSIM / frame time over two renders, means over the scenes",
+        details: "Every scene in full",
+        papers: &[],
+        timed: true,
+    };
+    fill(section, suite, &labels)
+}
+
+/// Adds dot plots of quality, a table with a row for each label, and one with all settings.
+fn fill(mut section: Section, suite: &Suite, labels: &Labels) -> Section {
+    let contenders = suite.compared(metric::SSIM);
+    let labelled = |label: &str| -> Vec<&SettingData> {
+        suite.settings.iter().filter(|setting| setting.setting.label.as_deref() == Some(label)).collect()
+    };
+    let value = |label: &str, contender: &str, name: &str| {
+        mean(labelled(label).iter().filter_map(|setting| setting.find(contender)?.mean(name)))
+    };
+    let paper_of = |label: &str| labels.papers.iter().find(|(name, ..)| *name == label);
+    for (name, axis, caption) in QUALITY_FIGURES {
+        let rows = suite.labels().into_iter().map(|label| {
+            let paper = paper_of(label).and_then(|(_, ssim, psnr)| match name {
+                metric::SSIM => Some(*ssim),
+                metric::PSNR => Some(*psnr),
+                _ => None,
+            });
+            let paper = paper.map(|value| papers_mark("yoro-paper", value));
+            let ours = contenders.iter().rev().filter_map(|contender| {
+                Some(Mark::new(*contender, *contender, value(label, contender, name)?))
+            });
+            DotRow { label: label.into(), marks: paper.into_iter().chain(ours).collect() }
+        });
+        let panel = Panel::Dots { value: Axis::new(axis), rows: rows.collect() };
+        section.figure(name, axis, &format!("{caption} Means over the scenes."), panel);
+    }
+    let mut columns = vec![labels.column];
+    columns.extend(&contenders);
+    if !labels.papers.is_empty() {
+        columns.push("the paper's YORO");
+    }
+    let mut table = Table::new(labels.title, &columns);
+    for label in suite.labels() {
+        let mut cells = vec![Cell::plain(label)];
+        for name in &contenders {
+            let pair = value(label, name, metric::PSNR).zip(value(label, name, metric::SSIM));
+            let ratios = labelled(label).into_iter().filter_map(|setting| {
+                let of = |contender: &str| setting.find(contender)?.median(metric::FRAME_MS);
+                Some(of(name)? / of(CONVENTIONAL)?)
+            });
+            let ratio = mean(ratios).filter(|_| labels.timed);
+            let ratio = ratio.map_or_else(String::new, |ratio| format!(" / {ratio:.2}"));
+            cells.push(cell(name, pair.map(|(psnr, ssim)| format!("{psnr:.2} / {ssim:.4}{ratio}"))));
+        }
+        if !labels.papers.is_empty() {
+            let paper = paper_of(label).map(|(_, ssim, psnr)| format!("{psnr:.1} / {ssim:.3}"));
+            cells.push(Cell::paper(paper));
+        }
+        table.push(cells);
+    }
+    push_refusals(&mut table, suite);
+    table.note = format!("Scenes: {}.", suite.scenes().join(", "));
+    section.table(table);
+    section.table(metric_table(suite, labels.details, &contenders));
+    section
+}
