@@ -36,11 +36,6 @@
 #define YORO_VERSION (((YORO_VERSION_MAJOR * 1000000) + (YORO_VERSION_MINOR * 1000)) + YORO_VERSION_PATCH)
 
 /**
- * The largest distance between the eyes in metres.
- */
-#define YORO_MAX_IPD 0.08
-
-/**
  * A guard band that is complete for whatever is farther than an arm's length, in metres.
  */
 #define YORO_GUARD_BAND 1.0
@@ -86,7 +81,8 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_EYES_OFF_AXIS (-6)
 /**
- * The distance between the eyes is beyond YORO_MAX_IPD, or the left eye lies to the right of the right eye.
+ * The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be
+ * synthesized: 4095 in images that are wider than that.
  */
 #define YORO_ERROR_EYES_IPD (-7)
 /**

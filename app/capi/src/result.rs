@@ -26,7 +26,8 @@ pub const YORO_ERROR_MATRIX: YoroResult = -4;
 pub const YORO_ERROR_EYES_CANTED: YoroResult = -5;
 /// The eyes do not lie on one horizontal line.
 pub const YORO_ERROR_EYES_OFF_AXIS: YoroResult = -6;
-/// The distance between the eyes is beyond YORO_MAX_IPD, or the left eye lies to the right of the right eye.
+/// The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be
+/// synthesized: 4095 in images that are wider than that.
 pub const YORO_ERROR_EYES_IPD: YoroResult = -7;
 /// The eyes' images have different tangents per pixel. YORO_EYES_EVEN helps.
 pub const YORO_ERROR_EYES_DENSITY: YoroResult = -8;
@@ -140,7 +141,7 @@ impl From<EyesError> for Failure {
         let code = match error {
             EyesError::Canted { .. } => YORO_ERROR_EYES_CANTED,
             EyesError::OffAxis { .. } => YORO_ERROR_EYES_OFF_AXIS,
-            EyesError::Ipd { .. } => YORO_ERROR_EYES_IPD,
+            EyesError::Swapped { .. } | EyesError::Displacement { .. } => YORO_ERROR_EYES_IPD,
             EyesError::Density { .. } => YORO_ERROR_EYES_DENSITY,
             EyesError::Rows { .. } => YORO_ERROR_EYES_ROWS,
             EyesError::TooLarge { .. } => YORO_ERROR_TOO_LARGE,

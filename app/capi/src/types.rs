@@ -22,8 +22,6 @@ pub extern "C" fn yoro_version() -> u32 {
     YORO_VERSION
 }
 
-/// The largest distance between the eyes in metres.
-pub const YORO_MAX_IPD: f32 = 0.08;
 /// A guard band that is complete for whatever is farther than an arm's length, in metres.
 pub const YORO_GUARD_BAND: f32 = 1.0;
 
@@ -165,9 +163,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_header_has_the_crates_version_and_the_cores_limits() {
+    fn the_header_has_the_crates_version() {
         let version = format!("{YORO_VERSION_MAJOR}.{YORO_VERSION_MINOR}.{YORO_VERSION_PATCH}");
         assert_eq!(version, env!("CARGO_PKG_VERSION"));
-        assert_eq!(YORO_MAX_IPD, yoro::eyes::MAX_IPD);
     }
 }

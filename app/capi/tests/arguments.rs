@@ -117,7 +117,7 @@ fn eyes_that_cannot_be_have_their_codes() {
         (&|e| e.flags = 4, YORO_ERROR_VALUE),
         (&|e| e.poses[0].orientation = [0.0, 0.1, 0.0, 0.995], YORO_ERROR_EYES_CANTED),
         (&|e| e.poses[0].position[1] = 1.5, YORO_ERROR_EYES_OFF_AXIS),
-        (&|e| e.poses[0].position[0] = -0.5, YORO_ERROR_EYES_IPD),
+        (&|e| (e.poses[0].position[0], e.guard_band) = (-1e7, 0.0), YORO_ERROR_EYES_IPD),
         (&|e| e.poses.swap(0, 1), YORO_ERROR_EYES_IPD),
         (&|e| e.fovs[0].angle_left = -0.9, YORO_ERROR_EYES_DENSITY),
         (&|e| (e.fovs[0].angle_up, e.fovs[0].angle_down) = (0.61, -0.5897), YORO_ERROR_EYES_ROWS),
@@ -189,7 +189,7 @@ fn matrices_that_cannot_be_have_their_codes() {
         (&|m| m.projection[0][14] *= 1.5, YORO_ERROR_MATRIX),
         // Left-handed in one eye only.
         (&|m| m.view[0][..3].iter_mut().for_each(|n| *n = -*n), YORO_ERROR_MATRIX),
-        (&|m| m.view[0][12] += 1.0, YORO_ERROR_EYES_IPD),
+        (&|m| (m.view[0][12], m.guard_band) = (1e7, 0.0), YORO_ERROR_EYES_IPD),
         (&|m| m.view[0][13] += 0.01, YORO_ERROR_EYES_OFF_AXIS),
         (&|m| m.view.swap(0, 1), YORO_ERROR_EYES_IPD),
     ];

@@ -7,6 +7,10 @@ use serde::{Deserialize, Serialize};
 
 /// Lengths in millimetres that a side of a screen behind lenses can have.
 const PLAUSIBLE_SCREEN: std::ops::RangeInclusive<f32> = 30.0..=400.0;
+/// The largest distance between the eyes that settings may ask for, in metres.
+pub const MAX_IPD: f32 = 0.08;
+/// The distance between the eyes in metres where nobody says otherwise: the paper's.
+pub const DEFAULT_IPD: f32 = 0.063;
 /// The most point lights that light one view.
 pub const MAX_POINT_LIGHTS: usize = 24;
 

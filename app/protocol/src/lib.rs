@@ -10,7 +10,7 @@ mod settings;
 pub mod telemetry;
 
 pub use choices::{
-    AntiAliasing, DisplayKind, ImBufferSize, MAX_POINT_LIGHTS, MSAA, Method, ParseImBufferSizeError,
-    ParsePipelineError, Performance, Pipeline, RendererKind, ScreenSize, Ssao,
+    AntiAliasing, DEFAULT_IPD, DisplayKind, ImBufferSize, MAX_IPD, MAX_POINT_LIGHTS, MSAA, Method,
+    ParseImBufferSizeError, ParsePipelineError, Performance, Pipeline, RendererKind, ScreenSize, Ssao,
 };
 pub use settings::{KEYS, Settings, SettingsError};

@@ -10,10 +10,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DisplayKind, ImBufferSize, MAX_POINT_LIGHTS, MSAA, Method, Performance, Pipeline,
-    RendererKind, ScreenSize, Ssao,
+    AntiAliasing, DEFAULT_IPD, DisplayKind, ImBufferSize, MAX_IPD, MAX_POINT_LIGHTS, MSAA, Method,
+    Performance, Pipeline, RendererKind, ScreenSize, Ssao,
 };
-use yoro::eyes::{DEFAULT_IPD, Eye, GuardBand, MAX_IPD};
+use yoro::eyes::{Eye, GuardBand};
 use yoro::synthesis::Edges;
 
 /// Largest settings file in bytes.

@@ -7,11 +7,10 @@ use anyhow::ensure;
 use clap::builder::RangedU64ValueParser;
 
 use crate::cli::choices;
-use yoro::eyes::{DEFAULT_IPD, MAX_IPD};
 use yoro_context::{Backend, ContextError, Headless};
 use yoro_gl::Context;
 use yoro_lab::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
-use yoro_protocol::Settings;
+use yoro_protocol::{DEFAULT_IPD, MAX_IPD, Settings};
 use yoro_render::stereo::{ImBufferSize, PaperOptions, Pipeline, PipelineOptions};
 use yoro_render::{MSAA, RenderSettings, RendererKind};
 

@@ -10,7 +10,7 @@ use crate::cli::choices;
 use crate::cli::eyes;
 use crate::cli::machine;
 use crate::cli::terminal::progress_bar;
-use yoro::eyes::{DEFAULT_IPD, Eye, EyeOptions};
+use yoro::eyes::{Eye, EyeOptions};
 use yoro_files::interrupt::Interrupted;
 use yoro_gl::Context;
 use yoro_lab::bench::record::{Header, PassClock, VERSION};
@@ -18,6 +18,7 @@ use yoro_lab::bench::{
     self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, process,
 };
 use yoro_lab::inpaint::PatcherOptions;
+use yoro_protocol::DEFAULT_IPD;
 use yoro_scene::load::sidecar_file;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own

@@ -8,10 +8,11 @@ use glam::Vec3;
 use crate::cli::args::{SynthesisArgs, parse_fov, parse_ipd, parse_positive};
 use crate::cli::choices;
 use yoro::eyes::{
-    DEFAULT_IPD, DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose,
-    full_overlap_distance, minimum_object_distance,
+    DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose, full_overlap_distance,
+    minimum_object_distance,
 };
 use yoro::synthesis::Edges;
+use yoro_protocol::DEFAULT_IPD;
 use yoro_render::stereo::{AntiAliasing, NearFieldPolicy, Pipeline, StereoOptions};
 use yoro_scene::Viewpoint;
 

@@ -11,12 +11,13 @@ use crate::cli::args::{
 use crate::cli::choices;
 use crate::cli::outputs;
 use crate::cli::terminal::progress_bar;
-use yoro::eyes::{DEFAULT_IPD, DepthConvention, DepthRange, Eye, Warp};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, Warp};
 use yoro::synthesis::{Edges, SourceMapEntry};
 use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_lab::inpaint::{Patcher, Reprojected};
 use yoro_lab::picture::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
+use yoro_protocol::DEFAULT_IPD;
 use yoro_render::stereo::{Offline, SynthesizedImage};
 
 /// What the values of a depth image mean.

@@ -3,8 +3,9 @@
 use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
-use yoro::eyes::{DEFAULT_IPD, DepthRange, Eye, EyeOptions, EyePair, MAX_IPD, Pose};
+use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Context, GlError};
+use yoro_protocol::{DEFAULT_IPD, MAX_IPD};
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoMethod, StereoOptions};
 use yoro_render::{RenderSettings, RendererKind};
 

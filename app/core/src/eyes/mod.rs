@@ -15,11 +15,6 @@ pub use pair::{EyeOptions, EyePair, EyesError, SynthesisViews};
 pub use view::{Frustum, Pose, View};
 pub use warp::{DisparityLaw, Warp, full_overlap_distance, minimum_object_distance};
 
-/// The largest interpupillary distance that is accepted, in metres.
-pub const MAX_IPD: f32 = 0.08;
-/// The distance between the eyes in metres where nobody says otherwise: the paper's.
-pub const DEFAULT_IPD: f32 = 0.063;
-
 /// One of the two eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

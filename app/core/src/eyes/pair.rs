@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::{DEFAULT_IPD, DepthRange, DisparityLaw, Eye, Frustum, GuardBand, MAX_IPD, Pose, View, Warp};
+use super::{DepthRange, DisparityLaw, Eye, Frustum, GuardBand, Pose, View, Warp};
 
 /// Images of more pixels than this on a side are refused: no GL driver renders them.
 const MAX_SIDE: f64 = 65536.0;
@@ -27,14 +27,20 @@ pub enum EyesError {
         /// Displacement in metres perpendicular to the X axis.
         off_axis: f32,
     },
-    /// The left eye is right of the right eye, or the distance is beyond [`MAX_IPD`].
+    /// The left eye is right of the right eye.
+    #[error("the left eye is {distance:.4} m to the right of the right eye; swap the eyes")]
+    Swapped {
+        /// The distance in metres.
+        distance: f32,
+    },
+    /// The nearest surfaces move further from eye to eye than the shaders can tell ([`Warp::MAX_DISPLACEMENT`]).
     #[error(
-        "the interpupillary distance is {ipd:.4} m; it must be between 0 and {max} m, left eye on the left",
-        max = MAX_IPD
+        "the nearest surfaces move by {pixels:.0} pixels from eye to eye, and {max} are the most that can be synthesized; move the near plane away, bring the eyes together, or render fewer pixels",
+        max = Warp::MAX_DISPLACEMENT
     )]
-    Ipd {
-        /// The distance found, in metres.
-        ipd: f32,
+    Displacement {
+        /// Pixels.
+        pixels: f64,
     },
     /// The two frusta have different tangents per pixel.
     #[error(
@@ -89,7 +95,7 @@ pub struct EyeOptions {
     pub size: [u32; 2],
     /// Vertical field of view in radians.
     pub fov_y: f32,
-    /// Distance between the eyes in metres, 0 to [`MAX_IPD`].
+    /// Distance between the eyes in metres.
     pub ipd: f32,
     /// The eye that is rendered.
     pub dominant: Eye,
@@ -100,12 +106,12 @@ pub struct EyeOptions {
 }
 
 impl Default for EyeOptions {
-    /// The paper's: 60 degrees, [`DEFAULT_IPD`], the right eye, [`DepthRange::PAPER`].
+    /// The paper's: 60 degrees, 63 mm, the right eye, [`DepthRange::PAPER`].
     fn default() -> EyeOptions {
         EyeOptions {
             size: [1024; 2],
             fov_y: 60f32.to_radians(),
-            ipd: DEFAULT_IPD,
+            ipd: 0.063,
             dominant: Eye::Right,
             depth: DepthRange::PAPER,
             outer_inner: None,
@@ -230,63 +236,23 @@ impl EyePair {
         self.size[0] as f32 / self.frusta[self.dominant.index()].width()
     }
 
-    /// What to render, and how its pixels move to the other eye.
+    /// Returns the view to render, and how its pixels move to the other eye.
     ///
     /// The source view is the dominant eye's frustum, widened (by whole pixels, so that the dominant eye's
     /// own image is a crop of it) to the union of both frusta and by the guard band.
     ///
     /// # Errors
-    /// [`EyesError`] for eyes whose pixels do not move along rows only.
+    /// [`EyesError`] for eyes whose pixels do not move along rows only, or move too far.
     pub fn synthesis(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
-        let target_eye = self.dominant.other();
-        let (s, t) = (self.view(self.dominant), self.view(target_eye));
-        let range = &self.depth;
-        if !self.poses.iter().all(Pose::is_valid) || !self.frusta.iter().all(Frustum::is_finite) {
-            return Err(EyesError::Invalid);
-        }
-        // In this form NaN fails, too.
-        let ordered = |f: &Frustum| f.width() > 0.0 && f.height() > 0.0;
-        // Twice the planes' product stands in projections.
-        let product = if range.far.is_finite() { range.near * range.far } else { range.near };
-        let planes = range.near > 0.0 && range.near < range.far && (2.0 * product).is_finite();
-        if !self.frusta.iter().all(ordered) || !planes || self.size.contains(&0) {
-            return Err(EyesError::Empty);
-        }
+        self.check_values()?;
         if !guard.is_valid() {
             return Err(EyesError::GuardBand(guard));
         }
-        let angle = s.pose.orientation.angle_between(t.pose.orientation);
-        // A tenth of a pixel at 2000 pixels and 90 degrees is 1e-4 rad; f32 acos alone is good to 5e-4.
-        let direction =
-            (s.pose.forward() - t.pose.forward()).length().max((s.pose.right() - t.pose.right()).length());
-        if direction > 1e-4 {
-            return Err(EyesError::Canted { degrees: angle.to_degrees() });
-        }
-        let ipd = self.ipd();
-        let between = self.poses[1].position - self.poses[0].position;
-        let off_axis = (between - s.pose.right() * ipd).length();
-        if off_axis > 1e-4 {
-            return Err(EyesError::OffAxis { off_axis });
-        }
-        if !(-1e-6..=MAX_IPD + 1e-6).contains(&ipd) {
-            return Err(EyesError::Ipd { ipd });
-        }
-        let density = |f: &Frustum| [f.width() / self.size[0] as f32, f.height() / self.size[1] as f32];
-        let (ds, dt) = (density(&s.frustum), density(&t.frustum));
-        for axis in 0..2 {
-            // The error adds up over the image: allow a twentieth of a pixel in all.
-            if ((ds[axis] / dt[axis] - 1.0).abs() * self.size[axis] as f32) > 0.05 {
-                return Err(EyesError::Density {
-                    left: density(&self.frusta[0])[axis],
-                    right: density(&self.frusta[1])[axis],
-                });
-            }
-        }
-        let row = ((s.frustum.bottom - t.frustum.bottom) / ds[1]) as f64;
-        if (row - row.round()).abs() > 0.05 {
-            return Err(EyesError::Rows { rows: (self.frusta[1].bottom - self.frusta[0].bottom) / ds[1] });
-        }
-        let f_px = 1.0 / ds[0];
+        self.check_alignment()?;
+        let target_eye = self.dominant.other();
+        let (s, t) = (self.view(self.dominant), self.view(target_eye));
+        let density = self.tangents_per_pixel(self.dominant);
+        let (ipd, f_px) = (self.ipd(), 1.0 / density[0]);
         let guard = guard.pixels(f_px, ipd.max(0.0));
         // In the left eye's image surfaces lie further right than in the right eye's, so its left border shows
         // what the right eye has beyond its own left border.
@@ -294,7 +260,7 @@ impl EyePair {
             Eye::Left => (guard, 0),
             Eye::Right => (0, guard),
         };
-        let pixels = |tangents: f32, axis: usize| (tangents / ds[axis] - 1e-3).ceil().max(0.0) as u32;
+        let pixels = |tangents: f32, axis: usize| (tangents / density[axis] - 1e-3).ceil().max(0.0) as u32;
         let left = pixels(s.frustum.left - t.frustum.left, 0);
         let right = pixels(t.frustum.right - s.frustum.right, 0);
         let bottom = pixels(s.frustum.bottom - t.frustum.bottom, 1);
@@ -306,29 +272,88 @@ impl EyePair {
         }
         let (left, right) = (left + guard_left, right + guard_right);
         let frustum = Frustum {
-            left: s.frustum.left - left as f32 * ds[0],
-            right: s.frustum.right + right as f32 * ds[0],
-            bottom: s.frustum.bottom - bottom as f32 * ds[1],
-            top: s.frustum.top + top as f32 * ds[1],
+            left: s.frustum.left - left as f32 * density[0],
+            right: s.frustum.right + right as f32 * density[0],
+            bottom: s.frustum.bottom - bottom as f32 * density[1],
+            top: s.frustum.top + top as f32 * density[1],
         };
         let source = View { frustum, size: [self.size[0] + left + right, self.size[1] + bottom + top], ..s };
         // x_t = (tan_t - left_t) f, tan_t = tan_s + side * IPD / z, x_s = (tan_s - left_s) f.
-        let (c, m) = range.inverse_distance_law();
+        let (c, m) = self.depth.inverse_distance_law();
         let shift = (-target_eye.side() * ipd * f_px) as f64;
         let law = DisparityLaw {
             offset: (frustum.left as f64 - t.frustum.left as f64) * f_px as f64 + shift * c,
             scale: shift * m,
         };
-        let row_offset = ((frustum.bottom - t.frustum.bottom) / ds[1]).round() as i32;
+        let row_offset = ((frustum.bottom - t.frustum.bottom) / density[1]).round() as i32;
         let warp = Warp {
             source_size: source.size,
             target_size: self.size,
             law,
             row_offset,
             target_eye,
-            convention: range.convention,
+            convention: self.depth.convention,
         };
+        warp.check_displacement()?;
         Ok(SynthesisViews { source, target: t, dominant_crop: [left, bottom], guard_columns: guard, warp })
+    }
+
+    /// Checks that poses, frusta, depth planes and size are any at all.
+    fn check_values(&self) -> Result<(), EyesError> {
+        if !self.poses.iter().all(Pose::is_valid) || !self.frusta.iter().all(Frustum::is_finite) {
+            return Err(EyesError::Invalid);
+        }
+        // In this form NaN fails, too.
+        let ordered = |f: &Frustum| f.width() > 0.0 && f.height() > 0.0;
+        let range = &self.depth;
+        // Twice the planes' product stands in projections.
+        let product = if range.far.is_finite() { range.near * range.far } else { range.near };
+        let planes = range.near > 0.0 && range.near < range.far && (2.0 * product).is_finite();
+        if !self.frusta.iter().all(ordered) || !planes || self.size.contains(&0) {
+            return Err(EyesError::Empty);
+        }
+        Ok(())
+    }
+
+    /// Checks that pixels move along rows only: parallel eyes on one horizontal line, with rows on rows.
+    fn check_alignment(&self) -> Result<(), EyesError> {
+        let [left, right] = &self.poses;
+        let angle = left.orientation.angle_between(right.orientation);
+        // A tenth of a pixel at 2000 pixels and 90 degrees is 1e-4 rad; f32 acos alone is good to 5e-4.
+        let direction =
+            (left.forward() - right.forward()).length().max((left.right() - right.right()).length());
+        if direction > 1e-4 {
+            return Err(EyesError::Canted { degrees: angle.to_degrees() });
+        }
+        let ipd = self.ipd();
+        let axis = self.poses[self.dominant.index()].right();
+        let off_axis = (right.position - left.position - axis * ipd).length();
+        // In worlds of other units than metres positions are rounded more coarsely.
+        if off_axis > f32::max(1e-4, 1e-3 * ipd.abs()) {
+            return Err(EyesError::OffAxis { off_axis });
+        }
+        if ipd < -1e-6 {
+            return Err(EyesError::Swapped { distance: -ipd });
+        }
+        let [left, right] = Eye::BOTH.map(|eye| self.tangents_per_pixel(eye));
+        for axis in 0..2 {
+            // The error adds up over the image: allow a twentieth of a pixel in all.
+            if ((left[axis] / right[axis] - 1.0).abs() * self.size[axis] as f32) > 0.05 {
+                return Err(EyesError::Density { left: left[axis], right: right[axis] });
+            }
+        }
+        let rows =
+            (self.frusta[1].bottom - self.frusta[0].bottom) / self.tangents_per_pixel(self.dominant)[1];
+        if (rows - rows.round()).abs() > 0.05 {
+            return Err(EyesError::Rows { rows });
+        }
+        Ok(())
+    }
+
+    /// Returns the tangents that a pixel of an eye covers, along X and Y.
+    fn tangents_per_pixel(&self, eye: Eye) -> [f32; 2] {
+        let frustum = &self.frusta[eye.index()];
+        [frustum.width() / self.size[0] as f32, frustum.height() / self.size[1] as f32]
     }
 }
 
@@ -453,7 +478,7 @@ mod tests {
         assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::OffAxis { .. })));
         let mut p = pair(Eye::Left);
         p.poses.swap(0, 1);
-        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Ipd { .. })));
+        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Swapped { .. })));
         let mut p = pair(Eye::Left);
         p.frusta[0] = Frustum::symmetric(1.0, 1.0);
         assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Density { .. })));
@@ -523,18 +548,46 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_ipd_is_told_by_its_constant() {
-        let head = Pose::IDENTITY;
-        let wide = EyePair::parallel(
-            head,
-            Frustum::symmetric(1.0, 1.0),
-            0.09,
-            DepthRange::PAPER,
-            [64; 2],
-            Eye::Left,
-        );
-        let text = wide.synthesis(GuardBand::None).unwrap_err().to_string();
-        assert!(text.contains(&format!("between 0 and {MAX_IPD} m")), "{text}");
+    fn units_of_length_do_not_matter() {
+        let pair = |unit: f32| EyeOptions {
+            ipd: 0.063 * unit,
+            depth: DepthRange { near: 0.3 * unit, far: 100.0 * unit, ..DepthRange::PAPER },
+            ..EyeOptions::default()
+        };
+        let warp = |unit| pair(unit).pair(Pose::IDENTITY).synthesis(GuardBand::None).unwrap().warp;
+        let metres = warp(1.0);
+        // Giants in metres, people in centimetres and in millimetres, mice.
+        for unit in [0.01, 0.1, 30.0, 100.0, 1000.0] {
+            let other = warp(unit);
+            assert_eq!(Warp { law: metres.law, ..other }, metres);
+            let [a, b] = [other, metres].map(|warp| [warp.law.offset, warp.law.scale]);
+            assert!(a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-5), "{unit}: {a:?}, {b:?}");
+        }
+    }
+
+    #[test]
+    fn displacements_beyond_the_shaders_are_refused() {
+        let pair = |width: u32, near: f32, ipd: f32| {
+            let depth = DepthRange { near, ..DepthRange::PAPER };
+            EyeOptions { size: [width, width], ipd, depth, ..EyeOptions::default() }.pair(Pose::IDENTITY)
+        };
+        for dominant in Eye::BOTH {
+            let synthesis = |eyes: EyePair| {
+                EyePair { dominant, ..eyes }.synthesis(GuardBand::None).map(|views| views.warp)
+            };
+            synthesis(pair(8192, 0.3, 0.063)).unwrap();
+            let error = synthesis(pair(8192, 0.05, 0.063)).unwrap_err();
+            assert!(matches!(error, EyesError::Displacement { .. }), "{error}");
+            assert!(
+                error.to_string().contains("near plane") && error.to_string().contains("4095"),
+                "{error}"
+            );
+            // What moves across the whole image is seen nowhere: it need not be told from what moves further.
+            synthesis(pair(2048, 0.005, 0.063)).unwrap();
+            synthesis(pair(64, 0.3, 100.0)).unwrap();
+            let error = synthesis(pair(64, 1e-7, 0.063)).unwrap_err();
+            assert!(matches!(error, EyesError::Displacement { .. }), "{error}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! How pixels move from one eye to the other.
 
-use super::{DepthConvention, Eye};
+use super::{DepthConvention, Eye, EyesError};
 
 /// The affine form of the paper's Eq. 5 for parallel eyes: `x_target = x_source + offset + scale * depth`, in
 /// pixels, for the value stored in the depth buffer. The same for pixel indices and for pixel centres.
@@ -35,6 +35,41 @@ pub struct Warp {
     pub target_eye: Eye,
     /// Whether smaller or larger depth is nearer.
     pub convention: DepthConvention,
+}
+
+/// Beyond so many pixels positions in the shaders, 32-bit floats, are rounded by more than a sixteenth of a pixel.
+const MAX_OFFSET: f64 = (1 << 20) as f64;
+
+impl Warp {
+    /// The largest displacement in pixels, beyond that of the far plane, that the shaders can tell: 16 bits of a
+    /// sixteenth of a pixel (`include/tiles.glsl` of `yoro-shaders`). It matters only where images are wider: what moves
+    /// across the whole image is seen nowhere.
+    pub const MAX_DISPLACEMENT: f64 = 4095.0;
+
+    /// Returns the displacements of the far plane and of the near plane in pixels, in forward columns: the direction in
+    /// which nearer surfaces lie further along.
+    pub(crate) fn forward_displacements(&self) -> [f64; 2] {
+        let (near, far) = match self.convention {
+            DepthConvention::Standard => (0.0, 1.0),
+            DepthConvention::Reversed => (1.0, 0.0),
+        };
+        [far, near].map(|depth| {
+            let displacement = self.law.displacement(depth);
+            match self.target_eye {
+                Eye::Left => displacement,
+                Eye::Right => f64::from(self.target_size[0]) - f64::from(self.source_size[0]) - displacement,
+            }
+        })
+    }
+
+    /// Checks that the shaders can tell all displacements that land in the target.
+    pub(super) fn check_displacement(&self) -> Result<(), EyesError> {
+        let [far, near] = self.forward_displacements();
+        let landing = (near - far).min(f64::from(self.target_size[0]) - far);
+        let tellable = landing <= Warp::MAX_DISPLACEMENT;
+        let exact = far.abs().max(near.abs()) <= MAX_OFFSET;
+        if tellable && exact { Ok(()) } else { Err(EyesError::Displacement { pixels: near - far }) }
+    }
 }
 
 /// The paper's minimum object distance `D = IPD / 2 * cot(fov / 2)` in metres (section "Impact of Object

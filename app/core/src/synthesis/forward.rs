@@ -1,6 +1,6 @@
 //! Forward columns: the direction in which the shaders count.
 
-use crate::eyes::{DepthConvention, Eye, Warp};
+use crate::eyes::{Eye, Warp};
 
 /// The disparity law in forward columns (`include/warp.glsl`): mirrored for the right eye, so that a larger
 /// displacement always means nearer.
@@ -21,10 +21,7 @@ impl ForwardLaw {
         } else {
             (warp.law.offset, warp.law.scale)
         };
-        let (near, far) = match warp.convention {
-            DepthConvention::Standard => (0.0, 1.0),
-            DepthConvention::Reversed => (1.0, 0.0),
-        };
-        ForwardLaw { offset, scale, mirrored, far: offset + scale * far, near: offset + scale * near }
+        let [far, near] = warp.forward_displacements();
+        ForwardLaw { offset, scale, mirrored, far, near }
     }
 }

@@ -195,6 +195,30 @@ fn near_surfaces_are_found_in_few_steps() {
     });
 }
 
+/// Eyes 60 m apart: the nearest surfaces move by more pixels than tiles can say, and by more than the image is wide.
+#[test]
+fn surfaces_that_move_beyond_the_image_hide_nothing() {
+    on_every_backend(|gl| {
+        for dominant in Eye::BOTH {
+            let depth = DepthRange { near: 0.3, ..DepthRange::PAPER };
+            let p = EyePair { depth, ..pair([150, 40], dominant, 60.0, DepthConvention::Standard) };
+            let warp = p.synthesis(GuardBand::None).unwrap().warp;
+            assert!(warp.law.scale.abs() > Warp::MAX_DISPLACEMENT);
+            let metres = |i: u32| match (i % 150, i / 150) {
+                (40..60, 5..20) => 0.31,
+                (80..110, 10..30) => 150.0,
+                (x, _) => 500.0 + x as f32,
+            };
+            let depth: Vec<f32> = (0..150 * 40).map(|i| p.depth.depth(metres(i))).collect();
+            let (rgba, _) = scene(p.size, p.depth, 16);
+            for subject in variants() {
+                let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
+                is_its_reference(&result, reference::gather_row, &rgba, &depth, &warp, &subject.name);
+            }
+        }
+    });
+}
+
 fn near_boxes(size: [u32; 2], range: DepthRange, seed: u64, boxes: u32) -> (Vec<u8>, Vec<f32>) {
     let [w, h] = size.map(|n| n as usize);
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);

@@ -10,12 +10,13 @@ use crate::error::ViewerError;
 use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming};
 use crate::viewer::Viewer;
-use yoro::eyes::{DepthRange, Eye, EyePair, MAX_IPD, Pose};
+use yoro::eyes::{DepthRange, Eye, EyePair, Pose};
 use yoro_gl::{Context, Destination};
 use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
 use yoro_lenses::{Optics, Screen};
+use yoro_protocol::MAX_IPD;
 use yoro_protocol::Settings;
 use yoro_render::stereo::StereoFrame;
 
