@@ -17,6 +17,8 @@ export function listen(canvas, move, changed) {
   const pressed = new Set();
   // Pressed and let go of between two steps: a slow frame loses no key.
   const released = new Set();
+  let fast = false;
+  for (const name of ['keydown', 'keyup']) addEventListener(name, (event) => { fast = event.shiftKey; });
   canvas.addEventListener('pointerdown', (event) => {
     if (event.isTrusted) canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
@@ -50,8 +52,8 @@ export function listen(canvas, move, changed) {
   canvas.addEventListener('blur', () => pressed.clear());
 
   return {
-    /** Moves by the keys that are down; whether any is. `seconds` since the last call. */
-    step(seconds, fast) {
+    /** Moves by the keys that are down, fast with Shift, in `seconds` since the last call; true if any key is down. */
+    step(seconds) {
       const dt = Math.min(seconds, 0.1);
       for (const code of pressed) {
         const distance = dt * METRES_PER_SECOND * (fast ? 4 : 1);

@@ -1,6 +1,7 @@
 // Files of one's own: dropped or chosen, shown, kept on this device.
 
-const element = (id) => document.getElementById(id);
+import { element } from './app.js';
+
 const MODEL = /\.(obj|gltf|glb)$/i;
 const PICTURE = /\.(png|jpe?g|bmp|tga|exr)$/i;
 const EXR = /\.exr$/i;

@@ -1,8 +1,8 @@
 // A headset, by WebXR: views, projections and framebuffer as the browser gives them.
 
-import { sentence } from './main.js';
+import { element } from './app.js';
+import { sentence } from './sentence.js';
 
-const element = (id) => document.getElementById(id);
 /** xr-standard gamepads: trigger, squeeze, thumbstick; axes 2 and 3 are the thumbstick's. */
 const [TRIGGER, SQUEEZE, THUMBSTICK] = [0, 1, 3];
 const METRES_PER_SECOND = 1.5;

@@ -1,8 +1,8 @@
 // The methods against each other, and a file that `yoro report` reads.
 
-import { sentence } from './main.js';
+import { element } from './app.js';
+import { sentence } from './sentence.js';
 
-const element = (id) => document.getElementById(id);
 /** A batch of frames is at least this long, in ms: browsers round their clocks to 0.005 to 1 ms. */
 const BATCH = 50;
 /** Frames with timer queries a turn: results come some frames late. */

@@ -2,8 +2,9 @@
 
 const CACHE = 'yoro';
 const FILES = [
-  './', 'icon.svg', 'style.css', 'main.js', 'link.js', 'controls.js', 'worker.js', 'measure.js', 'files.js', 'phone.js',
-  'headset.js', 'yoro_web.js', 'yoro_web_bg.wasm',
+  './', 'icon.svg', 'style.css', 'main.js', 'address.js', 'app.js', 'choices.js', 'controls.js', 'drawing.js', 'files.js',
+  'headset.js', 'link.js', 'measure.js', 'messages.js', 'phone.js', 'sentence.js', 'sources.js', 'worker.js', 'yoro_web.js',
+  'yoro_web_bg.wasm',
 ];
 
 self.addEventListener('install', (event) => {

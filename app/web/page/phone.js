@@ -1,8 +1,8 @@
 // A phone in a Cardboard-compatible viewer.
 
-import { sentence } from './main.js';
+import { element } from './app.js';
+import { sentence } from './sentence.js';
 
-const element = (id) => document.getElementById(id);
 const RADIANS = Math.PI / 180;
 
 const multiply = ([ax, ay, az, aw], [bx, by, bz, bw]) => [

@@ -7,21 +7,11 @@
 //! This crate must never know HTML, nor ask a server for anything.
 
 #[cfg(target_arch = "wasm32")]
-mod bench;
-#[cfg(target_arch = "wasm32")]
 mod page;
-#[cfg(target_arch = "wasm32")]
-mod phone;
 mod pictures;
 mod settings;
-#[cfg(target_arch = "wasm32")]
-mod show;
 mod views;
 mod walker;
-#[cfg(target_arch = "wasm32")]
-mod work;
-#[cfg(target_arch = "wasm32")]
-mod xr;
 
 #[cfg(target_arch = "wasm32")]
 pub use page::Page;

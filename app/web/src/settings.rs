@@ -31,12 +31,17 @@ pub enum Display {
 }
 
 impl Display {
-    /// Whether both images stand on the screen.
-    pub fn is_split(self) -> bool {
+    /// True if both images are on the screen.
+    fn is_split(self) -> bool {
         matches!(self, Display::SideBySide | Display::CrossEyed)
     }
 
-    /// Whether the eye that is not dominant has to be rendered, too.
+    /// Returns the width and height of what one image may fill of a canvas, in pixels.
+    pub fn part(self, [width, height]: [u32; 2]) -> [u32; 2] {
+        if self.is_split() { [(width / 2).max(1), height] } else { [width, height] }
+    }
+
+    /// True if the eye that is not dominant has to be rendered, too.
     pub fn needs_truth(self) -> bool {
         matches!(self, Display::Difference | Display::Flicker)
     }
@@ -102,7 +107,14 @@ impl Settings {
         StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
     }
 
-    /// A method, made for these choices.
+    /// True if renderer and method of other choices are the same ones.
+    pub fn makes_same(&self, other: &Settings) -> bool {
+        self.method == other.method
+            && self.stereo_options() == other.stereo_options()
+            && self.render_settings() == other.render_settings()
+    }
+
+    /// Compiles a method for these choices.
     ///
     /// # Errors
     /// As [`stereo::create`].

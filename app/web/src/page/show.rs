@@ -3,7 +3,21 @@
 use std::rc::Rc;
 
 use glam::Vec4;
+use yoro::eyes::Eye;
 use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
+use yoro_render::stereo::StereoFrame;
+
+use crate::settings::Display;
+
+/// Where images are on the canvas, in pixels.
+pub struct Layout {
+    /// The lower left corner of the first image, or of the only one.
+    pub origin: [u32; 2],
+    /// Width and height of each image.
+    pub size: [u32; 2],
+    /// How much further to the right the second image begins.
+    pub step: u32,
+}
 
 /// The programs that show images; they fill a rectangle, scaled to it.
 pub struct Show {
@@ -59,6 +73,35 @@ impl Show {
     /// Where two images differ: black where they do not, white from a quarter of the range on.
     pub fn difference(&self, a: &Texture, b: &Texture, to: &Destination) {
         self.run(&self.difference, a, Some(("second", b)), to);
+    }
+
+    /// Shows both eyes on a display. `real` is the image that the display compares with the eye that is not dominant, or
+    /// shows in its place.
+    pub fn eyes(
+        &self,
+        display: Display,
+        frame: &StereoFrame,
+        dominant: Eye,
+        real: Option<&Texture>,
+        layout: &Layout,
+    ) {
+        let Layout { origin: [x, y], size, step } = *layout;
+        let part = |x| Destination { framebuffer: None, origin: [x, y], size };
+        let (first, second) = (part(x), part(x + step));
+        let image = |eye: Eye| frame.eye(eye).color(0);
+        let other = image(dominant.other());
+        match display {
+            Display::SideBySide | Display::CrossEyed => {
+                let eye = if display == Display::SideBySide { Eye::Left } else { Eye::Right };
+                self.image(image(eye), &first);
+                self.image(image(eye.other()), &second);
+            }
+            Display::Anaglyph => self.anaglyph(image(Eye::Left), image(Eye::Right), &first),
+            Display::Left => self.image(image(Eye::Left), &first),
+            Display::Right => self.image(image(Eye::Right), &first),
+            Display::Difference => self.difference(other, real.unwrap_or(other), &first),
+            Display::Flicker => self.image(real.unwrap_or(other), &first),
+        }
     }
 
     /// An image with its depth into the framebuffer that is bound, one that this library does not know, at its lower left

@@ -9,7 +9,7 @@ use yoro_scene::Scene;
 use yoro_scenes::build::Progress;
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
 
-use crate::page::sentence;
+use super::error::sentence;
 
 #[wasm_bindgen]
 extern "C" {

@@ -1,0 +1,13 @@
+// Errors as sentences.
+
+/**
+ * Returns a sentence for whatever was thrown.
+ * @param {Error} error
+ * @returns {string}
+ */
+export function sentence(error) {
+  if (error instanceof WebAssembly.RuntimeError) {
+    return `The module has failed (${error.message}), perhaps for want of memory: reload the page, and choose a smaller scene.`;
+  }
+  return error.message ?? String(error);
+}

@@ -1,0 +1,461 @@
+//! What JavaScript calls: the canvas and what is on it.
+
+mod bench;
+mod error;
+mod phone;
+mod picture_show;
+mod scene_show;
+mod show;
+mod work;
+mod xr;
+
+use std::rc::Rc;
+
+use wasm_bindgen::prelude::*;
+use web_sys::WebGl2RenderingContext;
+use yoro::eyes::{Eye, Pose};
+use yoro_gl::{Context, Profiling};
+use yoro_render::stereo::Method;
+use yoro_scene::Scene;
+use yoro_scenes::BUILTINS;
+
+use self::bench::Bench;
+use self::error::sentence;
+use self::phone::Phone;
+use self::picture_show::PictureShow;
+use self::scene_show::SceneShow;
+use self::show::{Layout, Show};
+use self::xr::Headset;
+use crate::pictures::{PictureOptions, PicturePair};
+use crate::settings::{Display, Settings};
+use crate::walker::Walker;
+
+/// What the canvas shows.
+enum Content {
+    Empty,
+    Scene(Box<SceneShow>),
+    Pictures(Box<PictureShow>),
+}
+
+/// Everything that lives in the canvas's context.
+#[wasm_bindgen]
+pub struct Page {
+    gl: Rc<Context>,
+    show: Show,
+    settings: Settings,
+    walker: Walker,
+    content: Content,
+    /// The lenses, while a phone is in a viewer.
+    phone: Option<Phone>,
+}
+
+#[wasm_bindgen]
+impl Page {
+    /// Takes the canvas's context.
+    ///
+    /// # Errors
+    /// A sentence, for a context that cannot render.
+    #[wasm_bindgen(constructor)]
+    pub fn new(context: WebGl2RenderingContext) -> Result<Page, JsError> {
+        let gl = Context::new(glow::Context::from_webgl2_context(context)).map_err(sentence)?;
+        Ok(Page {
+            show: Show::new(&gl).map_err(sentence)?,
+            settings: Settings::default(),
+            walker: Walker::new(Pose::IDENTITY),
+            content: Content::Empty,
+            phone: None,
+            gl,
+        })
+    }
+
+    /// Returns the GPU's name, as far as the browser tells it.
+    #[wasm_bindgen(getter)]
+    pub fn gpu(&self) -> String {
+        self.gl.capabilities().renderer.clone()
+    }
+
+    /// Returns the version of yoro.
+    #[wasm_bindgen(getter)]
+    pub fn version(&self) -> String {
+        env!("CARGO_PKG_VERSION").into()
+    }
+
+    /// Returns what the browser calls its WebGL.
+    #[wasm_bindgen(getter, js_name = glVersion)]
+    pub fn gl_version(&self) -> String {
+        self.gl.capabilities().version_string.clone()
+    }
+
+    /// Returns the number of live GL objects of the library, and the MiB of its textures: `[objects, mib]`.
+    #[wasm_bindgen(getter)]
+    pub fn held(&self) -> Vec<f64> {
+        vec![self.gl.object_count() as f64, self.gl.texture_bytes() as f64 / f64::from(1 << 20)]
+    }
+
+    /// Returns the methods with the renderer of these choices (JSON, as [`Page::configure`] takes it) as JSON: `[{"name",
+    /// "reason"}]`. There is a reason where browser or renderer cannot do the method.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn methods(&self, json: &str) -> Result<String, JsError> {
+        let render = Settings::parse(json).map_err(sentence)?.render_settings();
+        let entry = |method: Method| {
+            let supported = render.supports(method, self.gl.capabilities());
+            serde_json::json!({ "name": method.name(), "reason": supported.err().map(|error| error.to_string()) })
+        };
+        Ok(serde_json::Value::from_iter(Method::ALL.map(entry)).to_string())
+    }
+
+    /// Returns the renderer in a few words: `forward, 4 samples a pixel`.
+    #[wasm_bindgen(getter)]
+    pub fn renderer(&self) -> String {
+        self.settings.render_settings().summary()
+    }
+
+    /// Takes over the page's choices, as JSON.
+    ///
+    /// # Errors
+    /// A sentence; the choices stay as they are then.
+    pub fn configure(&mut self, json: &str) -> Result<(), JsError> {
+        let settings = Settings::parse(json).map_err(sentence)?;
+        match &mut self.content {
+            Content::Scene(scene) if !settings.makes_same(&self.settings) => {
+                scene.configure(&self.gl, &settings, &self.settings).map_err(sentence)?;
+            }
+            Content::Pictures(pictures) if settings.ipd != self.settings.ipd => {
+                pictures.synthesize(&self.show, settings.ipd)?;
+            }
+            _ => {}
+        }
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// Shows a scene as [`work`] packs it, from its first viewpoint. Returns facts about it as JSON: `{"name",
+    /// "standsFor", "style", "triangles", "lights", "viewpoints"}`.
+    ///
+    /// # Errors
+    /// A sentence, when the GPU cannot take it; nothing is shown then.
+    #[wasm_bindgen(js_name = setScene)]
+    pub fn set_scene(&mut self, packed: &[u8]) -> Result<String, JsError> {
+        // Before the new scene takes memory.
+        self.content = Content::Empty;
+        let scene: Scene = postcard::from_bytes(packed).map_err(sentence)?;
+        let facts = serde_json::json!({
+            "name": scene.name,
+            "standsFor": BUILTINS.iter().find(|builtin| builtin.name == scene.name).map_or("", |b| b.stands_for),
+            "style": scene.style.name(),
+            "triangles": scene.model.triangle_count(),
+            "lights": scene.lights.len(),
+            "viewpoints": scene.viewpoints.len(),
+        });
+        let scene = SceneShow::new(&self.gl, &self.settings, scene).map_err(sentence)?;
+        self.content = Content::Scene(Box::new(scene));
+        self.go_to(0);
+        Ok(facts.to_string())
+    }
+
+    /// Shows a colour and a depth picture, each with its file's name, and the eyes that are made of them; `options` is
+    /// JSON. Returns width and height in pixels.
+    ///
+    /// # Errors
+    /// A sentence; what was shown before stays.
+    #[wasm_bindgen(js_name = setPictures)]
+    pub fn set_pictures(
+        &mut self,
+        color_name: &str,
+        color: &[u8],
+        depth_name: &str,
+        depth: &[u8],
+        options: &str,
+    ) -> Result<Vec<u32>, JsError> {
+        let options = parse_options(options)?;
+        let files = [(color_name, color), (depth_name, depth)];
+        yoro_files::provide(files.map(|(name, bytes)| (name.into(), bytes.to_vec())));
+        let pair = PicturePair::load(color_name.as_ref(), depth_name.as_ref());
+        yoro_files::provide([]);
+        let pair = pair.map_err(sentence)?;
+        let pictures = PictureShow::new(&self.gl, &self.show, pair, options, self.settings.ipd)?;
+        let size = pictures.size().to_vec();
+        self.content = Content::Pictures(Box::new(pictures));
+        Ok(size)
+    }
+
+    /// Shows the pictures with other options, as JSON.
+    ///
+    /// # Errors
+    /// A sentence; the options stay as they are then.
+    #[wasm_bindgen(js_name = setPictureOptions)]
+    pub fn set_picture_options(&mut self, options: &str) -> Result<(), JsError> {
+        let options = parse_options(options)?;
+        match &mut self.content {
+            Content::Pictures(pictures) => {
+                pictures.set_options(&self.gl, &self.show, options, self.settings.ipd)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Goes to a viewpoint of the scene.
+    #[wasm_bindgen(js_name = goTo)]
+    pub fn go_to(&mut self, viewpoint: usize) {
+        if let Content::Scene(scene) = &self.content
+            && let Some(viewpoint) = scene.prepared.scene.viewpoints.get(viewpoint)
+        {
+            self.walker = Walker::new(viewpoint.pose());
+        }
+    }
+
+    /// Goes to what [`Page::place`] returned; false for what is no place.
+    #[wasm_bindgen(js_name = putAt)]
+    pub fn put_at(&mut self, place: &[f32]) -> bool {
+        let walker = place.try_into().ok().and_then(Walker::at);
+        self.walker = walker.unwrap_or(self.walker);
+        walker.is_some()
+    }
+
+    /// Returns the head's position in metres, and its radians to the left and upwards; none at a viewpoint.
+    #[wasm_bindgen(getter)]
+    pub fn place(&self) -> Option<Vec<f32>> {
+        Some(self.walker.place()?.to_vec())
+    }
+
+    /// Turns the head by radians to the left and upwards.
+    pub fn turn(&mut self, left: f32, up: f32) {
+        self.walker.turn([left, up]);
+    }
+
+    /// Walks by metres to the right, upwards and ahead.
+    pub fn walk(&mut self, right: f32, up: f32, ahead: f32) {
+        self.walker.walk([right, up, ahead]);
+    }
+
+    /// Draws on a canvas of this size. `truth` is true if the display that shows two images in turn shows the real one.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn draw(&mut self, width: u32, height: u32, truth: bool) -> Result<(), JsError> {
+        let Settings { display, dominant, .. } = self.settings;
+        let canvas = [width, height];
+        if let Content::Scene(scene) = &mut self.content {
+            let size = display.part(canvas);
+            scene.render(&self.gl, &self.settings, self.walker.pose(), size).map_err(sentence)?;
+            let real = scene.real_image(&self.settings).filter(|_| truth || display != Display::Flicker);
+            let layout = Layout { origin: [0, 0], size, step: size[0] };
+            self.show.eyes(display, &scene.frame, dominant, real, &layout);
+            return Ok(());
+        }
+        self.gl.bind_framebuffer(None, [0, 0], canvas);
+        self.gl.clear(None);
+        if let Content::Pictures(pictures) = &self.content {
+            pictures.draw(&self.show, &self.settings, canvas);
+        }
+        Ok(())
+    }
+
+    /// Returns an eye's image of the last frame, 0 left and 1 right, of the headset's while there is one: RGBA, rows from
+    /// the bottom; empty where nothing is shown. Waits for the GPU.
+    #[wasm_bindgen(js_name = readEye)]
+    pub fn read_eye(&self, eye: usize) -> Vec<u8> {
+        let frame = match &self.content {
+            Content::Empty => return Vec::new(),
+            Content::Scene(scene) => scene.last_frame(),
+            Content::Pictures(pictures) => &pictures.frame,
+        };
+        let target = frame.eye(Eye::BOTH[eye.min(1)]);
+        target.read_rgba8(0, [0, 0], target.size())
+    }
+
+    /// Returns the errors of GL since the last call, for tests.
+    #[wasm_bindgen(js_name = takeErrors)]
+    pub fn take_errors(&self) -> Option<String> {
+        self.gl.take_errors()
+    }
+}
+
+/// A phone behind the lenses of a Cardboard-compatible viewer.
+#[wasm_bindgen]
+impl Page {
+    /// Puts a screen of this size in metres into a viewer: `v1`, `v2`, or the URI of a viewer's QR code.
+    ///
+    /// # Errors
+    /// A sentence.
+    #[wasm_bindgen(js_name = phoneBegin)]
+    pub fn phone_begin(&mut self, viewer: &str, width: f32, height: f32) -> Result<(), JsError> {
+        self.phone = Some(Phone::new(&self.gl, viewer, [width, height], self.phone.as_ref())?);
+        Ok(())
+    }
+
+    /// Makes what is straight ahead of the head now the middle of the scene.
+    #[wasm_bindgen(js_name = phoneRecenter)]
+    pub fn phone_recenter(&mut self) {
+        if let Some(phone) = &mut self.phone {
+            phone.recenter();
+        }
+    }
+
+    /// Draws both eyes of a head through the lenses, on a canvas of this size; `head` is its orientation in the world (Y
+    /// up): x, y, z, w. `scale` is a share of the full resolution.
+    ///
+    /// # Errors
+    /// A sentence.
+    #[wasm_bindgen(js_name = phoneDraw)]
+    pub fn phone_draw(&mut self, width: u32, height: u32, head: &[f32], scale: f32) -> Result<(), JsError> {
+        let (Some(phone), Content::Scene(scene)) = (&mut self.phone, &mut self.content) else {
+            return Ok(());
+        };
+        phone.draw(&self.settings, &self.walker, scene, [width, height], head, scale).map_err(sentence)
+    }
+
+    /// Takes the phone out of the viewer.
+    #[wasm_bindgen(js_name = phoneEnd)]
+    pub fn phone_end(&mut self) {
+        self.phone = None;
+    }
+}
+
+/// A headset, by WebXR.
+#[wasm_bindgen]
+impl Page {
+    /// Returns near and far plane in metres, for the session.
+    #[wasm_bindgen(js_name = xrPlanes)]
+    pub fn xr_planes() -> Vec<f32> {
+        vec![xr::DEPTH.near, xr::DEPTH.far]
+    }
+
+    /// Renders both eyes into images of this size: `views` has 23 floats for each, the left one first: position,
+    /// orientation (x, y, z, w) and projection matrix. `text` hangs before the eyes, four lines at most. False when both
+    /// were rendered because neither can be synthesized from the other.
+    ///
+    /// # Errors
+    /// A sentence.
+    #[wasm_bindgen(js_name = xrFrame)]
+    pub fn xr_frame(&mut self, views: &[f32], width: u32, height: u32, text: &str) -> Result<bool, JsError> {
+        let size = [width, height];
+        let Some(pair) = xr::eyes(views, &self.settings, &self.walker, size) else {
+            return Err(JsError::new("The headset's views cannot be understood."));
+        };
+        let Content::Scene(scene) = &mut self.content else { return Ok(true) };
+        let SceneShow { prepared, method, headset, .. } = &mut **scene;
+        let headset = match headset {
+            Some(headset) => {
+                headset.resize(size).map_err(sentence)?;
+                headset
+            }
+            none => none.insert(Headset::new(&self.gl, size).map_err(sentence)?),
+        };
+        headset.draw(&self.gl, &self.settings, prepared, method.as_mut(), &pair, text).map_err(sentence)
+    }
+
+    /// Draws an eye's image and depth, 0 left and 1 right, into the framebuffer that is bound, whose viewport is set to
+    /// this.
+    #[wasm_bindgen(js_name = xrShow)]
+    pub fn xr_show(&self, eye: usize, x: u32, y: u32, width: u32, height: u32) {
+        if let Content::Scene(scene) = &self.content
+            && let Some(headset) = &scene.headset
+        {
+            headset.show(&self.show, Eye::BOTH[eye.min(1)], [x, y], [width, height]);
+        }
+    }
+
+    /// Drops the images of a session that has ended.
+    #[wasm_bindgen(js_name = xrEnd)]
+    pub fn xr_end(&mut self) {
+        if let Content::Scene(scene) = &mut self.content {
+            scene.headset = None;
+        }
+    }
+}
+
+/// The methods, measured against each other.
+#[wasm_bindgen]
+impl Page {
+    /// Prepares the scene's methods for images of this size, and returns who takes part as JSON: `{"contenders": [...],
+    /// "unsupported": [[name, reason]], "timerQueries"}`.
+    ///
+    /// # Errors
+    /// A sentence, for instance without memory.
+    #[wasm_bindgen(js_name = benchBegin)]
+    pub fn bench_begin(&mut self, width: u32, height: u32) -> Result<String, JsError> {
+        let Content::Scene(scene) = &mut self.content else { return Err(nothing_to_measure()) };
+        scene.bench = None;
+        let (bench, facts) = Bench::new(&self.gl, &self.settings, [width, height]).map_err(sentence)?;
+        scene.bench = Some(bench);
+        Ok(facts)
+    }
+
+    /// Renders stereo frames, and waits until the GPU has done the last one.
+    ///
+    /// # Errors
+    /// A sentence.
+    #[wasm_bindgen(js_name = benchFrames)]
+    pub fn bench_frames(&mut self, contender: usize, viewpoint: usize, count: u32) -> Result<(), JsError> {
+        for _ in 0..count {
+            self.bench_frame(contender, viewpoint)?;
+        }
+        if let Some(bench) = self.bench() {
+            bench.wait();
+        }
+        Ok(())
+    }
+
+    /// Begins timed frames.
+    #[wasm_bindgen(js_name = benchStartPasses)]
+    pub fn bench_start_passes(&mut self) {
+        self.gl.set_profiling(Profiling::Queries);
+    }
+
+    /// Renders one stereo frame with a timer query around each pass; results come with later calls.
+    ///
+    /// # Errors
+    /// A sentence.
+    #[wasm_bindgen(js_name = benchTimedFrame)]
+    pub fn bench_timed_frame(&mut self, contender: usize, viewpoint: usize) -> Result<(), JsError> {
+        self.bench_frame(contender, viewpoint)?.end_timed_frame();
+        Ok(())
+    }
+
+    /// Ends timed frames. Returns the GPU time of each pass in ms, the mean of the frames whose results have come, as JSON;
+    /// `{}` for none.
+    #[wasm_bindgen(js_name = benchTakePasses)]
+    pub fn bench_take_passes(&mut self) -> String {
+        self.gl.set_profiling(Profiling::Off);
+        let passes = self.bench().map(Bench::take_passes).unwrap_or_default();
+        serde_json::json!(passes).to_string()
+    }
+
+    /// Drops what was prepared.
+    #[wasm_bindgen(js_name = benchEnd)]
+    pub fn bench_end(&mut self) {
+        self.gl.set_profiling(Profiling::Off);
+        if let Content::Scene(scene) = &mut self.content {
+            scene.bench = None;
+        }
+    }
+}
+
+impl Page {
+    fn bench(&mut self) -> Option<&mut Bench> {
+        match &mut self.content {
+            Content::Scene(scene) => scene.bench.as_mut(),
+            _ => None,
+        }
+    }
+
+    fn bench_frame(&mut self, contender: usize, viewpoint: usize) -> Result<&mut Bench, JsError> {
+        let Content::Scene(scene) = &mut self.content else { return Err(nothing_to_measure()) };
+        let SceneShow { prepared, bench: Some(bench), .. } = &mut **scene else {
+            return Err(nothing_to_measure());
+        };
+        bench.frame(&self.settings, prepared, contender, viewpoint).map_err(sentence)?;
+        Ok(bench)
+    }
+}
+
+fn nothing_to_measure() -> JsError {
+    JsError::new("There is no scene to measure.")
+}
+
+fn parse_options(json: &str) -> Result<PictureOptions, JsError> {
+    serde_json::from_str(json).map_err(|error| sentence(format!("these settings cannot be used: {error}")))
+}

@@ -1,0 +1,125 @@
+//! Somebody's own pictures on the canvas, and the eyes that are made of them.
+
+use std::rc::Rc;
+
+use wasm_bindgen::JsError;
+use yoro::eyes::Eye;
+use yoro::synthesis::{self, Edges, Outputs, Source, Synthesis, SynthesisOptions};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, Texture};
+use yoro_render::stereo::StereoFrame;
+
+use super::error::sentence;
+use super::show::{Layout, Show};
+use crate::pictures::{PictureOptions, PicturePair};
+use crate::settings::{Display, Settings};
+
+/// Everything that is needed to show a pair of pictures.
+pub struct PictureShow {
+    pair: PicturePair,
+    options: PictureOptions,
+    pipeline: Box<dyn Synthesis>,
+    color: Texture,
+    depth: Texture,
+    /// The eyes.
+    pub frame: StereoFrame,
+}
+
+/// Compiles the synthesis of eyes with such silhouettes.
+fn pipeline(gl: &Rc<Context>, edges: Edges) -> Result<Box<dyn Synthesis>, GlError> {
+    let options = SynthesisOptions { edges, ..SynthesisOptions::default() };
+    synthesis::create(gl, &options, Outputs::default())
+}
+
+impl PictureShow {
+    /// Uploads the pictures and makes the eyes.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn new(
+        gl: &Rc<Context>,
+        show: &Show,
+        pair: PicturePair,
+        options: PictureOptions,
+        ipd: f32,
+    ) -> Result<PictureShow, JsError> {
+        pair.nearness(&options, ipd).map_err(sentence)?;
+        let texture = |format, filter| Texture::new(gl, pair.size, format, filter).map_err(sentence);
+        let mut pictures = PictureShow {
+            color: texture(Format::Rgba8, Filter::Linear)?,
+            depth: texture(Format::R32F, Filter::Nearest)?,
+            pipeline: pipeline(gl, options.edges).map_err(sentence)?,
+            frame: StereoFrame::new(gl, pair.size).map_err(sentence)?,
+            pair,
+            options,
+        };
+        pictures.color.upload(&pictures.pair.rgba);
+        pictures.synthesize(show, ipd)?;
+        Ok(pictures)
+    }
+
+    /// Makes the eyes with other options.
+    ///
+    /// # Errors
+    /// A sentence; the options stay as they are then.
+    pub fn set_options(
+        &mut self,
+        gl: &Rc<Context>,
+        show: &Show,
+        options: PictureOptions,
+        ipd: f32,
+    ) -> Result<(), JsError> {
+        if options.edges != self.options.edges {
+            self.pipeline = pipeline(gl, options.edges).map_err(sentence)?;
+        }
+        let before = std::mem::replace(&mut self.options, options);
+        let made = self.synthesize(show, ipd);
+        if made.is_err() {
+            self.options = PictureOptions { edges: options.edges, ..before };
+        }
+        made
+    }
+
+    /// Makes the eyes, `ipd` metres apart.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn synthesize(&mut self, show: &Show, ipd: f32) -> Result<(), JsError> {
+        let nearness = self.pair.nearness(&self.options, ipd).map_err(sentence)?;
+        let bytes: Vec<u8> = nearness.values.iter().flat_map(|v| v.to_ne_bytes()).collect();
+        self.depth.upload(&bytes);
+        let source = Source::new(self.color.raw(), self.depth.raw());
+        let targets = self.options.source.targets();
+        for &(eye, share) in targets {
+            let to = Destination::whole(self.frame.eye(eye));
+            self.pipeline
+                .synthesize(source, &nearness.warp(self.pair.size, eye, share), &to)
+                .map_err(sentence)?;
+        }
+        for eye in Eye::BOTH.into_iter().filter(|eye| targets.iter().all(|(target, _)| target != eye)) {
+            show.image(&self.color, &Destination::whole(self.frame.eye(eye)));
+        }
+        Ok(())
+    }
+
+    /// Returns the width and height of the pictures in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.pair.size
+    }
+
+    /// Shows the eyes whole on a cleared canvas, with black beside them.
+    pub fn draw(&self, show: &Show, settings: &Settings, canvas: [u32; 2]) {
+        // There is no truth to compare them with.
+        let display = match settings.display {
+            display if !display.needs_truth() => display,
+            _ if self.options.source.targets()[0].0 == Eye::Left => Display::Left,
+            _ => Display::Right,
+        };
+        let part = display.part(canvas);
+        let [width, height] = self.pair.size.map(|n| n as f32);
+        let factor = (part[0] as f32 / width).min(part[1] as f32 / height);
+        let size = [(width * factor) as u32, (height * factor) as u32].map(|n| n.max(1));
+        let origin = [part[0].saturating_sub(size[0]) / 2, part[1].saturating_sub(size[1]) / 2];
+        let layout = Layout { origin, size, step: part[0] };
+        show.eyes(display, &self.frame, settings.dominant, None, &layout);
+    }
+}

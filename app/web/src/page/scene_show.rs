@@ -1,0 +1,111 @@
+//! A scene on the canvas.
+
+use std::rc::Rc;
+
+use yoro::eyes::Pose;
+use yoro_gl::{Context, GlError, Texture};
+use yoro_render::stereo::{Method, StereoError, StereoFrame, StereoMethod};
+use yoro_render::{PreparedScene, Renderer};
+use yoro_scene::Scene;
+
+use super::bench::Bench;
+use super::xr::Headset;
+use crate::settings::Settings;
+
+/// Everything that is needed to show a scene.
+pub struct SceneShow {
+    pub prepared: PreparedScene,
+    pub method: Box<dyn StereoMethod>,
+    /// The images of the last frame on the canvas.
+    pub frame: StereoFrame,
+    truth: Option<Truth>,
+    /// The methods, while they are measured.
+    pub bench: Option<Bench>,
+    /// The images of a headset, while there is a session.
+    pub headset: Option<Headset>,
+}
+
+/// A real render of both eyes, to compare the method's with.
+struct Truth {
+    method: Box<dyn StereoMethod>,
+    frame: StereoFrame,
+}
+
+impl SceneShow {
+    /// Compiles renderer and method for a scene.
+    ///
+    /// # Errors
+    /// The GPU cannot do it.
+    pub fn new(gl: &Rc<Context>, settings: &Settings, scene: Scene) -> Result<SceneShow, GlError> {
+        Ok(SceneShow {
+            prepared: PreparedScene::new(gl, scene, &settings.render_settings())?,
+            method: settings.create(gl, settings.method)?,
+            frame: StereoFrame::new(gl, [1, 1])?,
+            truth: None,
+            bench: None,
+            headset: None,
+        })
+    }
+
+    /// Compiles renderer and method for other choices than those `before`.
+    ///
+    /// # Errors
+    /// The GPU cannot do it; renderer and method stay as they are then.
+    pub fn configure(
+        &mut self,
+        gl: &Rc<Context>,
+        settings: &Settings,
+        before: &Settings,
+    ) -> Result<(), GlError> {
+        (self.truth, self.headset) = (None, None);
+        let render = settings.render_settings();
+        let renderer = if before.render_settings() == render {
+            None
+        } else {
+            Some(Renderer::new(gl, &render, &self.prepared.scene)?)
+        };
+        self.method = settings.create(gl, settings.method)?;
+        if let Some(renderer) = renderer {
+            self.prepared.renderer = renderer;
+        }
+        Ok(())
+    }
+
+    /// Renders both eyes of a head, with images of `size` pixels, and the truth where the display needs it.
+    ///
+    /// # Errors
+    /// The method's.
+    pub fn render(
+        &mut self,
+        gl: &Rc<Context>,
+        settings: &Settings,
+        head: Pose,
+        size: [u32; 2],
+    ) -> Result<(), StereoError> {
+        let PreparedScene { renderer, scene, .. } = &mut self.prepared;
+        let pair = settings.pair(head, size);
+        self.method.render(renderer, scene, &pair, &mut self.frame)?;
+        if !settings.display.needs_truth() {
+            self.truth = None;
+            return Ok(());
+        }
+        let truth = match &mut self.truth {
+            Some(truth) => truth,
+            none => none.insert(Truth {
+                method: settings.create(gl, Method::Conventional)?,
+                frame: StereoFrame::new(gl, size)?,
+            }),
+        };
+        truth.method.render(renderer, scene, &pair, &mut truth.frame)
+    }
+
+    /// Returns the real image of the eye that is not dominant, where the display needs it.
+    pub fn real_image(&self, settings: &Settings) -> Option<&Texture> {
+        Some(self.truth.as_ref()?.frame.eye(settings.dominant.other()).color(0))
+    }
+
+    /// Returns the images of the last frame: the headset's while there is one.
+    pub fn last_frame(&self) -> &StereoFrame {
+        self.headset.as_ref().map_or(&self.frame, Headset::frame)
+    }
+}
