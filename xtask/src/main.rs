@@ -130,9 +130,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             return Ok(complete);
         }
         Task::CheckApk { file } => {
-            let report = android::check::check(&file)?;
-            show(&report.to_string());
-            return Ok(report.passed());
+            return android::check::check(&file);
         }
         Task::Package { targets } => drop(package::package(&targets)?),
         Task::Kit => drop(kit::kit()?),

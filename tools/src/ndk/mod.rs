@@ -1,5 +1,6 @@
 //! Building for Android without Google's SDK and NDK.
 
+pub mod sdk;
 pub mod stand_in;
 pub mod symbols;
 pub mod target;

@@ -12,7 +12,7 @@ use yoro_tools::ndk::target::{PAGE, TARGET_API};
 use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
 
 use super::cargo_apk;
-use super::check::check;
+use super::check;
 use super::keystore::Keystore;
 use super::loader::Loaders;
 use super::pack::pack;
@@ -39,7 +39,9 @@ pub struct Options {
 pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let surroundings = Surroundings::here();
-    let _loaders = Loaders::place(&options.openxr_loaders, &root().join("android/runtime-libs"))?;
+    let loaders = options.openxr_loaders.iter().map(|file| Ok((check::loader_abi(file)?, file.as_path())));
+    let loaders = loaders.collect::<anyhow::Result<Vec<_>>>()?;
+    let _loaders = Loaders::place(&loaders, &root().join("android/runtime-libs"))?;
     let (toolchain, against) = Toolchain::choose(&surroundings);
     eprintln!("building with {toolchain}");
     if surroundings.names_google() && !against.is_empty() {
@@ -85,15 +87,14 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let apk = target.join("apk").join(format!("{NAME}{}.apk", if options.release { "" } else { "-debug" }));
     publish(&built, &apk)?;
 
-    let report = check(&apk)?;
-    print!("{report}");
+    let passed = check::check(&apk)?;
     if options.release && keystore.debug {
         println!(
             "signed with this machine's debug key, because CARGO_APK_RELEASE_KEYSTORE is not set: good for \
              `adb install`, not for a store"
         );
     }
-    if !report.passed() {
+    if !passed {
         bail!("{} is not as it should be: see FAIL above", apk.display());
     }
     println!("{} in {:.0} s", apk.display(), start.elapsed().as_secs_f64());

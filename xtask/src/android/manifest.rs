@@ -1,15 +1,7 @@
 //! What the manifest says beyond what cargo-apk can express.
 
 use anyhow::Context as _;
-
-/// Libraries of OpenXR runtimes that lie on a system partition. From target API level 31 on Android refuses to load such
-/// a library for an application that does not name it. Not required: each is on one maker's headsets only.
-pub const NATIVE_LIBRARIES: [&str; 2] = ["libopenxr.google.so", "libopenxr_forwardloader.oculus.so"];
-
-/// Properties of the application, by name and value: Android XR starts an OpenXR application in a space of its own only if
-/// it asks for that.
-pub const PROPERTIES: [(&str, &str); 1] =
-    [("android.window.PROPERTY_XR_ACTIVITY_START_MODE", "XR_ACTIVITY_START_MODE_FULL_SPACE_UNMANAGED")];
+use yoro_tools::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
 
 /// The manifest that cargo-apk has written, with [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application.
 ///

@@ -6,10 +6,9 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use super::check::Archive;
 use super::keystore::Keystore;
 use super::manifest;
-use super::toolchain::build_tool;
+use yoro_tools::ndk::sdk::build_tool;
 
 /// Packs, aligns and signs an APK of what cargo-apk has left in `folder`: its manifest, which is completed, and the
 /// libraries that are in its own APK `name`. The new APK, beside the others.
@@ -58,18 +57,17 @@ pub fn pack(
 
 /// The libraries in an APK, by their paths in it.
 fn libraries(apk: &Path) -> anyhow::Result<Vec<String>> {
-    let archive = fs::read(apk).map_err(Into::into).and_then(|bytes| Archive::read(&bytes));
-    let archive = archive.with_context(|| format!("{}, cargo-apk's APK, cannot be read", apk.display()))?;
-    Ok(archive.libraries().map(|(name, _)| name.to_owned()).collect())
+    let listing = run(Command::new(build_tool("aapt")?).arg("list").arg(apk))?;
+    Ok(listing.lines().filter(|name| name.starts_with("lib/")).map(str::to_owned).collect())
 }
 
-/// Runs a tool; what it says is shown only if it fails.
-fn run(command: &mut Command) -> anyhow::Result<()> {
+/// Runs a tool, and returns what it prints.
+fn run(command: &mut Command) -> anyhow::Result<String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command.output().with_context(|| format!("{program} cannot be started"))?;
     if !output.status.success() {
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
         bail!("{program} failed: {} {}", text(&output.stderr), text(&output.stdout));
     }
-    Ok(())
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

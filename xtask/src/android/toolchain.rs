@@ -1,12 +1,11 @@
 //! What the APK is built with: Google's SDK and NDK with rustup's targets, or what stands in for them.
 
-use std::env;
 use std::fmt;
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{anyhow, bail};
-use yoro_tools::apt::{self, Need, find_program};
+use anyhow::anyhow;
+use yoro_tools::apt::{self, Need};
+use yoro_tools::ndk::sdk;
 use yoro_tools::ndk::stand_in::FRAMEWORK;
 use yoro_tools::ndk::target::{ARCHITECTURES, MIN_API, TARGET_API};
 use yoro_tools::rust::{Rust, source};
@@ -39,12 +38,11 @@ pub enum Toolchain {
 impl Surroundings {
     /// Of this process.
     pub fn here() -> Self {
-        let folder = |name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
         let rust = Rust::own();
         let has = |triple: &&str| rust.as_ref().is_some_and(|rust| rust.has_target(triple));
         Self {
-            android_home: folder("ANDROID_HOME"),
-            ndk_root: folder("ANDROID_NDK_ROOT"),
+            android_home: sdk::folder("ANDROID_HOME"),
+            ndk_root: sdk::folder("ANDROID_NDK_ROOT"),
             targets: ARCHITECTURES.map(|architecture| architecture.triple).into_iter().filter(has).collect(),
         }
     }
@@ -52,11 +50,6 @@ impl Surroundings {
     /// The user wants Google's way.
     pub fn names_google(&self) -> bool {
         self.android_home.is_some() || self.ndk_root.is_some()
-    }
-
-    /// The user's NDK.
-    pub fn ndk(&self) -> Option<&Path> {
-        self.ndk_root.as_deref()
     }
 }
 
@@ -116,7 +109,7 @@ fn google(sdk: &Path, ndk: &Path) -> Vec<Need> {
         Need::file("NDK", &ndk.join("source.properties"), "sdkmanager --install \"ndk;27.2.12479018\"", &[]),
     ];
     for tool in ["aapt", "zipalign", "apksigner"] {
-        let path = build_tools(sdk).unwrap_or_else(|| sdk.join("build-tools")).join(tool);
+        let path = sdk::build_tools(sdk).unwrap_or_else(|| sdk.join("build-tools")).join(tool);
         needs.push(Need::file(tool, &path, "sdkmanager \"build-tools;34.0.0\"", &[]));
     }
     needs.push(Need::program("keytool", &["default-jre-headless"]));
@@ -140,27 +133,6 @@ fn stand_in() -> Vec<Need> {
         ),
         source(Rust::with_source().as_ref()),
     ]
-}
-
-/// The newest build tools of an SDK, as cargo-apk chooses them.
-fn build_tools(sdk: &Path) -> Option<PathBuf> {
-    let entries = fs::read_dir(sdk.join("build-tools")).ok()?;
-    let names = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok());
-    let newest = names.filter(|name| name.starts_with(|c: char| c.is_ascii_digit())).max()?;
-    Some(sdk.join("build-tools").join(newest))
-}
-
-/// One of the SDK's tools: of the user's SDK, or of the system.
-///
-/// # Errors
-/// When it is nowhere; the remedy is in it.
-pub fn build_tool(name: &str) -> anyhow::Result<PathBuf> {
-    let sdk = Surroundings::here().android_home;
-    let own = sdk.and_then(|sdk| build_tools(&sdk)).map(|tools| tools.join(name));
-    match own.filter(|tool| tool.is_file()).or_else(|| find_program(name)) {
-        Some(tool) => Ok(tool),
-        None => bail!("{name} is missing: `cargo xtask doctor` says how to get it"),
-    }
 }
 
 /// Installs what the way lacks, after asking unless `yes`.
@@ -211,6 +183,8 @@ pub fn doctor() -> anyhow::Result<(String, bool)> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

@@ -1,18 +1,15 @@
 //! An AAR with prefab: the way in which Gradle hands native libraries to CMake and ndk-build.
 
 use std::fs;
-use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use yoro_tools::folders::{root, target_folder};
 use yoro_tools::ndk::target::{ARCHITECTURES, Architecture};
-use zip::ZipWriter;
-use zip::write::SimpleFileOptions;
 
-use super::{VERSION, build};
+use super::{VERSION, build, write};
 
-use crate::android::{LIBRARY_API, library_cargo};
+use crate::android::{LIBRARY_API, check, library_cargo};
 
 /// Soname and file: Android's packages know no versions of libraries.
 const LIBRARY: &str = "libyoro.so";
@@ -44,12 +41,15 @@ pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
 
 /// Writes an AAR of these files.
 pub fn pack(files: &[(String, Vec<u8>)], packed: &Path) -> anyhow::Result<()> {
-    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, content) in files {
-        zip.start_file(name.as_str(), SimpleFileOptions::default())?;
-        zip.write_all(content)?;
+    let content = packed.with_extension("files");
+    if content.exists() {
+        fs::remove_dir_all(&content).with_context(|| format!("{} cannot be removed", content.display()))?;
     }
-    yoro_tools::packages::write(packed, zip.finish()?.into_inner())?;
+    for (name, bytes) in files {
+        write(&content.join(name), bytes)?;
+    }
+    check::pack(packed, &content)?;
+    fs::remove_dir_all(&content).ok();
     println!("{}", packed.display());
     Ok(())
 }

@@ -117,9 +117,9 @@ fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn write(to: &Path, text: &str) -> anyhow::Result<()> {
+fn write(to: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
     make_parent(to)?;
-    fs::write(to, text).with_context(|| format!("{} cannot be written", to.display()))
+    fs::write(to, content).with_context(|| format!("{} cannot be written", to.display()))
 }
 
 fn make_parent(path: &Path) -> anyhow::Result<()> {

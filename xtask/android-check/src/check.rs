@@ -1,21 +1,15 @@
 //! Is an APK as Android wants it? The file itself is asked, not what it was built from.
 
-mod archive;
-mod library;
-mod manifest;
-mod public;
-mod report;
-mod signature;
-
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
+use yoro_tools::ndk::sdk;
 
-use super::toolchain::Surroundings;
-pub use archive::Archive;
-use public::Public;
-use report::Report;
+use crate::archive::Archive;
+use crate::public::Public;
+use crate::report::Report;
+use crate::{library, manifest, signature};
 
 /// A release with its built-in scenes is smaller than this, in bytes.
 const SIZE_LIMIT: u64 = 8_000_000;
@@ -43,7 +37,7 @@ pub fn check(path: &Path) -> anyhow::Result<Report> {
     manifest.check(&archive, &mut report);
     signature::check(path, &mut report)?;
     archive.check(manifest.unpacks_libraries(), &mut report);
-    let public = Public::of(Surroundings::here().ndk());
+    let public = Public::of(sdk::folder("ANDROID_NDK_ROOT").as_deref());
     for (name, content) in archive.libraries() {
         library::check(name, content, &public, &mut report)?;
     }
@@ -62,7 +56,7 @@ mod tests {
         assert!(refusal().contains("some.apk cannot be read"));
         fs::write(&path, "no archive").unwrap();
         assert!(refusal().contains("some.apk is damaged or no APK"));
-        let files = archive::tests::archive(&["a.txt"], zip::CompressionMethod::Stored, 1);
+        let files = crate::archive::tests::archive(&["a.txt"], zip::CompressionMethod::Stored, 1);
         fs::write(&path, files).unwrap();
         assert!(refusal().contains("without AndroidManifest.xml"));
     }

@@ -5,10 +5,9 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::ndk::target::{ARCHITECTURES, MIN_API, TARGET_API};
+use yoro_tools::ndk::sdk;
+use yoro_tools::ndk::target::{ARCHITECTURES, MIN_API, NATIVE_LIBRARIES, PROPERTIES, TARGET_API};
 
-use super::super::manifest::{NATIVE_LIBRARIES, PROPERTIES};
-use super::super::toolchain;
 use super::archive::Archive;
 use super::report::Report;
 
@@ -77,7 +76,7 @@ impl Manifest {
     /// # Errors
     /// When aapt is missing, or cannot read the manifest.
     pub fn read(apk: &Path) -> anyhow::Result<Self> {
-        let aapt = toolchain::build_tool("aapt")?;
+        let aapt = sdk::build_tool("aapt")?;
         let dump = |what: &str, file: Option<&str>| {
             let output = Command::new(&aapt).args(["dump", what]).arg(apk).args(file).output();
             let output = output.with_context(|| format!("{} cannot be started", aapt.display()))?;

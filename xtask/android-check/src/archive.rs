@@ -1,11 +1,15 @@
 //! The archive: which files are in it, and where they lie.
 
 use std::collections::BTreeMap;
-use std::io::{Cursor, Read as _};
+use std::fs;
+use std::io::{Cursor, Read as _, Write as _};
+use std::path::Path;
 
 use anyhow::Context as _;
 use yoro_tools::ndk::target::{ARCHITECTURES, PAGE};
-use zip::{CompressionMethod, ZipArchive};
+use yoro_tools::packages;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::report::{Report, some};
 
@@ -92,13 +96,35 @@ impl Archive {
     }
 }
 
+/// Packs the files of a folder, sorted by name, so that the same files make the same archive.
+///
+/// # Errors
+/// When a file cannot be read or written.
+pub fn pack(folder: &Path, packed: &Path) -> anyhow::Result<()> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    add(&mut zip, folder, "")?;
+    packages::write(packed, zip.finish()?.into_inner())
+}
+
+fn add(zip: &mut ZipWriter<Cursor<Vec<u8>>>, folder: &Path, prefix: &str) -> anyhow::Result<()> {
+    let unreadable = |path: &Path| format!("{} cannot be read", path.display());
+    let entries = fs::read_dir(folder).with_context(|| unreadable(folder))?;
+    let mut paths: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    for path in paths {
+        let name = format!("{prefix}{}", path.file_name().unwrap_or_default().to_string_lossy());
+        if path.is_dir() {
+            add(zip, &path, &format!("{name}/"))?;
+        } else {
+            zip.start_file(name, SimpleFileOptions::default())?;
+            zip.write_all(&fs::read(&path).with_context(|| unreadable(&path))?)?;
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 pub mod tests {
-    use std::io::Write as _;
-
-    use zip::ZipWriter;
-    use zip::write::SimpleFileOptions;
-
     use super::*;
 
     /// An archive of files with this content; uncompressed ones lie at multiples of `alignment`.
@@ -167,6 +193,22 @@ pub mod tests {
         assert_eq!(problems(&archive(&LIBRARIES[..1], CompressionMethod::Deflated, 1)), ["architectures"]);
         let more = [LIBRARIES[0], "lib/armeabi-v7a/libyoro.so", LIBRARIES[1]];
         assert_eq!(problems(&archive(&more, CompressionMethod::Deflated, 1)), ["architectures"]);
+    }
+
+    #[test]
+    fn a_folder_is_packed_with_its_paths() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["jni/x86_64/lib.so", "AndroidManifest.xml"] {
+            let path = folder.path().join("content").join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, name).unwrap();
+        }
+        let packed = folder.path().join("packed.aar");
+        pack(&folder.path().join("content"), &packed).unwrap();
+        let mut zip = ZipArchive::new(fs::File::open(&packed).unwrap()).unwrap();
+        let names: Vec<String> =
+            (0..2).map(|i| zip.by_index(i).unwrap().name().unwrap().into_owned()).collect();
+        assert_eq!(names, ["AndroidManifest.xml", "jni/x86_64/lib.so"]);
     }
 
     #[test]

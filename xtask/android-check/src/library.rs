@@ -6,9 +6,9 @@ use goblin::elf::program_header::{PF_W, PF_X, PT_GNU_RELRO, PT_LOAD, PT_TLS};
 use goblin::elf::section_header::SHN_UNDEF;
 use goblin::elf::sym::STB_WEAK;
 use goblin::elf::{Elf, Sym, dynamic, header};
-use yoro_tools::ndk::target::{ARCHITECTURES, Architecture, MIN_API, PAGE};
+use yoro_tools::ndk::target::{ARCHITECTURES, Architecture, LOADER, MIN_API, PAGE};
 
-use super::super::loader;
+use super::loader;
 use super::public::Public;
 use super::report::{Report, some};
 
@@ -41,7 +41,7 @@ pub fn check(name: &str, content: &[u8], public: &Public, report: &mut Report) -
     let fits =
         elf.is_64 && elf.header.e_type == header::ET_DYN && elf.header.e_machine == architecture.machine;
     let problem = (!fits).then(|| format!("should be a shared library for {folder}"));
-    if file == loader::FILE {
+    if file == LOADER {
         // Somebody else's, built by other rules.
         let problem = problem.or_else(|| (!loader::exports(&elf)).then(|| "is no OpenXR loader".to_owned()));
         report.row(format!("{folder} loader"), format!("{file}, {size:.2} MB, API layers"), problem);
@@ -314,19 +314,20 @@ mod tests {
     }
 
     #[test]
-    fn a_loader_is_there_until_the_apk_is_built() {
+    fn a_loader_is_known_by_what_it_exports_and_its_processor() {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::create_dir(folder.path().join("arm64-v8a")).unwrap();
         let file = folder.path().join("loader.so");
-        std::fs::write(&file, loader()).unwrap();
-        let copy = folder.path().join("arm64-v8a").join(loader::FILE);
-        let placed = loader::Loaders::place(std::slice::from_ref(&file), folder.path()).unwrap();
-        assert!(copy.is_file());
-        drop(placed);
-        assert!(!copy.exists());
-        let twice = [file.clone(), file];
-        assert!(loader::Loaders::place(&twice, folder.path()).is_err());
-        assert!(!copy.exists());
+        let abi = |content: &[u8]| {
+            std::fs::write(&file, content).unwrap();
+            loader::abi(&file).map_err(|error| error.to_string())
+        };
+        assert_eq!(abi(&loader()), Ok("arm64-v8a"));
+        assert!(abi(b"text").unwrap_err().contains("is no library"));
+        assert!(abi(&good().bytes()).unwrap_err().contains("no OpenXR loader"));
+        let other = Made { machine: 40, exported: vec![loader::ENTRY], ..good() };
+        assert!(abi(&other.bytes()).unwrap_err().contains("none of the APK's"));
+        std::fs::remove_file(&file).unwrap();
+        assert!(loader::abi(&file).unwrap_err().to_string().contains("loader.so cannot be read"));
     }
 
     #[test]

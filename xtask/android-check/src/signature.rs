@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::Context as _;
+use yoro_tools::ndk::sdk;
 
-use super::super::toolchain;
 use super::report::Report;
 
 /// Adds a row for the signature.
@@ -13,7 +13,7 @@ use super::report::Report;
 /// # Errors
 /// When apksigner cannot be started.
 pub fn check(apk: &Path, report: &mut Report) -> anyhow::Result<()> {
-    let output = Command::new(toolchain::build_tool("apksigner")?)
+    let output = Command::new(sdk::build_tool("apksigner")?)
         // Asked for the oldest Android that knows v2: for later ones apksigner is content with v3 alone.
         .args(["verify", "--verbose", "--print-certs", "--min-sdk-version", "24"])
         .arg(apk)

@@ -1,0 +1,40 @@
+//! OpenXR loaders of somebody else's that an APK carries.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context as _, bail};
+use goblin::elf::{Elf, header};
+use yoro_tools::ndk::target::ARCHITECTURES;
+
+/// What makes a library a loader.
+pub const ENTRY: &str = "xrGetInstanceProcAddr";
+
+/// Returns the processor that a loader is for, by its folder in an APK.
+///
+/// # Errors
+/// When it is no loader for a processor that the APK has libraries for.
+pub fn abi(file: &Path) -> anyhow::Result<&'static str> {
+    let content =
+        fs::read(file).with_context(|| format!("the OpenXR loader {} cannot be read", file.display()))?;
+    let advice = "take libopenxr_loader.so of Khronos' openxr_loader_for_android, jni/arm64-v8a in its AAR";
+    let elf = Elf::parse(&content).with_context(|| format!("{} is no library: {advice}", file.display()))?;
+    let architecture = ARCHITECTURES.iter().find(|architecture| {
+        elf.is_64 && elf.header.e_type == header::ET_DYN && elf.header.e_machine == architecture.machine
+    });
+    match architecture {
+        Some(architecture) if exports(&elf) => Ok(architecture.abi),
+        Some(_) => bail!("{} is no OpenXR loader, since it exports no {ENTRY}: {advice}", file.display()),
+        None => bail!("{} is for none of the APK's processors: {advice}", file.display()),
+    }
+}
+
+/// True if a library exports what a loader must.
+pub fn exports(elf: &Elf<'_>) -> bool {
+    let mut names = elf
+        .dynsyms
+        .iter()
+        .filter(|symbol| symbol.st_shndx != 0)
+        .filter_map(|symbol| elf.dynstrtab.get_at(symbol.st_name));
+    names.any(|name| name == ENTRY)
+}
