@@ -24,18 +24,12 @@ fn level_size(size: [u32; 2], level: usize) -> [u32; 2] {
 
 impl BloomTargets {
     /// Makes targets, which are fitted to a view before they are drawn.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`].
     pub fn new(gl: &Rc<Context>, format: Format) -> Result<BloomTargets, GlError> {
         let level = || RenderTarget::new(gl, [1, 1], &[(format, Filter::Linear)], None);
         Ok(BloomTargets { levels: [level()?, level()?, level()?, level()?, level()?] })
     }
 
     /// Fits the targets to a view of `size` pixels.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`].
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
         self.levels.iter_mut().enumerate().try_for_each(|(i, level)| level.resize(level_size(size, i)))
     }
@@ -59,9 +53,6 @@ pub struct BloomPass {
 
 impl BloomPass {
     /// Compiles the programs; `defines` are those of `include/hdr.glsl`, and `DISPLAY_REFERRED`.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub fn new(gl: &Rc<Context>, defines: &[(&'static str, String)]) -> Result<BloomPass, GlError> {
         let down = ShaderSource::Screen("render/bloom_down.frag");
         let mut first = defines.to_vec();

@@ -22,9 +22,6 @@ pub struct Common {
 
 impl Common {
     /// Draws the shadow map and compiles the programs of transparent surfaces.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses a program or a target.
     pub(super) fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -41,9 +38,6 @@ impl Common {
     }
 
     /// Refuses another scene than the renderer was made for.
-    ///
-    /// # Errors
-    /// [`GlError::Unsupported`] with the scene's name.
     pub fn check_scene(&self, scene: &GpuScene) -> Result<(), GlError> {
         if scene.id == self.scene_id {
             return Ok(());

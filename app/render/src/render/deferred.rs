@@ -130,9 +130,6 @@ pub struct DeferredRenderer {
 
 impl DeferredRenderer {
     /// Compiles what single views need; [`DeferredRenderer::prepare`] does the rest.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses a program or a target.
     pub(crate) fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -162,9 +159,6 @@ impl DeferredRenderer {
     }
 
     /// Compiles what views of these kinds need; nothing is done for what is there already.
-    ///
-    /// # Errors
-    /// As [`yoro_gl::Program::new`].
     pub(crate) fn prepare(
         &mut self,
         scene: &GpuScene,

@@ -44,9 +44,6 @@ pub struct ForwardRenderer {
 
 impl ForwardRenderer {
     /// Compiles what single views need; [`ForwardRenderer::prepare`] does the rest.
-    ///
-    /// # Errors
-    /// As [`Program::new`]; [`GlError::Unsupported`] when the driver has not as many samples.
     pub(crate) fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -100,9 +97,6 @@ impl ForwardRenderer {
     }
 
     /// Compiles what views of a layout need; nothing is done if that is there already.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub(crate) fn prepare(&mut self, scene: &GpuScene, layout: Layout) -> Result<(), GlError> {
         let pass = &mut self.geometry[layout.index()];
         if pass.is_none() {
@@ -241,9 +235,6 @@ impl ForwardRenderer {
 
     /// Renders what lies in a slice (near and far plane in metres) and the sky behind it: the beginning of
     /// [`ForwardRenderer::render_near`], without bloom and outlines.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`] when the targets have to change their size.
     pub(crate) fn render_far(
         &self,
         targets: &mut ForwardTargets,
@@ -259,9 +250,6 @@ impl ForwardRenderer {
 
     /// Renders what lies in a slice over the part of another view whose lower left corner is given, and transparent surfaces
     /// over both. With `depth` the targets have that of opaque surfaces afterwards.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`] when the targets have to change their size.
     pub(crate) fn render_near(
         &self,
         targets: &mut ForwardTargets,
@@ -288,9 +276,6 @@ impl ForwardRenderer {
 
     /// Renders both eyes at once: all of the scene, side by side in targets of such a layout. With `depth` these have that
     /// of opaque surfaces afterwards. [`ForwardRenderer::develop`] ends each eye.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`] when the targets have to change their size.
     pub(crate) fn render_both(
         &self,
         targets: &mut ForwardTargets,

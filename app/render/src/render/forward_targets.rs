@@ -45,10 +45,6 @@ pub struct ForwardTargets {
 
 impl ForwardTargets {
     /// Makes targets, which are fitted to the views that are rendered.
-    ///
-    /// # Errors
-    /// As [`MultisampleTarget::new`] and [`RenderTarget::new`]; [`GlError::Unsupported`] when the driver has not as many
-    /// samples as the settings say.
     pub(crate) fn new(
         gl: &Rc<Context>,
         layout: Layout,
@@ -89,9 +85,6 @@ impl ForwardTargets {
 
     /// Fits the targets to views of `size` pixels; nothing is done when they fit already. With `is_developed` there is room
     /// for bloom and outlines. With `in_tile` no sample is needed once they are drawn, so that all may stay in tiles.
-    ///
-    /// # Errors
-    /// As [`ForwardTargets::new`].
     pub fn fit(&mut self, size: [u32; 2], is_developed: bool, in_tile: bool) -> Result<(), GlError> {
         let whole = self.layout.texture_size(size);
         self.resolved.resize(whole)?;
@@ -116,9 +109,6 @@ impl ForwardTargets {
     }
 
     /// Fills the resolved colour left of the columns `[first, end]` with the first of them, and right of them with the last.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`].
     pub fn repeat_columns(&mut self, [first, end]: [u32; 2]) -> Result<(), GlError> {
         let [width, height] = self.resolved.size();
         if self.column.is_none() {

@@ -115,9 +115,6 @@ pub struct GBuffer {
 
 impl GBuffer {
     /// Makes a g-buffer, which is fitted to its views before they are drawn.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`]; [`GlError::Unsupported`] when the driver cannot do the layout.
     pub fn new(gl: &Rc<Context>, layout: Layout) -> Result<GBuffer, GlError> {
         let convention = DepthConvention::Standard;
         let target = target(gl, layout, [1, 1], convention)?;
@@ -125,9 +122,6 @@ impl GBuffer {
     }
 
     /// Fits the textures to views of another size or convention; nothing is done when they fit already.
-    ///
-    /// # Errors
-    /// As [`GBuffer::new`].
     pub fn fit(&mut self, size: [u32; 2], convention: DepthConvention) -> Result<(), GlError> {
         if convention != self.convention {
             self.target = target(&self.gl, self.layout, size, convention)?;

@@ -26,18 +26,12 @@ pub struct GeometryPass {
 
 impl GeometryPass {
     /// Into the g-buffer: compiles the variants that the scene's materials need.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub fn deferred(gl: &Rc<Context>, scene: &GpuScene, layout: Layout) -> Result<GeometryPass, GlError> {
         GeometryPass::new(gl, scene, layout, "render/geometry.frag", &scene.style_defines(), false)
     }
 
     /// Lit at once: compiles the variants that the scene's materials need, with the defines of `render/forward.frag`.
     /// With `multisample`, what is cut out covers samples by its alpha.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub fn forward(
         gl: &Rc<Context>,
         scene: &GpuScene,

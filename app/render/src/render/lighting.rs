@@ -47,9 +47,6 @@ pub fn line_width(view: &View) -> i32 {
 
 impl LightingPass {
     /// Compiles the variant for the scene's style and light, and views of a role.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub fn new(
         gl: &Rc<Context>,
         scene: &GpuScene,

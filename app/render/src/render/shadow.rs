@@ -26,9 +26,6 @@ pub struct ShadowMap {
 
 impl ShadowMap {
     /// Draws the shadow map of a scene, `size` texels wide.
-    ///
-    /// # Errors
-    /// As [`Program::new`] and [`RenderTarget::new`].
     pub fn new(gl: &Rc<Context>, scene: &GpuScene, size: u32) -> Result<ShadowMap, GlError> {
         let size = size.min(gl.capabilities().max_texture_size);
         let target = RenderTarget::shadow_map(gl, [size, size], Format::Depth16)?;

@@ -26,18 +26,12 @@ pub struct SsaoTargets {
 
 impl SsaoTargets {
     /// Makes targets that are smaller by `scale` than the views they are fitted to.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`].
     pub fn new(gl: &Rc<Context>, scale: u32) -> Result<SsaoTargets, GlError> {
         let target = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None);
         Ok(SsaoTargets { raw: target()?, blurred: target()?, scale })
     }
 
     /// Fits the targets to a view of `size` pixels.
-    ///
-    /// # Errors
-    /// As [`RenderTarget::new`].
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
         let size = size.map(|n| n.div_ceil(self.scale));
         self.raw.resize(size)?;
@@ -63,9 +57,6 @@ pub struct SsaoPass {
 
 impl SsaoPass {
     /// Occlusion by what is within `radius` metres, at 1 / `scale` of the resolution (1 or 2), in views of a role.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub fn new(gl: &Rc<Context>, radius: f32, scale: u32, role: RoleKind) -> Result<SsaoPass, GlError> {
         let defines =
             [("SAMPLES", SAMPLES.to_string()), ("STRENGTH", "3.2".to_owned()), ("SCALE", scale.to_string())];

@@ -17,9 +17,6 @@ pub struct TonemapPass {
 
 impl TonemapPass {
     /// Compiles the program; `defines` are those of `include/hdr.glsl`, and `BLOOM`.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub fn new(gl: &Rc<Context>, defines: &[(&'static str, String)]) -> Result<TonemapPass, GlError> {
         let program = Program::new(gl, ShaderSource::Screen("render/tonemap.frag"), defines)?;
         Ok(TonemapPass { gl: gl.clone(), program })

@@ -88,9 +88,6 @@ fn compile(
 
 impl TransparentPass {
     /// Compiles the variants that the scene's blended materials need.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub fn new(
         gl: &Rc<Context>,
         scene: &GpuScene,
@@ -103,9 +100,6 @@ impl TransparentPass {
     }
 
     /// Compiles the variants that read depth from layers; nothing is done when they are there.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
     pub fn prepare_layered(&mut self, scene: &GpuScene, settings: &RenderSettings) -> Result<(), GlError> {
         if scene.has_transparent() && self.programs[1].iter().all(Option::is_none) {
             self.programs[1] = compile(&self.gl, scene, settings, true)?;

@@ -19,9 +19,6 @@ pub struct Conventional<R: ViewRenderer> {
 
 impl<R: ViewRenderer> Conventional<R> {
     /// Makes the targets.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses a target or a program.
     pub fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,

@@ -33,9 +33,6 @@ pub struct Hybrid<T> {
 
 impl<T: FieldTargets> Hybrid<T> {
     /// Makes the targets.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses a target or a program.
     pub fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,

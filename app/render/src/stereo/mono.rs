@@ -19,9 +19,6 @@ pub struct Mono<R: ViewRenderer> {
 
 impl<R: ViewRenderer> Mono<R> {
     /// Makes the targets.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses a target or a program.
     pub fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,

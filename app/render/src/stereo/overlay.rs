@@ -4,13 +4,14 @@ use std::rc::Rc;
 
 use super::finish::EyeImage;
 use super::frame::Frame;
-use super::near_field::Composite;
 use crate::render::{
     DeferredRenderer, DepthImage, ForwardRenderer, Fxaa, RenderSettings, Selection, ViewImages, ViewRenderer,
     ViewRequest,
 };
-use yoro::eyes::{Eye, SynthesisViews};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro::eyes::{DepthConvention, SynthesisViews};
+use yoro_gl::{
+    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
+};
 
 /// Anti-aliasing of the rendered eye before synthesis.
 pub(super) struct Smooth {
@@ -44,34 +45,32 @@ impl Over {
     }
 }
 
+/// An eye to draw over.
+#[derive(Clone, Copy)]
+pub(super) enum EyeSource<'a> {
+    /// The rendered eye: what its targets hold, or that after anti-aliasing, as it was synthesized from.
+    Rendered(Option<&'a Smooth>),
+    /// The synthesized eye, with float depth if anything is drawn or somebody wants it.
+    Synthesized(&'a RenderTarget),
+}
+
 /// The way a kind of renderer draws over both eyes after synthesis.
 pub(super) trait Overlay: Sized {
     /// The kind of renderer.
     type Renderer: ViewRenderer;
 
-    /// For frames with near objects or without.
+    /// Makes what frames need, with near objects or without.
     fn new(gl: &Rc<Context>, settings: &RenderSettings, near: bool) -> Result<Self, GlError>;
 
-    /// Draws over the rendered eye, and returns its part without the guard band. With `smooth` that holds the eye's colour
-    /// after anti-aliasing, as it was synthesized from.
-    fn over_rendered<'a>(
+    /// Draws over one eye, and returns its part without the guard band. `targets` are those of the rendered eye, which comes
+    /// first: what they hold may be gone after the synthesized one.
+    fn draw<'a>(
         &'a mut self,
         frame: &Frame<Self::Renderer>,
         views: &SynthesisViews,
         over: &Over,
         targets: &'a <Self::Renderer as ViewRenderer>::Targets,
-        smooth: Option<&'a Smooth>,
-    ) -> Result<EyeImage<'a>, GlError>;
-
-    /// Draws over the synthesized eye, which has float depth if anything is drawn or somebody wants it. What the targets of
-    /// the rendered eye hold is gone afterwards.
-    fn over_synthesized<'a>(
-        &'a mut self,
-        frame: &Frame<Self::Renderer>,
-        views: &SynthesisViews,
-        over: &Over,
-        targets: &'a <Self::Renderer as ViewRenderer>::Targets,
-        image: &'a RenderTarget,
+        eye: EyeSource<'a>,
     ) -> Result<EyeImage<'a>, GlError>;
 }
 
@@ -84,39 +83,8 @@ pub(super) struct DeferredOverlay {
 struct NearLayer {
     targets: <DeferredRenderer as ViewRenderer>::Targets,
     composite: Composite,
-    /// By [`Eye::index`].
+    /// By [`yoro::eyes::Eye::index`].
     layers: [RenderTarget; 2],
-}
-
-impl DeferredOverlay {
-    /// Draws over one eye: the part of `color` at `origin`.
-    fn over<'a>(
-        &'a mut self,
-        frame: &Frame<DeferredRenderer>,
-        view: &yoro::eyes::View,
-        over: &Over,
-        eye: Eye,
-        mut image: EyeImage<'a>,
-    ) -> Result<EyeImage<'a>, GlError> {
-        let Frame { renderer, scene, pair, .. } = frame;
-        if let (Some(near), Some(selection), Some(depth)) = (&mut self.near, over.near, image.depth) {
-            let request = ViewRequest { selection, ..ViewRequest::default() };
-            renderer.render(&mut near.targets, scene, view, &request)?;
-            let layer = &mut near.layers[eye.index()];
-            layer.resize(view.size)?;
-            let far = (image.color.color(0), depth.texture);
-            near.composite.run(far, &near.targets, pair.depth.convention, layer);
-            image.color = layer;
-            image.depth = Some(DepthImage { texture: layer.depth(), ..depth });
-        }
-        if let Some(depth) = image.depth.filter(|_| over.transparent) {
-            // Depth is read in the shader, so only the colour of the layer may be attached. Nothing reads the guard band
-            // from here on.
-            let onto = Destination { origin: image.origin, size: pair.size, ..image.color.color_only() };
-            renderer.draw_transparent(&onto, depth, scene, &pair.view(eye));
-        }
-        Ok(image)
-    }
 }
 
 impl Overlay for DeferredOverlay {
@@ -132,32 +100,79 @@ impl Overlay for DeferredOverlay {
         Ok(DeferredOverlay { near: near.transpose()? })
     }
 
-    fn over_rendered<'a>(
+    fn draw<'a>(
         &'a mut self,
         frame: &Frame<DeferredRenderer>,
         views: &SynthesisViews,
         over: &Over,
         targets: &'a <DeferredRenderer as ViewRenderer>::Targets,
-        smooth: Option<&'a Smooth>,
+        eye: EyeSource<'a>,
     ) -> Result<EyeImage<'a>, GlError> {
-        let (color, origin) = (smooth.map_or(targets.color(), |smooth| &smooth.image), views.dominant_crop);
-        let depth = Some(DepthImage { origin, ..DepthImage::whole(targets.depth()) });
-        let image = EyeImage { color, origin, depth };
-        self.over(frame, &views.source, over, frame.pair.dominant, image)
+        let Frame { renderer, scene, pair, .. } = frame;
+        let (eye, view, mut color, mut depth, origin) = match eye {
+            EyeSource::Rendered(smooth) => {
+                let color = smooth.map_or(targets.color(), |smooth| &smooth.image);
+                (pair.dominant, &views.source, color, Some(targets.depth()), views.dominant_crop)
+            }
+            EyeSource::Synthesized(image) => {
+                let eye = pair.dominant.other();
+                let has_depth = over.is_any() || frame.wants_depth(eye);
+                (eye, &views.target, image, has_depth.then(|| image.depth()), [0, 0])
+            }
+        };
+        if let (Some(near), Some(selection), Some(far)) = (&mut self.near, over.near, depth) {
+            let request = ViewRequest { selection, ..ViewRequest::default() };
+            renderer.render(&mut near.targets, scene, view, &request)?;
+            let layer = &mut near.layers[eye.index()];
+            layer.resize(view.size)?;
+            near.composite.run((color.color(0), far), &near.targets, pair.depth.convention, layer);
+            color = &near.layers[eye.index()];
+            depth = Some(color.depth());
+        }
+        let depth = depth.map(|depth| DepthImage { origin, ..DepthImage::whole(depth) });
+        if let Some(depth) = depth.filter(|_| over.transparent) {
+            // Depth is read in the shader, so only the colour of the layer may be attached. Nothing reads the guard band
+            // from here on.
+            let onto = Destination { origin, size: pair.size, ..color.color_only() };
+            renderer.draw_transparent(&onto, depth, scene, &pair.view(eye));
+        }
+        Ok(EyeImage { color, origin, depth })
+    }
+}
+
+/// Composites a near layer over a far one by depth.
+struct Composite {
+    gl: Rc<Context>,
+    program: Program,
+}
+
+impl Composite {
+    fn new(gl: &Rc<Context>) -> Result<Composite, GlError> {
+        let program = Program::new(gl, ShaderSource::Screen("stereo/composite.frag"), &[])?;
+        Ok(Composite { gl: gl.clone(), program })
     }
 
-    fn over_synthesized<'a>(
-        &'a mut self,
-        frame: &Frame<DeferredRenderer>,
-        views: &SynthesisViews,
-        over: &Over,
-        _targets: &'a <DeferredRenderer as ViewRenderer>::Targets,
-        image: &'a RenderTarget,
-    ) -> Result<EyeImage<'a>, GlError> {
-        let eye = frame.pair.dominant.other();
-        let has_depth = over.is_any() || frame.wants_depth(eye);
-        let depth = has_depth.then(|| DepthImage::whole(image.depth()));
-        self.over(frame, &views.target, over, eye, EyeImage { color: image, origin: [0, 0], depth })
+    /// Writes colour and depth of whichever layer is nearer. All images have the size of `to`.
+    fn run(
+        &self,
+        (far_color, far_depth): (&Texture, &Texture),
+        near: &impl ViewImages,
+        convention: DepthConvention,
+        to: &RenderTarget,
+    ) {
+        self.gl.pass("composite", || {
+            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+            to.bind();
+            self.program
+                .bind()
+                .texture("far_color", 0, far_color.raw())
+                .texture("far_depth", 1, far_depth.raw())
+                .texture("near_color", 2, near.color().color(0).raw())
+                .texture("near_depth", 3, near.depth().raw())
+                .set("reversed", convention == DepthConvention::Reversed);
+            self.gl.draw_screen();
+            self.gl.set_raster_state(&RasterState::SCREEN);
+        });
     }
 }
 
@@ -171,42 +186,40 @@ impl Overlay for ForwardOverlay {
         Ok(ForwardOverlay)
     }
 
-    fn over_rendered<'a>(
+    fn draw<'a>(
         &'a mut self,
         frame: &Frame<ForwardRenderer>,
         views: &SynthesisViews,
         over: &Over,
         targets: &'a <ForwardRenderer as ViewRenderer>::Targets,
-        smooth: Option<&'a Smooth>,
+        eye: EyeSource<'a>,
     ) -> Result<EyeImage<'a>, GlError> {
-        let wants_depth = frame.wants_depth(frame.pair.dominant);
-        if over.is_any() {
-            let depth = over.near.is_some() && wants_depth;
-            frame.renderer.resume_samples(targets, frame.scene, &views.source, over.near, depth);
-            // The eye is rendered once more, so that it is smoothed again.
-            if let Some(smooth) = smooth {
-                smooth.run(targets.color());
+        let Frame { renderer, scene, pair, .. } = frame;
+        match eye {
+            EyeSource::Rendered(smooth) => {
+                let wants_depth = frame.wants_depth(pair.dominant);
+                if over.is_any() {
+                    let depth = over.near.is_some() && wants_depth;
+                    renderer.resume_samples(targets, scene, &views.source, over.near, depth);
+                    // The eye is rendered once more, so that it is smoothed again.
+                    if let Some(smooth) = smooth {
+                        smooth.run(targets.color());
+                    }
+                }
+                let color = smooth.map_or(targets.color(), |smooth| &smooth.image);
+                let origin = views.dominant_crop;
+                let depth = wants_depth.then(|| DepthImage { origin, ..DepthImage::whole(targets.depth()) });
+                Ok(EyeImage { color, origin, depth })
+            }
+            EyeSource::Synthesized(image) => {
+                let wants_depth = frame.wants_depth(pair.dominant.other());
+                if over.is_any() {
+                    let depth = over.near.is_some() && wants_depth;
+                    renderer.resume_samples_with(targets, image, scene, &views.target, over.near, depth);
+                }
+                let depth = wants_depth.then(|| DepthImage::whole(image.depth()));
+                Ok(EyeImage { color: image, origin: [0, 0], depth })
             }
         }
-        let (color, origin) = (smooth.map_or(targets.color(), |smooth| &smooth.image), views.dominant_crop);
-        let depth = wants_depth.then(|| DepthImage { origin, ..DepthImage::whole(targets.depth()) });
-        Ok(EyeImage { color, origin, depth })
-    }
-
-    fn over_synthesized<'a>(
-        &'a mut self,
-        frame: &Frame<ForwardRenderer>,
-        views: &SynthesisViews,
-        over: &Over,
-        targets: &'a <ForwardRenderer as ViewRenderer>::Targets,
-        image: &'a RenderTarget,
-    ) -> Result<EyeImage<'a>, GlError> {
-        let wants_depth = frame.wants_depth(frame.pair.dominant.other());
-        if over.is_any() {
-            let depth = over.near.is_some() && wants_depth;
-            frame.renderer.resume_samples_with(targets, image, frame.scene, &views.target, over.near, depth);
-        }
-        let depth = wants_depth.then(|| DepthImage::whole(image.depth()));
-        Ok(EyeImage { color: image, origin: [0, 0], depth })
     }
 }

@@ -40,9 +40,6 @@ pub struct ShadingReprojection {
 
 impl ShadingReprojection {
     /// Makes the targets.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses a target or a program.
     pub fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,

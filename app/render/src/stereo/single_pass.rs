@@ -42,9 +42,6 @@ pub(super) trait PairTargets: Sized {
 
 impl<T: PairTargets> SinglePass<T> {
     /// Single-pass stereo by instancing, with clip distances where the driver has them.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver refuses a target or a program.
     pub fn instanced(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -55,9 +52,6 @@ impl<T: PairTargets> SinglePass<T> {
     }
 
     /// Single-pass stereo by multiview.
-    ///
-    /// # Errors
-    /// [`GlError::Unsupported`] without GL_OVR_multiview2; [`GlError`] when the driver refuses a target or a program.
     pub fn multiview(
         gl: &Rc<Context>,
         settings: &RenderSettings,

@@ -8,10 +8,10 @@ use super::finish::Finish;
 use super::frame::{Frame, FrameMethod};
 use super::guard_band::AutoGuardBand;
 use super::method::{GuardBandUse, StereoError};
-use super::near_field::{DepthMap, NearFraction};
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
+use super::near_fraction::{DepthMap, NearFraction};
 use super::options::{AntiAliasing, PipelineOptions, StereoOptions};
-use super::overlay::{Over, Overlay, Smooth};
+use super::overlay::{EyeSource, Over, Overlay, Smooth};
 use crate::render::{GpuScene, KeptSamples, PixelDepth, RenderSettings, Selection, ViewImages, ViewRequest};
 use yoro::eyes::{GuardBand, SynthesisViews};
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
@@ -71,9 +71,6 @@ impl Synthesizers {
 
 impl<R: StereoRenderer> Synthesized<R> {
     /// Compiles the pipeline and makes the targets.
-    ///
-    /// # Errors
-    /// [`GlError`] when the driver cannot run the pipeline.
     pub fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -211,12 +208,12 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
         image.resize(pair.size)?;
         synthesis.synthesize(source, &views.warp, &Destination::whole(image))?;
         self.measure(frame, &views);
-        let (targets, smooth) = (&self.targets, self.smooth.as_ref());
-        let rendered = self.overlay.over_rendered(frame, &views, &over, targets, smooth)?;
-        self.finish.run(&rendered, frame.to(dominant));
         let image = &self.synthesizers.get(over.is_any() || frame.wants_depth(other))?.image;
-        let synthesized = self.overlay.over_synthesized(frame, &views, &over, targets, image)?;
-        self.finish.run(&synthesized, frame.to(other));
+        let eyes = [EyeSource::Rendered(self.smooth.as_ref()), EyeSource::Synthesized(image)];
+        for (eye, source) in [dominant, other].into_iter().zip(eyes) {
+            let drawn = self.overlay.draw(frame, &views, &over, &self.targets, source)?;
+            self.finish.run(&drawn, frame.to(eye));
+        }
         Ok(())
     }
 

@@ -4,8 +4,7 @@ use std::rc::Rc;
 
 use glam::{Quat, Vec3};
 
-use super::near_field::{DepthMap, NearFraction};
-use super::near_field_policy::NearFieldPolicy;
+use super::near_fraction::{DepthMap, NearFraction};
 use super::*;
 use crate::fixture::quad;
 use crate::render::{

@@ -1,49 +1,12 @@
-//! What the hybrid near field needs: layers composited by depth, and how much of a view is too near.
+//! How much of a view is too near.
 
 use std::rc::Rc;
 
 use glam::IVec2;
 
 use super::readback::Readback;
-use crate::render::ViewImages;
 use yoro::eyes::{DepthConvention, DepthRange};
-use yoro_gl::{Context, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
-
-/// Composites a near layer over a far one by depth.
-pub(super) struct Composite {
-    gl: Rc<Context>,
-    program: Program,
-}
-
-impl Composite {
-    pub(super) fn new(gl: &Rc<Context>) -> Result<Composite, GlError> {
-        let program = Program::new(gl, ShaderSource::Screen("stereo/composite.frag"), &[])?;
-        Ok(Composite { gl: gl.clone(), program })
-    }
-
-    /// Writes colour and depth of whichever layer is nearer. All images have the size of `to`.
-    pub(super) fn run(
-        &self,
-        (far_color, far_depth): (&Texture, &Texture),
-        near: &impl ViewImages,
-        convention: DepthConvention,
-        to: &RenderTarget,
-    ) {
-        self.gl.pass("composite", || {
-            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
-            to.bind();
-            self.program
-                .bind()
-                .texture("far_color", 0, far_color.raw())
-                .texture("far_depth", 1, far_depth.raw())
-                .texture("near_color", 2, near.color().color(0).raw())
-                .texture("near_depth", 3, near.depth().raw())
-                .set("reversed", convention == DepthConvention::Reversed);
-            self.gl.draw_screen();
-            self.gl.set_raster_state(&RasterState::SCREEN);
-        });
-    }
-}
+use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 
 /// Texels per side of the image that [`NearFraction`] reads back; `stereo/near_fraction.frag`.
 const GRID: u32 = 16;
