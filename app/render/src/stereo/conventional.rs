@@ -1,13 +1,10 @@
 //! Both eyes rendered, one after the other: the ground truth.
 
-use std::rc::Rc;
-
 use super::finish::{EyeImage, Finish};
-use super::frame::{Frame, FrameMethod};
+use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
-use super::options::StereoOptions;
-use crate::render::{RenderSettings, ViewImages, ViewRenderer};
-use yoro_gl::{Context, GlError, Texture};
+use crate::render::{ViewImages, ViewRenderer};
+use yoro_gl::{GlError, Texture};
 
 /// Two full renders.
 pub struct Conventional<R: ViewRenderer> {
@@ -19,13 +16,9 @@ pub struct Conventional<R: ViewRenderer> {
 
 impl<R: ViewRenderer> Conventional<R> {
     /// Makes the targets.
-    pub fn new(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<Conventional<R>, GlError> {
-        let finish = Finish::new(gl, settings, options)?;
-        Ok(Conventional { targets: R::targets(gl, settings)?, keeps_depth: false, finish })
+    pub(super) fn new(setup: &Setup) -> Result<Conventional<R>, GlError> {
+        let (targets, finish) = (R::targets(setup.gl, setup.settings)?, Finish::new(setup)?);
+        Ok(Conventional { targets, keeps_depth: false, finish })
     }
 
     /// With [`Conventional::depth`] after each frame.

@@ -2,9 +2,10 @@
 
 use std::rc::Rc;
 
+use super::frame::Setup;
 use super::method::EyeTarget;
-use super::options::{AntiAliasing, StereoOptions};
-use crate::render::{DepthImage, Fxaa, RenderSettings, ViewImages};
+use super::options::AntiAliasing;
+use crate::render::{DepthImage, Fxaa, ViewImages};
 use yoro_gl::{Context, Destination, GlError, RenderTarget};
 
 /// The image of an eye, ready but for anti-aliasing.
@@ -33,23 +34,15 @@ pub(super) struct Finish {
 
 impl Finish {
     /// With anti-aliasing unless the options say that there is none.
-    pub(super) fn new(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<Finish, GlError> {
-        Finish::smoothing(gl, settings, options.anti_aliasing != AntiAliasing::Off)
+    pub(super) fn new(setup: &Setup) -> Result<Finish, GlError> {
+        Finish::smoothing(setup, setup.options.anti_aliasing != AntiAliasing::Off)
     }
 
     /// With anti-aliasing or without. Images whose edges are smooth already, by several samples in each pixel, are always
     /// copied.
-    pub(super) fn smoothing(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        smooth: bool,
-    ) -> Result<Finish, GlError> {
-        let fxaa = smooth && settings.samples() == 1;
-        Ok(Finish { gl: gl.clone(), fxaa: fxaa.then(|| Fxaa::new(gl)).transpose()? })
+    pub(super) fn smoothing(setup: &Setup, smooth: bool) -> Result<Finish, GlError> {
+        let fxaa = smooth && setup.settings.samples() == 1;
+        Ok(Finish { gl: setup.gl.clone(), fxaa: fxaa.then(|| Fxaa::new(setup.gl)).transpose()? })
     }
 
     /// Hands an eye's colour and depth to where they go.

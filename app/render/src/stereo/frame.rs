@@ -1,9 +1,20 @@
 //! A frame as methods see it: the renderer is of the kind that the method was made for.
 
+use std::rc::Rc;
+
 use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
-use crate::render::{GpuScene, Renderer, ViewRenderer};
+use super::options::StereoOptions;
+use crate::render::{GpuScene, RenderSettings, Renderer, ViewRenderer};
 use yoro::eyes::{Eye, EyePair};
-use yoro_gl::GlError;
+use yoro_gl::{Context, GlError};
+
+/// What a method is made for.
+#[derive(Clone, Copy)]
+pub(super) struct Setup<'a> {
+    pub(super) gl: &'a Rc<Context>,
+    pub(super) settings: &'a RenderSettings,
+    pub(super) options: &'a StereoOptions,
+}
 
 /// What a frame is rendered from, and where it goes.
 pub(super) struct Frame<'a, R> {
@@ -26,7 +37,7 @@ impl<R> Frame<'_, R> {
 }
 
 /// A stereo method for one kind of renderer.
-pub(super) trait FrameMethod {
+pub(super) trait FrameMethod: Sized {
     /// The kind of renderer.
     type Renderer: ViewRenderer;
 

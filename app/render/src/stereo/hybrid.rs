@@ -9,12 +9,11 @@ use std::rc::Rc;
 use glam::IVec2;
 
 use super::finish::{EyeImage, Finish};
-use super::frame::{Frame, FrameMethod};
+use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
-use super::options::StereoOptions;
 use crate::render::{
     DeferredRenderer, DepthImage, FinishTargets, ForwardRenderer, ForwardTargets, GBuffer, GpuScene, Layout,
-    LightTargets, RenderSettings, Role, RoleKind, ViewRenderer, depth_test,
+    LightTargets, Role, RoleKind, ViewRenderer, depth_test,
 };
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Pose, View};
 use yoro_gl::{Context, Destination, GlError, Program, RasterState, RenderTarget, ShaderSource};
@@ -33,13 +32,9 @@ pub struct Hybrid<T> {
 
 impl<T: FieldTargets> Hybrid<T> {
     /// Makes the targets.
-    pub fn new(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<Hybrid<T>, GlError> {
-        let finish = Finish::new(gl, settings, options)?;
-        Ok(Hybrid { threshold: options.split_disparity, targets: T::new(gl, settings)?, finish })
+    pub(super) fn new(setup: &Setup) -> Result<Hybrid<T>, GlError> {
+        let threshold = setup.options.split_disparity;
+        Ok(Hybrid { threshold, targets: T::new(setup)?, finish: Finish::new(setup)? })
     }
 }
 
@@ -122,7 +117,7 @@ pub(super) trait FieldTargets: Sized {
     /// The kind of renderer.
     type Renderer: ViewRenderer;
 
-    fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<Self, GlError>;
+    fn new(setup: &Setup) -> Result<Self, GlError>;
 
     /// As [`FrameMethod::compile`].
     fn compile(_renderer: &mut Self::Renderer, _scene: &GpuScene) -> Result<(), GlError> {
@@ -195,7 +190,7 @@ impl DeferredFields {
 impl FieldTargets for DeferredFields {
     type Renderer = DeferredRenderer;
 
-    fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<DeferredFields, GlError> {
+    fn new(&Setup { gl, settings, .. }: &Setup) -> Result<DeferredFields, GlError> {
         let g_buffer = || GBuffer::new(gl, Layout::Single);
         Ok(DeferredFields {
             gl: gl.clone(),
@@ -269,8 +264,8 @@ pub(super) struct ForwardFields {
 impl FieldTargets for ForwardFields {
     type Renderer = ForwardRenderer;
 
-    fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Result<ForwardFields, GlError> {
-        let targets = || ForwardRenderer::targets(gl, settings);
+    fn new(setup: &Setup) -> Result<ForwardFields, GlError> {
+        let targets = || ForwardRenderer::targets(setup.gl, setup.settings);
         Ok(ForwardFields { eye: targets()?, far: targets()? })
     }
 

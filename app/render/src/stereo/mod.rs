@@ -23,10 +23,11 @@ mod tests;
 
 use std::rc::Rc;
 
-use crate::render::{DeferredRenderer, ForwardRenderer, RenderSettings, RendererKind, ViewRenderer};
+use crate::render::{DeferredRenderer, ForwardRenderer, Layout, RenderSettings, RendererKind, ViewRenderer};
 use yoro_gl::{Context, GlError};
 
 use conventional::Conventional;
+use frame::Setup;
 use hybrid::{DeferredFields, FieldTargets, ForwardFields, Hybrid};
 pub use method::{DepthTarget, EyeTarget, GuardBandUse, StereoError, StereoFrame, StereoMethod};
 use mono::Mono;
@@ -72,26 +73,22 @@ pub fn create(
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
     settings.supports(method, gl.capabilities())?;
+    let setup = &Setup { gl, settings, options };
     match settings.renderer {
-        RendererKind::Deferred => create_for::<DeferredRenderer>(gl, method, settings, options),
-        RendererKind::Forward => create_for::<ForwardRenderer>(gl, method, settings, options),
+        RendererKind::Deferred => create_for::<DeferredRenderer>(method, setup),
+        RendererKind::Forward => create_for::<ForwardRenderer>(method, setup),
     }
 }
 
-fn create_for<R: StereoRenderer>(
-    gl: &Rc<Context>,
-    method: Method,
-    settings: &RenderSettings,
-    options: &StereoOptions,
-) -> Result<Box<dyn StereoMethod>, GlError> {
+fn create_for<R: StereoRenderer>(method: Method, setup: &Setup) -> Result<Box<dyn StereoMethod>, GlError> {
     Ok(match method {
-        Method::Conventional => Box::new(Conventional::<R>::new(gl, settings, options)?),
-        Method::Instanced => Box::new(SinglePass::<R::Pair>::instanced(gl, settings, options)?),
+        Method::Conventional => Box::new(Conventional::<R>::new(setup)?),
+        Method::Instanced => Box::new(SinglePass::<R::Pair>::instanced(setup)?),
         // The deferred renderer alone has these two: `RenderSettings::supports`.
-        Method::Multiview => Box::new(SinglePass::<DeferredPair>::multiview(gl, settings, options)?),
-        Method::ShadingReprojection => Box::new(ShadingReprojection::new(gl, settings, options)?),
-        Method::Hybrid => Box::new(Hybrid::<R::Fields>::new(gl, settings, options)?),
-        Method::Mono => Box::new(Mono::<R>::new(gl, settings, options)?),
-        Method::Yoro => Box::new(Synthesized::<R>::new(gl, settings, options)?),
+        Method::Multiview => Box::new(SinglePass::<DeferredPair>::new(setup, Layout::Layered)?),
+        Method::ShadingReprojection => Box::new(ShadingReprojection::new(setup)?),
+        Method::Hybrid => Box::new(Hybrid::<R::Fields>::new(setup)?),
+        Method::Mono => Box::new(Mono::<R>::new(setup)?),
+        Method::Yoro => Box::new(Synthesized::<R>::new(setup)?),
     })
 }

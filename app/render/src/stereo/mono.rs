@@ -1,14 +1,11 @@
 //! The dominant eye's view shown to both eyes: what doing nothing costs and looks like.
 
-use std::rc::Rc;
-
 use super::finish::Finish;
-use super::frame::{Frame, FrameMethod};
+use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
-use super::options::StereoOptions;
-use crate::render::{DepthImage, RenderSettings, ViewImages, ViewRenderer};
+use crate::render::{DepthImage, ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, EyePair, GuardBand, View};
-use yoro_gl::{Context, GlError};
+use yoro_gl::GlError;
 
 /// One render from where the dominant eye is, in the union of both frusta; each eye gets its own part of it, which is
 /// the same image where the frusta are the same.
@@ -19,12 +16,8 @@ pub struct Mono<R: ViewRenderer> {
 
 impl<R: ViewRenderer> Mono<R> {
     /// Makes the targets.
-    pub fn new(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<Mono<R>, GlError> {
-        Ok(Mono { targets: R::targets(gl, settings)?, finish: Finish::new(gl, settings, options)? })
+    pub(super) fn new(setup: &Setup) -> Result<Mono<R>, GlError> {
+        Ok(Mono { targets: R::targets(setup.gl, setup.settings)?, finish: Finish::new(setup)? })
     }
 }
 

@@ -3,10 +3,9 @@
 use std::rc::Rc;
 
 use super::finish::EyeImage;
-use super::frame::Frame;
+use super::frame::{Frame, Setup};
 use crate::render::{
-    DeferredRenderer, DepthImage, ForwardRenderer, Fxaa, RenderSettings, Selection, ViewImages, ViewRenderer,
-    ViewRequest,
+    DeferredRenderer, DepthImage, ForwardRenderer, Fxaa, Selection, ViewImages, ViewRenderer, ViewRequest,
 };
 use yoro::eyes::{DepthConvention, SynthesisViews};
 use yoro_gl::{
@@ -59,8 +58,7 @@ pub(super) trait Overlay: Sized {
     /// The kind of renderer.
     type Renderer: ViewRenderer;
 
-    /// Makes what frames need, with near objects or without.
-    fn new(gl: &Rc<Context>, settings: &RenderSettings, near: bool) -> Result<Self, GlError>;
+    fn new(setup: &Setup) -> Result<Self, GlError>;
 
     /// Draws over one eye, and returns its part without the guard band. `targets` are those of the rendered eye, which comes
     /// first: what they hold may be gone after the synthesized one.
@@ -90,10 +88,10 @@ struct NearLayer {
 impl Overlay for DeferredOverlay {
     type Renderer = DeferredRenderer;
 
-    fn new(gl: &Rc<Context>, settings: &RenderSettings, near: bool) -> Result<DeferredOverlay, GlError> {
+    fn new(&Setup { gl, settings, options }: &Setup) -> Result<DeferredOverlay, GlError> {
         let formats = [(Format::Rgba8, Filter::Linear)];
         let layer = || RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F));
-        let near = near.then(|| -> Result<_, GlError> {
+        let near = options.near_field.map(|_| -> Result<_, GlError> {
             let (targets, composite) = (DeferredRenderer::targets(gl, settings)?, Composite::new(gl)?);
             Ok(NearLayer { targets, composite, layers: [layer()?, layer()?] })
         });
@@ -182,7 +180,7 @@ pub(super) struct ForwardOverlay;
 impl Overlay for ForwardOverlay {
     type Renderer = ForwardRenderer;
 
-    fn new(_: &Rc<Context>, _: &RenderSettings, _near: bool) -> Result<ForwardOverlay, GlError> {
+    fn new(_: &Setup) -> Result<ForwardOverlay, GlError> {
         Ok(ForwardOverlay)
     }
 

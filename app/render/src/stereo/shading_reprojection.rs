@@ -9,12 +9,11 @@ use std::rc::Rc;
 use glam::Vec2;
 
 use super::finish::{EyeImage, Finish};
-use super::frame::{Frame, FrameMethod};
+use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
-use super::options::StereoOptions;
 use crate::render::{
-    DeferredRenderer, DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, RenderSettings,
-    Reprojection, Role, RoleKind,
+    DeferredRenderer, DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, Reprojection, Role,
+    RoleKind,
 };
 use yoro::eyes::{DisparityLaw, EyePair, GuardBand};
 use yoro_gl::{
@@ -40,11 +39,8 @@ pub struct ShadingReprojection {
 
 impl ShadingReprojection {
     /// Makes the targets.
-    pub fn new(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<ShadingReprojection, GlError> {
+    pub(super) fn new(setup: &Setup) -> Result<ShadingReprojection, GlError> {
+        let Setup { gl, settings, .. } = *setup;
         let g_buffer = || GBuffer::new(gl, Layout::Single);
         let light = || LightTargets::new(gl, settings);
         Ok(ShadingReprojection {
@@ -54,7 +50,7 @@ impl ShadingReprojection {
             image: FinishTargets::new(gl, settings)?,
             disocclusion: RenderTarget::new(gl, [1, 1], &[(Format::Rg8, Filter::Linear)], None)?,
             find: Program::new(gl, ShaderSource::Screen("stereo/disocclusion.frag"), &[])?,
-            finish: Finish::new(gl, settings, options)?,
+            finish: Finish::new(setup)?,
         })
     }
 

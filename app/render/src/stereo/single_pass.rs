@@ -1,18 +1,15 @@
 //! Both eyes in one set of draw calls: instancing into double-wide targets, or GL_OVR_multiview2 into a layered g-buffer.
 //! What comes after the surfaces runs for each eye.
 
-use std::rc::Rc;
-
 use super::finish::{EyeImage, Finish};
-use super::frame::{Frame, FrameMethod};
+use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
-use super::options::{Method, StereoOptions};
 use crate::render::{
     DeferredRenderer, DepthImage, FinishTargets, ForwardRenderer, ForwardTargets, GBuffer, GpuScene, Layout,
-    LightTargets, RenderSettings, Role, Seam, ViewImages, ViewRenderer,
+    LightTargets, Role, Seam, ViewImages, ViewRenderer,
 };
 use yoro::eyes::{Eye, View};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_gl::{Destination, Filter, Format, GlError, RenderTarget};
 
 /// One culling and one draw call per visible range of triangles, for both eyes.
 ///
@@ -28,7 +25,7 @@ pub(super) trait PairTargets: Sized {
     /// The kind of renderer.
     type Renderer: ViewRenderer;
 
-    fn new(gl: &Rc<Context>, layout: Layout, settings: &RenderSettings) -> Result<Self, GlError>;
+    fn new(setup: &Setup, layout: Layout) -> Result<Self, GlError>;
 
     /// As [`FrameMethod::compile`].
     fn compile(&self, renderer: &mut Self::Renderer, scene: &GpuScene) -> Result<(), GlError>;
@@ -42,33 +39,15 @@ pub(super) trait PairTargets: Sized {
 
 impl<T: PairTargets> SinglePass<T> {
     /// Single-pass stereo by instancing, with clip distances where the driver has them.
-    pub fn instanced(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<SinglePass<T>, GlError> {
-        let seam = if gl.capabilities().clip_distances { Seam::ClipDistance } else { Seam::Discard };
-        SinglePass::new(gl, Layout::DoubleWide(seam), settings, options)
+    pub(super) fn instanced(setup: &Setup) -> Result<SinglePass<T>, GlError> {
+        let has_clip_distances = setup.gl.capabilities().clip_distances;
+        let seam = if has_clip_distances { Seam::ClipDistance } else { Seam::Discard };
+        SinglePass::new(setup, Layout::DoubleWide(seam))
     }
 
-    /// Single-pass stereo by multiview.
-    pub fn multiview(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<SinglePass<T>, GlError> {
-        settings.supports(Method::Multiview, gl.capabilities())?;
-        SinglePass::new(gl, Layout::Layered, settings, options)
-    }
-
-    pub(super) fn new(
-        gl: &Rc<Context>,
-        layout: Layout,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<SinglePass<T>, GlError> {
-        let finish = Finish::new(gl, settings, options)?;
-        Ok(SinglePass { targets: T::new(gl, layout, settings)?, finish })
+    /// Makes the targets: [`Layout::Layered`] is single-pass stereo by multiview.
+    pub(super) fn new(setup: &Setup, layout: Layout) -> Result<SinglePass<T>, GlError> {
+        Ok(SinglePass { targets: T::new(setup, layout)?, finish: Finish::new(setup)? })
     }
 }
 
@@ -101,7 +80,7 @@ pub(super) struct DeferredPair {
 impl PairTargets for DeferredPair {
     type Renderer = DeferredRenderer;
 
-    fn new(gl: &Rc<Context>, layout: Layout, settings: &RenderSettings) -> Result<DeferredPair, GlError> {
+    fn new(&Setup { gl, settings, .. }: &Setup, layout: Layout) -> Result<DeferredPair, GlError> {
         Ok(DeferredPair {
             layout,
             g_buffer: GBuffer::new(gl, layout)?,
@@ -156,7 +135,7 @@ pub(super) struct ForwardPair {
 impl PairTargets for ForwardPair {
     type Renderer = ForwardRenderer;
 
-    fn new(gl: &Rc<Context>, layout: Layout, settings: &RenderSettings) -> Result<ForwardPair, GlError> {
+    fn new(&Setup { gl, settings, .. }: &Setup, layout: Layout) -> Result<ForwardPair, GlError> {
         let formats = [(Format::Rgba8, Filter::Linear)];
         let alone = (settings.samples() == 1).then(|| RenderTarget::new(gl, [1, 1], &formats, None));
         let targets = ForwardTargets::new(gl, layout, settings)?;

@@ -5,14 +5,14 @@ use std::rc::Rc;
 use super::StereoRenderer;
 use super::conventional::Conventional;
 use super::finish::Finish;
-use super::frame::{Frame, FrameMethod};
+use super::frame::{Frame, FrameMethod, Setup};
 use super::guard_band::AutoGuardBand;
 use super::method::{GuardBandUse, StereoError};
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::{DepthMap, NearFraction};
 use super::options::{AntiAliasing, PipelineOptions, StereoOptions};
 use super::overlay::{EyeSource, Over, Overlay, Smooth};
-use crate::render::{GpuScene, KeptSamples, PixelDepth, RenderSettings, Selection, ViewImages, ViewRequest};
+use crate::render::{GpuScene, KeptSamples, PixelDepth, Selection, ViewImages, ViewRequest};
 use yoro::eyes::{GuardBand, SynthesisViews};
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
@@ -71,11 +71,8 @@ impl Synthesizers {
 
 impl<R: StereoRenderer> Synthesized<R> {
     /// Compiles the pipeline and makes the targets.
-    pub fn new(
-        gl: &Rc<Context>,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<Synthesized<R>, GlError> {
+    pub(super) fn new(setup: &Setup) -> Result<Synthesized<R>, GlError> {
+        let Setup { gl, settings, options } = *setup;
         let edges = options.edges(settings, gl.capabilities())?;
         let reads_samples = edges == Edges::Multisample && gl.capabilities().multisample_textures;
         let switch = options.policy.map(|policy| -> Result<_, GlError> {
@@ -83,25 +80,24 @@ impl<R: StereoRenderer> Synthesized<R> {
                 policy,
                 mode: FrameMode::default(),
                 fraction: NearFraction::new(gl, reads_samples)?,
-                conventional: Conventional::new(gl, settings, options)?.keeping_depth(),
+                conventional: Conventional::new(setup)?.keeping_depth(),
             })
         });
         let has_near = options.near_field.is_some();
         let is_smooth = options.anti_aliasing == AntiAliasing::Before && settings.samples() == 1;
         let is_auto = matches!(options.guard_band, GuardBand::Auto(_));
-        let options = *options;
         let mut synthesizers =
             Synthesizers { gl: gl.clone(), options: options.synthesis, edges, made: [None, None] };
         synthesizers.get(has_near)?;
         Ok(Synthesized {
-            options,
+            options: *options,
             edges,
             targets: R::targets(gl, settings)?,
             synthesizers,
             auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
             smooth: is_smooth.then(|| Smooth::new(gl)).transpose()?,
-            overlay: R::Overlay::new(gl, settings, has_near)?,
-            finish: Finish::smoothing(gl, settings, options.anti_aliasing == AntiAliasing::After)?,
+            overlay: R::Overlay::new(setup)?,
+            finish: Finish::smoothing(setup, options.anti_aliasing == AntiAliasing::After)?,
             switch: switch.transpose()?,
         })
     }

@@ -8,7 +8,7 @@ use super::near_fraction::{DepthMap, NearFraction};
 use super::*;
 use crate::fixture::quad;
 use crate::render::{
-    Columns, DepthCopy, GpuScene, KeptSamples, Layout, PixelDepth, Renderer, RendererKind, Seam, ViewImages,
+    Columns, DepthCopy, GpuScene, KeptSamples, PixelDepth, Renderer, RendererKind, Seam, ViewImages,
     ViewRequest,
 };
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews};
@@ -96,14 +96,19 @@ fn every_seam_separates_the_eyes() {
         let settings = RenderSettings { shadow_map_size: 256, ..RenderSettings::default() };
         let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
         let mut rig = Rig::new(gl, &settings);
-        let mut conventional = Conventional::<DeferredRenderer>::new(gl, &settings, &options).unwrap();
+        let mut conventional =
+            Conventional::<DeferredRenderer>::new(&Setup { gl, settings: &settings, options: &options })
+                .unwrap();
         for seam in [Seam::ClipDistance, Seam::Discard] {
             if seam == Seam::ClipDistance && !gl.capabilities().clip_distances {
                 eprintln!("SKIPPED: {backend:?} has no clip distances");
                 continue;
             }
-            let mut method =
-                SinglePass::<DeferredPair>::new(gl, Layout::DoubleWide(seam), &settings, &options).unwrap();
+            let mut method = SinglePass::<DeferredPair>::new(
+                &Setup { gl, settings: &settings, options: &options },
+                Layout::DoubleWide(seam),
+            )
+            .unwrap();
             for size in [SIZE, [97, 60]] {
                 let pair = EyePair { size, ..pair(Eye::Left, DepthConvention::Reversed) };
                 let expected = rig.render(&mut conventional, &pair);
@@ -124,8 +129,9 @@ fn disocclusions_are_shaded_as_by_two_renders_and_the_rest_is_close() {
     let gl = head.gl();
     let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
     let mut rig = Rig::new(gl, &local());
-    let mut conventional = Conventional::<DeferredRenderer>::new(gl, &local(), &options).unwrap();
-    let mut method = ShadingReprojection::new(gl, &local(), &options).unwrap();
+    let mut conventional =
+        Conventional::<DeferredRenderer>::new(&Setup { gl, settings: &local(), options: &options }).unwrap();
+    let mut method = ShadingReprojection::new(&Setup { gl, settings: &local(), options: &options }).unwrap();
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
         for dominant in Eye::BOTH {
             let pair = pair(dominant, convention);
@@ -160,7 +166,7 @@ fn without_distance_between_the_eyes_nothing_is_disoccluded() {
     let gl = head.gl();
     let options = StereoOptions::default();
     let mut rig = Rig::new(gl, &local());
-    let mut method = ShadingReprojection::new(gl, &local(), &options).unwrap();
+    let mut method = ShadingReprojection::new(&Setup { gl, settings: &local(), options: &options }).unwrap();
     let mut pair = pair(Eye::Left, DepthConvention::Standard);
     pair.poses = [Pose::IDENTITY; 2];
     let [left, right] = rig.render(&mut method, &pair);
@@ -175,8 +181,11 @@ fn ambient_occlusion_is_right_at_the_rims_of_disocclusions() {
     for ssao_half_size in [false, true] {
         let settings = RenderSettings { ssao: true, ssao_half_size, ..local() };
         let mut rig = Rig::new(gl, &settings);
-        let mut conventional = Conventional::<DeferredRenderer>::new(gl, &settings, &options).unwrap();
-        let mut method = ShadingReprojection::new(gl, &settings, &options).unwrap();
+        let mut conventional =
+            Conventional::<DeferredRenderer>::new(&Setup { gl, settings: &settings, options: &options })
+                .unwrap();
+        let mut method =
+            ShadingReprojection::new(&Setup { gl, settings: &settings, options: &options }).unwrap();
         let pair = pair(Eye::Right, DepthConvention::Standard);
         let expected = rig.render(&mut conventional, &pair);
         let both = rig.render(&mut method, &pair);
@@ -195,8 +204,10 @@ fn mono_shows_each_eye_its_own_part_of_the_view() {
     let (gl, settings) = (head.gl(), local());
     let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
     let mut rig = Rig::new(gl, &settings);
-    let mut conventional = Conventional::<DeferredRenderer>::new(gl, &settings, &options).unwrap();
-    let mut mono = Mono::<DeferredRenderer>::new(gl, &settings, &options).unwrap();
+    let mut conventional =
+        Conventional::<DeferredRenderer>::new(&Setup { gl, settings: &settings, options: &options }).unwrap();
+    let mut mono =
+        Mono::<DeferredRenderer>::new(&Setup { gl, settings: &settings, options: &options }).unwrap();
     let plain = pair(Eye::Right, DepthConvention::Standard);
     let [left, right] = rig.render(&mut mono, &plain);
     assert!(left == right, "the same image where the frusta are the same");
