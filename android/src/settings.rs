@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use yoro_protocol::{KEYS, Settings};
+use yoro_protocol::{SETTINGS, Setting, Settings};
 
 /// System properties that begin so are settings: `adb shell setprop debug.yoro.method mono`.
 pub const PROPERTY_PREFIX: &str = "debug.yoro.";
@@ -82,12 +82,12 @@ fn extra_key(key: &str) -> Option<&str> {
 /// The system properties' settings by a function that reads one by its full name. Empty means unset: a property
 /// cannot be deleted.
 pub fn properties(read: impl Fn(&str) -> Option<String>) -> Vec<Pair> {
-    let pair = |key: &&str| {
-        let value = read(&format!("{PROPERTY_PREFIX}{key}"))?;
+    let pair = |setting: &Setting| {
+        let value = read(&format!("{PROPERTY_PREFIX}{}", setting.key))?;
         let value = value.trim();
-        (!value.is_empty()).then(|| ((*key).to_owned(), value.to_owned()))
+        (!value.is_empty()).then(|| (setting.key.to_owned(), value.to_owned()))
     };
-    KEYS.iter().filter_map(pair).collect()
+    SETTINGS.iter().filter_map(pair).collect()
 }
 
 /// Settings as bytes for Android to keep while the activity is away.
@@ -100,7 +100,7 @@ pub fn restore(bytes: &[u8]) -> Vec<Pair> {
     let text = String::from_utf8_lossy(bytes);
     let pair = |line: &str| {
         let (key, value) = line.split_once('=')?;
-        KEYS.contains(&key).then(|| (key.to_owned(), value.to_owned()))
+        Setting::find(key).map(|_| (key.to_owned(), value.to_owned()))
     };
     text.lines().filter_map(pair).collect()
 }
@@ -109,7 +109,7 @@ pub fn restore(bytes: &[u8]) -> Vec<Pair> {
 mod tests {
     use std::collections::HashMap;
 
-    use yoro_render::stereo::Method;
+    use yoro_protocol::{Ipd, Method};
 
     use super::*;
 
@@ -134,7 +134,10 @@ mod tests {
         };
         let (settings, mistakes) = sources.resolve();
         assert!(mistakes.is_empty(), "{mistakes:?}");
-        assert_eq!((settings.method, settings.ipd, settings.seed), (Method::Mono, Some(0.055), 7));
+        assert_eq!(
+            (settings.method, settings.ipd, settings.seed),
+            (Method::Mono, Some(Ipd::nearest(0.055)), 7)
+        );
         assert_eq!((settings.scene.as_str(), settings.hud), ("stage", false));
     }
 
@@ -200,7 +203,10 @@ mod tests {
         assert!(!sources.set_properties(pairs(&[("hud", "false")])));
         assert!(sources.set_properties(pairs(&[("method", "conventional")])));
         let (settings, mistakes) = sources.resolve();
-        assert_eq!((settings.method, settings.ipd, settings.hud), (Method::Conventional, Some(0.05), true));
+        assert_eq!(
+            (settings.method, settings.ipd, settings.hud),
+            (Method::Conventional, Some(Ipd::nearest(0.05)), true)
+        );
         assert!(mistakes.is_empty(), "{mistakes:?}");
     }
 

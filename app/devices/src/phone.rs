@@ -279,7 +279,7 @@ pub fn wake(device: &dyn Device) {
 /// # Errors
 /// [`DeviceError`].
 pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError> {
-    let pairs = pairs(settings);
+    let pairs = settings.pairs();
     let mut words = vec!["am", "start", "-S", "-W", "-n", ACTIVITY];
     for (key, value) in &pairs {
         words.extend(["--es", key, value]);
@@ -309,20 +309,6 @@ fn start_by(device: &dyn Device, words: &[&str], component: &str) -> Result<(), 
         }),
         None => Ok(()),
     }
-}
-
-/// Each setting as key and value, as the application reads them.
-pub fn pairs(settings: &Settings) -> Vec<(String, String)> {
-    use toml::Value;
-    let Ok(table) = toml::Table::try_from(settings) else { return Vec::new() };
-    let text = |value: &Value| match value {
-        Value::String(text) => text.clone(),
-        Value::Float(number) => (*number as f32).to_string(),
-        Value::Array(list) => list.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(","),
-        other => other.to_string(),
-    };
-    let value = |key: &str| table.get(key).map_or_else(|| "auto".into(), text);
-    yoro_protocol::KEYS.iter().map(|key| ((*key).to_owned(), value(key))).collect()
 }
 
 /// Ends an application.
@@ -390,25 +376,5 @@ mod tests {
         let text = "WINDOW MANAGER POLICY STATE\n  showing=true\n  KeyguardServiceDelegate\n    showing=false\n    inputRestricted=false\n    secure=true\n    dreaming=false\n";
         assert_eq!(read_keyguard(text), Keyguard { secure: true, showing: false });
         assert_eq!(read_keyguard("Can't find service: window"), Keyguard::default());
-    }
-
-    #[test]
-    fn settings_arrive_as_they_left() {
-        let mut settings = Settings::default();
-        for pair in [
-            "scene=talk",
-            "method=conventional",
-            "render-scale=0.8",
-            "guard-band=40px",
-            "run=7",
-            "duration=61.5",
-        ] {
-            settings.apply(pair).unwrap();
-        }
-        let mut read = Settings { seed: 99, methods: Vec::new(), hud: false, ..Settings::default() };
-        for (key, value) in pairs(&settings) {
-            read.apply(&format!("{key}={value}")).unwrap();
-        }
-        assert_eq!(read, settings);
     }
 }

@@ -90,9 +90,9 @@ impl Plan {
         if let Some(other) = &self.other {
             return BTreeMap::from([("package".into(), other.subject.package.clone())]);
         }
-        let defaults = phone::pairs(&Settings::default());
+        let defaults = Settings::default().pairs();
         let of_each = ["scene", "method", "duration", "auto-exit", "run"];
-        let pairs = phone::pairs(&self.settings).into_iter();
+        let pairs = self.settings.pairs().into_iter();
         pairs.filter(|pair| !defaults.contains(pair) && !of_each.contains(&pair.0.as_str())).collect()
     }
 

@@ -6,11 +6,15 @@
 //! This crate must never know how anything is rendered: it calls no graphics interface.
 
 mod choices;
+mod quantities;
+mod setting;
 mod settings;
 pub mod telemetry;
 
 pub use choices::{
-    AntiAliasing, DEFAULT_IPD, DisplayKind, ImBufferSize, MAX_IPD, MAX_POINT_LIGHTS, MSAA, Method,
-    ParseImBufferSizeError, ParsePipelineError, Performance, Pipeline, RendererKind, ScreenSize, Ssao,
+    AntiAliasing, Choice, ChoiceError, DisplayKind, MAX_POINT_LIGHTS, MSAA, Method, Performance, Pipeline,
+    RendererKind, Ssao,
 };
-pub use settings::{KEYS, Settings, SettingsError};
+pub use quantities::{ImBufferSize, Ipd, IpdError, ParseImBufferSizeError, ScreenSize, ScreenSizeError};
+pub use setting::Setting;
+pub use settings::{SETTINGS, Settings, SettingsError};

@@ -1,18 +1,16 @@
-//! Settings of the viewer: defaults < file < overrides.
+//! The settings of the viewer: one table of rows, and how files and texts change them.
 
 use std::fmt::{self, Display};
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DEFAULT_IPD, DisplayKind, ImBufferSize, MAX_IPD, MAX_POINT_LIGHTS, MSAA, Method,
-    Performance, Pipeline, RendererKind, ScreenSize, Ssao,
+    AntiAliasing, DisplayKind, MAX_POINT_LIGHTS, MSAA, Method, Performance, Pipeline, RendererKind, Ssao,
 };
+use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
+use crate::setting::{Setting, SettingValue};
 use yoro::eyes::{Eye, GuardBand};
 use yoro::synthesis::Edges;
 
@@ -40,7 +38,7 @@ pub enum SettingsError {
         what: String,
     },
     /// A key that does not exist.
-    #[error("{origin}: there is no setting \"{key}\"; choose one of {}", KEYS.join(", "))]
+    #[error("{origin}: there is no setting \"{key}\"; choose one of {}", keys())]
     UnknownKey {
         /// The file, or the override.
         origin: String,
@@ -64,232 +62,163 @@ pub enum SettingsError {
     NoPair(String),
 }
 
-/// All settings of the viewer. As TOML, and as `key=value`, keys are written with hyphens.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
-pub struct Settings {
-    /// A built-in scene, or an OBJ, glTF or GLB file, by its path or by its name in one of the platform's
-    /// scene folders.
-    pub scene: String,
-    /// Seed of a built-in scene.
-    pub seed: u64,
-    /// Which of the scene's viewpoints the viewer stands at, from 0; beyond the last it starts over.
-    pub viewpoint: usize,
-    /// The stereo method to start with.
-    pub method: Method,
-    /// The methods that a tap goes through.
-    pub methods: Vec<Method>,
-    /// Synthesis pipeline.
-    pub pipeline: Pipeline,
-    /// ImBuffer of the paper's pipeline: a divisor (`2`) or a size (`512x512`).
-    #[serde(with = "as_text")]
-    pub imbuffer: ImBufferSize,
-    /// Paper's pipeline: interpolate between ImBuffer entries.
-    pub linear_interpolation: bool,
-    /// Paper's pipeline: rows of the patcher's kernel, 1 to 15.
-    pub kernel_height: u32,
-    /// Paper's pipeline: whole columns and one depth sample per ImBuffer pixel, as the text says.
-    pub strict: bool,
-    /// How much wider the dominant eye is rendered: `none`, `40px`, or metres; by default as the pipeline needs.
-    #[serde(with = "optional_as_text", skip_serializing_if = "Option::is_none")]
-    pub guard_band: Option<GuardBand>,
-    /// When anti-aliasing runs; by default as the pipeline needs.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub anti_aliasing: Option<AntiAliasing>,
-    /// What the synthesis takes the rendered eye's edges for; by default what fits the renderer.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub edges: Option<Edges>,
-    /// Render objects nearer than this (metres) for both eyes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub near_field: Option<f32>,
-    /// Switch to two real renders while most of the view is too near.
-    pub switch: bool,
-    /// The method `hybrid`: the far field starts where the disparity between the eyes is this many pixels.
-    pub split_disparity: f32,
-    /// The viewer: `v1`, `v2`, the URI of its QR code, or the path of a parameter file.
-    pub viewer: String,
-    /// The size of the whole screen behind the lenses; by default what the device says of its pixels.
-    #[serde(with = "optional_as_text", skip_serializing_if = "Option::is_none")]
-    pub screen: Option<ScreenSize>,
-    /// The eye that is rendered.
-    pub dominant: Eye,
-    /// Distance between the eyes in metres; by default that of the viewer's lenses, or of the headset.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ipd: Option<f32>,
-    /// Rendered pixels per screen pixel at the lens's centre, per axis, 0.25 to 2; the upper limit when
-    /// `adaptive` is on.
-    pub render_scale: f32,
-    /// Adapt render scale and ImBuffer to the display's rate and the device's temperature.
-    pub adaptive: bool,
-    /// Turn the finished image to the newest head pose.
-    pub timewarp: bool,
-    /// Correct the lenses' chromatic aberration.
-    pub chromatic: bool,
-    /// Show the HUD.
-    pub hud: bool,
-    /// How a view is rendered.
-    pub renderer: RendererKind,
-    /// Forward renderer: samples in each pixel, 1, 2 or 4.
-    pub msaa: u32,
-    /// Edge of the sun's shadow map in texels, 0 for no shadows.
-    pub shadow_map: u32,
-    /// Ambient occlusion; the forward renderer has none.
-    pub ssao: Ssao,
-    /// Glow around what is brighter than white.
-    pub bloom: bool,
-    /// Point lights that light a view, at most 24.
-    pub point_lights: usize,
-    /// Length of the session in seconds, after which its summary is logged.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub duration: Option<f32>,
-    /// What is asked after `duration`, to be answered on a slider; a `-` in a question is shown as a space.
-    pub questions: Vec<String>,
-    /// Ratings go from 1 (worst) to this, 2 to 100.
-    pub best_rating: u32,
-    /// Who answers, in the log. Words and numbers.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub participant: Option<String>,
-    /// Number of the trial, in the log.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub trial: Option<u32>,
-    /// End the program after `duration` and the questions.
-    pub auto_exit: bool,
-    /// On what the eyes are shown.
-    pub display: DisplayKind,
-    /// Refreshes per second. Headsets: the nearest of what the runtime offers; by default the runtime's choice. Phones: what
-    /// Android is asked for; by default the rate that the display has at the start.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub refresh_rate: Option<f32>,
-    /// How fast the processors should run.
-    pub performance: Performance,
-    /// Phones: Android's scheduler is told how long each frame takes, where it takes such hints (Android 13).
-    pub performance_hints: bool,
-    /// Headsets: the depth of both eyes goes to the compositor, where it takes it. Counts when a session begins.
-    pub submit_depth: bool,
-    /// Headsets: one view in place of two, where the runtime or an API layer offers that. Counts when a session begins.
-    pub one_view: bool,
-    /// Measure the GPU time of each stage, where the driver has timer queries.
-    pub profiling: bool,
-    /// Name of this run in the log line, for scripts that start several.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub run: Option<String>,
+fn keys() -> String {
+    SETTINGS.iter().map(|setting| setting.key).collect::<Vec<_>>().join(", ")
 }
 
-/// The keys of [`Settings`], in order.
-pub const KEYS: &[&str] = &[
-    "scene",
-    "seed",
-    "viewpoint",
-    "method",
-    "methods",
-    "pipeline",
-    "imbuffer",
-    "linear-interpolation",
-    "kernel-height",
-    "strict",
-    "guard-band",
-    "anti-aliasing",
-    "edges",
-    "near-field",
-    "switch",
-    "split-disparity",
-    "viewer",
-    "screen",
-    "dominant",
-    "ipd",
-    "render-scale",
-    "adaptive",
-    "timewarp",
-    "chromatic",
-    "hud",
-    "renderer",
-    "msaa",
-    "shadow-map",
-    "ssao",
-    "bloom",
-    "point-lights",
-    "duration",
-    "questions",
-    "best-rating",
-    "participant",
-    "trial",
-    "auto-exit",
-    "display",
-    "refresh-rate",
-    "performance",
-    "performance-hints",
-    "submit-depth",
-    "one-view",
-    "profiling",
-    "run",
-];
-
-/// Keys that may be left to the program: the value `auto` takes them back.
-const OPTIONAL: &[&str] = &[
-    "guard-band",
-    "anti-aliasing",
-    "edges",
-    "near-field",
-    "screen",
-    "ipd",
-    "duration",
-    "participant",
-    "trial",
-    "refresh-rate",
-    "run",
-];
-
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings {
-            scene: "prototype".into(),
-            seed: 1,
-            viewpoint: 0,
-            method: Method::Yoro,
-            methods: vec![Method::Yoro, Method::Conventional, Method::Mono],
-            pipeline: Pipeline::default(),
-            imbuffer: ImBufferSize::Divisor(1),
-            linear_interpolation: true,
-            kernel_height: 3,
-            strict: false,
-            guard_band: None,
-            anti_aliasing: None,
-            edges: None,
-            near_field: None,
-            switch: true,
-            split_disparity: 1.0,
-            viewer: "v2".into(),
-            screen: None,
-            dominant: Eye::Right,
-            ipd: None,
-            render_scale: 1.0,
-            adaptive: false,
-            timewarp: true,
-            chromatic: false,
-            hud: true,
-            renderer: RendererKind::default(),
-            msaa: 4,
-            // Phones: half of what the desktop program takes by default.
-            shadow_map: 2048,
-            ssao: Ssao::Half,
-            bloom: true,
-            point_lights: MAX_POINT_LIGHTS / 2,
-            duration: None,
-            questions: Vec::new(),
-            best_rating: 5,
-            participant: None,
-            trial: None,
-            auto_exit: false,
-            display: DisplayKind::Auto,
-            refresh_rate: None,
-            performance: Performance::default(),
-            performance_hints: true,
-            submit_depth: true,
-            one_view: false,
-            profiling: true,
-            run: None,
+/// Makes [`Settings`], their defaults and [`SETTINGS`] of the same rows. The documentation of a field is the setting's help.
+macro_rules! settings {
+    ($(
+        $(#[doc = $help:literal])+
+        $key:literal $field:ident: $type:ty = $default:expr $(; $option:ident($($argument:expr),+))*,
+    )+) => {
+        /// All settings of the viewer; [`SETTINGS`] has a row for each.
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct Settings {
+            $( $(#[doc = $help])+ pub $field: $type, )+
         }
-    }
+
+        impl Default for Settings {
+            fn default() -> Settings {
+                Settings { $($field: $default,)+ }
+            }
+        }
+
+        /// The table of settings. Files, `key=value` texts, intent extras, system properties, options of the command line
+        /// and the table in docs/viewer.md follow it.
+        pub static SETTINGS: &[Setting] = &[$(
+            Setting::new::<$type>(
+                $key,
+                concat!($($help, "\n"),+),
+                |settings| settings.$field.write(),
+                |settings, value| {
+                    settings.$field = SettingValue::read(value)?;
+                    Ok(())
+                },
+            )$(.$option($($argument),+))*,
+        )+];
+    };
+}
+
+settings! {
+    /// A built-in scene, or an OBJ, glTF or GLB file, by its path or by its name in one of the platform's scene folders.
+    "scene" scene: String = "prototype".into();
+        range(|s| !s.scene.trim().is_empty(), "name a built-in scene or a file"),
+    /// Seed of a built-in scene.
+    "seed" seed: u64 = 1,
+    /// The scene's viewpoint to stand at, from 0; beyond the last it starts over.
+    "viewpoint" viewpoint: usize = 0,
+    /// The stereo method to start with.
+    "method" method: Method = Method::Yoro,
+    /// The methods that a tap goes through.
+    "methods" methods: Vec<Method> = vec![Method::Yoro, Method::Conventional, Method::Mono];
+        range(|s| !s.methods.is_empty(), "name at least one method, such as yoro,mono"),
+    /// How the other eye is synthesized.
+    "pipeline" pipeline: Pipeline = Pipeline::default(),
+    /// paper: ImBuffer resolution, as a divisor (1, 2, 4, 8, 16) or a fixed size (512x512).
+    "imbuffer" imbuffer: ImBufferSize = ImBufferSize::Divisor(1); value_name("N|WxH"),
+    /// paper: interpolate between ImBuffer entries.
+    "linear-interpolation" linear_interpolation: bool = true;
+        off_help("paper: do not interpolate between ImBuffer entries"),
+    /// paper: rows of the patcher's kernel, 1 to 15.
+    "kernel-height" kernel_height: u32 = 3;
+        value_name("ROWS");
+        range(|s| (1..=15).contains(&s.kernel_height), "give 1 to 15 rows"),
+    /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says.
+    "strict" strict: bool = false,
+    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), `auto:METRES`, or complete from a distance in
+    /// metres (`1.0`).
+    "guard-band" guard_band: Option<GuardBand> = None;
+        value_name("none|Npx|METRES|auto");
+        auto("1.0; paper: none"),
+    /// When to anti-alias.
+    "anti-aliasing" anti_aliasing: Option<AntiAliasing> = None; auto("after; paper: before"),
+    /// How the synthesis reads the rendered eye's edges.
+    "edges" edges: Option<Edges> = None;
+        auto("what fits the renderer: all samples of several, hard edges of one"),
+    /// Hybrid near field: render objects nearer than this (metres) for both eyes.
+    "near-field" near_field: Option<f32> = None;
+        value_name("METRES");
+        range(|s| s.near_field.is_none_or(is_positive), "give metres above 0, or auto"),
+    /// Switch to two real renders while most of the view is too near.
+    "switch" switch: bool = true;
+        off_help("Never switch to two real renders, however near everything is"),
+    /// hybrid: the far field starts where the eyes' disparity is this many pixels.
+    "split-disparity" split_disparity: f32 = 1.0;
+        value_name("PIXELS");
+        range(|s| is_positive(s.split_disparity), "give pixels above 0, such as 1"),
+    /// The viewer: v1, v2, the URI of its QR code, or a parameter file.
+    "viewer" viewer: String = "v2".into(),
+    /// Size of the whole screen behind the lenses, such as `158x71mm`: measure it where the device is wrong about it.
+    "screen" screen: Option<ScreenSize> = None; auto("what the device says"),
+    /// The eye that is rendered.
+    "dominant" dominant: Eye = Eye::Right,
+    /// Distance between the eyes in metres, 0 to 0.08.
+    "ipd" ipd: Option<Ipd> = None; auto("that of the lenses, or the headset's"),
+    /// Rendered pixels per screen pixel at the lens's centre, per axis, 0.25 to 2; the upper limit when `adaptive` is on.
+    /// Headsets: a factor on the size that the runtime recommends.
+    "render-scale" render_scale: f32 = 1.0;
+        range(|s| (0.25..=2.0).contains(&s.render_scale), "give a factor from 0.25 to 2"),
+    /// Lower render scale and ImBuffer to hold the display's refresh rate and to spare a hot device.
+    "adaptive" adaptive: bool = false,
+    /// Turn the finished image to the newest head pose.
+    "timewarp" timewarp: bool = true,
+    /// Correct the lenses' chromatic aberration.
+    "chromatic" chromatic: bool = false,
+    /// Show the HUD.
+    "hud" hud: bool = true; off_help("Leave out the HUD"),
+    /// How a view is rendered.
+    "renderer" renderer: RendererKind = RendererKind::Deferred,
+    /// forward: samples in each pixel, 1, 2 or 4, as far as the driver has them.
+    "msaa" msaa: u32 = 4; value_name("N"); range(|s| MSAA.contains(&s.msaa), "give 1, 2 or 4"),
+    /// Edge of the sun's shadow map in texels, at most 8192; 0 for no shadows.
+    "shadow-map" shadow_map: u32 = 2048; range(|s| s.shadow_map <= 8192, "give texels from 0 to 8192"),
+    /// Ambient occlusion; the forward renderer has none.
+    "ssao" ssao: Ssao = Ssao::Half,
+    /// Glow around what is brighter than white.
+    "bloom" bloom: bool = true,
+    /// Point lights that light a view, at most 24.
+    "point-lights" point_lights: usize = MAX_POINT_LIGHTS / 2;
+        range(|s| s.point_lights <= MAX_POINT_LIGHTS, "give a number from 0 to 24"),
+    /// Length of the session in seconds, after which its summary is logged.
+    "duration" duration: Option<f32> = None;
+        range(|s| s.duration.is_none_or(is_positive), "give seconds above 0, or auto");
+        auto("no end"),
+    /// Questions to ask after `duration`, answered on a slider, such as `image-quality,comfort`; a `-` is shown as a space.
+    "questions" questions: Vec<String> = Vec::new(),
+    /// The best rating, 2 to 100; the worst is 1.
+    "best-rating" best_rating: u32 = 5;
+        range(|s| (2..=100).contains(&s.best_rating), "give a number from 2 to 100"),
+    /// The person who answers, for the log: words and numbers.
+    "participant" participant: Option<String> = None,
+    /// Number of the trial, for the log.
+    "trial" trial: Option<u32> = None,
+    /// End the program after `duration` and the questions.
+    "auto-exit" auto_exit: bool = false,
+    /// The display that shows the eyes; counts at the start.
+    "display" display: DisplayKind = DisplayKind::Auto,
+    /// Refreshes per second. Headsets: the nearest of the rates that the runtime offers. Phones: the rate that Android is
+    /// asked for (Android 11).
+    "refresh-rate" refresh_rate: Option<f32> = None;
+        range(|s| s.refresh_rate.is_none_or(|hz| (1.0..=1000.0).contains(&hz)), "give refreshes per second, such as 90, or auto");
+        auto("headsets: the runtime's own; phones: the rate at the start"),
+    /// How fast the processors should run. Phones: the two sustained levels are Android's sustained performance mode.
+    "performance" performance: Performance = Performance::SustainedHigh,
+    /// Phones: tell Android's scheduler how long each frame takes (Android 13, some devices).
+    "performance-hints" performance_hints: bool = true,
+    /// Headsets: hand the depth of both eyes to the compositor, which costs energy; counts when a session begins.
+    "submit-depth" submit_depth: bool = true,
+    /// Headsets: one view in place of two, where the runtime, or an API layer such as yoro's, offers that. Meant for
+    /// `method=mono`, with which one view is all that is rendered; counts when a session begins.
+    "one-view" one_view: bool = false,
+    /// Measure the GPU time of each stage, where the driver has timer queries.
+    "profiling" profiling: bool = true,
+    /// A name for this run in the log line; `yoro device` tells its runs apart by it.
+    "run" run: Option<String> = None,
+}
+
+fn is_positive(number: f32) -> bool {
+    number > 0.0 && number.is_finite()
 }
 
 impl Settings {
@@ -343,7 +272,21 @@ impl Settings {
             }
         };
         let origin = path.display().to_string();
-        table.into_iter().filter_map(|(key, value)| self.set(&origin, &key, &[value]).err()).collect()
+        table.into_iter().filter_map(|(key, value)| self.set(&origin, key, &value).err()).collect()
+    }
+
+    /// Returns each setting as key and value, as [`Settings::apply`] reads them.
+    pub fn pairs(&self) -> Vec<(String, String)> {
+        SETTINGS.iter().map(|setting| (setting.key.to_owned(), setting.text(self))).collect()
+    }
+
+    fn set(&mut self, origin: &str, key: String, value: &Value) -> Result<(), SettingsError> {
+        find(origin, &key)?.set(self, value).map_err(|remedy| SettingsError::Value {
+            origin: origin.into(),
+            key,
+            value: value.to_string(),
+            remedy,
+        })
     }
 
     /// Changes one setting by a text `key=value`. Lists are written as in TOML or separated by commas; `auto`
@@ -353,155 +296,33 @@ impl Settings {
     /// [`SettingsError`]; the settings stay as they were.
     pub fn apply(&mut self, pair: &str) -> Result<(), SettingsError> {
         let (key, text) = pair.split_once('=').ok_or_else(|| SettingsError::NoPair(pair.into()))?;
-        let (key, text) = (key.trim(), text.trim());
-        if text.is_empty() {
-            return if KEYS.contains(&key) { Ok(()) } else { Err(unknown(pair, key)) };
-        }
-        // What a text means is the key's matter: try the kinds of TOML first, then plain words.
-        let typed = format!("x = {text}").parse::<Table>().ok().and_then(|mut table| table.remove("x"));
-        let words = || text.split(',').map(|word| Value::from(word.trim())).collect::<Vec<_>>();
-        let candidates: Vec<Value> =
-            typed.into_iter().chain([Value::from(text), Value::Array(words())]).collect();
-        self.set(pair, key, &candidates)
-    }
-
-    /// Sets one key to the first of the candidates that fits.
-    fn set(&mut self, origin: &str, key: &str, candidates: &[Value]) -> Result<(), SettingsError> {
-        if !KEYS.contains(&key) {
-            return Err(unknown(origin, key));
-        }
-        let fault = |value: &Value, remedy: String| SettingsError::Value {
-            origin: origin.into(),
+        let key = key.trim();
+        let setting = find(pair, key)?;
+        setting.parse_into(self, text).map_err(|(value, remedy)| SettingsError::Value {
+            origin: pair.into(),
             key: key.into(),
-            value: value.to_string(),
+            value,
             remedy,
-        };
-        let table = Table::try_from(&*self).map_err(|e| fault(&candidates[0], e.to_string()))?;
-        let mut first_error = None;
-        for value in candidates {
-            let mut table = table.clone();
-            if OPTIONAL.contains(&key) && value.as_str() == Some("auto") {
-                table.remove(key);
-            } else {
-                table.insert(key.into(), value.clone());
-            }
-            match table.try_into::<Settings>() {
-                Ok(settings) => {
-                    settings.check(key).map_err(|remedy| fault(value, remedy))?;
-                    *self = settings;
-                    return Ok(());
-                }
-                Err(error) => {
-                    let reason = error.message().trim().replace('\n', " ");
-                    // Of a plain word, the complaint about words is the one that helps.
-                    if first_error.is_none() || value.is_str() {
-                        first_error = Some(fault(value, reason));
-                    }
-                }
-            }
-        }
-        Err(first_error.unwrap_or_else(|| unknown(origin, key)))
-    }
-
-    /// Checks the range of one setting; the error is the remedy.
-    fn check(&self, key: &str) -> Result<(), String> {
-        let positive = |n: f32| n > 0.0 && n.is_finite();
-        let (fits, remedy) = match key {
-            "scene" => (!self.scene.trim().is_empty(), "name a built-in scene or a file".into()),
-            "methods" => (!self.methods.is_empty(), "name at least one method".into()),
-            "kernel-height" => ((1..=15).contains(&self.kernel_height), "give 1 to 15 rows".into()),
-            "near-field" => (self.near_field.is_none_or(positive), "give metres above 0, or auto".into()),
-            "split-disparity" => (positive(self.split_disparity), "give pixels above 0, such as 1".into()),
-            "ipd" => (
-                self.ipd.is_none_or(|ipd| (0.0..=MAX_IPD).contains(&ipd)),
-                format!(
-                    "give metres from 0 to {MAX_IPD}, such as {DEFAULT_IPD}, or auto for that of the lenses"
-                ),
-            ),
-            "render-scale" => {
-                ((0.25..=2.0).contains(&self.render_scale), "give a factor from 0.25 to 2".into())
-            }
-            "msaa" => (MSAA.contains(&self.msaa), "give 1, 2 or 4 samples".into()),
-            "shadow-map" => (self.shadow_map <= 8192, "give texels from 0 to 8192".into()),
-            "point-lights" => {
-                (self.point_lights <= MAX_POINT_LIGHTS, format!("give a number from 0 to {MAX_POINT_LIGHTS}"))
-            }
-            "refresh-rate" => (
-                self.refresh_rate.is_none_or(|hz| (1.0..=1000.0).contains(&hz)),
-                "give refreshes per second, such as 90, or auto".into(),
-            ),
-            "best-rating" => ((2..=100).contains(&self.best_rating), "give a number from 2 to 100".into()),
-            "duration" => (self.duration.is_none_or(positive), "give seconds above 0, or auto".into()),
-            _ => return Ok(()),
-        };
-        if fits { Ok(()) } else { Err(remedy) }
+        })
     }
 }
 
 /// One line: `key=value` for each setting.
 impl Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let table = Table::try_from(self).map_err(|_| fmt::Error)?;
-        for (i, key) in KEYS.iter().enumerate() {
+        for (i, setting) in SETTINGS.iter().enumerate() {
             let space = if i == 0 { "" } else { " " };
-            match table.get(*key) {
-                // As they were given, not as doubles.
-                Some(Value::Float(number)) => write!(f, "{space}{key}={}", *number as f32)?,
-                Some(value) => write!(f, "{space}{key}={value}")?,
-                None => write!(f, "{space}{key}=auto")?,
-            }
+            let value = setting.value(self).filter(|value| !value.is_float());
+            let text = value.map_or_else(|| setting.text(self), |value| value.to_string());
+            write!(f, "{space}{}={text}", setting.key)?;
         }
         Ok(())
     }
 }
 
-fn unknown(origin: &str, key: &str) -> SettingsError {
-    SettingsError::UnknownKey { origin: origin.into(), key: key.into() }
-}
-
-/// A value that may be written as a number or as a word.
-fn text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
-    match Value::deserialize(deserializer)? {
-        Value::String(text) => Ok(text),
-        Value::Integer(n) => Ok(n.to_string()),
-        Value::Float(n) => Ok(n.to_string()),
-        other => Err(D::Error::custom(format!("it cannot be of the type {}", other.type_str()))),
-    }
-}
-
-mod as_text {
-    use super::*;
-
-    pub fn serialize<T: Display, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(value)
-    }
-
-    pub fn deserialize<'de, T, D>(deserializer: D) -> Result<T, D::Error>
-    where
-        T: FromStr<Err: Display>,
-        D: Deserializer<'de>,
-    {
-        text(deserializer)?.parse().map_err(D::Error::custom)
-    }
-}
-
-mod optional_as_text {
-    use super::*;
-
-    pub fn serialize<T: Display, S: Serializer>(value: &Option<T>, serializer: S) -> Result<S::Ok, S::Error> {
-        match value {
-            Some(value) => serializer.collect_str(value),
-            None => serializer.serialize_none(),
-        }
-    }
-
-    pub fn deserialize<'de, T, D>(deserializer: D) -> Result<Option<T>, D::Error>
-    where
-        T: FromStr<Err: Display>,
-        D: Deserializer<'de>,
-    {
-        as_text::deserialize(deserializer).map(Some)
-    }
+/// Returns the row of a key that a file or a text has.
+fn find(origin: &str, key: &str) -> Result<&'static Setting, SettingsError> {
+    Setting::find(key).ok_or_else(|| SettingsError::UnknownKey { origin: origin.into(), key: key.into() })
 }
 
 #[cfg(test)]
@@ -519,29 +340,6 @@ mod tests {
         for name in naming {
             assert!(message.contains(name), "{name} is not in: {message}");
         }
-    }
-
-    #[test]
-    fn the_list_of_keys_is_complete() {
-        let full = with(&[
-            "guard-band=40px",
-            "anti-aliasing=off",
-            "edges=nearest",
-            "near-field=1",
-            "screen=158x71mm",
-            "ipd=0.06",
-            "duration=10",
-            "run=a",
-            "participant=P03",
-            "trial=4",
-            "refresh-rate=90",
-        ]);
-        let table = Table::try_from(full.unwrap()).unwrap();
-        let mut keys: Vec<_> = table.keys().map(String::as_str).collect();
-        let mut listed = KEYS.to_vec();
-        keys.sort_unstable();
-        listed.sort_unstable();
-        assert_eq!(keys, listed);
     }
 
     #[test]
@@ -567,7 +365,7 @@ mod tests {
         assert_eq!(settings.scene, "/sdcard/a room.obj");
         assert_eq!(settings.methods, [Method::Mono, Method::Yoro]);
         assert_eq!(settings.imbuffer, ImBufferSize::Fixed([256, 128]));
-        assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(0.06)));
+        assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(Ipd::nearest(0.06))));
         assert_eq!(settings.screen.unwrap().metres(), [0.158, 0.0705]);
         assert_eq!((settings.dominant, settings.duration), (Eye::Left, Some(30.0)));
         assert!(settings.adaptive && settings.hud && settings.ssao == Ssao::Off);
@@ -584,7 +382,7 @@ mod tests {
         refused("speed=", &["\"speed\""]);
         refused("method", &["method", "key=value"]);
         refused("method=fast", &["\"method\"", "fast", "conventional"]);
-        refused("ipd=0.2", &["\"ipd\"", &MAX_IPD.to_string(), &DEFAULT_IPD.to_string()]);
+        refused("ipd=0.2", &["\"ipd\"", &Ipd::MAX.to_string(), &Ipd::DEFAULT.to_string()]);
         refused("split-disparity=0", &["\"split-disparity\"", "pixels"]);
         refused("msaa=8", &["\"msaa\"", "1, 2 or 4"]);
         refused("renderer=fast", &["\"renderer\"", "forward"]);
@@ -612,7 +410,7 @@ mod tests {
         std::fs::write(&path, "method = \"mono\"\nipd = 0.06\nmethods = [\"mono\"]\nguard-band = 2\n")
             .unwrap();
         let settings = Settings::resolve(Some(&path), ["method=conventional"]).unwrap();
-        assert_eq!((settings.method, settings.ipd), (Method::Conventional, Some(0.06)));
+        assert_eq!((settings.method, settings.ipd), (Method::Conventional, Some(Ipd::nearest(0.06))));
         assert_eq!(settings.guard_band, Some(GuardBand::Distance(2.0)));
         for (text, naming) in [
             ("speed = 3\n", "\"speed\""),
@@ -630,17 +428,42 @@ mod tests {
     }
 
     #[test]
-    fn what_is_printed_is_read_again() {
-        let settings = with(&["ipd=0.061", "methods=mono,yoro", "imbuffer=512x512", "scene=a b"]).unwrap();
-        let text = toml::to_string(&settings).unwrap();
-        assert_eq!(toml::from_str::<Settings>(&text).unwrap(), settings);
-        assert!(settings.to_string().contains("ipd=0.061") && settings.to_string().contains("duration=auto"));
+    fn each_setting_as_a_text_is_read_again() {
+        let settings =
+            with(&["ipd=0.061", "methods=mono,yoro", "imbuffer=512x512", "scene=a b", "run=7", "trial=3"])
+                .unwrap();
+        let mut read = Settings { seed: 99, methods: Vec::new(), hud: false, ..Settings::default() };
+        for (key, value) in settings.pairs() {
+            read.apply(&format!("{key}={value}")).unwrap();
+        }
+        // An empty list is an empty text, which changes nothing.
+        assert_eq!(read, settings);
+        let line = settings.to_string();
+        assert!(line.starts_with("scene=\"a b\" seed=1 "), "{line}");
+        assert!(line.contains("methods=[\"mono\", \"yoro\"]") && line.contains(" ipd=0.061 "), "{line}");
+        assert!(line.contains("duration=auto"), "{line}");
+    }
+
+    /// docs/viewer.md lists every setting; with YORO_BLESS in the environment the list is written anew.
+    #[test]
+    fn the_document_has_the_table() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/viewer.md");
+        let text = std::fs::read_to_string(path).unwrap();
+        let head = "| key | default | meaning |\n|---|---|---|\n";
+        let begin = text.find(head).unwrap() + head.len();
+        let end = begin + text[begin..].find("\n\n").unwrap() + 1;
+        let table: String = SETTINGS.iter().map(Setting::markdown).collect();
+        if std::env::var_os("YORO_BLESS").is_some() {
+            std::fs::write(path, format!("{}{table}{}", &text[..begin], &text[end..])).unwrap();
+        } else {
+            assert_eq!(text[begin..end], table, "run this test with YORO_BLESS=1");
+        }
     }
 
     proptest::proptest! {
         #[test]
-        fn any_text_is_taken_or_refused(key in 0usize..KEYS.len(), value in ".{0,12}") {
-            let _ = with(&[&format!("{}={value}", KEYS[key])]);
+        fn any_text_is_taken_or_refused(row in 0usize..SETTINGS.len(), value in ".{0,12}") {
+            let _ = with(&[&format!("{}={value}", SETTINGS[row].key)]);
         }
     }
 }

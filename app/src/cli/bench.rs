@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use anyhow::{bail, ensure};
 
-use crate::cli::args::{GlArgs, RendererArgs, parse_fov, parse_ipd};
+use crate::cli::args::{GlArgs, parse_fov};
 use crate::cli::choices;
 use crate::cli::eyes;
 use crate::cli::machine;
+use crate::cli::settings::{Renderer, SettingOptions};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyeOptions};
 use yoro_files::interrupt::Interrupted;
@@ -18,7 +19,7 @@ use yoro_lab::bench::{
     self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, process,
 };
 use yoro_lab::inpaint::PatcherOptions;
-use yoro_protocol::DEFAULT_IPD;
+use yoro_protocol::Ipd;
 use yoro_scene::load::sidecar_file;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
@@ -57,8 +58,8 @@ pub struct BenchArgs {
     #[arg(long, value_name = "FILE.jsonl")]
     out: Option<PathBuf>,
     /// Distance between the eyes in metres
-    #[arg(long, default_value_t = DEFAULT_IPD, value_parser = parse_ipd, allow_negative_numbers = true)]
-    ipd: f32,
+    #[arg(long, default_value_t = Ipd::DEFAULT, allow_negative_numbers = true)]
+    ipd: Ipd,
     /// Vertical field of view in degrees
     #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
     fov_y: f32,
@@ -85,7 +86,7 @@ pub struct BenchArgs {
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
     #[command(flatten)]
-    renderer: RendererArgs,
+    renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -145,14 +146,14 @@ impl BenchArgs {
         let eyes = EyeOptions {
             size: self.size.unwrap_or(if self.quick { [512; 2] } else { [1024; 2] }),
             fov_y: self.fov_y,
-            ipd: self.ipd,
+            ipd: self.ipd.metres(),
             dominant: self.dominant,
             ..EyeOptions::default()
         };
         Ok(Choices {
             quick: self.quick,
             eyes,
-            render: self.renderer.settings()?,
+            render: self.renderer.render_settings()?,
             rounds: self.rounds.unwrap_or(of(5, 2)),
             viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,
             sequence: self.frames.unwrap_or(of(30, 8)) as usize,

@@ -5,8 +5,7 @@ use yoro::synthesis::Edges;
 use yoro_context::Backend;
 use yoro_lab::bench::Suite;
 use yoro_lab::inpaint::PatcherKind;
-use yoro_render::RendererKind;
-use yoro_render::stereo::{AntiAliasing, Method, Pipeline};
+use yoro_protocol::Setting;
 use yoro_scene::ShadingStyle;
 
 /// A parser of the values given, by their names.
@@ -31,65 +30,13 @@ pub fn backend() -> impl TypedValueParser<Value = Backend> {
     })
 }
 
-/// `--pipeline`.
-pub fn pipeline() -> impl TypedValueParser<Value = Pipeline> {
-    let possible = Pipeline::ALL.map(|pipeline| {
-        PossibleValue::new(pipeline.name()).help(match pipeline {
-            Pipeline::Gather => "Fragment shaders that march along the source row",
-            Pipeline::Paper => "Algorithms 1 to 3 of the paper",
-        })
-    });
-    // A name of earlier versions, which `Pipeline::from_str` answers with the remedy.
-    let former = PossibleValue::new("rowgroup").hide(true);
-    PossibleValuesParser::new(possible.into_iter().chain([former])).try_map(|name| name.parse::<Pipeline>())
-}
-
-/// `--edges`, as far as there are these.
-pub fn edges(values: impl IntoIterator<Item = Edges>) -> impl TypedValueParser<Value = Edges> {
-    choice(values, Edges::name, |edges| match edges {
-        Edges::Nearest => {
-            "Anti-aliased colour, and the depth of each pixel's nearest sample: the better of the two"
-        }
-        Edges::Sample => "Anti-aliased colour, and the depth of each pixel's first or middle sample",
-        Edges::Multisample => "Anti-aliased colour, and the depth of every sample, of the forward renderer",
-        Edges::Hard => "One surface per pixel: colour that was not anti-aliased, or was filtered afterwards",
-    })
-}
-
-/// `--method`.
-pub fn method() -> impl TypedValueParser<Value = Method> {
-    choice(Method::ALL, Method::name, |method| match method {
-        Method::Conventional => "Both eyes rendered, one after the other: the ground truth",
-        Method::Instanced => "Both eyes in one set of draw calls, by instancing",
-        Method::Multiview => "Both eyes in one set of draw calls, by GL_OVR_multiview2",
-        Method::Hybrid => {
-            "The far field rendered once for both eyes, the near field for each (Fink et al. 2019)"
-        }
-        Method::ShadingReprojection => {
-            "The dominant eye's shading reprojected to the other eye's geometry; only disocclusions are shaded"
-        }
-        Method::Mono => "The dominant eye's image shown to both: the lower bound",
-        Method::Yoro => "The dominant eye rendered, the other synthesized",
-    })
-}
-
-/// `--anti-aliasing`.
-pub fn anti_aliasing() -> impl TypedValueParser<Value = AntiAliasing> {
-    choice(AntiAliasing::ALL, AntiAliasing::name, |anti_aliasing| match anti_aliasing {
-        AntiAliasing::After => "After synthesis, on each eye",
-        AntiAliasing::Before => "Before synthesis, on the rendered eye only, as in the paper",
-        AntiAliasing::Off => "Not at all",
-    })
-}
-
-/// `--renderer`.
-pub fn renderer() -> impl TypedValueParser<Value = RendererKind> {
-    choice(RendererKind::ALL, RendererKind::name, |renderer| match renderer {
-        RendererKind::Deferred => "G-buffer, ambient occlusion, edges smoothed afterwards",
-        RendererKind::Forward => {
-            "Surfaces lit as they are drawn, several samples in each pixel, no ambient occlusion"
-        }
-    })
+/// `--edges` of pictures, which have one depth for each pixel.
+pub fn stored_edges() -> impl TypedValueParser<Value = Edges> {
+    let help = |edges: Edges| {
+        let choices = Setting::find("edges").map_or(&[][..], |setting| setting.choices);
+        choices.iter().find(|choice| choice.name == edges.name()).map_or("", |choice| choice.help)
+    };
+    choice([Edges::Hard, Edges::Nearest, Edges::Sample], Edges::name, help)
 }
 
 /// `--style`.

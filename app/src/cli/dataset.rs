@@ -9,9 +9,10 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cli::args::{GlArgs, PatcherArgs, RendererArgs, SynthesisArgs};
+use crate::cli::args::{GlArgs, PatcherArgs};
 use crate::cli::choices;
 use crate::cli::eyes::EyeArgs;
+use crate::cli::settings::{Renderer, SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
 use yoro_files as files;
@@ -58,11 +59,11 @@ pub struct DatasetArgs {
     #[command(flatten)]
     eyes: EyeArgs,
     #[command(flatten)]
-    synthesis: SynthesisArgs,
+    synthesis: SettingOptions<Synthesis>,
     #[command(flatten)]
     patcher: PatcherArgs,
     #[command(flatten)]
-    renderer: RendererArgs,
+    renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -202,14 +203,16 @@ impl<'a> Job<'a> {
             path,
             size: args.eyes.size,
             fov_y_degrees: fov_y_degrees(args),
-            ipd_metres: args.eyes.ipd,
+            ipd_metres: args.eyes.ipd.metres(),
             dominant: args.eyes.dominant,
             near: args.eyes.near,
             far: args.eyes.far,
             depth: args.eyes.pair(Pose::IDENTITY).depth.convention,
             patcher: args.patcher.patcher,
             model: args.patcher.model.as_deref(),
-            renderer: Some(args.renderer.settings()?).filter(RenderSettings::is_forward).map(|s| s.summary()),
+            renderer: Some(args.renderer.render_settings()?)
+                .filter(RenderSettings::is_forward)
+                .map(|s| s.summary()),
             options: group_options(args),
         })?;
         check_settings(&folder, &settings)?;
@@ -231,7 +234,7 @@ impl<'a> Job<'a> {
         bar.set_message(format!("{}: preparing", self.name));
         stop(args)?;
         files::write(&self.folder.join(SETTINGS), format!("{:#}\n", self.settings).as_bytes())?;
-        let settings = args.renderer.settings()?;
+        let settings = args.renderer.render_settings()?;
         let scene: Scene = yoro_scenes::load(self.name, args.seed, args.style)?;
         let path = CameraPath::new(path.unwrap_or(&scene.viewpoints));
         let PreparedScene { scene, mut renderer } = PreparedScene::new(gl, scene, &settings)?;
@@ -282,7 +285,7 @@ impl<'a> Job<'a> {
             head,
             eyes: Eye::BOTH.into_iter().map(|eye| (eye.name(), camera(eye))).collect(),
             dominant: pair.dominant,
-            ipd_metres: args.eyes.ipd,
+            ipd_metres: args.eyes.ipd.metres(),
             fov_y_degrees: fov_y_degrees(args),
             size: pair.size,
             depth: Depth {
@@ -344,10 +347,10 @@ fn synthesize_command(args: &DatasetArgs, index: u32) -> String {
         fov_y_degrees(args),
         eyes.ipd,
         eyes.dominant.name(),
-        args.synthesis.pipeline.name(),
+        args.synthesis.settings().pipeline.name(),
     );
     let mut add = |option: String| command.extend([" --", option.as_str()]);
-    if args.synthesis.pipeline == Pipeline::Paper {
+    if args.synthesis.settings().pipeline == Pipeline::Paper {
         let paper = args.synthesis.options().paper;
         add(match paper.imbuffer {
             ImBufferSize::Divisor(n) => format!("imbuffer {n}"),

@@ -5,15 +5,12 @@ use std::path::{Path, PathBuf};
 use anyhow::ensure;
 use glam::Vec3;
 
-use crate::cli::args::{SynthesisArgs, parse_fov, parse_ipd, parse_positive};
-use crate::cli::choices;
+use crate::cli::args::{parse_fov, parse_positive};
 use yoro::eyes::{
     DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose, full_overlap_distance,
     minimum_object_distance,
 };
-use yoro::synthesis::Edges;
-use yoro_protocol::DEFAULT_IPD;
-use yoro_render::stereo::{AntiAliasing, NearFieldPolicy, Pipeline, StereoOptions};
+use yoro_protocol::Ipd;
 use yoro_scene::Viewpoint;
 
 /// The eyes and what they see of the world.
@@ -26,8 +23,8 @@ pub struct EyeArgs {
     #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
     pub fov_y: f32,
     /// Distance between the eyes in metres
-    #[arg(long, default_value_t = DEFAULT_IPD, value_parser = parse_ipd, allow_negative_numbers = true)]
-    pub ipd: f32,
+    #[arg(long, default_value_t = Ipd::DEFAULT, allow_negative_numbers = true)]
+    pub ipd: Ipd,
     /// The eye that is rendered
     #[arg(long, value_parser = parse_eye, default_value = "right")]
     pub dominant: Eye,
@@ -53,7 +50,7 @@ impl EyeArgs {
         EyeOptions {
             size: self.size,
             fov_y: self.fov_y,
-            ipd: self.ipd,
+            ipd: self.ipd.metres(),
             dominant: self.dominant,
             depth: DepthRange { near: self.near, far: self.far, convention },
             outer_inner: self.half_angles_degrees.map(|angles| angles.map(f32::to_radians)),
@@ -83,56 +80,9 @@ impl EyeArgs {
         };
         format!(
             "minimum object distance {:.3} m (IPD/2 cot(fov/2)), disparity of half the image at {:.3} m, {guard}",
-            minimum_object_distance(self.ipd, fov_x),
-            full_overlap_distance(self.ipd, fov_x)
+            minimum_object_distance(self.ipd.metres(), fov_x),
+            full_overlap_distance(self.ipd.metres(), fov_x)
         )
-    }
-}
-
-/// How stereo frames are made.
-#[derive(clap::Args, Clone, Debug)]
-pub struct StereoArgs {
-    #[command(flatten)]
-    synthesis: SynthesisArgs,
-    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), `auto`, or complete from a distance in
-    /// metres (`1.0`) [default: 1.0; paper: none]
-    #[arg(long, value_name = "none|Npx|METRES|auto")]
-    guard_band: Option<GuardBand>,
-    /// When to anti-alias [default: after; paper: before]
-    #[arg(long, value_parser = choices::anti_aliasing())]
-    anti_aliasing: Option<AntiAliasing>,
-    /// What the synthesis takes the rendered eye's edges for [default: what fits the renderer: all samples of several,
-    /// hard edges of one]
-    #[arg(long, value_parser = choices::edges(Edges::ALL))]
-    edges: Option<Edges>,
-    /// Hybrid near field: render objects nearer than this (metres) for both eyes
-    #[arg(long, value_parser = parse_positive, value_name = "METRES")]
-    near_field: Option<f32>,
-    /// Never switch to two real renders, however near everything is
-    #[arg(long)]
-    no_switch: bool,
-    /// hybrid: the far field starts where the eyes' disparity is this many pixels
-    #[arg(long, value_parser = parse_positive, default_value_t = StereoOptions::default().split_disparity, value_name = "PIXELS", allow_negative_numbers = true)]
-    split_disparity: f32,
-}
-
-impl StereoArgs {
-    /// The options for the pipeline that was chosen.
-    pub fn options(&self) -> StereoOptions {
-        self.options_of(self.synthesis.pipeline)
-    }
-
-    /// The options for any pipeline, with the knobs that were given.
-    pub fn options_of(&self, pipeline: Pipeline) -> StereoOptions {
-        let mut options = StereoOptions::of_pipeline(pipeline);
-        options.synthesis.paper = self.synthesis.options().paper;
-        options.guard_band = self.guard_band.unwrap_or(options.guard_band);
-        options.anti_aliasing = self.anti_aliasing.unwrap_or(options.anti_aliasing);
-        options.edges = self.edges;
-        options.near_field = self.near_field;
-        options.policy = (!self.no_switch).then(NearFieldPolicy::default);
-        options.split_disparity = self.split_disparity;
-        options
     }
 }
 

@@ -16,6 +16,7 @@ pub mod render;
 pub mod report;
 pub mod run;
 pub mod scenes;
+pub mod settings;
 pub mod study;
 pub mod synthesize;
 pub mod terminal;

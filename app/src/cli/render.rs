@@ -9,9 +9,10 @@ use glam::Vec3;
 use image::RgbImage;
 use serde::Serialize;
 
-use crate::cli::args::{GlArgs, RendererArgs};
+use crate::cli::args::GlArgs;
 use crate::cli::choices;
-use crate::cli::eyes::{self, EyeArgs, StereoArgs};
+use crate::cli::eyes::{self, EyeArgs};
+use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, Pose};
 use yoro_files::interrupt;
@@ -66,7 +67,7 @@ pub struct RenderArgs {
     /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file
     scene: String,
     /// How the two eyes are made
-    #[arg(long, value_parser = choices::method(), default_value = Method::Yoro.name())]
+    #[arg(long, value_parser = settings::value_of::<Method>("method"), default_value = Method::Yoro.name())]
     method: Method,
     /// Which of the scene's viewpoints, from 0
     #[arg(long, default_value_t = 0, conflicts_with_all = ["frames", "position"], value_name = "N")]
@@ -101,9 +102,9 @@ pub struct RenderArgs {
     #[command(flatten)]
     eyes: EyeArgs,
     #[command(flatten)]
-    stereo: StereoArgs,
+    stereo: SettingOptions<Stereo>,
     #[command(flatten)]
-    renderer: RendererArgs,
+    renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -123,7 +124,7 @@ struct FrameReport {
 /// Renders and writes the pictures.
 pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
-    let settings = args.renderer.settings()?;
+    let settings = args.renderer.render_settings()?;
     let scene = yoro_scenes::load(&args.scene, args.seed, args.style)?;
     let path = CameraPath::new(&scene.viewpoints);
     let heads = match (eyes::viewpoint(args.position, args.target), args.frames) {

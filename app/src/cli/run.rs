@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use image::RgbImage;
 
-use crate::cli::args::{GlArgs, RendererArgs};
-use crate::cli::choices;
-use crate::cli::eyes::{self, EyeArgs, StereoArgs};
+use crate::cli::args::GlArgs;
+use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::machine;
 use crate::cli::outputs;
+use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::Eye;
 use yoro_files as files;
@@ -36,10 +36,10 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]
     rounds: u32,
     /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
-    #[arg(long = "method", value_parser = choices::method(), value_delimiter = ',', default_value = Method::Yoro.name(), value_name = "METHODS")]
+    #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Yoro.name(), value_name = "METHODS")]
     methods: Vec<Method>,
     /// Pipelines to compare
-    #[arg(long, value_parser = choices::pipeline(), value_delimiter = ',', default_values = Pipeline::ALL.map(Pipeline::name))]
+    #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_values = Pipeline::ALL.map(Pipeline::name))]
     pipelines: Vec<Pipeline>,
     /// Seed of the built-in scenes
     #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
@@ -53,9 +53,9 @@ pub struct RunArgs {
     #[command(flatten)]
     eyes: EyeArgs,
     #[command(flatten)]
-    stereo: StereoArgs,
+    stereo: SettingOptions<Stereo>,
     #[command(flatten)]
-    renderer: RendererArgs,
+    renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -63,7 +63,7 @@ pub struct RunArgs {
 /// Measures, writes the report and prints its table.
 pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
-    let settings = args.renderer.settings()?;
+    let settings = args.renderer.render_settings()?;
     let names: Vec<String> = match args.scenes.as_slice() {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
         given => given.to_vec(),

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, bail, ensure};
 use image::{GrayImage, Luma};
 
-use crate::cli::args::{
-    GlArgs, PatcherArgs, SynthesisArgs, parse_finite, parse_fov, parse_ipd, parse_positive,
-};
+use crate::cli::args::{GlArgs, PatcherArgs, parse_finite, parse_fov, parse_positive};
 use crate::cli::choices;
 use crate::cli::outputs;
+use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Warp};
 use yoro::synthesis::{Edges, SourceMapEntry};
@@ -17,7 +16,7 @@ use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_lab::inpaint::{Patcher, Reprojected};
 use yoro_lab::picture::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
-use yoro_protocol::DEFAULT_IPD;
+use yoro_protocol::Ipd;
 use yoro_render::stereo::{Offline, SynthesizedImage};
 
 /// What the values of a depth image mean.
@@ -84,8 +83,8 @@ pub struct SynthesizeArgs {
     #[arg(long = "fov-y-degrees", default_value = "60", value_parser = parse_fov, allow_negative_numbers = true)]
     fov_y: f32,
     /// Distance between the eyes in metres
-    #[arg(long, default_value_t = DEFAULT_IPD, value_parser = parse_ipd, allow_negative_numbers = true)]
-    ipd: f32,
+    #[arg(long, default_value_t = Ipd::DEFAULT, allow_negative_numbers = true)]
+    ipd: Ipd,
     /// Also write the mask of holes as PNG: black where nothing of the source is seen
     #[arg(long, value_name = "FILE|FOLDER")]
     mask_out: Option<PathBuf>,
@@ -96,10 +95,10 @@ pub struct SynthesizeArgs {
     #[arg(long, value_name = "FILE|FOLDER")]
     source_out: Option<PathBuf>,
     /// What pixels on silhouettes show: one surface, or a mixture of two
-    #[arg(long, value_parser = choices::edges([Edges::Hard, Edges::Nearest, Edges::Sample]), default_value = Edges::Hard.name())]
+    #[arg(long, value_parser = choices::stored_edges(), default_value = Edges::Hard.name())]
     edges: Edges,
     #[command(flatten)]
-    synthesis: SynthesisArgs,
+    synthesis: SettingOptions<Synthesis>,
     #[command(flatten)]
     patcher: PatcherArgs,
     #[command(flatten)]
@@ -312,7 +311,7 @@ fn decode_depth(
     path: &Path,
 ) -> anyhow::Result<Nearness> {
     let focal_length = 0.5 * image.height() as f64 / (0.5 * args.fov_y as f64).tan();
-    let reach = focal_length * args.ipd as f64;
+    let reach = focal_length * f64::from(args.ipd.metres());
     let stored: Vec<f32> = image.rows().rev().flatten().map(|p| p.0[0].powf(args.depth_gamma)).collect();
     ensure!(
         !stored.iter().any(|v| v.is_nan()),

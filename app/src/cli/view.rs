@@ -6,7 +6,8 @@ use std::time::Duration;
 use anyhow::bail;
 use glam::{EulerRot, Quat};
 
-use crate::cli::args::{self, GlArgs, RendererSettingArgs, SettingsArgs};
+use crate::cli::args::{self, GlArgs};
+use crate::cli::settings::{Lenses, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro_files as files;
 use yoro_files::interrupt;
@@ -29,12 +30,8 @@ pub struct ViewArgs {
     /// Where to write the picture
     #[arg(long, value_name = "FILE")]
     png: PathBuf,
-    /// The viewer: v1, v2, the URI of its QR code, or a parameter file [default: v2]
-    #[arg(long, value_name = "VIEWER")]
-    viewer: Option<String>,
-    /// The stereo method [default: yoro]
-    #[arg(long)]
-    method: Option<String>,
+    #[command(flatten)]
+    lenses: SettingOptions<Lenses>,
     /// The screen's size in pixels
     #[arg(long, default_value = "2340x1080", value_parser = parse_screen, value_name = "WxH")]
     screen: [u32; 2],
@@ -54,7 +51,7 @@ pub struct ViewArgs {
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
     late_yaw_degrees: f32,
     #[command(flatten)]
-    renderer: RendererSettingArgs,
+    renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     settings: SettingsArgs,
     /// Draw what is in view while the scene is being loaded
@@ -66,9 +63,8 @@ pub struct ViewArgs {
 
 impl ViewArgs {
     fn resolve(&self) -> anyhow::Result<Settings> {
-        let named = [("scene", &self.scene), ("viewer", &self.viewer), ("method", &self.method)];
-        let named = named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
-        self.settings.resolve(named.chain(self.renderer.settings()))
+        let scene = self.scene.iter().map(|scene| format!("scene={scene}"));
+        self.settings.resolve(scene.chain(self.lenses.pairs()).chain(self.renderer.pairs()))
     }
 
     fn head(&self) -> HeldHead {

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 use anyhow::{bail, ensure};
 use serde::Serialize;
 
-use crate::cli::args::{GlArgs, RendererSettingArgs, SettingsArgs};
-use crate::cli::choices;
+use crate::cli::args::GlArgs;
+use crate::cli::settings::{self, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyePair};
 use yoro_context::HeadlessGraphics;
@@ -41,7 +41,7 @@ pub struct XrArgs {
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "N")]
     frames: Option<u32>,
     /// The stereo methods, one after the other with --frames [default: yoro]
-    #[arg(long = "method", value_parser = choices::method(), value_delimiter = ',', value_name = "METHODS")]
+    #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', value_name = "METHODS")]
     methods: Vec<Method>,
     /// Write the last frame of each method, as the runtime gets it, to this folder
     #[arg(long, value_name = "FOLDER", requires = "frames")]
@@ -53,7 +53,7 @@ pub struct XrArgs {
     #[arg(long)]
     mono: bool,
     #[command(flatten)]
-    renderer: RendererSettingArgs,
+    renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     settings: SettingsArgs,
     #[command(flatten)]
@@ -66,7 +66,7 @@ impl XrArgs {
         let method = self.methods.first().map(|method| format!("method={}", method.name()));
         let one_view = self.mono.then(|| "one-view=true".to_owned());
         let named = scene.into_iter().chain(method).chain(one_view);
-        self.settings.resolve(named.chain(self.renderer.settings()))
+        self.settings.resolve(named.chain(self.renderer.pairs()))
     }
 
     fn find_runtime(&self) -> anyhow::Result<Runtime> {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use yoro_render::stereo::Method;
+use yoro_protocol::{Ipd, Method};
 
 /// What the user does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,8 +32,8 @@ pub enum Action {
     Method(Method),
     /// The head's direction starts over: that is for the display to do.
     Recenter,
-    /// The distance between the eyes in metres.
-    Ipd(f32),
+    /// The distance between the eyes.
+    Ipd(Ipd),
     /// Whether the HUD is shown.
     Hud(bool),
     /// The viewpoint's number.
@@ -53,7 +53,7 @@ impl fmt::Display for Action {
         match self {
             Action::Method(method) => write!(f, "method: {}", method.name()),
             Action::Recenter => f.write_str("recentered"),
-            Action::Ipd(ipd) => write!(f, "ipd: {ipd:.3} m"),
+            Action::Ipd(ipd) => write!(f, "ipd: {:.3} m", ipd.metres()),
             Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
             Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),
             Action::Scene => f.write_str("another scene"),

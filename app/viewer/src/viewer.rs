@@ -34,7 +34,7 @@ use yoro::eyes::{EyePair, Pose};
 use yoro_gl::{Context, Destination, GlError, PassTime, Profiling};
 use yoro_lenses::{Content, Hud, Panel, Placement};
 use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
-use yoro_protocol::{MAX_IPD, Settings};
+use yoro_protocol::{Ipd, Settings};
 use yoro_render::stereo::{EyeTarget, Method, Pipeline, StereoOptions};
 use yoro_render::{RenderSettings, Renderer};
 use yoro_scene::Scene;
@@ -55,13 +55,13 @@ struct Attached {
     pass_times: Vec<PassTime>,
 }
 
-/// The distance between the eyes in metres.
+/// Where the distance between the eyes comes from.
 #[derive(Clone, Copy, Debug)]
-struct Ipd {
-    /// What the settings or the user ask for.
-    chosen: Option<f32>,
-    /// What the display has by itself.
-    native: f32,
+struct IpdSources {
+    /// The settings or the user.
+    chosen: Option<Ipd>,
+    /// The display by itself.
+    native: Ipd,
 }
 
 /// The application without a platform.
@@ -72,7 +72,7 @@ pub struct Viewer {
     method: MethodSlot,
     tally: Tally,
     caption: Caption,
-    ipd: Ipd,
+    ipd: IpdSources,
     attached: Option<Attached>,
     now_ns: i64,
 }
@@ -91,7 +91,7 @@ impl Viewer {
             method: MethodSlot::new(&settings),
             tally: Tally::default(),
             caption: Caption::new(settings.hud),
-            ipd: Ipd { chosen: settings.ipd, native: 0.0 },
+            ipd: IpdSources { chosen: settings.ipd, native: Ipd::nearest(0.0) },
             attached: None,
             now_ns: 0,
             settings,
@@ -255,7 +255,7 @@ impl Viewer {
         let message = match action {
             Action::Method(method) => method.name().to_owned(),
             Action::Recenter => "recentered".into(),
-            Action::Ipd(ipd) => format!("IPD {:.0} mm", ipd * 1e3),
+            Action::Ipd(ipd) => format!("IPD {:.0} mm", ipd.metres() * 1e3),
             Action::Viewpoint(n) => format!("viewpoint {n}"),
             Action::Hud(_) | Action::Scene | Action::Marker(_) | Action::Answer | Action::Nothing => {
                 String::new()
@@ -312,7 +312,7 @@ impl Viewer {
     }
 
     fn change_ipd(&mut self, change: f32) -> Action {
-        let ipd = (self.ipd() + change).clamp(0.0, MAX_IPD);
+        let ipd = Ipd::nearest(self.ipd().metres() + change);
         self.ipd.chosen = Some(ipd);
         Action::Ipd(ipd)
     }
@@ -491,17 +491,17 @@ impl Viewer {
     }
 
     /// Distance between the eyes in metres.
-    pub fn ipd(&self) -> f32 {
-        self.ipd.chosen.unwrap_or(self.ipd.native).clamp(0.0, MAX_IPD)
+    pub fn ipd(&self) -> Ipd {
+        self.ipd.chosen.unwrap_or(self.ipd.native)
     }
 
     /// The distance between the eyes that the settings or the user ask for, if not that of the display.
-    pub fn chosen_ipd(&self) -> Option<f32> {
+    pub fn chosen_ipd(&self) -> Option<Ipd> {
         self.ipd.chosen
     }
 
-    /// The display says which distance between the eyes it has by itself, in metres.
-    pub fn set_native_ipd(&mut self, ipd: f32) {
+    /// Sets the distance between the eyes that the display has by itself.
+    pub fn set_native_ipd(&mut self, ipd: Ipd) {
         self.ipd.native = ipd;
     }
 

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Context, GlError};
-use yoro_protocol::{DEFAULT_IPD, MAX_IPD};
+use yoro_protocol::Ipd;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoMethod, StereoOptions};
 use yoro_render::{RenderSettings, RendererKind};
 
@@ -60,7 +60,7 @@ pub struct Settings {
     /// When anti-aliasing of images with one sample a pixel runs.
     pub anti_aliasing: AntiAliasing,
     /// Distance between the eyes in metres.
-    pub ipd: f32,
+    pub ipd: Ipd,
     /// The eye that is rendered.
     pub dominant: Eye,
     /// How both are shown.
@@ -69,14 +69,14 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        let RenderSettings { renderer, msaa, .. } = RenderSettings::default();
+        let yoro_protocol::Settings { method, renderer, msaa, dominant, .. } = Default::default();
         Settings {
-            method: Method::Yoro,
+            method,
             renderer,
             msaa,
             anti_aliasing: AntiAliasing::After,
-            ipd: DEFAULT_IPD,
-            dominant: Eye::Right,
+            ipd: Ipd::DEFAULT,
+            dominant,
             display: Display::SideBySide,
         }
     }
@@ -88,12 +88,7 @@ impl Settings {
     /// # Errors
     /// What is wrong with it, in a sentence.
     pub fn parse(json: &str) -> Result<Settings, String> {
-        let settings: Settings =
-            serde_json::from_str(json).map_err(|error| format!("These settings cannot be used: {error}."))?;
-        if !(0.0..=MAX_IPD).contains(&settings.ipd) {
-            return Err(format!("The IPD must be between 0 and {} mm.", MAX_IPD * 1e3));
-        }
-        Ok(settings)
+        serde_json::from_str(json).map_err(|error| format!("These settings cannot be used: {error}."))
     }
 
     /// As the desktop's.
@@ -126,7 +121,7 @@ impl Settings {
     pub fn pair(&self, head: Pose, size: [u32; 2]) -> EyePair {
         let options = EyeOptions {
             size,
-            ipd: self.ipd,
+            ipd: self.ipd.metres(),
             dominant: self.dominant,
             depth: DepthRange::PAPER,
             ..EyeOptions::default()

@@ -16,8 +16,7 @@ use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
 use yoro_lenses::{Optics, Screen};
-use yoro_protocol::MAX_IPD;
-use yoro_protocol::Settings;
+use yoro_protocol::{Ipd, Settings};
 use yoro_render::stereo::StereoFrame;
 
 /// A head held still, instead of the one that the sensors measure.
@@ -65,7 +64,7 @@ impl Cardboard {
     pub fn new(settings: Settings, screen: Screen, folders: &[PathBuf]) -> Result<Cardboard, ViewerError> {
         let params = ViewerParams::find_in(&settings.viewer, folders)?;
         let mut viewer = Viewer::new(settings, folders)?;
-        viewer.set_native_ipd(params.inter_lens.min(MAX_IPD));
+        viewer.set_native_ipd(Ipd::nearest(params.inter_lens));
         let metres = metres(viewer.settings(), &screen);
         log::info!("viewer: {} {}, screen {:.1?} mm", params.vendor, params.model, metres.map(|m| m * 1e3));
         Ok(Cardboard {
@@ -159,7 +158,7 @@ impl Cardboard {
         let lenses_differ = params.is_some() || optics_differ;
         if let Some(params) = params {
             self.params = params;
-            self.viewer.set_native_ipd(self.params.inter_lens.min(MAX_IPD));
+            self.viewer.set_native_ipd(Ipd::nearest(self.params.inter_lens));
             self.viewer.reset_ipd();
         }
         if lenses_differ {
@@ -288,7 +287,7 @@ impl Cardboard {
         // At rest the eyes are where the scene's author has put them.
         let moved = neck_offset(head) - neck_offset(Quat::IDENTITY);
         let head = self.viewer.place(Pose { position: moved, orientation: head });
-        let half = self.viewer.ipd() / 2.0;
+        let half = self.viewer.ipd().metres() / 2.0;
         EyePair {
             poses: Eye::BOTH.map(|eye| head.translated_local(Vec3::X * (eye.side() * half))),
             frusta: Eye::BOTH.map(|eye| self.optics.frustum(eye)),

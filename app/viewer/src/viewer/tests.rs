@@ -132,11 +132,11 @@ fn events_change_what_is_seen() {
     assert_eq!(gl.object_count(), objects, "switching leaves nothing behind");
     run.viewer.event(Event::Tap).unwrap();
     let Action::Ipd(ipd) = run.viewer.event(Event::IpdUp).unwrap() else { panic!() };
-    assert!((ipd - 0.064).abs() < 1e-6);
+    assert!((ipd.metres() - 0.064).abs() < 1e-6);
     for _ in 0..100 {
         run.viewer.event(Event::IpdUp).unwrap();
     }
-    assert_eq!(run.viewer.viewer().ipd(), MAX_IPD);
+    assert_eq!(run.viewer.viewer().ipd(), Ipd::MAX);
     run.frame();
     assert_ne!(run.image(), yoro);
     assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Recenter);
@@ -277,7 +277,7 @@ fn what_differs_changes_and_nothing_else() {
     assert_ne!(viewer.viewer().method(), Method::Mono);
     let tapped = viewer.viewer().method();
     viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "ssao=half"]), &[]).unwrap();
-    assert_eq!((viewer.viewer().method(), viewer.viewer().ipd()), (tapped, 0.05));
+    assert_eq!((viewer.viewer().method(), viewer.viewer().ipd()), (tapped, Ipd::nearest(0.05)));
     assert!((viewer.optics().params().inter_lens - 0.060).abs() < 1e-6);
     let told = viewer.optics().screen();
     viewer.configure(with(&viewer, &["screen=158x71mm"]), &[]).unwrap();
@@ -285,7 +285,7 @@ fn what_differs_changes_and_nothing_else() {
     viewer.configure(with(&viewer, &["screen=auto"]), &[]).unwrap();
     assert_eq!(viewer.optics().screen(), told);
     viewer.configure(with(&viewer, &["ipd=auto"]), &[]).unwrap();
-    assert_eq!(viewer.viewer().ipd(), viewer.optics().params().inter_lens);
+    assert_eq!(viewer.viewer().ipd(), Ipd::nearest(viewer.optics().params().inter_lens));
     viewer.configure(with(&viewer, &["seed=2"]), &[]).unwrap();
     assert!(viewer.viewer().scene.is_loading());
     wait(&mut viewer);

@@ -123,7 +123,7 @@ impl Page {
                 scene.configure(&self.gl, &settings, &self.settings).map_err(sentence)?;
             }
             Content::Pictures(pictures) if settings.ipd != self.settings.ipd => {
-                pictures.synthesize(&self.show, settings.ipd)?;
+                pictures.synthesize(&self.show, settings.ipd.metres())?;
             }
             _ => {}
         }
@@ -175,7 +175,7 @@ impl Page {
         let pair = PicturePair::load(color_name.as_ref(), depth_name.as_ref());
         yoro_files::provide([]);
         let pair = pair.map_err(sentence)?;
-        let pictures = PictureShow::new(&self.gl, &self.show, pair, options, self.settings.ipd)?;
+        let pictures = PictureShow::new(&self.gl, &self.show, pair, options, self.settings.ipd.metres())?;
         let size = pictures.size().to_vec();
         self.content = Content::Pictures(Box::new(pictures));
         Ok(size)
@@ -190,7 +190,7 @@ impl Page {
         let options = parse_options(options)?;
         match &mut self.content {
             Content::Pictures(pictures) => {
-                pictures.set_options(&self.gl, &self.show, options, self.settings.ipd)
+                pictures.set_options(&self.gl, &self.show, options, self.settings.ipd.metres())
             }
             _ => Ok(()),
         }

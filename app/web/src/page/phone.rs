@@ -79,7 +79,7 @@ impl Phone {
         let full = self.optics.full_size(canvas);
         let moved = neck_offset(head) - neck_offset(Quat::IDENTITY);
         let head = walker.locate(Pose { position: moved, orientation: head });
-        let half = settings.ipd / 2.0;
+        let half = settings.ipd.metres() / 2.0;
         EyePair {
             poses: Eye::BOTH.map(|eye| head.translated_local(Vec3::X * (eye.side() * half))),
             frusta: Eye::BOTH.map(|eye| self.optics.frustum(eye)),

@@ -11,6 +11,7 @@ use crate::viewer::Viewer;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair};
 use yoro_context::Graphics;
 use yoro_gl::Destination;
+use yoro_protocol::Ipd;
 use yoro_render::stereo::{DepthTarget, EyeTarget};
 
 /// What is shown of a frame.
@@ -32,7 +33,7 @@ impl Session {
         let nothing = Layers { eyes: None, panel: None };
         let size = self.frame_size(viewer);
         let Some(native) = self.locate(viewer.settings(), time, size)? else { return Ok(nothing) };
-        viewer.set_native_ipd((native.poses[1].position - native.poses[0].position).length());
+        viewer.set_native_ipd(Ipd::nearest((native.poses[1].position - native.poses[0].position).length()));
         let shown = self.align(viewer, native);
         let mut pair = shown;
         if let Some(ipd) = viewer.chosen_ipd() {
@@ -41,7 +42,7 @@ impl Session {
                 .try_normalize()
                 .unwrap_or(pair.poses[0].right());
             for eye in Eye::BOTH {
-                pair.poses[eye.index()].position = middle + axis * (eye.side() * ipd / 2.0);
+                pair.poses[eye.index()].position = middle + axis * (eye.side() * ipd.metres() / 2.0);
             }
         }
         pair.poses = pair.poses.map(|pose| viewer.place(pose));

@@ -1,0 +1,236 @@
+//! Options that are settings of the viewer, made from the table of settings.
+
+use std::ffi::OsStr;
+use std::marker::PhantomData;
+use std::path::PathBuf;
+
+use anyhow::ensure;
+use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
+use clap::{Arg, ArgAction, ArgMatches, Command};
+
+use yoro_protocol::{RendererKind, Setting, Settings};
+use yoro_render::RenderSettings;
+use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
+
+/// A group of settings that a subcommand has options for.
+pub trait Group {
+    /// The settings in the order of the help.
+    const KEYS: &'static [&'static str];
+}
+
+/// The renderer.
+#[derive(Clone, Copy, Debug)]
+pub struct Renderer;
+
+impl Group for Renderer {
+    const KEYS: &'static [&'static str] = &["renderer", "msaa"];
+}
+
+/// The synthesis pipeline and its knobs.
+#[derive(Clone, Copy, Debug)]
+pub struct Synthesis;
+
+impl Group for Synthesis {
+    const KEYS: &'static [&'static str] =
+        &["pipeline", "imbuffer", "linear-interpolation", "kernel-height", "strict"];
+}
+
+/// How stereo frames are made.
+#[derive(Clone, Copy, Debug)]
+pub struct Stereo;
+
+impl Group for Stereo {
+    const KEYS: &'static [&'static str] = &[
+        "pipeline",
+        "imbuffer",
+        "linear-interpolation",
+        "kernel-height",
+        "strict",
+        "guard-band",
+        "anti-aliasing",
+        "edges",
+        "near-field",
+        "switch",
+        "split-disparity",
+    ];
+}
+
+/// What a phone behind lenses shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Lenses;
+
+impl Group for Lenses {
+    const KEYS: &'static [&'static str] = &["viewer", "method"];
+}
+
+/// Options of a [`Group`]: `--KEY VALUE`; for switches `--KEY`, or `--no-KEY` where they are on by default.
+#[derive(Clone, Debug)]
+pub struct SettingOptions<G> {
+    /// The defaults, with what was given.
+    settings: Settings,
+    given: Vec<(&'static str, String)>,
+    group: PhantomData<G>,
+}
+
+impl<G: Group> SettingOptions<G> {
+    /// Returns what was given, as `key=value`.
+    pub fn pairs(&self) -> impl Iterator<Item = String> {
+        self.given.iter().map(|(key, value)| format!("{key}={value}"))
+    }
+
+    /// The default settings, with what was given.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    fn rows() -> impl Iterator<Item = &'static Setting> {
+        G::KEYS.iter().filter_map(|key| Setting::find(key))
+    }
+}
+
+impl SettingOptions<Renderer> {
+    /// Returns the renderer; what has no option is as on the desktop.
+    pub fn render_settings(&self) -> anyhow::Result<RenderSettings> {
+        let Settings { renderer, msaa, .. } = self.settings;
+        ensure!(
+            renderer == RendererKind::Forward || self.given.iter().all(|(key, _)| *key != "msaa"),
+            "--msaa goes with --renderer forward only: give that, or leave it out"
+        );
+        Ok(RenderSettings { renderer, msaa, ..RenderSettings::default() })
+    }
+}
+
+impl SettingOptions<Synthesis> {
+    /// Returns the pipeline and its knobs.
+    pub fn options(&self) -> PipelineOptions {
+        StereoOptions::of_settings(&self.settings, self.settings.pipeline).synthesis
+    }
+}
+
+impl SettingOptions<Stereo> {
+    /// Returns the options for the pipeline that was chosen.
+    pub fn options(&self) -> StereoOptions {
+        self.options_of(self.settings.pipeline)
+    }
+
+    /// Returns the options for any pipeline, with the knobs that were given.
+    pub fn options_of(&self, pipeline: Pipeline) -> StereoOptions {
+        StereoOptions::of_settings(&self.settings, pipeline)
+    }
+}
+
+impl<G: Group> clap::Args for SettingOptions<G> {
+    fn augment_args(command: Command) -> Command {
+        command.args(Self::rows().map(option))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<G: Group> clap::FromArgMatches for SettingOptions<G> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<SettingOptions<G>, clap::Error> {
+        let value = |setting: &'static Setting| {
+            let value = if setting.is_switch {
+                matches.get_flag(setting.key).then(|| setting.off_help.is_none().to_string())
+            } else {
+                matches.get_one::<String>(setting.key).cloned()
+            };
+            Some((setting.key, value?))
+        };
+        let given: Vec<_> = Self::rows().filter_map(value).collect();
+        let pairs = given.iter().map(|(key, value)| format!("{key}={value}"));
+        let settings = Settings::resolve(None, pairs)
+            .map_err(|error| clap::Error::raw(clap::error::ErrorKind::ValueValidation, error))?;
+        Ok(SettingOptions { settings, given, group: PhantomData })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// Returns the option of a setting.
+fn option(setting: &'static Setting) -> Arg {
+    let help = setting.help().replace('`', "");
+    if setting.is_switch {
+        let (name, help) = match setting.off_help {
+            Some(help) => (format!("no-{}", setting.key), help.to_owned()),
+            None => (setting.key.to_owned(), help),
+        };
+        return Arg::new(setting.key).long(name).help(help).action(ArgAction::SetTrue);
+    }
+    let default = match setting.auto {
+        Some(default) => Some(default.to_owned()),
+        None => Some(setting.default()).filter(|_| !setting.is_optional),
+    };
+    let default = default.map_or_else(String::new, |default| format!(" [default: {default}]"));
+    let name = setting.value_name.map_or_else(|| setting.key.to_uppercase().replace('-', "_"), str::to_owned);
+    Arg::new(setting.key)
+        .long(setting.key)
+        .help(help + &default)
+        .value_name(name)
+        .value_parser(ValueOf(setting))
+        .allow_negative_numbers(true)
+}
+
+/// Parses the value of a setting, which stays a text.
+#[derive(Clone, Copy)]
+struct ValueOf(&'static Setting);
+
+impl TypedValueParser for ValueOf {
+    type Value = String;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<String, clap::Error> {
+        let setting = self.0;
+        let check = move |text: String| {
+            // On the command line the guard band `auto` is the one that sets its own width.
+            let text = if setting.key == "guard-band" && text == "auto" { "auto:1".into() } else { text };
+            match setting.parse_into(&mut Settings::default(), &text) {
+                Ok(()) => Ok(text),
+                Err((_, remedy)) => Err(remedy),
+            }
+        };
+        StringValueParser::new().try_map(check).parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let choices = self.0.choices.iter();
+        (!self.0.choices.is_empty())
+            .then(|| Box::new(choices.map(|choice| PossibleValue::new(choice.name).help(choice.help()))) as _)
+    }
+}
+
+/// Parses a type whose names are those of a setting.
+pub fn value_of<T>(key: &'static str) -> impl TypedValueParser<Value = T>
+where
+    T: std::str::FromStr<Err: std::error::Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
+{
+    let setting = Setting::find(key).expect("a key of the table");
+    ValueOf(setting).try_map(|text| text.parse::<T>())
+}
+
+/// Settings of the viewer on the command line
+#[derive(clap::Args, Clone, Debug)]
+pub struct SettingsArgs {
+    /// Leave out the HUD
+    #[arg(long)]
+    no_hud: bool,
+    /// Settings of the viewer in a TOML file
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// One setting of the viewer; as often as needed
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
+}
+
+impl SettingsArgs {
+    /// Returns the settings; what has an option of its own, as `key=value`, is stronger than `--set`.
+    pub fn resolve(&self, named: impl IntoIterator<Item = String>) -> anyhow::Result<Settings> {
+        let hud = self.no_hud.then(|| "hud=false".to_owned());
+        let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
+        Ok(Settings::resolve(self.settings.as_deref(), overrides)?)
+    }
+}
