@@ -116,7 +116,10 @@ fn options_out_of_range() {
         ("render prototype --frames 0", &["--frames"]),
         ("render prototype --pipeline magic", &["--pipeline", "gather"]),
         ("render prototype --pipeline rowgroup", &["--pipeline", "was taken out", "choose gather"]),
-        ("view prototype --png view.png --set pipeline=rowgroup", &["pipeline", "was taken out", "choose gather"]),
+        (
+            "view prototype --png view.png --set pipeline=rowgroup",
+            &["pipeline", "was taken out", "choose gather"],
+        ),
         ("render prototype --imbuffer 0", &["--imbuffer", "512x512"]),
         ("render prototype --position 1,2", &["--position", "three numbers"]),
         ("render prototype --half-angles-degrees 95,10", &["--half-angles-degrees", "1 to 85"]),
