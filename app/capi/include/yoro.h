@@ -21,39 +21,39 @@
 #define YORO_VERSION_MAJOR 0
 
 /**
- * Second part of it.
+ * Second part of the version.
  */
 #define YORO_VERSION_MINOR 1
 
 /**
- * Third part of it.
+ * Third part of the version.
  */
 #define YORO_VERSION_PATCH 0
 
 /**
- * All of it as one number that grows: major * 1000000 + minor * 1000 + patch.
+ * The version as one number that grows: major * 1000000 + minor * 1000 + patch.
  */
 #define YORO_VERSION (((YORO_VERSION_MAJOR * 1000000) + (YORO_VERSION_MINOR * 1000)) + YORO_VERSION_PATCH)
 
 /**
- * A guard band that is complete for whatever is farther than an arm's length, in metres.
+ * A guard band that is complete for everything farther away than an arm's length, in metres.
  */
 #define YORO_GUARD_BAND 1.0
 
 /**
- * One way to synthesize in one GL context or on one Vulkan device: compiled shaders and small buffers.
+ * The synthesis in one GL context or on one Vulkan device: compiled shaders and small buffers.
  *
- * Every function that takes one may be called from any thread, from one at a time; a second one gets YORO_ERROR_BUSY.
- * For OpenGL that is the thread on which the GL context is current.
+ * Use it from one thread at a time, a second thread gets YORO_ERROR_BUSY. For OpenGL that must be the thread on which the
+ * GL context is current; for Vulkan it can be any thread.
  */
 typedef struct YoroContext YoroContext;
 
 /**
- * What a function returns: YORO_OK, or one of the negative YORO_ERROR_ codes.
+ * The result of a function: YORO_OK, or one of the negative YORO_ERROR_ codes.
  */
 typedef int32_t YoroResult;
 /**
- * All went well.
+ * Success.
  */
 #define YORO_OK 0
 /**
@@ -61,19 +61,19 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_NULL (-1)
 /**
- * struct_size is not the size of the structure, or a newer version of it sets what this library does not know.
+ * struct_size is not the size of the structure, or a newer program sets fields that this library does not know.
  */
 #define YORO_ERROR_STRUCT_SIZE (-2)
 /**
- * A number is out of its range: no finite number, a size of zero, a constant that does not exist, planes out of order.
+ * A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order.
  */
 #define YORO_ERROR_VALUE (-3)
 /**
- * The matrices are no rigid view and no perspective projection, or those of the eyes do not fit each other.
+ * A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not fit each other.
  */
 #define YORO_ERROR_MATRIX (-4)
 /**
- * The eyes are rotated against each other. YORO_EYES_PARALLEL helps, or render both eyes.
+ * The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes.
  */
 #define YORO_ERROR_EYES_CANTED (-5)
 /**
@@ -86,27 +86,27 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_EYES_IPD (-7)
 /**
- * The eyes' images have different tangents per pixel. YORO_EYES_EVEN helps.
+ * The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN.
  */
 #define YORO_ERROR_EYES_DENSITY (-8)
 /**
- * The rows of one eye's image lie between those of the other's. YORO_EYES_EVEN helps.
+ * The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN.
  */
 #define YORO_ERROR_EYES_ROWS (-9)
 /**
- * An image has more pixels on a side than the driver, or any driver, can render.
+ * An image is wider or higher than the driver, or any driver, can render.
  */
 #define YORO_ERROR_TOO_LARGE (-10)
 /**
- * No GL context is current on this thread, or the loader function does not give the API's entry points.
+ * No GL context is current on this thread, or the loader does not return the API's entry points.
  */
 #define YORO_ERROR_NO_CONTEXT (-11)
 /**
- * The driver is too old, or lacks what was asked for.
+ * The driver is too old, or lacks a feature that was asked for.
  */
 #define YORO_ERROR_UNSUPPORTED (-12)
 /**
- * A texture, image or framebuffer does not exist, or has another format, type or size than is needed.
+ * A texture, image or framebuffer does not exist, or has the wrong format, type or size.
  */
 #define YORO_ERROR_FORMAT (-13)
 /**
@@ -114,7 +114,7 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_DRIVER (-14)
 /**
- * The YoroContext was made for another API than the function.
+ * The YoroContext was created for another API than the function belongs to.
  */
 #define YORO_ERROR_API (-15)
 /**
@@ -126,21 +126,20 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_MEMORY (-17)
 /**
- * The Vulkan device is lost: it has to be made again, and the YoroContext with it.
+ * The Vulkan device is lost: create it and the YoroContext again.
  */
 #define YORO_ERROR_DEVICE_LOST (-18)
 /**
- * A number of images that is not registered with this YoroContext, or not any more.
+ * The id is not registered with this YoroContext, or was released.
  */
 #define YORO_ERROR_NOT_REGISTERED (-19)
 /**
- * An error of the library itself. A YoroContext that it happened to gives nothing else from then on, and can only be
- * destroyed.
+ * An error of the library itself. Afterwards the YoroContext returns only this, and can only be destroyed.
  */
 #define YORO_ERROR_INTERNAL (-20)
 
 /**
- * One of the two eyes, and its index in arrays of two.
+ * One of the two eyes, which is also its index in arrays of two.
  */
 typedef uint32_t YoroEye;
 /**
@@ -153,7 +152,7 @@ typedef uint32_t YoroEye;
 #define YORO_EYE_RIGHT 1
 
 /**
- * Pose of an eye in a right-handed world with Y up, in which the eye looks along its own -Z, X to the right. Laid out as
+ * Pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. Laid out as
  * XrPosef.
  */
 typedef struct {
@@ -168,8 +167,8 @@ typedef struct {
 } YoroPose;
 
 /**
- * Angles in radians from the eye's axis to the edges of its image, of less than a right angle; left and down are
- * negative when the image contains the axis. Laid out as XrFovf.
+ * Angles in radians from the eye's axis to the edges of its image, each smaller than a right angle. Left and down are
+ * negative if the image contains the axis. Laid out as XrFovf.
  */
 typedef struct {
   /**
@@ -191,33 +190,33 @@ typedef struct {
 } YoroFov;
 
 /**
- * What the values 0 to 1 in a depth buffer mean, whatever the API's clip volume is.
+ * The meaning of the values 0 to 1 in a depth buffer. It does not depend on the API's clip volume.
  */
 typedef uint32_t YoroDepth;
 /**
- * 0 at the near plane, 1 at the far plane; tested with LESS, cleared to 1.
+ * 0 at the near plane, 1 at the far plane: tested with LESS, cleared to 1.
  */
 #define YORO_DEPTH_STANDARD 0
 /**
- * 1 at the near plane, 0 at the far plane; tested with GREATER, cleared to 0.
+ * 1 at the near plane, 0 at the far plane: tested with GREATER, cleared to 0.
  */
 #define YORO_DEPTH_REVERSED 1
 
 /**
- * In which order the rows of images lie in memory and in texture coordinates.
+ * The order of an image's rows in memory and in texture coordinates.
  */
 typedef uint32_t YoroRows;
 /**
- * Row 0 is the lowest: OpenGL.
+ * Row 0 is at the bottom: OpenGL.
  */
 #define YORO_ROWS_UP 0
 /**
- * Row 0 is the topmost: Vulkan, Direct3D, image files.
+ * Row 0 is at the top: Vulkan, Direct3D, image files.
  */
 #define YORO_ROWS_DOWN 1
 
 /**
- * The clip volume that projection matrices lead to. X is to the right in all of them.
+ * The clip volume of projection matrices. X points to the right in all of them.
  */
 typedef uint32_t YoroClip;
 /**
@@ -234,42 +233,42 @@ typedef uint32_t YoroClip;
 #define YORO_CLIP_Y_UP_Z_0_1 2
 
 /**
- * Bits of what may be done to eyes that rows cannot serve as they are.
+ * Bits for changes to eyes that cannot be synthesized as they are.
  */
 typedef uint32_t YoroEyesFlags;
 /**
- * Gives both eyes frusta of one width and one height over the same rows, each as large as it takes. Show the images with
- * the angles that come out.
+ * Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the images
+ * with the resulting angles.
  */
 #define YORO_EYES_EVEN 1
 /**
- * Gives canted eyes one direction, and frusta that contain their own. Show the images with the poses and angles that
- * come out: an OpenXR runtime turns them back when they are submitted with these.
+ * Gives canted eyes one direction, and frusta that contain their own. Show the images with the resulting poses and angles:
+ * an OpenXR runtime turns images back that are submitted with these.
  */
 #define YORO_EYES_PARALLEL 2
 
 /**
- * Gets the sentence of an error: what is wrong and what helps, UTF-8, valid during the call only. Called on the thread
- * of the function that fails, before it returns. It must not throw, and must not call yoro with the same context.
+ * Receives the sentence of an error: the fault and the remedy, in UTF-8, valid during the call only. It is called on the
+ * thread of the function that fails, before that returns. It must not throw, and must not call yoro with the same context.
  */
 typedef void (*YoroMessageCallback)(void *user, YoroResult result, const char *sentence);
 
 /**
- * Where the sentences of errors go.
+ * The receiver of the sentences of errors.
  */
 typedef struct {
   /**
-   * Gets them; may be NULL.
+   * Called for each error; may be NULL.
    */
   YoroMessageCallback callback;
   /**
-   * Its first argument.
+   * The first argument of the callback.
    */
   void *user;
 } YoroMessages;
 
 /**
- * The two eyes of a frame by poses and angles.
+ * The two eyes of a frame, given by poses and angles.
  */
 typedef struct {
   /**
@@ -301,11 +300,11 @@ typedef struct {
    */
   float near_z;
   /**
-   * Distance of the far plane in metres, more than near_z; may be INFINITY. In reversed depth, too, it is the larger one.
+   * Distance of the far plane in metres, more than near_z, also for reversed depth; may be INFINITY.
    */
   float far_z;
   /**
-   * What the depth buffer holds.
+   * The meaning of the depth buffer's values.
    */
   YoroDepth depth;
   /**
@@ -313,12 +312,12 @@ typedef struct {
    */
   YoroRows rows;
   /**
-   * The clip volume that the matrices shall lead to.
+   * The clip volume of the resulting matrices.
    */
   YoroClip clip;
   /**
-   * Metres from which on the other eye finds all of its outer border in the rendered image, 0.05 to 1000; smaller values
-   * cost more pixels. 0: none is rendered, and the border is filled in.
+   * Guard band: the distance in metres, 0.05 to 1000, from which on the rendered image contains the whole outer border of
+   * the other eye. Smaller values cost more pixels. 0 for no guard band: the border is filled in.
    */
   float guard_band;
   /**
@@ -336,7 +335,7 @@ typedef struct {
 } YoroEyes;
 
 /**
- * One image: where its eye is, what it covers, and the matrices that render it.
+ * One image: its size, the pose of its eye, its frustum, and the matrices that render it.
  */
 typedef struct {
   /**
@@ -348,7 +347,7 @@ typedef struct {
    */
   uint32_t height;
   /**
-   * Pose of the eye. From matrices of a left-handed world: in the world whose Z axis is negated.
+   * Pose of the eye. For matrices of a left-handed world it is in the world with the Z axis negated.
    */
   YoroPose pose;
   /**
@@ -366,11 +365,11 @@ typedef struct {
 } YoroView;
 
 /**
- * How pixels of the rendered image move to the other eye's: all that synthesis has to know. yoro_views_from_eyes and
- * yoro_views_from_matrices fill it; it can be copied and kept.
+ * The mapping of pixels from the rendered image to the other eye's. yoro_views_from_eyes and yoro_views_from_matrices fill
+ * it. It can be copied and kept.
  *
- * The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, depth being the
- * value stored in the depth buffer.
+ * The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, where depth is the
+ * value in the depth buffer.
  */
 typedef struct {
   /**
@@ -378,7 +377,7 @@ typedef struct {
    */
   uint32_t source_width;
   /**
-   * Height of both.
+   * Height of the rendered colour and depth in pixels.
    */
   uint32_t source_height;
   /**
@@ -386,15 +385,15 @@ typedef struct {
    */
   uint32_t target_width;
   /**
-   * Height of it.
+   * Height of the synthesized image in pixels.
    */
   uint32_t target_height;
   /**
-   * Columns at depth 0.
+   * Displacement in columns at depth 0.
    */
   double offset;
   /**
-   * Columns per unit of depth.
+   * Displacement in columns per unit of depth.
    */
   double scale;
   /**
@@ -406,7 +405,7 @@ typedef struct {
    */
   YoroEye target_eye;
   /**
-   * Whether smaller or larger values of depth are nearer.
+   * The meaning of depth values.
    */
   YoroDepth depth;
   /**
@@ -416,7 +415,7 @@ typedef struct {
 } YoroWarp;
 
 /**
- * What to do in a frame.
+ * The images of a frame.
  */
 typedef struct {
   /**
@@ -424,11 +423,11 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Column of the source in which the rendered eye's own image begins.
+   * First column of the rendered eye's own image in the source.
    */
   uint32_t crop_x;
   /**
-   * Row of the source in which it begins, counted as YoroRows says.
+   * First row of the rendered eye's own image in the source, counted as YoroRows says.
    */
   uint32_t crop_y;
   /**
@@ -436,27 +435,27 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * The view to render: that of the rendered eye, wider by the guard band. Render colour and depth of this size.
+   * The view to render: the rendered eye's, widened by the guard band. Render colour and depth of this size.
    */
   YoroView source;
   /**
-   * The rendered eye's own image: the part of the source that begins at the crop and has this size.
+   * The rendered eye's own image: the part of the source of this size that begins at crop_x, crop_y.
    */
   YoroView rendered;
   /**
-   * The image that is synthesized.
+   * The synthesized image.
    */
   YoroView synthesized;
   /**
-   * How pixels move; goes to synthesis.
+   * The mapping of pixels, for synthesis.
    */
   YoroWarp warp;
 } YoroViews;
 
 /**
- * The two eyes of a frame by matrices. All are column-major, for column vectors, as GL and Vulkan take them: the
- * translation of a view matrix is in elements 12 to 14, and element 11 of a projection is -1 (eyes that look along -Z) or
- * 1 (along +Z).
+ * The two eyes of a frame, given by matrices. All are column-major, for column vectors, as GL and Vulkan take them. The
+ * translation of a view matrix is in elements 12 to 14. Element 11 of a projection is -1 for eyes that look along -Z, and 1
+ * for eyes that look along +Z.
  */
 typedef struct {
   /**
@@ -484,7 +483,7 @@ typedef struct {
    */
   float projection[2][16];
   /**
-   * The clip volume that the projections lead to.
+   * The clip volume of the projections.
    */
   YoroClip clip;
   /**
@@ -496,7 +495,7 @@ typedef struct {
    */
   float guard_band;
   /**
-   * Units of the world in a metre: 100 for centimetres. 0 stands for 1.
+   * Units of the world in a metre: 100 for centimetres. 0 means 1.
    */
   float units_per_metre;
   /**
@@ -506,7 +505,7 @@ typedef struct {
 } YoroMatrices;
 
 /**
- * The API that a YoroContext was made for.
+ * The API of a YoroContext.
  */
 typedef uint32_t YoroApi;
 /**
@@ -523,7 +522,7 @@ typedef uint32_t YoroApi;
 #define YORO_API_VULKAN 2
 
 /**
- * What a YoroContext runs on, and what it takes.
+ * The driver of a YoroContext and its limits.
  */
 typedef struct {
   /**
@@ -531,15 +530,15 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * What it was made for.
+   * The API of the context.
    */
   YoroApi api;
   /**
-   * Version of the API: 3 of 3.1.
+   * Major version of the API: 3 for 3.1.
    */
   uint32_t api_major;
   /**
-   * Version of the API: 1 of 3.1.
+   * Minor version of the API: 1 for 3.1.
    */
   uint32_t api_minor;
   /**
@@ -551,52 +550,52 @@ typedef struct {
    */
   uint32_t compute;
   /**
-   * 1 where the CPU draws (llvmpipe, SwiftShader).
+   * 1 if the CPU draws (llvmpipe, SwiftShader).
    */
   uint32_t software;
   /**
-   * Largest side of an image in pixels.
+   * Largest width and height of an image in pixels.
    */
   uint32_t max_image_size;
   /**
-   * Bytes of the buffers that it has allocated on the GPU so far.
+   * Bytes of the buffers that the context has allocated on the GPU.
    */
   uint64_t buffer_bytes;
   /**
-   * Name of the GPU or its driver, UTF-8, cut off and ended by 0.
+   * Name of the GPU or its driver in UTF-8, cut off if it is too long, and ended by 0.
    */
   uint8_t device[128];
 } YoroCapabilities;
 
 /**
- * Bits of what is written besides colour, and how.
+ * Bits for outputs besides colour, and for their encoding.
  */
 typedef uint32_t YoroOutputFlags;
 /**
- * Depth of the synthesized eye, encoded as the source's, to the target's depth attachment: for transparent objects.
+ * Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent objects.
  */
 #define YORO_OUTPUT_DEPTH 1
 /**
- * Source and target are both sRGB images, which sampling decodes: what is written is encoded.
+ * Source and target are both sRGB images: sampling decodes them, and writing encodes.
  */
 #define YORO_OUTPUT_SRGB 2
 
 /**
- * What becomes of the GL state that a call changes.
+ * The treatment of GL state that a call changes.
  */
 typedef uint32_t YoroGlState;
 /**
- * Some of it is left changed (docs/library.md has the table): for engines that set what they draw with.
+ * Some of it stays changed (docs/library.md has the table): for engines that set all state that they draw with.
  */
 #define YORO_GL_STATE_LEAVE 0
 /**
- * All of it is as it was before the call.
+ * All of it is restored.
  */
 #define YORO_GL_STATE_PRESERVE 1
 
 /**
- * What the rendered eye knows of its edges, where a pixel shows more than one surface, and with it what its depth is. Depth
- * that was averaged over samples belongs to no surface, and gives halos.
+ * The kind of source images, by their edges: the pixels that show more than one surface. Never give depth that was averaged
+ * over samples: it belongs to no surface, and gives halos.
  */
 typedef uint32_t YoroEdges;
 /**
@@ -608,27 +607,27 @@ typedef uint32_t YoroEdges;
  */
 #define YORO_EDGES_NEAREST 1
 /**
- * Colour resolved from several samples, depth of the first of them: what a driver leaves that resolves depth by itself.
+ * Colour resolved from several samples, depth of the first of them. Drivers that resolve depth themselves leave this.
  */
 #define YORO_EDGES_SAMPLE 2
 /**
- * Colour resolved from 2 or 4 samples, depth of all of them and, where it is still there, the colour of all of them, in the
- * standard places. The best of the four.
+ * Colour resolved from 2 or 4 samples in the standard positions, depth of all of them and, if it still exists, the colour of
+ * all of them. This gives the best picture.
  */
 #define YORO_EDGES_MULTISAMPLE 3
 
 /**
- * An entry point, whatever its own type is.
+ * An entry point of any type.
  */
 typedef void (*YoroGlProc)(void);
 
 /**
- * Gives an entry point by its name, NULL for those that do not exist: eglGetProcAddress, glfwGetProcAddress and others.
+ * Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and others.
  */
 typedef YoroGlProc (*YoroGlLoader)(const char *name);
 
 /**
- * How to create a context for OpenGL.
+ * The options of a context for OpenGL.
  */
 typedef struct {
   /**
@@ -636,7 +635,7 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Zero. It once chose a pipeline: other numbers are refused.
+   * Zero. Earlier versions chose a pipeline here; other numbers are refused.
    */
   uint32_t reserved;
   /**
@@ -644,25 +643,24 @@ typedef struct {
    */
   YoroOutputFlags outputs;
   /**
-   * What becomes of GL state.
+   * The treatment of GL state.
    */
   YoroGlState state;
   /**
-   * 1: each call looks whether textures and framebuffer are as they must be, and whether GL has errors, which it takes.
-   * Costs a wait for the driver: for development. 0: such mistakes are undefined, as in GL.
+   * 1: each call checks textures, framebuffer and GL's error flag, which it clears. This waits for the driver: use it in
+   * development. 0: mistakes are undefined behaviour, as in GL.
    */
   uint32_t check;
   /**
-   * What the source knows of its edges; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs
-   * OpenGL ES 3.1.
+   * The kind of source images; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
    */
   YoroEdges edges;
   /**
-   * Entry points.
+   * The loader of entry points.
    */
   YoroGlLoader loader;
   /**
-   * Where the sentences of errors go, those of later calls, too.
+   * The receiver of the sentences of errors, also in later calls.
    */
   YoroMessages messages;
 } YoroGlInfo;
@@ -676,46 +674,46 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * The rendered eye: name of a GL_TEXTURE_2D of the source's size and any filterable format, without samples. All four
-   * channels are carried over, in whatever encoding. Filters and sampler objects do not matter. Other than with
-   * YORO_EDGES_HARD it is resolved, and lies between 0 and 1.
+   * Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format. All four channels
+   * are carried over, in any encoding. Filters and sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is
+   * resolved, with values between 0 and 1.
    */
   uint32_t color_texture;
   /**
-   * Its depth: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or red float format;
-   * with YORO_EDGES_MULTISAMPLE of a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
+   * Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or
+   * red float format. For YORO_EDGES_MULTISAMPLE a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
    */
   uint32_t depth_texture;
   /**
-   * The framebuffer to draw into, 0 for the window's. It has neither of the textures; its first colour attachment is
-   * written, and with YORO_OUTPUT_DEPTH its depth attachment.
+   * The framebuffer to draw into, 0 for the window's. Its first colour attachment is written, and with YORO_OUTPUT_DEPTH
+   * its depth attachment. None of the textures above may be attached to it.
    */
   uint32_t framebuffer;
   /**
-   * Column of the framebuffer where the synthesized image begins.
+   * First column of the synthesized image in the framebuffer.
    */
   uint32_t x;
   /**
-   * Row of the framebuffer where it begins, from the lowest.
+   * First row of the synthesized image in the framebuffer, counted from the bottom.
    */
   uint32_t y;
   /**
-   * With YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, where it is
-   * still there; otherwise 0.
+   * For YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or 0 if it
+   * does not exist any more. Otherwise 0.
    */
   uint32_t sample_color_texture;
 } YoroGlImages;
 
 #if defined(VK_VERSION_1_1)
 /**
- * vkGetInstanceProcAddr, of the loader or of whoever stands in for it.
+ * vkGetInstanceProcAddr of the Vulkan loader, or of a layer in its place.
  */
 typedef void (*(*YoroVkLoader)(VkInstance instance, const char *name))(void);
 #endif
 
 #if defined(VK_VERSION_1_1)
 /**
- * How to create a context for Vulkan.
+ * The options of a context for Vulkan.
  */
 typedef struct {
   /**
@@ -723,15 +721,15 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Family of the queue that the command buffers go to; it has graphics.
+   * Family of the queue that executes the command buffers; it has graphics.
    */
   uint32_t queue_family;
   /**
-   * Entry points.
+   * The loader of entry points.
    */
   YoroVkLoader loader;
   /**
-   * Of version 1.1 or later; no extension is needed.
+   * The instance, of version 1.1 or later; no extension is needed.
    */
   VkInstance instance;
   /**
@@ -739,21 +737,20 @@ typedef struct {
    */
   VkPhysicalDevice physical_device;
   /**
-   * Of version 1.1 or later; no extension and no feature is needed.
+   * The device, of version 1.1 or later; no extension and no feature is needed.
    */
   VkDevice device;
   /**
-   * 1 where the feature dynamicRendering is enabled, of Vulkan 1.3 or VK_KHR_dynamic_rendering, which is then used. 0:
-   * render passes and framebuffers, with the same result.
+   * 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0: render
+   * passes and framebuffers are used, with the same result.
    */
   uint32_t dynamic_rendering;
   /**
-   * Format of the targets' colour, any that the device renders to. A source that is sampled as sRGB belongs into an sRGB
-   * target.
+   * Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled as sRGB.
    */
   VkFormat color_format;
   /**
-   * Format of the targets' depth, which is then written, too, encoded as the source's; VK_FORMAT_UNDEFINED for none.
+   * Format of the targets' depth, which is written in the source's encoding; VK_FORMAT_UNDEFINED for no depth.
    */
   VkFormat depth_format;
   /**
@@ -761,7 +758,7 @@ typedef struct {
    */
   uint32_t max_source_width;
   /**
-   * Largest height of a source.
+   * Largest height of a source in pixels.
    */
   uint32_t max_source_height;
   /**
@@ -769,15 +766,15 @@ typedef struct {
    */
   uint32_t max_target_width;
   /**
-   * Largest height of a synthesized image.
+   * Largest height of a synthesized image in pixels.
    */
   uint32_t max_target_height;
   /**
-   * What sources know of their edges; 0 is YORO_EDGES_HARD.
+   * The kind of source images; 0 is YORO_EDGES_HARD.
    */
   YoroEdges edges;
   /**
-   * With YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise not looked at.
+   * For YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
    */
   uint32_t samples;
   /**
@@ -785,11 +782,11 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * A cache for pipelines, or VK_NULL_HANDLE.
+   * A pipeline cache, or VK_NULL_HANDLE.
    */
   VkPipelineCache pipeline_cache;
   /**
-   * Where the sentences of errors go, those of later calls, too.
+   * The receiver of the sentences of errors, also in later calls.
    */
   YoroMessages messages;
 } YoroVkInfo;
@@ -797,7 +794,7 @@ typedef struct {
 
 #if defined(VK_VERSION_1_1)
 /**
- * What an image was used for, or will be: the one side of a barrier.
+ * A use of an image: one side of a barrier.
  */
 typedef struct {
   /**
@@ -809,7 +806,7 @@ typedef struct {
    */
   VkPipelineStageFlags stages;
   /**
-   * How they use it.
+   * Their kinds of access.
    */
   VkAccessFlags access;
 } YoroVkState;
@@ -817,28 +814,28 @@ typedef struct {
 
 #if defined(VK_VERSION_1_1)
 /**
- * One layer of a 2-D image: mip level 0, without multisampling where nothing else is said.
+ * One layer of a 2-D image: mip level 0, without multisampling unless stated otherwise.
  */
 typedef struct {
   /**
-   * Its usage has VK_IMAGE_USAGE_SAMPLED_BIT for a source, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or
+   * The image. Its usage has VK_IMAGE_USAGE_SAMPLED_BIT for a source, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or
    * VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT for a target.
    */
   VkImage image;
   /**
-   * The image's format, or of a VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT image a compatible one.
+   * The image's format, or a compatible one if the image has VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT.
    */
   VkFormat format;
   /**
-   * Layer of an array, such as that of the eye; 0 where there is one.
+   * The layer of the image, for example the eye's; 0 for an image with one layer.
    */
   uint32_t layer;
   /**
-   * What it was used for before yoro_vk_record: the layout that it is in, and what has to be waited for.
+   * Its use before yoro_vk_record: its layout then, and the stages to wait for.
    */
   YoroVkState before;
   /**
-   * What it is left ready for.
+   * Its use afterwards, for which it is made ready.
    */
   YoroVkState after;
 } YoroVkImage;
@@ -854,7 +851,7 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Width of the images in pixels; what is rendered may be a part of them.
+   * Width of the images in pixels; the rendered part may be smaller.
    */
   uint32_t width;
   /**
@@ -866,18 +863,18 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * Colour of the rendered eye, of any format that can be filtered. All four channels are carried over. Other than with
-   * YORO_EDGES_HARD it is resolved, and lies between 0 and 1.
+   * Colour of the rendered eye, in any format that can be filtered. All four channels are carried over. Unless
+   * YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
    */
   YoroVkImage color;
   /**
-   * Its depth: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT; with
-   * YORO_EDGES_MULTISAMPLE of YoroVkInfo's samples.
+   * Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT. For
+   * YORO_EDGES_MULTISAMPLE it has YoroVkInfo's samples.
    */
   YoroVkImage depth;
   /**
-   * With YORO_EDGES_MULTISAMPLE, what the colour was resolved from, of as many samples, where it is still there; otherwise
-   * its image is VK_NULL_HANDLE.
+   * For YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
+   * VK_NULL_HANDLE if it does not exist any more, and for all other edges.
    */
   YoroVkImage sample_color;
 } YoroVkSource;
@@ -885,7 +882,7 @@ typedef struct {
 
 #if defined(VK_VERSION_1_1)
 /**
- * A registered source, never 0.
+ * The id of a registered source, never 0.
  */
 typedef uint32_t YoroVkSourceId;
 #endif
@@ -900,7 +897,7 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Width of the images in pixels; what is synthesized may be a part of them.
+   * Width of the images in pixels; the synthesized part may be smaller.
    */
   uint32_t width;
   /**
@@ -912,11 +909,11 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * Colour, of YoroVkInfo's color_format.
+   * Colour, in YoroVkInfo's color_format.
    */
   YoroVkImage color;
   /**
-   * Depth, of YoroVkInfo's depth_format; not looked at where that is VK_FORMAT_UNDEFINED.
+   * Depth, in YoroVkInfo's depth_format; ignored if that is VK_FORMAT_UNDEFINED.
    */
   YoroVkImage depth;
 } YoroVkTarget;
@@ -924,14 +921,14 @@ typedef struct {
 
 #if defined(VK_VERSION_1_1)
 /**
- * A registered target, never 0.
+ * The id of a registered target, never 0.
  */
 typedef uint32_t YoroVkTargetId;
 #endif
 
 #if defined(VK_VERSION_1_1)
 /**
- * What to synthesize in one call.
+ * The images and places of one synthesis.
  */
 typedef struct {
   /**
@@ -943,11 +940,11 @@ typedef struct {
    */
   YoroVkSourceId source;
   /**
-   * Column of them where what was rendered begins.
+   * First column of the rendered part.
    */
   uint32_t source_x;
   /**
-   * Row of them where it begins; row 0 is the first in memory.
+   * First row of the rendered part; row 0 is the first in memory.
    */
   uint32_t source_y;
   /**
@@ -955,11 +952,11 @@ typedef struct {
    */
   YoroVkTargetId target;
   /**
-   * Column of them where the synthesized image begins.
+   * First column of the synthesized image.
    */
   uint32_t target_x;
   /**
-   * Row of them where it begins.
+   * First row of the synthesized image.
    */
   uint32_t target_y;
 } YoroVkFrame;
@@ -970,56 +967,56 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * A short text for a result, such as "the eyes are canted"; "unknown result" for other numbers. It lives as long as the
- * library.
+ * Returns a short text for a result, such as "the eyes are canted", and "unknown result" for other numbers. The text lives
+ * as long as the library.
  *
- * Any thread.
+ * Call it from any thread.
  */
 const char *yoro_result_text(YoroResult result);
 
 /**
- * The version of the library, as YORO_VERSION says that of the header.
+ * Returns the version of the library, in the form of YORO_VERSION, which is the version of the header.
  *
- * Any thread.
+ * Call it from any thread.
  */
 uint32_t yoro_version(void);
 
 /**
- * Works out what to render, and how its pixels move to the other eye.
+ * Computes the view to render, and the mapping of its pixels to the other eye.
  *
- * Any thread, no context needed. Nothing is allocated or kept.
+ * Call it from any thread, without a context. It allocates and keeps nothing.
  *
- * @param eyes  Where the eyes are.
- * @param views Filled; struct_size is set by the caller.
+ * @param eyes  The eyes.
+ * @param views Filled in; the caller sets struct_size.
  * @pre Both pointers lead to structures of the size that they state.
- * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that cannot be, or that rows
- *         cannot serve; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that are impossible or cannot be
+ *         synthesized; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_views_from_eyes(const YoroEyes *eyes,
                                 YoroViews *views);
 
 /**
- * Works out what to render, and how its pixels move to the other eye. Matrices that come out are like those that went in:
- * of the same world, clip volume and units. Poses are in metres.
+ * Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
+ * volume and units of the given ones. Poses are in metres.
  *
- * Any thread, no context needed. Nothing is allocated or kept.
+ * Call it from any thread, without a context. It allocates and keeps nothing.
  *
- * @param matrices Where the eyes are.
- * @param views    Filled; struct_size is set by the caller.
+ * @param matrices The eyes.
+ * @param views    Filled in; the caller sets struct_size.
  * @pre Both pointers lead to structures of the size that they state.
- * @return YORO_ERROR_MATRIX for matrices that are no rigid views or perspective projections; otherwise as
+ * @return YORO_ERROR_MATRIX for matrices that are not rigid views or perspective projections; otherwise as
  *         yoro_views_from_eyes.
  */
 YoroResult yoro_views_from_matrices(const YoroMatrices *matrices,
                                     YoroViews *views);
 
 /**
- * Asks what a context runs on and what it takes.
+ * Returns the driver of a context and its limits.
  *
- * On the thread that may use the context; for OpenGL with the GL context current. Leaves all GL state as it is.
+ * Call it on the thread that may use the context; for OpenGL with the GL context current. It changes no GL state.
  *
- * @param context      Whom to ask.
- * @param capabilities Filled; struct_size is set by the caller.
+ * @param context      The context.
+ * @param capabilities Filled in; the caller sets struct_size.
  * @pre context is alive.
  * @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
  */
@@ -1027,27 +1024,27 @@ YoroResult yoro_capabilities(YoroContext *context,
                              YoroCapabilities *capabilities);
 
 /**
- * Destroys a context and all that it has on the GPU. NULL is allowed, and does nothing.
+ * Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
  *
- * On the thread that may use the context; for OpenGL with the GL context current, with Vulkan after the device has done
- * all that was recorded. A YoroContext does not outlive the GL context or device: where that is lost, destroy it before.
- * Leaves GL state as deleting objects does: what was bound and is deleted is not bound any more.
+ * Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device must have
+ * executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL objects that were bound
+ * are not bound any more; other GL state stays.
  *
- * @param context What to destroy.
+ * @param context The context, or NULL.
  * @pre context is alive and no other thread uses it.
- * @return YORO_ERROR_BUSY, and nothing is destroyed, when another thread is inside a function with it.
+ * @return YORO_ERROR_BUSY if another thread is inside a function with the context; nothing is destroyed then.
  */
 YoroResult yoro_destroy(YoroContext *context);
 
 /**
- * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders: at start, not in
- * a frame.
+ * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at start,
+ * not in a frame.
  *
- * On the thread on which the GL context is current. GL state as YoroGlInfo says, without a change of the error flag.
+ * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag stays.
  *
- * @param info    How.
- * @param context Gets the new context, NULL after an error. Destroy it with yoro_destroy.
- * @pre The GL context is current, and stays alive as long as the YoroContext.
+ * @param info    The options.
+ * @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+ * @pre The GL context is current, and lives as long as the YoroContext.
  * @return YORO_ERROR_NO_CONTEXT, YORO_ERROR_UNSUPPORTED, YORO_ERROR_DRIVER, YORO_ERROR_VALUE, YORO_ERROR_NULL,
  *         YORO_ERROR_STRUCT_SIZE.
  */
@@ -1055,30 +1052,31 @@ YoroResult yoro_gl_create(const YoroGlInfo *info,
                           YoroContext **context);
 
 /**
- * Allocates what images of these sizes take, so that the first yoro_gl_synthesize does not. Costs nothing when the sizes
+ * Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the sizes
  * are as before.
  *
- * Thread, GL state and results as yoro_gl_synthesize.
+ * Thread, GL state and results are those of yoro_gl_synthesize.
  *
  * @param context The context.
- * @param warp    Of a frame of these sizes.
+ * @param warp    The warp of a frame of these sizes.
  * @pre The GL context is current.
  */
 YoroResult yoro_gl_prepare(YoroContext *context,
                            const YoroWarp *warp);
 
 /**
- * Synthesizes the other eye into a rectangle of warp's target size, all of which is overwritten. Call it after the opaque
- * objects of the rendered eye, before transparent objects and effects that are drawn for each eye.
+ * Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
+ * objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
  *
- * On the thread on which the GL context is current. GL state as YoroGlInfo says. While sizes stay the same nothing is
- * allocated or compiled, and nothing waits for the GPU. Transform feedback and conditional rendering are not active.
+ * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay the same
+ * it allocates and compiles nothing, and does not wait for the GPU.
  *
  * @param context The context.
- * @param warp    From YoroViews.
- * @param images  What to read and where to draw.
- * @pre The GL context is current; the textures and the framebuffer are its own and fit what YoroGlImages says.
- * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_DRIVER; with `check` YORO_ERROR_FORMAT, too;
+ * @param warp    The warp of YoroViews.
+ * @param images  The images to read and the place to draw.
+ * @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says. Transform
+ *      feedback and conditional rendering are not active.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_DRIVER; with `check` also YORO_ERROR_FORMAT;
  *         YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_gl_synthesize(YoroContext *context,
@@ -1087,13 +1085,13 @@ YoroResult yoro_gl_synthesize(YoroContext *context,
 
 #if defined(VK_VERSION_1_1)
 /**
- * Creates a context for Vulkan: pipelines, and buffers for the largest sizes. At start, not in a frame.
+ * Creates a context for Vulkan: pipelines, and buffers for the largest sizes. Call it at start, not in a frame.
  *
- * Any thread.
+ * Call it from any thread.
  *
- * @param info    How.
- * @param context Gets the new context, NULL after an error. Destroy it with yoro_destroy.
- * @pre The handles are valid, belong together, and stay so until the YoroContext is destroyed.
+ * @param info    The options.
+ * @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+ * @pre The handles are valid, belong together, and live until the YoroContext is destroyed.
  * @return YORO_ERROR_NO_CONTEXT for a loader without Vulkan's commands, YORO_ERROR_UNSUPPORTED, YORO_ERROR_FORMAT,
  *         YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_VALUE,
  *         YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
@@ -1104,14 +1102,14 @@ YoroResult yoro_vk_create(const YoroVkInfo *info,
 
 #if defined(VK_VERSION_1_1)
 /**
- * Makes views and descriptors of images to read: once for each pair of images that is rendered to.
+ * Creates views and descriptors of images to read. Call it once for each set of images that you render to.
  *
- * On the thread that may use the context.
+ * Call it on the thread that may use the context.
  *
  * @param context The context.
  * @param source  The images.
- * @param id      Gets their number.
- * @pre The images are alive until the number is released or the context destroyed.
+ * @param id      Receives their id.
+ * @pre The images live until the id is released or the context is destroyed.
  * @return YORO_ERROR_FORMAT, YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER,
  *         YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
@@ -1122,26 +1120,26 @@ YoroResult yoro_vk_register_source(YoroContext *context,
 
 #if defined(VK_VERSION_1_1)
 /**
- * Makes views of images to write: once for each image of a swapchain.
+ * Creates views of images to write. Call it once for each image of a swapchain.
  *
- * Thread, preconditions and results as yoro_vk_register_source.
+ * Thread, preconditions and results are those of yoro_vk_register_source.
  *
  * @param context The context.
  * @param target  The images.
- * @param id      Gets their number.
+ * @param id      Receives their id.
  */
 YoroResult yoro_vk_register_target(YoroContext *context, const YoroVkTarget *target, YoroVkTargetId *id);
 #endif
 
 #if defined(VK_VERSION_1_1)
 /**
- * Forgets images to read. A number that is not registered is ignored.
+ * Releases the views and descriptors of images to read. Ignores an id that is not registered.
  *
- * On the thread that may use the context.
+ * Call it on the thread that may use the context.
  *
  * @param context The context.
- * @param id      What yoro_vk_register_source gave.
- * @pre No command that was recorded with it is pending.
+ * @param id      The id from yoro_vk_register_source.
+ * @pre No command that was recorded with the id is pending.
  * @return YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL.
  */
 YoroResult yoro_vk_release_source(YoroContext *context, YoroVkSourceId id);
@@ -1149,35 +1147,36 @@ YoroResult yoro_vk_release_source(YoroContext *context, YoroVkSourceId id);
 
 #if defined(VK_VERSION_1_1)
 /**
- * Forgets images to write. As yoro_vk_release_source.
+ * Releases the views of images to write. Thread and results are those of yoro_vk_release_source.
  *
  * @param context The context.
- * @param id      What yoro_vk_register_target gave.
- * @pre No command that was recorded with it is pending.
+ * @param id      The id from yoro_vk_register_target.
+ * @pre No command that was recorded with the id is pending.
  */
 YoroResult yoro_vk_release_target(YoroContext *context, YoroVkTargetId id);
 #endif
 
 #if defined(VK_VERSION_1_1)
 /**
- * Records the synthesis of the other eye: barriers, and three draws or, other than with YORO_EDGES_HARD, four into the target's rectangle of warp's target size, all of
- * which is overwritten. Record it after the opaque objects of the rendered eye, before transparent objects and effects
- * that are drawn for each eye. Nothing is allocated, compiled, submitted or waited for.
+ * Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten: barriers, and
+ * three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the rendered eye, and before
+ * transparent objects and effects that are drawn for each eye. It allocates, compiles and submits nothing, and does not wait.
  *
- * Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Images go from
+ * Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Brings images from
  * their state `before` to their state `after`.
  *
- * On the thread that may use the context and that records the command buffer.
+ * Call it on the thread that may use the context and that records the command buffer.
  *
  * @param context  The context.
  * @param commands A command buffer of the device.
- * @param warp     From YoroViews, with rows as they lie in the images.
- * @param frame    What to read and where to draw.
+ * @param warp     The warp of YoroViews, with rows as they lie in the images.
+ * @param frame    The images to read and the place to draw.
  * @pre The command buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to
- *      the queue family of YoroVkInfo. The images are in the state `before` when it is executed.
+ *      the queue family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering is
+ *      not active.
  * @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond their
- *         images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; with
- *         any of these nothing was recorded.
+ *         images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE. After an
+ *         error nothing was recorded.
  */
 YoroResult yoro_vk_record(YoroContext *context,
                           VkCommandBuffer commands,

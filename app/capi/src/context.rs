@@ -1,4 +1,4 @@
-//! The handle: one pipeline in one context or device, guarded against use by two threads.
+//! The handle: the synthesis in one GL context or on one Vulkan device, guarded against use by two threads.
 
 use std::any::Any;
 use std::cell::UnsafeCell;
@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::result::{
     Failure, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_INTERNAL, YORO_ERROR_NULL, YoroMessages, YoroResult,
-    border,
+    catch_errors,
 };
 use crate::versioned::{self, Versioned, versioned};
 
-/// One way to synthesize in one GL context or on one Vulkan device: compiled shaders and small buffers.
+/// The synthesis in one GL context or on one Vulkan device: compiled shaders and small buffers.
 ///
-/// Every function that takes one may be called from any thread, from one at a time; a second one gets YORO_ERROR_BUSY.
-/// For OpenGL that is the thread on which the GL context is current.
+/// Use it from one thread at a time, a second thread gets YORO_ERROR_BUSY. For OpenGL that must be the thread on which the
+/// GL context is current; for Vulkan it can be any thread.
 pub struct YoroContext {
     state: AtomicU8,
     messages: YoroMessages,
@@ -23,7 +23,7 @@ pub struct YoroContext {
 
 const READY: u8 = 0;
 const BUSY: u8 = 1;
-/// A panic came out of it: nothing is known of what is inside.
+/// A panic came out of it, so its contents may be inconsistent.
 const BROKEN: u8 = 2;
 
 /// The part of a context that is made for one API.
@@ -34,7 +34,7 @@ pub(crate) trait Backend: Any {
     fn capabilities(&self) -> YoroCapabilities;
 }
 
-/// The API that a YoroContext was made for.
+/// The API of a YoroContext.
 pub type YoroApi = u32;
 /// OpenGL ES.
 pub const YORO_API_OPENGL_ES: YoroApi = 0;
@@ -43,29 +43,29 @@ pub const YORO_API_OPENGL: YoroApi = 1;
 /// Vulkan.
 pub const YORO_API_VULKAN: YoroApi = 2;
 
-/// What a YoroContext runs on, and what it takes.
+/// The driver of a YoroContext and its limits.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroCapabilities {
     /// sizeof(YoroCapabilities), set by the caller.
     pub struct_size: u32,
-    /// What it was made for.
+    /// The API of the context.
     pub api: YoroApi,
-    /// Version of the API: 3 of 3.1.
+    /// Major version of the API: 3 for 3.1.
     pub api_major: u32,
-    /// Version of the API: 1 of 3.1.
+    /// Minor version of the API: 1 for 3.1.
     pub api_minor: u32,
     /// Zero.
     pub reserved: u32,
     /// 1 if there are compute shaders; yoro does not need them.
     pub compute: u32,
-    /// 1 where the CPU draws (llvmpipe, SwiftShader).
+    /// 1 if the CPU draws (llvmpipe, SwiftShader).
     pub software: u32,
-    /// Largest side of an image in pixels.
+    /// Largest width and height of an image in pixels.
     pub max_image_size: u32,
-    /// Bytes of the buffers that it has allocated on the GPU so far.
+    /// Bytes of the buffers that the context has allocated on the GPU.
     pub buffer_bytes: u64,
-    /// Name of the GPU or its driver, UTF-8, cut off and ended by 0.
+    /// Name of the GPU or its driver in UTF-8, cut off if it is too long, and ended by 0.
     pub device: [u8; 128],
 }
 
@@ -78,12 +78,12 @@ impl YoroCapabilities {
     }
 }
 
-/// Asks what a context runs on and what it takes.
+/// Returns the driver of a context and its limits.
 ///
-/// On the thread that may use the context; for OpenGL with the GL context current. Leaves all GL state as it is.
+/// Call it on the thread that may use the context; for OpenGL with the GL context current. It changes no GL state.
 ///
-/// @param context      Whom to ask.
-/// @param capabilities Filled; struct_size is set by the caller.
+/// @param context      The context.
+/// @param capabilities Filled in; the caller sets struct_size.
 /// @pre context is alive.
 /// @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
 #[unsafe(no_mangle)]
@@ -91,25 +91,25 @@ pub unsafe extern "C" fn yoro_capabilities(
     context: *mut YoroContext,
     capabilities: *mut YoroCapabilities,
 ) -> YoroResult {
-    // SAFETY: the header asks the caller for it.
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter(context, |backend| versioned::write(capabilities, "capabilities", &backend.capabilities()))
     }
 }
 
-/// Destroys a context and all that it has on the GPU. NULL is allowed, and does nothing.
+/// Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
 ///
-/// On the thread that may use the context; for OpenGL with the GL context current, with Vulkan after the device has done
-/// all that was recorded. A YoroContext does not outlive the GL context or device: where that is lost, destroy it before.
-/// Leaves GL state as deleting objects does: what was bound and is deleted is not bound any more.
+/// Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device must have
+/// executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL objects that were bound
+/// are not bound any more; other GL state stays.
 ///
-/// @param context What to destroy.
+/// @param context The context, or NULL.
 /// @pre context is alive and no other thread uses it.
-/// @return YORO_ERROR_BUSY, and nothing is destroyed, when another thread is inside a function with it.
+/// @return YORO_ERROR_BUSY if another thread is inside a function with the context; nothing is destroyed then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_destroy(context: *mut YoroContext) -> YoroResult {
-    border(|messages| {
-        // SAFETY: the header asks the caller for it.
+    catch_errors(|messages| {
+        // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
         let Some(alive) = (unsafe { context.as_ref() }) else { return Ok(()) };
         *messages = alive.messages;
         // Busy for good: of two threads that come at once only one gets on.
@@ -124,7 +124,7 @@ pub unsafe extern "C" fn yoro_destroy(context: *mut YoroContext) -> YoroResult {
 fn busy() -> Failure {
     Failure::new(
         YORO_ERROR_BUSY,
-        "another thread is inside a function with this YoroContext: call from one thread at a time",
+        "another thread is inside a function with this YoroContext: use it from one thread at a time",
     )
 }
 
@@ -139,7 +139,7 @@ pub(crate) unsafe fn create<I: Versioned, B: Backend>(
     messages: impl FnOnce(&I) -> YoroMessages,
     make: impl FnOnce(&I) -> Result<B, Failure>,
 ) -> YoroResult {
-    border(|told| {
+    catch_errors(|told| {
         if !context.is_null() {
             // SAFETY: the caller gives a pointer that can be written.
             unsafe { context.write(ptr::null_mut()) };
@@ -148,7 +148,10 @@ pub(crate) unsafe fn create<I: Versioned, B: Backend>(
         let info = unsafe { versioned::read(info, "info") }?;
         *told = messages(&info);
         if context.is_null() {
-            return Err(Failure::new(YORO_ERROR_NULL, "context is NULL: say where the new context goes"));
+            return Err(Failure::new(
+                YORO_ERROR_NULL,
+                "context is NULL: give a pointer that receives the new context",
+            ));
         }
         let backend = UnsafeCell::new(Box::new(make(&info)?) as Box<dyn Backend>);
         let made = YoroContext { state: AtomicU8::new(READY), messages: *told, backend };
@@ -176,7 +179,7 @@ pub(crate) unsafe fn enter(
         }
     }
 
-    border(|messages| {
+    catch_errors(|messages| {
         // SAFETY: the caller gives a context that is alive, or null.
         let Some(context) = (unsafe { context.as_ref() }) else {
             return Err(Failure::new(YORO_ERROR_NULL, "context is NULL: create it first"));
@@ -187,7 +190,7 @@ pub(crate) unsafe fn enter(
             Err(BROKEN) => {
                 return Err(Failure::new(
                     YORO_ERROR_INTERNAL,
-                    "an error of yoro itself happened in this YoroContext before: destroy it",
+                    "an error of yoro itself has happened in this YoroContext: destroy it",
                 ));
             }
             Err(_) => return Err(busy()),
@@ -244,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn two_at_once_and_what_comes_after_a_panic_are_refused() {
+    fn a_second_thread_and_calls_after_a_panic_are_refused() {
         let _headless = Headless::open(Backend::Egl).unwrap();
         let mut sentences = 0u32;
         let info = YoroGlInfo {

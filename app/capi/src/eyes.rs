@@ -1,4 +1,4 @@
-//! Eyes by poses and angles, as OpenXR locates them.
+//! Eyes given by poses and angles, as OpenXR locates them.
 
 use yoro::eyes::{DepthRange, EyePair};
 
@@ -7,16 +7,16 @@ use crate::types::{YoroClip, YoroDepth, YoroEye, YoroFov, YoroPose, YoroRows, cl
 use crate::versioned::versioned;
 use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
-/// Bits of what may be done to eyes that rows cannot serve as they are.
+/// Bits for changes to eyes that cannot be synthesized as they are.
 pub type YoroEyesFlags = u32;
-/// Gives both eyes frusta of one width and one height over the same rows, each as large as it takes. Show the images with
-/// the angles that come out.
+/// Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the images
+/// with the resulting angles.
 pub const YORO_EYES_EVEN: YoroEyesFlags = 1;
-/// Gives canted eyes one direction, and frusta that contain their own. Show the images with the poses and angles that
-/// come out: an OpenXR runtime turns them back when they are submitted with these.
+/// Gives canted eyes one direction, and frusta that contain their own. Show the images with the resulting poses and angles:
+/// an OpenXR runtime turns images back that are submitted with these.
 pub const YORO_EYES_PARALLEL: YoroEyesFlags = 2;
 
-/// The two eyes of a frame by poses and angles.
+/// The two eyes of a frame, given by poses and angles.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroEyes {
@@ -34,16 +34,16 @@ pub struct YoroEyes {
     pub fovs: [YoroFov; 2],
     /// Distance of the near plane in metres, more than 0.
     pub near_z: f32,
-    /// Distance of the far plane in metres, more than near_z; may be INFINITY. In reversed depth, too, it is the larger one.
+    /// Distance of the far plane in metres, more than near_z, also for reversed depth; may be INFINITY.
     pub far_z: f32,
-    /// What the depth buffer holds.
+    /// The meaning of the depth buffer's values.
     pub depth: YoroDepth,
     /// Order of rows in the images.
     pub rows: YoroRows,
-    /// The clip volume that the matrices shall lead to.
+    /// The clip volume of the resulting matrices.
     pub clip: YoroClip,
-    /// Metres from which on the other eye finds all of its outer border in the rendered image, 0.05 to 1000; smaller values
-    /// cost more pixels. 0: none is rendered, and the border is filled in.
+    /// Guard band: the distance in metres, 0.05 to 1000, from which on the rendered image contains the whole outer border of
+    /// the other eye. Smaller values cost more pixels. 0 for no guard band: the border is filled in.
     pub guard_band: f32,
     /// YORO_EYES_ bits.
     pub flags: YoroEyesFlags,
@@ -55,15 +55,15 @@ pub struct YoroEyes {
 
 versioned!(YoroEyes);
 
-/// Works out what to render, and how its pixels move to the other eye.
+/// Computes the view to render, and the mapping of its pixels to the other eye.
 ///
-/// Any thread, no context needed. Nothing is allocated or kept.
+/// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
-/// @param eyes  Where the eyes are.
-/// @param views Filled; struct_size is set by the caller.
+/// @param eyes  The eyes.
+/// @param views Filled in; the caller sets struct_size.
 /// @pre Both pointers lead to structures of the size that they state.
-/// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that cannot be, or that rows
-///         cannot serve; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+/// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that are impossible or cannot be
+///         synthesized; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_views_from_eyes(eyes: *const YoroEyes, views: *mut YoroViews) -> YoroResult {
     // SAFETY: the header asks for pointers to structures of the size that they state.
@@ -80,7 +80,7 @@ impl YoroEyes {
         // In this form NaN fails, too.
         if !angles.into_iter().all(|angle| angle.abs() < right_angle) {
             return Err(Failure::value(
-                "an angle is no number of radians below a right angle: give signed angles from the axis, as XrFovf",
+                "an angle is not a number or not below a right angle: give signed angles from the axis in radians, as XrFovf",
             ));
         }
         let length = |pose: &YoroPose| pose.orientation.iter().map(|n| n * n).sum::<f32>();
@@ -89,7 +89,7 @@ impl YoroEyes {
         };
         if !self.poses.iter().all(is_pose) {
             return Err(Failure::value(
-                "a pose is none: give finite positions, and quaternions x, y, z, w of length 1",
+                "a pose is invalid: give finite positions, and quaternions x, y, z, w of length 1",
             ));
         }
         let depth = DepthRange { near: self.near_z, far: self.far_z, convention: depth(self.depth)? };
@@ -105,7 +105,7 @@ impl YoroEyes {
             pair = pair.parallelized().ok_or_else(|| {
                 Failure::new(
                     YORO_ERROR_EYES_CANTED,
-                    "the eyes see further than 80 degrees from their common direction: render both",
+                    "the eyes see farther than 80 degrees from their common direction: render both",
                 )
             })?;
         }

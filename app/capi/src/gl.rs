@@ -21,52 +21,51 @@ use crate::types::{YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroEdges, YoroOutputFla
 use crate::versioned::{self, versioned};
 use crate::views::YoroWarp;
 
-/// An entry point, whatever its own type is.
+/// An entry point of any type.
 pub type YoroGlProc = Option<unsafe extern "C" fn()>;
-/// Gives an entry point by its name, NULL for those that do not exist: eglGetProcAddress, glfwGetProcAddress and others.
+/// Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and others.
 pub type YoroGlLoader = Option<unsafe extern "C" fn(name: *const c_char) -> YoroGlProc>;
 
-/// What becomes of the GL state that a call changes.
+/// The treatment of GL state that a call changes.
 pub type YoroGlState = u32;
-/// Some of it is left changed (docs/library.md has the table): for engines that set what they draw with.
+/// Some of it stays changed (docs/library.md has the table): for engines that set all state that they draw with.
 pub const YORO_GL_STATE_LEAVE: YoroGlState = 0;
-/// All of it is as it was before the call.
+/// All of it is restored.
 pub const YORO_GL_STATE_PRESERVE: YoroGlState = 1;
 
-/// How to create a context for OpenGL.
+/// The options of a context for OpenGL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroGlInfo {
     /// sizeof(YoroGlInfo).
     pub struct_size: u32,
-    /// Zero. It once chose a pipeline: other numbers are refused.
+    /// Zero. Earlier versions chose a pipeline here; other numbers are refused.
     pub reserved: u32,
     /// YORO_OUTPUT_ bits.
     pub outputs: YoroOutputFlags,
-    /// What becomes of GL state.
+    /// The treatment of GL state.
     pub state: YoroGlState,
-    /// 1: each call looks whether textures and framebuffer are as they must be, and whether GL has errors, which it takes.
-    /// Costs a wait for the driver: for development. 0: such mistakes are undefined, as in GL.
+    /// 1: each call checks textures, framebuffer and GL's error flag, which it clears. This waits for the driver: use it in
+    /// development. 0: mistakes are undefined behaviour, as in GL.
     pub check: u32,
-    /// What the source knows of its edges; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs
-    /// OpenGL ES 3.1.
+    /// The kind of source images; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
     pub edges: YoroEdges,
-    /// Entry points.
+    /// The loader of entry points.
     pub loader: YoroGlLoader,
-    /// Where the sentences of errors go, those of later calls, too.
+    /// The receiver of the sentences of errors, also in later calls.
     pub messages: YoroMessages,
 }
 
 versioned!(YoroGlInfo);
 
-/// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders: at start, not in
-/// a frame.
+/// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at start,
+/// not in a frame.
 ///
-/// On the thread on which the GL context is current. GL state as YoroGlInfo says, without a change of the error flag.
+/// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag stays.
 ///
-/// @param info    How.
-/// @param context Gets the new context, NULL after an error. Destroy it with yoro_destroy.
-/// @pre The GL context is current, and stays alive as long as the YoroContext.
+/// @param info    The options.
+/// @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+/// @pre The GL context is current, and lives as long as the YoroContext.
 /// @return YORO_ERROR_NO_CONTEXT, YORO_ERROR_UNSUPPORTED, YORO_ERROR_DRIVER, YORO_ERROR_VALUE, YORO_ERROR_NULL,
 ///         YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
@@ -74,7 +73,7 @@ pub unsafe extern "C" fn yoro_gl_create(
     info: *const YoroGlInfo,
     context: *mut *mut YoroContext,
 ) -> YoroResult {
-    // SAFETY: the header asks the caller for pointers to what they name, and for a current GL context and its loader.
+    // SAFETY: the header asks for valid pointers, a current GL context, and its loader.
     unsafe { create(info, context, |info| info.messages, |info| Gl::new(info)) }
 }
 
@@ -84,38 +83,38 @@ pub unsafe extern "C" fn yoro_gl_create(
 pub struct YoroGlImages {
     /// sizeof(YoroGlImages).
     pub struct_size: u32,
-    /// The rendered eye: name of a GL_TEXTURE_2D of the source's size and any filterable format, without samples. All four
-    /// channels are carried over, in whatever encoding. Filters and sampler objects do not matter. Other than with
-    /// YORO_EDGES_HARD it is resolved, and lies between 0 and 1.
+    /// Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format. All four channels
+    /// are carried over, in any encoding. Filters and sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is
+    /// resolved, with values between 0 and 1.
     pub color_texture: u32,
-    /// Its depth: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or red float format;
-    /// with YORO_EDGES_MULTISAMPLE of a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
+    /// Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or
+    /// red float format. For YORO_EDGES_MULTISAMPLE a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
     pub depth_texture: u32,
-    /// The framebuffer to draw into, 0 for the window's. It has neither of the textures; its first colour attachment is
-    /// written, and with YORO_OUTPUT_DEPTH its depth attachment.
+    /// The framebuffer to draw into, 0 for the window's. Its first colour attachment is written, and with YORO_OUTPUT_DEPTH
+    /// its depth attachment. None of the textures above may be attached to it.
     pub framebuffer: u32,
-    /// Column of the framebuffer where the synthesized image begins.
+    /// First column of the synthesized image in the framebuffer.
     pub x: u32,
-    /// Row of the framebuffer where it begins, from the lowest.
+    /// First row of the synthesized image in the framebuffer, counted from the bottom.
     pub y: u32,
-    /// With YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, where it is
-    /// still there; otherwise 0.
+    /// For YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or 0 if it
+    /// does not exist any more. Otherwise 0.
     pub sample_color_texture: u32,
 }
 
 versioned!(YoroGlImages);
 
-/// Allocates what images of these sizes take, so that the first yoro_gl_synthesize does not. Costs nothing when the sizes
+/// Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the sizes
 /// are as before.
 ///
-/// Thread, GL state and results as yoro_gl_synthesize.
+/// Thread, GL state and results are those of yoro_gl_synthesize.
 ///
 /// @param context The context.
-/// @param warp    Of a frame of these sizes.
+/// @param warp    The warp of a frame of these sizes.
 /// @pre The GL context is current.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_gl_prepare(context: *mut YoroContext, warp: *const YoroWarp) -> YoroResult {
-    // SAFETY: the header asks the caller for it.
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
             let warp = gl.fitting(warp)?;
@@ -124,17 +123,18 @@ pub unsafe extern "C" fn yoro_gl_prepare(context: *mut YoroContext, warp: *const
     }
 }
 
-/// Synthesizes the other eye into a rectangle of warp's target size, all of which is overwritten. Call it after the opaque
-/// objects of the rendered eye, before transparent objects and effects that are drawn for each eye.
+/// Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
+/// objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
 ///
-/// On the thread on which the GL context is current. GL state as YoroGlInfo says. While sizes stay the same nothing is
-/// allocated or compiled, and nothing waits for the GPU. Transform feedback and conditional rendering are not active.
+/// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay the same
+/// it allocates and compiles nothing, and does not wait for the GPU.
 ///
 /// @param context The context.
-/// @param warp    From YoroViews.
-/// @param images  What to read and where to draw.
-/// @pre The GL context is current; the textures and the framebuffer are its own and fit what YoroGlImages says.
-/// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_DRIVER; with `check` YORO_ERROR_FORMAT, too;
+/// @param warp    The warp of YoroViews.
+/// @param images  The images to read and the place to draw.
+/// @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says. Transform
+///      feedback and conditional rendering are not active.
+/// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_DRIVER; with `check` also YORO_ERROR_FORMAT;
 ///         YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_gl_synthesize(
@@ -142,7 +142,7 @@ pub unsafe extern "C" fn yoro_gl_synthesize(
     warp: *const YoroWarp,
     images: *const YoroGlImages,
 ) -> YoroResult {
-    // SAFETY: the header asks the caller for it.
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
             let warp = gl.fitting(warp)?;
@@ -161,7 +161,7 @@ unsafe fn enter_gl(
     unsafe { enter_as(context, "yoro_gl_create", body) }
 }
 
-/// A pipeline in a GL context.
+/// The synthesis in a GL context.
 pub(crate) struct Gl {
     context: Rc<Context>,
     synthesis: Box<dyn Synthesis>,
@@ -176,7 +176,7 @@ impl Gl {
     unsafe fn new(info: &YoroGlInfo) -> Result<Gl, Failure> {
         if info.reserved != 0 {
             return Err(Failure::value(format!(
-                "reserved is {}: give 0; it once chose a pipeline, and only that of the number 0 is left",
+                "reserved is {}: give 0; earlier versions chose a pipeline here, and only number 0 is left",
                 info.reserved
             )));
         }
@@ -199,7 +199,7 @@ impl Gl {
         // SAFETY: the loader takes a name; a function and a nullable pointer are of one size.
         let load =
             |name: &CStr| unsafe { std::mem::transmute::<YoroGlProc, *const c_void>(loader(name.as_ptr())) };
-        // SAFETY: promised by the caller.
+        // SAFETY: the caller says that a context is current and that the loader gives its entry points.
         let context = unsafe {
             check_current(load)?;
             Context::with_loader(glow::Context::from_loader_function_cstr(load), load)?
@@ -209,15 +209,15 @@ impl Gl {
         Ok(Gl { context, synthesis, edges, outputs, check: info.check == 1 })
     }
 
-    /// The warp, of sizes that the driver can render.
+    /// Reads a warp and checks that the driver can render its sizes.
     ///
     /// # Safety
     /// `warp` is null or leads to one.
     unsafe fn fitting(&self, warp: *const YoroWarp) -> Result<Warp, Failure> {
         if warp.is_null() {
-            return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give that of YoroViews"));
+            return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give the one of YoroViews"));
         }
-        // SAFETY: promised by the caller.
+        // SAFETY: the pointer is not null, so it leads to a warp; alignment is not needed.
         let warp = unsafe { warp.read_unaligned() }.checked()?;
         let limit = self.context.capabilities().max_texture_size;
         let largest = warp.source_size.into_iter().chain(warp.target_size).max().unwrap_or(0);
@@ -225,7 +225,7 @@ impl Gl {
             return Err(Failure::new(
                 YORO_ERROR_TOO_LARGE,
                 format!(
-                    "an image of {largest} pixels on a side is beyond this driver's {limit}: choose a smaller size"
+                    "an image side of {largest} pixels is beyond this driver's {limit}: choose a smaller size"
                 ),
             ));
         }
@@ -242,14 +242,14 @@ impl Gl {
         let samples = NonZeroU32::new(images.sample_color_texture).map(glow::NativeTexture);
         if samples.is_some() && self.edges != Edges::Multisample {
             return Err(Failure::value(
-                "sample_color_texture is for YORO_EDGES_MULTISAMPLE alone: leave it 0, or choose these",
+                "sample_color_texture is for YORO_EDGES_MULTISAMPLE only: set it to 0, or choose those edges",
             ));
         }
         let source = Source { samples, ..Source::new(color, depth) };
         let limit = self.context.capabilities().max_texture_size;
         if images.x > limit || images.y > limit {
             return Err(Failure::value(format!(
-                "x and y are {}, {}: beyond all framebuffers",
+                "x and y are {}, {}: larger than any framebuffer",
                 images.x, images.y
             )));
         }
@@ -307,7 +307,7 @@ pub(crate) fn outputs(bits: YoroOutputFlags) -> Result<Outputs, Failure> {
     Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), source_map: false, srgb: has(YORO_OUTPUT_SRGB) })
 }
 
-/// Looks whether a context is current at all, before glow takes it for granted.
+/// Checks that a context is current, which glow takes for granted.
 ///
 /// # Safety
 /// `load` gives entry points of these names, or null.
@@ -320,7 +320,7 @@ unsafe fn check_current(load: impl Fn(&CStr) -> *const c_void) -> Result<(), Fai
         return Err(Failure::new(
             YORO_ERROR_NO_CONTEXT,
             format!(
-                "the loader does not give {name}: give that of the GL context, such as eglGetProcAddress"
+                "the loader does not return {name}: give the loader of the GL context, such as eglGetProcAddress"
             ),
         ));
     }

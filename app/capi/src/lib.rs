@@ -1,12 +1,13 @@
-//! The C interface of yoro: what `include/yoro.h` declares, and nothing else.
+//! The C interface of yoro: the functions and types of `include/yoro.h`, and nothing else.
 //!
-//! No panic, no abort and no global state leaves this library: every function catches panics at its border and returns
-//! a [`YoroResult`]. Structures begin with their size, so that programs and libraries of different versions agree
-//! (`versioned.rs`).
+//! Takes pointers and handles of a program in C, checks them, and calls the core; returns a [`YoroResult`]. No panic and
+//! no abort leaves this library, and it has no global state. It must never know what the core must not, nor anything that
+//! the header does not say.
 //!
-//! The documentation of the items is that of the header, and speaks C. The header has them in the order of these modules.
+//! Structures begin with their size, so that programs and libraries of different versions agree (`versioned.rs`). The
+//! documentation of the items becomes the header, so it speaks C. The header has them in the order of these modules.
 
-// What the caller has to see to stands in the header, at @pre.
+// The header states the caller's duties at @pre.
 #![allow(clippy::missing_safety_doc)]
 
 mod result;

@@ -1,4 +1,4 @@
-//! Eyes by view and projection matrices: pose, frustum and depth range are worked out of them, and checked.
+//! Eyes given by view and projection matrices, from which pose, frustum and depth range are computed and checked.
 
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose};
@@ -8,9 +8,9 @@ use crate::types::{Clip, YoroClip, YoroEye, YoroRows, clip, eye, rows_down};
 use crate::versioned::versioned;
 use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
-/// The two eyes of a frame by matrices. All are column-major, for column vectors, as GL and Vulkan take them: the
-/// translation of a view matrix is in elements 12 to 14, and element 11 of a projection is -1 (eyes that look along -Z) or
-/// 1 (along +Z).
+/// The two eyes of a frame, given by matrices. All are column-major, for column vectors, as GL and Vulkan take them. The
+/// translation of a view matrix is in elements 12 to 14. Element 11 of a projection is -1 for eyes that look along -Z, and 1
+/// for eyes that look along +Z.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroMatrices {
@@ -26,13 +26,13 @@ pub struct YoroMatrices {
     pub view: [[f32; 16]; 2],
     /// Eye to clip space, left eye first: perspective. Reversed and infinite depth are recognized.
     pub projection: [[f32; 16]; 2],
-    /// The clip volume that the projections lead to.
+    /// The clip volume of the projections.
     pub clip: YoroClip,
     /// Order of rows in the images.
     pub rows: YoroRows,
     /// As in YoroEyes, in metres.
     pub guard_band: f32,
-    /// Units of the world in a metre: 100 for centimetres. 0 stands for 1.
+    /// Units of the world in a metre: 100 for centimetres. 0 means 1.
     pub units_per_metre: f32,
     /// Where the sentences of errors go.
     pub messages: YoroMessages,
@@ -40,15 +40,15 @@ pub struct YoroMatrices {
 
 versioned!(YoroMatrices);
 
-/// Works out what to render, and how its pixels move to the other eye. Matrices that come out are like those that went in:
-/// of the same world, clip volume and units. Poses are in metres.
+/// Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
+/// volume and units of the given ones. Poses are in metres.
 ///
-/// Any thread, no context needed. Nothing is allocated or kept.
+/// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
-/// @param matrices Where the eyes are.
-/// @param views    Filled; struct_size is set by the caller.
+/// @param matrices The eyes.
+/// @param views    Filled in; the caller sets struct_size.
 /// @pre Both pointers lead to structures of the size that they state.
-/// @return YORO_ERROR_MATRIX for matrices that are no rigid views or perspective projections; otherwise as
+/// @return YORO_ERROR_MATRIX for matrices that are not rigid views or perspective projections; otherwise as
 ///         yoro_views_from_eyes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_views_from_matrices(
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn yoro_views_from_matrices(
     unsafe { fill_views(matrices, "matrices", views, |matrices| matrices.messages, YoroMatrices::views) }
 }
 
-/// What a projection matrix says, of an eye that looks along -Z.
+/// The contents of a projection matrix, for an eye that looks along -Z.
 #[derive(Clone, Copy, Debug)]
 struct Projection {
     /// +1 for an eye that looks along -Z, -1 along +Z.
@@ -84,8 +84,8 @@ impl Projection {
         // In this form NaN fails, too.
         if !(matrix.is_finite() && zeros.iter().chain(&offsets).all(is_zero)) {
             return Err(wrong(format!(
-                "the {name} eye's projection is no perspective one: give a column-major matrix of which element 11 is -1 \
-                 or 1, without rotation or shear"
+                "the {name} eye's projection is not a perspective one: give a column-major matrix with -1 or 1 in element \
+                 11, without rotation or shear"
             )));
         }
         let sense = -w.z.signum();
@@ -111,7 +111,7 @@ impl Projection {
         Ok(Projection { sense, frustum, law })
     }
 
-    /// Planes and encoding, in the world's units.
+    /// Returns the planes, in the world's units, and their encoding.
     fn range(&self, eye: Eye) -> Result<DepthRange, Failure> {
         let [a, b] = self.law;
         // Depth 0 and 1 at these distances; a difference of one or two roundings stands for an infinite one.
@@ -130,8 +130,8 @@ impl Projection {
     }
 }
 
-/// What a view matrix says: the eye's pose in the world's units, and whether the world is left-handed. In that case the
-/// pose is in the world whose Z axis is negated.
+/// Returns the contents of a view matrix: the eye's pose in the world's units, and true if the world is left-handed. The pose
+/// is then in the world with the Z axis negated.
 fn pose(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<(DQuat, DVec3, bool), Failure> {
     let matrix = DMat4::from_cols_array(&elements.map(f64::from));
     let mut rotation = DMat3::from_mat4(matrix);
@@ -145,7 +145,7 @@ fn pose(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<(DQuat, DVec3, boo
         && last.to_array().into_iter().all(small))
     {
         return Err(wrong(format!(
-            "the {} eye's view is no rotation and translation alone: give a column-major matrix from the world to the \
+            "the {} eye's view is more than rotation and translation: give a column-major matrix from the world to the \
              eye, without scale",
             eye.name()
         )));
@@ -168,7 +168,9 @@ impl YoroMatrices {
     fn views(&self) -> Result<YoroViews, Failure> {
         let units = if self.units_per_metre == 0.0 { 1.0 } else { f64::from(self.units_per_metre) };
         if !(units > 0.0 && units.is_finite()) {
-            return Err(Failure::value(format!("{units} units in a metre cannot be: give 1 for metres")));
+            return Err(Failure::value(format!(
+                "{units} units in a metre are impossible: give 1 for metres"
+            )));
         }
         let clip = clip(self.clip)?;
         let rendered = eye(self.rendered)?;

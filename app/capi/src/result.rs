@@ -1,4 +1,4 @@
-//! Numeric results, their texts, and the sentence that goes with an error.
+//! Numeric results, their texts, and the sentences of errors.
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -9,73 +9,72 @@ use std::ptr;
 use yoro::eyes::EyesError;
 use yoro::gl::GlError;
 
-/// What a function returns: YORO_OK, or one of the negative YORO_ERROR_ codes.
+/// The result of a function: YORO_OK, or one of the negative YORO_ERROR_ codes.
 pub type YoroResult = i32;
 
-/// All went well.
+/// Success.
 pub const YORO_OK: YoroResult = 0;
 /// A pointer that must not be NULL is NULL.
 pub const YORO_ERROR_NULL: YoroResult = -1;
-/// struct_size is not the size of the structure, or a newer version of it sets what this library does not know.
+/// struct_size is not the size of the structure, or a newer program sets fields that this library does not know.
 pub const YORO_ERROR_STRUCT_SIZE: YoroResult = -2;
-/// A number is out of its range: no finite number, a size of zero, a constant that does not exist, planes out of order.
+/// A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order.
 pub const YORO_ERROR_VALUE: YoroResult = -3;
-/// The matrices are no rigid view and no perspective projection, or those of the eyes do not fit each other.
+/// A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not fit each other.
 pub const YORO_ERROR_MATRIX: YoroResult = -4;
-/// The eyes are rotated against each other. YORO_EYES_PARALLEL helps, or render both eyes.
+/// The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes.
 pub const YORO_ERROR_EYES_CANTED: YoroResult = -5;
 /// The eyes do not lie on one horizontal line.
 pub const YORO_ERROR_EYES_OFF_AXIS: YoroResult = -6;
 /// The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be
 /// synthesized: 4095 in images that are wider than that.
 pub const YORO_ERROR_EYES_IPD: YoroResult = -7;
-/// The eyes' images have different tangents per pixel. YORO_EYES_EVEN helps.
+/// The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN.
 pub const YORO_ERROR_EYES_DENSITY: YoroResult = -8;
-/// The rows of one eye's image lie between those of the other's. YORO_EYES_EVEN helps.
+/// The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN.
 pub const YORO_ERROR_EYES_ROWS: YoroResult = -9;
-/// An image has more pixels on a side than the driver, or any driver, can render.
+/// An image is wider or higher than the driver, or any driver, can render.
 pub const YORO_ERROR_TOO_LARGE: YoroResult = -10;
-/// No GL context is current on this thread, or the loader function does not give the API's entry points.
+/// No GL context is current on this thread, or the loader does not return the API's entry points.
 pub const YORO_ERROR_NO_CONTEXT: YoroResult = -11;
-/// The driver is too old, or lacks what was asked for.
+/// The driver is too old, or lacks a feature that was asked for.
 pub const YORO_ERROR_UNSUPPORTED: YoroResult = -12;
-/// A texture, image or framebuffer does not exist, or has another format, type or size than is needed.
+/// A texture, image or framebuffer does not exist, or has the wrong format, type or size.
 pub const YORO_ERROR_FORMAT: YoroResult = -13;
 /// The driver refused a shader, an object or a command.
 pub const YORO_ERROR_DRIVER: YoroResult = -14;
-/// The YoroContext was made for another API than the function.
+/// The YoroContext was created for another API than the function belongs to.
 pub const YORO_ERROR_API: YoroResult = -15;
 /// Another thread is inside a function with this YoroContext.
 pub const YORO_ERROR_BUSY: YoroResult = -16;
 /// No memory is left, on the host or on the device.
 pub const YORO_ERROR_MEMORY: YoroResult = -17;
-/// The Vulkan device is lost: it has to be made again, and the YoroContext with it.
+/// The Vulkan device is lost: create it and the YoroContext again.
 pub const YORO_ERROR_DEVICE_LOST: YoroResult = -18;
-/// A number of images that is not registered with this YoroContext, or not any more.
+/// The id is not registered with this YoroContext, or was released.
 pub const YORO_ERROR_NOT_REGISTERED: YoroResult = -19;
-/// An error of the library itself. A YoroContext that it happened to gives nothing else from then on, and can only be
-/// destroyed.
+/// An error of the library itself. Afterwards the YoroContext returns only this, and can only be destroyed.
 pub const YORO_ERROR_INTERNAL: YoroResult = -20;
 
-/// Gets the sentence of an error: what is wrong and what helps, UTF-8, valid during the call only. Called on the thread
-/// of the function that fails, before it returns. It must not throw, and must not call yoro with the same context.
+/// Receives the sentence of an error: the fault and the remedy, in UTF-8, valid during the call only. It is called on the
+/// thread of the function that fails, before that returns. It must not throw, and must not call yoro with the same context.
 pub type YoroMessageCallback =
     Option<unsafe extern "C" fn(user: *mut c_void, result: YoroResult, sentence: *const c_char)>;
 
-/// Where the sentences of errors go.
+/// The receiver of the sentences of errors.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroMessages {
-    /// Gets them; may be NULL.
+    /// Called for each error; may be NULL.
     pub callback: YoroMessageCallback,
-    /// Its first argument.
+    /// The first argument of the callback.
     pub user: *mut c_void,
 }
 
-/// A short text for a result, such as "the eyes are canted"; "unknown result" for other numbers. It lives as long as the
-/// library.
+/// Returns a short text for a result, such as "the eyes are canted", and "unknown result" for other numbers. The text lives
+/// as long as the library.
 ///
-/// Any thread.
+/// Call it from any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn yoro_result_text(result: YoroResult) -> *const c_char {
     text(result).as_ptr()
@@ -108,7 +107,7 @@ fn text(result: YoroResult) -> &'static CStr {
     }
 }
 
-/// An error on its way out.
+/// An error on its way to the caller.
 #[derive(Debug)]
 pub(crate) struct Failure {
     pub(crate) code: YoroResult,
@@ -181,9 +180,9 @@ impl YoroMessages {
     }
 }
 
-/// Runs the body of a function of the interface: errors become codes, their sentences go to the callback, and so do
-/// panics. `messages` is where the body found out about the callback.
-pub(crate) fn border(body: impl FnOnce(&mut YoroMessages) -> Result<(), Failure>) -> YoroResult {
+/// Runs the body of a function of the interface. Errors and panics become codes, and their sentences go to the callback
+/// that the body puts into `messages`.
+pub(crate) fn catch_errors(body: impl FnOnce(&mut YoroMessages) -> Result<(), Failure>) -> YoroResult {
     let mut messages = YoroMessages::NONE;
     let outcome = catch_unwind(AssertUnwindSafe(|| body(&mut messages)));
     let Err(failure) = outcome.unwrap_or_else(|payload| Err(Failure::internal(payload))) else {
@@ -215,7 +214,7 @@ mod tests {
             };
         }
         let mut noted = String::new();
-        let code = border(|messages| {
+        let code = catch_errors(|messages| {
             *messages = YoroMessages { callback: Some(note), user: (&raw mut noted).cast() };
             panic!("ou\0ch {}", 1)
         });

@@ -7,39 +7,39 @@ use crate::result::Failure;
 
 /// Version of this header.
 pub const YORO_VERSION_MAJOR: u32 = 0;
-/// Second part of it.
+/// Second part of the version.
 pub const YORO_VERSION_MINOR: u32 = 1;
-/// Third part of it.
+/// Third part of the version.
 pub const YORO_VERSION_PATCH: u32 = 0;
-/// All of it as one number that grows: major * 1000000 + minor * 1000 + patch.
+/// The version as one number that grows: major * 1000000 + minor * 1000 + patch.
 pub const YORO_VERSION: u32 = YORO_VERSION_MAJOR * 1000000 + YORO_VERSION_MINOR * 1000 + YORO_VERSION_PATCH;
 
-/// The version of the library, as YORO_VERSION says that of the header.
+/// Returns the version of the library, in the form of YORO_VERSION, which is the version of the header.
 ///
-/// Any thread.
+/// Call it from any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn yoro_version() -> u32 {
     YORO_VERSION
 }
 
-/// A guard band that is complete for whatever is farther than an arm's length, in metres.
+/// A guard band that is complete for everything farther away than an arm's length, in metres.
 pub const YORO_GUARD_BAND: f32 = 1.0;
 
-/// One of the two eyes, and its index in arrays of two.
+/// One of the two eyes, which is also its index in arrays of two.
 pub type YoroEye = u32;
 /// The left eye.
 pub const YORO_EYE_LEFT: YoroEye = 0;
 /// The right eye.
 pub const YORO_EYE_RIGHT: YoroEye = 1;
 
-/// What the values 0 to 1 in a depth buffer mean, whatever the API's clip volume is.
+/// The meaning of the values 0 to 1 in a depth buffer. It does not depend on the API's clip volume.
 pub type YoroDepth = u32;
-/// 0 at the near plane, 1 at the far plane; tested with LESS, cleared to 1.
+/// 0 at the near plane, 1 at the far plane: tested with LESS, cleared to 1.
 pub const YORO_DEPTH_STANDARD: YoroDepth = 0;
-/// 1 at the near plane, 0 at the far plane; tested with GREATER, cleared to 0.
+/// 1 at the near plane, 0 at the far plane: tested with GREATER, cleared to 0.
 pub const YORO_DEPTH_REVERSED: YoroDepth = 1;
 
-/// The clip volume that projection matrices lead to. X is to the right in all of them.
+/// The clip volume of projection matrices. X points to the right in all of them.
 pub type YoroClip = u32;
 /// OpenGL: y up, z from -1 to 1.
 pub const YORO_CLIP_OPENGL: YoroClip = 0;
@@ -48,24 +48,24 @@ pub const YORO_CLIP_VULKAN: YoroClip = 1;
 /// y up, z from 0 to 1: OpenGL with glClipControl, Vulkan with a viewport of negative height, Direct3D, Metal.
 pub const YORO_CLIP_Y_UP_Z_0_1: YoroClip = 2;
 
-/// In which order the rows of images lie in memory and in texture coordinates.
+/// The order of an image's rows in memory and in texture coordinates.
 pub type YoroRows = u32;
-/// Row 0 is the lowest: OpenGL.
+/// Row 0 is at the bottom: OpenGL.
 pub const YORO_ROWS_UP: YoroRows = 0;
-/// Row 0 is the topmost: Vulkan, Direct3D, image files.
+/// Row 0 is at the top: Vulkan, Direct3D, image files.
 pub const YORO_ROWS_DOWN: YoroRows = 1;
 
-/// What the rendered eye knows of its edges, where a pixel shows more than one surface, and with it what its depth is. Depth
-/// that was averaged over samples belongs to no surface, and gives halos.
+/// The kind of source images, by their edges: the pixels that show more than one surface. Never give depth that was averaged
+/// over samples: it belongs to no surface, and gives halos.
 pub type YoroEdges = u32;
 /// One sample per pixel, of colour and depth.
 pub const YORO_EDGES_HARD: YoroEdges = 0;
 /// Colour resolved from several samples, depth of the nearest of them.
 pub const YORO_EDGES_NEAREST: YoroEdges = 1;
-/// Colour resolved from several samples, depth of the first of them: what a driver leaves that resolves depth by itself.
+/// Colour resolved from several samples, depth of the first of them. Drivers that resolve depth themselves leave this.
 pub const YORO_EDGES_SAMPLE: YoroEdges = 2;
-/// Colour resolved from 2 or 4 samples, depth of all of them and, where it is still there, the colour of all of them, in the
-/// standard places. The best of the four.
+/// Colour resolved from 2 or 4 samples in the standard positions, depth of all of them and, if it still exists, the colour of
+/// all of them. This gives the best picture.
 pub const YORO_EDGES_MULTISAMPLE: YoroEdges = 3;
 
 pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
@@ -78,14 +78,14 @@ pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
     }
 }
 
-/// Bits of what is written besides colour, and how.
+/// Bits for outputs besides colour, and for their encoding.
 pub type YoroOutputFlags = u32;
-/// Depth of the synthesized eye, encoded as the source's, to the target's depth attachment: for transparent objects.
+/// Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent objects.
 pub const YORO_OUTPUT_DEPTH: YoroOutputFlags = 1;
-/// Source and target are both sRGB images, which sampling decodes: what is written is encoded.
+/// Source and target are both sRGB images: sampling decodes them, and writing encodes.
 pub const YORO_OUTPUT_SRGB: YoroOutputFlags = 2;
 
-/// Pose of an eye in a right-handed world with Y up, in which the eye looks along its own -Z, X to the right. Laid out as
+/// Pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. Laid out as
 /// XrPosef.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -96,8 +96,8 @@ pub struct YoroPose {
     pub position: [f32; 3],
 }
 
-/// Angles in radians from the eye's axis to the edges of its image, of less than a right angle; left and down are
-/// negative when the image contains the axis. Laid out as XrFovf.
+/// Angles in radians from the eye's axis to the edges of its image, each smaller than a right angle. Left and down are
+/// negative if the image contains the axis. Laid out as XrFovf.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroFov {
@@ -111,7 +111,7 @@ pub struct YoroFov {
     pub angle_down: f32,
 }
 
-/// Which of the eyes a constant stands for.
+/// Returns the eye of a constant.
 pub(crate) fn eye(value: YoroEye) -> Result<Eye, Failure> {
     match value {
         YORO_EYE_LEFT => Ok(Eye::Left),
@@ -149,7 +149,7 @@ pub(crate) fn clip(value: YoroClip) -> Result<Clip, Failure> {
     }
 }
 
-/// Whether rows run from the top.
+/// True if rows run from the top.
 pub(crate) fn rows_down(value: YoroRows) -> Result<bool, Failure> {
     match value {
         YORO_ROWS_UP => Ok(false),

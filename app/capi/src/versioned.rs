@@ -1,11 +1,11 @@
-//! Structures that grow: each begins with its size, as the program that fills it knows it.
+//! Structures that grow with versions: each begins with its size, as the program knows it.
 
 use std::mem::MaybeUninit;
 use std::ptr;
 
 use crate::result::{Failure, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE};
 
-/// No structure of any version is larger: a size beyond it was never set.
+/// Larger than any structure of any version: such a size was never set.
 const LARGEST: usize = 1 << 16;
 
 /// A structure of the interface that begins with `struct_size`.
@@ -14,7 +14,7 @@ const LARGEST: usize = 1 << 16;
 /// `repr(C)`, its first field is the `u32` `struct_size`, and it is made of numbers and nullable pointers: all bits
 /// zero are a value.
 pub(crate) unsafe trait Versioned: Copy {
-    /// For sentences.
+    /// Its name, for sentences.
     const NAME: &'static str;
     /// Its size in the first version that has it.
     const FIRST_SIZE: usize;
@@ -32,7 +32,7 @@ macro_rules! versioned {
 }
 pub(crate) use versioned;
 
-/// The size that the caller states, checked.
+/// Returns the size that the caller states, checked.
 ///
 /// # Safety
 /// `pointer` is null or leads to a structure, or to fewer bytes than that but at least four.
@@ -40,7 +40,7 @@ unsafe fn stated_size<T: Versioned>(pointer: *const T, what: &'static str) -> Re
     if pointer.is_null() {
         return Err(Failure::new(YORO_ERROR_NULL, format!("{what} is NULL: give a {}", T::NAME)));
     }
-    // SAFETY: promised by the caller; alignment is not needed.
+    // SAFETY: the pointer leads to at least four bytes; alignment is not needed.
     let size = unsafe { pointer.cast::<u32>().read_unaligned() } as usize;
     if !(T::FIRST_SIZE..=LARGEST).contains(&size) {
         return Err(Failure::new(
@@ -51,13 +51,13 @@ unsafe fn stated_size<T: Versioned>(pointer: *const T, what: &'static str) -> Re
     Ok(size)
 }
 
-/// Copies a structure that the caller filled: what an older program does not know is zero; what a newer one sets and
-/// this library does not know is refused.
+/// Copies a structure that the caller filled. Fields that an older program does not know are zero. Refuses fields that a
+/// newer program sets and this library does not know.
 ///
 /// # Safety
 /// As [`stated_size`], and as many bytes as the structure states can be read.
 pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, what: &'static str) -> Result<T, Failure> {
-    // SAFETY: promised by the caller.
+    // SAFETY: the contract includes that of `stated_size`.
     let size = unsafe { stated_size(pointer, what) }?;
     let known = size_of::<T>();
     let bytes = pointer.cast::<u8>();
@@ -84,11 +84,12 @@ pub(crate) unsafe fn check_output<T: Versioned>(
     pointer: *const T,
     what: &'static str,
 ) -> Result<(), Failure> {
-    // SAFETY: promised by the caller.
-    unsafe { stated_size(pointer, what) }.map(drop)
+    // SAFETY: the contract is that of `stated_size`.
+    unsafe { stated_size(pointer, what) }?;
+    Ok(())
 }
 
-/// Fills a structure of the caller as far as the caller knows it; `struct_size` stays.
+/// Fills a structure of the caller up to the size that the caller knows; `struct_size` stays.
 ///
 /// # Safety
 /// As [`read`], and the bytes can be written.
@@ -97,7 +98,7 @@ pub(crate) unsafe fn write<T: Versioned>(
     what: &'static str,
     value: &T,
 ) -> Result<(), Failure> {
-    // SAFETY: promised by the caller.
+    // SAFETY: the contract includes that of `stated_size`.
     let size = unsafe { stated_size(pointer, what) }?;
     let first = size_of::<u32>();
     // SAFETY: behind struct_size, at most the size of both; zeros beyond what this library knows.
@@ -145,14 +146,14 @@ mod tests {
     }
 
     #[test]
-    fn sizes_that_cannot_be_are_refused() {
+    fn impossible_sizes_are_refused() {
         for size in [0, 4, 7, u32::MAX] {
             assert_eq!(read_words(&[size, 0, 0]), Err(YORO_ERROR_STRUCT_SIZE), "{size}");
         }
     }
 
     #[test]
-    fn what_is_written_fits_the_program() {
+    fn no_more_is_written_than_the_program_knows() {
         let value = Grown { struct_size: 0, old: 1, new: 2 };
         for (stated, expected) in [(8, [8, 1, 7, 7]), (12, [12, 1, 2, 7]), (16, [16, 1, 2, 0])] {
             let mut words = [stated, 7, 7, 7];

@@ -1,15 +1,15 @@
-//! What comes of two eyes: the view to render, and how its pixels move.
+//! The view to render for two eyes, and the way its pixels move to the other eye.
 
 use glam::{DMat4, DVec4};
 use yoro::eyes::{DepthRange, DisparityLaw, EyePair, Frustum, GuardBand, Pose, View, Warp};
 
-use crate::result::{Failure, YoroMessages, YoroResult, border};
+use crate::result::{Failure, YoroMessages, YoroResult, catch_errors};
 use crate::types::{
     Clip, YORO_DEPTH_REVERSED, YORO_DEPTH_STANDARD, YoroDepth, YoroEye, YoroFov, YoroPose, depth, eye,
 };
 use crate::versioned::{self, Versioned, versioned};
 
-/// One image: where its eye is, what it covers, and the matrices that render it.
+/// One image: its size, the pose of its eye, its frustum, and the matrices that render it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroView {
@@ -17,7 +17,7 @@ pub struct YoroView {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Pose of the eye. From matrices of a left-handed world: in the world whose Z axis is negated.
+    /// Pose of the eye. For matrices of a left-handed world it is in the world with the Z axis negated.
     pub pose: YoroPose,
     /// Angles of the image's outer edges.
     pub fov: YoroFov,
@@ -27,55 +27,55 @@ pub struct YoroView {
     pub projection: [f32; 16],
 }
 
-/// How pixels of the rendered image move to the other eye's: all that synthesis has to know. yoro_views_from_eyes and
-/// yoro_views_from_matrices fill it; it can be copied and kept.
+/// The mapping of pixels from the rendered image to the other eye's. yoro_views_from_eyes and yoro_views_from_matrices fill
+/// it. It can be copied and kept.
 ///
-/// The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, depth being the
-/// value stored in the depth buffer.
+/// The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, where depth is the
+/// value in the depth buffer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroWarp {
     /// Width of the rendered colour and depth in pixels.
     pub source_width: u32,
-    /// Height of both.
+    /// Height of the rendered colour and depth in pixels.
     pub source_height: u32,
     /// Width of the synthesized image in pixels.
     pub target_width: u32,
-    /// Height of it.
+    /// Height of the synthesized image in pixels.
     pub target_height: u32,
-    /// Columns at depth 0.
+    /// Displacement in columns at depth 0.
     pub offset: f64,
-    /// Columns per unit of depth.
+    /// Displacement in columns per unit of depth.
     pub scale: f64,
     /// Target row minus source row.
     pub row_offset: i32,
     /// The eye that is synthesized.
     pub target_eye: YoroEye,
-    /// Whether smaller or larger values of depth are nearer.
+    /// The meaning of depth values.
     pub depth: YoroDepth,
     /// Zero.
     pub reserved: u32,
 }
 
-/// What to do in a frame.
+/// The images of a frame.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroViews {
     /// sizeof(YoroViews), set by the caller.
     pub struct_size: u32,
-    /// Column of the source in which the rendered eye's own image begins.
+    /// First column of the rendered eye's own image in the source.
     pub crop_x: u32,
-    /// Row of the source in which it begins, counted as YoroRows says.
+    /// First row of the rendered eye's own image in the source, counted as YoroRows says.
     pub crop_y: u32,
     /// Zero.
     pub reserved: u32,
-    /// The view to render: that of the rendered eye, wider by the guard band. Render colour and depth of this size.
+    /// The view to render: the rendered eye's, widened by the guard band. Render colour and depth of this size.
     pub source: YoroView,
-    /// The rendered eye's own image: the part of the source that begins at the crop and has this size.
+    /// The rendered eye's own image: the part of the source of this size that begins at crop_x, crop_y.
     pub rendered: YoroView,
-    /// The image that is synthesized.
+    /// The synthesized image.
     pub synthesized: YoroView,
-    /// How pixels move; goes to synthesis.
+    /// The mapping of pixels, for synthesis.
     pub warp: YoroWarp,
 }
 
@@ -100,22 +100,22 @@ impl YoroWarp {
         }
     }
 
-    /// The core's, checked: programs may have made the numbers themselves.
+    /// Returns the core's warp. Checks the numbers, since programs may have made them up.
     pub(crate) fn checked(&self) -> Result<Warp, Failure> {
-        /// Sizes and displacements beyond this are refused: no driver renders them.
+        /// The largest size and displacement: no driver renders larger images.
         const MAX_SIDE: u32 = 1 << 16;
         let sides = [self.source_width, self.source_height, self.target_width, self.target_height];
         if !sides.iter().all(|side| (1..=MAX_SIDE).contains(side)) {
             let [w, h, tw, th] = sides;
             return Err(Failure::value(format!(
-                "a warp from {w}x{h} to {tw}x{th} pixels cannot be: take it from yoro_views_from_eyes"
+                "a warp from {w}x{h} to {tw}x{th} pixels is impossible: take it from yoro_views_from_eyes"
             )));
         }
         let reach = f64::from(MAX_SIDE);
         let in_reach = |columns: f64| columns.abs() <= reach;
         if !in_reach(self.offset) || !in_reach(self.scale) || self.row_offset.unsigned_abs() > MAX_SIDE {
             return Err(Failure::value(
-                "a warp has a displacement beyond all images: take it from yoro_views_from_eyes",
+                "the warp's displacement is larger than any image: take it from yoro_views_from_eyes",
             ));
         }
         Ok(Warp {
@@ -141,7 +141,7 @@ pub(crate) unsafe fn fill_views<T: Versioned>(
     messages: impl FnOnce(&T) -> YoroMessages,
     work_out: impl FnOnce(&T) -> Result<YoroViews, Failure>,
 ) -> YoroResult {
-    border(|told| {
+    catch_errors(|told| {
         // SAFETY: the caller gives a pointer to as many bytes as they state.
         let eyes = unsafe { versioned::read(eyes, what) }?;
         *told = messages(&eyes);
@@ -153,17 +153,17 @@ pub(crate) unsafe fn fill_views<T: Versioned>(
     })
 }
 
-/// Metres from which on the band is complete; 0 for none.
+/// Returns the guard band that is complete from this distance in metres on; none for 0.
 pub(crate) fn guard_band(metres: f32) -> GuardBand {
     if metres == 0.0 { GuardBand::None } else { GuardBand::Distance(metres) }
 }
 
-/// The core counts rows from the lowest; rows from the topmost are those of eyes that are mirrored vertically.
+/// Mirrors a frustum vertically. The core counts rows from the bottom: rows from the top are rows of mirrored eyes.
 fn mirrored(frustum: Frustum) -> Frustum {
     Frustum { bottom: -frustum.top, top: -frustum.bottom, ..frustum }
 }
 
-/// What comes of a pair, without matrices. `down` is whether rows run from the top.
+/// Returns the views of a pair, without matrices. `down` is true if rows run from the top.
 pub(crate) fn views(mut pair: EyePair, guard: GuardBand, down: bool) -> Result<YoroViews, Failure> {
     if down {
         pair.frusta = pair.frusta.map(mirrored);
@@ -217,7 +217,7 @@ impl YoroFov {
 }
 
 impl YoroView {
-    /// Rows x and y of the projection, of an eye that looks along -Z.
+    /// Returns the rows x and y of the projection of an eye that looks along -Z.
     pub(crate) fn projection_xy(&self, clip: &Clip) -> [DVec4; 2] {
         let [left, right, top, bottom] =
             [self.fov.angle_left, self.fov.angle_right, self.fov.angle_up, self.fov.angle_down]

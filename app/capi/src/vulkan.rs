@@ -18,58 +18,57 @@ use crate::types::{YoroEdges, edges};
 use crate::versioned::{self, Versioned, versioned};
 use crate::views::YoroWarp;
 
-/// vkGetInstanceProcAddr, of the loader or of whoever stands in for it.
+/// vkGetInstanceProcAddr of the Vulkan loader, or of a layer in its place.
 pub type YoroVkLoader = Option<
     unsafe extern "C" fn(instance: vk::Instance, name: *const c_char) -> Option<unsafe extern "C" fn()>,
 >;
 
-/// How to create a context for Vulkan.
+/// The options of a context for Vulkan.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkInfo {
     /// sizeof(YoroVkInfo).
     pub struct_size: u32,
-    /// Family of the queue that the command buffers go to; it has graphics.
+    /// Family of the queue that executes the command buffers; it has graphics.
     pub queue_family: u32,
-    /// Entry points.
+    /// The loader of entry points.
     pub loader: YoroVkLoader,
-    /// Of version 1.1 or later; no extension is needed.
+    /// The instance, of version 1.1 or later; no extension is needed.
     pub instance: vk::Instance,
     /// The physical device of `device`.
     pub physical_device: vk::PhysicalDevice,
-    /// Of version 1.1 or later; no extension and no feature is needed.
+    /// The device, of version 1.1 or later; no extension and no feature is needed.
     pub device: vk::Device,
-    /// 1 where the feature dynamicRendering is enabled, of Vulkan 1.3 or VK_KHR_dynamic_rendering, which is then used. 0:
-    /// render passes and framebuffers, with the same result.
+    /// 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0: render
+    /// passes and framebuffers are used, with the same result.
     pub dynamic_rendering: u32,
-    /// Format of the targets' colour, any that the device renders to. A source that is sampled as sRGB belongs into an sRGB
-    /// target.
+    /// Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled as sRGB.
     pub color_format: vk::Format,
-    /// Format of the targets' depth, which is then written, too, encoded as the source's; VK_FORMAT_UNDEFINED for none.
+    /// Format of the targets' depth, which is written in the source's encoding; VK_FORMAT_UNDEFINED for no depth.
     pub depth_format: vk::Format,
     /// Largest width of a source in pixels.
     pub max_source_width: u32,
-    /// Largest height of a source.
+    /// Largest height of a source in pixels.
     pub max_source_height: u32,
     /// Largest width of a synthesized image in pixels.
     pub max_target_width: u32,
-    /// Largest height of a synthesized image.
+    /// Largest height of a synthesized image in pixels.
     pub max_target_height: u32,
-    /// What sources know of their edges; 0 is YORO_EDGES_HARD.
+    /// The kind of source images; 0 is YORO_EDGES_HARD.
     pub edges: YoroEdges,
-    /// With YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise not looked at.
+    /// For YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
     pub samples: u32,
     /// Zero.
     pub reserved: u32,
-    /// A cache for pipelines, or VK_NULL_HANDLE.
+    /// A pipeline cache, or VK_NULL_HANDLE.
     pub pipeline_cache: vk::PipelineCache,
-    /// Where the sentences of errors go, those of later calls, too.
+    /// The receiver of the sentences of errors, also in later calls.
     pub messages: YoroMessages,
 }
 
 versioned!(YoroVkInfo);
 
-/// What an image was used for, or will be: the one side of a barrier.
+/// A use of an image: one side of a barrier.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkState {
@@ -77,24 +76,24 @@ pub struct YoroVkState {
     pub layout: vk::ImageLayout,
     /// The stages that use it.
     pub stages: vk::PipelineStageFlags,
-    /// How they use it.
+    /// Their kinds of access.
     pub access: vk::AccessFlags,
 }
 
-/// One layer of a 2-D image: mip level 0, without multisampling where nothing else is said.
+/// One layer of a 2-D image: mip level 0, without multisampling unless stated otherwise.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkImage {
-    /// Its usage has VK_IMAGE_USAGE_SAMPLED_BIT for a source, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or
+    /// The image. Its usage has VK_IMAGE_USAGE_SAMPLED_BIT for a source, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or
     /// VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT for a target.
     pub image: vk::Image,
-    /// The image's format, or of a VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT image a compatible one.
+    /// The image's format, or a compatible one if the image has VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT.
     pub format: vk::Format,
-    /// Layer of an array, such as that of the eye; 0 where there is one.
+    /// The layer of the image, for example the eye's; 0 for an image with one layer.
     pub layer: u32,
-    /// What it was used for before yoro_vk_record: the layout that it is in, and what has to be waited for.
+    /// Its use before yoro_vk_record: its layout then, and the stages to wait for.
     pub before: YoroVkState,
-    /// What it is left ready for.
+    /// Its use afterwards, for which it is made ready.
     pub after: YoroVkState,
 }
 
@@ -104,20 +103,20 @@ pub struct YoroVkImage {
 pub struct YoroVkSource {
     /// sizeof(YoroVkSource).
     pub struct_size: u32,
-    /// Width of the images in pixels; what is rendered may be a part of them.
+    /// Width of the images in pixels; the rendered part may be smaller.
     pub width: u32,
     /// Height of the images in pixels.
     pub height: u32,
     /// Zero.
     pub reserved: u32,
-    /// Colour of the rendered eye, of any format that can be filtered. All four channels are carried over. Other than with
-    /// YORO_EDGES_HARD it is resolved, and lies between 0 and 1.
+    /// Colour of the rendered eye, in any format that can be filtered. All four channels are carried over. Unless
+    /// YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
     pub color: YoroVkImage,
-    /// Its depth: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT; with
-    /// YORO_EDGES_MULTISAMPLE of YoroVkInfo's samples.
+    /// Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT. For
+    /// YORO_EDGES_MULTISAMPLE it has YoroVkInfo's samples.
     pub depth: YoroVkImage,
-    /// With YORO_EDGES_MULTISAMPLE, what the colour was resolved from, of as many samples, where it is still there; otherwise
-    /// its image is VK_NULL_HANDLE.
+    /// For YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
+    /// VK_NULL_HANDLE if it does not exist any more, and for all other edges.
     pub sample_color: YoroVkImage,
 }
 
@@ -129,26 +128,26 @@ versioned!(YoroVkSource);
 pub struct YoroVkTarget {
     /// sizeof(YoroVkTarget).
     pub struct_size: u32,
-    /// Width of the images in pixels; what is synthesized may be a part of them.
+    /// Width of the images in pixels; the synthesized part may be smaller.
     pub width: u32,
     /// Height of the images in pixels.
     pub height: u32,
     /// Zero.
     pub reserved: u32,
-    /// Colour, of YoroVkInfo's color_format.
+    /// Colour, in YoroVkInfo's color_format.
     pub color: YoroVkImage,
-    /// Depth, of YoroVkInfo's depth_format; not looked at where that is VK_FORMAT_UNDEFINED.
+    /// Depth, in YoroVkInfo's depth_format; ignored if that is VK_FORMAT_UNDEFINED.
     pub depth: YoroVkImage,
 }
 
 versioned!(YoroVkTarget);
 
-/// A registered source, never 0.
+/// The id of a registered source, never 0.
 pub type YoroVkSourceId = u32;
-/// A registered target, never 0.
+/// The id of a registered target, never 0.
 pub type YoroVkTargetId = u32;
 
-/// What to synthesize in one call.
+/// The images and places of one synthesis.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkFrame {
@@ -156,27 +155,27 @@ pub struct YoroVkFrame {
     pub struct_size: u32,
     /// The images to read.
     pub source: YoroVkSourceId,
-    /// Column of them where what was rendered begins.
+    /// First column of the rendered part.
     pub source_x: u32,
-    /// Row of them where it begins; row 0 is the first in memory.
+    /// First row of the rendered part; row 0 is the first in memory.
     pub source_y: u32,
     /// The images to write.
     pub target: YoroVkTargetId,
-    /// Column of them where the synthesized image begins.
+    /// First column of the synthesized image.
     pub target_x: u32,
-    /// Row of them where it begins.
+    /// First row of the synthesized image.
     pub target_y: u32,
 }
 
 versioned!(YoroVkFrame);
 
-/// Creates a context for Vulkan: pipelines, and buffers for the largest sizes. At start, not in a frame.
+/// Creates a context for Vulkan: pipelines, and buffers for the largest sizes. Call it at start, not in a frame.
 ///
-/// Any thread.
+/// Call it from any thread.
 ///
-/// @param info    How.
-/// @param context Gets the new context, NULL after an error. Destroy it with yoro_destroy.
-/// @pre The handles are valid, belong together, and stay so until the YoroContext is destroyed.
+/// @param info    The options.
+/// @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+/// @pre The handles are valid, belong together, and live until the YoroContext is destroyed.
 /// @return YORO_ERROR_NO_CONTEXT for a loader without Vulkan's commands, YORO_ERROR_UNSUPPORTED, YORO_ERROR_FORMAT,
 ///         YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_VALUE,
 ///         YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
@@ -185,18 +184,18 @@ pub unsafe extern "C" fn yoro_vk_create(
     info: *const YoroVkInfo,
     context: *mut *mut YoroContext,
 ) -> YoroResult {
-    // SAFETY: the header asks the caller for pointers to what they name, and for handles that belong together.
+    // SAFETY: the header asks for valid pointers, and for handles that belong together.
     unsafe { create(info, context, |info| info.messages, |info| Vulkan::new(info)) }
 }
 
-/// Makes views and descriptors of images to read: once for each pair of images that is rendered to.
+/// Creates views and descriptors of images to read. Call it once for each set of images that you render to.
 ///
-/// On the thread that may use the context.
+/// Call it on the thread that may use the context.
 ///
 /// @param context The context.
 /// @param source  The images.
-/// @param id      Gets their number.
-/// @pre The images are alive until the number is released or the context destroyed.
+/// @param id      Receives their id.
+/// @pre The images live until the id is released or the context is destroyed.
 /// @return YORO_ERROR_FORMAT, YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER,
 ///         YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
@@ -205,15 +204,16 @@ pub unsafe extern "C" fn yoro_vk_register_source(
     source: *const YoroVkSource,
     id: *mut YoroVkSourceId,
 ) -> YoroResult {
-    // SAFETY: the header asks the caller for it.
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         register_images(context, source, "source", id, |vulkan, source| {
             let images = SourceImages {
                 color: source.color.checked("color", true)?,
                 depth: source.depth.checked("depth", true)?,
-                sample_color: match source.sample_color.image == vk::Image::null() {
-                    true => None,
-                    false => Some(source.sample_color.checked("sample_color", true)?),
+                sample_color: if source.sample_color.image == vk::Image::null() {
+                    None
+                } else {
+                    Some(source.sample_color.checked("sample_color", true)?)
                 },
                 size: [source.width, source.height],
             };
@@ -222,20 +222,20 @@ pub unsafe extern "C" fn yoro_vk_register_source(
     }
 }
 
-/// Makes views of images to write: once for each image of a swapchain.
+/// Creates views of images to write. Call it once for each image of a swapchain.
 ///
-/// Thread, preconditions and results as yoro_vk_register_source.
+/// Thread, preconditions and results are those of yoro_vk_register_source.
 ///
 /// @param context The context.
 /// @param target  The images.
-/// @param id      Gets their number.
+/// @param id      Receives their id.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_register_target(
     context: *mut YoroContext,
     target: *const YoroVkTarget,
     id: *mut YoroVkTargetId,
 ) -> YoroResult {
-    // SAFETY: the header asks the caller for it.
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         register_images(context, target, "target", id, |vulkan, target| {
             let images = TargetImages {
@@ -248,17 +248,17 @@ pub unsafe extern "C" fn yoro_vk_register_target(
     }
 }
 
-/// Forgets images to read. A number that is not registered is ignored.
+/// Releases the views and descriptors of images to read. Ignores an id that is not registered.
 ///
-/// On the thread that may use the context.
+/// Call it on the thread that may use the context.
 ///
 /// @param context The context.
-/// @param id      What yoro_vk_register_source gave.
-/// @pre No command that was recorded with it is pending.
+/// @param id      The id from yoro_vk_register_source.
+/// @pre No command that was recorded with the id is pending.
 /// @return YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: YoroVkSourceId) -> YoroResult {
-    // SAFETY: the header asks the caller for it.
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
             vulkan.gather.release_source(SourceId::from_raw(id));
@@ -267,14 +267,14 @@ pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: Y
     }
 }
 
-/// Forgets images to write. As yoro_vk_release_source.
+/// Releases the views of images to write. Thread and results are those of yoro_vk_release_source.
 ///
 /// @param context The context.
-/// @param id      What yoro_vk_register_target gave.
-/// @pre No command that was recorded with it is pending.
+/// @param id      The id from yoro_vk_register_target.
+/// @pre No command that was recorded with the id is pending.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: YoroVkTargetId) -> YoroResult {
-    // SAFETY: the header asks the caller for it.
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
             vulkan.gather.release_target(TargetId::from_raw(id));
@@ -283,24 +283,25 @@ pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: Y
     }
 }
 
-/// Records the synthesis of the other eye: barriers, and three draws or, other than with YORO_EDGES_HARD, four into the target's rectangle of warp's target size, all of
-/// which is overwritten. Record it after the opaque objects of the rendered eye, before transparent objects and effects
-/// that are drawn for each eye. Nothing is allocated, compiled, submitted or waited for.
+/// Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten: barriers, and
+/// three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the rendered eye, and before
+/// transparent objects and effects that are drawn for each eye. It allocates, compiles and submits nothing, and does not wait.
 ///
-/// Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Images go from
+/// Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Brings images from
 /// their state `before` to their state `after`.
 ///
-/// On the thread that may use the context and that records the command buffer.
+/// Call it on the thread that may use the context and that records the command buffer.
 ///
 /// @param context  The context.
 /// @param commands A command buffer of the device.
-/// @param warp     From YoroViews, with rows as they lie in the images.
-/// @param frame    What to read and where to draw.
+/// @param warp     The warp of YoroViews, with rows as they lie in the images.
+/// @param frame    The images to read and the place to draw.
 /// @pre The command buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to
-///      the queue family of YoroVkInfo. The images are in the state `before` when it is executed.
+///      the queue family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering is
+///      not active.
 /// @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond their
-///         images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; with
-///         any of these nothing was recorded.
+///         images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE. After an
+///         error nothing was recorded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_record(
     context: *mut YoroContext,
@@ -308,14 +309,14 @@ pub unsafe extern "C" fn yoro_vk_record(
     warp: *const YoroWarp,
     frame: *const YoroVkFrame,
 ) -> YoroResult {
-    // SAFETY: the header asks the caller for it.
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
             if warp.is_null() || commands == vk::CommandBuffer::null() {
                 return Err(Failure::new(YORO_ERROR_NULL, "warp or commands is NULL: give both"));
             }
             let mut warp = warp.read_unaligned().checked()?;
-            // The core counts these rows from the lowest, and takes row 0 of Vulkan's images for the topmost.
+            // The core counts these rows from the bottom, and takes row 0 of Vulkan's images as the top.
             warp.row_offset = warp.target_size[1] as i32 - warp.source_size[1] as i32 - warp.row_offset;
             let frame = versioned::read(frame, "frame")?;
             let frame = Frame {
@@ -339,7 +340,7 @@ unsafe fn enter_vulkan(
     unsafe { enter_as(context, "yoro_vk_create", body) }
 }
 
-/// Runs the body of a function that registers images: `register` gives their number.
+/// Runs the body of a function that registers images; `register` returns their id.
 ///
 /// # Safety
 /// `context` is null or alive, `images` is null or leads to as many bytes as it states, and `id` is null or can be
@@ -355,18 +356,18 @@ unsafe fn register_images<T: Versioned>(
         // SAFETY: the caller gives a pointer to as many bytes as they state.
         let images = unsafe { versioned::read(images, what) }?;
         if id.is_null() {
-            return Err(Failure::new(YORO_ERROR_NULL, "id is NULL: say where the number goes"));
+            return Err(Failure::new(YORO_ERROR_NULL, "id is NULL: give a pointer that receives the id"));
         }
-        let number = register(vulkan, &images)?;
+        let registered = register(vulkan, &images)?;
         // SAFETY: the caller gives a pointer that can be written.
-        unsafe { id.write(number) };
+        unsafe { id.write(registered) };
         Ok(())
     };
     // SAFETY: the caller gives a context that is alive, or null.
     unsafe { enter_vulkan(context, body) }
 }
 
-/// A pipeline on a device.
+/// The synthesis on a device.
 pub(crate) struct Vulkan {
     gather: Gather,
     writes_depth: bool,
@@ -399,9 +400,9 @@ impl Vulkan {
         if writes_depth {
             check_format(info.depth_format, "depth_format")?;
         }
-        // ash panics in commands that were not found: the ones that lead to the others, of the version that is needed.
+        // ash panics in commands that were not found. These lead to all others, or are of the oldest version that is needed.
         let has = |name: &CStr| {
-            // SAFETY: a live instance and a name.
+            // SAFETY: the header asks for a live instance; the name ends with 0.
             unsafe { loader(info.instance, name.as_ptr()) }.is_some()
         };
         let needed = [
@@ -414,11 +415,12 @@ impl Vulkan {
         if !needed.into_iter().all(has) {
             return Err(Failure::new(
                 YORO_ERROR_NO_CONTEXT,
-                "the loader does not give the commands of Vulkan 1.1: give vkGetInstanceProcAddr, and an instance of \
+                "the loader does not return the commands of Vulkan 1.1: give vkGetInstanceProcAddr, and an instance of \
                  version 1.1 or later",
             ));
         }
-        // SAFETY: of one signature but for the name of the calling convention, which is C's; the caller promises the rest.
+        // SAFETY: both types have the same signature, and "system" is C's calling convention on these platforms. The header
+        // asks for handles that belong together.
         let (instance, device) = unsafe {
             let get_instance_proc_addr = std::mem::transmute::<
                 unsafe extern "C" fn(vk::Instance, *const c_char) -> Option<unsafe extern "C" fn()>,
@@ -445,7 +447,7 @@ impl Vulkan {
             timed_frames: 0,
             pipeline_cache: info.pipeline_cache,
         };
-        // SAFETY: promised by the caller.
+        // SAFETY: the header asks for handles that are valid, belong together, and outlive the context.
         let gather = unsafe { Gather::new(&host, &options) }?;
         Ok(Vulkan { gather, writes_depth, instance, physical_device: info.physical_device })
     }
@@ -457,7 +459,7 @@ impl Backend for Vulkan {
     }
 
     fn capabilities(&self) -> YoroCapabilities {
-        // SAFETY: the caller's instance lives as long as the context.
+        // SAFETY: the header asks for an instance that outlives the context.
         let properties = unsafe { self.instance.get_physical_device_properties(self.physical_device) };
         let mut capabilities = YoroCapabilities {
             struct_size: size_of::<YoroCapabilities>() as u32,
@@ -478,7 +480,7 @@ impl Backend for Vulkan {
     }
 }
 
-/// Drivers look numbers of formats up in tables, and not all of them look whether there is such a number.
+/// Checks that a format is known: drivers look it up in tables, and some do not check their bounds.
 fn check_format(format: vk::Format, what: &str) -> Result<(), Failure> {
     let last_of_version_1_0 = vk::Format::ASTC_12X12_SRGB_BLOCK.as_raw();
     if (1..=last_of_version_1_0).contains(&format.as_raw()) {
@@ -486,7 +488,10 @@ fn check_format(format: vk::Format, what: &str) -> Result<(), Failure> {
     }
     Err(Failure::new(
         YORO_ERROR_FORMAT,
-        format!("{what} is {}, which is no format that can be rendered to: see the header", format.as_raw()),
+        format!(
+            "{what} is {}, which is not a format that can be rendered to: see the header",
+            format.as_raw()
+        ),
     ))
 }
 
@@ -501,12 +506,12 @@ impl YoroVkImage {
         check_format(self.format, what)?;
         if is_read && self.before.layout == vk::ImageLayout::UNDEFINED {
             return Err(Failure::value(format!(
-                "the {what} image is read, but its layout before is VK_IMAGE_LAYOUT_UNDEFINED, which discards it"
+                "the {what} image is read, but its layout before is VK_IMAGE_LAYOUT_UNDEFINED, which discards its contents"
             )));
         }
         if self.after.layout == vk::ImageLayout::UNDEFINED {
             return Err(Failure::value(format!(
-                "the {what} image's layout after is VK_IMAGE_LAYOUT_UNDEFINED: give the one that follows"
+                "the {what} image's layout after is VK_IMAGE_LAYOUT_UNDEFINED: give the layout that follows"
             )));
         }
         let state = |state: &YoroVkState| ImageState {

@@ -1,4 +1,4 @@
-//! Wrong arguments of every kind give the code that the header promises, and never anything worse.
+//! Wrong arguments of every kind return the code that the header promises.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::mem::{MaybeUninit, offset_of};
@@ -10,12 +10,12 @@ use proptest::test_runner::{Config, TestRunner};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
-/// What is changed in something that is right, and the code that it then has.
+/// A change that makes an argument wrong, and the code that it then returns.
 type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
 
-/// All structures of the interface are fine with zeros.
+/// A structure of zeros, which are valid for all structures of the interface.
 fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
-    // SAFETY: numbers, nullable pointers and nothing else.
+    // SAFETY: the structures have only numbers and nullable pointers, for which zeros are valid.
     let mut value = unsafe { MaybeUninit::<T>::zeroed().assume_init() };
     *size(&mut value) = size_of::<T>() as u32;
     value
@@ -47,7 +47,7 @@ fn good_eyes() -> YoroEyes {
 
 fn views_of(eyes: &YoroEyes) -> Result<YoroViews, YoroResult> {
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
-    // SAFETY: whole structures of the size that they state.
+    // SAFETY: both are whole structures of the size that they state.
     match unsafe { yoro_views_from_eyes(eyes, &mut views) } {
         YORO_OK => Ok(views),
         code => Err(code),
@@ -67,7 +67,7 @@ fn matrices_of(views: &YoroViews, eyes: &YoroEyes) -> YoroMatrices {
 
 fn views_of_matrices(matrices: &YoroMatrices) -> Result<YoroViews, YoroResult> {
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
-    // SAFETY: whole structures of the size that they state.
+    // SAFETY: both are whole structures of the size that they state.
     match unsafe { yoro_views_from_matrices(matrices, &mut views) } {
         YORO_OK => Ok(views),
         code => Err(code),
@@ -75,7 +75,7 @@ fn views_of_matrices(matrices: &YoroMatrices) -> Result<YoroViews, YoroResult> {
 }
 
 #[test]
-fn eyes_that_cannot_be_have_their_codes() {
+fn impossible_eyes_return_their_codes() {
     let nan = f32::NAN;
     let wrong = |change: &dyn Fn(&mut YoroEyes)| {
         let mut noted = Vec::new();
@@ -138,7 +138,7 @@ fn eyes_that_cannot_be_have_their_codes() {
 }
 
 #[test]
-fn flags_make_eyes_that_can_be() {
+fn flags_make_canted_and_uneven_eyes_usable() {
     let mut eyes = good_eyes();
     eyes.fovs[0].angle_left = -0.9;
     eyes.flags = YORO_EYES_EVEN;
@@ -152,7 +152,7 @@ fn flags_make_eyes_that_can_be() {
 }
 
 #[test]
-fn matrices_that_cannot_be_have_their_codes() {
+fn impossible_matrices_return_their_codes() {
     let eyes = good_eyes();
     let good = matrices_of(&views_of(&eyes).unwrap(), &eyes);
     assert!(views_of_matrices(&good).is_ok());
@@ -185,7 +185,7 @@ fn matrices_that_cannot_be_have_their_codes() {
         (&|m| (m.projection[0][11], m.projection[0][15]) = (0.0, 1.0), YORO_ERROR_MATRIX),
         // Made for Vulkan: y points down.
         (&|m| m.clip = YORO_CLIP_VULKAN, YORO_ERROR_MATRIX),
-        // The planes of one eye are others.
+        // The planes of one eye differ.
         (&|m| m.projection[0][14] *= 1.5, YORO_ERROR_MATRIX),
         // Left-handed in one eye only.
         (&|m| m.view[0][..3].iter_mut().for_each(|n| *n = -*n), YORO_ERROR_MATRIX),
@@ -198,7 +198,7 @@ fn matrices_that_cannot_be_have_their_codes() {
     }
 }
 
-/// Eyes that synthesis takes, of all conventions.
+/// Eyes that can be synthesized, in all conventions.
 fn any_eyes() -> impl Strategy<Value = YoroEyes> {
     let places = (-9f32..9.0, -9f32..9.0, -3f32..3.0, -1.4f32..1.4, 0.03f32..0.075);
     let angles = (0.3f32..1.0, 0.3f32..1.0, 0.3f32..1.0, 0.3f32..1.0);
@@ -222,7 +222,7 @@ fn any_eyes() -> impl Strategy<Value = YoroEyes> {
     })
 }
 
-/// Column and row in pixels of an image, counted as `rows` says, and stored depth, of a point in the world.
+/// Returns the column and row in pixels, counted as `rows` says, and the stored depth of a point in the world.
 fn project(view: &YoroView, clip: YoroClip, rows: YoroRows, point: glam::DVec3) -> [f64; 3] {
     let matrix = |m: &[f32; 16]| glam::DMat4::from_cols_array(&m.map(f64::from));
     let projected = matrix(&view.projection) * matrix(&view.view) * point.extend(1.0);
@@ -233,7 +233,7 @@ fn project(view: &YoroView, clip: YoroClip, rows: YoroRows, point: glam::DVec3) 
     [(0.5 * ndc.x + 0.5) * f64::from(view.width), (0.5 * row + 0.5) * f64::from(view.height), depth]
 }
 
-/// A point that source and synthesized eye see lands where the warp says, and the rendered eye's image is the crop.
+/// Checks that points which both eyes see land where the warp says, and that the rendered eye's image is the crop.
 fn check_law(views: &YoroViews, clip: YoroClip, rows: YoroRows, points: &[glam::DVec3]) {
     for point in points {
         let [x, y, depth] = project(&views.source, clip, rows, *point);
@@ -259,7 +259,7 @@ fn points(eyes: &YoroEyes) -> Vec<glam::DVec3> {
 }
 
 #[test]
-fn poses_and_matrices_say_the_same() {
+fn poses_and_matrices_give_the_same_views() {
     let mut runner = TestRunner::new(Config { cases: 400, failure_persistence: None, ..Config::default() });
     let law = |eyes: YoroEyes| {
         let views = views_of(&eyes).unwrap();
@@ -301,7 +301,7 @@ fn poses_and_matrices_say_the_same() {
         .unwrap();
 }
 
-/// Bytes of a structure, some of which are replaced.
+/// Returns a structure with some of its words replaced.
 fn damaged<T: Copy>(value: &T, damage: &[(usize, u32)], from: usize) -> T {
     let mut copy = *value;
     for &(place, word) in damage {
@@ -314,7 +314,7 @@ fn damaged<T: Copy>(value: &T, damage: &[(usize, u32)], from: usize) -> T {
     copy
 }
 
-/// Numbers that find mistakes.
+/// Numbers that often reveal mistakes.
 fn any_word() -> impl Strategy<Value = u32> {
     prop_oneof![
         Just(0),
@@ -338,7 +338,7 @@ fn damaged_eyes_are_refused_or_make_sense() {
     let matrices = matrices_of(&views_of(&good).unwrap(), &good);
     TestRunner::new(cases)
         .run(&damage, |damage| {
-            // The pointers, at the end, stay null; the size at the beginning is what the other test is for.
+            // The pointers at the end stay null. Another test changes the size at the beginning.
             let eyes = YoroEyes { messages: good.messages, ..damaged(&good, &damage, 4) };
             let matrices = YoroMatrices { messages: good.messages, ..damaged(&matrices, &damage, 4) };
             for outcome in [views_of(&eyes), views_of_matrices(&matrices)] {
@@ -360,7 +360,7 @@ fn damaged_eyes_are_refused_or_make_sense() {
         .unwrap();
 }
 
-/// The entry points of the context that is current.
+/// The loader of the current context.
 unsafe extern "C" fn load(name: *const c_char) -> YoroGlProc {
     type GetProcAddress = unsafe extern "C" fn(*const c_char) -> YoroGlProc;
     // SAFETY: libEGL is there, since a context of it is current, and is never unloaded.
@@ -385,7 +385,7 @@ fn gl_info(noted: &mut Vec<(YoroResult, String)>) -> YoroGlInfo {
 }
 
 #[test]
-fn a_context_that_cannot_be_has_its_code() {
+fn impossible_contexts_return_their_codes() {
     let mut noted = Vec::new();
     let info = gl_info(&mut noted);
     let create = |info: &YoroGlInfo| {
@@ -406,7 +406,7 @@ fn a_context_that_cannot_be_has_its_code() {
     assert_eq!(create(&YoroGlInfo { loader: None, ..info }), YORO_ERROR_NULL);
     assert_eq!(create(&YoroGlInfo { loader: Some(load_nothing), ..info }), YORO_ERROR_NO_CONTEXT);
     assert_eq!(create(&info), YORO_ERROR_NO_CONTEXT);
-    // SAFETY: null is what is tested.
+    // SAFETY: null pointers are allowed, and refused with a code.
     unsafe {
         assert_eq!(yoro_gl_create(null(), &mut null_mut()), YORO_ERROR_NULL);
         assert_eq!(yoro_gl_create(&info, null_mut()), YORO_ERROR_NULL);
@@ -418,7 +418,7 @@ fn a_context_that_cannot_be_has_its_code() {
     assert_eq!(create(&YoroGlInfo { outputs: YORO_OUTPUT_DEPTH, ..info }), YORO_OK);
 }
 
-/// A texture of one level.
+/// Creates a texture with one mip level.
 ///
 /// # Safety
 /// The context is current.
@@ -439,7 +439,7 @@ unsafe fn texture(gl: &glow::Context, target: u32, format: u32, [w, h]: [u32; 2]
     }
 }
 
-/// A framebuffer of two textures.
+/// Creates a framebuffer of two textures.
 ///
 /// # Safety
 /// As [`texture`].
@@ -458,7 +458,7 @@ unsafe fn framebuffer(gl: &glow::Context, attachments: &[(u32, u32)]) -> u32 {
 }
 
 #[test]
-fn images_that_do_not_fit_have_their_codes() {
+fn wrong_images_return_their_codes() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl().raw();
     let mut noted = Vec::new();
@@ -534,7 +534,7 @@ fn images_that_do_not_fit_have_their_codes() {
     assert_eq!(capabilities.api, YORO_API_OPENGL_ES);
     assert!(capabilities.buffer_bytes > 0 && capabilities.device[0] != 0);
 
-    // Warps of any numbers.
+    // Warps of random numbers.
     let cases = Config { cases: 300, failure_persistence: None, ..Config::default() };
     let first = offset_of!(YoroWarp, source_width);
     let damage = prop::collection::vec((any::<usize>(), any_word()), 1..4);
@@ -551,7 +551,7 @@ fn images_that_do_not_fit_have_their_codes() {
 }
 
 #[test]
-fn anti_aliased_images_that_do_not_fit_have_their_codes() {
+fn wrong_anti_aliased_images_return_their_codes() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl().raw();
     let views = views_of(&good_eyes()).unwrap();

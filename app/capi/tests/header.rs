@@ -1,14 +1,14 @@
-//! The header is what cbindgen makes of the source.
+//! The committed header is the one that cbindgen makes of the source.
 
 use std::path::Path;
 
-/// cbindgen's text, with each constant behind the type that it is of instead of before all functions.
+/// Returns cbindgen's text with each constant behind its type, instead of before all functions.
 fn arranged(made: &str) -> String {
     let mut blocks: Vec<String> = Vec::new();
     let mut constants = Vec::new();
     for block in made.split("\n\n") {
         match block.lines().find_map(|line| line.strip_prefix("#define YORO_")) {
-            // Parentheses, as for everything behind a #define that is more than one word.
+            // A #define of more than one word needs parentheses.
             Some(_) if block.starts_with("/**") => constants.push(negative_in_parentheses(block)),
             _ => blocks.push(block.to_owned()),
         }
@@ -23,7 +23,7 @@ fn arranged(made: &str) -> String {
         let own: Vec<String> = constants.extract_if(.., |constant| belongs(constant)).collect();
         block.extend(own.iter().map(|constant| format!("\n{constant}")));
     }
-    // What is of no type of this library, such as versions: before everything else.
+    // Constants without a type of this library, such as versions, come first.
     let first = blocks.iter().position(|block| block.starts_with("/**")).unwrap();
     blocks.splice(first..first, constants);
     blocks.join("\n\n")
@@ -38,7 +38,7 @@ fn negative_in_parentheses(block: &str) -> String {
     }
 }
 
-/// How the constants of a type begin: `#define YORO_EYES_` for YoroEyesFlags.
+/// Returns the beginnings of a type's constants: `#define YORO_EYES_` for YoroEyesFlags.
 fn prefixes(name: &str) -> Vec<String> {
     if name == "YoroResult" {
         return ["OK ", "ERROR_"].map(|constant| format!("#define YORO_{constant}")).into();

@@ -1,5 +1,5 @@
-//! The samples, as others compile them: by C and C++ compilers against the header and the built library. And Python, which
-//! stands for every other language.
+//! The samples, compiled as users compile them: by C and C++ compilers against the header and the built library. Python
+//! stands for all other languages.
 
 #[path = "../kit/files.rs"]
 mod kit;
@@ -8,7 +8,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Compilers with the language that they are given, and the standard of it.
+/// Compilers with their language and its standard.
 const COMPILERS: [[&str; 3]; 4] =
     [["gcc", "c", "c11"], ["clang", "c", "c11"], ["g++", "c++", "c++17"], ["clang++", "c++", "c++17"]];
 const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-pedantic", "-Werror"];
@@ -17,7 +17,7 @@ fn package() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The folder of the library that cargo has built for this test, beside which it lies.
+/// Returns the folder of the library that cargo has built beside this test.
 fn library() -> PathBuf {
     let folder = env::current_exe().unwrap().parent().unwrap().to_owned();
     assert!(folder.join("libyoro_c.so").is_file(), "{} has no libyoro_c.so", folder.display());
@@ -28,7 +28,7 @@ fn is_here(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success())
 }
 
-/// Runs a command, which must succeed; what it printed.
+/// Runs a command, which must succeed, and returns its output.
 fn run(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let text =
@@ -37,8 +37,8 @@ fn run(command: &mut Command) -> String {
     text
 }
 
-/// Compiles a sample by every compiler that is here, runs what the first one made, and looks at its figures and picture,
-/// which is the result.
+/// Compiles a sample by every installed compiler, runs the first result, checks its figures and picture, and returns the
+/// picture.
 fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> Option<image::RgbImage> {
     if !Path::new("/usr/include").join(header).is_file() {
         println!("SKIPPED: {source} is not compiled: {header} is not here");
@@ -59,7 +59,7 @@ fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> 
         }
         command.arg(package().join(source)).args(["-x", "none"]);
         match i {
-            // That it links is learnt once.
+            // Linking is tested once.
             0 => command.arg("-L").arg(library()).args(libraries).arg("-lm").arg("-o").arg(&program),
             _ => command.arg("-fsyntax-only"),
         };
@@ -78,12 +78,12 @@ fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> 
     println!("{source}: {synthesized} dB, the same image to both eyes {same} dB");
     assert!(synthesized > 30.0 && synthesized > same + 10.0, "{printed}");
 
-    // The file holds what the figures are of: the left half is near the right one, shifted, and neither is empty.
+    // The halves of the picture are similar but shifted, and neither is empty.
     let image = image::open(&picture).unwrap().to_rgb8();
     assert_eq!(image.dimensions(), (1024, 512));
     let (bright, dark) = image.pixels().fold((0, 255), |(high, low), p| (p[1].max(high), p[1].min(low)));
     assert!(bright > 150 && dark < 80, "{bright} {dark}");
-    // Up is up: the room's ceiling is darker than its floor, on which the sun shines.
+    // Up is up: the ceiling is darker than the floor, on which the sun shines.
     let mean = |rows: std::ops::Range<u32>| {
         let count = rows.len() as f64 * 1024.0;
         rows.flat_map(|y| (0..1024).map(move |x| (x, y)))
@@ -100,12 +100,12 @@ fn gles() -> Option<image::RgbImage> {
 }
 
 #[test]
-fn the_sample_for_opengl_es() {
+fn the_opengl_es_sample_draws_two_eyes() {
     gles();
 }
 
 #[test]
-fn the_sample_for_vulkan() {
+fn the_vulkan_sample_draws_two_eyes() {
     if env::var_os("YORO_TEST_WITHOUT_VULKAN").is_some() {
         println!("LEFT OUT: the sample for Vulkan");
     } else if cfg!(feature = "vulkan") {
@@ -113,9 +113,9 @@ fn the_sample_for_vulkan() {
     }
 }
 
-/// The shaders of the sample for Vulkan as a header for C: what there is, what it should be, and by which compiler.
+/// The Vulkan sample's shaders as a header for C, compared with a new compilation by the same compiler.
 #[test]
-fn the_samples_modules_are_those_of_its_shaders() {
+fn the_samples_modules_are_compiled_from_its_present_shaders() {
     const COMPILER: &str = "glslangValidator";
     let header = package().join("examples/room_spv.h");
     let kept = std::fs::read_to_string(&header).unwrap_or_default();
@@ -152,7 +152,7 @@ fn the_samples_modules_are_those_of_its_shaders() {
 }
 
 #[test]
-fn another_language_calls_it() {
+fn python_calls_the_library() {
     if !is_here("python3") {
         println!("SKIPPED: no Python here");
         return;
@@ -161,7 +161,7 @@ fn another_language_calls_it() {
     print!("{}", run(Command::new("python3").arg(script).arg(library().join("libyoro_c.so"))));
 }
 
-/// A program that has the shader kit, and nothing else of this project, draws what the library draws.
+/// A program with only the shader kit draws the same picture as the library.
 #[test]
 fn the_kit_draws_the_librarys_picture() {
     let kit = tempfile::tempdir().unwrap();
@@ -177,7 +177,7 @@ fn the_kit_draws_the_librarys_picture() {
     assert!(largest <= 1 && different * 1000 < drawn.len(), "{largest} {different}");
 }
 
-/// The other half of the kit, in all settings.
+/// All variants of the kit's shaders for Vulkan.
 #[test]
 fn the_kits_shaders_for_vulkan_compile() {
     const COMPILER: &str = "glslangValidator";

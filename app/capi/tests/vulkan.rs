@@ -1,4 +1,4 @@
-//! Wrong arguments on Vulkan give the code that the header promises.
+//! Wrong arguments on Vulkan return the code that the header promises.
 
 #![cfg(feature = "vulkan")]
 
@@ -11,18 +11,18 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use yoro_c::*;
 
-/// What is changed in something that is right, and the code that it then has.
+/// A change that makes an argument wrong, and the code that it then returns.
 type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
 
-/// All structures of the interface are fine with zeros.
+/// A structure of zeros, which are valid for all structures of the interface.
 fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
-    // SAFETY: numbers, handles and nullable pointers.
+    // SAFETY: the structures have only numbers, handles and nullable pointers, for which zeros are valid.
     let mut value = unsafe { MaybeUninit::<T>::zeroed().assume_init() };
     *size(&mut value) = size_of::<T>() as u32;
     value
 }
 
-/// A device with one image of colour, one of depth, and a command buffer that is being recorded. Goes with the process.
+/// A device with a colour image, a depth image, and a recording command buffer. It lives as long as the process.
 struct Gpu {
     entry: ash::Entry,
     instance: ash::Instance,
@@ -121,7 +121,7 @@ fn plane(image: vk::Image, format: vk::Format) -> YoroVkImage {
 }
 
 #[test]
-fn what_cannot_be_has_its_code() {
+fn wrong_vulkan_arguments_return_their_codes() {
     let Some(gpu) = Gpu::open() else { return };
     let info = gpu.info();
     let table: &Mistakes<YoroVkInfo> = &[
@@ -148,7 +148,7 @@ fn what_cannot_be_has_its_code() {
         change(&mut wrong);
         assert_eq!(create(&wrong), Err(*expected), "row {i}");
     }
-    // SAFETY: null is what is tested.
+    // SAFETY: null pointers are allowed, and refused with a code.
     unsafe {
         assert_eq!(yoro_vk_create(null(), &mut null_mut()), YORO_ERROR_NULL);
         assert_eq!(yoro_vk_create(&info, null_mut()), YORO_ERROR_NULL);
@@ -232,7 +232,7 @@ fn what_cannot_be_has_its_code() {
     assert_eq!(record(&YoroWarp { target_width: 161, ..warp }, &frame), YORO_ERROR_TOO_LARGE);
     assert_eq!(record(&YoroWarp { offset: f64::NAN, ..warp }, &frame), YORO_ERROR_VALUE);
     assert_eq!(record(&warp, &YoroVkFrame { struct_size: 0, ..frame }), YORO_ERROR_STRUCT_SIZE);
-    // SAFETY: null is what is tested.
+    // SAFETY: null pointers are allowed, and refused with a code.
     unsafe {
         let no_commands = vk::CommandBuffer::null();
         assert_eq!(yoro_vk_record(context, no_commands, &warp, &frame), YORO_ERROR_NULL);
@@ -241,7 +241,7 @@ fn what_cannot_be_has_its_code() {
         assert_eq!(yoro_vk_record(null_mut(), gpu.commands, &warp, &frame), YORO_ERROR_NULL);
     }
 
-    // Any numbers for sizes, displacements, and places.
+    // Random sizes, displacements and places.
     let numbers = prop::collection::vec(prop_oneof![0u32..300, any::<u32>(), Just(f32::NAN.to_bits())], 18);
     let config = Config { cases: 300, failure_persistence: None, ..Config::default() };
     TestRunner::new(config)

@@ -46,12 +46,12 @@ fn check_framebuffer(
     target: &Destination,
 ) -> Result<(), Failure> {
     let Some(framebuffer) = Framebuffer::query(context, target.framebuffer) else {
-        return Err(wrong("framebuffer is no name of a framebuffer of this GL context"));
+        return Err(wrong("framebuffer is not the name of a framebuffer of this GL context"));
     };
     if framebuffer.status != glow::FRAMEBUFFER_COMPLETE {
         let status = framebuffer.status;
         return Err(wrong(format!(
-            "the framebuffer is not complete (GL says 0x{status:04x}): see its attachments"
+            "the framebuffer is incomplete (GL says 0x{status:04x}): check its attachments"
         )));
     }
     if outputs.depth && framebuffer.depth == Attachment::None {
@@ -65,8 +65,8 @@ fn check_framebuffer(
         let attached = texture.map(Attachment::Texture);
         if attached == Some(framebuffer.color) || attached == Some(framebuffer.depth) {
             return Err(wrong(format!(
-                "{what} is attached to the framebuffer: nothing can be drawn into what is read, give the framebuffer \
-                 textures of its own"
+                "{what} is attached to the framebuffer, but an image cannot be read and drawn at once: give the \
+                 framebuffer textures of its own"
             )));
         }
     }
@@ -141,10 +141,10 @@ fn check_texture(
 ) -> Result<(), Failure> {
     // SAFETY: a query of the current context.
     if !unsafe { context.raw().is_texture(texture) } {
-        return Err(wrong(format!("{what} is {}, no texture of this GL context", texture.0)));
+        return Err(wrong(format!("{what} is {}, which is not a texture of this GL context", texture.0)));
     }
     let Some(level) = Level::query(context, texture, kind) else {
-        return Err(wrong(format!("{what} is no {}", kind.remedy)));
+        return Err(wrong(format!("{what} is not a {}", kind.remedy)));
     };
     if level.is_known && level.size != size {
         let ([w, h], [x, y]) = (level.size, size);
@@ -153,7 +153,7 @@ fn check_texture(
         )));
     }
     if level.is_known && !fits(&level) {
-        return Err(wrong(format!("{what} has a format that cannot be sampled so: see YoroGlImages")));
+        return Err(wrong(format!("{what} has a format that cannot be used here: see YoroGlImages")));
     }
     Ok(())
 }

@@ -80,9 +80,10 @@ impl Source {
         passes: &Passes,
     ) -> Result<Source, VulkanError> {
         let mut sampled = |image: &LayerImage| {
-            let aspect = match is_depth(image.format) {
-                true => vk::ImageAspectFlags::DEPTH,
-                false => vk::ImageAspectFlags::COLOR,
+            let aspect = if is_depth(image.format) {
+                vk::ImageAspectFlags::DEPTH
+            } else {
+                vk::ImageAspectFlags::COLOR
             };
             let view = objects.create_view(image.image, image.format, aspect, image.layer)?;
             Ok(texture(view, sampled_state(image).layout))

@@ -5,12 +5,11 @@
 //! [`Gather::register_source`] and [`Gather::register_target`]; [`Gather::record`] only records: it allocates nothing,
 //! submits nothing and waits for nothing.
 //!
-//! Images are in Vulkan's own orientation, row 0 at the top, source and target alike. A
-//! [`Warp`](crate::eyes::Warp) is taken as [`EyePair::synthesis`](crate::eyes::EyePair::synthesis) gives it; its rows,
-//! which are counted from the bottom, are turned inside.
-//! [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in that orientation, and
-//! [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is where the
-//! dominant eye's own image is in it.
+//! Source and target images have Vulkan's own orientation, row 0 at the top. Give the [`Warp`](crate::eyes::Warp) as
+//! [`EyePair::synthesis`](crate::eyes::EyePair::synthesis) returns it: its rows, which are counted from the bottom, are
+//! turned inside. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in that orientation.
+//! [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is the place of the
+//! dominant eye's own image in it.
 //!
 //! ```no_run
 //! use yoro::eyes::SynthesisViews;
@@ -74,7 +73,7 @@ pub use gather::Gather;
 #[doc(hidden)]
 pub use shaders::GatherVariant;
 
-/// Why something cannot be made, registered or recorded.
+/// Errors of creating a pipeline, of registering images, and of recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VulkanError {
@@ -86,8 +85,8 @@ pub enum VulkanError {
         /// ERROR_OUT_OF_HOST_MEMORY, ERROR_OUT_OF_DEVICE_MEMORY or ERROR_OUT_OF_POOL_MEMORY.
         result: vk::Result,
     },
-    /// The device is lost: it has to be made again, and all of its objects with it.
-    #[error("{call}: the Vulkan device is lost; make it and all of its objects again")]
+    /// The device is lost: create it and all of its objects again.
+    #[error("{call}: the Vulkan device is lost; create it and all of its objects again")]
     DeviceLost {
         /// The Vulkan command that failed.
         call: &'static str,
@@ -97,28 +96,28 @@ pub enum VulkanError {
     Call {
         /// The Vulkan command.
         call: &'static str,
-        /// What it returned.
+        /// Its result.
         result: vk::Result,
     },
-    /// The device cannot use an image of this format so.
+    /// The device cannot use this format in this role.
     #[error("the Vulkan device cannot use {format:?} as {role}; choose another format")]
     Format {
         /// The format.
         format: vk::Format,
-        /// What it would have to be.
+        /// The role of the image.
         role: &'static str,
     },
-    /// An image to be registered has another format than [`Options`] says.
+    /// A registered image does not have the format of [`Options`].
     #[error(
         "a target of {found:?} does not fit pipelines for {expected:?}; give the same formats in `Options` and `TargetImages`"
     )]
     OtherFormat {
-        /// That of [`Options`], UNDEFINED for no depth.
+        /// The format of [`Options`], UNDEFINED for no depth.
         expected: vk::Format,
-        /// That of [`TargetImages`], UNDEFINED for no depth.
+        /// The format of [`TargetImages`], UNDEFINED for no depth.
         found: vk::Format,
     },
-    /// The queue family draws nothing.
+    /// The queue family has no graphics.
     #[error("queue family {0} has no graphics; give the family of the queue that draws")]
     QueueFamily(u32),
     /// [`Host::dynamic_rendering`] is set, but the device has no vkCmdBeginRendering.
@@ -126,24 +125,24 @@ pub enum VulkanError {
         "the device has no vkCmdBeginRendering; enable the feature dynamicRendering, or unset `dynamic_rendering`"
     )]
     DynamicRendering,
-    /// Sizes are none, or beyond those that everything was made for, or beyond what the device can.
+    /// A size is zero, or beyond the sizes of [`Options`] or of the device.
     #[error(
-        "{what} of {}x{} pixels is not between 1x1 and {}x{}; give such a size, or larger ones in `Options`",
+        "{what} of {}x{} pixels is not between 1x1 and {}x{}; give a size in that range, or larger sizes in `Options`",
         size[0], size[1], limit[0], limit[1]
     )]
     Size {
-        /// Whose size.
+        /// The image that has the size.
         what: &'static str,
         /// Width and height.
         size: [u32; 2],
         /// The largest.
         limit: [u32; 2],
     },
-    /// The device cannot sample depth of so many samples, or they are neither 2 nor 4.
-    #[error("a source's depth of {0} samples cannot be used; give 2 or 4, what the device can sample")]
+    /// The number of depth samples is not 2 or 4, or the device cannot sample it.
+    #[error("a source's depth of {0} samples cannot be used; give 2 or 4, whichever the device can sample")]
     Samples(u32),
-    /// A source has the colour of its samples, which only [`Edges::Multisample`] takes.
-    #[error("colour of samples is for `Edges::Multisample` alone; leave out `sample_color`")]
+    /// A source has the colour of its samples, which only [`Edges::Multisample`] uses.
+    #[error("colour of samples is for `Edges::Multisample` only; leave out `sample_color`")]
     SampleColors,
     /// A rectangle reaches beyond its image.
     #[error(
@@ -151,7 +150,7 @@ pub enum VulkanError {
         size[0], size[1], origin[0], origin[1], image[0], image[1]
     )]
     Rectangle {
-        /// Whose rectangle.
+        /// The rectangle.
         what: &'static str,
         /// Upper left corner.
         origin: [u32; 2],
@@ -160,7 +159,7 @@ pub enum VulkanError {
         /// Width and height of the image.
         image: [u32; 2],
     },
-    /// A [`SourceId`] or [`TargetId`] that is not registered (any more).
+    /// A [`SourceId`] or [`TargetId`] is not registered, or was released.
     #[error("these images are not registered; register them, and use the id until they are released")]
     NotRegistered,
 }
@@ -185,40 +184,41 @@ impl VulkanError {
     }
 }
 
-/// What the caller lends: a device of Vulkan 1.1 or later, and what is enabled of it.
+/// The device that the caller lends, of Vulkan 1.1 or later, and its enabled features.
 #[derive(Clone, Copy)]
 pub struct Host<'a> {
     /// The instance, with its entry points.
     pub instance: &'a ash::Instance,
     /// The physical device of `device`.
     pub physical_device: vk::PhysicalDevice,
-    /// The device, with its entry points, of which a copy is kept.
+    /// The device, with its entry points, which are copied.
     pub device: &'a ash::Device,
     /// Family of the queue to which the command buffers are submitted; it has graphics.
     pub queue_family: u32,
-    /// The feature `dynamicRendering` is enabled, of Vulkan 1.3 or VK_KHR_dynamic_rendering. Without it there are
-    /// render passes and framebuffers, with the same result.
+    /// True if the feature `dynamicRendering` of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled. Without it render passes
+    /// and framebuffers are used, with the same result.
     pub dynamic_rendering: bool,
 }
 
-/// For what pipelines and buffers are made.
+/// The formats and sizes for which pipelines and buffers are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Format of the targets' colour: any that the device renders to.
+    /// Format of the targets' colour, any that the device can render to.
     pub color_format: vk::Format,
-    /// Format of the targets' depth, which is then written, too, in the source's encoding; None for colour alone.
+    /// Format of the targets' depth, which is written in the source's encoding; None for colour only.
     pub depth_format: Option<vk::Format>,
-    /// The largest source that is synthesized from, in pixels; what is smaller needs nothing new.
+    /// The largest size of a source in pixels. Smaller sources need no new pipelines or buffers.
     pub max_source_size: [u32; 2],
-    /// The largest target, in pixels.
+    /// The largest size of a target in pixels.
     pub max_target_size: [u32; 2],
-    /// What sources know of their edges, and with it what their depth is; docs/library.md says which to choose.
+    /// The kind of source images; docs/library.md says which to choose.
     pub edges: Edges,
-    /// Samples in each pixel of a source's depth, 2 or 4, in the standard places, for [`Edges::Multisample`].
+    /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 2 or 4, in the standard positions.
     pub samples: u32,
-    /// After how many frames [`Gather::pass_times`] tells what one took: no fewer than are in flight. 0 for no times.
+    /// The number of frames after which [`Gather::pass_times`] returns the times of one: at least the frames in flight. 0
+    /// for no times.
     pub timed_frames: u32,
-    /// A cache for the pipelines, or null.
+    /// A pipeline cache, or null.
     pub pipeline_cache: vk::PipelineCache,
 }
 
@@ -238,14 +238,14 @@ impl Default for Options {
     }
 }
 
-/// What an image was used for, or will be: what a barrier needs to know of the one side.
+/// A use of an image: one side of a barrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageState {
     /// Its layout.
     pub layout: vk::ImageLayout,
     /// The stages that use it.
     pub stages: vk::PipelineStageFlags,
-    /// How they use it.
+    /// Their kinds of access.
     pub access: vk::AccessFlags,
 }
 
@@ -277,8 +277,8 @@ impl ImageState {
         stages: vk::PipelineStageFlags::FRAGMENT_SHADER,
         access: vk::AccessFlags::SHADER_READ,
     };
-    /// Whatever it holds is not needed: UNDEFINED, for a target that is overwritten entirely, and that was drawn to,
-    /// sampled or copied from before.
+    /// Its contents are not needed: UNDEFINED, for a target that is overwritten entirely, and that was drawn to, sampled or
+    /// copied from before.
     pub const DISCARDED: ImageState = ImageState {
         layout: vk::ImageLayout::UNDEFINED,
         stages: vk::PipelineStageFlags::from_raw(
@@ -291,63 +291,63 @@ impl ImageState {
 /// One layer of an image, mip level 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerImage {
-    /// A 2-D image, without multisampling where nothing else is said. Its usage includes SAMPLED for a source,
-    /// COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
+    /// A 2-D image, without multisampling unless stated otherwise. Its usage includes SAMPLED for a source, COLOR_ATTACHMENT
+    /// or DEPTH_STENCIL_ATTACHMENT for a target.
     pub image: vk::Image,
-    /// Format of the view that is made of it: the image's, or a compatible one if it is MUTABLE_FORMAT.
+    /// Format of its view: the image's, or a compatible one if the image is MUTABLE_FORMAT.
     pub format: vk::Format,
-    /// The layer of the image's array, 0 where there is one.
+    /// The layer of the image, 0 for an image with one layer.
     pub layer: u32,
-    /// What it was used for before [`Gather::record`].
+    /// Its use before [`Gather::record`].
     pub before: ImageState,
-    /// What it is left ready for.
+    /// Its use afterwards, for which it is made ready.
     pub after: ImageState,
 }
 
-/// Colour and depth of the rendered eye, and of its guard band.
+/// Colour and depth of the rendered eye and its guard band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceImages {
     /// Colour in any format that can be filtered: R8G8B8A8_UNORM or _SRGB, A2B10G10R10_UNORM, R16G16B16A16_SFLOAT and
-    /// so on. All four channels are carried over; what is sampled as sRGB belongs into an sRGB target. Other than with
-    /// [`Edges::Hard`] it is resolved, and lies between 0 and 1.
+    /// others. All four channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the edges
+    /// are [`Edges::Hard`] it is resolved, with values between 0 and 1.
     pub color: LayerImage,
     /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, or R32_SFLOAT. The stencil aspect is not
-    /// read. With [`Edges::Multisample`] of [`Options::samples`] samples.
+    /// read. For [`Edges::Multisample`] it has [`Options::samples`] samples.
     pub depth: LayerImage,
-    /// With [`Edges::Multisample`], what the colour was resolved from, of as many samples, if it is still there.
+    /// For [`Edges::Multisample`], the image with as many samples that the colour was resolved from, if it still exists.
     pub sample_color: Option<LayerImage>,
     /// Width and height of the images in pixels; the source is a rectangle of them.
     pub size: [u32; 2],
 }
 
-/// Where the other eye is written.
+/// The images that the other eye is written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TargetImages {
-    /// Colour, of [`Options::color_format`].
+    /// Colour, in [`Options::color_format`].
     pub color: LayerImage,
-    /// Depth, of [`Options::depth_format`]. A stencil aspect is left as it is.
+    /// Depth, in [`Options::depth_format`]. A stencil aspect stays as it is.
     pub depth: Option<LayerImage>,
     /// Width and height of the images in pixels; the target is a rectangle of them.
     pub size: [u32; 2],
 }
 
-/// Registered [`SourceImages`].
+/// The id of registered [`SourceImages`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SourceId(u32);
 
-/// Registered [`TargetImages`].
+/// The id of registered [`TargetImages`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TargetId(u32);
 
 macro_rules! raw_ids {
     ($($id:ident),*) => {$(
         impl $id {
-            /// The id as a number, which is never 0: for interfaces of other languages.
+            /// Returns the id as a number, which is never 0: for interfaces of other languages.
             pub fn to_raw(self) -> u32 {
                 self.0
             }
 
-            /// The id of a number; one that was never given out is [`VulkanError::NotRegistered`] wherever it is used.
+            /// Returns the id of a number. Using one that was never given out is [`VulkanError::NotRegistered`].
             pub fn from_raw(raw: u32) -> $id {
                 $id(raw)
             }
@@ -357,27 +357,27 @@ macro_rules! raw_ids {
 
 raw_ids!(SourceId, TargetId);
 
-/// What is synthesized in one call of [`Gather::record`]. Sizes are those of the warp.
+/// The images and places of one call of [`Gather::record`]. Sizes are those of the warp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
     /// The images to read.
     pub source: SourceId,
-    /// Upper left corner in them of the rectangle that was rendered, in pixels.
+    /// Upper left corner of the rendered rectangle in them, in pixels.
     pub source_origin: [u32; 2],
     /// The images to write.
     pub target: TargetId,
-    /// Upper left corner in them of the rectangle to write, in pixels. What lies outside of it stays as it is.
+    /// Upper left corner of the rectangle to write in them, in pixels. Pixels outside of it stay as they are.
     pub target_origin: [u32; 2],
 }
 
-/// What one frame's passes took on the GPU ([`Gather::pass_times`]).
+/// GPU times of one frame's passes ([`Gather::pass_times`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PassTimes {
-    /// What each pixel of the source shows; none with [`Edges::Hard`].
+    /// The split of the source into layers; 0 with [`Edges::Hard`].
     pub split: std::time::Duration,
-    /// Bounds of the displacements in each tile.
+    /// The bounds of the displacements in each tile.
     pub tiles: std::time::Duration,
-    /// Where to search for each tile of the target.
+    /// The columns to search for each tile of the target.
     pub spans: std::time::Duration,
     /// The search, which writes the target.
     pub march: std::time::Duration,

@@ -17,7 +17,7 @@ pub(super) const SPANS: &[u8] = include_bytes!("spirv/spans.spv");
 /// The first pass for depth and colour of all samples.
 pub(super) const SPLIT_SAMPLES: &[u8] = include_bytes!("spirv/split-samples.spv");
 
-/// The first pass for resolved colour; none of hard edges.
+/// Returns the first pass for resolved colour; None for hard edges.
 pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
     match edges {
         Edges::Hard => None,
@@ -27,7 +27,7 @@ pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
     }
 }
 
-/// Bounds of tiles.
+/// Returns the pass that finds the bounds of tiles.
 pub(super) fn tiles(edges: Edges) -> &'static [u8] {
     match edges {
         Edges::Hard => include_bytes!("spirv/tiles.spv"),
@@ -35,7 +35,7 @@ pub(super) fn tiles(edges: Edges) -> &'static [u8] {
     }
 }
 
-/// The last pass.
+/// Returns the last pass.
 pub(super) fn march(edges: Edges, variant: GatherVariant, depth: bool) -> &'static [u8] {
     match (edges, variant, depth) {
         (Edges::Hard, GatherVariant::Software, false) => include_bytes!("spirv/march.spv"),
@@ -88,26 +88,26 @@ mod tests {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv")
     }
 
-    /// What is compiled.
+    /// The text that is compiled.
     fn text((_, file, macros): &Module) -> String {
         let mut defines = vec![("UNIFORM_BLOCK", "layout(push_constant, std140)".to_owned())];
         defines.extend(macros.iter().map(|name| (*name, String::new())));
         yoro_shaders::assemble(file, "310 es", &defines).unwrap().text
     }
 
-    /// FNV-1a, which stays what it is in all versions of everything.
+    /// FNV-1a, which never changes with a version of Rust.
     fn hash(text: &str) -> u64 {
         text.bytes()
             .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
     }
 
-    /// The file `SOURCES`: what has compiled the modules, and the hash of each one's text.
+    /// The contents of the file `SOURCES`: the compiler of the modules, and the hash of each one's text.
     fn sources(compiler: &str) -> String {
         let line = |module: &Module| format!("{:016x} {}\n", hash(&text(module)), module.0);
         format!("{compiler}\n{}", MODULES.iter().map(line).collect::<String>())
     }
 
-    /// glslang's version in one line; None where it is not installed.
+    /// Returns glslang's version in one line; None if it is not installed.
     fn glslang() -> Option<String> {
         let output = Command::new(GLSLANG).arg("--version").output().ok()?;
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_modules_are_those_of_the_shaders() {
+    fn modules_are_compiled_from_the_present_shaders() {
         let work = std::env::temp_dir().join(format!("yoro-spirv-{}", std::process::id()));
         fs::create_dir_all(&work).unwrap();
         let compiler = glslang();

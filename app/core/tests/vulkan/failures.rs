@@ -13,17 +13,17 @@ use super::{Setup, warps};
 
 /// The device's own commands.
 static REAL: OnceLock<ash::Device> = OnceLock::new();
-/// How many calls succeed before one fails.
+/// The number of calls that succeed before one fails.
 static LEFT: AtomicUsize = AtomicUsize::new(usize::MAX);
-/// With what it fails.
+/// The error of the failing call.
 static FAILURE: AtomicI32 = AtomicI32::new(0);
 
-/// Whether this call is the one.
+/// True if this call is the failing one.
 fn fails() -> bool {
     LEFT.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |left| left.checked_sub(1)).is_err()
 }
 
-/// All commands that can fail and that the pipeline calls, by their names.
+/// Replaces all commands that the pipeline calls and that can fail.
 macro_rules! failing {
     ($($command:literal $field:ident($($argument:ident: $ty:ty),*);)*) => {
         mod commands {
@@ -35,7 +35,7 @@ macro_rules! failing {
                     LEFT.store(usize::MAX, Ordering::SeqCst);
                     return vk::Result::from_raw(FAILURE.swap(0, Ordering::SeqCst));
                 }
-                // SAFETY: handed on as it is.
+                // SAFETY: the arguments are passed on unchanged to the device's own command.
                 unsafe { (REAL.get().unwrap().fp_v1_0().$field)($($argument),*) }
             })*
         }
@@ -105,7 +105,7 @@ failing! {
     );
 }
 
-/// Everything that calls Vulkan, once.
+/// Calls everything that calls Vulkan once.
 fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     let (warp, setup) = (warps()[0].0, Setup::PLAIN);
     let color = gpu.image(setup.color, warp.source_size, 1);
@@ -136,8 +136,8 @@ fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     Ok(())
 }
 
-/// Each call of each command fails once, in every way: the error says so, and nothing is left behind, or the validation
-/// layer would tell when the device is destroyed.
+/// Each call of each command fails once with each error. The error is returned, and no object is left behind: the validation
+/// layer would report it when the device is destroyed.
 #[test]
 fn every_failure_comes_back_as_an_error() {
     with_gpu(Rendering::RenderPasses, |gpu| {
@@ -185,14 +185,14 @@ fn every_failure_comes_back_as_an_error() {
 /// The instance's own commands.
 static INSTANCE: OnceLock<ash::Instance> = OnceLock::new();
 
-/// As of a device without D24S8, of which there are many.
+/// The properties of a device without D24S8, of which there are many.
 unsafe extern "system" fn properties_without_d24s8(
     physical_device: vk::PhysicalDevice,
     format: vk::Format,
     properties: *mut vk::FormatProperties,
 ) {
     let real = INSTANCE.get().unwrap().fp_v1_0().get_physical_device_format_properties;
-    // SAFETY: handed on as it is, or one structure, as the signature says.
+    // SAFETY: the arguments are passed on unchanged, or the one structure is written that the signature names.
     unsafe {
         match format {
             vk::Format::D24_UNORM_S8_UINT => *properties = vk::FormatProperties::default(),

@@ -376,10 +376,8 @@ impl Image<'_> {
 
     /// What is copied of it: colour, or depth alone.
     fn copied(&self, layer: u32) -> vk::ImageSubresourceLayers {
-        let aspect_mask = match is_depth(self.format) {
-            true => vk::ImageAspectFlags::DEPTH,
-            false => vk::ImageAspectFlags::COLOR,
-        };
+        let aspect_mask =
+            if is_depth(self.format) { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR };
         vk::ImageSubresourceLayers { aspect_mask, mip_level: 0, base_array_layer: layer, layer_count: 1 }
     }
 

@@ -1,4 +1,4 @@
-//! The passes on Vulkan give the pictures that they give on OpenGL, under the validation layer.
+//! Pictures of the Vulkan passes equal those of the OpenGL passes, under the validation layer.
 
 mod failures;
 mod harness;
@@ -23,23 +23,23 @@ use yoro::vulkan::{
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Context, Destination, Filter, RenderTarget, Texture};
 
-/// Counts this thread's allocations in Rust.
+/// An allocator that counts this thread's allocations.
 struct Counting;
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
 }
 
-// SAFETY: the system's allocator does it all.
+// SAFETY: all work is done by the system's allocator, which keeps the contract.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: the caller's promise.
+        // SAFETY: the arguments are passed on unchanged.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promise.
+        // SAFETY: the arguments are passed on unchanged.
         unsafe { System.dealloc(memory, layout) }
     }
 }
@@ -97,7 +97,7 @@ fn eyes(size: [u32; 2], dominant: Eye, range: DepthRange) -> EyePair {
     EyePair::parallel(Pose::IDENTITY, frustum, 0.063, range, size, dominant)
 }
 
-/// Standard, reversed, infinite, and told by OpenXR's swapped planes.
+/// Standard, reversed, infinite, and reversed by swapped planes as in OpenXR.
 fn ranges() -> [DepthRange; 4] {
     let standard = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Standard };
     [
@@ -108,7 +108,7 @@ fn ranges() -> [DepthRange; 4] {
     ]
 }
 
-/// What differs between the calls.
+/// The parameters of a synthesis.
 #[derive(Clone, Copy, Debug)]
 struct Setup {
     color: vk::Format,
@@ -197,14 +197,16 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
     let junk_depth: Vec<f32> = (0..pixels(source_image)).map(|_| rng.random_range(0.0..=1.0)).collect();
     for layer in 0..2 {
         let here = layer == setup.source_layer;
-        let rgba = match here {
-            true => pasted(junk.clone(), source_image, source_origin, &picture.rgba, width),
-            false => junk.clone(),
+        let rgba = if here {
+            pasted(junk.clone(), source_image, source_origin, &picture.rgba, width)
+        } else {
+            junk.clone()
         };
         color.upload_rgba8(layer, &rgba, setup.states[0][0]);
-        let values = match here {
-            true => pasted(junk_depth.clone(), source_image, source_origin, &picture.depth, width),
-            false => junk_depth.clone(),
+        let values = if here {
+            pasted(junk_depth.clone(), source_image, source_origin, &picture.depth, width)
+        } else {
+            junk_depth.clone()
         };
         depth.upload_depth(layer, &values, setup.states[1][0]);
     }
@@ -278,7 +280,7 @@ impl Gl {
     }
 }
 
-/// Every channel within one of 255, but for a few pixels whose positions lie within rounding of a decision.
+/// Checks that every channel is within one of 255, but for a few pixels whose positions lie within rounding of a decision.
 fn assert_equal(got: &[u8], want: &[u8], channels: usize, what: &str) {
     assert_eq!(got.len(), want.len());
     let differs = |(a, b): (&[u8], &[u8])| a[..channels].iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
@@ -304,7 +306,7 @@ fn warps() -> Vec<(Warp, DepthRange)> {
 }
 
 #[test]
-fn pictures_are_those_of_opengl() {
+fn pictures_equal_those_of_opengl() {
     let gl = Gl::new();
     for rendering in Rendering::ALL {
         with_gpu(rendering, |gpu| {
@@ -521,7 +523,7 @@ fn sizes_and_rectangles_at_random() {
 
 /// Displacements of up to 300 pixels, of a whole source and of a part of one: the search passes over tiles there.
 #[test]
-fn near_surfaces_are_those_of_opengl() {
+fn near_surfaces_equal_those_of_opengl() {
     let gl = Gl::new();
     with_gpu(Rendering::Core, |gpu| {
         let limits = Options { max_source_size: [540, 30], max_target_size: [540, 30], ..Options::default() };
@@ -552,10 +554,10 @@ fn deterministic() -> proptest::test_runner::TestRng {
     proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha)
 }
 
-/// Frames that are recorded one after the other: what one reads is not overwritten too early, nor is what it writes. The
-/// layer looks after that; and recording allocates nothing.
+/// No frame overwrites what an earlier one still reads or writes (the validation layer checks it), and recording allocates
+/// nothing.
 #[test]
-fn frames_follow_one_another() {
+fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
     let gl = Gl::new();
     for rendering in [Rendering::RenderPasses, Rendering::Core] {
         with_gpu(rendering, |gpu| {
@@ -601,7 +603,7 @@ fn frames_follow_one_another() {
     }
 }
 
-/// What a caller gets wrong is one sentence, and nothing is recorded.
+/// A caller's mistake is one error, and nothing is recorded.
 #[test]
 fn mistakes_are_refused() {
     with_gpu(Rendering::RenderPasses, |gpu| {
@@ -672,7 +674,7 @@ fn mistakes_are_refused() {
     });
 }
 
-/// As many frames later as was said.
+/// Times come as many frames later as the options say.
 #[test]
 fn passes_are_timed() {
     with_gpu(Rendering::Core, |gpu| {
@@ -694,7 +696,7 @@ fn passes_are_timed() {
     });
 }
 
-/// What the passes cost here; docs/library.md has the figures.
+/// Measures the passes; docs/library.md has the figures.
 #[test]
 #[ignore = "measures: cargo test -p yoro --test vulkan -- --ignored --nocapture cost"]
 fn cost_of_the_passes() {
