@@ -70,6 +70,8 @@ struct State {
     waited: bool,
     /// Released by the application, but not yet by the layer.
     held: Option<u32>,
+    /// How often the application has released an image.
+    releases: u64,
 }
 
 impl Swapchain {
@@ -137,12 +139,14 @@ impl Swapchain {
         if is_last && state.waited && self.content.is_some() && reads_images {
             state.waited = false;
             state.held = state.acquired.pop_front();
+            state.releases += 1;
             return Ok(sys::Result::SUCCESS);
         }
         // SAFETY: the application's own arguments.
         let result = check(unsafe { (self.next().release_swapchain_image)(self.handle, info) })?;
         state.waited = false;
         state.acquired.pop_front();
+        state.releases += 1;
         Ok(result)
     }
 
@@ -151,6 +155,11 @@ impl Swapchain {
         let index = lock(&self.state).held?;
         let content = self.content.as_ref()?;
         Some((content, *content.images.get(index as usize)?))
+    }
+
+    /// Returns how often the application has released an image: as long as it is the same, the same image is shown.
+    pub fn releases(&self) -> u64 {
+        lock(&self.state).releases
     }
 
     /// Passes on a release that is held back.

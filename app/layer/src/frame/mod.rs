@@ -5,6 +5,7 @@ mod capture;
 mod chain;
 mod rewrite;
 mod statistics;
+mod synthesized;
 mod target;
 
 use std::collections::HashSet;
@@ -14,20 +15,19 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use openxr_sys as sys;
-use yoro::eyes::Eye;
 
 use crate::binding::Binding;
 use crate::dispatch::XrResult;
 use crate::geometry::{Offer, Rectangle, Split, Submitted, SubmittedDepth, frustum, pose, split};
-use crate::geometry::{xr_fov, xr_pose};
 use crate::reason::Reason;
 use crate::session::Session;
 use crate::swapchain::{Content, Swapchain};
 use crate::synthesizer::{Image, Job, Synthesizer};
 use crate::{lock, say};
-use chain::{Layers, depth_of, held, projection, rectangle, sub_image};
+use chain::{Layers, depth_of, held, projection, rectangle};
 use rewrite::{Eyes, Rewritten};
 use statistics::{Report, Statistics};
+use synthesized::{Key, Synthesized};
 use target::{Acquired, Target};
 
 /// Indices of colour and depth.
@@ -45,6 +45,8 @@ pub struct Frames {
     targets: [Option<Target>; 2],
     /// True if no target for depth can be made.
     without_depth: bool,
+    /// The last synthesized view, while the targets still show it.
+    last: Option<Synthesized>,
     /// Kinds of reasons that are in the log.
     told: HashSet<Discriminant<Reason>>,
     statistics: Statistics,
@@ -241,6 +243,11 @@ impl Frames {
     ) -> Result<Eyes, Reason> {
         // SAFETY: a submitted view.
         let info = unsafe { depth_of(view) }.ok_or(Reason::NoDepth)?;
+        let key = Key::new(swapchains, view, info);
+        if let Some(last) = self.last.as_ref().filter(|last| last.key == key) {
+            return Ok(last.again(view, info));
+        }
+        self.last = None;
         let binding = session.binding.ok_or(Reason::NoGraphics)?;
         let offer = lock(&session.offer).ok_or(Reason::NoViews)?.map_err(Reason::Views)?;
         let source = source(swapchains, view, info)?;
@@ -290,7 +297,10 @@ impl Frames {
             self.statistics.gpu += time;
             self.statistics.timed += 1;
         }
-        Ok(both_eyes(&source, &split, crop, offer.eyes.dominant, color, depth))
+        let synthesized = Synthesized { key, split, crop, dominant: offer.eyes.dominant, color, depth };
+        let eyes = synthesized.eyes(view, info);
+        self.last = Some(synthesized);
+        Ok(eyes)
     }
 
     /// Returns the pipeline, after creating it if there is none yet.
@@ -376,12 +386,14 @@ impl Frames {
 
     /// Counts a synthesized layer that the runtime has refused.
     fn refused(&mut self, session: &Session, reason: Reason) {
+        self.last = None;
         self.statistics.synthesized -= 1;
         self.fall_back(session, reason);
     }
 
     /// Forgets images that are about to be destroyed.
     pub fn forget(&mut self, content: &Content) {
+        self.last = None;
         if let Some(Ok(synthesizer)) = &mut self.synthesizer {
             synthesizer.forget(&content.images);
         }
@@ -399,39 +411,4 @@ impl Frames {
         }
         *self = Frames::default();
     }
-}
-
-/// Returns the views of both eyes: the dominant one's is a part of the application's image, the other one's is in the
-/// targets.
-fn both_eyes(
-    source: &Source,
-    split: &Split,
-    crop: Rectangle,
-    dominant: Eye,
-    color: Acquired,
-    depth: Option<Acquired>,
-) -> Eyes {
-    let whole = Rectangle { origin: [0; 2], size: split.crop.size };
-    let part = |eye: Eye, own: &sys::SwapchainSubImage, target: Acquired| {
-        if eye == dominant {
-            sub_image(own.swapchain, crop, own.image_array_index)
-        } else {
-            sub_image(target.swapchain, whole, 0)
-        }
-    };
-    let views = Eye::BOTH.map(|eye| sys::CompositionLayerProjectionView {
-        ty: sys::CompositionLayerProjectionView::TYPE,
-        next: std::ptr::null(),
-        pose: xr_pose(split.poses[eye.index()]),
-        fov: xr_fov(split.frusta[eye.index()]),
-        sub_image: part(eye, &source.view.sub_image, color),
-    });
-    let depths = depth.map(|target| {
-        Eye::BOTH.map(|eye| sys::CompositionLayerDepthInfoKHR {
-            next: std::ptr::null(),
-            sub_image: part(eye, &source.info.sub_image, target),
-            ..*source.info
-        })
-    });
-    Eyes { views, depths }
 }

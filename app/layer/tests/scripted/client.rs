@@ -189,6 +189,17 @@ pub struct View {
     raw: (sys::Posef, sys::Fovf),
 }
 
+impl View {
+    /// The same view somewhere else.
+    pub fn at(self, offset: glam::Vec3) -> View {
+        let mut view = self;
+        view.pose.position += offset;
+        let p = view.pose.position;
+        view.raw.0.position = sys::Vector3f { x: p.x, y: p.y, z: p.z };
+        view
+    }
+}
+
 /// A view that it submits.
 #[derive(Clone, Copy)]
 pub struct Submitted {

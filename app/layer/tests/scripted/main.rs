@@ -136,6 +136,15 @@ fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Client<'
     Ok(client)
 }
 
+/// The views of a frame's first projection layer.
+fn views_of(layers: &[log::Layer]) -> &[log::View] {
+    let mut views = layers.iter().filter_map(|layer| match layer {
+        log::Layer::Projection { views } => Some(views.as_slice()),
+        _ => None,
+    });
+    views.next().expect("there is a projection layer")
+}
+
 fn pose_of(view: &log::View) -> Pose {
     Pose { position: view.position.into(), orientation: glam::Quat::from_array(view.orientation) }
 }
@@ -711,6 +720,57 @@ fn what_the_runtime_has_already_is_shown_as_it_is() {
         assert_eq!(seen.counts(), [[2, 2]], "{}", seen.said);
         assert_eq!(seen.said("was not released since the last frame"), 1, "{}", seen.said);
         assert_seen(&seen, &habits, "afterwards");
+    });
+}
+
+/// Applications at half the display's rate, and those with static images, submit an image more than once.
+#[test]
+fn an_image_that_is_shown_again_stays_stereo() {
+    with_gpu(|gpu| {
+        for name in ["left", "right"] {
+            let habits = Habits { name, ..Habits::PLAIN };
+            let seen = watched(Script { acquires_ahead: true, ..script() }, || {
+                let work = |client: &mut Client, chains: &Chains| {
+                    for _ in 0..3 {
+                        let begun = client.begin_frame()?;
+                        let view = client.locate(begun)?[0].unwrap();
+                        let submitted = render(client, chains, &habits, view)?;
+                        client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                        let begun = client.begin_frame()?;
+                        client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                    }
+                    // The next image is on its way, and the old one is shown at another place.
+                    let begun = client.begin_frame()?;
+                    let view = client.locate(begun)?[0].unwrap();
+                    let submitted = render(client, chains, &habits, view)?;
+                    client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                    client.acquire(&chains.color)?;
+                    let begun = client.begin_frame()?;
+                    let moved = Submitted { view: view.at(glam::Vec3::new(0.5, 0.25, 1.0)), ..submitted };
+                    client.end_frame(begun, &[Layer::Projection(vec![moved])])?;
+                    // Only with the same planes it is the same view.
+                    let begun = client.begin_frame()?;
+                    let planes = Planes { near: 0.2, ..Planes::PLAIN };
+                    let depth = submitted.depth.map(|(part, _)| (part, planes));
+                    client.end_frame(begun, &[Layer::Projection(vec![Submitted { depth, ..submitted }])])
+                };
+                with_session(gpu, &habits, work).unwrap();
+            });
+            assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+            assert_eq!(seen.counts(), [[8, 1]], "{}", seen.said);
+            let frames: Vec<_> = seen.frames().into_iter().map(|layers| views_of(layers)).collect();
+            for pair in frames[..8].chunks_exact(2) {
+                let images = |views: &[log::View]| [0, 1].map(|eye| views[eye].image.clone());
+                assert_eq!(images(pair[0]), images(pair[1]), "{name}");
+                assert_ne!(pair[1][0].image, pair[1][1].image, "{name}");
+                assert!(pair[1].iter().all(|view| view.depth.is_some()), "{name}");
+            }
+            assert_eq!(frames[4], frames[5], "{name}");
+            for eye in 0..2 {
+                let moved = pose_of(&frames[7][eye]).position - pose_of(&frames[6][eye]).position;
+                assert!((moved - glam::Vec3::new(0.5, 0.25, 1.0)).length() < 1e-5, "{name}: {moved}");
+            }
+        }
     });
 }
 

@@ -1,0 +1,105 @@
+//! A synthesized view, which can be shown again as long as the application shows the same image.
+
+use std::sync::Arc;
+
+use openxr_sys as sys;
+use yoro::eyes::Eye;
+
+use super::chain::sub_image;
+use super::rewrite::Eyes;
+use super::target::Acquired;
+use crate::geometry::{Rectangle, Split, pose, xr_fov, xr_pose};
+use crate::swapchain::Swapchain;
+
+/// What the synthesized image depends on, but for the pose.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Key {
+    /// Swapchain, layer and rectangle of colour and of depth.
+    parts: [(sys::Swapchain, u32, [i32; 4]); 2],
+    /// How often their images were released: as long as that is the same, so are the images.
+    releases: [u64; 2],
+    fov: [f32; 4],
+    planes: [f32; 4],
+}
+
+impl Key {
+    pub fn new(
+        swapchains: &[Arc<Swapchain>],
+        view: &sys::CompositionLayerProjectionView,
+        info: &sys::CompositionLayerDepthInfoKHR,
+    ) -> Key {
+        let images = [&view.sub_image, &info.sub_image];
+        let parts = images.map(|part| {
+            let sys::Rect2Di { offset, extent } = part.image_rect;
+            (part.swapchain, part.image_array_index, [offset.x, offset.y, extent.width, extent.height])
+        });
+        let releases = images.map(|part| {
+            let swapchain = swapchains.iter().find(|swapchain| swapchain.handle == part.swapchain);
+            swapchain.map_or(0, |swapchain| swapchain.releases())
+        });
+        let sys::Fovf { angle_left, angle_right, angle_up, angle_down } = view.fov;
+        let fov = [angle_left, angle_right, angle_up, angle_down];
+        Key { parts, releases, fov, planes: [info.near_z, info.far_z, info.min_depth, info.max_depth] }
+    }
+}
+
+/// A synthesized view, while the targets hold it.
+pub struct Synthesized {
+    pub key: Key,
+    pub split: Split,
+    /// The dominant eye's part of the application's image.
+    pub crop: Rectangle,
+    pub dominant: Eye,
+    /// Colour and depth of the other eye.
+    pub color: Acquired,
+    pub depth: Option<Acquired>,
+}
+
+impl Synthesized {
+    /// Returns the views again at the pose of this view, for which the key is still the same.
+    pub fn again(
+        &self,
+        view: &sys::CompositionLayerProjectionView,
+        info: &sys::CompositionLayerDepthInfoKHR,
+    ) -> Eyes {
+        let (own, other) = (self.dominant.index(), self.dominant.other().index());
+        let [from, to] = [own, other].map(|eye| self.split.poses[eye]);
+        let between = from.orientation.inverse() * (to.position - from.position);
+        let mut split = self.split;
+        split.poses[own] = pose(view.pose);
+        split.poses[other] = split.poses[own].translated_local(between);
+        Synthesized { split, ..*self }.eyes(view, info)
+    }
+
+    /// Returns the views of both eyes: the dominant one's is a part of the application's image, the other one's is in the
+    /// targets.
+    pub fn eyes(
+        &self,
+        view: &sys::CompositionLayerProjectionView,
+        info: &sys::CompositionLayerDepthInfoKHR,
+    ) -> Eyes {
+        let whole = Rectangle { origin: [0; 2], size: self.split.crop.size };
+        let part = |eye: Eye, own: &sys::SwapchainSubImage, target: Acquired| {
+            if eye == self.dominant {
+                sub_image(own.swapchain, self.crop, own.image_array_index)
+            } else {
+                sub_image(target.swapchain, whole, 0)
+            }
+        };
+        let views = Eye::BOTH.map(|eye| sys::CompositionLayerProjectionView {
+            ty: sys::CompositionLayerProjectionView::TYPE,
+            next: std::ptr::null(),
+            pose: xr_pose(self.split.poses[eye.index()]),
+            fov: xr_fov(self.split.frusta[eye.index()]),
+            sub_image: part(eye, &view.sub_image, self.color),
+        });
+        let depths = self.depth.map(|target| {
+            Eye::BOTH.map(|eye| sys::CompositionLayerDepthInfoKHR {
+                next: std::ptr::null(),
+                sub_image: part(eye, &info.sub_image, target),
+                ..*info
+            })
+        });
+        Eyes { views, depths }
+    }
+}
