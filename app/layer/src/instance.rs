@@ -1,5 +1,7 @@
 //! An instance of the application, and the view configurations that it is offered.
 
+use std::ffi::c_void;
+use std::ptr;
 use std::sync::Mutex;
 
 use openxr_sys as sys;
@@ -90,19 +92,22 @@ impl Instance {
         Ok(list)
     }
 
-    /// Returns the runtime's two views.
-    pub fn own_views(&self, system: sys::SystemId) -> XrResult<[sys::ViewConfigurationView; 2]> {
-        let view = sys::ViewConfigurationView {
+    /// Returns the runtime's two views, which also fills the structures that are chained to each.
+    pub fn own_views(
+        &self,
+        system: sys::SystemId,
+        chains: [*mut c_void; 2],
+    ) -> XrResult<[sys::ViewConfigurationView; 2]> {
+        let mut views = chains.map(|next| sys::ViewConfigurationView {
             ty: sys::ViewConfigurationView::TYPE,
-            next: std::ptr::null_mut(),
+            next,
             recommended_image_rect_width: 0,
             max_image_rect_width: 0,
             recommended_image_rect_height: 0,
             max_image_rect_height: 0,
             recommended_swapchain_sample_count: 0,
             max_swapchain_sample_count: 0,
-        };
-        let mut views = [view; 2];
+        });
         let mut count = 0;
         // SAFETY: a live instance, and room for two views.
         check(unsafe {
@@ -119,27 +124,39 @@ impl Instance {
     }
 
     /// Returns the one view: the dominant eye's, with more pixels.
-    pub fn view(&self, system: sys::SystemId) -> XrResult<sys::ViewConfigurationView> {
-        let own = self.own_views(system)?[self.settings.dominant.index()];
+    pub fn view(&self, system: sys::SystemId, chain: *mut c_void) -> XrResult<sys::ViewConfigurationView> {
+        let mut chains = [ptr::null_mut(); 2];
+        chains[self.settings.dominant.index()] = chain;
+        let own = self.own_views(system, chains)?[self.settings.dominant.index()];
+        Ok(self.enlarged(own))
+    }
+
+    fn enlarged(&self, own: sys::ViewConfigurationView) -> sys::ViewConfigurationView {
         let size = lock(&self.size).unwrap_or([
             (own.recommended_image_rect_width as f32 * ESTIMATED_WIDTH).ceil() as u32,
             own.recommended_image_rect_height,
         ]);
-        Ok(sys::ViewConfigurationView {
+        sys::ViewConfigurationView {
             recommended_image_rect_width: size[0].min(own.max_image_rect_width),
             recommended_image_rect_height: size[1].min(own.max_image_rect_height),
             ..own
-        })
+        }
     }
 
     /// Returns two views, of which one is tiny.
-    pub fn shrunk_views(&self, system: sys::SystemId) -> XrResult<[sys::ViewConfigurationView; 2]> {
-        let mut views = self.own_views(system)?.map(|own| sys::ViewConfigurationView {
+    pub fn shrunk_views(
+        &self,
+        system: sys::SystemId,
+        chains: [*mut c_void; 2],
+    ) -> XrResult<[sys::ViewConfigurationView; 2]> {
+        let own = self.own_views(system, chains)?;
+        let mut views = own.map(|own| sys::ViewConfigurationView {
             recommended_image_rect_width: TINY.min(own.max_image_rect_width),
             recommended_image_rect_height: TINY.min(own.max_image_rect_height),
             ..own
         });
-        views[self.settings.dominant.index()] = self.view(system)?;
+        let dominant = self.settings.dominant.index();
+        views[dominant] = self.enlarged(own[dominant]);
         Ok(views)
     }
 

@@ -1,35 +1,52 @@
-//! What the layer says: to the standard error output, and to a file that `yoro layer log` shows; on Android to logcat.
+//! The layer's log: to the standard error output, and to a file that `yoro layer log` shows; on Android to logcat.
 
 use std::fmt;
 use std::fs::File;
-use std::io::Write;
-use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
-use crate::xdg;
+use crate::{lock, xdg};
 
-/// Bytes that a line has room for; the rest is cut off.
+/// The longest line in bytes; the rest is cut off.
 const LONGEST: usize = 1024;
 
-/// The file that the program that has begun last writes to: `$XDG_STATE_HOME/yoro/layer.log`, in `~/.local/state` where
-/// that is not set; None without a home.
+/// Returns the path of the log of the last program, `$XDG_STATE_HOME/yoro/layer.log` (`~/.local/state` if that is not set); None
+/// without a home.
 pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_STATE_HOME", ".local/state")?.join("yoro/layer.log"))
 }
 
-/// Begun anew by each program, with its first line. Where it cannot be written there is none: the lines are on the standard
-/// error output, too.
-fn file() -> Option<&'static File> {
-    static FILE: OnceLock<Option<File>> = OnceLock::new();
-    let open = || {
-        let path = path()?;
-        std::fs::create_dir_all(path.parent()?).ok()?;
-        // Emptied, not replaced: whoever follows it goes on reading. Appended to, since two programs may run.
-        let file = File::options().create(true).append(true).open(path).ok()?;
-        file.set_len(0).ok()?;
-        Some(file)
-    };
-    FILE.get_or_init(open).as_ref()
+/// Open while there is an instance. Loaders unload the layer with the last one, and what it has open then stays open.
+static FILE: Mutex<Option<File>> = Mutex::new(None);
+
+/// Returns the first line of the file, which tells this process from others: its number and when it began, in ticks of the
+/// system's clock.
+fn first_line() -> String {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    // The name of the program, in parentheses, may have spaces.
+    let began = stat.rsplit(')').next().and_then(|rest| rest.split_whitespace().nth(19)).unwrap_or("0");
+    format!("yoro layer: log of process {}, begun at {began}\n", std::process::id())
+}
+
+/// Opens a file to append to. It is emptied unless this process has begun it.
+fn open(path: &Path, first_line: &str) -> io::Result<File> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    // Emptied, not replaced: whoever follows it goes on reading. Appended to, since two programs may run.
+    let mut file = File::options().create(true).append(true).read(true).open(path)?;
+    let mut begins = vec![0; first_line.len()];
+    if file.read_exact(&mut begins).is_err() || begins != first_line.as_bytes() {
+        file.set_len(0)?;
+        file.write_all(first_line.as_bytes())?;
+    }
+    Ok(file)
+}
+
+/// Closes the file until the next line.
+pub fn close() {
+    *lock(&FILE) = None;
 }
 
 #[cfg(not(target_os = "android"))]
@@ -52,8 +69,8 @@ fn show(line: &[u8]) {
     unsafe { __android_log_write(INFO, c"yoro".as_ptr(), text.as_ptr().cast()) };
 }
 
-/// Writes a line, at once and without an allocation, so that the application's own do not get in between; it may have
-/// closed its standard error output.
+/// Writes a line at once, so that no line of the application gets in between, and without an allocation. The application may
+/// have closed its standard error output.
 pub fn say(text: fmt::Arguments) {
     let mut line = [b'\n'; LONGEST];
     let (place, _) = line.split_at_mut(LONGEST - 1);
@@ -64,7 +81,32 @@ pub fn say(text: fmt::Arguments) {
     line[length] = b'\n';
     let line = &line[..=length];
     show(line);
-    if let Some(mut file) = file() {
+    let mut file = lock(&FILE);
+    if file.is_none() {
+        // If it cannot be written there is none: the lines are on the standard error output, too.
+        *file = path().and_then(|path| open(&path, &first_line()).ok());
+    }
+    if let Some(file) = &mut *file {
         file.write_all(line).ok();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_is_begun_anew_by_each_process_but_not_by_each_instance() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state/layer.log");
+        for (first, line, want) in [
+            ("process 7\n", "one\n", "process 7\none\n"),
+            ("process 7\n", "two\n", "process 7\none\ntwo\n"),
+            ("process 77\n", "three\n", "process 77\nthree\n"),
+        ] {
+            open(&path, first).unwrap().write_all(line.as_bytes()).unwrap();
+            assert_eq!(std::fs::read_to_string(&path).unwrap(), want);
+        }
+        assert_eq!(first_line(), first_line());
     }
 }

@@ -9,7 +9,7 @@
 //! 1. [`LiveSession::frames`]: the layer's own work in xrEndFrame, and forgetting images.
 //! 2. The state of a swapchain (`swapchain.rs`): which images are acquired. The runtime's acquire and release are called
 //!    under it, so that both sides agree on the order.
-//! 3. The registry below, `Session::offer`, `Session::begun` and `Instance::size`: held for a look or a change. No other lock
+//! 3. The registry below, `Session::offer`, `Session::begun`, `Instance::size` and the log's file: held for a look or a change. No other lock
 //!    is taken and no function of the runtime is called under them.
 //!
 //! No lock is held while the runtime waits: in xrWaitFrame, in the application's xrWaitSwapchainImage and in the runtime's xrEndFrame.
@@ -84,9 +84,11 @@ pub fn add_swapchain(swapchain: Swapchain) {
     lock(&OBJECTS).swapchains.push(Arc::new(swapchain));
 }
 
-/// Removes an instance. The caller has removed its sessions.
-pub fn remove_instance(handle: sys::Instance) {
-    lock(&OBJECTS).instances.retain(|instance| instance.handle != handle);
+/// Removes an instance, whose sessions were removed before. Returns true if it was the last one.
+pub fn remove_instance(handle: sys::Instance) -> bool {
+    let instances = &mut lock(&OBJECTS).instances;
+    instances.retain(|instance| instance.handle != handle);
+    instances.is_empty()
 }
 
 /// Removes a session with its swapchains.

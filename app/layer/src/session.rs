@@ -1,5 +1,6 @@
 //! The facts that the layer knows about a session of the application.
 
+use std::ffi::c_void;
 use std::ptr;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -41,7 +42,7 @@ impl Session {
         system: sys::SystemId,
     ) -> Session {
         let offers_mono = instance.may_offer(system);
-        let eye = if offers_mono { instance.own_views(system).ok() } else { None };
+        let eye = if offers_mono { instance.own_views(system, [ptr::null_mut(); 2]).ok() } else { None };
         let eye_size = eye.map(|views| views[instance.settings.dominant.index()]).map_or([1; 2], |eye| {
             [eye.recommended_image_rect_width.max(1), eye.recommended_image_rect_height.max(1)]
         });
@@ -86,18 +87,23 @@ impl Session {
             next: ptr::null_mut(),
             view_state_flags: sys::ViewStateFlags::EMPTY,
         };
-        let located = self.locate(&info, &mut state);
+        let located = self.locate(&info, &mut state, ptr::null_mut());
         // SAFETY: made above, and not used any more.
         unsafe { (next.destroy_space)(space) };
         // Before there is tracking, poses may be invalid, but fields of view are valid.
         self.offer_for(&located.ok()?).ok().map(|offer| offer.size)
     }
 
-    /// Locates the runtime's two views.
+    /// Locates the runtime's two views. `chain` is for the dominant eye's.
     ///
     /// # Errors
     /// The result of xrLocateViews.
-    pub fn locate(&self, info: &sys::ViewLocateInfo, state: &mut sys::ViewState) -> XrResult<[sys::View; 2]> {
+    pub fn locate(
+        &self,
+        info: &sys::ViewLocateInfo,
+        state: &mut sys::ViewState,
+        chain: *mut c_void,
+    ) -> XrResult<[sys::View; 2]> {
         let info = sys::ViewLocateInfo {
             view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
             ..*info
@@ -105,6 +111,7 @@ impl Session {
         let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
         let view = sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov };
         let mut views = [view; 2];
+        views[self.instance.settings.dominant.index()].next = chain;
         let mut count = 0;
         // SAFETY: a live session, and room for two views.
         check(unsafe {

@@ -267,6 +267,9 @@ pub fn get_view_configuration_properties(
     DONE
 }
 
+/// What XR_EXT_view_configuration_depth_range says, whose structure is filled whether or not it is enabled: metres.
+const DEPTH_RANGE: (f32, f32) = (0.1, 50.0);
+
 pub fn enumerate_view_configuration_views(
     world: &mut World,
     instance: sys::Instance,
@@ -285,6 +288,16 @@ pub fn enumerate_view_configuration_views(
         view.max_image_rect_height = 4096;
         view.recommended_swapchain_sample_count = 1;
         view.max_swapchain_sample_count = 1;
+        let mut next = view.next.cast::<sys::BaseOutStructure>();
+        // SAFETY: a chain of structures that say their type.
+        while let Some(structure) = unsafe { next.as_mut() } {
+            if structure.ty == sys::ViewConfigurationDepthRangeEXT::TYPE {
+                // SAFETY: of this type.
+                let range = unsafe { &mut *next.cast::<sys::ViewConfigurationDepthRangeEXT>() };
+                (range.recommended_near_z, range.recommended_far_z) = DEPTH_RANGE;
+            }
+            next = structure.next;
+        }
     })
 }
 

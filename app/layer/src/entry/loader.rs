@@ -8,7 +8,7 @@ use super::{get_instance_proc_addr, sessions, without_panic};
 use crate::dispatch::{Dispatch, XrResult, check};
 use crate::instance::Instance;
 use crate::settings::Settings;
-use crate::{objects, say};
+use crate::{log, objects, say};
 
 const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
 const GRAPHICS: [&CStr; 4] =
@@ -115,7 +115,9 @@ pub unsafe extern "system" fn destroy_instance(handle: sys::Instance) -> sys::Re
         for live in objects::sessions_of(handle) {
             sessions::forget(&live);
         }
-        objects::remove_instance(handle);
+        if objects::remove_instance(handle) {
+            log::close();
+        }
         // SAFETY: the application's own call.
         Ok(unsafe { (instance.next.destroy_instance)(handle) })
     })

@@ -1,5 +1,7 @@
 //! View configurations and views. Each function is called as the specification says of the one of OpenXR.
 
+use std::ptr;
+
 use openxr_sys as sys;
 use sys::ViewConfigurationType as ViewsOf;
 
@@ -27,7 +29,7 @@ unsafe fn answer<T: Copy>(
                 return Err(sys::Result::ERROR_SIZE_INSUFFICIENT);
             }
             _ if place.is_null() => return Err(sys::Result::ERROR_VALIDATION_FAILURE),
-            _ => std::ptr::copy_nonoverlapping(list.as_ptr(), place, list.len()),
+            _ => ptr::copy_nonoverlapping(list.as_ptr(), place, list.len()),
         }
     }
     Ok(sys::Result::SUCCESS)
@@ -70,22 +72,26 @@ pub unsafe fn enumerate_views(
 ) -> XrResult<sys::Result> {
     // SAFETY: the application's arguments.
     unsafe {
+        // The runtime fills what the application has chained to its views.
+        let room = if views.is_null() { 0 } else { capacity as usize };
+        let chains = |count: usize| {
+            [0, 1].map(|i| if room < count || i >= count { ptr::null_mut() } else { (*views.add(i)).next })
+        };
         let own = match kind {
-            ViewsOf::PRIMARY_MONO if instance.offers(system) => vec![instance.view(system)?],
+            ViewsOf::PRIMARY_MONO if instance.offers(system) => vec![instance.view(system, chains(1)[0])?],
             ViewsOf::PRIMARY_STEREO if instance.settings.shrink && instance.offers(system) => {
-                instance.shrunk_views(system)?.to_vec()
+                instance.shrunk_views(system, chains(2))?.to_vec()
             }
             _ => {
                 let next = instance.next.enumerate_view_configuration_views;
                 return Ok(next(instance.handle, system, kind, capacity, count, views));
             }
         };
-        if views.is_null() || (capacity as usize) < own.len() {
+        if room < own.len() {
             return answer(&own, capacity, count, views);
         }
         *count.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)? = own.len() as u32;
         for (i, view) in own.iter().enumerate() {
-            // Type and chain are the application's.
             let place = &mut *views.add(i);
             *place = sys::ViewConfigurationView { ty: place.ty, next: place.next, ..*view };
         }
@@ -162,9 +168,9 @@ pub unsafe fn locate(
             return Ok(result);
         }
         let state = state.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)?;
-        let located = session.locate(&asked, state)?;
+        let next = views.as_ref().filter(|_| capacity > 0).map_or(ptr::null_mut(), |view| view.next);
+        let located = session.locate(&asked, state, next)?;
         let (pose, frustum) = session.offer(&located);
-        let next = views.as_ref().filter(|_| capacity > 0).map_or(std::ptr::null_mut(), |view| view.next);
         let view = sys::View { ty: sys::View::TYPE, next, pose: xr_pose(pose), fov: xr_fov(frustum) };
         answer(&[view], capacity, count, views)
     }

@@ -364,6 +364,29 @@ impl<'a> Client<'a> {
         Ok(views[..count as usize].iter().map(size).collect())
     }
 
+    /// The recommended near and far planes that the runtime writes to structures chained to the configuration's views.
+    pub fn chained_depth_ranges(&self, count: usize) -> Outcome<Vec<[f32; 2]>> {
+        // SAFETY: plain data; the types and chains are set below.
+        let (empty_view, empty_range) =
+            unsafe { (std::mem::zeroed(), std::mem::zeroed::<sys::ViewConfigurationDepthRangeEXT>()) };
+        let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
+        let mut ranges = vec![sys::ViewConfigurationDepthRangeEXT { ty, ..empty_range }; count];
+        let ty = sys::ViewConfigurationView::TYPE;
+        let view = |range: &mut sys::ViewConfigurationDepthRangeEXT| sys::ViewConfigurationView {
+            ty,
+            next: ptr::from_mut(range).cast(),
+            ..empty_view
+        };
+        let mut views: Vec<_> = ranges.iter_mut().map(view).collect();
+        let (mut number, room) = (0, count as u32);
+        let call = self.xr.enumerate_view_configuration_views;
+        // SAFETY: room for as many as is said.
+        let result =
+            unsafe { call(self.instance, self.system, self.views, room, &mut number, views.as_mut_ptr()) };
+        check("xrEnumerateViewConfigurationViews", result)?;
+        Ok(ranges.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
+    }
+
     /// Makes a session with a space.
     pub fn create_session(&mut self) -> Outcome<()> {
         (self.running, self.over) = (false, false);

@@ -494,6 +494,24 @@ fn one_view_is_offered_where_there_are_two() {
     });
 }
 
+/// An application chains structures of extensions to the views that it asks for.
+#[test]
+fn the_runtime_fills_what_is_chained_to_views() {
+    with_gpu(|gpu| {
+        for (name, views, count) in [
+            ("right", ViewsOf::PRIMARY_MONO, 1),
+            ("left", ViewsOf::PRIMARY_MONO, 1),
+            ("shrink", ViewsOf::PRIMARY_STEREO, 2),
+        ] {
+            watched(script(), || {
+                let mut client = Client::new(gpu, name, &[DEPTH]).unwrap();
+                client.views = views;
+                assert_eq!(client.chained_depth_ranges(count).unwrap(), vec![[0.1, 50.0]; count], "{name}");
+            });
+        }
+    });
+}
+
 /// A system with one view alone, such as a handheld one, works as without the layer.
 #[test]
 fn a_system_with_one_view_passes_through() {
@@ -797,6 +815,26 @@ fn swapchains_are_made_anew_at_other_sizes() {
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
         assert_eq!(seen.counts(), [[12, 0]], "{}", seen.said);
         assert_seen(&seen, &habits, "the first size again");
+    });
+}
+
+/// Programs that look for a headset with an instance of its own keep its lines, and no file stays open.
+#[test]
+fn the_log_outlives_an_instance_but_not_its_descriptor() {
+    with_gpu(|gpu| {
+        let path = yoro_layer::log::path().unwrap();
+        let lines = || {
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            text.matches("renders one view").count()
+        };
+        let before = lines();
+        for _ in 0..2 {
+            watched(script(), || drop(run(gpu, &Habits { frames: 1, ..Habits::PLAIN }).unwrap()));
+            let open = std::fs::read_dir("/proc/self/fd").unwrap();
+            let open = open.filter_map(|entry| std::fs::read_link(entry.unwrap().path()).ok());
+            assert_eq!(open.filter(|file| *file == path).count(), 0);
+        }
+        assert_eq!(lines(), before + 2);
     });
 }
 
