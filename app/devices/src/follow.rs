@@ -5,6 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::time::Duration;
 
 use super::adb::{Device, DeviceError, LogEvent, LogStream};
+use super::capture::{Fault, FaultKind};
 use super::{log, phone};
 
 /// When a connection is back, the log is read from so much before its last line, in seconds: lines of one moment need
@@ -31,6 +32,16 @@ pub enum Event {
         /// Whether it was started anew.
         rebooted: bool,
     },
+}
+
+/// Returns what a capture says of a device that was gone for `seconds`, after its line of the time `at_s`.
+pub fn faults_of_loss(at_s: f64, seconds: f64, rebooted: bool) -> Vec<Fault> {
+    let fault = |kind, detail| Fault { kind, at_s: Some(at_s), detail };
+    let mut faults = vec![fault(FaultKind::Disconnected, format!("lost for {seconds:.0} s"))];
+    if rebooted {
+        faults.push(fault(FaultKind::Rebooted, "the device was started anew, and its log with it".into()));
+    }
+    faults
 }
 
 /// Follows a log.

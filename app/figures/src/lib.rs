@@ -15,6 +15,7 @@ pub mod palette;
 pub mod paper;
 pub mod plot;
 pub mod stats;
+mod student;
 pub mod text;
 
 pub use error::ReportError;

@@ -66,49 +66,41 @@ impl Quantity {
         Quantity::Memory,
     ];
 
-    /// In tables.
+    /// Name and unit in tables, digits after the point, and whether two values are compared as a ratio.
+    fn row(self) -> (&'static str, &'static str, usize, bool) {
+        match self {
+            Quantity::Power => ("power", "mW", 0, true),
+            Quantity::Fps => ("frame rate", "FPS", 1, true),
+            Quantity::FrameTime => ("frame time", "ms", 2, true),
+            Quantity::FrameTimeP99 => ("frame time p99", "ms", 2, true),
+            Quantity::GpuTime => ("GPU time", "ms", 2, true),
+            Quantity::Stale => ("stale frames", "1/s", 2, false),
+            Quantity::Temperature => ("temperature", "°C", 1, false),
+            Quantity::Rise => ("temperature rise", "K", 1, false),
+            Quantity::Cpu => ("CPU", "% of a core", 1, true),
+            Quantity::Memory => ("memory", "MB", 1, true),
+        }
+    }
+
+    /// Returns its name in tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Quantity::Power => "power",
-            Quantity::Fps => "frame rate",
-            Quantity::FrameTime => "frame time",
-            Quantity::FrameTimeP99 => "frame time p99",
-            Quantity::GpuTime => "GPU time",
-            Quantity::Stale => "stale frames",
-            Quantity::Temperature => "temperature",
-            Quantity::Rise => "temperature rise",
-            Quantity::Cpu => "CPU",
-            Quantity::Memory => "memory",
-        }
+        self.row().0
     }
 
-    /// In tables.
+    /// Returns its unit in tables.
     pub fn unit(self) -> &'static str {
-        match self {
-            Quantity::Power => "mW",
-            Quantity::Fps => "FPS",
-            Quantity::FrameTime | Quantity::FrameTimeP99 | Quantity::GpuTime => "ms",
-            Quantity::Stale => "1/s",
-            Quantity::Temperature => "°C",
-            Quantity::Rise => "K",
-            Quantity::Cpu => "% of a core",
-            Quantity::Memory => "MB",
-        }
+        self.row().1
     }
 
-    /// Digits after the point.
+    /// Returns the number of digits after the point.
     pub fn decimals(self) -> usize {
-        match self {
-            Quantity::Power => 0,
-            Quantity::FrameTime | Quantity::FrameTimeP99 | Quantity::GpuTime | Quantity::Stale => 2,
-            _ => 1,
-        }
+        self.row().2
     }
 
-    /// Compared as a ratio. Temperatures have no zero to divide by, and stale frames may be none: they are compared
-    /// as differences.
+    /// True if two values are compared as a ratio. Temperatures have no zero to divide by, and stale frames may be none:
+    /// they are compared as differences.
     pub fn is_ratio(self) -> bool {
-        !matches!(self, Quantity::Stale | Quantity::Temperature | Quantity::Rise)
+        self.row().3
     }
 }
 

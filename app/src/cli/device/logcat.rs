@@ -11,8 +11,8 @@ use anyhow::{Context, bail, ensure};
 use super::which::WhichArgs;
 use crate::cli::args::parse_positive;
 use yoro_devices::adb::{Device, DeviceError};
-use yoro_devices::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
-use yoro_devices::follow::{Event, Follower};
+use yoro_devices::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION, Writer};
+use yoro_devices::follow::{Event, Follower, faults_of_loss};
 use yoro_devices::foreign::{Foreign, Subject};
 use yoro_devices::log::SIMULATED_MARK;
 use yoro_devices::phone;
@@ -301,12 +301,7 @@ impl<'a> Table<'a> {
     }
 
     fn back(&mut self, seconds: f64, rebooted: bool) -> anyhow::Result<()> {
-        let at_s = Some(self.reading.time_s());
-        let mut add = |kind, detail| self.own_faults.push(Fault { kind, at_s, detail });
-        add(FaultKind::Disconnected, format!("lost for {seconds:.0} s"));
-        if rebooted {
-            add(FaultKind::Rebooted, "the device was started anew, and its log with it".into());
-        }
+        self.own_faults.extend(faults_of_loss(self.reading.time_s(), seconds, rebooted));
         let faults = self.own_faults.clone();
         if let Some(writer) = &mut self.writer {
             writer.change(|info| info.faults = faults)?;

@@ -1,19 +1,19 @@
-//! One run on a device: started, captured to its end over whatever happens, and stopped.
+//! One run while it is captured.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
 use indicatif::ProgressBar;
 
-use super::adb::{Device, DeviceError};
-use super::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
-use super::follow::{Event, Follower};
-use super::foreign::{Foreign, Subject};
-use super::phone::{self, PACKAGE};
-use super::pins::Pins;
-use super::plausible::MeanPower;
-use super::reading::{News, Reading};
+use super::{Found, Plan, refuse_charger};
+use crate::adb::{Device, DeviceError};
+use crate::capture::{Fault, FaultKind, Outcome, RunInfo, Sample, Writer};
+use crate::follow::{Event, Follower, faults_of_loss};
+use crate::foreign::Foreign;
+use crate::phone;
+use crate::pins::Pins;
+use crate::plausible::MeanPower;
+use crate::reading::{News, Reading};
 use yoro_files::interrupt;
 use yoro_protocol::Method;
 use yoro_protocol::Settings;
@@ -37,132 +37,6 @@ const VOLTAGE_PERIOD_S: f64 = 5.0;
 const REFRESH_TOLERANCE_HZ: f64 = 1.0;
 /// How often waits look around.
 const GLANCE: Duration = Duration::from_secs(1);
-
-/// Another application than this project's.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Other {
-    /// Its package and process.
-    pub subject: Subject,
-    /// Its activity.
-    pub activity: String,
-}
-
-/// What a run shall be.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
-    /// What runs in place of this project's application; of the settings only the scene's name counts then.
-    pub other: Option<Other>,
-    /// The experiment that it is part of.
-    pub experiment: Option<String>,
-    /// Name of the method in tables.
-    pub method: String,
-    /// Settings of the viewer, method and scene included.
-    pub settings: Settings,
-    /// From 1.
-    pub repetition: u32,
-    /// Place in the experiment, from 1.
-    pub order: u32,
-    /// Seconds without warm-up.
-    pub duration_s: f64,
-    /// Seconds at the begin that count for nothing.
-    pub warm_up_s: f64,
-    /// Warmest that the battery should be at the start, in degrees Celsius.
-    pub warmest_celsius: Option<f64>,
-    /// Refresh rate that the display is held at, in Hz.
-    pub refresh_hz: Option<f64>,
-    /// Whether to refuse a device that is plugged in.
-    pub power: bool,
-}
-
-impl Plan {
-    /// The package of the application.
-    pub fn package(&self) -> &str {
-        self.other.as_ref().map_or(PACKAGE, |other| &other.subject.package)
-    }
-
-    /// Seconds from the first frame to the end.
-    pub fn seconds(&self) -> f64 {
-        self.warm_up_s + self.duration_s
-    }
-
-    /// The settings other than the defaults, without those that each run has.
-    pub fn own_settings(&self) -> BTreeMap<String, String> {
-        if let Some(other) = &self.other {
-            return BTreeMap::from([("package".into(), other.subject.package.clone())]);
-        }
-        let defaults = Settings::default().pairs();
-        let of_each = ["scene", "method", "duration", "auto-exit", "run"];
-        let pairs = self.settings.pairs().into_iter();
-        pairs.filter(|pair| !defaults.contains(pair) && !of_each.contains(&pair.0.as_str())).collect()
-    }
-
-    /// What a capture of the run says, before anything has happened.
-    pub fn info(&self, found: &Found, started_unix_s: f64, start_celsius: Option<f64>) -> RunInfo {
-        RunInfo {
-            version: VERSION,
-            device: found.info.clone(),
-            experiment: self.experiment.clone(),
-            method: self.method.clone(),
-            scene: self.settings.scene.clone(),
-            repetition: self.repetition,
-            order: self.order,
-            settings: self.own_settings(),
-            started_unix_s,
-            duration_s: self.duration_s,
-            warm_up_s: self.warm_up_s,
-            start_celsius,
-            application: Some(found.application.clone()),
-            outcome: Outcome::Complete,
-            faults: Vec::new(),
-        }
-    }
-}
-
-/// The device that runs are made on, as it was found.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// What it is.
-    pub info: DeviceInfo,
-    /// Version of the application on it.
-    pub application: String,
-}
-
-/// Looks whether runs of an application can be made on a device.
-///
-/// # Errors
-/// [`DeviceError`]: also where the application is not there, the battery saver is on, or the screen is locked so that
-/// only its owner can unlock it.
-pub fn look(device: &dyn Device, package: &str) -> Result<Found, DeviceError> {
-    let serial = || device.serial().to_owned();
-    let application = phone::version(device, package)?.ok_or_else(|| match package {
-        PACKAGE => DeviceError::NotInstalled(serial()),
-        package => DeviceError::NoPackage { serial: serial(), package: package.into() },
-    })?;
-    if phone::saves_battery(device)? {
-        return Err(DeviceError::BatterySaver(serial()));
-    }
-    let keyguard = phone::keyguard(device)?;
-    if keyguard.secure && keyguard.showing {
-        return Err(DeviceError::Locked(serial()));
-    }
-    Ok(Found { info: phone::info(device)?, application })
-}
-
-/// Refuses a device whose battery does not say what the device takes: it is plugged in, or its values were set by hand.
-///
-/// # Errors
-/// [`DeviceError::PluggedIn`] and [`DeviceError::BatteryHeld`] with the way out.
-pub fn refuse_charger(device: &dyn Device) -> Result<(), DeviceError> {
-    let battery = phone::battery(device)?;
-    let serial = device.serial().to_owned();
-    if battery.held {
-        return Err(DeviceError::BatteryHeld(serial));
-    }
-    if battery.plugged() {
-        return Err(DeviceError::PluggedIn { serial, address: phone::wifi_address(device) });
-    }
-    Ok(())
-}
 
 /// Makes a run and captures it into a folder. The bar's position is set to the seconds of the run, its message to what
 /// happens. A run that fails is a capture, too: its outcome says so.
@@ -252,7 +126,6 @@ pub fn capture(
         }
     }
 }
-
 /// A run that is being captured.
 struct Session<'a> {
     device: &'a dyn Device,
@@ -471,13 +344,9 @@ impl Session<'_> {
     }
 
     fn back(&mut self, seconds: f64, rebooted: bool) -> Result<(), DeviceError> {
-        let at_s = self.reading.time_s();
         (self.delay_s, self.others_since_s) = (seconds, None);
-        self.fault(FaultKind::Disconnected, at_s, format!("lost for {seconds:.0} s"))?;
-        if rebooted {
-            self.fault(FaultKind::Rebooted, at_s, "the device was started anew, and its log with it".into())?;
-        }
-        Ok(())
+        self.own_faults.extend(faults_of_loss(self.reading.time_s(), seconds, rebooted));
+        self.renew_faults()
     }
 
     /// Nothing has come for a while.

@@ -1,0 +1,285 @@
+//! Making the runs of an experiment on a device, with pauses between them.
+
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use indicatif::ProgressBar;
+
+use super::{Experiment, Otherwise, file_name, length};
+use crate::adb::{Device, DeviceError};
+use crate::capture::{self, CaptureError, Fault, FaultKind, Outcome, RUN_FILE, RunInfo, Writer};
+use crate::phone::{self, Battery};
+use crate::pins::{Pins, Wanted};
+use crate::run::{self, Found, Plan};
+use yoro_files::{FileError, interrupt};
+
+/// How often a cooling device is asked for its temperature.
+const COOLING: Duration = Duration::from_secs(5);
+/// How long a device may be gone between runs, in seconds.
+const LOST_PATIENCE_S: f64 = 300.0;
+
+/// What an experiment has come to on a device.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Runs in the plan.
+    pub planned: usize,
+    /// Complete before.
+    pub before: usize,
+    /// Complete now.
+    pub made: usize,
+    /// Failed or left out: folder and reason.
+    pub failed: Vec<(PathBuf, String)>,
+}
+
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} of {} runs complete", self.before + self.made, self.planned)?;
+        if self.before > 0 {
+            write!(f, " ({} from before)", self.before)?;
+        }
+        if !self.failed.is_empty() {
+            write!(f, ", {} failed", self.failed.len())?;
+        }
+        Ok(())
+    }
+}
+
+/// Makes the runs that a device still lacks, each into a folder of its own below `out`; what it finds changed on the
+/// device, it leaves as it was, also after Ctrl-C. Runs that were cut off or failed are made again, and the earlier
+/// captures kept beside them.
+///
+/// # Errors
+/// [`DeviceError`]; the same call goes on later.
+pub fn conduct(
+    device: &dyn Device,
+    experiment: &Experiment,
+    out: &Path,
+    bar: &ProgressBar,
+) -> Result<Tally, DeviceError> {
+    let found = run::look(device, phone::PACKAGE)?;
+    // It is unlocked now, but nobody is there when it is locked again, by a restart at the latest.
+    if phone::keyguard(device)?.secure {
+        return Err(DeviceError::Locked(device.serial().into()));
+    }
+    if experiment.power {
+        run::refuse_charger(device)?;
+    }
+    let wanted = Wanted { brightness: experiment.brightness, refresh_hz: experiment.refresh_hz };
+    let mut pins = Pins::new(device, &found.info, &wanted)?;
+    let folder = out.join(file_name(&found.info.serial));
+    let made = Conductor { device, experiment, found: &found, pins: &mut pins, folder: &folder, bar }.all();
+    // Also after Ctrl-C and after errors. One on top of another says nothing new.
+    match (made, pins.give_back(device)) {
+        (Ok(_), Err(error)) => Err(error),
+        (Err(first), Err(error)) => {
+            bar.suspend(|| {
+                log::warn!("{error}; the next measurement gives brightness and refresh rate back")
+            });
+            Err(first)
+        }
+        (made, Ok(())) => made,
+    }
+}
+
+struct Conductor<'a> {
+    device: &'a dyn Device,
+    experiment: &'a Experiment,
+    found: &'a Found,
+    pins: &'a mut Pins,
+    folder: &'a Path,
+    bar: &'a ProgressBar,
+}
+
+impl Conductor<'_> {
+    fn all(&mut self) -> Result<Tally, DeviceError> {
+        let planned = self.experiment.plan(&self.found.info.serial);
+        let mut tally = Tally { planned: planned.len(), ..Tally::default() };
+        for (i, planned) in planned.iter().enumerate() {
+            let folder = self.folder.join(&planned.folder);
+            if is_complete(&folder, &planned.plan)? {
+                tally.before += 1;
+                continue;
+            }
+            if interrupt::requested() {
+                return Err(DeviceError::Interrupted);
+            }
+            set_aside(&folder)?;
+            let [left, _] = self.experiment.length(tally.planned - i);
+            let (run, of) = (i + 1, tally.planned);
+            self.bar.set_prefix(format!(
+                "{}: run {run} of {of}, {} left",
+                self.device.serial(),
+                length(left)
+            ));
+            self.bar.set_length(planned.plan.seconds() as u64);
+            self.bar.set_position(0);
+            let info = self.one(&planned.plan, &folder)?;
+            match info.outcome {
+                Outcome::Complete => tally.made += 1,
+                Outcome::Failed { reason } => {
+                    self.bar.suspend(|| log::warn!("{}: {reason}", folder.display()));
+                    tally.failed.push((folder, reason));
+                }
+                Outcome::Interrupted { .. } if interrupt::requested() => {
+                    return Err(DeviceError::Interrupted);
+                }
+                Outcome::Interrupted { .. } => {
+                    return Err(DeviceError::Lost(self.device.serial().into()));
+                }
+            }
+        }
+        Ok(tally)
+    }
+
+    fn one(&mut self, plan: &Plan, folder: &Path) -> Result<RunInfo, DeviceError> {
+        if let Some(celsius) = self.cool_down(plan)?
+            && let Some(cool_down) = self.experiment.cool_down
+        {
+            let wanted = cool_down.celsius;
+            match cool_down.otherwise {
+                Otherwise::Start => {}
+                Otherwise::Skip => return self.leave_out(plan, folder, celsius, wanted),
+                Otherwise::Stop => {
+                    let serial = self.device.serial().into();
+                    return Err(DeviceError::TooWarm { serial, celsius, wanted });
+                }
+            }
+        }
+        let mut made = run::capture(self.device, self.found, plan, self.pins, folder, self.bar);
+        if made.as_ref().is_err_and(DeviceError::is_lost) && !interrupt::requested() {
+            // Gone before there was anything to follow: waited for as between runs, once.
+            set_aside(folder)?;
+            self.cool_down(plan)?;
+            made = run::capture(self.device, self.found, plan, self.pins, folder, self.bar);
+        }
+        match made {
+            // The capture says so; the other runs may be possible.
+            Err(DeviceError::Refused { .. }) if folder.join(RUN_FILE).exists() => {
+                Ok(capture::read_info(folder)?)
+            }
+            result => result,
+        }
+    }
+
+    /// Waits for rest, charge and temperature. The temperature where it was too high to the end.
+    fn cool_down(&self, plan: &Plan) -> Result<Option<f64>, DeviceError> {
+        let mut begin = self.device.now();
+        let mut lost_at = None;
+        let mut charging = None;
+        let wanted = self.experiment.cool_down;
+        loop {
+            if interrupt::requested() {
+                return Err(DeviceError::Interrupted);
+            }
+            let waited = self.device.now() - begin;
+            let asked = phone::stop(self.device, plan.package()).and_then(|()| phone::battery(self.device));
+            let battery = match asked {
+                Ok(battery) => battery,
+                Err(error) if error.is_lost() => {
+                    let lost_at = *lost_at.get_or_insert(self.device.now());
+                    if self.device.now() - lost_at > LOST_PATIENCE_S {
+                        return Err(error);
+                    }
+                    self.bar.set_message("lost: connect it again");
+                    self.device.reconnect();
+                    self.device.sleep(COOLING);
+                    continue;
+                }
+                Err(error) => return Err(error),
+            };
+            lost_at = None;
+            if self.experiment.power && self.must_charge(&battery, &mut charging) {
+                // Charging warms the battery: the time to cool down begins when it is over.
+                begin = self.device.now();
+                self.device.sleep(COOLING);
+                continue;
+            }
+            let celsius = battery.celsius.filter(|celsius| wanted.is_some_and(|w| *celsius > w.celsius));
+            let rested = waited >= self.experiment.rest_seconds;
+            match (celsius, wanted) {
+                (None, _) if rested => return Ok(None),
+                (Some(celsius), Some(wanted)) if rested && waited >= wanted.max_seconds => {
+                    return Ok(Some(celsius));
+                }
+                (Some(celsius), Some(wanted)) => self.bar.set_message(format!(
+                    "before {}, {}: {celsius:.1} C, cooling down to {:.1} C",
+                    plan.method, plan.settings.scene, wanted.celsius
+                )),
+                _ => self.bar.set_message("resting"),
+            }
+            self.device.sleep(COOLING);
+        }
+    }
+
+    /// Whether to wait for somebody who charges the battery or takes the charger off. `charging` is none outside of such a
+    /// pause, and inside of it whether there has been a charger: who takes it off early wants to go on.
+    fn must_charge(&self, battery: &Battery, charging: &mut Option<bool>) -> bool {
+        let Experiment { min_level, charge_level, .. } = *self.experiment;
+        let Some(level) = battery.level_percent else { return false };
+        let (is_low, plugged) = (level < min_level, battery.plugged());
+        let what = match level < charge_level && (is_low || charging.is_some()) {
+            true => format!("charge it to {charge_level:.0} %, then take the charger off"),
+            false => "take the charger off".into(),
+        };
+        if charging.is_none() && (is_low || plugged) {
+            *charging = Some(plugged);
+            self.bar.suspend(|| {
+                log::warn!(
+                    "{}: the battery has {level:.0} %: {what}, and the plan goes on",
+                    self.device.serial()
+                )
+            });
+        }
+        let Some(was_plugged) = charging else { return false };
+        *was_plugged |= plugged;
+        if !plugged && (level >= charge_level || *was_plugged && !is_low) {
+            *charging = None;
+            return false;
+        }
+        self.bar.set_message(format!("{level:.0} %: {what}"));
+        true
+    }
+
+    /// A capture of a run that was not made.
+    fn leave_out(
+        &self,
+        plan: &Plan,
+        folder: &Path,
+        celsius: f64,
+        wanted: f64,
+    ) -> Result<RunInfo, DeviceError> {
+        let reason = format!("the battery had {celsius:.1} C and did not cool down to {wanted:.1} C in time");
+        let fault = Fault { kind: FaultKind::TooWarm, at_s: Some(0.0), detail: reason.clone() };
+        let mut info = plan.info(self.found, self.device.now(), Some(celsius));
+        info.faults.push(fault);
+        Ok(Writer::create(folder, info)?.finish(Outcome::Failed { reason })?)
+    }
+}
+
+/// Whether the folder holds this run, complete.
+fn is_complete(folder: &Path, plan: &Plan) -> Result<bool, DeviceError> {
+    if !folder.join(RUN_FILE).exists() {
+        return Ok(false);
+    }
+    let info = match capture::read_info(folder) {
+        Ok(info) => info,
+        // It was damaged while it was written: as good as cut off.
+        Err(CaptureError::Damaged { .. }) => return Ok(false),
+        Err(error) => return Err(error.into()),
+    };
+    Ok(info.outcome == Outcome::Complete && info.method == plan.method && info.scene == plan.settings.scene)
+}
+
+/// Renames the folder of a run that is to be made again.
+fn set_aside(folder: &Path) -> Result<(), DeviceError> {
+    if !folder.exists() {
+        return Ok(());
+    }
+    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let aside = |n: u32| folder.with_file_name(format!("{name}-cut-{n}"));
+    let free = (1..).map(aside).find(|path| !path.exists()).unwrap_or_else(|| aside(0));
+    fs::rename(folder, &free).map_err(|source| FileError::Write { path: folder.into(), source })?;
+    Ok(())
+}

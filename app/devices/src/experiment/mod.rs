@@ -1,0 +1,379 @@
+//! Experiments: methods, scenes and repetitions as a TOML file says, one run after the other on each device.
+//!
+//! ```toml
+//! name = "five-minutes"
+//! seconds = 50
+//! warm-up-seconds = 10
+//! repetitions = 1
+//! scenes = ["prototype", "street"]
+//!
+//! [cool-down]
+//! celsius = 32
+//!
+//! [[method]]
+//! name = "conventional"
+//!
+//! [[method]]
+//! name = "paper"
+//! settings = { method = "yoro", pipeline = "paper" }
+//! ```
+
+mod conduct;
+#[cfg(test)]
+mod tests;
+
+use std::path::{Path, PathBuf};
+
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_pcg::Pcg64Mcg;
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+use crate::latin::balanced_square;
+use crate::run::Plan;
+use crate::table::toml_mistake;
+use yoro_files::{self as files, FileError};
+use yoro_protocol::Method;
+use yoro_protocol::{Settings, SettingsError};
+
+pub use conduct::{Tally, conduct};
+
+/// What the experiment's own file is called in the folder of its runs.
+pub const FILE: &str = "experiment.toml";
+/// Seconds that a start takes, for the estimate of a plan's length.
+const START_S: f64 = 5.0;
+/// Settings that are not the file's to give.
+const RESERVED: &[&str] = &["scene", "duration", "auto-exit", "run"];
+
+/// In what order methods take turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Order {
+    /// By the rows of a balanced Latin square (Williams 1949): each method comes in each place, and after each other one,
+    /// equally often over its rows. Scenes are shuffled.
+    #[default]
+    Balanced,
+    /// Methods and scenes are shuffled.
+    Random,
+    /// As the file lists them.
+    Listed,
+}
+
+/// What becomes of a run whose device does not cool down in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Otherwise {
+    /// It is made, and says that it began too warm.
+    #[default]
+    Start,
+    /// It is left out, and says why.
+    Skip,
+    /// The experiment ends here; the same command goes on later.
+    Stop,
+}
+
+/// Waiting before each run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct CoolDown {
+    /// Warmest that the battery may be at the start of a run, in degrees Celsius.
+    pub celsius: f64,
+    /// Longest wait for it in seconds.
+    #[serde(default = "CoolDown::default_max")]
+    pub max_seconds: f64,
+    /// What happens then.
+    #[serde(default)]
+    pub otherwise: Otherwise,
+}
+
+impl CoolDown {
+    fn default_max() -> f64 {
+        900.0
+    }
+}
+
+/// A method as the experiment compares it: settings with a name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Entrant {
+    /// Name in tables; where the settings have no `method`, the stereo method itself.
+    pub name: String,
+    /// Settings of the viewer.
+    #[serde(default, skip_serializing_if = "Table::is_empty")]
+    pub settings: Table,
+}
+
+/// An experiment. Lengths are in seconds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Experiment {
+    /// Its name in captures and reports.
+    pub name: String,
+    /// Length of a run without warm-up.
+    pub seconds: f64,
+    /// What is cut off at the begin of a run.
+    #[serde(default = "Experiment::default_warm_up")]
+    pub warm_up_seconds: f64,
+    /// How often each method is measured in each scene.
+    #[serde(default = "Experiment::once")]
+    pub repetitions: u32,
+    /// In what order.
+    #[serde(default)]
+    pub order: Order,
+    /// Seed of the order; each device has its own order from it.
+    #[serde(default)]
+    pub seed: u64,
+    /// Pause before each run, at least.
+    #[serde(default)]
+    pub rest_seconds: f64,
+    /// Scenes, as the viewer's setting `scene` takes them.
+    pub scenes: Vec<String>,
+    /// Brightness to pin the screen to, 0 to 255.
+    pub brightness: Option<u8>,
+    /// Refresh rate to pin the display to, in Hz.
+    pub refresh_hz: Option<f64>,
+    /// Whether this is about power: a device that is plugged in is refused.
+    #[serde(default = "Experiment::about_power")]
+    pub power: bool,
+    /// Lowest level of the battery in percent that a run about power begins with; below, the experiment waits for somebody
+    /// to charge the device.
+    #[serde(default = "Experiment::default_min_level")]
+    pub min_level: f64,
+    /// Level in percent up to which it is charged then.
+    #[serde(default = "Experiment::default_charge_level")]
+    pub charge_level: f64,
+    /// Waiting for a temperature before each run.
+    pub cool_down: Option<CoolDown>,
+    /// Settings of the viewer for all methods.
+    #[serde(default, skip_serializing_if = "Table::is_empty")]
+    pub settings: Table,
+    /// The methods.
+    pub method: Vec<Entrant>,
+}
+
+/// Why an experiment cannot be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExperimentError {
+    /// The file cannot be read, or the folder not written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The file is not as it should be.
+    #[error("{}: {what}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what is right.
+        what: String,
+    },
+    /// The folder belongs to another experiment.
+    #[error("{} holds runs of another experiment than {}: name another folder for the results", folder.display(), path.display())]
+    Other {
+        /// The folder.
+        folder: PathBuf,
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// A run in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planned {
+    /// What it shall be.
+    pub plan: Plan,
+    /// Name of its folder.
+    pub folder: String,
+}
+
+/// `1 h 5 min`, for people.
+pub fn length(seconds: f64) -> String {
+    let minutes = (seconds / 60.0).round() as u64;
+    match (minutes / 60, minutes % 60) {
+        (0, 0) => format!("{seconds:.0} s"),
+        (0, minutes) => format!("{minutes} min"),
+        (hours, minutes) => format!("{hours} h {minutes} min"),
+    }
+}
+
+impl Experiment {
+    fn default_warm_up() -> f64 {
+        30.0
+    }
+
+    fn default_min_level() -> f64 {
+        20.0
+    }
+
+    fn default_charge_level() -> f64 {
+        90.0
+    }
+
+    fn once() -> u32 {
+        1
+    }
+
+    fn about_power() -> bool {
+        true
+    }
+
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// [`ExperimentError`].
+    pub fn read(path: &Path) -> Result<Experiment, ExperimentError> {
+        let text = String::from_utf8_lossy(&files::read(path)?).into_owned();
+        let format = |what: String| ExperimentError::Format { path: path.into(), what };
+        let experiment: Experiment =
+            toml::from_str(&text).map_err(|error| format(toml_mistake(&text, &error)))?;
+        experiment.check().map_err(format)?;
+        Ok(experiment)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let ensure = |fine: bool, what: &str| if fine { Ok(()) } else { Err(what.to_owned()) };
+        let in_order = |value: f64| value >= 0.0 && value.is_finite();
+        ensure(self.seconds > 0.0 && self.seconds.is_finite(), "seconds must be above 0")?;
+        ensure(in_order(self.warm_up_seconds), "warm-up-seconds cannot be negative")?;
+        ensure(in_order(self.rest_seconds), "rest-seconds cannot be negative")?;
+        ensure(self.repetitions > 0, "repetitions must be 1 at least")?;
+        ensure(!self.scenes.is_empty(), "scenes names none: name one at least")?;
+        ensure(!self.method.is_empty(), "there is no [[method]]: give one at least")?;
+        ensure(self.refresh_hz.is_none_or(|hz| hz > 0.0 && hz.is_finite()), "refresh-hz must be above 0")?;
+        let levels =
+            0.0 <= self.min_level && self.min_level < self.charge_level && self.charge_level <= 100.0;
+        ensure(levels, "min-level must be below charge-level, and both between 0 and 100 percent")?;
+        let cool = |c: &CoolDown| c.celsius.is_finite() && in_order(c.max_seconds);
+        ensure(
+            self.cool_down.as_ref().is_none_or(cool),
+            "cool-down: celsius and max-seconds must be numbers",
+        )?;
+        for (i, entrant) in self.method.iter().enumerate() {
+            ensure(!entrant.name.trim().is_empty(), "a [[method]] has no name: give it one")?;
+            let twin = self.method[..i].iter().any(|other| other.name == entrant.name);
+            ensure(!twin, &format!("two methods are called \"{}\": give each its own name", entrant.name))?;
+            for scene in &self.scenes {
+                self.viewer_settings(entrant, scene).map_err(|error| error.to_string())?;
+            }
+        }
+        for (i, scene) in self.scenes.iter().enumerate() {
+            ensure(
+                !self.scenes[..i].contains(scene),
+                &format!("the scene \"{scene}\" is listed twice: once is enough"),
+            )?;
+        }
+        let all = std::iter::once(&self.settings).chain(self.method.iter().map(|entrant| &entrant.settings));
+        for key in all.flat_map(Table::keys) {
+            let what = format!("the setting \"{key}\" is the experiment's own: leave it out");
+            ensure(!RESERVED.contains(&key.as_str()), &what)?;
+        }
+        Ok(())
+    }
+
+    /// The settings of a method in a scene.
+    fn viewer_settings(&self, entrant: &Entrant, scene: &str) -> Result<Settings, SettingsError> {
+        let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let pairs = |table: &Table| table.iter().map(|(k, v)| format!("{k}={}", text(v))).collect::<Vec<_>>();
+        let method = format!("method={}", entrant.name);
+        let has_method = self.settings.contains_key("method") || entrant.settings.contains_key("method");
+        let first = (!has_method).then_some(method).into_iter().chain([format!("scene={scene}")]);
+        Settings::resolve(None, first.chain(pairs(&self.settings)).chain(pairs(&entrant.settings)))
+    }
+
+    /// All runs on a device, in their order.
+    pub fn plan(&self, serial: &str) -> Vec<Planned> {
+        let own = serial
+            .bytes()
+            .fold(self.seed, |hash, byte| hash.wrapping_mul(0x100_0000_01b3).wrapping_add(u64::from(byte)));
+        let mut random = Pcg64Mcg::seed_from_u64(own);
+        let mut names: Vec<usize> = (0..self.method.len()).collect();
+        let rows = balanced_square(names.len());
+        let mut shift = 0;
+        if self.order == Order::Balanced {
+            names.shuffle(&mut random);
+            shift = rand::Rng::random_range(&mut random, 0..rows.len());
+        }
+        let mut planned = Vec::new();
+        for repetition in 1..=self.repetitions {
+            let mut scenes: Vec<usize> = (0..self.scenes.len()).collect();
+            if self.order != Order::Listed {
+                scenes.shuffle(&mut random);
+            }
+            for scene in scenes {
+                let mut methods: Vec<usize> = (0..names.len()).collect();
+                match self.order {
+                    Order::Balanced => {
+                        let row = &rows[(shift + scene + repetition as usize) % rows.len()];
+                        methods = row.iter().map(|place| names[*place]).collect();
+                    }
+                    Order::Random => methods.shuffle(&mut random),
+                    Order::Listed => {}
+                }
+                for method in methods {
+                    planned.push(self.planned(planned.len() as u32 + 1, repetition, scene, method));
+                }
+            }
+        }
+        planned
+    }
+
+    fn planned(&self, order: u32, repetition: u32, scene: usize, method: usize) -> Planned {
+        let (scene, entrant) = (&self.scenes[scene], &self.method[method]);
+        // Checked when the file was read.
+        let settings = self.viewer_settings(entrant, scene).unwrap_or_default();
+        let plan = Plan {
+            other: None,
+            experiment: Some(self.name.clone()),
+            method: entrant.name.clone(),
+            settings,
+            repetition,
+            order,
+            duration_s: self.seconds,
+            warm_up_s: self.warm_up_seconds,
+            warmest_celsius: self.cool_down.map(|cool_down| cool_down.celsius),
+            refresh_hz: self.refresh_hz,
+            power: self.power,
+        };
+        let folder = format!("{order:03}-{}-{}-{repetition}", file_name(scene), file_name(&entrant.name));
+        Planned { plan, folder }
+    }
+
+    /// Shortest and longest time for so many runs, in seconds.
+    pub fn length(&self, runs: usize) -> [f64; 2] {
+        let run = self.warm_up_seconds + self.seconds + START_S;
+        let cooling = self.cool_down.map_or(0.0, |cool_down| cool_down.max_seconds).max(self.rest_seconds);
+        [run + self.rest_seconds, run + cooling].map(|seconds| seconds * runs as f64)
+    }
+
+    /// Makes a folder this experiment's, or sees that it is.
+    ///
+    /// # Errors
+    /// [`ExperimentError`].
+    pub fn claim(&self, folder: &Path, path: &Path) -> Result<(), ExperimentError> {
+        let file = folder.join(FILE);
+        if file.exists() {
+            let same = Experiment::read(&file).is_ok_and(|before| before == *self);
+            let other = || ExperimentError::Other { folder: folder.into(), path: path.into() };
+            return if same { Ok(()) } else { Err(other()) };
+        }
+        let text = toml::to_string(self)
+            .map_err(|error| ExperimentError::Format { path: path.into(), what: error.to_string() })?;
+        Ok(files::write(&file, text.as_bytes())?)
+    }
+}
+
+/// A name as part of the name of a file.
+pub fn file_name(text: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "-._".contains(c) { c } else { '-' };
+    let name: String = text.chars().map(plain).collect();
+    let name = name.trim_matches(['.', '-']);
+    if name.is_empty() { "unnamed".into() } else { name.into() }
+}
+
+/// The stereo methods that settings name, for a table of the plan.
+pub fn method_name(plan: &Plan) -> String {
+    match plan.settings.method {
+        Method::Yoro => format!("yoro, {}", plan.settings.pipeline.name()),
+        method => method.name().into(),
+    }
+}

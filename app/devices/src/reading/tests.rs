@@ -1,0 +1,237 @@
+use proptest::prelude::*;
+
+use super::*;
+use yoro_protocol::telemetry::BatteryStatus;
+
+fn line(time_s: f64) -> Line {
+    Line {
+        time_s,
+        method: "yoro".into(),
+        scene: "talk".into(),
+        fps: Some(60.0),
+        current_raw: Some(-512_000),
+        current_ma: Some(-512.0),
+        voltage_mv: Some(3900),
+        plugged: Some(0),
+        render_scale: 1.0,
+        status: Some(BatteryStatus::Discharging),
+        run: Some("r1".into()),
+        ..Line::default()
+    }
+}
+
+fn logged(clock: f64, pid: u32, text: &dyn std::fmt::Display) -> String {
+    format!("{clock:.6}  {pid}  {pid} I YORO    : {text}")
+}
+
+fn sample(news: News) -> Sample {
+    match news {
+        News::Sample(sample) => *sample,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn kinds(reading: &Reading) -> Vec<FaultKind> {
+    reading.faults().iter().map(|fault| fault.kind).collect()
+}
+
+#[test]
+fn nothing_is_wrong_with_a_good_log() {
+    let mut reading = Reading::new(Some("r1".into()));
+    for i in 1..=60 {
+        let text = logged(1e9 + i as f64, 7, &line(i as f64 * 1.02));
+        assert_eq!(
+            sample(reading.line(&text, None)).time_s,
+            line(i as f64 * 1.02).to_string().parse::<Line>().unwrap().time_s
+        );
+    }
+    assert_eq!((reading.samples(), reading.faults()), (60, Vec::new()));
+    let other = Line { run: Some("before".into()), ..line(9.0) };
+    assert_eq!(reading.line(&logged(1e9, 6, &other), None), News::Other);
+    assert_eq!(reading.line("--------- beginning of main", None), News::Other);
+    assert_eq!(reading.line(&logged(1e9, 7, &"yoro 0.1.0 starts"), None), News::Other);
+    assert_eq!(reading.line(&logged(1e9, 7, &"v=1,summary=1,t=60.0s"), None), News::Summary);
+}
+
+#[test]
+fn unknown_keys_stages_and_the_runtime_are_kept() {
+    let mut reading = Reading::default();
+    assert_eq!(reading.line("1000000000.2 1 2 I VrApi   : FPS=70/72", None), News::Other);
+    let runtime = "1000000000.5 1 2 I VrApi   : FPS=72/72,Stale=3,1171/441MHz,LCnt=2(DR72,LM2),GPU%=0.43";
+    let mut text = line(1.0).to_string().replace("App=na", "App=2.00ms(march=1.500,lens=0.500)");
+    let first = sample(reading.line(&logged(1e9, 7, &text), None));
+    assert_eq!((first.other["VrApi.FPS"].as_str(), reading.samples()), ("70/72", 1));
+    assert_eq!(reading.line(runtime, None), News::Other);
+    text = text.replace("t=1.0s", "t=2.0s") + ",gaze=0.5";
+    let kept = sample(reading.line(&logged(1e9 + 1.0, 7, &text), None));
+    let get = |key: &str| kept.other.get(key).map(String::as_str);
+    assert_eq!((get("gaze"), get("App.march"), get("scale")), (Some("0.5"), Some("1.5"), Some("1.00")));
+    assert_eq!(
+        (get("VrApi.Stale"), get("VrApi.1"), get("VrApi.LCnt")),
+        (Some("3"), Some("1171/441MHz"), Some("2(DR72,LM2)"))
+    );
+    assert_eq!((kept.stale, kept.gpu_ms, get("run")), (None, Some(2.0), None));
+}
+
+#[test]
+fn another_application_on_a_headset() {
+    let mut reading = Reading::default();
+    let mut read = Vec::new();
+    for i in 0..3 {
+        let text = format!("100000000{i}.5 1 2 I VrApi   : FPS=71/72,Stale=3,Temp=32.2C/0.0C,App=4.49ms");
+        if let News::Sample(sample) = reading.line(&text, None) {
+            read.push(*sample);
+        }
+    }
+    assert!(matches!(reading.line("1000000009.5 1 2 I VrApi   : FPS=7", None), News::Damaged(_)));
+    read.extend(reading.end());
+    assert_eq!(read.iter().map(|sample| sample.time_s).collect::<Vec<_>>(), [0.0, 1.0, 2.0]);
+    for sample in read {
+        assert_eq!((sample.fps, sample.refresh_hz, sample.stale), (Some(71.0), Some(72.0), Some(3.0)));
+        assert_eq!((sample.gpu_ms, sample.battery_celsius), (Some(4.49), Some(32.2)));
+    }
+    assert_eq!((kinds(&reading), reading.end()), (vec![FaultKind::DamagedLines], None));
+}
+
+#[test]
+fn figures_of_the_battery_that_mean_none() {
+    let read = |change: fn(&mut Line)| {
+        let mut reading = Reading::default();
+        let mut last = Sample::default();
+        for i in 1..=3 {
+            let mut line = line(i as f64);
+            change(&mut line);
+            last = sample(reading.line(&logged(1e9 + i as f64, 7, &line), None));
+        }
+        let faults = reading.faults();
+        (last, faults.iter().map(|fault| (fault.kind, fault.detail.clone())).collect::<Vec<_>>())
+    };
+    use FaultKind::{NoCurrent, PluggedIn, VoltageInVolts};
+    // Phones that give EXTRA_VOLTAGE in whole volts (PlusPlusBattery issue 5, home-assistant/android 4286).
+    let (volts, faults) = read(|line| line.voltage_mv = Some(4));
+    assert_eq!((volts.voltage_mv, faults.len(), faults[0].0), (None, 1, VoltageInVolts));
+    let (_, faults) = read(|line| (line.current_raw, line.current_ma) = (Some(0), None));
+    assert!(faults.len() == 1 && faults[0].0 == NoCurrent && faults[0].1.contains("is 0"), "{faults:?}");
+    // OVR Metrics Tool's placeholder, and Integer.MIN_VALUE (home-assistant/android 4977).
+    for raw in [9999, -9999, -2_147_483_648] {
+        let mut reading = Reading::default();
+        let line = Line { current_raw: Some(raw), current_ma: Some(raw as f64), ..line(1.0) };
+        assert_eq!(sample(reading.line(&logged(1e9, 7, &line), None)).current_ma, None);
+        let faults = reading.faults();
+        assert!(faults.len() == 1 && faults[0].detail.contains(&raw.to_string()), "{faults:?}");
+    }
+    let (_, faults) = read(|line| line.status = Some(BatteryStatus::NotCharging));
+    assert_eq!((faults.len(), faults[0].0), (1, PluggedIn));
+}
+
+/// Statistics as headsets logged them: Quest 2 in 2020 (soundstagevr issue 34), App SpaceWarp (Meta's guide to it),
+/// and other lines of the same tags (GearVRf issue 383, Meta's guide to logcat), all but the first shortened.
+#[test]
+fn lines_of_metas_runtime() {
+    let mut reading = Reading::default();
+    let mut seconds = Vec::new();
+    for text in [
+        "11-12 18:46:09.356  3579  3669 I VrApi   : FPS=52,Prd=49ms,Tear=0,Early=0,Stale=65,VSnc=1,Lat=1,Fov=0D,CPU4/GPU=4/3,1478/490MHz,OC=FF,TA=0/0/0,SP=N/N/N,Mem=1555MHz,Free=3179MB,PSM=0,PLS=0,Temp=34.7C/0.0C,TW=1.17ms,App=21.69ms,GD=0.00ms,CPU&GPU=31.47ms,LCnt=1,GPU%=0.99,CPU%=0.29(W0.30),DSF=1.00",
+        "11-12 18:46:10.350  3579  3669 I VrApi   : FPS=36/72,Prd=39ms,Stale=0,Temp=44.5C/0.0C,App=11.42ms,LCnt=1",
+        "11-12 18:46:10.351  3579  3669 I VrApi   : ASW=72, Type=App E=-0.000/0.250,D=0.000/0.000",
+        "11-12 18:46:10.400  2072  2090 I XrPerformanceManager: SetClockLevels: Apply pending clock request change: 4,3 -> 3,3",
+        "11-12 18:46:10.500: I/VrApi(24826): SetVrSystemPerformance( 2, 2 )",
+    ] {
+        if let News::Sample(sample) = reading.line(text, None) {
+            seconds.push(*sample);
+        }
+    }
+    seconds.extend(reading.end());
+    let rates: Vec<_> = seconds.iter().map(|sample| (sample.fps, sample.refresh_hz, sample.gpu_ms)).collect();
+    assert_eq!(rates, [(Some(52.0), None, Some(21.69)), (Some(36.0), Some(72.0), Some(11.42))]);
+    assert_eq!((reading.damaged(), reading.faults()), (0, Vec::new()));
+}
+
+#[test]
+fn each_fault_has_its_name() {
+    let mut reading = Reading::new(Some("r1".into()));
+    let mut put = |clock: f64, pid: u32, line: &Line| reading.line(&logged(1e9 + clock, pid, line), None);
+    put(1.0, 7, &line(1.0));
+    // The clock goes back an hour, the session does not.
+    put(2.0 - 3600.0, 7, &line(2.0));
+    let cut = logged(1e9 + 3.0 - 3600.0, 7, &line(3.0));
+    put(4.0 - 3600.0, 7, &Line { plugged: Some(2), ..line(4.0) });
+    put(7.0 - 3600.0, 7, &Line { current_raw: Some(512), ..line(7.0) });
+    put(8.0 - 3600.0, 7, &Line { current_raw: None, current_ma: None, thermal_status: Some(3), ..line(8.0) });
+    // A new session after twenty seconds.
+    let again = put(28.0 - 3600.0, 8, &line(1.0));
+    assert_eq!(sample(again).time_s, 28.0);
+    let run = cut.find("run=").unwrap();
+    assert!(matches!(reading.line(&cut[..run + 4], None), News::Damaged(_)));
+    assert!(matches!(reading.line(&cut[..60], None), News::Damaged(_)));
+    use FaultKind::*;
+    assert_eq!(
+        kinds(&reading),
+        [
+            PluggedIn,
+            NoCurrent,
+            CurrentInMilliamperes,
+            CurrentSign,
+            ClockJump,
+            DamagedLines,
+            MissingLines,
+            Restarted,
+            TooWarm
+        ]
+    );
+    let faults = reading.faults();
+    assert!(faults[4].detail.contains("-3600.0 s"), "{faults:?}");
+    assert_eq!((faults[4].at_s, faults[6].at_s), (Some(1.0), Some(2.0)));
+    // 3, 5 and 6, and 9 to 27.
+    assert!(faults[6].detail.starts_with("22 seconds"), "{faults:?}");
+}
+
+#[test]
+fn what_is_damaged_depends_on_the_format() {
+    let text = line(1.0).to_string();
+    let of = |lines: &[&str]| {
+        let mut reading = Reading::default();
+        lines.iter().for_each(|line| drop(reading.line(line, None)));
+        (reading.samples(), reading.damaged())
+    };
+    // Only messages: other words are messages, too.
+    assert_eq!(of(&["yoro 0.1.0 starts", &text, "rating,v=1", &text[..50]]), (1, 1));
+    let full = logged(1e9, 7, &text);
+    assert_eq!(of(&["00I YORO    : v=1", &full, "10000000"]), (1, 2));
+    assert_eq!(of(&["nothing", "of ours"]), (0, 0));
+}
+
+#[test]
+fn a_damaged_second_is_not_missing_as_well() {
+    let mut reading = Reading::default();
+    for i in 1..=5 {
+        let text = logged(1e9 + i as f64, 7, &line(i as f64));
+        reading.line(if i == 3 { &text[..80] } else { &text }, None);
+    }
+    assert_eq!(kinds(&reading), [FaultKind::DamagedLines]);
+}
+
+#[test]
+fn a_clock_without_sense_gives_way_to_this_computers() {
+    let mut reading = Reading::default();
+    reading.line(&logged(1e9, 7, &line(50.0)), None);
+    let after = sample(reading.line(&logged(5.0, 3, &line(1.0)), Some(40.0)));
+    assert_eq!(after.time_s, 90.0);
+}
+
+proptest! {
+    #[test]
+    fn damaged_logs_never_panic(lines in proptest::collection::vec((0usize..400, ".{0,4}", any::<bool>()), 1..12)) {
+        let mut reading = Reading::new(Some("r1".into()));
+        let mut seen = 0;
+        for (i, (at, with, cut)) in lines.iter().enumerate() {
+            let mut text = logged(1e9 + i as f64, 7, &line(i as f64));
+            let at = (*at).min(text.len());
+            if *cut { text.truncate(at) } else { text.insert_str(at, with) }
+            // Each line is a sample, or damaged, or says nothing.
+            seen += match reading.line(&text, None) { News::Sample(_) => 1, _ => 0 };
+        }
+        prop_assert_eq!(reading.samples(), seen);
+        let _ = reading.faults();
+    }
+}

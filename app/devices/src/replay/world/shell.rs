@@ -1,0 +1,237 @@
+//! What a device that does not exist answers to commands.
+
+use std::path::Path;
+
+use super::{Application, BOOT_S, LOADING_S, LUCK, WORN, World};
+use crate::adb::DeviceError;
+use crate::replay::script::Fault;
+use crate::{log, phone};
+use rand::Rng;
+use yoro_files as files;
+use yoro_protocol::Settings;
+use yoro_protocol::telemetry::{CurrentNormalizer, LOG_TAG, Line};
+
+impl World {
+    /// Installs the application.
+    pub fn install(&mut self) -> Result<(), DeviceError> {
+        self.reach()?;
+        if self.script.storage_full {
+            return Err(DeviceError::StorageFull(self.script.serial.clone()));
+        }
+        self.installed = true;
+        Ok(())
+    }
+
+    /// Writes a file.
+    pub fn put(&mut self, path: &str, text: &str) -> Result<(), DeviceError> {
+        self.reach()?;
+        if self.script.storage_full {
+            return Err(self.refused(&["cat", ">", path], "No space left on device"));
+        }
+        self.kept.files.insert(path.into(), text.into());
+        self.keep()
+    }
+
+    fn keep(&self) -> Result<(), DeviceError> {
+        let Some(path) = &self.kept_in else { return Ok(()) };
+        Ok(files::write_with(path, |out| Ok(serde_json::to_writer(out, &self.kept)?))?)
+    }
+
+    fn refused(&self, words: &[&str], reason: &str) -> DeviceError {
+        let serial = self.script.serial.clone();
+        DeviceError::Refused { serial, command: words.join(" "), reason: reason.into() }
+    }
+
+    /// Answers a command as Android's shell does. Only what the program asks is known.
+    pub fn shell(&mut self, words: &[&str]) -> Result<String, DeviceError> {
+        self.reach()?;
+        match words {
+            ["getprop"] => Ok(self.kept.properties.iter().map(|(k, v)| format!("[{k}]: [{v}]\n")).collect()),
+            ["getprop", name] => Ok(self.property(name) + "\n"),
+            ["setprop", name, value] => {
+                self.kept.properties.insert((*name).into(), (*value).into());
+                self.keep().map(|()| String::new())
+            }
+            ["settings", verb, table, key, value @ ..] => {
+                let name = if *table == "system" { (*key).to_owned() } else { format!("{table}/{key}") };
+                self.setting(words, verb, name, value.first().copied())
+            }
+            ["cat", "/proc/sys/kernel/random/boot_id"] => Ok(format!("{:08}-simulated\n", self.boots)),
+            ["cat", path] if *path == phone::KERNEL_BATTERY => self.kernel_battery(words),
+            ["cat", path] => self
+                .kept
+                .files
+                .get(*path)
+                .cloned()
+                .ok_or_else(|| self.refused(words, "No such file or directory")),
+            ["rm", "-f", path] => {
+                self.kept.files.remove(*path);
+                self.keep().map(|()| String::new())
+            }
+            ["date", "+%s.%N"] => Ok(format!("{:.9}\n", self.now + self.clock_offset)),
+            ["dumpsys", "battery"] => Ok(self.battery()),
+            ["dumpsys", "batterystats"] => {
+                Ok(format!("  Estimated battery capacity: {:.0} mAh\n", self.script.capacity_mah))
+            }
+            ["dumpsys", "window", "policy"] => Ok(format!(
+                "    KeyguardServiceDelegate\n      showing=false\n      secure={}\n",
+                self.script.secure_lock
+            )),
+            ["am", "broadcast", "-a", "com.oculus.vrpowermanager.prox_close"] => {
+                self.kept.properties.insert(WORN.into(), "yes".into());
+                self.keep().map(|()| String::new())
+            }
+            ["am", "broadcast", "-a", "com.oculus.vrpowermanager.automation_disable"] => {
+                self.kept.properties.remove(WORN);
+                self.keep().map(|()| String::new())
+            }
+            ["dumpsys", "package", name] if self.script.others.iter().any(|other| other == name) => {
+                Ok("Packages:\n    versionName=7.1\n".into())
+            }
+            ["dumpsys", "package", name] if self.installed && *name == phone::PACKAGE => {
+                Ok(format!("Packages:\n    versionName={}\n", env!("CARGO_PKG_VERSION")))
+            }
+            ["dumpsys", "package", name] => Ok(format!("Unable to find package: {name}\n")),
+            ["ip", "route"] => Ok("192.0.2.0/24 dev wlan0 proto kernel scope link src 192.0.2.7\n".into()),
+            ["pidof", name] => match &self.application {
+                Some(application) if application.other.as_deref().unwrap_or(phone::PACKAGE) == *name => {
+                    Ok(format!("{}\n", application.pid))
+                }
+                _ => Err(self.refused(words, "it does not say why")),
+            },
+            ["am", "force-stop", _] => {
+                self.application = None;
+                Ok(String::new())
+            }
+            ["am", "start", "-S", "-W", "-n", activity, extras @ ..] => self.start(activity, extras),
+            ["input", ..] | ["wm", ..] | ["logcat", "-G", _] => Ok(String::new()),
+            _ => Err(self.refused(words, "a replay does not know it")),
+        }
+    }
+
+    fn property(&self, name: &str) -> String {
+        let own = match name {
+            "ro.serialno" => Some(self.script.serial.clone()),
+            "ro.product.manufacturer" => Some(self.script.manufacturer.clone()),
+            "ro.product.model" => Some(self.script.model.clone()),
+            "ro.build.version.release" => Some(self.script.android.clone()),
+            "sys.boot_completed" if self.now >= self.booted_at + BOOT_S => Some("1".into()),
+            _ => None,
+        };
+        own.or_else(|| self.kept.properties.get(name).cloned()).unwrap_or_default()
+    }
+
+    fn setting(
+        &mut self,
+        words: &[&str],
+        verb: &str,
+        name: String,
+        value: Option<&str>,
+    ) -> Result<String, DeviceError> {
+        if verb == "get" {
+            return Ok(self.kept.settings.get(&name).cloned().unwrap_or_else(|| "null".into()) + "\n");
+        }
+        if self.script.fixed_settings.contains(&name) {
+            return Err(self.refused(words, "java.lang.SecurityException: you cannot change it"));
+        }
+        match value {
+            Some(value) => self.kept.settings.insert(name, value.into()),
+            None => self.kept.settings.remove(&name),
+        };
+        self.keep().map(|()| String::new())
+    }
+
+    fn battery(&self) -> String {
+        let plugged = self.now < self.plugged_until;
+        let held =
+            if self.script.battery_held { "  (UPDATES STOPPED -- use 'reset' to restart)\n" } else { "" };
+        format!(
+            "Current Battery Service state:\n{held}  AC powered: false\n  USB powered: {plugged}\n  Wireless powered: false\n  status: {}\n  level: {:.0}\n  scale: 100\n  voltage: {:.0}\n  temperature: {:.0}\n",
+            if plugged { 2 } else { 3 },
+            self.level_percent(),
+            self.voltage(),
+            self.celsius * 10.0,
+        )
+    }
+
+    fn kernel_battery(&self, words: &[&str]) -> Result<String, DeviceError> {
+        if !self.script.kernel_battery {
+            return Err(self.refused(words, "Permission denied"));
+        }
+        Ok(format!(
+            "POWER_SUPPLY_NAME=battery\nPOWER_SUPPLY_VOLTAGE_NOW={:.0}\nPOWER_SUPPLY_CURRENT_NOW={:.0}\n",
+            self.volts() * 1e6,
+            self.milliamperes() * 1e3,
+        ))
+    }
+
+    /// Starts the application, as its settings say: extras, and properties over them.
+    pub(super) fn start(&mut self, activity: &str, extras: &[&str]) -> Result<String, DeviceError> {
+        let package = activity.split('/').next().unwrap_or_default();
+        let other = self.script.others.iter().find(|other| *other == package).cloned();
+        if !self.installed && other.is_none() {
+            return Ok(format!("Error type 3\nError: Activity class {{{activity}}} does not exist.\n"));
+        }
+        let pairs = extras.chunks_exact(3).map(|words| (words[1].to_owned(), words[2].to_owned()));
+        let properties = self.kept.properties.iter().filter_map(|(name, value)| {
+            Some((name.strip_prefix(phone::PROPERTY_PREFIX)?.to_owned(), value.clone()))
+        });
+        let mut settings = Settings::default();
+        for (key, value) in pairs.chain(properties.collect::<Vec<_>>()) {
+            if let Err(error) = settings.apply(&format!("{key}={value}")) {
+                return Ok(format!("Error: {error}\n"));
+            }
+        }
+        let recorded = if self.script.logs.is_empty() { None } else { Some(self.recorded(&settings)?) };
+        self.starts += 1;
+        let pid = 4000 + self.starts;
+        let mut faults: Vec<Fault> =
+            self.script.fault.iter().filter(|fault| fault.start == self.starts).copied().collect();
+        faults.sort_by(|a, b| a.at.total_cmp(&b.at));
+        self.write_log(pid, "I", LOG_TAG, &format!("yoro {} starts", env!("CARGO_PKG_VERSION")));
+        self.application = Some(Application {
+            pid,
+            other,
+            method: settings.method.name().into(),
+            settings,
+            first_frame: self.now + LOADING_S,
+            recorded,
+            lines: 0,
+            luck: 1.0 + LUCK * self.random.random_range(-1.0..1.0),
+            normalizer: CurrentNormalizer::default(),
+            faults,
+        });
+        Ok("Starting: Intent { cmp=io.github.yoro/android.app.NativeActivity (has extras) }\nStatus: ok\n"
+            .into())
+    }
+
+    /// The lines of the recorded log of a method, pipeline and scene.
+    fn recorded(&self, settings: &Settings) -> Result<Vec<Line>, DeviceError> {
+        let is_wanted = |line: &Line| {
+            let pipeline =
+                line.pipeline.as_deref().is_none_or(|pipeline| pipeline == settings.pipeline.name());
+            line.method == settings.method.name() && line.scene == settings.scene && pipeline
+        };
+        for path in &self.script.logs {
+            let lines: Vec<Line> = read_recording(path)?.into_iter().filter(is_wanted).collect();
+            if !lines.is_empty() {
+                return Ok(lines);
+            }
+        }
+        Err(self.refused(
+            &["am", "start"],
+            &format!("the replay has no recorded log of {} in {}", settings.method.name(), settings.scene),
+        ))
+    }
+}
+
+/// The telemetry in a log.
+fn read_recording(path: &Path) -> Result<Vec<Line>, DeviceError> {
+    let bytes = files::read(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let line = |line: &str| match log::parse(line) {
+        log::Kind::Entry(entry) if entry.tag == LOG_TAG => entry.message.parse().ok(),
+        _ => None,
+    };
+    Ok(text.lines().filter_map(line).collect())
+}

@@ -1,0 +1,94 @@
+//! What the report says of each method in a sentence.
+
+use serde::Serialize;
+
+use super::format::{NO_SCATTER, change, change_format, count, number, signed, without_scatter};
+use crate::report::{CONFIDENCE, DeviceReport, Quantity};
+use yoro_figures::inference::{Basis, BlockInterval, Interval};
+
+/// The answer for a method on a device: the change of a quantity, from what to what, and the interval.
+#[derive(Serialize)]
+pub struct Answer {
+    device: String,
+    method: String,
+    changes: Vec<AnswerChange>,
+    how_sure: String,
+}
+
+#[derive(Serialize)]
+pub struct AnswerChange {
+    /// `-22.7 %`; a dash without a pair.
+    change: String,
+    name: &'static str,
+    /// `1939 mW instead of 2510 mW`.
+    values: String,
+    /// `95 % interval -24.1 to -21.3 %`; nothing without.
+    interval: String,
+}
+
+impl Answer {
+    /// Returns the answer as a sentence.
+    pub fn sentence(&self) -> String {
+        let change = |c: &AnswerChange| {
+            let interval = if c.interval.is_empty() { String::new() } else { format!(", {}", c.interval) };
+            format!("{} {} ({}{interval})", c.name, c.change, c.values)
+        };
+        let changes: Vec<String> = self.changes.iter().map(change).collect();
+        format!("{}, {}: {}. {}", self.device, self.method, changes.join("; "), self.how_sure)
+    }
+}
+
+/// Returns the answers for all methods on all devices.
+pub fn answers(report: &DeviceReport) -> Vec<Answer> {
+    let mut answers = Vec::new();
+    for device in &report.devices {
+        for method in device.methods.iter().filter(|method| **method != report.baseline) {
+            let find = |quantity| report.find(Some(&device.name), None, method, quantity);
+            let changes = [Quantity::Power, Quantity::Fps].map(|quantity| match find(quantity) {
+                None => AnswerChange {
+                    change: "–".into(),
+                    name: quantity.name(),
+                    values: "no two runs to compare".into(),
+                    interval: String::new(),
+                },
+                Some(d) => {
+                    let (decimals, unit) = change_format(d);
+                    let value = |value| format!("{} {}", number(quantity, value), quantity.unit());
+                    let interval =
+                        d.interval.map(|BlockInterval { interval: Interval { low, high }, .. }| {
+                            if without_scatter(low, high) {
+                                return NO_SCATTER.to_owned();
+                            }
+                            let confidence = 100.0 * CONFIDENCE;
+                            let (low, high) = (signed(low, decimals), signed(high, decimals));
+                            format!("{confidence:.0} % interval {low} to {high} {unit}")
+                        });
+                    AnswerChange {
+                        change: change(d),
+                        name: quantity.name(),
+                        values: format!("{} instead of {}", value(d.ours), value(d.baseline)),
+                        interval: interval.unwrap_or_default(),
+                    }
+                }
+            });
+            let found = find(Quantity::Power).or(find(Quantity::Fps));
+            let how_sure = found.map_or("No run of it has a partner.".into(), |d| {
+                let scenes = report.scenes_of(&device.name, method, d.quantity);
+                let basis = match d.interval {
+                    None => "nothing was repeated, so there is no interval",
+                    Some(BlockInterval { basis: Basis::Repetitions, .. }) => {
+                        "intervals rest on the repetitions"
+                    }
+                    Some(BlockInterval { basis: Basis::Blocks, .. }) => {
+                        "every scene was measured once, so intervals rest on the scenes"
+                    }
+                };
+                let (pairs, scenes) = (count(d.pairs, "pair"), count(scenes, "scene"));
+                format!("{pairs} of runs on {scenes}; {basis}.")
+            });
+            let (device, method) = (device.name.clone(), method.clone());
+            answers.push(Answer { device, method, changes: changes.into(), how_sure });
+        }
+    }
+    answers
+}

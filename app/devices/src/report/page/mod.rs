@@ -1,0 +1,212 @@
+//! The report's sentences, tables and figures.
+
+mod answers;
+mod figures;
+mod format;
+mod tables;
+
+use std::fmt::Write as _;
+
+use minijinja::context;
+
+use super::run::LEAST_COVERED;
+use super::{Device, DeviceReport, Difference, Quantity, Run};
+use answers::{Answer, answers};
+use figures::{change_figures, trace_figures};
+use tables::{device_tables, notes_table, overview_tables};
+use yoro_figures::ReportError;
+use yoro_figures::page::{Template, figures, fill};
+
+pub(super) use format::count;
+
+/// Where the scenes of a device are taken together.
+const ALL_SCENES: &str = "all scenes";
+const TEMPLATE: Template =
+    Template { name: "device.html.j2", text: include_str!("../../templates/device.html.j2") };
+
+pub(super) fn html(report: &DeviceReport) -> Result<String, ReportError> {
+    let device = |(index, device): (usize, &Device)| -> Result<minijinja::Value, ReportError> {
+        let traces = device.scenes.iter().enumerate().map(|(scene, name)| {
+            let traces = trace_figures(report, device, &format!("device-{index}-scene-{scene}"), name);
+            Ok(context! { scene => name, figures => figures(&traces)? })
+        });
+        Ok(context! {
+            id => format!("device-{index}"),
+            name => &device.name,
+            facts => facts(report, device),
+            figures => figures(&change_figures(report, device, &format!("device-{index}")))?,
+            tables => device_tables(report, device),
+            traces => traces.collect::<Result<Vec<_>, ReportError>>()?,
+        })
+    };
+    let page = context! {
+        simulated => report.simulated,
+        baseline => &report.baseline,
+        warnings => warnings(report),
+        answers => answers(report),
+        overview => overview_tables(report),
+        devices => report.devices.iter().enumerate().map(device).collect::<Result<Vec<_>, _>>()?,
+        left_out => notes_table("What does not count", &report.left_out, simulated_mark(report)),
+        faults => notes_table("What went wrong", &report.faults, simulated_mark(report)),
+        method => method_notes(report),
+        made_by => &report.made_by,
+    };
+    fill(TEMPLATE, &title(report), page)
+}
+
+pub(super) fn markdown(report: &DeviceReport) -> String {
+    let mut out = format!("# {}\n\n", title(report));
+    for warning in warnings(report) {
+        let _ = writeln!(out, "**{warning}**\n");
+    }
+    for answer in answers(report) {
+        let _ = writeln!(out, "- {}", answer.sentence());
+    }
+    out.push('\n');
+    for table in overview_tables(report) {
+        let _ = writeln!(out, "{}", table.markdown());
+    }
+    for device in &report.devices {
+        let _ = writeln!(out, "## {}\n\n{}\n", device.name, facts(report, device));
+        for table in device_tables(report, device) {
+            let _ = writeln!(out, "{}", table.markdown());
+        }
+    }
+    for table in [
+        notes_table("What does not count", &report.left_out, simulated_mark(report)),
+        notes_table("What went wrong", &report.faults, simulated_mark(report)),
+    ] {
+        let _ = writeln!(out, "{}", table.markdown());
+    }
+    let _ = writeln!(out, "## How to read this\n");
+    for note in method_notes(report) {
+        let _ = writeln!(out, "- {note}");
+    }
+    let _ = writeln!(out, "\n{}", report.made_by);
+    out
+}
+
+pub(super) fn text(report: &DeviceReport) -> String {
+    let mut out = String::new();
+    for line in warnings(report).into_iter().chain(answers(report).iter().map(Answer::sentence)) {
+        let _ = writeln!(out, "{line}");
+    }
+    let runs = report.runs.len();
+    let whole = report.runs.iter().filter(|run| run.exclusions.is_empty()).count();
+    let _ = writeln!(
+        out,
+        "{whole} of {runs} runs count in full; {} faults are named in the report.",
+        report.faults.len()
+    );
+    for note in &report.left_out {
+        let _ = writeln!(out, "{}: {} ({})", note.of, note.detail, note.name);
+    }
+    out
+}
+
+fn title(report: &DeviceReport) -> String {
+    let names: Vec<&str> = report.devices.iter().map(|device| device.name.as_str()).collect();
+    match names.len() {
+        0..=2 => format!("Measured on {}", names.join(" and ")),
+        n => format!("Measured on {n} devices{}", simulated_mark(report)),
+    }
+}
+
+/// Behind the title of what has replayed figures in it.
+fn simulated_mark(report: &DeviceReport) -> &'static str {
+    match report.simulated {
+        true if report.devices.iter().all(|device| device.simulated) => " (simulated)",
+        true => " (partly simulated)",
+        false => "",
+    }
+}
+
+fn warnings(report: &DeviceReport) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let names: Vec<&str> =
+        report.devices.iter().filter(|device| device.simulated).map(|d| d.name.as_str()).collect();
+    if !names.is_empty() {
+        warnings.push(format!(
+            "Simulated: the figures of {} come from replayed logs and say nothing about any device.",
+            names.join(", ")
+        ));
+    }
+    for device in &report.devices {
+        if !device.methods.contains(&report.baseline) {
+            warnings.push(format!(
+                "{} has no run of {}: nothing is compared there. Name another baseline, or measure one.",
+                device.name, report.baseline
+            ));
+        }
+    }
+    warnings
+}
+
+impl DeviceReport {
+    fn find(
+        &self,
+        device: Option<&str>,
+        scene: Option<&str>,
+        method: &str,
+        quantity: Quantity,
+    ) -> Option<&Difference> {
+        self.differences.iter().find(|d| {
+            d.device.as_deref() == device
+                && d.scene.as_deref() == scene
+                && d.method == method
+                && d.quantity == quantity
+        })
+    }
+
+    fn scenes_of(&self, device: &str, method: &str, quantity: Quantity) -> usize {
+        let of = |d: &&Difference| {
+            d.device.as_deref() == Some(device) && d.method == method && d.quantity == quantity
+        };
+        self.differences.iter().filter(of).filter(|d| d.scene.is_some()).count()
+    }
+
+    fn runs_of<'a>(&'a self, device: &'a Device) -> impl Iterator<Item = &'a Run> {
+        self.runs.iter().filter(|run| run.device == device.name)
+    }
+}
+
+fn facts(report: &DeviceReport, device: &Device) -> String {
+    let runs = report.runs_of(device).count();
+    let whole = report.runs_of(device).filter(|run| run.exclusions.is_empty()).count();
+    let capacity = device.capacity_mah.map(|c| format!(", battery {c:.0} mAh")).unwrap_or_default();
+    let cells = match device.cells {
+        1 => String::new(),
+        cells => format!(", current x {cells} cells"),
+    };
+    let applications: Vec<&str> = device.applications.iter().map(String::as_str).collect();
+    let application = match applications.is_empty() {
+        true => String::new(),
+        false => format!(", application {}", applications.join(" and ")),
+    };
+    format!("Android {}{capacity}{cells}{application}; {whole} of {runs} runs count in full.", device.android)
+}
+
+fn method_notes(report: &DeviceReport) -> Vec<String> {
+    vec![
+        "Power is current x voltage, integrated by trapezoids over the times of the samples. Gaps are not bridged: \
+         what is inside them counts for nothing."
+            .into(),
+        "A run gives one value of each quantity: its seconds depend on each other. Intervals rest on repetitions, and \
+         two methods are compared by runs of the same device, scene and repetition."
+            .into(),
+        "A change in percent is the geometric mean of the pairs' ratios, its interval Student's t of their logarithms. \
+         Over scenes, each weighs the same; the scatter of the repetitions around their scenes is pooled. Where each \
+         scene was measured once, the interval rests on the scatter of the scenes, and is marked."
+            .into(),
+        format!(
+            "A run does not count if it was interrupted or failed, the device or the application was started anew, or \
+             less than {:.0} % of it was measured. Its power does not count while plugged in, or without current.",
+            100.0 * LEAST_COVERED
+        ),
+        format!(
+            "The baseline is {}. The CPU's load is in percent of one core; MB are 10^6 bytes; frame and GPU times are \
+             means over frames.",
+            report.baseline
+        ),
+    ]
+}

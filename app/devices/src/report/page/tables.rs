@@ -1,0 +1,282 @@
+//! The report's tables.
+
+use std::fmt::Write as _;
+
+use super::format::{NO_SCATTER, OVER_BLOCKS, change, change_interval, number, without_scatter};
+use super::{ALL_SCENES, simulated_mark};
+use crate::report::run::{COUNTER_TOLERANCE, PAPER_VOLTS};
+use crate::report::{CONFIDENCE, Device, DeviceReport, Difference, Note, Quantity, Run};
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::paper;
+use yoro_scenes::BUILTINS;
+
+const FIRST_HALF: [Quantity; 5] =
+    [Quantity::Power, Quantity::Fps, Quantity::Stale, Quantity::FrameTime, Quantity::FrameTimeP99];
+const SECOND_HALF: [Quantity; 5] =
+    [Quantity::GpuTime, Quantity::Temperature, Quantity::Rise, Quantity::Cpu, Quantity::Memory];
+
+/// A table in the shape of the paper's for each method, its columns beside ours.
+pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
+    let mut methods: Vec<&String> = Vec::new();
+    for method in report.devices.iter().flat_map(|device| &device.methods) {
+        if *method != report.baseline && !methods.contains(&method) {
+            methods.push(method);
+        }
+    }
+    let means: Vec<&Difference> = report.differences.iter().filter(|d| d.device.is_none()).collect();
+    let mut tables = Vec::new();
+    for method in methods {
+        let mut columns = vec!["<against ".to_owned() + &report.baseline];
+        columns.extend(report.devices.iter().map(|device| device.name.clone()));
+        let over_devices =
+            |quantity| means.iter().filter(move |d| d.method == *method && d.quantity == quantity);
+        let mean_columns = over_devices(Quantity::Fps).count().max(over_devices(Quantity::Power).count());
+        for i in 0..mean_columns {
+            columns.push(if i == 0 { "mean of the devices" } else { "mean of the simulated" }.into());
+        }
+        // The paper has this table for its own method only.
+        let papers: &[paper::PaperDevice] = if method.starts_with("yoro") { &paper::DEVICES } else { &[] };
+        columns.extend(papers.iter().map(|device| format!("{}, the paper's", device.name)));
+        let mut table =
+            Table::new(format!("{method}: change per device{}", simulated_mark(report)), &columns);
+        let capacity = |capacity: Option<f64>| capacity.map(|c| format!("{c:.0} mAh"));
+        let mut cells = vec![Cell::plain("battery capacity")];
+        cells.extend(
+            report.devices.iter().map(|d| Cell::plain(capacity(d.capacity_mah).unwrap_or("–".into()))),
+        );
+        cells.extend((0..mean_columns).map(|_| Cell::plain("")));
+        cells.extend(papers.iter().map(|d| Cell::paper(capacity(Some(d.capacity_mah)))));
+        table.push(cells);
+        type Printed = fn(&paper::PaperDevice) -> f64;
+        for (name, quantity, printed) in [
+            ("power", Quantity::Power, (|d| d.power) as Printed),
+            ("frame rate", Quantity::Fps, |d| d.fps),
+            ("execution time of a frame", Quantity::FrameTime, |d| d.time),
+            ("memory", Quantity::Memory, |d| d.memory),
+        ] {
+            let text = |d: &Difference| format!("{}{}", change(d), change_interval(d));
+            let mut cells = vec![Cell::plain(name)];
+            for device in &report.devices {
+                cells.push(Cell::ours(report.find(Some(&device.name), None, method, quantity).map(text)));
+            }
+            let mut means: Vec<Cell> = over_devices(quantity).map(|d| Cell::ours(Some(text(d)))).collect();
+            means.resize(mean_columns, Cell::ours(None::<String>));
+            cells.extend(means);
+            cells.extend(papers.iter().map(|d| Cell::paper(Some(format!("{:+.1} %", printed(d))))));
+            table.push(cells);
+        }
+        table.note = format!(
+            "In brackets: {:.0} % interval of the change; {} rests on the scatter of scenes or devices instead of \
+             repetitions.",
+            100.0 * CONFIDENCE,
+            OVER_BLOCKS.trim(),
+        );
+        if !papers.is_empty() {
+            let _ = write!(
+                table.note,
+                " The paper (\"You Only Render Once\", MobiSys '25) gives no intervals; its power comes from battery \
+                 percent x capacity x {PAPER_VOLTS} V, and its execution time is the inverse of its frame rate (but \
+                 for the Quest 3)."
+            );
+        }
+        tables.push(table);
+    }
+    tables
+}
+
+/// Returns the tables of a device that have a row.
+pub fn device_tables(report: &DeviceReport, device: &Device) -> Vec<Table> {
+    let mut tables = Vec::new();
+    for half in [FIRST_HALF, SECOND_HALF] {
+        tables.push(difference_table(report, device, half));
+    }
+    for half in [FIRST_HALF, SECOND_HALF] {
+        tables.push(mean_table(report, device, half));
+    }
+    tables.push(power_table(report, device));
+    tables.retain(|table| !table.lines.is_empty());
+    tables
+}
+
+fn names(quantities: [Quantity; 5]) -> String {
+    quantities.map(Quantity::name).join(", ")
+}
+
+fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantity; 5]) -> Table {
+    let mut columns = vec!["<scene".to_owned(), "<method".into(), "pairs".into()];
+    columns.extend(quantities.map(|quantity| quantity.name().to_owned()));
+    let with_paper = quantities.contains(&Quantity::Power);
+    if with_paper {
+        columns.extend(["the paper's power".to_owned(), "the paper's frame rate".into()]);
+    }
+    let title = format!("{}: change against {}: {}", device.name, report.baseline, names(quantities));
+    let mut table = Table::new(title, &columns);
+    let scenes = device.scenes.iter().map(|scene| Some(scene.as_str())).chain([None]);
+    for scene in scenes {
+        let mut first = true;
+        for method in device.methods.iter().filter(|method| **method != report.baseline) {
+            let find = |quantity| report.find(Some(&device.name), scene, method, quantity);
+            let pairs = quantities.iter().filter_map(|q| find(*q)).map(|d| d.pairs).max();
+            let Some(pairs) = pairs else { continue };
+            let mut cells = vec![
+                Cell::plain(scene.unwrap_or(ALL_SCENES)),
+                Cell::plain(method),
+                Cell::plain(pairs.to_string()),
+            ];
+            for quantity in quantities {
+                cells
+                    .push(Cell::ours(find(quantity).map(|d| format!("{}{}", change(d), change_interval(d)))));
+            }
+            if with_paper {
+                let papers = papers_changes(scene, method);
+                cells.push(Cell::paper(papers.map(|(power, _)| format!("{power:+.1} %"))));
+                cells.push(Cell::paper(papers.map(|(_, fps)| format!("{fps:+.1} %"))));
+            }
+            table.push_grouped(cells, std::mem::take(&mut first));
+        }
+    }
+    table.note = format!(
+        "Geometric mean of the ratios of pairs of runs (same scene and repetition), in brackets its {:.0} % interval. \
+         Temperatures and stale frames are compared as differences.",
+        100.0 * CONFIDENCE
+    );
+    table
+}
+
+/// Power and frame rate against conventional rendering, in percent, of the system in the paper that a method stands
+/// for, on the scene that a scene stands for, or on the mean of all.
+pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<(f64, f64)> {
+    let column = match method {
+        "hybrid" => 2,
+        _ if method.starts_with("yoro") => 0,
+        _ => return None,
+    };
+    let fps = |s: &paper::PaperScene| [s.fps_yoro, s.fps_conventional, s.fps_fink];
+    let (power, fps) = match scene {
+        Some(scene) => {
+            let stands_for = BUILTINS.iter().find(|builtin| builtin.name == scene)?.stands_for;
+            let at = paper::SCENES.iter().position(|s| s.name == stands_for)?;
+            (paper::POWER[at], fps(&paper::SCENES[at]))
+        }
+        None => {
+            let mean = |column: usize| paper::POWER.iter().map(|row| row[column]).sum::<f64>() / 8.0;
+            ([mean(0), mean(1), mean(2)], fps(&paper::AVERAGE))
+        }
+    };
+    let change = |values: [f64; 3]| 100.0 * (values[column] / values[1] - 1.0);
+    Some((change(power), change(fps)))
+}
+
+fn mean_table(report: &DeviceReport, device: &Device, quantities: [Quantity; 5]) -> Table {
+    let mut columns = vec!["<scene".to_owned(), "<method".into(), "runs".into()];
+    columns.extend(quantities.map(|quantity| format!("{}, {}", quantity.name(), quantity.unit())));
+    let mut table = Table::new(format!("{}: {}", device.name, names(quantities)), &columns);
+    for scene in &device.scenes {
+        let mut first = true;
+        for method in &device.methods {
+            let of = |quantity: Quantity| {
+                report.means.iter().find(|mean| {
+                    mean.device == device.name
+                        && mean.scene == *scene
+                        && mean.method == *method
+                        && mean.quantity == quantity
+                })
+            };
+            let Some(runs) = quantities.iter().filter_map(|q| of(*q)).map(|mean| mean.sample.n).max() else {
+                continue;
+            };
+            let mut cells = vec![Cell::plain(scene), Cell::plain(method), Cell::plain(runs.to_string())];
+            for quantity in quantities {
+                let text = of(quantity).map(|mean| {
+                    let value = number(quantity, mean.sample.mean);
+                    match mean.interval {
+                        None => value,
+                        Some(interval) if without_scatter(interval.low, interval.high) => {
+                            format!("{value} [{NO_SCATTER}]")
+                        }
+                        Some(interval) => format!(
+                            "{value} ± {} [{}, {}]",
+                            number(quantity, mean.sample.std),
+                            number(quantity, interval.low),
+                            number(quantity, interval.high)
+                        ),
+                    }
+                });
+                cells.push(if *method == report.baseline { Cell::base(text) } else { Cell::ours(text) });
+            }
+            table.push_grouped(cells, std::mem::take(&mut first));
+        }
+    }
+    table.note = format!(
+        "Mean ± standard deviation of the runs [{:.0} % interval of the mean]; of a single run its value alone.",
+        100.0 * CONFIDENCE
+    );
+    table
+}
+
+fn power_table(report: &DeviceReport, device: &Device) -> Table {
+    let columns = [
+        "<scene".to_owned(),
+        "<method".into(),
+        "repetition".into(),
+        "seconds".into(),
+        "current x voltage, mW".into(),
+        "charge counter, mW".into(),
+        "differs".into(),
+        format!("percent x capacity x {PAPER_VOLTS} V (the paper's way), mW"),
+        "one percent is, mW".into(),
+        "<counts".into(),
+    ];
+    let mut table = Table::new(format!("{}: power of each run, three ways", device.name), &columns);
+    let mut runs: Vec<&Run> = report.runs_of(device).collect();
+    let place = |run: &Run| {
+        let scene = device.scenes.iter().position(|scene| *scene == run.scene);
+        let method = device.methods.iter().position(|method| *method == run.method);
+        (scene, method, run.set, run.repetition)
+    };
+    runs.sort_by_key(|run| place(run));
+    let mut scene = "";
+    for run in runs {
+        let milliwatts = |value: Option<f64>| value.map(|value| format!("{value:.0}"));
+        let counts = match run.counts(Quantity::Power) {
+            true => "yes".to_owned(),
+            false => {
+                let names: Vec<&str> = run.exclusions.iter().map(|exclusion| exclusion.name).collect();
+                format!("no: {}", names.join(", "))
+            }
+        };
+        let cells = vec![
+            Cell::plain(&run.scene),
+            Cell::plain(&run.method),
+            Cell::plain(run.repetition.to_string()),
+            Cell::plain(run.integrated.map(|i| format!("{:.0}", i.seconds)).unwrap_or("–".into())),
+            Cell::ours(milliwatts(run.integrated.map(|i| i.milliwatts))),
+            Cell::base(milliwatts(run.counted.map(|c| c.milliwatts))),
+            Cell::base(run.counted.map(|c| format!("{:+.1} %", 100.0 * c.disagreement()))),
+            Cell::paper(milliwatts(run.by_level.map(|l| l.milliwatts))),
+            Cell::paper(milliwatts(run.by_level.map(|l| l.step_milliwatts))),
+            Cell::plain(counts),
+        ];
+        table.push_grouped(cells, run.scene != scene);
+        scene = &run.scene;
+    }
+    table.note = format!(
+        "The counter is read between its first and last step; more than {:.0} % apart from current x voltage over the \
+         same time is named as a fault. A battery's level comes in whole percents: the paper's way cannot tell less \
+         apart than one of them.",
+        100.0 * COUNTER_TOLERANCE
+    );
+    table
+}
+
+/// Returns notes as a table.
+pub fn notes_table(title: &str, notes: &[Note], mark: &str) -> Table {
+    let mut table = Table::new(format!("{title}{mark}"), &["<what", "<where", "<in detail"]);
+    for note in notes {
+        table.push(vec![Cell::plain(note.name), Cell::plain(&note.of), Cell::plain(&note.detail)]);
+    }
+    if notes.is_empty() {
+        table.push(vec![Cell::plain("nothing"), Cell::plain(""), Cell::plain("")]);
+    }
+    table
+}

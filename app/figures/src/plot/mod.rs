@@ -1,0 +1,216 @@
+//! Figures, drawn as SVG by plotters. Colours are those of the light page; the page's style sheet exchanges them
+//! for the dark one's.
+
+mod axis;
+mod draw;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeSet;
+
+use crate::inference::Interval;
+
+/// Method, whether it is the paper's, and label.
+type LegendEntry = (String, bool, String);
+
+/// Why a figure could not be drawn.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot draw the figure {id}: {what}")]
+pub struct PlotError {
+    id: String,
+    what: String,
+}
+
+/// One figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Name of its file, and its anchor on the page.
+    pub id: String,
+    /// What it shows.
+    pub title: String,
+    /// What must be known to read it.
+    pub caption: String,
+    /// What is drawn.
+    pub panel: Panel,
+}
+
+/// What a figure consists of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Panel {
+    /// A value over another.
+    Curves {
+        /// To the right.
+        x: Axis,
+        /// Upwards.
+        y: Axis,
+        /// One after the other, the last on top.
+        series: Vec<Series>,
+    },
+    /// Values over time, close together: thin lines without marks, broken where a point is not finite.
+    Traces {
+        /// To the right.
+        x: Axis,
+        /// Upwards.
+        y: Axis,
+        /// One after the other, the last on top; of equal labels one is in the legend.
+        series: Vec<Series>,
+    },
+    /// Values of the same persons under several methods: a box for each method, and a thin line for each person.
+    Paired {
+        /// Upwards.
+        value: Axis,
+        /// From left to right.
+        methods: Vec<String>,
+        /// For each person a value under each method.
+        persons: Vec<Vec<f64>>,
+    },
+    /// A line for each category with a mark for each method.
+    Dots {
+        /// To the right.
+        value: Axis,
+        /// From top to bottom.
+        rows: Vec<DotRow>,
+    },
+}
+
+/// How values become positions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal steps are equally far apart.
+    #[default]
+    Linear,
+    /// Equal factors are equally far apart.
+    Logarithmic,
+}
+
+/// An axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub name: String,
+    /// How values become positions.
+    pub scale: Scale,
+    /// The axis reaches at least to these.
+    pub include: Vec<f64>,
+    /// Lines for a baseline, or for bounds.
+    pub lines_at: Vec<f64>,
+}
+
+impl Axis {
+    /// A linear axis that fits the values.
+    pub fn new(name: impl Into<String>) -> Axis {
+        Axis { name: name.into(), ..Axis::default() }
+    }
+
+    /// Reaches at least to zero.
+    pub fn from_zero(self) -> Axis {
+        Axis { include: vec![0.0], ..self }
+    }
+
+    /// Logarithmic.
+    pub fn logarithmic(self) -> Axis {
+        Axis { scale: Scale::Logarithmic, ..self }
+    }
+
+    /// With a line for a baseline, and from zero.
+    pub fn baseline(self, value: f64) -> Axis {
+        self.from_zero().lines(&[value])
+    }
+
+    /// With lines at these values, and reaching at least to them.
+    pub fn lines(mut self, values: &[f64]) -> Axis {
+        self.lines_at.extend(values);
+        self.include.extend(values);
+        self
+    }
+}
+
+/// A curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// The method whose colour and mark it has.
+    pub method: String,
+    /// The paper's figures: dashed, marks hollow.
+    pub papers: bool,
+    /// In the legend.
+    pub label: String,
+    /// In the order of x.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A line of a dot plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DotRow {
+    /// The category.
+    pub label: String,
+    /// In the order of drawing.
+    pub marks: Vec<Mark>,
+}
+
+/// A mark of a dot plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// The method whose colour and mark it has.
+    pub method: String,
+    /// The paper's figure: hollow.
+    pub papers: bool,
+    /// In the legend.
+    pub label: String,
+    /// On the axis; what is not finite is not drawn.
+    pub value: f64,
+    /// Drawn as a bar, and makes room for itself on its line.
+    pub interval: Option<Interval>,
+}
+
+impl Mark {
+    /// A figure of ours.
+    pub fn new(method: impl Into<String>, label: impl Into<String>, value: f64) -> Mark {
+        Mark { method: method.into(), papers: false, label: label.into(), value, interval: None }
+    }
+
+    /// A figure of the paper's.
+    pub fn papers(method: impl Into<String>, label: impl Into<String>, value: f64) -> Mark {
+        Mark { papers: true, ..Mark::new(method, label, value) }
+    }
+}
+
+impl Figure {
+    /// The figure as an SVG document.
+    ///
+    /// # Errors
+    /// [`PlotError`] when plotters refuses.
+    pub fn svg(&self) -> Result<String, PlotError> {
+        let mut svg = String::new();
+        draw::draw(self, &mut svg)
+            .map_err(|error| PlotError { id: self.id.clone(), what: error.to_string() })?;
+        Ok(svg)
+    }
+
+    /// Whether there is anything to see.
+    pub fn is_empty(&self) -> bool {
+        self.legend().is_empty()
+    }
+
+    /// Every method once: ours first, then the paper's. What is drawn last, on top, is named first.
+    fn legend(&self) -> Vec<LegendEntry> {
+        let all: Vec<LegendEntry> = match &self.panel {
+            Panel::Curves { series, .. } | Panel::Traces { series, .. } => {
+                let drawn =
+                    series.iter().filter(|s| s.points.iter().any(|p| p.0.is_finite() && p.1.is_finite()));
+                drawn.map(|s| (s.method.clone(), s.papers, s.label.clone())).collect()
+            }
+            Panel::Paired { methods, persons, .. } => {
+                let methods = methods.iter().rev().filter(|_| !persons.is_empty());
+                methods.map(|method| (method.clone(), false, method.clone())).collect()
+            }
+            Panel::Dots { rows, .. } => {
+                let marks = rows.iter().flat_map(|row| &row.marks).filter(|mark| mark.value.is_finite());
+                marks.map(|m| (m.method.clone(), m.papers, m.label.clone())).collect()
+            }
+        };
+        let mut seen = BTreeSet::new();
+        let mut unique: Vec<_> = all.into_iter().rev().filter(|entry| seen.insert(entry.clone())).collect();
+        unique.sort_by_key(|(_, papers, _)| *papers);
+        unique
+    }
+}

@@ -1,0 +1,251 @@
+//! Files of results: read as far as rounds are finished, and appended to.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::{Header, Measurement, Record, RoundEnd, SceneFacts, Setting, Unsupported, VERSION};
+use yoro_files::{self as files, FileError};
+
+/// Why a file of results cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// It cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Its first line is not a header.
+    #[error(
+        "{} is not a result of yoro bench (its first line is not a header): name another file",
+        path.display()
+    )]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// It was written by another version.
+    #[error(
+        "{} has version {version} of the result format and this yoro reads version {VERSION}: use the yoro that wrote it, or measure again into another file",
+        path.display()
+    )]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// What it says.
+        version: u64,
+    },
+    /// A line that is not the last one cannot be read.
+    #[error(
+        "{}, line {line} is damaged ({what}): restore the file from a copy, or measure again into another file",
+        path.display()
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong.
+        what: String,
+    },
+    /// It belongs to a run with other parameters.
+    #[error(
+        "{} holds results with {name} = {there}, and this run has {here}: give the same options to go on with it, or name another file",
+        path.display()
+    )]
+    Parameters {
+        /// The file.
+        path: PathBuf,
+        /// What differs.
+        name: String,
+        /// The file's value.
+        there: String,
+        /// This run's value.
+        here: String,
+    },
+}
+
+/// A file of results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Results {
+    /// Where it was read.
+    pub path: PathBuf,
+    /// The first line.
+    pub header: Header,
+    /// All records of finished rounds, in the file's order, without the header.
+    pub records: Vec<Record>,
+    /// Bytes up to the end of the last finished round.
+    finished_bytes: u64,
+}
+
+impl Results {
+    /// Reads a file. What belongs to a round that was cut off, as by Ctrl-C or a power failure, is left out with
+    /// a warning.
+    ///
+    /// # Errors
+    /// [`RecordError`] for a file that cannot be read, is something else, or is damaged before its last line.
+    pub fn read(path: &Path) -> Result<Results, RecordError> {
+        let bytes = files::read(path)?;
+        // Without its newline even a line that can be read is not finished.
+        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let mut cut_off = whole < bytes.len();
+        let mut header = None;
+        let mut records = Vec::new();
+        let (mut finished_records, mut finished_bytes, mut offset) = (0, 0, 0);
+        for (index, line) in bytes[..whole].split_inclusive(|byte| *byte == b'\n').enumerate() {
+            offset += line.len();
+            if index == 0 {
+                header = Some(read_header(path, line)?);
+                finished_bytes = offset;
+                continue;
+            }
+            match serde_json::from_slice::<Record>(line) {
+                Ok(record) => {
+                    let end = matches!(record, Record::Round(_));
+                    records.push(record);
+                    if end {
+                        (finished_records, finished_bytes) = (records.len(), offset);
+                    }
+                }
+                Err(_) if offset == bytes.len() => cut_off = true,
+                Err(error) => {
+                    let (path, what) = (path.into(), error.to_string());
+                    return Err(RecordError::Damaged { path, line: index + 1, what });
+                }
+            }
+        }
+        let header = header.ok_or_else(|| RecordError::Foreign { path: path.into() })?;
+        if cut_off || records.len() > finished_records {
+            log::warn!("{}: the last round is cut off and is left out", path.display());
+        }
+        records.truncate(finished_records);
+        Ok(Results { path: path.into(), header, records, finished_bytes: finished_bytes as u64 })
+    }
+
+    /// The figures.
+    pub fn measurements(&self) -> impl Iterator<Item = &Measurement> {
+        self.records.iter().filter_map(|record| match record {
+            Record::Measurement(measurement) => Some(measurement),
+            _ => None,
+        })
+    }
+
+    /// The facts of the settings, in the order in which they were measured.
+    pub fn scenes(&self) -> impl Iterator<Item = &SceneFacts> {
+        self.records.iter().filter_map(|record| match record {
+            Record::Scene(facts) => Some(facts),
+            _ => None,
+        })
+    }
+
+    /// The contenders that could not take part.
+    pub fn unsupported(&self) -> impl Iterator<Item = &Unsupported> {
+        self.records.iter().filter_map(|record| match record {
+            Record::Unsupported(unsupported) => Some(unsupported),
+            _ => None,
+        })
+    }
+
+    /// Number of finished rounds of a setting.
+    pub fn rounds(&self, setting: &Setting) -> u32 {
+        let ends = self.records.iter().filter(|r| matches!(r, Record::Round(end) if end.setting == *setting));
+        ends.count() as u32
+    }
+
+    /// Whether a setting was left out, as one that the machine cannot carry: nobody was measured, and the file
+    /// says why.
+    pub fn is_left_out(&self, setting: &Setting) -> bool {
+        self.rounds(setting) > 0 && !self.measurements().any(|m| m.setting == *setting)
+    }
+}
+
+/// The header, with a sentence of its own for each way in which the first line can be something else.
+fn read_header(path: &Path, line: &[u8]) -> Result<Header, RecordError> {
+    let foreign = || RecordError::Foreign { path: path.into() };
+    let value: serde_json::Value = serde_json::from_slice(line).map_err(|_| foreign())?;
+    let version = value["yoro_bench"].as_u64().ok_or_else(foreign)?;
+    if version != u64::from(VERSION) {
+        return Err(RecordError::Version { path: path.into(), version });
+    }
+    match serde_json::from_value(value) {
+        Ok(Record::Header(header)) => Ok(header),
+        Ok(_) => Err(foreign()),
+        Err(error) => Err(RecordError::Damaged { path: path.into(), line: 1, what: error.to_string() }),
+    }
+}
+
+/// Appends to a file of results, a whole round at a time.
+#[derive(Debug)]
+pub struct Writer {
+    file: File,
+    path: PathBuf,
+}
+
+impl Writer {
+    /// Opens the file of a run: a new one, or one that a run with the same header has begun; what was cut off at
+    /// its end is removed. Returns what it holds already.
+    ///
+    /// # Errors
+    /// [`RecordError`]; the file stays as it was then.
+    pub fn open(path: &Path, header: &Header) -> Result<(Writer, Results), RecordError> {
+        if !path.exists() {
+            files::write(path, &lines(&[Record::Header(header.clone())]))?;
+        }
+        let results = Results::read(path)?;
+        if let Some((name, there, here)) = difference(&results.header, header) {
+            return Err(RecordError::Parameters { path: path.into(), name, there, here });
+        }
+        let failed = |source| FileError::Write { path: path.into(), source };
+        let file = OpenOptions::new().append(true).open(path).map_err(failed)?;
+        file.set_len(results.finished_bytes).map_err(failed)?;
+        Ok((Writer { file, path: path.into() }, results))
+    }
+
+    /// Appends the records of a round and its end, and waits until the disk has them.
+    ///
+    /// # Errors
+    /// [`RecordError::File`]; the round is not counted then, whatever part of it was written.
+    pub fn append(&mut self, mut records: Vec<Record>, end: RoundEnd) -> Result<(), RecordError> {
+        records.push(Record::Round(end));
+        let write = |file: &mut File| -> io::Result<()> {
+            file.write_all(&lines(&records))?;
+            file.sync_data()
+        };
+        write(&mut self.file).map_err(|source| FileError::Write { path: self.path.clone(), source }.into())
+    }
+}
+
+pub(super) fn lines(records: &[Record]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for record in records {
+        serde_json::to_writer(&mut bytes, record)
+            .expect("records have text keys, and memory takes all bytes");
+        bytes.push(b'\n');
+    }
+    bytes
+}
+
+/// The first thing in which two headers differ so that their figures do not belong together: its name, the
+/// value there and here. Date and command do not count.
+fn difference(there: &Header, here: &Header) -> Option<(String, String, String)> {
+    let differing =
+        |name: &str, there: String, here: String| (there != here).then(|| (name.to_owned(), there, here));
+    let (a, b) = (&there.machine, &here.machine);
+    let fixed = [
+        ("suites", there.suites.join(" "), here.suites.join(" ")),
+        ("quick", there.quick.to_string(), here.quick.to_string()),
+        ("version of yoro", a.yoro.clone(), b.yoro.clone()),
+        ("CPU", a.cpu.clone(), b.cpu.clone()),
+        ("cores", a.cores.to_string(), b.cores.to_string()),
+        ("GL renderer", a.gl_renderer.clone(), b.gl_renderer.clone()),
+        ("GL version", a.gl_version.clone(), b.gl_version.clone()),
+    ];
+    if let Some(found) = fixed.into_iter().find_map(|(name, a, b)| differing(name, a, b)) {
+        return Some(found);
+    }
+    let value = |header: &Header, name: &str| {
+        let found = header.parameters.iter().find(|parameter| parameter.name == name);
+        found.map_or_else(|| "nothing".to_owned(), |parameter| parameter.value.clone())
+    };
+    let names = there.parameters.iter().chain(&here.parameters).map(|parameter| &parameter.name);
+    names.into_iter().find_map(|name| differing(name, value(there, name), value(here, name)))
+}

@@ -1,0 +1,237 @@
+//! Measures jobs, round by round.
+
+mod frames;
+mod patchers;
+mod sequences;
+
+use std::rc::Rc;
+use std::time::Duration;
+
+use anyhow::ensure;
+use image::RgbImage;
+use indicatif::ProgressBar;
+
+use super::blank::BlankFinder;
+use super::contender::Contender;
+use super::pictures::picture_folder;
+use super::record::{Measurement, Record, Results, RoundEnd, Unsupported, Writer};
+use super::scenes::LazyObject;
+use super::suite::{Choices, Job, Measure, Source, Suite};
+use super::views::{self, Views};
+use crate::inpaint::PatcherOptions;
+use crate::picture;
+use yoro_files::interrupt;
+use yoro_gl::Context;
+use yoro_render::{PreparedScene, RenderSettings};
+use yoro_scene::{Scene, ShadingStyle, Viewpoint};
+
+/// Bytes that a triangle needs while its scene is made and uploaded, roughly: for the bound on memory.
+const BYTES_PER_TRIANGLE: f64 = 150.0;
+
+/// What a scene may cost before it is left out.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// Memory in MiB that the scene may need.
+    pub memory_mib: f64,
+    /// Time that a frame of the conventional method may take.
+    pub frame: Duration,
+}
+
+/// What the jobs of a run have in common.
+pub struct Inputs<'a> {
+    /// What the user chose for all suites.
+    pub choices: &'a Choices,
+    /// The object of the suites that need one.
+    pub object: &'a LazyObject,
+    /// Another camera path than that of the scenes.
+    pub path: Option<&'a [Viewpoint]>,
+    /// When to leave a scene out.
+    pub bounds: Bounds,
+    /// Model of the neural patcher.
+    pub patchers: PatcherOptions,
+}
+
+/// Measures jobs and appends the results to a file.
+pub struct Runner<'a> {
+    gl: &'a Rc<Context>,
+    inputs: Inputs<'a>,
+    writer: Writer,
+    /// What the file held before.
+    before: Results,
+    bar: ProgressBar,
+    prepared: Option<(SceneKey, PreparedScene)>,
+}
+
+/// What a prepared scene was made of: settings that share it do not prepare it again.
+#[derive(Clone, Debug, PartialEq)]
+struct SceneKey {
+    source: Source,
+    style: Option<ShadingStyle>,
+    render: RenderSettings,
+}
+
+impl<'a> Runner<'a> {
+    /// Ready to measure into a file as [`Writer::open`] gives it.
+    pub fn new(
+        gl: &'a Rc<Context>,
+        inputs: Inputs<'a>,
+        (writer, before): (Writer, Results),
+        bar: ProgressBar,
+    ) -> Runner<'a> {
+        Runner { gl, inputs, writer, before, bar, prepared: None }
+    }
+
+    /// Measures what is missing of a job.
+    ///
+    /// # Errors
+    /// [`interrupt::Interrupted`] after Ctrl-C, and one sentence for whatever a user can help; finished rounds are in
+    /// the file then.
+    pub fn run(&mut self, job: &Job) -> anyhow::Result<()> {
+        let done = self.before.rounds(&job.setting);
+        if done >= job.rounds || self.before.is_left_out(&job.setting) {
+            self.bar.inc(job.steps());
+            return Ok(());
+        }
+        self.bar.set_message(format!("{}: {}", job.setting, "preparing"));
+        interrupt::check()?;
+        if let Some(reason) = self.too_large(job) {
+            return self.leave_out(job, reason);
+        }
+        let mut prepared = self.prepare(job)?;
+        self.refuse_blank(job, &mut prepared)?;
+        let measured = match job.measure {
+            Measure::Frames { .. } => self.frames(job, &mut prepared, done),
+            Measure::Flicker => self.flicker(job, &mut prepared),
+            Measure::GuardBand => self.guard_band(job, &mut prepared),
+            Measure::Patchers => self.patchers(job, &mut prepared, done),
+            Measure::Bandwidth => self.bandwidth(job, &mut prepared),
+            Measure::Executed(device) => self.executed(job, &device, &mut prepared),
+        };
+        self.prepared = Some((SceneKey::of(job), prepared));
+        measured
+    }
+
+    fn too_large(&self, job: &Job) -> Option<String> {
+        let Source::Swarm { copies, .. } = job.source else { return None };
+        let needed =
+            self.inputs.object.swarm_triangles(copies) as f64 * BYTES_PER_TRIANGLE / f64::from(1 << 20);
+        let bound = self.inputs.bounds.memory_mib;
+        (needed > bound)
+            .then(|| format!("the scene needs about {needed:.0} MiB, and {bound:.0} MiB are allowed"))
+    }
+
+    /// Refuses viewpoints of a named scene that show nothing.
+    fn refuse_blank(&self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
+        if !matches!(job.source, Source::Named(_)) {
+            return Ok(());
+        }
+        let mut finder = BlankFinder::new(self.gl)?;
+        let views = match job.measure {
+            Measure::Frames { .. } | Measure::Patchers | Measure::Executed(_) => {
+                Views::spread(job, prepared)?
+            }
+            // Of a path that shows something at its start, a frame may look past it.
+            Measure::Flicker | Measure::GuardBand | Measure::Bandwidth => {
+                Views::along_path(job, prepared, views::STEP)?.first()
+            }
+        };
+        for (name, pair) in views.names.iter().zip(&views.pairs) {
+            ensure!(
+                !finder.is_blank(prepared, pair)?,
+                "{name} of {0} shows nothing, so there is nothing to measure: write viewpoints that show the model into {0}.camera.json beside it",
+                prepared.scene.name
+            );
+        }
+        Ok(())
+    }
+
+    /// Writes for everyone that the setting was left out, and why.
+    fn leave_out(&mut self, job: &Job, reason: String) -> anyhow::Result<()> {
+        log::warn!("{} is left out: {reason}", job.setting);
+        let records = job.contenders.iter().map(|contender| unsupported(job, *contender, reason.clone()));
+        self.writer.append(records.collect(), RoundEnd { setting: job.setting.clone(), round: 0 })?;
+        self.bar.inc(job.steps());
+        Ok(())
+    }
+
+    /// The scene of the job before if it fits, or a new one.
+    fn prepare(&mut self, job: &Job) -> anyhow::Result<PreparedScene> {
+        let key = SceneKey::of(job);
+        match self.prepared.take() {
+            Some((present, prepared)) if present == key => Ok(prepared),
+            // The old one goes first: two large scenes at once are one too many.
+            old => {
+                drop(old);
+                Ok(PreparedScene::new(self.gl, self.scene(job)?, &job.render)?)
+            }
+        }
+    }
+
+    fn scene(&self, job: &Job) -> anyhow::Result<Scene> {
+        let mut scene = match &job.source {
+            Source::Named(name) => {
+                let mut scene = yoro_scenes::load(name, self.inputs.choices.seed, None)?;
+                if let Some(path) = self.inputs.path {
+                    scene.viewpoints = path.to_vec();
+                }
+                scene
+            }
+            Source::Swarm { copies, places } => self.inputs.object.swarm(*copies, *places),
+            Source::Object(distance) => self.inputs.object.at_distance(*distance),
+        };
+        scene.style = job.style.unwrap_or(scene.style);
+        Ok(scene)
+    }
+
+    /// Saves the other eye as a contender shows it in the first view, for the report, in the suites that are about
+    /// pictures.
+    fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
+        if ![Suite::Scenes, Suite::AntiAliasing, Suite::Patchers]
+            .iter()
+            .any(|suite| suite.name() == job.setting.suite)
+        {
+            return Ok(());
+        }
+        let name = match contender {
+            Contender::CONVENTIONAL => "truth".to_owned(),
+            Contender::MONO => "dominant".to_owned(),
+            other => other.name(),
+        };
+        let folder = picture_folder(&self.before.path, &job.setting);
+        Ok(picture::save_color(&folder.join(format!("{name}.png")), image)?)
+    }
+
+    /// Writes a round: what comes with the first, and all measurements that hold something.
+    fn finish_round(
+        &mut self,
+        job: &Job,
+        round: u32,
+        mut records: Vec<Record>,
+        measurements: Vec<Measurement>,
+    ) -> anyhow::Result<()> {
+        let filled = measurements.into_iter().filter(|measurement| !measurement.values.is_empty());
+        records.extend(filled.map(Record::Measurement));
+        self.writer.append(records, RoundEnd { setting: job.setting.clone(), round })?;
+        Ok(())
+    }
+}
+
+impl SceneKey {
+    fn of(job: &Job) -> SceneKey {
+        SceneKey { source: job.source.clone(), style: job.style, render: job.render.clone() }
+    }
+}
+
+fn unsupported(job: &Job, contender: Contender, reason: String) -> Record {
+    Record::Unsupported(Unsupported { setting: job.setting.clone(), contender: contender.name(), reason })
+}
+
+/// For a contender that could not be made.
+fn left_out(job: &Job, contender: Contender, error: &impl std::fmt::Display) -> Record {
+    log::info!("{}: {contender} is left out: {error}", job.setting);
+    unsupported(job, contender, error.to_string())
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}

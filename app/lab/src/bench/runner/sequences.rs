@@ -1,0 +1,139 @@
+//! Measuring along a piece of the camera path, and counting what the synthesis executes.
+
+use image::RgbImage;
+
+use super::{Runner, milliseconds};
+use crate::bench::bandwidth;
+use crate::bench::contender::Band;
+use crate::bench::executed::{Device, Meter};
+use crate::bench::holes::HoleFinder;
+use crate::bench::record::{Measurement, Record, metric};
+use crate::bench::suite::Job;
+use crate::bench::views::{self, Views};
+use crate::metrics::{Channels, FlickerMeter, psnr};
+use crate::picture;
+use yoro::eyes::{Eye, EyePair};
+use yoro_files::interrupt;
+use yoro_render::PreparedScene;
+
+impl Runner<'_> {
+    pub(super) fn flicker(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
+        let views = Views::along_path(job, prepared, views::STEP)?;
+        let mut field = self.field(job, prepared, &views, false)?;
+        let mut finder = HoleFinder::new(self.gl)?;
+        let mut measurements = field.measurements(job, 0);
+        let mut last: Option<(Vec<RgbImage>, Vec<bool>)> = None;
+        self.bar.set_message(job.setting.to_string());
+        for pair in &views.pairs {
+            let holes = finder.find(prepared, pair)?;
+            let mut images = Vec::new();
+            for (_, entrant) in &mut field.entrants {
+                interrupt::check()?;
+                entrant.render(prepared, pair, &mut field.frame)?;
+                images.push(picture::eye_image(&field.frame, pair.dominant.other()));
+                self.bar.inc(1);
+            }
+            if let Some((before, holes_before)) = &last {
+                let meter = FlickerMeter::new([&before[0], &images[0]], [holes_before, &holes])?;
+                measurements[0].push_flicker(&metric::CHANGES, &meter.change());
+                for at in 1..images.len() {
+                    let flicker = meter.flicker([&before[at], &images[at]])?;
+                    measurements[at].push_flicker(&metric::FLICKERS, &flicker);
+                }
+            }
+            last = Some((images, holes));
+        }
+        self.finish_round(job, 0, field.first, measurements)
+    }
+
+    /// Every contender's frames in their order, each once, as a viewer renders them. A frame's use of the band is known
+    /// two frames after it.
+    pub(super) fn guard_band(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
+        let views = Views::along_path(job, prepared, views::HEADSET_STEP)?;
+        let mut field = self.field(job, prepared, &views, true)?;
+        let mut measurements = field.measurements(job, 0);
+        self.bar.set_message(job.setting.to_string());
+        let count = field.entrants.len();
+        for (i, pair) in views.pairs.iter().enumerate() {
+            let mut images = vec![RgbImage::default(); count];
+            for turn in 0..count {
+                interrupt::check()?;
+                let at = (turn + i) % count;
+                let entrant = &mut field.entrants[at].1;
+                let time = entrant.render(prepared, pair, &mut field.frame)?;
+                measurements[at].push(metric::FRAME_MS, milliseconds(time.wall));
+                if let Some(used) = entrant.guard_band() {
+                    measurements[at].push(metric::GUARD_COLUMNS, f64::from(used.columns));
+                    measurements[at].push(metric::UNDRAWN, f64::from(used.undrawn));
+                }
+                images[at] = picture::eye_image(&field.frame, pair.dominant.other());
+                self.bar.inc(1);
+            }
+            let truth = border(&images[0], pair)?;
+            for at in 1..count {
+                measurements[at].push(metric::PSNR, psnr(&images[at], &images[0], Channels::Rgb)?.0);
+                let border = psnr(&border(&images[at], pair)?, &truth, Channels::Rgb)?;
+                measurements[at].push(metric::BORDER_PSNR, border.0);
+            }
+        }
+        self.finish_round(job, 0, field.first, measurements)
+    }
+
+    pub(super) fn bandwidth(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
+        let views = Views::along_path(job, prepared, views::STEP)?;
+        self.bar.set_message(job.setting.to_string());
+        let bar = &self.bar;
+        let mut step = || -> anyhow::Result<()> {
+            bar.inc(1);
+            Ok(interrupt::check()?)
+        };
+        let streams = bandwidth::run(self.gl, prepared, &views.pairs, &job.bandwidth, &mut step)?;
+        let mut facts = views.facts(job, prepared);
+        // Each value is that of a whole sequence at one quantizer.
+        facts.frames = job.bandwidth.quantizers.iter().map(|quantizer| format!("QP {quantizer}")).collect();
+        let measurement = |(stream, values): (&str, bandwidth::Values)| Measurement {
+            setting: job.setting.clone(),
+            contender: stream.to_owned(),
+            round: 0,
+            values,
+        };
+        let measurements = streams.into_iter().map(measurement).collect();
+        self.finish_round(job, 0, vec![Record::Scene(facts)], measurements)
+    }
+
+    pub(super) fn executed(
+        &mut self,
+        job: &Job,
+        device: &Device,
+        prepared: &mut PreparedScene,
+    ) -> anyhow::Result<()> {
+        let views = Views::spread(job, prepared)?;
+        let mut meter = Meter::new(self.gl, *device)?;
+        let mut measurement = Measurement {
+            setting: job.setting.clone(),
+            contender: device.name.to_owned(),
+            round: 0,
+            values: Default::default(),
+        };
+        self.bar.set_message(job.setting.to_string());
+        for pair in &views.pairs {
+            interrupt::check()?;
+            for (name, value) in meter.measure(prepared, pair)? {
+                measurement.push(name, value);
+            }
+            self.bar.inc(1);
+        }
+        self.finish_round(job, 0, vec![Record::Scene(views.facts(job, prepared))], vec![measurement])
+    }
+}
+
+/// The columns at the outer border of the eye that is not dominant for which surfaces at half a metre need a guard band:
+/// the widest that is measured.
+fn border(image: &RgbImage, pair: &EyePair) -> anyhow::Result<RgbImage> {
+    let width = pair.synthesis(Band::HalfMetre.guard_band())?.guard_columns.min(image.width());
+    let left = match pair.dominant.other() {
+        Eye::Left => 0,
+        Eye::Right => image.width() - width,
+    };
+    Ok(image::imageops::crop_imm(image, left, 0, width, image.height()).to_image())
+}
