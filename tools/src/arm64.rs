@@ -4,14 +4,13 @@
 //! qemu and the libraries that the host needs come from Debian's packages, which are only unpacked, in a folder of
 //! their own: apt gets its own state for that, and nothing is installed.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
 use crate::apt::{self, Need};
-use crate::folders::target_folder;
+use crate::folders::{make_once, target_folder};
 use crate::packages::{self, PrivateApt, quoted, write_launcher};
 use crate::rust::{Panic, Rust, build_std, source};
 
@@ -71,13 +70,7 @@ impl System {
     /// Fetches and unpacks it, unless what is there is complete.
     fn make(folder: &Path) -> anyhow::Result<Self> {
         let root = folder.join("root");
-        let stamp = folder.join("stamp");
-        let recipe = format!("{} {}\n", PACKAGES.join(" "), QEMU.join(" "));
-        if !fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
-            if folder.exists() {
-                fs::remove_dir_all(folder)
-                    .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
-            }
+        make_once(folder, &format!("{} {}\n", PACKAGES.join(" "), QEMU.join(" ")), || {
             let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], None)?;
             for package in download(&apt)? {
                 // qemu's packages have a program of several megabytes for every processor that there is.
@@ -86,10 +79,10 @@ impl System {
                 let only: &[&str] = if is_qemu { &["./usr/bin/qemu-aarch64*"] } else { &[] };
                 packages::unpack(&package, &root, only, &[])?;
             }
-            fs::write(&stamp, recipe).with_context(|| format!("{} cannot be written", stamp.display()))?;
             // The packages are unpacked; without them half of the space is enough.
             apt.remove();
-        }
+            Ok(())
+        })?;
         let qemu = QEMU.map(|name| root.join(name)).into_iter().find(|program| program.is_file());
         Ok(Self { qemu: qemu.context("qemu is not where Debian's packages have it")?, root })
     }

@@ -1,6 +1,8 @@
-//! Where the workspace and its target folder are.
+//! Where the workspace and its target folder are; writing files there.
 
+use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::Context as _;
 
@@ -18,4 +20,104 @@ pub fn target_folder() -> anyhow::Result<PathBuf> {
     let program = std::env::current_exe().context("this program does not know where it lies")?;
     let folder = program.ancestors().nth(2).context("this program lies in no target folder")?;
     Ok(folder.to_owned())
+}
+
+/// Makes a folder by a recipe, unless it is there and was made by the same one. What was there is removed first.
+///
+/// # Errors
+/// Those of `make`; when the folder cannot be removed.
+pub fn make_once(
+    folder: &Path,
+    recipe: &str,
+    make: impl FnOnce() -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let stamp = folder.join("stamp");
+    if fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
+        return Ok(());
+    }
+    remove(folder)?;
+    make()?;
+    write(&stamp, recipe)
+}
+
+/// Removes a folder, if it is there.
+///
+/// # Errors
+/// When it cannot be removed.
+pub fn remove(folder: &Path) -> anyhow::Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder)
+            .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
+    }
+    Ok(())
+}
+
+/// Writes a file, and the folders that it lies in. Nobody ever sees half of it, whatever other processes and threads write
+/// at the same time.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write(file: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    static WRITTEN: AtomicUsize = AtomicUsize::new(0);
+    let number = WRITTEN.fetch_add(1, Ordering::Relaxed);
+    let unfinished = file.with_added_extension(format!("{}-{number}.tmp", std::process::id()));
+    make_parent(file)?;
+    fs::write(&unfinished, content)
+        .and_then(|()| fs::rename(&unfinished, file))
+        .with_context(|| format!("{} cannot be written", file.display()))
+}
+
+/// Copies a file, and makes the folders that the copy lies in.
+///
+/// # Errors
+/// When it cannot be copied.
+pub fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
+    make_parent(to)?;
+    fs::copy(from, to).with_context(|| format!("{} cannot be copied to {}", from.display(), to.display()))?;
+    Ok(())
+}
+
+/// Makes the folders that a file lies in.
+///
+/// # Errors
+/// When they cannot be made.
+pub fn make_parent(file: &Path) -> anyhow::Result<()> {
+    let Some(parent) = file.parent() else { return Ok(()) };
+    fs::create_dir_all(parent).with_context(|| format!("{} cannot be made", parent.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_write_the_same_file_without_a_quarrel() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| (0..200).for_each(|_| write(&file, "whole").unwrap()));
+            }
+        });
+        assert_eq!(fs::read_to_string(&file).unwrap(), "whole");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_is_made_once_for_each_recipe() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path().join("made");
+        let mut count = 0;
+        for recipe in ["a", "a", "b"] {
+            make_once(&at, recipe, || {
+                count += 1;
+                assert!(!at.join("content").exists());
+                write(&at.join("content"), recipe)
+            })
+            .unwrap();
+        }
+        assert_eq!((count, fs::read_to_string(at.join("content")).unwrap()), (2, "b".to_owned()));
+        make_once(&at, "c", || anyhow::bail!("no network")).unwrap_err();
+        assert!(!at.join("stamp").exists());
+    }
 }

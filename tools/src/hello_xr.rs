@@ -5,12 +5,11 @@
 //! release that has Monado has an older hello_xr, which knows neither one view nor depth, so this one is that of Debian's
 //! development.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 
-use crate::folders::target_folder;
+use crate::folders::{copy, make_once, target_folder};
 use crate::monado;
 use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
 
@@ -45,13 +44,8 @@ pub fn usage() -> anyhow::Result<String> {
 pub fn make() -> anyhow::Result<PathBuf> {
     let monado = monado::make()?;
     let folder = target_folder()?.join("hello-xr");
-    let (root, stamp) = (folder.join("root"), folder.join("stamp"));
-    let recipe = format!("{RELEASE} {PACKAGE} {VALIDATION}\n");
-    if !fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
-        if folder.exists() {
-            fs::remove_dir_all(&folder)
-                .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
-        }
+    let root = folder.join("root");
+    make_once(&folder, &format!("{RELEASE} {PACKAGE} {VALIDATION}\n"), || {
         eprintln!("fetching hello_xr for the tests: 40 MB, once");
         let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
         apt.update()?;
@@ -69,9 +63,9 @@ pub fn make() -> anyhow::Result<PathBuf> {
             }
         }
         apt.remove();
-    }
+        Ok(())
+    })?;
     write_programs(&folder, &root, &monado)?;
-    fs::write(&stamp, recipe).with_context(|| format!("{} cannot be written", stamp.display()))?;
     Ok(folder)
 }
 
@@ -99,9 +93,7 @@ fn write_programs(folder: &Path, root: &Path, monado: &Path) -> anyhow::Result<(
         &folder.join("run"),
         &monado::run(&monado.join("root"), std::slice::from_ref(&libraries)),
     )?;
-    let loader = folder.join(LOADER);
-    fs::copy(libraries.join(LOADER), &loader)
-        .with_context(|| format!("{} cannot be written", loader.display()))?;
+    copy(&libraries.join(LOADER), &folder.join(LOADER))?;
     let service = format!("exec {} \"$@\"\n", quoted(&monado.join("monado-service")));
     write_launcher(&folder.join("monado-service"), &service)
 }

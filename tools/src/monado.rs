@@ -4,13 +4,12 @@
 //! Monado, and the same Mesa below it, on every machine. Two programs are left: `monado-service` is the runtime's own one, and
 //! `run PROGRAM ...` runs a program of this machine with those libraries and that runtime. Both meet in XDG_RUNTIME_DIR.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 
-use crate::folders::target_folder;
+use crate::folders::{make_once, target_folder};
 use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
 
 /// Debian's release that has them.
@@ -62,14 +61,9 @@ pub fn make() -> anyhow::Result<PathBuf> {
         bail!("it is fetched for x86_64 only");
     }
     let folder = target_folder()?.join("monado");
-    let (root, stamp) = (folder.join("root"), folder.join("stamp"));
+    let root = folder.join("root");
     let packages: Vec<String> = MONADO.iter().chain(&MESA).map(|&package| package.to_owned()).collect();
-    let recipe = format!("{RELEASE} {}\n", packages.join(" "));
-    if !fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
-        if folder.exists() {
-            fs::remove_dir_all(&folder)
-                .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
-        }
+    make_once(&folder, &format!("{RELEASE} {}\n", packages.join(" ")), || {
         eprintln!("fetching Monado for the tests: 170 MB, once");
         let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
         apt.update()?;
@@ -77,9 +71,9 @@ pub fn make() -> anyhow::Result<PathBuf> {
             unpack(&package, &root, &[], &WITHOUT)?;
         }
         apt.remove();
-    }
+        Ok(())
+    })?;
     write_programs(&folder, &root)?;
-    fs::write(&stamp, recipe).with_context(|| format!("{} cannot be written", stamp.display()))?;
     Ok(folder)
 }
 

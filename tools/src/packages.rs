@@ -5,7 +5,6 @@ use std::io::Write as _;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context as _, bail};
 
@@ -186,19 +185,6 @@ pub fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
 }
 
-/// Writes a file that nobody ever sees half of, whatever other processes and threads write at the same time.
-///
-/// # Errors
-/// When it cannot be written.
-pub fn write(file: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
-    static WRITTEN: AtomicUsize = AtomicUsize::new(0);
-    let number = WRITTEN.fetch_add(1, Ordering::Relaxed);
-    let unfinished = file.with_added_extension(format!("{}-{number}.tmp", std::process::id()));
-    fs::write(&unfinished, content)
-        .and_then(|()| fs::rename(&unfinished, file))
-        .with_context(|| format!("{} cannot be written", file.display()))
-}
-
 /// Writes a program for the shell.
 ///
 /// # Errors
@@ -222,18 +208,5 @@ mod tests {
                        http://example.com/debian/ contrib\nhttp://example.com/debian/ main\n";
         assert_eq!(debian(targets), Some("http://example.com/debian/"));
         assert_eq!(debian("http://example.com/ubuntu/ main\n"), None);
-    }
-
-    #[test]
-    fn threads_write_the_same_file_without_a_quarrel() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("file");
-        std::thread::scope(|scope| {
-            for _ in 0..4 {
-                scope.spawn(|| (0..200).for_each(|_| write(&file, "whole").unwrap()));
-            }
-        });
-        assert_eq!(fs::read_to_string(&file).unwrap(), "whole");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

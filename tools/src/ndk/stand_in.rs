@@ -15,6 +15,7 @@ use anyhow::{Context as _, bail};
 use super::symbols::{LISTS, listed};
 use super::target::{ARCHITECTURES, Architecture, MIN_API, TARGET_API};
 use crate::apt::find_program;
+use crate::folders::{make_once, make_parent, write};
 
 const CRTBEGIN: &str = include_str!("../../ndk/crtbegin_so.c");
 const UNWIND: &str = include_str!("../../ndk/unwind.c");
@@ -42,18 +43,10 @@ impl StandIn {
     /// When a tool is missing or fails, or the folder cannot be written.
     pub fn make(folder: &Path) -> anyhow::Result<Self> {
         let made = Self { sdk: folder.join("sdk"), ndk: folder.join("ndk") };
-        let stamp = folder.join("stamp");
-        let recipe = recipe();
-        if fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
-            return Ok(made);
-        }
-        if folder.exists() {
-            fs::remove_dir_all(folder)
-                .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
-        }
-        made.make_sdk()?;
-        made.make_ndk()?;
-        write(&stamp, &recipe)?;
+        make_once(folder, &recipe(), || {
+            made.make_sdk()?;
+            made.make_ndk()
+        })?;
         Ok(made)
     }
 
@@ -182,19 +175,9 @@ fn program(name: &str) -> anyhow::Result<PathBuf> {
     find_program(name).with_context(|| format!("{name} is missing: `cargo xtask doctor` says how to get it"))
 }
 
-fn write(path: &Path, text: &str) -> anyhow::Result<()> {
-    make_parent(path)?;
-    fs::write(path, text).with_context(|| format!("{} cannot be written", path.display()))
-}
-
 fn link(original: &Path, link: &Path) -> anyhow::Result<()> {
     make_parent(link)?;
     symlink(original, link).with_context(|| format!("{} cannot be made", link.display()))
-}
-
-fn make_parent(path: &Path) -> anyhow::Result<()> {
-    let Some(parent) = path.parent() else { return Ok(()) };
-    fs::create_dir_all(parent).with_context(|| format!("{} cannot be made", parent.display()))
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use anyhow::{Context as _, bail};
 use serde_json::Value;
 
 use super::gpus::{Compiler, Gpu};
-use crate::folders::target_folder;
+use crate::folders::{make_once, target_folder, write};
 use crate::packages::{self, PrivateApt};
 
 const RELEASE: &str = "trixie";
@@ -82,14 +82,10 @@ impl Compilers {
             bail!("they are fetched for x86_64 only");
         }
         let compilers = Self { folder: target_folder()?.join("shader-cost") };
-        let (folder, stamp) = (&compilers.folder, compilers.folder.join("stamp"));
+        let folder = &compilers.folder;
         let newest = MESA.map(|name| format!("{name}:arm64/{BACKPORTS}"));
         let recipe = format!("{RELEASE} {} {} {}\n", newest.join(" "), OTHERS.join(" "), WITHOUT.join(" "));
-        if !fs::read_to_string(&stamp).is_ok_and(|old| old == recipe) {
-            if folder.exists() {
-                fs::remove_dir_all(folder)
-                    .with_context(|| format!("{} cannot be removed: remove it by hand", folder.display()))?;
-            }
+        make_once(folder, &recipe, || {
             eprintln!("fetching Mesa's compilers for mobile GPUs: 140 MB, once");
             let sources = packages::debian_sources(&[RELEASE, BACKPORTS])?;
             let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], Some(&sources))?;
@@ -104,13 +100,13 @@ impl Compilers {
                 packages::unpack(&package, &compilers.root(), only, &WITHOUT)?;
             }
             apt.remove();
-        }
-        for file in [QEMU, PYTHON] {
-            if !compilers.root().join(file).exists() {
-                bail!("{file} is not where Debian's packages have it");
+            for file in [QEMU, PYTHON] {
+                if !compilers.root().join(file).exists() {
+                    bail!("{file} is not where Debian's packages have it");
+                }
             }
-        }
-        fs::write(&stamp, recipe).with_context(|| format!("{} cannot be written", stamp.display()))?;
+            Ok(())
+        })?;
         Ok(compilers)
     }
 
@@ -134,7 +130,7 @@ impl Compilers {
     /// When the compilers do not start or say what cannot be understood.
     pub fn run(&self, gpu: &Gpu, programs: &Path) -> anyhow::Result<Run> {
         let guest = self.folder.join("guest.py");
-        packages::write(&guest, include_str!("guest.py"))?;
+        write(&guest, include_str!("guest.py"))?;
         let root = self.root();
         let id = match gpu.compiler {
             Compiler::Ir3 => "FD_GPU_ID",
@@ -185,7 +181,7 @@ impl Compilers {
             )
         })?;
         let own = self.folder.join(format!("{}-{name}", gpu.name));
-        packages::write(&own, bytes)?;
+        write(&own, bytes)?;
         Ok(own)
     }
 }

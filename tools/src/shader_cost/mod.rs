@@ -20,8 +20,9 @@ use serde_json::Value;
 pub use compilers::Compilers;
 pub use gpus::Gpu;
 
-use crate::folders::root;
-use crate::{cargo, packages};
+use crate::cargo;
+use crate::folders::{root, write};
+
 use compilers::Run;
 use gpus::{GPUS, IN_TABLE};
 use table::{Row, Table};
@@ -100,7 +101,7 @@ pub fn report(
     let programs = chosen(programs, options.filter.as_deref())?;
     let names: Vec<String> = programs.iter().map(|program| text_of(program, "name")).collect();
     let file = compilers.folder().join(format!("programs-{}.json", std::process::id()));
-    packages::write(&file, serde_json::to_string(&programs)?)?;
+    write(&file, serde_json::to_string(&programs)?)?;
     let runs = compile(compilers, &gpus, &file);
     fs::remove_file(&file).ok();
     let mut found = Table::default();
@@ -142,7 +143,7 @@ pub fn report(
         table.rows.retain(|row| options.filter.is_some() || !gpus.iter().any(|gpu| gpu.name == row.gpu));
         table.mesa = found.mesa;
         table.take_over(found.rows);
-        packages::write(&path, table.to_text())?;
+        write(&path, table.to_text())?;
         text += &format!("{TABLE} renewed: look at `git diff -- {TABLE}`\n");
     }
     Ok((text, faults.is_empty()))

@@ -6,8 +6,8 @@ use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
 
 use anyhow::Context as _;
+use yoro_tools::folders::write;
 use yoro_tools::ndk::target::{ARCHITECTURES, PAGE};
-use yoro_tools::packages;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -103,7 +103,7 @@ impl Archive {
 pub fn pack(folder: &Path, packed: &Path) -> anyhow::Result<()> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     add(&mut zip, folder, "")?;
-    packages::write(packed, zip.finish()?.into_inner())
+    write(packed, zip.finish()?.into_inner())
 }
 
 fn add(zip: &mut ZipWriter<Cursor<Vec<u8>>>, folder: &Path, prefix: &str) -> anyhow::Result<()> {

@@ -1,12 +1,12 @@
 //! Building the APK: by cargo-apk, then packed anew with the completed manifest.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::folders::{root, target_folder};
+use yoro_tools::folders::{root, target_folder, write};
 use yoro_tools::ndk::stand_in::StandIn;
 use yoro_tools::ndk::target::{PAGE, TARGET_API};
 use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
@@ -85,7 +85,8 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let android_jar = sdk.join(format!("platforms/android-{TARGET_API}/android.jar"));
     let built = pack(&folder, NAME, &android_jar, &root().join("android/res"), &keystore)?;
     let apk = target.join("apk").join(format!("{NAME}{}.apk", if options.release { "" } else { "-debug" }));
-    publish(&built, &apk)?;
+    let content = fs::read(&built).with_context(|| format!("{} cannot be read", built.display()))?;
+    write(&apk, content)?;
 
     let passed = check::check(&apk)?;
     if options.release && keystore.debug {
@@ -135,14 +136,4 @@ fn run(command: &mut Command) -> anyhow::Result<()> {
         bail!("cargo-apk failed: see above");
     }
     Ok(())
-}
-
-/// Puts the finished file where it is looked for; what was there stays until then.
-fn publish(built: &Path, apk: &Path) -> anyhow::Result<()> {
-    let unfinished = apk.with_extension("apk.tmp");
-    if let Some(folder) = apk.parent() {
-        fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))?;
-    }
-    fs::copy(built, &unfinished).with_context(|| format!("{} cannot be copied", built.display()))?;
-    fs::rename(&unfinished, apk).with_context(|| format!("{} cannot be written", apk.display()))
 }

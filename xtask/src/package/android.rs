@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use yoro_tools::folders::{root, target_folder};
+use yoro_tools::folders::{remove, root, target_folder, write};
 use yoro_tools::ndk::target::{ARCHITECTURES, Architecture};
 
-use super::{VERSION, build, write};
+use super::{VERSION, build};
 
 use crate::android::{LIBRARY_API, check, library_cargo};
 
@@ -42,14 +42,12 @@ pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
 /// Writes an AAR of these files.
 pub fn pack(files: &[(String, Vec<u8>)], packed: &Path) -> anyhow::Result<()> {
     let content = packed.with_extension("files");
-    if content.exists() {
-        fs::remove_dir_all(&content).with_context(|| format!("{} cannot be removed", content.display()))?;
-    }
+    remove(&content)?;
     for (name, bytes) in files {
         write(&content.join(name), bytes)?;
     }
     check::pack(packed, &content)?;
-    fs::remove_dir_all(&content).ok();
+    remove(&content)?;
     println!("{}", packed.display());
     Ok(())
 }

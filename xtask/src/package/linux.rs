@@ -8,10 +8,10 @@ use std::process::Command;
 use anyhow::{Context as _, bail};
 use yoro_tools::arm64;
 use yoro_tools::cargo::cargo;
-use yoro_tools::folders::{root, target_folder};
+use yoro_tools::folders::{copy, remove, root, target_folder, write};
 
 use super::texts::{cmake, cmake_version, pkg_config, soname, with_links};
-use super::{Built, VERSION, build, copy, write};
+use super::{Built, VERSION, build};
 
 /// For this machine.
 pub fn native(folder: &Path) -> anyhow::Result<PathBuf> {
@@ -30,9 +30,7 @@ pub fn aarch64(folder: &Path) -> anyhow::Result<PathBuf> {
 fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> anyhow::Result<PathBuf> {
     let name = format!("yoro-{VERSION}-linux-{architecture}");
     let content = folder.join(&name);
-    if content.exists() {
-        fs::remove_dir_all(&content).with_context(|| format!("{} cannot be removed", content.display()))?;
-    }
+    remove(&content)?;
     let package = root().join("app/capi");
     copy(&package.join("include/yoro.h"), &content.join("include/yoro.h"))?;
     let library = content.join("lib");

@@ -111,22 +111,6 @@ fn needs(told: &str) -> Option<Vec<String>> {
     Some(needs)
 }
 
-fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
-    make_parent(to)?;
-    fs::copy(from, to).with_context(|| format!("{} cannot be copied to {}", from.display(), to.display()))?;
-    Ok(())
-}
-
-fn write(to: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
-    make_parent(to)?;
-    fs::write(to, content).with_context(|| format!("{} cannot be written", to.display()))
-}
-
-fn make_parent(path: &Path) -> anyhow::Result<()> {
-    let Some(parent) = path.parent() else { return Ok(()) };
-    fs::create_dir_all(parent).with_context(|| format!("{} cannot be made", parent.display()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,9 +1,7 @@
 //! The test programs: cargo compiles them and says where they are, and each lists its tests.
 
 use std::collections::BTreeMap;
-use std::env;
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
@@ -17,29 +15,21 @@ pub struct Binary {
     pub label: String,
     /// Its package.
     pub package: String,
-    /// Tests from outside, whose tests take seconds, where those inside of a library take milliseconds.
+    /// True for tests from outside, which take seconds where those inside of a library take milliseconds.
     pub integration: bool,
     executable: PathBuf,
-    version: String,
-    manifest: PathBuf,
+    /// The package's folder.
+    folder: PathBuf,
 }
 
 /// A program, and the names of its tests that are chosen.
 pub type Program = (Binary, Vec<String>);
 
 impl Binary {
-    /// Runs it as cargo does.
+    /// Runs it where cargo does.
     pub fn command(&self) -> Command {
-        let folder = self.manifest.parent().unwrap_or(&self.manifest);
         let mut command = Command::new(&self.executable);
-        command
-            .current_dir(folder)
-            .env("CARGO_MANIFEST_DIR", folder)
-            .env("CARGO_MANIFEST_PATH", &self.manifest)
-            .env("CARGO_PKG_NAME", &self.package)
-            .env("CARGO_PKG_VERSION", &self.version)
-            .env("LD_LIBRARY_PATH", library_path(&self.executable))
-            .stdin(Stdio::null());
+        command.current_dir(&self.folder).stdin(Stdio::null());
         command
     }
 
@@ -53,20 +43,9 @@ impl Binary {
         if !output.status.success() {
             bail!("{} cannot list its tests ({})", self.label, output.status);
         }
-        Ok(names(&String::from_utf8_lossy(&output.stdout)))
+        let listing = String::from_utf8_lossy(&output.stdout);
+        Ok(listing.lines().filter_map(|line| line.strip_suffix(": test")).map(str::to_owned).collect())
     }
-}
-
-/// Of `name: test` lines, the names.
-fn names(listing: &str) -> Vec<String> {
-    listing.lines().filter_map(|line| line.strip_suffix(": test")).map(str::to_owned).collect()
-}
-
-/// Cargo's folders of libraries, before those that this program has of cargo itself: among them Rust's own.
-fn library_path(executable: &Path) -> OsString {
-    let own = executable.ancestors().skip(1).take(2).map(Path::to_owned);
-    let rest = env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
-    env::join_paths(own.chain(env::split_paths(&rest))).unwrap_or(rest)
 }
 
 /// Compiles the tests of these packages, or of the whole workspace.
@@ -78,50 +57,42 @@ pub fn compile(packages: &[String]) -> anyhow::Result<Vec<Binary>> {
     arguments.extend(cargo::choice(packages));
     cargo::announce(&arguments);
     let messages = cargo::output(&arguments)?;
-    // In an order of their own, where cargo's is that in which they are ready.
+    // Sorted by label: cargo's order is that in which they are ready.
     let binaries: BTreeMap<String, Binary> =
         messages.lines().filter_map(parse).map(|binary| (binary.label.clone(), binary)).collect();
     Ok(binaries.into_values().collect())
 }
 
-/// The test program that a message of cargo's tells of.
+/// Reads the test program in one of cargo's messages.
 fn parse(message: &str) -> Option<Binary> {
     let message: Value = serde_json::from_str(message).ok()?;
     if message["reason"] != "compiler-artifact" || message["profile"]["test"] != true {
         return None;
     }
     let executable = PathBuf::from(message["executable"].as_str()?);
-    let (package, version) = package(message["package_id"].as_str()?)?;
+    // `path+file:///folder/name#version` or `path+file:///folder#name@version`
+    let (place, rest) = message["package_id"].as_str()?.rsplit_once('#')?;
+    let package = rest.split_once('@').map(|(name, _)| name).or_else(|| place.rsplit('/').next())?;
     let (kind, target) = (message["target"]["kind"][0].as_str()?, message["target"]["name"].as_str()?);
     let label = match kind {
         "test" => format!("{package}::{target}"),
         "bin" | "example" => format!("{package}::{kind}/{target}"),
         _ => package.to_owned(),
     };
-    Some(Binary {
-        label,
-        package: package.to_owned(),
-        integration: kind == "test",
-        executable,
-        version: version.to_owned(),
-        manifest: PathBuf::from(message["manifest_path"].as_str()?),
-    })
-}
-
-/// Name and version of `path+file:///folder/name#version` or `path+file:///folder#name@version`.
-fn package(id: &str) -> Option<(&str, &str)> {
-    let (place, rest) = id.rsplit_once('#')?;
-    rest.split_once('@').or_else(|| Some((place.rsplit('/').next()?, rest)))
+    let manifest = PathBuf::from(message["manifest_path"].as_str()?);
+    let (package, folder) = (package.to_owned(), manifest.parent()?.to_owned());
+    Some(Binary { label, package, integration: kind == "test", executable, folder })
 }
 
 #[cfg(test)]
 pub mod tests {
+    use std::path::Path;
+
     use super::*;
 
     /// A program `program` of a package.
     pub fn binary(package: &str, kind: &str) -> Binary {
-        let id = format!("path+file:///w#{package}@0.1.0");
-        parse(&message(&id, kind, true, "\"/w/target/debug/deps/program-1\"")).unwrap()
+        parse(&message(&format!("path+file:///w#{package}@0.1.0"), kind, true, "\"/w/target/p\"")).unwrap()
     }
 
     fn message(id: &str, kind: &str, test: bool, executable: &str) -> String {
@@ -129,7 +100,6 @@ pub mod tests {
             r#"{{"reason":"compiler-artifact","package_id":"{id}","manifest_path":"/w/app/Cargo.toml",
             "target":{{"kind":["{kind}"],"name":"program"}},"profile":{{"test":{test}}},"executable":{executable}}}"#
         )
-        .replace('\n', "")
     }
 
     #[test]
@@ -144,26 +114,8 @@ pub mod tests {
         assert_eq!(label(id, "bin", false, file), None);
         assert_eq!(label(id, "lib", true, "null"), None);
         assert_eq!(parse("   Compiling yoro"), None);
-    }
-
-    #[test]
-    fn a_test_program_runs_in_its_packages_folder() {
         let binary = binary("yoro-app", "test");
         assert!(binary.integration);
-        let command = binary.command();
-        assert_eq!(command.get_current_dir(), Some(Path::new("/w/app")));
-        let value = |name: &str| {
-            let found = command.get_envs().find(|(key, _)| *key == name).and_then(|(_, value)| value);
-            found.unwrap().to_str().unwrap().to_owned()
-        };
-        assert_eq!(value("CARGO_MANIFEST_DIR"), "/w/app");
-        assert_eq!(value("CARGO_PKG_NAME"), "yoro-app");
-        assert_eq!(value("CARGO_PKG_VERSION"), "0.1.0");
-        assert!(value("LD_LIBRARY_PATH").starts_with("/w/target/debug/deps:/w/target/debug"));
-    }
-
-    #[test]
-    fn listings_hold_tests_only() {
-        assert_eq!(names("a::b: test\nc: benchmark\n\nd: test\n"), ["a::b", "d"]);
+        assert_eq!(binary.command().get_current_dir(), Some(Path::new("/w/app")));
     }
 }

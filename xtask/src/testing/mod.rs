@@ -12,7 +12,8 @@ mod summary;
 use std::collections::VecDeque;
 use std::env;
 use std::num::NonZeroUsize;
-use std::process::{Command, Stdio};
+use std::path::PathBuf;
+use std::process::Stdio;
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
 
@@ -109,7 +110,7 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
             }
         }
         let equipment = summary.measure("waiting for the libraries", || preparation.libraries())?;
-        let mut run = Run::new(&programs, options, equipment)?;
+        let mut run = Run { programs: &programs, options, equipment, folder: target_folder()? };
         let plan = plan(&programs, options);
         let workers =
             options.jobs.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
@@ -183,14 +184,11 @@ struct Run<'a> {
     programs: &'a [Program],
     options: &'a Options,
     equipment: Equipment,
-    folder: std::path::PathBuf,
+    /// For what processes print.
+    folder: PathBuf,
 }
 
 impl<'a> Run<'a> {
-    fn new(programs: &'a [Program], options: &'a Options, equipment: Equipment) -> anyhow::Result<Self> {
-        Ok(Self { programs, options, equipment, folder: target_folder()? })
-    }
-
     fn program(&self, job: &Job) -> &'a str {
         match job {
             Job::Tests(program, _) => &self.programs[*program].0.label,
@@ -213,11 +211,6 @@ impl<'a> Run<'a> {
                 (command, None)
             }
         };
-        self.prepare(&mut command);
-        process::run(command, names, &self.folder)
-    }
-
-    fn prepare(&self, command: &mut Command) {
         // Golden images are made by Mesa's rasterizer; a GPU's own rounding is another question.
         if env::var_os("LIBGL_ALWAYS_SOFTWARE").is_none() {
             command.env("LIBGL_ALWAYS_SOFTWARE", "1");
@@ -225,7 +218,8 @@ impl<'a> Run<'a> {
         if self.options.bless {
             command.env("YORO_BLESS", "1");
         }
-        self.equipment.tell(command);
+        self.equipment.tell(&mut command);
+        process::run(command, names, &self.folder)
     }
 
     /// Runs jobs in so many processes at a time, and prints what became of the tests.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::folders::target_folder;
+use yoro_tools::folders::{make_once, target_folder};
 
 const PACKAGE: &str = "iwer@2.5.0";
 
@@ -16,22 +16,20 @@ const PACKAGE: &str = "iwer@2.5.0";
 pub fn emulator() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("iwer");
     let script = folder.join("package/build/iwer.min.js");
-    let stamp = folder.join("stamp");
-    if fs::read_to_string(&stamp).is_ok_and(|of| of == PACKAGE) && script.is_file() {
-        return Ok(script);
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
-    let mut npm = Command::new("npm");
-    npm.args(["pack", "--silent", PACKAGE]).current_dir(&folder);
-    let output = npm.output().context("npm cannot be started: apt-get install npm")?;
-    if !output.status.success() {
-        bail!("npm cannot fetch {PACKAGE}: {}", String::from_utf8_lossy(&output.stderr).trim());
-    }
-    let archive = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-    let unpacked = Command::new("tar").args(["-xzf", &archive]).current_dir(&folder).status();
-    if !unpacked.context("tar cannot be started")?.success() || !script.is_file() {
-        bail!("{PACKAGE} has not the script that was expected");
-    }
-    fs::write(&stamp, PACKAGE).with_context(|| format!("{} cannot be written", stamp.display()))?;
+    make_once(&folder, PACKAGE, || {
+        fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+        let mut npm = Command::new("npm");
+        npm.args(["pack", "--silent", PACKAGE]).current_dir(&folder);
+        let output = npm.output().context("npm cannot be started: apt-get install npm")?;
+        if !output.status.success() {
+            bail!("npm cannot fetch {PACKAGE}: {}", String::from_utf8_lossy(&output.stderr).trim());
+        }
+        let archive = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        let unpacked = Command::new("tar").args(["-xzf", &archive]).current_dir(&folder).status();
+        if !unpacked.context("tar cannot be started")?.success() || !script.is_file() {
+            bail!("{PACKAGE} has not the script that was expected");
+        }
+        Ok(())
+    })?;
     Ok(script)
 }

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 use yoro_tools::cargo::{announce, cargo};
-use yoro_tools::folders::{root, target_folder};
+use yoro_tools::folders::{self, remove, root, target_folder};
 use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
 
 pub use emulator::emulator;
@@ -104,20 +104,12 @@ fn bind(module: &Path, folder: &Path) -> anyhow::Result<(u64, u64)> {
     }
 }
 
-fn remove(folder: &Path) -> anyhow::Result<()> {
-    if folder.exists() {
-        fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
-    }
-    Ok(())
-}
-
 /// Copies a folder of files.
 fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
-    fs::create_dir_all(to).with_context(|| format!("{} cannot be made", to.display()))?;
     for entry in fs::read_dir(from).with_context(|| format!("{} cannot be read", from.display()))? {
         let path = entry?.path();
         if let Some(name) = path.file_name().filter(|_| path.is_file()) {
-            fs::copy(&path, to.join(name)).with_context(|| format!("{} cannot be copied", path.display()))?;
+            folders::copy(&path, &to.join(name))?;
         }
     }
     Ok(())
