@@ -19,9 +19,9 @@ pub enum MotionSample {
     Gyroscope(Vec3),
     /// Angular velocity in rad/s as measured, and the device's own estimate of its bias.
     GyroscopeUncalibrated {
-        /// As measured.
+        /// The rotation as measured.
         rate: Vec3,
-        /// What to subtract until there is a better estimate.
+        /// The bias to subtract until there is a better estimate.
         bias: Vec3,
     },
     /// Acceleration in m/s^2; up at rest.
@@ -149,7 +149,7 @@ fn rotation_between(from: DVec3, to: DVec3) -> DVec3 {
     }
 }
 
-/// Where the head points, from sensors.
+/// The head's orientation, from motion sensors.
 #[derive(Clone, Debug)]
 pub struct HeadTracker {
     rotation: Rotation,
@@ -301,7 +301,7 @@ impl HeadTracker {
         self.covariance = m * (self.covariance - gain * jacobian * self.covariance) * m.transpose();
     }
 
-    /// Whether samples have told the direction yet.
+    /// True once samples have given the direction.
     pub fn is_ready(&self) -> bool {
         self.screen_from_world.is_some()
     }
@@ -342,7 +342,7 @@ fn upright(up: DVec3) -> DQuat {
     }
 }
 
-/// Where a rotation about the neck puts the point between the eyes, in metres, relative to where it would be on
+/// Returns how far a rotation about the neck moves the point between the eyes, in metres, relative to where it would be on
 /// the neck's axis: the rotation of (0, 0.075, -0.080), less (0, 0.075, 0).
 pub fn neck_offset(rotation: Quat) -> Vec3 {
     rotation * NECK - Vec3::new(0.0, NECK.y, 0.0)
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn the_vectors_of_the_reference() {
+    fn orientations_equal_the_references() {
         close(upright_tracker().head_from_world(0.0), [0.0, 0.0, 0.0, 1.0]);
         let tracker = turned_left();
         let pose = tracker.head_from_world(0.0);
@@ -464,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn the_devices_own_bias_serves_until_then() {
+    fn the_devices_own_bias_is_used_until_one_is_estimated() {
         let mut tracker = upright_tracker();
         let bias = Vec3::new(0.1, 0.0, 0.0);
         for i in 0..=100 {
@@ -474,7 +474,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_are_bridged_by_the_usual_interval() {
+    fn a_gap_between_samples_counts_as_the_usual_interval() {
         let mut interval = SampleInterval::default();
         assert_eq!(interval.next(5.0), 0.01);
         for _ in 0..20 {

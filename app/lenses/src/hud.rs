@@ -25,12 +25,12 @@ const SIZE: [usize; 2] = [COLUMNS * FONT[0] + 2 * MARGIN, LINES * FONT[1] + 3 * 
 /// Part of the progress bar that moves to and fro.
 const BLOCK: f32 = 0.25;
 
-/// Where the panel hangs: metres ahead, and tangents of its width and of its centre below the horizon.
+/// The panel's place: metres ahead, and tangents of its width and of its centre below the horizon.
 const DISTANCE: f32 = 1.5;
 const WIDTH: f32 = 0.42;
 const BELOW: f32 = 0.40;
 
-/// What the panel says, and how far the loading of a scene has come round.
+/// The panel's text and progress bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Content<'a> {
     /// At most four lines.
@@ -99,7 +99,7 @@ pub struct Hud {
     texture: Texture,
     pixels: Pixels,
     rows: Vec<u8>,
-    /// What the texture shows.
+    /// The text that the texture shows.
     text: String,
     progress: Option<f32>,
     /// Rows in use, from the top.
@@ -158,7 +158,7 @@ impl Hud {
     }
 }
 
-/// Where the panel hangs.
+/// The panel's direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
     /// Below what is looked at.
@@ -248,7 +248,7 @@ mod tests {
     use yoro::eyes::{DepthRange, Frustum, Pose};
 
     #[test]
-    fn text_and_bar_are_drawn_where_they_should() {
+    fn text_and_progress_bar_are_drawn_in_their_rows() {
         let mut panel = Pixels(vec![0; SIZE[0] * SIZE[1]]);
         let lit = |panel: &Pixels, rows: std::ops::Range<usize>| {
             panel.0[rows.start * SIZE[0]..rows.end * SIZE[0]].iter().filter(|&&p| p == 255).count()

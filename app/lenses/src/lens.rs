@@ -9,7 +9,7 @@ use yoro::eyes::{Eye, Frustum};
 use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
 use yoro_render::stereo::StereoFrame;
 
-/// How much further from the axis red and blue light is seen through a lens than green, for which lenses are
+/// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are
 /// specified: acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
 const DISPERSION: [f32; 2] = [0.9913, 1.0106];
 /// Width of the vignette as a part of the image.

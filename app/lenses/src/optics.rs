@@ -28,14 +28,14 @@ impl Distortion {
         Distortion { coefficients: coefficients.to_vec() }
     }
 
-    /// Where a point at radius `r` of the screen is seen.
+    /// Returns the radius at which a point at radius `r` of the screen is seen.
     pub fn distort(&self, r: f32) -> f32 {
         let square = r * r;
         let factor = self.coefficients.iter().rev().fold(0.0, |sum, k| (sum + k) * square);
         r * (1.0 + factor)
     }
 
-    /// Which radius of the screen is seen at `r`: the secant method, to 1e-4 as the reference does.
+    /// Returns the radius of the screen that is seen at `r`: the secant method, to 1e-4 as the reference does.
     pub fn undistort(&self, r: f32) -> f32 {
         if r <= 0.0 {
             return 0.0;
@@ -63,7 +63,7 @@ impl Distortion {
     }
 }
 
-/// How the screen's content is turned against the device's own upright position.
+/// The rotation of the screen's content against the device's own upright position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rotation {
     /// Upright.
@@ -82,7 +82,7 @@ pub struct Screen {
     pub size: [u32; 2],
     /// Pixels per inch along both, as the device says; not finite or implausible values mean unknown.
     pub dpi: [f32; 2],
-    /// How the content is turned, for the sensors' axes.
+    /// The rotation of the content, for the sensors' axes.
     pub rotation: Rotation,
 }
 
@@ -100,9 +100,9 @@ impl Screen {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct MeshVertex {
-    /// Where on the screen, in clip coordinates of all of it.
+    /// Position on the screen, in clip coordinates of all of it.
     pub position: Vec2,
-    /// Where in the eye's image, from its lower left corner.
+    /// Position in the eye's image, from its lower left corner.
     pub uv: Vec2,
 }
 
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_left_eye_sees_through_v1() {
+    fn the_left_eye_sees_the_references_frustum_through_v1() {
         let angles = v1_phone().half_angles(Eye::Left).map(f32::to_degrees);
         for (angle, expected) in angles.into_iter().zip([34.9882, 40.0, 40.0, 40.0]) {
             close(angle, expected, 1e-3);
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn one_strip_there_and_back() {
+    fn the_mesh_is_one_strip() {
         let strip = mesh_strip();
         assert_eq!(strip.len(), 2 * 39 * 40 + 38);
         assert_eq!(strip[..4], [0, 40, 1, 41]);
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_screen_is_taken_for_a_usual_phone() {
+    fn an_unknown_screen_counts_as_a_usual_phone() {
         let screen = |dpi| Screen { size: [1920, 1080], dpi: [dpi; 2], rotation: Rotation::default() };
         close(screen(440.0).metres()[0], 0.110836, 1e-5);
         for dpi in [0.0, f32::NAN, -3.0, 20.0, f32::INFINITY] {

@@ -10,12 +10,12 @@ use prost::Message;
 const SENTINEL: u32 = 0x3558_7a2b;
 /// The URI that stands for the first viewer, without parameters.
 const V1_URI: &str = "g.co/cardboard";
-/// What comes before the parameters in every other URI.
+/// The prefix of the parameters in every other URI.
 const URI_PREFIX: &str = "google.com/cardboard/cfg?p=";
 /// Largest parameter file in bytes; real ones have about a hundred.
 const MAX_FILE: u64 = 64 << 10;
 
-/// Why there are no viewer parameters.
+/// An error in viewer parameters.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParamsError {
@@ -36,7 +36,7 @@ pub enum ParamsError {
     File {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The mistake.
         reason: String,
     },
     /// Not a viewer's URI, or a damaged one.
@@ -46,12 +46,12 @@ pub enum ParamsError {
     Uri {
         /// The text given.
         uri: String,
-        /// What is wrong.
+        /// The mistake.
         reason: String,
     },
 }
 
-/// Where the viewer holds the screen.
+/// The edge of the screen that the viewer's lenses are measured from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, prost::Enumeration)]
 #[repr(i32)]
 pub enum VerticalAlignment {
@@ -59,7 +59,7 @@ pub enum VerticalAlignment {
     Bottom = 0,
     /// The screen is centred before the lenses.
     Center = 1,
-    /// As bottom, measured from the upper edge.
+    /// The upper edge.
     Top = 2,
 }
 
@@ -80,7 +80,7 @@ pub struct ViewerParams {
     pub fov_degrees: [f32; 4],
     /// Coefficients of the distortion polynomial.
     pub distortion: Vec<f32>,
-    /// Where the screen sits.
+    /// The edge that the screen is aligned by.
     pub alignment: VerticalAlignment,
 }
 
@@ -147,7 +147,7 @@ impl ViewerParams {
         }
     }
 
-    /// As [`ViewerParams::find`], with files looked for in folders first.
+    /// Does what [`ViewerParams::find`] does, with files looked for in folders first.
     ///
     /// # Errors
     /// [`ParamsError`].
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_again() {
+    fn parameters_survive_a_round_trip() {
         let folder = tempfile::tempdir().unwrap();
         for viewer in [ViewerParams::v1(), ViewerParams::v2(), decode(VR_ONE)] {
             assert_eq!(ViewerParams::find(&viewer.to_uri()).unwrap(), viewer);
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_say_what_to_do() {
+    fn mistakes_name_the_remedy() {
         let folder = tempfile::tempdir().unwrap();
         let mut cut = ViewerParams::v1().to_file();
         cut.truncate(30);

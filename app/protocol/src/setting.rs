@@ -244,7 +244,7 @@ impl<T: SettingValue> SettingValue for Option<T> {
     }
 }
 
-/// Whole numbers.
+/// Reads whole numbers.
 macro_rules! whole {
     ($($type:ty),+) => { $(
         impl SettingValue for $type {

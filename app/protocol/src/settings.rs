@@ -17,7 +17,7 @@ use yoro::synthesis::Edges;
 /// Largest settings file in bytes.
 const MAX_FILE: u64 = 1 << 20;
 
-/// Why settings cannot be used: one sentence with the key and the remedy.
+/// A mistake in settings: one sentence with the key and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
@@ -54,7 +54,7 @@ pub enum SettingsError {
         key: String,
         /// The value given.
         value: String,
-        /// What is possible.
+        /// The values that are possible.
         remedy: String,
     },
     /// An override that is not `key=value`.
@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_of_override() {
+    fn every_kind_of_value_can_be_overridden() {
         let settings = with(&[
             "scene=/sdcard/a room.obj",
             "method=conventional",

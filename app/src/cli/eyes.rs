@@ -1,4 +1,4 @@
-//! What `render`, `run` and their like share: eyes to look with, options of stereo frames.
+//! Options of the eyes, shared by `render`, `run` and `dataset`.
 
 use std::path::{Path, PathBuf};
 
@@ -44,7 +44,7 @@ pub struct EyeArgs {
 }
 
 impl EyeArgs {
-    /// As the library takes them.
+    /// Returns the eyes as the library takes them.
     pub fn options(&self) -> EyeOptions {
         let convention = if self.reversed_z { DepthConvention::Reversed } else { DepthConvention::Standard };
         EyeOptions {
@@ -92,7 +92,7 @@ pub fn viewpoint(position: Option<Vec3>, target: Option<Vec3>) -> Option<Viewpoi
     Some(Viewpoint { position, target: target.unwrap_or(position + Vec3::NEG_Z) })
 }
 
-/// Where a scene's pictures go.
+/// Returns the path of a scene's picture.
 pub fn picture_path(folder: &Path, stem: &str, kind: &str) -> PathBuf {
     folder.join(format!("{stem}.{kind}.png"))
 }

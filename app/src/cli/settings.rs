@@ -35,7 +35,7 @@ impl Group for Synthesis {
         &["pipeline", "imbuffer", "linear-interpolation", "kernel-height", "strict"];
 }
 
-/// How stereo frames are made.
+/// Stereo frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Stereo;
 
@@ -55,7 +55,7 @@ impl Group for Stereo {
     ];
 }
 
-/// What a phone behind lenses shows.
+/// The picture behind lenses.
 #[derive(Clone, Copy, Debug)]
 pub struct Lenses;
 

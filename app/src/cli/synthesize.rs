@@ -125,7 +125,7 @@ impl SourceEye {
         }
     }
 
-    /// Where what belongs to an eye goes.
+    /// Returns the path of an eye's file.
     fn place(self, path: &Path, eye: Eye) -> PathBuf {
         match self {
             SourceEye::Center => {
@@ -303,7 +303,7 @@ fn entries(result: &SynthesizedImage, warp: &Warp) -> Vec<SourceMapEntry> {
     rows.flat_map(|row| (0u32..).zip(row).map(|(x, &entry)| SourceMapEntry::decode(entry, x, warp))).collect()
 }
 
-/// What the values of a depth image stand for, rows from the bottom.
+/// Returns the meaning of a depth image's values, rows from the bottom.
 fn decode_depth(
     args: &SynthesizeArgs,
     image: &DepthImage,

@@ -27,7 +27,7 @@ use yoro_viewer::{SceneState, Viewer};
 /// The pause before a runtime that wants no frame is asked again.
 const PAUSE: Duration = Duration::from_millis(5);
 /// With --frames, a runtime that wants none for so long is given up.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Show a scene in a headset, by any OpenXR runtime with XR_MNDX_egl_enable
 #[derive(clap::Args, Clone, Debug)]
@@ -86,7 +86,7 @@ impl XrArgs {
     }
 }
 
-/// What a method costs, and what it has drawn.
+/// The cost of a method, and its last frame.
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 struct MethodSummary {
@@ -292,9 +292,9 @@ fn show(
 /// Waits for a runtime that wants no frame; not for ever, if frames are wanted.
 fn pause(last_frame: Instant, wanted: bool) -> anyhow::Result<()> {
     ensure!(
-        !wanted || last_frame.elapsed() <= PATIENCE,
+        !wanted || last_frame.elapsed() <= TIMEOUT,
         "the OpenXR runtime has wanted no frame for {} s: put the headset on, or look into its log",
-        PATIENCE.as_secs()
+        TIMEOUT.as_secs()
     );
     std::thread::sleep(PAUSE);
     Ok(())
@@ -306,9 +306,10 @@ fn check_end(frames: Option<u32>, methods: usize, summaries: &[MethodSummary]) -
     if summaries.len() == methods && summaries.iter().all(|s| s.frames >= frames) {
         return Ok(());
     }
-    match interrupt::requested() {
-        true => bail!("interrupted before the last frame"),
-        false => bail!("the OpenXR runtime has ended the session before the last frame"),
+    if interrupt::requested() {
+        bail!("interrupted before the last frame")
+    } else {
+        bail!("the OpenXR runtime has ended the session before the last frame")
     }
 }
 

@@ -1,4 +1,4 @@
-//! Which quality holds the display's rate: a controller without clock or GL.
+//! A controller that finds the quality with which the display's rate holds; it has no clock and no GL.
 
 /// A quality to render with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,10 +24,10 @@ const LADDER: [Quality; 6] = [
     Quality { render_scale: 0.5, imbuffer: 4 },
 ];
 
-/// What one frame was like.
+/// The load of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// When it was finished, in nanoseconds.
+    /// The time at which the frame was finished, in nanoseconds.
     pub now_ns: i64,
     /// Refresh rate of the display in Hz; 0 if unknown.
     pub refresh_hz: f32,
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_quality_is_the_end() {
+    fn quality_never_falls_below_the_worst() {
         assert_eq!(Device::new(400.0, true).run(20.0), 0.5);
     }
 
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_break_is_no_load() {
+    fn a_pause_does_not_count_as_load() {
         let mut device = Device::new(9.0, false);
         device.run(1.0);
         device.now_ns += 60_000_000_000;

@@ -1,4 +1,4 @@
-//! What the HUD says: figures, and what the user has just done.
+//! The text of the HUD: figures, and the user's last action.
 
 use std::fmt::{self, Write};
 
@@ -8,7 +8,7 @@ use yoro_protocol::telemetry::Line;
 /// How long a message stays in view, in nanoseconds.
 const MESSAGE_NS: i64 = 2_000_000_000;
 
-/// What there is to say of the application.
+/// The application's state that the HUD shows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Status<'a> {
     /// The last second.
@@ -23,7 +23,7 @@ pub(crate) struct Status<'a> {
 
 /// The HUD's words, and whether they are to be seen.
 pub(crate) struct Caption {
-    /// Whether the user wants to see it.
+    /// True if the user wants to see it.
     pub is_shown: bool,
     message: String,
     message_until_ns: i64,
@@ -42,7 +42,7 @@ impl Caption {
         self.message = message;
     }
 
-    /// Whether there is something to see: the HUD, or a message.
+    /// True if there is something to see: the HUD, or a message.
     pub fn is_in_view(&self, now_ns: i64) -> bool {
         self.is_shown || self.has_message(now_ns)
     }
@@ -56,7 +56,7 @@ impl Caption {
         &self.text
     }
 
-    /// Where to write other words.
+    /// The text, to write another one.
     pub fn text_mut(&mut self) -> &mut String {
         &mut self.text
     }
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_lines_say() {
+    fn the_caption_shows_rate_method_and_message() {
         let mut caption = Caption::new(true);
         let loading = Status {
             celsius: Some(31.0),
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_goes_by_itself_and_shows_through_a_hidden_hud() {
+    fn a_message_disappears_by_itself_and_shows_while_the_hud_is_hidden() {
         let mut caption = Caption::new(false);
         assert!(!caption.is_in_view(0));
         caption.announce("recentered".into(), 1);

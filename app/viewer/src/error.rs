@@ -1,10 +1,10 @@
-//! Why the viewer cannot go on.
+//! Errors of the viewer.
 
 use yoro_gl::GlError;
 use yoro_lenses::ParamsError;
 use yoro_render::stereo::StereoError;
 
-/// Why the viewer cannot go on. A scene that cannot be loaded is not among these: it is shown in view, see
+/// An error after which the viewer cannot go on. A scene that cannot be loaded is not among these: it is shown in view, see
 /// [`Viewer::failure`](crate::Viewer::failure).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

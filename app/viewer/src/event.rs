@@ -1,10 +1,10 @@
-//! What the user does, and what it has led to.
+//! The user's actions and their effects.
 
 use std::fmt;
 
 use yoro_protocol::{Ipd, Method};
 
-/// What the user does.
+/// An action of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A tap on the screen, the viewer's trigger, or a controller's: the next method.
@@ -25,7 +25,7 @@ pub enum Event {
     NextScene,
 }
 
-/// What an event has led to, for the log.
+/// The effect of an event, for the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// The method that is used now.
@@ -34,7 +34,7 @@ pub enum Action {
     Recenter,
     /// The distance between the eyes.
     Ipd(Ipd),
-    /// Whether the HUD is shown.
+    /// True if the HUD is shown.
     Hud(bool),
     /// The viewpoint's number.
     Viewpoint(usize),

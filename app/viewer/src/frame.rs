@@ -1,17 +1,17 @@
-//! What the platform says of a frame, and what it hears of it.
+//! What goes in and out of a frame: its times, and a report.
 
 /// The times of a frame, all on the monotonic clock of the sensors' timestamps where the platform has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTiming {
     /// Now, in nanoseconds.
     pub now_ns: i64,
-    /// When the frame is expected to be seen, in nanoseconds.
+    /// The time at which the frame is expected to be seen, in nanoseconds.
     pub expected_display_ns: i64,
     /// Refresh rate of the display in Hz; 0 if unknown.
     pub refresh_hz: f32,
 }
 
-/// Where the scene is.
+/// The state of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneState {
     /// Being loaded or generated; a progress bar is in view.
@@ -22,10 +22,10 @@ pub enum SceneState {
     Failed,
 }
 
-/// What a presented frame was like and what the platform should do next.
+/// The report of a presented frame, with what the platform should do next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameReport {
-    /// Where the scene is.
+    /// The state of the scene.
     pub scene: SceneState,
     /// Refreshes of the display for which this frame came too late.
     pub late_refreshes: u32,

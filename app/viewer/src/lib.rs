@@ -18,7 +18,7 @@ mod method_slot;
 pub mod openxr;
 mod questionnaire;
 mod scene_slot;
-mod tally;
+mod session_stats;
 mod viewer;
 
 pub use cardboard::{Cardboard, HeldHead};

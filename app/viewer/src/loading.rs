@@ -14,7 +14,7 @@ const EXTENSIONS: [&str; 3] = ["obj", "gltf", "glb"];
 /// Stack of the loading thread in bytes: that of a main thread, on which scenes are loaded elsewhere.
 const STACK: usize = 8 << 20;
 
-/// Where a scene comes from.
+/// The source of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneSource {
     /// Generated.
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scenes_by_name() {
+    fn scenes_are_found_by_name() {
         let folder = tempfile::tempdir().unwrap();
         let room = folder.path().join("rooms/room.obj");
         std::fs::create_dir(folder.path().join("rooms")).unwrap();

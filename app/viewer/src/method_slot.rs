@@ -5,12 +5,12 @@ use std::rc::Rc;
 use crate::adaptive::{Controller, Load, Quality};
 use crate::error::ViewerError;
 use crate::scene_slot::Shown;
-use yoro::eyes::{EyePair, EyesError, GuardBand};
+use yoro::eyes::{EyePair, EyesError};
 use yoro_gl::{Context, GlError};
 use yoro_protocol::Settings;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{
-    self, EyeTarget, GuardBandUse, ImBufferSize, Method, Pipeline, StereoMethod, StereoOptions,
+    self, EyeTarget, GuardBandUse, ImBufferSize, Method, Pipeline, StereoMethod, StereoOptions, Substitute,
 };
 
 /// The place of the one method.
@@ -18,14 +18,14 @@ pub(crate) struct MethodSlot {
     method: Method,
     pipeline: Pipeline,
     controller: Controller,
-    /// What the controller last asked for.
+    /// The quality that the controller asked for last.
     quality: Quality,
-    /// Why the eyes of the last frame were such that neither can be synthesized from the other.
+    /// The reason why neither eye of the last frame can be synthesized from the other, if so.
     unfit: Option<EyesError>,
     /// The method, while there is a scene to use it on.
     made: Option<Box<dyn StereoMethod>>,
     /// Renders both eyes while they are unfit.
-    substitute: Option<Box<dyn StereoMethod>>,
+    substitute: Substitute,
 }
 
 impl MethodSlot {
@@ -38,7 +38,7 @@ impl MethodSlot {
             quality: Quality::FULL,
             unfit: None,
             made: None,
-            substitute: None,
+            substitute: Substitute::default(),
         }
     }
 
@@ -109,12 +109,21 @@ impl MethodSlot {
         options
     }
 
+    /// Compiles a method with the options in use.
+    fn create(
+        &self,
+        gl: &Rc<Context>,
+        settings: &Settings,
+        method: Method,
+    ) -> Result<Box<dyn StereoMethod>, GlError> {
+        stereo::create(gl, method, &RenderSettings::of_settings(settings), &self.options(settings))
+    }
+
     /// Compiles the current method, if there is a context with a scene to use it on.
     pub fn make(&mut self, gl: Option<&Rc<Context>>, settings: &Settings) -> Result<(), GlError> {
         if let Some(gl) = gl {
-            let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
-            self.made = Some(stereo::create(gl, self.method, &render, &options)?);
-            self.substitute = None;
+            self.made = Some(self.create(gl, settings, self.method)?);
+            self.substitute = Substitute::default();
         }
         self.controller.restart();
         Ok(())
@@ -122,12 +131,11 @@ impl MethodSlot {
 
     /// Compiles the method for the first time, or synthesis where the driver cannot do it.
     pub fn make_first(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
-        let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
-        let made = match stereo::create(gl, self.method, &render, &options) {
+        let made = match self.create(gl, settings, self.method) {
             Err(GlError::Unsupported(reason)) if self.method != Method::Yoro => {
                 log::warn!("{} is used instead of {}: {reason}", Method::Yoro.name(), self.method.name());
                 self.method = Method::Yoro;
-                stereo::create(gl, self.method, &render, &options)
+                self.create(gl, settings, self.method)
             }
             made => made,
         }?;
@@ -137,7 +145,7 @@ impl MethodSlot {
 
     /// Drops what is on the GPU.
     pub fn drop_made(&mut self) {
-        (self.made, self.substitute) = (None, None);
+        (self.made, self.substitute) = (None, Substitute::default());
     }
 
     /// Goes to the next (1) or previous (-1) method of the settings' list that the driver can do.
@@ -174,7 +182,7 @@ impl MethodSlot {
 
     /// Looks whether one of the eyes can be synthesized from the other, where the method needs that.
     pub fn judge(&mut self, pair: &EyePair) {
-        let unfit = self.method.needs_aligned_eyes().then(|| pair.synthesis(GuardBand::None).err()).flatten();
+        let unfit = Substitute::reason(self.method, pair);
         if unfit.as_ref().map(std::mem::discriminant) != self.unfit.as_ref().map(std::mem::discriminant) {
             match &unfit {
                 Some(reason) => {
@@ -195,16 +203,18 @@ impl MethodSlot {
         pair: &EyePair,
         to: &[EyeTarget; 2],
     ) -> Result<(), ViewerError> {
-        if self.unfit.is_some() && self.substitute.is_none() {
-            let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
-            self.substitute = Some(stereo::create(gl, Method::Conventional, &render, &options)?);
-        }
-        let method = if self.unfit.is_some() { &mut self.substitute } else { &mut self.made };
-        let method = method.as_mut().ok_or(ViewerError::NoContext)?;
+        let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
+        let method = match &mut self.made {
+            _ if self.unfit.is_some() => {
+                self.substitute.get(|method| stereo::create(gl, method, &render, &options))?
+            }
+            Some(made) => made.as_mut(),
+            None => return Err(ViewerError::NoContext),
+        };
         Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)
     }
 
-    /// As [`StereoMethod::guard_band`]; none while both eyes are rendered in the method's place.
+    /// Returns [`StereoMethod::guard_band`]; `None` while both eyes are rendered in the method's place.
     pub fn guard_band(&self) -> Option<GuardBandUse> {
         self.made.as_ref().filter(|_| self.unfit.is_none())?.guard_band()
     }

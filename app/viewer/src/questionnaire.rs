@@ -11,7 +11,7 @@ const SPAN: f32 = 0.7;
 const STEP: f32 = 0.5;
 /// A marker that was moved and then left where it is for so long, in nanoseconds, is the answer: some viewers have no
 /// button.
-const PATIENCE_NS: i64 = 5_000_000_000;
+const SETTLE_NS: i64 = 5_000_000_000;
 
 /// The questions that are still open, and the marker on the slider of the first of them.
 #[derive(Clone, Debug)]
@@ -21,9 +21,9 @@ pub(crate) struct Questionnaire {
     best: f32,
     /// Between 1 and `best`, not rounded.
     value: f32,
-    /// Where the head pointed last, in radians to the left.
+    /// The direction of the head in the last frame, in radians to the left.
     heading: Option<f32>,
-    /// When the rating changed last; none until it is moved.
+    /// The time of the rating's last change; `None` until it is moved.
     moved_ns: Option<i64>,
 }
 
@@ -47,17 +47,17 @@ impl Questionnaire {
         self.moved_ns = None;
     }
 
-    /// Whether all questions are answered.
+    /// True if all questions are answered.
     pub fn is_done(&self) -> bool {
         self.questions.is_empty()
     }
 
-    /// What the marker stands for.
+    /// Returns the rating that the marker stands for.
     pub fn rating(&self) -> f32 {
         (self.value / STEP).round() * STEP
     }
 
-    /// Where the marker is, from 0 to 1.
+    /// Returns the position of the marker, from 0 to 1.
     pub fn position(&self) -> f32 {
         (self.rating() - 1.0) / (self.best - 1.0)
     }
@@ -90,9 +90,9 @@ impl Questionnaire {
         self.heading = None;
     }
 
-    /// Whether the marker was moved and then left alone.
+    /// True if the marker was moved and then left alone.
     pub fn has_settled(&self, now_ns: i64) -> bool {
-        self.moved_ns.is_some_and(|moved| now_ns - moved >= PATIENCE_NS)
+        self.moved_ns.is_some_and(|moved| now_ns - moved >= SETTLE_NS)
     }
 
     /// Takes the marker for the answer: the question and its rating. The next question is asked.
@@ -102,7 +102,7 @@ impl Questionnaire {
         Some(answer)
     }
 
-    /// What the panel says.
+    /// Writes the text of the panel.
     pub fn write(&self, text: &mut String) {
         text.clear();
         let Some(question) = self.questions.last() else { return };
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_to_the_right_is_better_and_ends_are_ends() {
+    fn turning_right_raises_the_rating_up_to_its_ends() {
         let mut q = asked(5);
         let look = |q: &mut Questionnaire, left: f32| q.look(Quat::from_rotation_y(left), 0);
         // Where the head points at first is not a turn.
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_marker_that_was_moved_settles() {
+    fn only_a_moved_marker_answers_by_itself() {
         let mut q = asked(7);
         assert!(!q.has_settled(100 * SECOND));
         q.nudge(1.0, 2 * SECOND);
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn the_panel_says_it_in_four_lines() {
+    fn the_question_fits_four_lines() {
         let mut text = String::new();
         asked(5).write(&mut text);
         let lines: Vec<_> = text.lines().collect();

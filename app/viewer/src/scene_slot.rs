@@ -33,7 +33,7 @@ pub(crate) struct SceneSlot {
     loader: Option<Loader>,
     failure: Option<String>,
     viewpoints: Vec<Viewpoint>,
-    /// Which of them the viewer stands at; any number until they are known.
+    /// The number of the viewpoint in use; any number until they are known.
     viewpoint: usize,
     shown: Option<Shown>,
 }
@@ -96,7 +96,7 @@ impl SceneSlot {
         self.failure = Some(reason);
     }
 
-    /// What is in view.
+    /// The scene in view.
     pub fn shown(&mut self) -> Option<&mut Shown> {
         self.shown.as_mut()
     }
@@ -152,7 +152,7 @@ impl SceneSlot {
         })
     }
 
-    /// Where something is in the scene that is `pose` as seen from the viewpoint: metres, Y up, -Z ahead.
+    /// Transforms a pose relative to the viewpoint (metres, Y up, -Z ahead) into the scene.
     pub fn place(&self, pose: Pose) -> Pose {
         let viewpoint = self.viewpoints.get(self.viewpoint).map_or(Pose::IDENTITY, Viewpoint::pose);
         // Gravity says what is level; of the viewpoint only the heading is left.

@@ -29,7 +29,7 @@ use crate::frame::{FrameReport, FrameTiming, SceneState};
 use crate::loading::SceneSource;
 use crate::method_slot::MethodSlot;
 use crate::scene_slot::{SceneSlot, Shown};
-use crate::tally::Tally;
+use crate::session_stats::SessionStats;
 use yoro::eyes::{EyePair, Pose};
 use yoro_gl::{Context, Destination, GlError, PassTime, Profiling};
 use yoro_lenses::{Content, Hud, Panel, Placement};
@@ -48,14 +48,14 @@ const BACKDROP: [f32; 4] = [0.03, 0.035, 0.05, 1.0];
 /// Passes of a frame for whose times there is room from the start.
 const MOST_PASSES: usize = 64;
 
-/// What lives in the GL context besides scene and method.
+/// Objects that live in the GL context besides scene and method.
 struct Attached {
     gl: Rc<Context>,
     hud: Hud,
     pass_times: Vec<PassTime>,
 }
 
-/// Where the distance between the eyes comes from.
+/// The sources of the distance between the eyes.
 #[derive(Clone, Copy, Debug)]
 struct IpdSources {
     /// The settings or the user.
@@ -70,7 +70,7 @@ pub struct Viewer {
     folders: Vec<PathBuf>,
     scene: SceneSlot,
     method: MethodSlot,
-    tally: Tally,
+    stats: SessionStats,
     caption: Caption,
     ipd: IpdSources,
     attached: Option<Attached>,
@@ -89,7 +89,7 @@ impl Viewer {
             folders: folders.to_vec(),
             scene: SceneSlot::new(source, settings.viewpoint),
             method: MethodSlot::new(&settings),
-            tally: Tally::default(),
+            stats: SessionStats::default(),
             caption: Caption::new(settings.hud),
             ipd: IpdSources { chosen: settings.ipd, native: Ipd::nearest(0.0) },
             attached: None,
@@ -121,7 +121,7 @@ impl Viewer {
         self.attached = None;
     }
 
-    /// Whether there is a GL context.
+    /// True if there is a GL context.
     pub fn is_attached(&self) -> bool {
         self.attached.is_some()
     }
@@ -133,7 +133,7 @@ impl Viewer {
 
     fn replace_scene(&mut self, source: SceneSource, viewpoint: usize) {
         self.scene.replace(source, viewpoint);
-        self.tally.expect_scene();
+        self.stats.expect_scene();
     }
 
     /// Takes over other settings; only what differs from the ones before is made again. What the user has changed by
@@ -174,7 +174,7 @@ impl Viewer {
             self.method.restore_quality();
         }
         if settings.duration != before.duration {
-            self.tally.reopen();
+            self.stats.reopen();
         }
         if let Some(attached) = &self.attached
             && settings.profiling != before.profiling
@@ -236,7 +236,7 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::Gl`] when a method cannot be made; the one before stays.
     pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
-        if self.tally.question().is_some() {
+        if self.stats.question().is_some() {
             return Ok(self.reply(event));
         }
         let action = match event {
@@ -265,10 +265,10 @@ impl Viewer {
         Ok(action)
     }
 
-    /// What an event means while a question is in view.
+    /// Takes an event while a question is in view.
     fn reply(&mut self, event: Event) -> Action {
         let now_ns = self.now_ns;
-        let Some(question) = self.tally.question_mut() else { return Action::Nothing };
+        let Some(question) = self.stats.question_mut() else { return Action::Nothing };
         let mut nudge = |steps| {
             question.nudge(steps, now_ns);
             Action::Marker(question.rating())
@@ -292,23 +292,23 @@ impl Viewer {
 
     /// Keeps and logs the answer to the question in view.
     fn answer(&mut self) {
-        let answer = self.tally.question_mut().and_then(|question| question.answer());
+        let answer = self.stats.question_mut().and_then(|question| question.answer());
         let Some((question, rating)) = answer else { return };
         let ViewerState { method, pipeline, scene, .. } = self.state();
         let Settings { participant, trial, .. } = &self.settings;
         let (participant, trial, rating) = (participant.clone(), *trial, f64::from(rating));
         let rating = Rating { participant, trial, method, pipeline, scene, question, rating };
         log::info!("{rating}");
-        self.tally.keep(rating);
+        self.stats.keep(rating);
     }
 
     /// Asks the questions of the settings when the session's time is up; true when there is nothing more to ask.
     fn ask(&mut self) -> bool {
-        self.tally.ask(&self.settings);
-        if self.tally.question().is_some_and(|question| question.has_settled(self.now_ns)) {
+        self.stats.ask(&self.settings);
+        if self.stats.question().is_some_and(|question| question.has_settled(self.now_ns)) {
             self.answer();
         }
-        self.tally.question().is_none()
+        self.stats.question().is_none()
     }
 
     fn change_ipd(&mut self, change: f32) -> Action {
@@ -334,7 +334,7 @@ impl Viewer {
     /// The application goes to the background: nothing moves on, and the time until the next frame is not
     /// counted.
     pub fn pause(&mut self) {
-        self.tally.pause();
+        self.stats.pause();
         self.method.interrupt();
     }
 
@@ -355,7 +355,7 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
     pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
-        self.tally.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
+        self.stats.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
         self.method.judge(pair);
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
         let Some(shown) = self.scene.shown() else {
@@ -367,7 +367,7 @@ impl Viewer {
         };
         self.method.render(gl, &self.settings, shown, pair, to)?;
         if let Some(used) = self.method.guard_band() {
-            self.tally.guard_band(used);
+            self.stats.guard_band(used);
         }
         Ok(())
     }
@@ -380,7 +380,7 @@ impl Viewer {
         self.write_caption();
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
         let text = self.caption.text();
-        if let Some(question) = self.tally.question() {
+        if let Some(question) = self.stats.question() {
             let progress = Some(question.position());
             return Ok(Some(attached.hud.set(Content { text, progress }, Placement::Middle)));
         }
@@ -397,15 +397,15 @@ impl Viewer {
 
     /// Writes what the HUD says now.
     fn write_caption(&mut self) {
-        if let Some(question) = self.tally.question() {
+        if let Some(question) = self.stats.question() {
             return question.write(self.caption.text_mut());
         }
         if let Some(failure) = self.scene.failure() {
             return self.caption.write_sentence(failure);
         }
         let status = Status {
-            frames: self.tally.last_line(),
-            celsius: self.tally.celsius(),
+            frames: self.stats.last_line(),
+            celsius: self.stats.celsius(),
             method: self.method.name(),
             pipeline: self.method.pipeline_name(),
             loading: self.scene.is_loading().then(|| self.scene.name()),
@@ -424,22 +424,22 @@ impl Viewer {
         pass_times.clear();
         let timed = gl.end_timed_frame(pass_times);
         let gpu_ms = (timed > 0).then(|| pass_times.iter().map(|p| p.time.as_secs_f32() * 1e3).sum());
-        let late_refreshes = self.tally.frame(now_ns, refresh_hz, pass_times, timed);
+        let late_refreshes = self.stats.frame(now_ns, refresh_hz, pass_times, timed);
         let scene = self.scene.state();
         let load = Load { now_ns, refresh_hz, late_refreshes, gpu_ms };
         if self.settings.adaptive && scene == SceneState::Ready && self.method.adapt(&load, &self.settings) {
             self.make_method()?;
         }
-        let was_over = self.tally.is_over();
-        if !was_over && self.tally.is_time_up(&self.settings, now_ns) && self.ask() {
-            self.tally.end();
+        let was_over = self.stats.is_over();
+        if !was_over && self.stats.is_time_up(&self.settings, now_ns) && self.ask() {
+            self.stats.end();
         }
-        let is_over = self.tally.is_over();
+        let is_over = self.stats.is_over();
         Ok(FrameReport {
             scene,
             late_refreshes,
             gpu_ms,
-            telemetry_due: self.tally.is_line_due(now_ns),
+            telemetry_due: self.stats.is_line_due(now_ns),
             session_over: is_over && !was_over,
             exit: is_over && self.settings.auto_exit,
         })
@@ -450,10 +450,10 @@ impl Viewer {
     pub fn telemetry(&mut self, now_ns: i64, device: &DeviceState) -> Line {
         self.method.set_thermal_headroom(device.thermal_headroom);
         let state = self.state();
-        self.tally.line(now_ns, &state, device)
+        self.stats.line(now_ns, &state, device)
     }
 
-    /// What the log says of the viewer.
+    /// Returns the viewer's own part of a log line.
     fn state(&self) -> ViewerState {
         ViewerState {
             method: self.method.name().to_owned(),
@@ -467,12 +467,12 @@ impl Viewer {
 
     /// The session since the scene came into view, for the log at its end.
     pub fn summary(&self, now_ns: i64) -> SessionSummary {
-        self.tally.summary(now_ns)
+        self.stats.summary(now_ns)
     }
 
     /// The answers to the questions of the settings so far; each is logged when it is given.
     pub fn ratings(&self) -> &[Rating] {
-        self.tally.ratings()
+        self.stats.ratings()
     }
 
     /// The settings the viewer was made with, or has taken over since.
@@ -525,17 +525,17 @@ impl Viewer {
         self.now_ns
     }
 
-    /// Where something is in the scene that is `pose` as seen from the viewpoint: metres, Y up, -Z ahead.
+    /// Transforms a pose relative to the viewpoint (metres, Y up, -Z ahead) into the scene.
     pub fn place(&self, pose: Pose) -> Pose {
         self.scene.place(pose)
     }
 
-    /// Where the scene is.
+    /// The state of the scene.
     pub fn scene_state(&self) -> SceneState {
         self.scene.state()
     }
 
-    /// Why the scene cannot be shown: one sentence.
+    /// The reason why the scene cannot be shown, in one sentence.
     pub fn failure(&self) -> Option<&str> {
         self.scene.failure()
     }
@@ -575,7 +575,7 @@ impl Viewer {
         self.method.make_first(gl, &self.settings)?;
         log::info!("{}: {} triangles", shown.scene.name, shown.scene.triangle_count());
         self.scene.show(shown);
-        if self.tally.begin(self.now_ns) {
+        if self.stats.begin(self.now_ns) {
             self.method.restart_controller();
         }
         Ok(())

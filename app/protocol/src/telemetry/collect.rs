@@ -14,7 +14,7 @@ const PERIOD_NS: i64 = 1_000_000_000;
 /// Frames of the fastest display in a period, with room for a late line.
 const FRAMES: usize = 512;
 
-/// What the viewer says of itself in a line.
+/// The viewer's own part of a line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ViewerState {
     /// Stereo method.
@@ -27,7 +27,7 @@ pub struct ViewerState {
     pub render_scale: f32,
     /// Divisor of the ImBuffer's resolution, for pipelines with one.
     pub imbuffer: Option<u32>,
-    /// What the settings call this run.
+    /// The name of this run in the settings.
     pub run: Option<String>,
 }
 
@@ -116,7 +116,7 @@ impl Telemetry {
         self.process_ns = None;
     }
 
-    /// Whether a second has passed since the last line.
+    /// True if a second has passed since the last line.
     pub fn is_due(&self, now_ns: i64) -> bool {
         self.second.elapsed_ns(now_ns) >= PERIOD_NS
     }
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_session_on_battery() {
+    fn energy_on_battery_is_current_times_voltage_over_time() {
         let device = DeviceState {
             current_raw: Some(600_000),
             status: Some(BatteryStatus::Discharging),
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_known_of_the_device() {
+    fn an_unknown_device_has_no_power_figures() {
         let mut telemetry = Telemetry::default();
         let lines = run(&mut telemetry, &DeviceState::default(), 2);
         assert_eq!(lines[1].current_ma, None);

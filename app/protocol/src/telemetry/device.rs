@@ -1,14 +1,14 @@
-//! What the platform knows of the device.
+//! The state of the device.
 
 use super::power::BatteryStatus;
 
-/// What the platform knows of the device, asked about once a second. `None` wherever the device does not say.
+/// The state of the device, asked about once a second. `None` for every value that the device does not give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeviceState {
     /// Battery current as the device reports it (Android: `BATTERY_PROPERTY_CURRENT_NOW`), in whatever unit and
     /// sign it uses. Leave out the platform's "unsupported" value (`Integer.MIN_VALUE`).
     pub current_raw: Option<i64>,
-    /// Whether the battery charges.
+    /// The state of the battery.
     pub status: Option<BatteryStatus>,
     /// Battery voltage in millivolts.
     pub voltage_mv: Option<i32>,
@@ -16,7 +16,7 @@ pub struct DeviceState {
     pub level_percent: Option<i32>,
     /// Remaining charge in microampere-hours.
     pub charge_counter_uah: Option<i64>,
-    /// What the device is plugged into, 0 for nothing (Android: `EXTRA_PLUGGED`).
+    /// The kind of power supply, 0 for none (Android: `EXTRA_PLUGGED`).
     pub plugged: Option<i32>,
     /// Battery temperature in degrees Celsius.
     pub battery_celsius: Option<f32>,
@@ -26,7 +26,7 @@ pub struct DeviceState {
     pub thermal_status: Option<i32>,
     /// Forecast thermal headroom: 1 is severe throttling (`AThermal_getThermalHeadroom`). Leave out NaN.
     pub thermal_headroom: Option<f32>,
-    /// What the device was asked for and has: `sustained` (Android's sustained performance mode), `hints` (performance
+    /// The performance modes in use: `sustained` (Android's sustained performance mode), `hints` (performance
     /// hints), `sustained/hints` or `none`. Of headsets, whose runtime is asked, nothing is known.
     pub performance: Option<&'static str>,
 }

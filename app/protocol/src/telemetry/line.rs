@@ -9,7 +9,7 @@ use std::str::FromStr;
 use super::power::BatteryStatus;
 use super::text::{LineError, MISSING, Reader, VERSION, word};
 
-/// What the table calls the second number of `FPS=a/b`, the refresh rate.
+/// The table's name of the second number of `FPS=a/b`, the refresh rate.
 const REFRESH: &str = "FPS/";
 /// The key of the GPU time per frame, after which the stages' times stand in parentheses.
 const GPU: &str = "App";
@@ -64,7 +64,7 @@ pub struct Line {
     pub level_percent: Option<i32>,
     /// Remaining charge in microampere-hours.
     pub charge_uah: Option<i64>,
-    /// What the device is plugged into, 0 for nothing.
+    /// The kind of power supply, 0 for none.
     pub plugged: Option<i32>,
     /// Battery temperature in degrees Celsius.
     pub battery_celsius: Option<f64>,
@@ -80,11 +80,11 @@ pub struct Line {
     pub imbuffer: Option<u32>,
     /// Times between frames in this second.
     pub frames: Option<u32>,
-    /// Whether the battery charges.
+    /// The state of the battery.
     pub status: Option<BatteryStatus>,
-    /// What the settings call this run.
+    /// The name of this run in the settings.
     pub run: Option<String>,
-    /// What the device was asked for: [`DeviceState::performance`](super::DeviceState::performance).
+    /// The performance modes in use: [`DeviceState::performance`](super::DeviceState::performance).
     pub performance: Option<String>,
     /// Columns of the guard band that were drawn per frame; missing where it does not set its own width.
     pub guard_columns: Option<f64>,
@@ -94,11 +94,11 @@ pub struct Line {
 
 /// One key of the line and the value that it stands for.
 pub struct LineKey {
-    /// As in the line. The second number of `FPS=a/b`, the refresh rate, goes by the name `FPS/`.
+    /// The key in the line. The second number of `FPS=a/b`, the refresh rate, goes by the name `FPS/`.
     pub name: &'static str,
     /// Digits of a number after the point.
     pub decimals: usize,
-    /// What stands after a number.
+    /// The unit after a number.
     pub unit: &'static str,
     /// Lines of earlier versions of this program do not have it.
     came_later: bool,
@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_as_people_read_it() {
+    fn a_line_is_written_and_read_in_its_documented_form() {
         assert_eq!(
             example().to_string(),
             "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained,guard=17.5,undrawn=0"
@@ -455,7 +455,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_known_is_na_and_not_zero() {
+    fn unknown_values_are_na_and_not_zero() {
         let empty = Line { method: "yoro".into(), scene: "x".into(), ..Line::default() };
         let text = empty.to_string();
         assert_eq!(text.matches("na").count(), 26, "{text}");
@@ -498,7 +498,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_again(
+        fn parameters_survive_a_round_trip(
             fps in rounded(1), frame in rounded(2), mah in rounded(1), headroom in rounded(2),
             raw in proptest::option::of(any::<i64>()), stale in proptest::option::of(any::<u32>()),
             level in proptest::option::of(any::<i32>()), names in proptest::collection::vec("[a-z][a-z-]{0,8}", 0..6),

@@ -3,7 +3,7 @@
 //! By Android's specification the current is in microamperes and negative while the battery discharges. Some
 //! devices report milliamperes, and some are positive on discharge.
 
-/// Whether the battery charges, as Android's `BATTERY_STATUS_*`.
+/// The state of the battery, as Android's `BATTERY_STATUS_*`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BatteryStatus {
     /// Charging (2).
@@ -28,7 +28,7 @@ impl BatteryStatus {
         })
     }
 
-    /// As in the log line.
+    /// The name in the log line.
     pub fn name(self) -> &'static str {
         match self {
             BatteryStatus::Charging => "charging",
@@ -47,9 +47,9 @@ impl BatteryStatus {
 /// The unit in which a device reports its current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurrentUnit {
-    /// As specified.
+    /// Microamperes, as specified.
     Microamperes,
-    /// As some devices do.
+    /// Milliamperes, as some devices do.
     Milliamperes,
 }
 
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_is_missing() {
+    fn an_ambiguous_current_is_missing() {
         let mut current = CurrentNormalizer::default();
         assert_eq!(current.add(3_000, Some(Full), Some(1)), None);
         assert_eq!(current.add(0, Some(Discharging), Some(0)), None);

@@ -1,4 +1,4 @@
-//! What Linux says of this process.
+//! CPU time and memory of this process, from Linux.
 
 use std::fs;
 
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_files_of_linux() {
+    fn linuxs_files_are_parsed() {
         let stat = "4242 (a (b) c) S 1 2 3 4 5 6 7 8 9 10 250 150 0 0 20 0 12 0 100 200 300";
         assert_eq!(cpu_seconds(stat), Some(4.0));
         assert_eq!(cpu_seconds("4242 (x) S 1 2"), None);
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn this_process() {
+    fn this_process_has_memory_and_cpu_time() {
         let sample = ProcessSample::take();
         assert!(sample.resident_bytes.is_none_or(|b| b > 1 << 20));
         let later = ProcessSample { cpu_seconds: sample.cpu_seconds.map(|s| s + 1.5), ..sample };

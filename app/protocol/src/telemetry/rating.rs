@@ -11,10 +11,10 @@ use super::text::{LineError, Na, Reader, VERSION, fields, word};
 /// The first field of every line.
 const BEGIN: &str = "rating";
 
-/// What somebody thought of what was seen.
+/// One answer of a participant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rating {
-    /// Who.
+    /// The participant's name.
     pub participant: Option<String>,
     /// Number of the trial.
     pub trial: Option<u32>,
@@ -24,14 +24,14 @@ pub struct Rating {
     pub pipeline: Option<String>,
     /// Scene.
     pub scene: String,
-    /// What was asked.
+    /// The question.
     pub question: String,
     /// The answer, 1 for the worst.
     pub rating: f64,
 }
 
 impl Rating {
-    /// Whether a text begins as the line of an answer does.
+    /// True if a text begins as the line of an answer does.
     pub fn is_line(text: &str) -> bool {
         text.trim_start().strip_prefix(BEGIN).is_some_and(|rest| rest.starts_with(','))
     }
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_as_people_read_it() {
+    fn a_line_is_written_and_read_in_its_documented_form() {
         let text = "rating,v=1,participant=P03,trial=4,method=yoro,pipeline=gather,scene=street,question=image-quality,value=4.5";
         assert_eq!(example().to_string(), text);
         assert_eq!(text.parse(), Ok(example()));

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn known_figures() {
+    fn statistics_equal_numpys() {
         // numpy.mean, median, std(ddof=1), percentile(95), percentile(99) of the same samples.
         let summary = Summary::of(&[9.0, 2.0, 4.0, 4.0, 5.0, 5.0, 7.0, 4.0]).unwrap();
         assert_eq!((summary.count, summary.mean, summary.median), (8, 5.0, 4.5));
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn few_or_bad_samples() {
+    fn no_statistics_of_no_or_infinite_samples() {
         assert_eq!(Summary::of(&[]), None);
         assert_eq!(Summary::of(&[1.0, f64::NAN]), None);
         assert_eq!(median(&[1.0, f64::INFINITY]), None);

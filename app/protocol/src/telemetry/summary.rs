@@ -1,4 +1,4 @@
-//! What remains of a session at its end.
+//! The summary of a session.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use super::frames::SecondStatistics;
 use super::power::{Energy, LEAST_MILLIVOLTS};
 use super::text::{MISSING, Na, VERSION};
 
-/// What adds up over a session.
+/// Sums over a session.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Totals {
     frames: u64,
@@ -83,7 +83,7 @@ impl Totals {
     }
 }
 
-/// What remains of a session: one line at its end.
+/// The summary of a session: one line at its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SessionSummary {
     /// Length in seconds.
@@ -98,7 +98,7 @@ pub struct SessionSummary {
     pub frame_ms: Option<f64>,
     /// The largest of the seconds' 99th percentiles in milliseconds.
     pub worst_p99_ms: Option<f64>,
-    /// Whether the device was plugged in at any time, which makes its power figures worthless.
+    /// True if the device was plugged in at any time, which makes its power figures worthless.
     pub plugged: Option<bool>,
     /// Charge and energy by integration; missing when plugged in or not measured.
     pub energy: Option<Energy>,

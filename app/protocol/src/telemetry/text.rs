@@ -1,14 +1,14 @@
-//! What all log lines share: fields `key=value` between commas, and what stands for a missing value.
+//! The format of all log lines: fields `key=value` between commas, `na` for a missing value.
 
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
 /// The version of all lines, in the field `v`.
 pub const VERSION: u32 = 1;
-/// What stands for a missing value.
+/// The text of a missing value.
 pub(super) const MISSING: &str = "na";
 
-/// Why a text is not a line.
+/// An error in the text of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineError {
@@ -52,9 +52,9 @@ pub(super) fn word(text: &str) -> String {
 /// One field of a line; `value` is `None` without a `=`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field<'a> {
-    /// What comes before the first `=`.
+    /// The text before the first `=`.
     pub key: &'a str,
-    /// What comes after it.
+    /// The text after it.
     pub value: Option<&'a str>,
 }
 
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_of_metas_runtime_splits() {
+    fn a_line_of_metas_runtime_is_split_outside_parentheses() {
         let line = "FPS=72/72,Prd=38ms,Stale2/5/10/max=0/0/0/0,1171/441MHz,Temp=32.2C/0.0C,CPU&GPU=12.96ms,LCnt=2(DR72,LM2),GPU%=0.43";
         let found: Vec<Field> = fields(line).collect();
         assert_eq!(found.len(), 8);

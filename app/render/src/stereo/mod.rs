@@ -17,6 +17,7 @@ mod paper;
 mod readback;
 mod shading_reprojection;
 mod single_pass;
+mod substitute;
 mod synthesized;
 #[cfg(test)]
 mod tests;
@@ -38,6 +39,7 @@ use overlay::{DeferredOverlay, ForwardOverlay, Overlay};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 use shading_reprojection::ShadingReprojection;
 use single_pass::{DeferredPair, ForwardPair, PairTargets, SinglePass};
+pub use substitute::Substitute;
 use synthesized::Synthesized;
 
 /// A kind of renderer with what the methods do differently for it.

@@ -29,7 +29,7 @@ pub struct HeldHead {
     pub displayed: Quat,
 }
 
-/// What lives in the GL context.
+/// Objects that live in the GL context.
 struct Attached {
     gl: Rc<Context>,
     frame: StereoFrame,
@@ -88,7 +88,7 @@ impl Cardboard {
         &mut self.viewer
     }
 
-    /// As [`Viewer::attach`].
+    /// See [`Viewer::attach`].
     ///
     /// # Errors
     /// [`ViewerError::Gl`].
@@ -105,13 +105,13 @@ impl Cardboard {
         Ok(())
     }
 
-    /// As [`Viewer::detach`].
+    /// See [`Viewer::detach`].
     pub fn detach(&mut self) {
         self.attached = None;
         self.viewer.detach();
     }
 
-    /// Whether there is a GL context.
+    /// True if there is a GL context.
     pub fn is_attached(&self) -> bool {
         self.attached.is_some()
     }
@@ -143,16 +143,17 @@ impl Cardboard {
         Ok(())
     }
 
-    /// As [`Viewer::configure`].
+    /// See [`Viewer::configure`].
     ///
     /// # Errors
     /// As [`Viewer::configure`], and [`ViewerError::Params`]; the settings before stay.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         let before = self.viewer.settings();
         let optics_differ = (settings.chromatic, settings.screen) != (before.chromatic, before.screen);
-        let params = match settings.viewer == before.viewer {
-            true => None,
-            false => Some(ViewerParams::find_in(&settings.viewer, folders)?),
+        let params = if settings.viewer == before.viewer {
+            None
+        } else {
+            Some(ViewerParams::find_in(&settings.viewer, folders)?)
         };
         self.viewer.configure(settings, folders)?;
         let lenses_differ = params.is_some() || optics_differ;
@@ -167,10 +168,10 @@ impl Cardboard {
         Ok(())
     }
 
-    /// As [`Viewer::event`].
+    /// See [`Viewer::event`].
     ///
     /// # Errors
-    /// As [`Viewer::event`].
+    /// See [`Viewer::event`].
     pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
         let action = self.viewer.event(event)?;
         if action == Action::Recenter {
@@ -189,13 +190,13 @@ impl Cardboard {
         self.held = head;
     }
 
-    /// As [`Viewer::pause`]; the head stands still.
+    /// See [`Viewer::pause`]; the head stands still.
     pub fn pause(&mut self) {
         self.tracker.pause();
         self.viewer.pause();
     }
 
-    /// As [`Viewer::resume`].
+    /// See [`Viewer::resume`].
     pub fn resume(&mut self) {
         self.viewer.resume();
     }
@@ -203,7 +204,7 @@ impl Cardboard {
     /// [`Cardboard::render`] and [`Cardboard::present`].
     ///
     /// # Errors
-    /// As those.
+    /// Those of the calls above.
     pub fn frame(&mut self, window: &Destination, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
         self.render(timing)?;
         self.present(window, timing)
@@ -213,7 +214,7 @@ impl Cardboard {
     /// that is a progress bar.
     ///
     /// # Errors
-    /// As [`Viewer::render_eyes`].
+    /// See [`Viewer::render_eyes`].
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
         self.viewer.begin(timing);
         let head = self.head(timing).0;
@@ -242,7 +243,7 @@ impl Cardboard {
     /// now. May be called again for the same frame, when the next one is late.
     ///
     /// # Errors
-    /// As [`Viewer::end`].
+    /// See [`Viewer::end`].
     pub fn present(
         &mut self,
         window: &Destination,
@@ -263,7 +264,7 @@ impl Cardboard {
         &self.optics
     }
 
-    /// Where the head points.
+    /// The direction of the head.
     pub fn tracker(&self) -> &HeadTracker {
         &self.tracker
     }

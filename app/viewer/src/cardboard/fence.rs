@@ -1,4 +1,4 @@
-//! How far the GPU is.
+//! A fence: waits until the GPU has finished earlier commands.
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use glow::HasContext as _;
 use yoro_gl::Context;
 
 /// A GPU that takes longer for a frame is not waited for: it may have hung, or lost its context.
-const PATIENCE: Duration = Duration::from_millis(250);
+const TIMEOUT: Duration = Duration::from_millis(250);
 
 /// A place in the stream of commands that the GPU has passed, or is still to pass.
 pub(super) struct Fence {
@@ -38,7 +38,7 @@ impl Fence {
                 self.gl.raw().client_wait_sync(
                     place,
                     glow::SYNC_FLUSH_COMMANDS_BIT,
-                    PATIENCE.as_nanos() as i32,
+                    TIMEOUT.as_nanos() as i32,
                 )
             };
             self.clear();

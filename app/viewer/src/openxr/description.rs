@@ -1,9 +1,9 @@
-//! What a headset's sessions should be like, and what they and their frames are like.
+//! Options of a headset's sessions, and descriptions of sessions and frames.
 
 use crate::frame::FrameReport;
 use yoro::eyes::EyePair;
 
-/// What a session should be like, besides the viewer's settings.
+/// Options of a session, besides the viewer's settings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
     /// The activity.
@@ -11,7 +11,7 @@ pub struct Options {
     pub android: Option<super::graphics::Android>,
 }
 
-/// What runtime, system and session are like.
+/// A description of runtime, system and session.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Description {
@@ -27,17 +27,17 @@ pub struct Description {
     pub size: [u32; 2],
     /// Format of the images.
     pub format: String,
-    /// Whether both eyes are layers of one swapchain.
+    /// True if both eyes are layers of one swapchain.
     pub array: bool,
-    /// Whether eyes are drawn straight into the runtime's images.
+    /// True if eyes are drawn straight into the runtime's images.
     pub direct: bool,
     /// Format of the depth that is submitted, if any.
     pub depth: Option<String>,
-    /// Whether the lenses hide a part of the images.
+    /// True if the lenses hide a part of the images.
     pub mask: bool,
     /// Refresh rates that the display offers, in Hz, where the runtime says.
     pub refresh_rates: Vec<f32>,
-    /// Whether controllers are used.
+    /// True if controllers are used.
     pub input: bool,
 }
 
@@ -73,7 +73,7 @@ pub struct Capture {
 /// A frame that was handed to the runtime.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// What the viewer says of it; none for a frame without images, which the runtime asks for while nobody looks.
+    /// The viewer's report; `None` for a frame without images, which the runtime asks for while nobody looks.
     pub report: Option<FrameReport>,
     /// Time that this program's thread worked on it, in milliseconds; waiting for the runtime does not count.
     pub cpu_ms: f64,

@@ -1,4 +1,4 @@
-//! What can go wrong with a headset.
+//! Errors of a headset.
 
 use openxr as xr;
 use xr::sys;
@@ -6,7 +6,7 @@ use xr::sys;
 use super::runtime::NotFound;
 use yoro_gl::GlError;
 
-/// Why a headset cannot be used, or can no longer be used. Each is one sentence with the remedy.
+/// A reason why a headset cannot be used, or no longer. Each is one sentence with the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum XrError {
@@ -18,7 +18,7 @@ pub enum XrError {
     Call {
         /// The function's name in the specification.
         function: &'static str,
-        /// What it returned.
+        /// The result that it returned.
         result: sys::Result,
     },
     /// An extension is missing.
@@ -50,7 +50,7 @@ pub enum XrError {
     GivenUp {
         /// Number of sessions.
         sessions: u32,
-        /// Why the last one failed.
+        /// The failure of the last one.
         last: Box<XrError>,
     },
     /// The GL context cannot be used.
@@ -62,7 +62,7 @@ pub enum XrError {
 }
 
 impl XrError {
-    /// Whether the session or the whole instance is gone, whoever is to blame.
+    /// True if the session or the whole instance is gone, whoever is to blame.
     pub fn is_loss(&self) -> bool {
         matches!(
             self,
@@ -75,7 +75,7 @@ impl XrError {
     }
 }
 
-/// What to do about a result.
+/// Returns the remedy for a result.
 fn remedy(function: &str, result: sys::Result) -> &'static str {
     match result {
         sys::Result::ERROR_FORM_FACTOR_UNAVAILABLE => "connect the headset, switch it on and start again",
@@ -109,12 +109,12 @@ pub(super) fn call<T>(function: &'static str, result: xr::Result<T>) -> Result<T
     result.map_err(|result| XrError::Call { function, result })
 }
 
-/// As [`call`], for functions that are called without the crate's wrapper.
+/// Does what [`call`] does, for functions that are called without the crate's wrapper.
 pub(super) fn check(function: &'static str, result: sys::Result) -> Result<sys::Result, XrError> {
     if result.into_raw() >= 0 { Ok(result) } else { Err(XrError::Call { function, result }) }
 }
 
-/// What an application can do without: says why it is missing and goes on, unless the session is gone.
+/// Takes the result of something optional: logs why it is missing and goes on, unless the session is gone.
 pub(super) fn optional<T>(what: &str, result: Result<T, XrError>) -> Result<Option<T>, XrError> {
     match result {
         Ok(value) => Ok(Some(value)),

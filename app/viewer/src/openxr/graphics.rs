@@ -39,7 +39,7 @@ impl Android {
     }
 }
 
-/// What xrCreateSession yields.
+/// The result of xrCreateSession.
 pub(super) type NewSession = (xr::Session<xr::OpenGlEs>, xr::FrameWaiter, xr::FrameStream<xr::OpenGlEs>);
 
 /// xrCreateSession.

@@ -22,11 +22,11 @@ const MOST_FAILURES: u32 = 3;
 /// A session that has shown so many frames was a good one.
 const GOOD_FRAMES: u32 = 200;
 /// A runtime that was asked to end a session and does not is left alone after this.
-const EXIT_PATIENCE: Duration = Duration::from_secs(3);
+const EXIT_TIMEOUT: Duration = Duration::from_secs(3);
 /// States that are remembered.
 const MOST_STATES: usize = 64;
 
-/// What a call of [`Headset::step`] has led to.
+/// The result of a call of [`Headset::step`].
 #[derive(Debug)]
 pub enum Step {
     /// The runtime wants no frame now; ask again in some milliseconds.
@@ -118,7 +118,7 @@ impl Headset {
         if self.is_over {
             return Ok(Step::Ended);
         }
-        let is_late = self.exit.is_some_and(|since| since.elapsed() > EXIT_PATIENCE);
+        let is_late = self.exit.is_some_and(|since| since.elapsed() > EXIT_TIMEOUT);
         if is_late || self.is_refused {
             if is_late {
                 log::warn!(
@@ -217,7 +217,7 @@ impl Headset {
         self.is_refused = true;
     }
 
-    /// Whether the session is being ended.
+    /// True if the session is being ended.
     pub fn is_exiting(&self) -> bool {
         self.exit.is_some()
     }
@@ -234,7 +234,7 @@ impl Headset {
         self.capture = true;
     }
 
-    /// Whether the runtime wants frames: then [`Headset::step`] waits for the display.
+    /// True if the runtime wants frames: then [`Headset::step`] waits for the display.
     pub fn is_running(&self) -> bool {
         self.session.as_ref().is_some_and(Session::is_running)
     }
@@ -249,7 +249,7 @@ impl Headset {
         &mut self.viewer
     }
 
-    /// What runtime, system and session are like.
+    /// A description of runtime, system and session.
     pub fn description(&self) -> &Description {
         &self.description
     }

@@ -14,11 +14,11 @@ use yoro_context::Graphics;
 use yoro_gl::{Context, Destination, ForeignTarget};
 
 /// A compositor that holds an image for longer than this is stuck.
-const PATIENCE: Duration = Duration::from_secs(3);
+const TIMEOUT: Duration = Duration::from_secs(3);
 /// One wait; in between the program stays answerable.
 const WAIT_NS: i64 = 250_000_000;
 
-/// What the images of a swapchain are like.
+/// The kind of a swapchain's images.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kind {
     /// GL's internal format.
@@ -48,9 +48,10 @@ impl Images {
         session: &xr::Session<xr::OpenGlEs>,
         kind: Kind,
     ) -> Result<Images, XrError> {
-        let usage = match kind.is_depth {
-            true => xr::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT,
-            false => xr::SwapchainUsageFlags::COLOR_ATTACHMENT | xr::SwapchainUsageFlags::SAMPLED,
+        let usage = if kind.is_depth {
+            xr::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT
+        } else {
+            xr::SwapchainUsageFlags::COLOR_ATTACHMENT | xr::SwapchainUsageFlags::SAMPLED
         };
         let swapchain = session.create_swapchain(&xr::SwapchainCreateInfo {
             create_flags: xr::SwapchainCreateFlags::EMPTY,
@@ -111,7 +112,7 @@ impl Images {
             if check("xrWaitSwapchainImage", result)? != sys::Result::TIMEOUT_EXPIRED {
                 break;
             }
-            if begin.elapsed() > PATIENCE {
+            if begin.elapsed() > TIMEOUT {
                 return Err(XrError::Call { function: "xrWaitSwapchainImage", result });
             }
         }
@@ -140,7 +141,7 @@ impl Images {
         self.framebuffers.clear();
     }
 
-    /// Where to draw a layer of the image that was acquired.
+    /// Returns the destination of a layer of the image that was acquired.
     pub fn destination(&self, layer: u32, size: [u32; 2]) -> Option<Destination> {
         let image = self.framebuffers.get(self.current?)?;
         Some(image.get(layer as usize)?.part(size))
@@ -181,7 +182,7 @@ impl EyeImages {
         }
     }
 
-    /// Whether both eyes are layers of one swapchain.
+    /// True if both eyes are layers of one swapchain.
     pub fn is_array(&self) -> bool {
         self.0.len() == 1
     }
@@ -206,7 +207,7 @@ impl EyeImages {
         self.0.iter_mut().for_each(Images::close);
     }
 
-    /// Where to draw both eyes.
+    /// Returns the destinations of both eyes.
     pub fn destinations(&self, size: [u32; 2]) -> Option<[Destination; 2]> {
         let [left, right] = Eye::BOTH.map(|eye| {
             let (images, layer) = self.of(eye);

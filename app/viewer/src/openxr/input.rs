@@ -31,7 +31,7 @@ const PICO: [&str; 3] = [
     "/interaction_profiles/bytedance/pico4s_controller",
 ];
 
-/// What the controls say at one time.
+/// The state of the controls at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Controls {
     select: bool,
@@ -70,12 +70,12 @@ impl Button {
     }
 }
 
-/// What was pressed before.
+/// The state of the controls before.
 #[derive(Clone, Copy, Debug, Default)]
 struct Memory {
     select: Button,
     menu: Button,
-    /// When the pushed stick last did something.
+    /// The time at which the pushed stick last did something.
     pushed_ns: Option<i64>,
 }
 
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn the_stick_counts_once_until_it_is_let_go() {
+    fn a_pushed_stick_counts_once_until_released() {
         let events = play(&[
             (0, stick(0.9, 0.1)),
             (10, stick(1.0, 0.0)),
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn with_a_squeeze_the_eyes_move_apart() {
+    fn stick_and_squeeze_change_the_ipd() {
         let apart = Controls { squeeze: true, ..stick(0.0, 1.0) };
         let closer = Controls { squeeze: true, ..stick(-1.0, 0.0) };
         let events = play(&[(0, apart), (100, apart), (260, apart), (300, stick(0.0, 0.0)), (310, closer)]);

@@ -1,4 +1,4 @@
-//! What the lenses hide of each eye's image (XR_KHR_visibility_mask).
+//! The mask of the pixels that the lenses hide in each eye's image (XR_KHR_visibility_mask).
 
 use std::rc::Rc;
 
@@ -51,7 +51,7 @@ impl Mask {
         Ok(())
     }
 
-    /// Whether anything is hidden.
+    /// True if anything is hidden.
     pub fn hides(&self) -> bool {
         self.meshes.iter().any(Option::is_some)
     }

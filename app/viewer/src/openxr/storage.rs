@@ -1,4 +1,4 @@
-//! How finished images get into the runtime's images with the colours that they have.
+//! Writes finished images into the runtime's images without changing their colours.
 //!
 //! Finished images are display-referred sRGB. The runtime's images should be stored as just that (SRGB8_ALPHA8), but
 //! OpenGL ES encodes what is written to such a framebuffer once more, unless GL_EXT_sRGB_write_control turns it off.
@@ -47,7 +47,7 @@ pub(super) fn choose(wanted: &[u32], offered: &[u32]) -> Option<u32> {
     wanted.iter().copied().find(|format| offered.contains(format))
 }
 
-/// Whether the driver can be told not to encode what is written to sRGB framebuffers.
+/// True if the driver can be told not to encode what is written to sRGB framebuffers.
 fn has_control(gl: &Context) -> bool {
     gl.raw().supported_extensions().contains("GL_EXT_sRGB_write_control")
 }
@@ -56,17 +56,14 @@ fn has_control(gl: &Context) -> bool {
 fn set_encoding(gl: &Context, on: bool) {
     // SAFETY: a valid enum with the extension.
     unsafe {
-        match on {
-            true => gl.raw().enable(glow::FRAMEBUFFER_SRGB),
-            false => gl.raw().disable(glow::FRAMEBUFFER_SRGB),
-        }
+        if on { gl.raw().enable(glow::FRAMEBUFFER_SRGB) } else { gl.raw().disable(glow::FRAMEBUFFER_SRGB) }
     }
 }
 
-/// How eyes get into the runtime's images.
+/// The way of the eyes into the runtime's images.
 pub(super) struct Storage {
     gl: Rc<Context>,
-    /// Where eyes are drawn first, and the pass that decodes them.
+    /// The target that eyes are drawn into first, and the pass that decodes them.
     detour: Option<(StereoFrame, Program)>,
 }
 
@@ -85,7 +82,7 @@ impl Storage {
         Ok(Storage { gl: gl.clone(), detour: detour.transpose()? })
     }
 
-    /// Whether eyes are drawn straight into the runtime's images.
+    /// True if eyes are drawn straight into the runtime's images.
     pub fn is_direct(&self) -> bool {
         self.detour.is_none()
     }
@@ -170,7 +167,7 @@ mod tests {
 
     /// Both ways end with the same bits, in a framebuffer that is sRGB as in one that is not.
     #[test]
-    fn colours_arrive_as_they_are() {
+    fn colours_reach_the_runtime_unchanged() {
         let headless = Headless::open(Backend::Egl).unwrap();
         let gl = headless.gl();
         let objects = gl.object_count();

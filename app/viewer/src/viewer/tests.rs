@@ -66,7 +66,7 @@ impl Run {
 }
 
 #[test]
-fn from_loading_to_the_end_of_a_session() {
+fn a_session_runs_from_loading_to_its_summary() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
     let mut run = Run::new(gl, &["duration=0.5", "auto-exit=true", "adaptive=true"]);
@@ -114,7 +114,7 @@ fn from_loading_to_the_end_of_a_session() {
 }
 
 #[test]
-fn events_change_what_is_seen() {
+fn events_change_method_ipd_hud_and_viewpoint() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
     let mut run = Run::new(gl, &["hud=false", "methods=yoro,conventional,mono", "ipd=0.063"]);
@@ -178,7 +178,7 @@ fn sensors_turn_the_picture() {
 }
 
 #[test]
-fn a_scene_that_cannot_be_loaded_is_said_in_view() {
+fn a_scene_that_cannot_be_loaded_is_explained_in_view() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("room.obj"), "f 1 2 3\n").unwrap();
@@ -263,7 +263,7 @@ fn with(viewer: &Cardboard, pairs: &[&str]) -> Settings {
 }
 
 #[test]
-fn what_differs_changes_and_nothing_else() {
+fn only_settings_that_differ_take_effect() {
     let headless = Headless::open(Backend::Auto).unwrap();
     let mut viewer = ready(&headless);
     viewer.event(Event::IpdUp).unwrap();

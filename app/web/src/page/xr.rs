@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::{DepthRange, Eye, EyePair, GuardBand};
+use yoro::eyes::{DepthRange, Eye, EyePair};
 use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
 use yoro_lenses::{Content, Hud, Placement};
-use yoro_render::stereo::{DepthTarget, EyeTarget, Method, StereoError, StereoFrame, StereoMethod};
+use yoro_render::stereo::{DepthTarget, EyeTarget, StereoError, StereoFrame, StereoMethod, Substitute};
 use yoro_render::{DepthCopy, PreparedScene};
 
 use super::show::Show;
@@ -23,7 +23,7 @@ pub struct Headset {
     copy: DepthCopy,
     hud: Hud,
     /// Renders both eyes where neither can be synthesized from the other.
-    substitute: Option<Box<dyn StereoMethod>>,
+    substitute: Substitute,
 }
 
 impl Headset {
@@ -38,7 +38,7 @@ impl Headset {
             depth: [depth()?, depth()?],
             copy: DepthCopy::new(gl)?,
             hud: Hud::new(gl)?,
-            substitute: None,
+            substitute: Substitute::default(),
         })
     }
 
@@ -71,12 +71,8 @@ impl Headset {
         text: &str,
     ) -> Result<bool, StereoError> {
         let Headset { frame, depth, copy, hud, substitute } = self;
-        let fits = !settings.method.needs_aligned_eyes() || pair.synthesis(GuardBand::None).is_ok();
-        let method = match substitute {
-            _ if fits => method,
-            Some(substitute) => substitute.as_mut(),
-            none => none.insert(settings.create(gl, Method::Conventional)?).as_mut(),
-        };
+        let fits = Substitute::reason(settings.method, pair).is_none();
+        let method = if fits { method } else { substitute.get(|method| settings.create(gl, method))? };
         let colors = frame.targets();
         let to = [0, 1].map(|i| EyeTarget {
             depth: Some(DepthTarget { to: Destination::whole(&depth[i]), copy }),

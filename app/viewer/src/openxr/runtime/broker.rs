@@ -15,7 +15,7 @@ pub trait Broker {
     /// that the table does not have); none where no provider answers (a null cursor).
     ///
     /// # Errors
-    /// What the system said, an exception for instance.
+    /// The system's message, an exception for instance.
     fn query(&self, uri: &str, columns: &[&str]) -> Result<Option<Rows>, String>;
 }
 

@@ -1,4 +1,4 @@
-//! Why a place led to no runtime.
+//! Reasons why a place led to no runtime.
 
 use std::fmt;
 use std::io;
@@ -16,7 +16,7 @@ pub struct NotFound {
 }
 
 impl NotFound {
-    /// Whether nothing at all is installed: no place names a library. A phone is like this; anything else is a runtime
+    /// True if nothing at all is installed: no place names a library. A phone is like this; anything else is a runtime
     /// that is there and does not work.
     pub fn nothing_installed(&self) -> bool {
         self.attempts.iter().all(|(place, failure)| {
@@ -41,7 +41,7 @@ impl fmt::Display for NotFound {
 
 impl std::error::Error for NotFound {}
 
-/// What went wrong at one place. Each says which step, and with which file, library or broker.
+/// A failure at one place. Each names the step, and the file, library or broker.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Failure {
@@ -64,7 +64,7 @@ pub enum Failure {
     Manifest {
         /// The manifest.
         path: PathBuf,
-        /// What is wrong where.
+        /// The mistake and its position.
         source: serde_json::Error,
     },
     /// The manifest is of a format that is not known.
@@ -86,7 +86,7 @@ pub enum Failure {
     Broker {
         /// The authority asked.
         authority: String,
-        /// What the system said.
+        /// The system's message.
         reason: String,
     },
     /// The broker knows no active runtime for this architecture.
@@ -116,7 +116,7 @@ pub enum Failure {
     Open {
         /// The library.
         library: PathBuf,
-        /// What the dynamic linker said.
+        /// The dynamic linker's message.
         reason: String,
     },
     /// The library is not what it should be.

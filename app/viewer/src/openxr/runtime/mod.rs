@@ -60,7 +60,7 @@ pub struct Runtime {
     found: Found,
 }
 
-/// What was found where; displayed, it is the one line for the log.
+/// The runtime that was found, and its place; `Display` writes the one line for the log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// The place that led to the library.
@@ -93,7 +93,7 @@ impl Runtime {
         self.get_instance_proc_addr
     }
 
-    /// What was found where.
+    /// The runtime that was found, and its place.
     pub fn found(&self) -> &Found {
         &self.found
     }

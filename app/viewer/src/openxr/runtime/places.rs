@@ -1,4 +1,4 @@
-//! Where a runtime may be, by the conventions of each system.
+//! The places where a runtime may be, by the conventions of each system.
 
 use std::ffi::OsString;
 use std::fmt;

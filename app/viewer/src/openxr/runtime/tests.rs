@@ -136,7 +136,7 @@ fn damaged_manifests_are_named() {
 }
 
 #[test]
-fn a_library_that_is_missing_or_none_is_named() {
+fn a_missing_or_damaged_library_is_named() {
     let text = |path: &str| json!({ "file_format_version": "1.0.0", "runtime": { "library_path": path } });
     let failure = Written::new(text("./absent.so")).failure();
     assert!(
@@ -149,7 +149,7 @@ fn a_library_that_is_missing_or_none_is_named() {
 }
 
 #[test]
-fn negotiations_that_fail_are_told() {
+fn failed_negotiations_name_the_reason() {
     let negotiation = |symbol| Written::fixture(&[("xrNegotiateLoaderRuntimeInterface", symbol)]).failure();
     let cases = [
         ("negotiate_refuse", "libfixture.so refuses loader interface 1 with OpenXR 1"),
@@ -177,7 +177,7 @@ fn java(vm: &mut u32, activity: &mut u32) -> JavaContext {
 }
 
 #[test]
-fn java_is_introduced_before_or_after_the_negotiation() {
+fn java_is_passed_before_or_after_the_negotiation() {
     let (mut vm, mut activity, mut wrong) = (17, 4, 0);
     let right = java(&mut vm, &mut activity);
     let wrong = java(&mut wrong, &mut activity);
@@ -194,7 +194,7 @@ fn java_is_introduced_before_or_after_the_negotiation() {
 }
 
 #[test]
-fn a_loader_wins_and_need_not_be_there() {
+fn a_loader_is_preferred_and_optional() {
     let manifest = Written::fixture(&[]);
     let places = |loader: &Path| [Place::Loader(loader.into()), Place::Manifest(manifest.path())];
     let runtime = find(&places(fixture()), &NoBroker, None).unwrap();
@@ -339,7 +339,7 @@ fn places_follow_the_conventions() {
 }
 
 #[test]
-fn nowhere_is_listed_in_one_line() {
+fn all_failures_are_listed_in_one_line() {
     let places = [Place::Manifest("/absent/a.json".into()), Place::Manifest("/absent/b.json".into())];
     let error = find(&places, &NoBroker, None).unwrap_err();
     assert!(error.nothing_installed());

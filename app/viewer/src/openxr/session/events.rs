@@ -1,4 +1,4 @@
-//! What the runtime says between frames.
+//! Events of the runtime between frames.
 
 use openxr as xr;
 use xr::sys;

@@ -8,6 +8,7 @@ use crate::openxr::error::{XrError, call};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
 use yoro_protocol::Settings;
+use yoro_render::stereo::Substitute;
 
 /// Half of the angle beyond which no frustum makes sense, in radians.
 const WIDEST: f32 = 1.55;
@@ -17,7 +18,7 @@ const SHORTEST: f32 = 1e-3;
 const MOST_GROWTH: f32 = 1.5;
 
 impl Session {
-    /// Where the eyes will be, as the runtime has them; none while it does not know.
+    /// Returns the eyes as the runtime predicts them; `None` while it does not know.
     pub(super) fn locate(
         &self,
         settings: &Settings,
@@ -47,10 +48,7 @@ impl Session {
 
     /// Eyes that the viewer's method can do, near those of the runtime.
     pub(super) fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
-        let reason = match viewer.method().needs_aligned_eyes() {
-            true => native.synthesis(GuardBand::None).err(),
-            false => None,
-        };
+        let reason = Substitute::reason(viewer.method(), &native);
         let aligned = match reason {
             None => None,
             Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(native.evened()),
@@ -130,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quaternions_are_normalised_and_those_that_are_none_refused() {
+    fn quaternions_are_normalised_or_refused() {
         let pose = |w: f32, x: f32| xr::Posef {
             orientation: xr::Quaternionf { w, x: 0.0, y: 0.0, z: 0.0 },
             position: xr::Vector3f { x, y: 1.6, z: 0.0 },
@@ -145,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn fields_of_view_that_are_none_are_refused() {
+    fn impossible_fields_of_view_are_refused() {
         let fov = xr::Fovf { angle_left: -0.9, angle_right: 0.7, angle_up: 0.8, angle_down: -0.6 };
         let frustum = to_frustum(&fov).unwrap();
         assert!((frustum.left + 0.9f32.tan()).abs() < 1e-6 && frustum.bottom < 0.0);

@@ -14,7 +14,7 @@ use yoro_gl::Destination;
 use yoro_protocol::Ipd;
 use yoro_render::stereo::{DepthTarget, EyeTarget};
 
-/// What is shown of a frame.
+/// The layers of a frame.
 pub(super) struct Layers {
     pub eyes: Option<EyePair>,
     pub panel: Option<sys::CompositionLayerQuad>,

@@ -1,4 +1,4 @@
-//! How a session begins: the instance, its system, and everything that frames are made of.
+//! Opens a session: the instance, its system, and everything that frames are made of.
 
 use std::rc::Rc;
 
@@ -305,10 +305,8 @@ fn ask_refresh_rates(session: &xr::Session<xr::OpenGlEs>) -> Result<Vec<f32>, Xr
 
 /// Size of the images: what is recommended, scaled.
 fn image_size(recommended: [u32; 2], scale: f32, limit: [u32; 2]) -> [u32; 2] {
-    let scaled = |n: u32| match scale == 1.0 {
-        true => n,
-        false => ((n as f32 * scale / SIZE_STEP).ceil() * SIZE_STEP) as u32,
-    };
+    let scaled =
+        |n: u32| if scale == 1.0 { n } else { ((n as f32 * scale / SIZE_STEP).ceil() * SIZE_STEP) as u32 };
     [0, 1].map(|i| scaled(recommended[i]).clamp(1, limit[i].max(1)))
 }
 

@@ -17,7 +17,7 @@ use yoro_gl::Context;
 use yoro_protocol::Performance;
 use yoro_render::DepthCopy;
 
-/// What a step has led to.
+/// The result of a step.
 pub enum Progress {
     Idle,
     Frame(Frame),
@@ -27,7 +27,7 @@ pub enum Progress {
 /// The HUD's own images.
 pub struct PanelImages {
     pub images: Images,
-    /// What they show: [`Panel::version`](crate::Panel::version).
+    /// The version of the panel that they show: [`Panel::version`](yoro_lenses::Panel::version).
     pub version: Option<u64>,
 }
 
@@ -42,9 +42,9 @@ pub struct Depth {
 pub struct Spaces {
     /// The head.
     pub head: xr::Space,
-    /// Where the runtime says that straight ahead is.
+    /// The runtime's straight ahead.
     pub base: xr::Space,
-    /// Where the user says so.
+    /// The user's straight ahead.
     pub ahead: xr::Space,
 }
 
@@ -68,9 +68,9 @@ pub struct Session {
     pub(super) blend: xr::EnvironmentBlendMode,
     pub(super) state: xr::SessionState,
     pub(super) is_running: bool,
-    /// What was asked of the runtime by extensions.
+    /// The requests that were made by extensions.
     pub(super) applied: Option<(Option<f32>, Performance)>,
-    /// Why the eyes are not rendered as the runtime locates them.
+    /// The reason why the eyes are not rendered as the runtime locates them, if so.
     pub(super) realigned: Option<EyesError>,
     pub(super) recenter: bool,
     pub(super) events: Vec<Event>,
@@ -83,7 +83,7 @@ impl Session {
         &self.description
     }
 
-    /// Whether the runtime wants frames.
+    /// True if the runtime wants frames.
     pub fn is_running(&self) -> bool {
         self.is_running
     }

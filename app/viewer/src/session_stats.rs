@@ -1,4 +1,4 @@
-//! What a session counts and asks.
+//! Statistics and questions of a session.
 
 use glam::Quat;
 
@@ -8,21 +8,21 @@ use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 use yoro_render::stereo::GuardBandUse;
 
-/// What is counted and asked from the time that a scene comes into view to the end of the session.
+/// Counts frames and asks questions from the time that a scene comes into view to the end of the session.
 #[derive(Default)]
-pub(crate) struct Tally {
+pub(crate) struct SessionStats {
     telemetry: Telemetry,
     last_line: Option<Line>,
     celsius: Option<f32>,
-    /// When the scene came into view.
+    /// The time at which the scene came into view.
     begin_ns: Option<i64>,
-    /// What is asked after the session; none before its end.
+    /// The questions after the session; `None` before its end.
     questionnaire: Option<Questionnaire>,
     ratings: Vec<Rating>,
     is_over: bool,
 }
 
-impl Tally {
+impl SessionStats {
     /// A scene comes into view; true when a session begins with it. One that is only back after a lost context goes
     /// on.
     pub fn begin(&mut self, now_ns: i64) -> bool {
@@ -57,12 +57,12 @@ impl Tally {
         self.telemetry.frame(now_ns, refresh_hz)
     }
 
-    /// As [`Telemetry::guard_band`].
+    /// Adds the use of the guard band in a frame.
     pub fn guard_band(&mut self, used: GuardBandUse) {
         self.telemetry.guard_band(used.columns, used.undrawn);
     }
 
-    /// Whether a second has passed since the last line.
+    /// True if a second has passed since the last line.
     pub fn is_line_due(&self, now_ns: i64) -> bool {
         self.telemetry.is_due(now_ns)
     }
@@ -89,7 +89,7 @@ impl Tally {
         self.telemetry.summary(now_ns)
     }
 
-    /// Whether the session's time is up.
+    /// True if the session's time is up.
     pub fn is_time_up(&self, settings: &Settings, now_ns: i64) -> bool {
         let shown_ns = self.begin_ns.map_or(0, |begin| now_ns - begin);
         settings.duration.is_some_and(|s| shown_ns as f64 >= s as f64 * 1e9)
@@ -127,7 +127,7 @@ impl Tally {
         &self.ratings
     }
 
-    /// Whether the session is over.
+    /// True if the session is over.
     pub fn is_over(&self) -> bool {
         self.is_over
     }

@@ -1,0 +1,33 @@
+//! Two real renders in place of a method that cannot use a pair of eyes.
+
+use super::method::StereoMethod;
+use yoro::eyes::{EyePair, EyesError, GuardBand};
+use yoro_gl::GlError;
+use yoro_protocol::Method;
+
+/// Renders both eyes where neither can be synthesized from the other, as with canted eyes. Nothing is compiled before it
+/// is needed.
+#[derive(Default)]
+pub struct Substitute(Option<Box<dyn StereoMethod>>);
+
+impl Substitute {
+    /// Returns the reason why a method cannot use a pair of eyes, if so.
+    pub fn reason(method: Method, pair: &EyePair) -> Option<EyesError> {
+        if method.needs_aligned_eyes() { pair.synthesis(GuardBand::None).err() } else { None }
+    }
+
+    /// Returns the substitute, made by `create` if it is needed for the first time.
+    ///
+    /// # Errors
+    /// Those of `create`.
+    pub fn get(
+        &mut self,
+        create: impl FnOnce(Method) -> Result<Box<dyn StereoMethod>, GlError>,
+    ) -> Result<&mut dyn StereoMethod, GlError> {
+        let made = match self.0.take() {
+            Some(made) => made,
+            None => create(Method::Conventional)?,
+        };
+        Ok(self.0.insert(made).as_mut())
+    }
+}
