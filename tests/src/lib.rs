@@ -36,3 +36,8 @@ pub fn on_every_backend(body: impl Fn(&Rc<Context>) -> anyhow::Result<()>) -> an
     }
     Ok(())
 }
+
+/// The code of the project's README is compiled with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -1,8 +1,9 @@
 //! Render one eye, synthesize the other: stereo from the colour and depth of a single view.
 //!
-//! [`eyes`] says where the eyes are and how pixels move between them; [`synthesis`] takes two textures of one eye and
-//! draws the other, on OpenGL (feature `gl`, a default) in a context that the caller lends. With the feature `vulkan`,
-//! `yoro::vulkan` records the same passes into a command buffer.
+//! [`eyes`] takes poses and fields of view, and gives the view to render and how its pixels move to the other eye.
+//! [`synthesis`] takes the colour and depth of that view and draws the other eye: on OpenGL (feature `gl`, on by default)
+//! in a context that the caller lends, on Vulkan (feature `vulkan`) into the caller's command buffer.
+//! This crate must never know a scene, a renderer, a window, a file or a command line: an engine brings its own.
 //!
 //! An engine renders [`eyes::SynthesisViews::source`] with its own code, gives colour and depth to
 //! [`synthesis::Synthesis::synthesize`], and has the other eye in its own framebuffer:
@@ -19,7 +20,7 @@
 //! let options = SynthesisOptions { gl_state: GlState::Preserve, ..SynthesisOptions::default() };
 //! let mut pipeline = synthesis::create(&gl, &options, Outputs::default())?;
 //!
-//! // Each frame: two eyes around the head, of which the engine renders one, a little wider.
+//! // Each frame: two eyes around the head, one of which the engine renders, a little wider.
 //! let eyes = EyeOptions { ipd: 0.064, depth: DepthRange::PAPER, ..EyeOptions::default() }.pair(Pose::IDENTITY);
 //! let views = eyes.synthesis(GuardBand::Distance(1.0))?;
 //! let source: Source = render(&views.source);
@@ -32,8 +33,6 @@
 //! With poses and fields of view from OpenXR, [`eyes::Frustum::from_fov`] and [`eyes::EyePair`] take the place of
 //! [`eyes::EyeOptions`]. What a call does to the context's state is in the table of [`synthesis::Synthesis`].
 //! `examples/engine.rs` is a complete host.
-//!
-//! This crate must never know a scene, a renderer, a window, a file or a command line: an engine brings its own.
 
 pub mod eyes;
 /// What a host on OpenGL needs of `yoro-gl`: its context in a wrapper, and where to draw.
@@ -44,3 +43,8 @@ pub mod gl {
 pub mod synthesis;
 #[cfg(feature = "vulkan")]
 pub mod vulkan;
+
+/// The code of the README is compiled with the tests of the documentation.
+#[cfg(all(doctest, feature = "gl"))]
+#[doc = include_str!("../README.md")]
+struct Readme;
