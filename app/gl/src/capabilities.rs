@@ -1,4 +1,4 @@
-//! What the driver offers, asked once.
+//! The driver's version, limits and extensions, queried once.
 
 use glow::HasContext;
 
@@ -39,8 +39,8 @@ pub struct Capabilities {
     pub max_anisotropy: f32,
     /// Timer queries that can be trusted: present, with bits to count in, and not a CPU rasterizer.
     pub timer_queries: bool,
-    /// And while both eyes are drawn at once, too: GL_EXT_multiview_timer_query. Without it GL_OVR_multiview leaves
-    /// their results undefined.
+    /// The same while both eyes are drawn at once: GL_EXT_multiview_timer_query. Without it GL_OVR_multiview leaves
+    /// the results undefined.
     pub multiview_timer_queries: bool,
     /// GL_OVR_multiview2 and, outside of browsers, its entry point ([`crate::Context::with_loader`]).
     pub multiview: bool,
@@ -52,7 +52,7 @@ pub struct Capabilities {
     pub samples: Vec<u32>,
     /// Multisample textures, which shaders read sample by sample: OpenGL ES 3.1 and the desktop.
     pub multisample_textures: bool,
-    /// Samples that exist in the tiles of a tile-based GPU alone, for colour and for depth:
+    /// Samples of colour and depth that exist only in the tiles of a tile-based GPU:
     /// GL_EXT_multisampled_render_to_texture and its second version.
     pub tile_samples: bool,
     /// Bytes of shared memory of a compute workgroup.
@@ -61,12 +61,12 @@ pub struct Capabilities {
     pub software: bool,
 }
 
-/// Numbers of samples above 1 for colour and depth of the formats in use, largest first.
+/// Returns the numbers of samples above 1 that both colour and depth formats can have, largest first.
 ///
 /// # Safety
 /// The context is current.
 unsafe fn samples(gl: &glow::Context) -> Vec<u32> {
-    // WebGL has four for all of them.
+    // WebGL guarantees four for all of them.
     if cfg!(target_arch = "wasm32") {
         return vec![4];
     }
@@ -83,19 +83,20 @@ unsafe fn samples(gl: &glow::Context) -> Vec<u32> {
     counts.map(|n| n as u32).collect()
 }
 
-/// The extension that gives OpenGL ES, or WebGL, timer queries.
-const TIMER_QUERIES: &str = match cfg!(target_arch = "wasm32") {
-    true => "GL_EXT_disjoint_timer_query_webgl2",
-    false => "GL_EXT_disjoint_timer_query",
+/// The extension with timer queries in OpenGL ES, or in WebGL.
+const TIMER_QUERIES: &str = if cfg!(target_arch = "wasm32") {
+    "GL_EXT_disjoint_timer_query_webgl2"
+} else {
+    "GL_EXT_disjoint_timer_query"
 };
 
-/// Whether the context has an extension, by its name in the registry of OpenGL. WebGL names it without `GL_`.
+/// True if the context has an extension, by its name in the OpenGL registry. WebGL names it without `GL_`.
 pub(crate) fn has_extension(gl: &glow::Context, name: &str) -> bool {
     let name = if cfg!(target_arch = "wasm32") { name.trim_start_matches("GL_") } else { name };
     gl.supported_extensions().contains(name)
 }
 
-/// GL_RENDERER. Browsers say something else there, and the driver's answer (WEBGL_debug_renderer_info) elsewhere.
+/// Returns GL_RENDERER. Browsers hide the driver's name there and tell it in WEBGL_debug_renderer_info.
 ///
 /// # Safety
 /// The context is current.
@@ -113,13 +114,13 @@ unsafe fn renderer(gl: &glow::Context) -> String {
 }
 
 impl Capabilities {
-    /// `counts_time` is asked only where there are timer queries.
+    /// Queries a current context. `counts_time` is called only if there are timer queries.
     pub(crate) fn query(
         gl: &glow::Context,
         multiview_loaded: bool,
         counts_time: impl FnOnce() -> bool,
     ) -> Result<Capabilities, GlError> {
-        // SAFETY: the context is current; every enum is valid where it is asked.
+        // SAFETY: the context is current, and each enum exists in the versions in which it is queried.
         unsafe {
             let version_string = gl.get_parameter_string(glow::VERSION);
             let version = gl.version();
@@ -181,24 +182,25 @@ impl Capabilities {
         }
     }
 
-    /// Whether a pixel of a render target can have this many samples; one is what every target has.
+    /// Checks that a pixel of a render target can have this many samples. One is always possible.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] with the numbers that there are.
+    /// [`GlError::Unsupported`] with the possible numbers.
     pub fn check_samples(&self, samples: u32) -> Result<(), GlError> {
         if samples == 1 || self.samples.contains(&samples) {
             return Ok(());
         }
-        let there: Vec<_> = [&1].into_iter().chain(self.samples.iter().rev()).map(u32::to_string).collect();
+        let possible: Vec<_> =
+            [&1].into_iter().chain(self.samples.iter().rev()).map(u32::to_string).collect();
         Err(GlError::Unsupported(format!(
             "{} ({}) cannot render with {samples} samples a pixel: choose one of {}",
             self.renderer,
             self.version_string,
-            there.join(", ")
+            possible.join(", ")
         )))
     }
 
-    /// One line for people: driver, version, what is in use.
+    /// Returns one line for people: driver, version, features in use.
     pub fn summary(&self) -> String {
         let mut features = Vec::new();
         let mut feature = |on: bool, name: &str| {

@@ -18,22 +18,22 @@ pub struct Destination {
 }
 
 impl Destination {
-    /// All of a render target.
+    /// Returns the whole of a render target.
     pub fn whole(target: &RenderTarget) -> Destination {
         Destination { framebuffer: Some(target.raw()), origin: [0, 0], size: target.size() }
     }
 }
 
 impl Context {
-    /// Copies a rectangle of colour to another, of the same size or stretched without filtering. Bits stay what they are,
-    /// unless just one of the two is stored as sRGB.
+    /// Copies a rectangle of colour to another one of the same size, or stretches it without filtering. Values are copied
+    /// bit by bit, unless only one of the two is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
         let gl = self.raw();
         let [x, y] = from.origin.map(|n| n as i32);
         let [w, h] = from.size.map(|n| n as i32);
         let ([tx, ty], [tw, th]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
         let buffer = if from.framebuffer.is_some() { glow::COLOR_ATTACHMENT0 } else { glow::BACK };
-        // SAFETY: both framebuffers are live; GL clips rectangles that do not fit.
+        // SAFETY: GL clips rectangles that do not fit, and refuses names that are not framebuffers.
         unsafe {
             gl.disable(glow::SCISSOR_TEST);
             gl.bind_framebuffer(glow::READ_FRAMEBUFFER, from.framebuffer);
@@ -45,27 +45,51 @@ impl Context {
     }
 }
 
-/// A framebuffer with its own textures. Resizing to the size it has costs nothing.
+/// A framebuffer object.
+pub(crate) struct Framebuffer {
+    gl: Rc<Context>,
+    pub(crate) raw: glow::Framebuffer,
+}
+
+impl Framebuffer {
+    pub(crate) fn new(gl: &Rc<Context>) -> Result<Framebuffer, GlError> {
+        // SAFETY: creates an object, which is deleted on drop.
+        let raw = unsafe { gl.raw().create_framebuffer() }
+            .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
+        gl.count(1);
+        Ok(Framebuffer { gl: gl.clone(), raw })
+    }
+}
+
+impl Drop for Framebuffer {
+    fn drop(&mut self) {
+        // SAFETY: created in `new`, deleted once.
+        unsafe { self.gl.raw().delete_framebuffer(self.raw) };
+        self.gl.count(-1);
+    }
+}
+
+/// A framebuffer with its own textures. Resizing to the same size costs nothing.
 pub struct RenderTarget {
     gl: Rc<Context>,
-    raw: glow::Framebuffer,
-    /// The colour attachments alone, where there is depth, too.
-    raw_color_only: Option<glow::Framebuffer>,
+    framebuffer: Framebuffer,
+    /// A framebuffer of the colour attachments alone, if there is depth, too.
+    color_only: Option<Framebuffer>,
     color: Vec<Texture>,
     depth: Option<Texture>,
     formats: Vec<(Format, Filter)>,
     depth_format: Option<(Format, Filter)>,
-    /// Two layers, drawn to at once.
+    /// True if the textures have two layers that are drawn to at once.
     multiview: bool,
     size: [u32; 2],
 }
 
 impl RenderTarget {
-    /// A target of `size` with one colour texture per entry of `formats`, and optionally a depth texture
-    /// (which can be sampled).
+    /// Creates a target with one colour texture per entry of `formats`, and optionally a depth texture, which can be
+    /// sampled.
     ///
     /// # Errors
-    /// As [`Texture::new`]; [`GlError::Unsupported`] when the driver cannot render to the formats.
+    /// Those of [`Texture::new`]; [`GlError::Unsupported`] if the driver cannot render to the formats.
     pub fn new(
         gl: &Rc<Context>,
         size: [u32; 2],
@@ -75,11 +99,11 @@ impl RenderTarget {
         RenderTarget::build(gl, size, formats, depth_format.map(|format| (format, Filter::Nearest)), false)
     }
 
-    /// As [`RenderTarget::new`], of array textures with a layer for each eye, to be drawn to by programs with two
-    /// views. Only drawing, clearing and sampling work on it, no reading back.
+    /// Creates a target of array textures with a layer for each eye, for programs with two views. It can be drawn to,
+    /// cleared and sampled, but not read back.
     ///
     /// # Errors
-    /// As [`RenderTarget::new`]; [`GlError::Unsupported`] without GL_OVR_multiview2.
+    /// Those of [`RenderTarget::new`]; [`GlError::Unsupported`] without GL_OVR_multiview2.
     pub fn multiview(
         gl: &Rc<Context>,
         size: [u32; 2],
@@ -89,10 +113,10 @@ impl RenderTarget {
         RenderTarget::build(gl, size, formats, depth_format.map(|format| (format, Filter::Nearest)), true)
     }
 
-    /// A target of depth alone, to be sampled with comparison.
+    /// Creates a target of depth alone, to sample with comparison.
     ///
     /// # Errors
-    /// As [`RenderTarget::new`].
+    /// Those of [`RenderTarget::new`].
     pub fn shadow_map(gl: &Rc<Context>, size: [u32; 2], format: Format) -> Result<RenderTarget, GlError> {
         RenderTarget::build(gl, size, &[], Some((format, Filter::Compare)), false)
     }
@@ -107,19 +131,11 @@ impl RenderTarget {
         if multiview && !gl.capabilities().multiview {
             return Err(GlError::Unsupported("this GL context has no GL_OVR_multiview2".into()));
         }
-        let framebuffer = || -> Result<_, GlError> {
-            // SAFETY: plain creation.
-            let raw = unsafe { gl.raw().create_framebuffer() }
-                .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
-            gl.count(1);
-            Ok(raw)
-        };
-        let raw = framebuffer()?;
-        let raw_color_only = (depth_format.is_some() && !formats.is_empty()).then(framebuffer).transpose()?;
+        let with_both = depth_format.is_some() && !formats.is_empty();
         let mut target = RenderTarget {
             gl: gl.clone(),
-            raw,
-            raw_color_only,
+            framebuffer: Framebuffer::new(gl)?,
+            color_only: with_both.then(|| Framebuffer::new(gl)).transpose()?,
             color: Vec::new(),
             depth: None,
             formats: formats.to_vec(),
@@ -131,10 +147,10 @@ impl RenderTarget {
         Ok(target)
     }
 
-    /// Gives the target another size; contents are undefined afterwards if it changed.
+    /// Resizes the target. If the size changes, the contents are undefined afterwards.
     ///
     /// # Errors
-    /// As [`RenderTarget::new`].
+    /// Those of [`RenderTarget::new`].
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
         if size == self.size {
             return Ok(());
@@ -142,16 +158,19 @@ impl RenderTarget {
         self.color.clear();
         self.depth = None;
         self.size = [0, 0];
-        let texture = |(format, filter)| match self.multiview {
-            true => Texture::array(&self.gl, size, 2, format, filter),
-            false => Texture::new(&self.gl, size, format, filter),
+        let texture = |(format, filter)| {
+            if self.multiview {
+                Texture::array(&self.gl, size, 2, format, filter)
+            } else {
+                Texture::new(&self.gl, size, format, filter)
+            }
         };
         self.color = self.formats.iter().copied().map(texture).collect::<Result<_, _>>()?;
         self.depth = self.depth_format.map(texture).transpose()?;
-        if let Some(color_only) = self.raw_color_only {
+        if let Some(color_only) = &self.color_only {
             self.attach(color_only, false);
         }
-        let status = self.attach(self.raw, true);
+        let status = self.attach(&self.framebuffer, true);
         if status != glow::FRAMEBUFFER_COMPLETE {
             return Err(GlError::Unsupported(format!(
                 "the GL driver cannot render to {:?} with depth {:?} (status 0x{status:x}); EXT_color_buffer_float may be missing: update the driver",
@@ -164,11 +183,11 @@ impl RenderTarget {
     }
 
     /// Attaches the textures to a framebuffer, leaves it bound and returns its status.
-    fn attach(&self, framebuffer: glow::Framebuffer, with_depth: bool) -> u32 {
+    fn attach(&self, framebuffer: &Framebuffer, with_depth: bool) -> u32 {
         let gl = self.gl.raw();
-        // SAFETY: attachments are live textures of this object.
+        // SAFETY: the attachments are textures of this object.
         unsafe {
-            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer.raw));
             let mut buffers = [glow::NONE; 8];
             for (i, texture) in self.color.iter().enumerate() {
                 buffers[i] = glow::COLOR_ATTACHMENT0 + i as u32;
@@ -184,37 +203,37 @@ impl RenderTarget {
 
     fn attach_texture(&self, attachment: u32, texture: &Texture) {
         let raw = texture.raw();
-        // SAFETY: a live texture of the kind that the call takes, and a bound framebuffer.
+        // SAFETY: a framebuffer is bound, and the texture has two layers exactly if `multiview` is set.
         unsafe {
-            match self.multiview {
-                true => self.gl.framebuffer_texture_layers(attachment, raw),
-                false => {
-                    let (target, gl) = (glow::FRAMEBUFFER, self.gl.raw());
-                    gl.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, Some(raw), 0);
-                }
+            if self.multiview {
+                self.gl.framebuffer_texture_layers(attachment, raw);
+            } else {
+                let (target, gl) = (glow::FRAMEBUFFER, self.gl.raw());
+                gl.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, Some(raw), 0);
             }
         }
     }
 
-    /// All of the target without its depth attachment: for passes that sample its depth texture.
+    /// Returns the whole target without its depth attachment, for passes that sample its depth texture.
     pub fn color_only(&self) -> Destination {
-        Destination { framebuffer: self.raw_color_only.or(Some(self.raw)), origin: [0, 0], size: self.size }
+        let framebuffer = self.color_only.as_ref().unwrap_or(&self.framebuffer);
+        Destination { framebuffer: Some(framebuffer.raw), origin: [0, 0], size: self.size }
     }
 
-    /// Copies the rectangle of colour attachment 0 whose lower left corner is `crop` into a destination of the
-    /// same size as the rectangle.
+    /// Copies a rectangle of colour attachment 0 into a destination of the same size. `crop` is the rectangle's lower left
+    /// corner.
     pub fn copy_color(&self, crop: [u32; 2], to: &Destination) {
-        self.gl.copy(&Destination { framebuffer: Some(self.raw), origin: crop, size: to.size }, to);
+        self.gl.copy(&Destination { framebuffer: Some(self.raw()), origin: crop, size: to.size }, to);
     }
 
-    /// Starts to read all of colour attachment 0, as RGBA8, into a buffer; does not wait.
+    /// Starts to read colour attachment 0, as RGBA8, into a buffer. Does not wait.
     pub fn read_into(&self, buffer: &PixelBuffer) {
         let gl = self.gl.raw();
         let [w, h] = self.size.map(|n| n as i32);
         self.gl.set_tight_pack();
         // SAFETY: GL refuses a buffer that is too small.
         unsafe {
-            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw()));
             gl.read_buffer(glow::COLOR_ATTACHMENT0);
             gl.bind_buffer(glow::PIXEL_PACK_BUFFER, Some(buffer.raw()));
             let data = glow::PixelPackData::BufferOffset(0);
@@ -223,43 +242,38 @@ impl RenderTarget {
         }
     }
 
-    /// Binds the framebuffer and sets the viewport to all of it.
+    /// Binds the framebuffer and sets the viewport to the whole of it.
     pub fn bind(&self) {
         if self.multiview {
             self.gl.draws_both_eyes();
         }
-        // SAFETY: a live framebuffer.
-        unsafe {
-            self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
-            self.gl.raw().viewport(0, 0, self.size[0] as i32, self.size[1] as i32);
-        }
+        self.gl.bind_framebuffer(Some(self.raw()), [0, 0], self.size);
     }
 
-    /// Colour texture `i`.
+    /// Returns colour texture `i`.
     pub fn color(&self, i: usize) -> &Texture {
         &self.color[i]
     }
 
-    /// The depth texture.
+    /// Returns the depth texture.
     ///
     /// # Panics
-    /// When the target was made without depth.
+    /// If the target was made without depth.
     pub fn depth(&self) -> &Texture {
         self.depth.as_ref().expect("a target made with a depth format")
     }
 
-    /// GL name of the framebuffer.
+    /// Returns the GL name of the framebuffer.
     pub fn raw(&self) -> glow::Framebuffer {
-        self.raw
+        self.framebuffer.raw
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Reads a rectangle of colour attachment `i` in its own format, rows from the bottom. Waits for the GPU.
-    /// Formats without a guaranteed readback of their own are read as RGBA of their component type.
+    /// Reads a rectangle of colour attachment `i` as RGBA8, rows from the bottom. Waits for the GPU.
     pub fn read_rgba8(&self, i: usize, origin: [u32; 2], size: [u32; 2]) -> Vec<u8> {
         let mut bytes = vec![0; size[0] as usize * size[1] as usize * 4];
         self.read(i, origin, size, glow::RGBA, glow::UNSIGNED_BYTE, &mut bytes);
@@ -268,7 +282,7 @@ impl RenderTarget {
 
     /// Reads a rectangle of an integer attachment ([`Format::R32Ui`]), rows from the bottom.
     pub fn read_u32(&self, i: usize, origin: [u32; 2], size: [u32; 2]) -> Vec<u32> {
-        // RGBA_INTEGER / UNSIGNED_INT is the one combination that ES guarantees for unsigned integer buffers.
+        // OpenGL ES guarantees only RGBA_INTEGER / UNSIGNED_INT for unsigned integer buffers.
         let mut rgba = vec![0u32; size[0] as usize * size[1] as usize * 4];
         self.read(
             i,
@@ -291,9 +305,9 @@ impl RenderTarget {
     fn read(&self, i: usize, origin: [u32; 2], size: [u32; 2], format: u32, ty: u32, bytes: &mut [u8]) {
         let gl = self.gl.raw();
         self.gl.set_tight_pack();
-        // SAFETY: `bytes` is as long as GL writes, by the callers' arithmetic on `size`.
+        // SAFETY: the callers made `bytes` as long as what GL writes for this size, format and type.
         unsafe {
-            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw()));
             gl.read_buffer(glow::COLOR_ATTACHMENT0 + i as u32);
             let [x, y] = origin.map(|n| n as i32);
             let [w, h] = size.map(|n| n as i32);
@@ -302,22 +316,21 @@ impl RenderTarget {
     }
 }
 
-/// A framebuffer around a texture that belongs to somebody else, an OpenXR runtime for instance.
+/// A framebuffer around a texture of somebody else, such as an OpenXR runtime.
 pub struct ForeignTarget {
-    gl: Rc<Context>,
-    raw: glow::Framebuffer,
+    framebuffer: Framebuffer,
     size: [u32; 2],
 }
 
 impl ForeignTarget {
-    /// A framebuffer that draws into a 2-D texture, or into a layer of an array of them: colour, or depth alone.
+    /// Creates a framebuffer that draws into a 2-D texture, or into a layer of an array texture: colour, or depth alone.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] when the driver cannot render to the texture.
+    /// [`GlError::Unsupported`] if the driver cannot render to the texture.
     ///
     /// # Safety
-    /// The texture is one of this context, of the kind that `layer` says and of this size, and lives longer than
-    /// the framebuffer is used.
+    /// The texture must belong to this context, have this size, be an array if `layer` is given, and outlive the use of
+    /// the framebuffer.
     pub unsafe fn new(
         gl: &Rc<Context>,
         texture: glow::Texture,
@@ -327,14 +340,10 @@ impl ForeignTarget {
     ) -> Result<ForeignTarget, GlError> {
         let raw_gl = gl.raw();
         let attachment = if is_depth { glow::DEPTH_ATTACHMENT } else { glow::COLOR_ATTACHMENT0 };
-        // SAFETY: the caller's texture fits the call; the framebuffer is new.
+        let target = ForeignTarget { framebuffer: Framebuffer::new(gl)?, size };
+        // SAFETY: the framebuffer is new, and the caller's texture is of the kind that the call takes.
         unsafe {
-            let raw = raw_gl
-                .create_framebuffer()
-                .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
-            gl.count(1);
-            let target = ForeignTarget { gl: gl.clone(), raw, size };
-            raw_gl.bind_framebuffer(glow::FRAMEBUFFER, Some(raw));
+            raw_gl.bind_framebuffer(glow::FRAMEBUFFER, Some(target.framebuffer.raw));
             match layer {
                 Some(layer) => raw_gl.framebuffer_texture_layer(
                     glow::FRAMEBUFFER,
@@ -363,30 +372,22 @@ impl ForeignTarget {
         }
     }
 
-    /// The lower left part of this size.
+    /// Returns the lower left part of this size.
     pub fn part(&self, size: [u32; 2]) -> Destination {
         let size = [0, 1].map(|i| size[i].min(self.size[i]));
-        Destination { framebuffer: Some(self.raw), origin: [0, 0], size }
-    }
-}
-
-impl Drop for ForeignTarget {
-    fn drop(&mut self) {
-        // SAFETY: created in `new`, deleted once.
-        unsafe { self.gl.raw().delete_framebuffer(self.raw) };
-        self.gl.count(-1);
+        Destination { framebuffer: Some(self.framebuffer.raw), origin: [0, 0], size }
     }
 }
 
 impl Context {
-    /// Reads a rectangle of colour as it is stored, in RGBA, rows from the bottom. Waits for the GPU.
+    /// Reads a rectangle of colour as RGBA8, rows from the bottom. sRGB colour stays encoded. Waits for the GPU.
     pub fn read_rgba8(&self, from: &Destination) -> Vec<u8> {
         let gl = self.raw();
         let ([x, y], [w, h]) = (from.origin.map(|n| n as i32), from.size.map(|n| n as i32));
         let mut bytes = vec![0; from.size[0] as usize * from.size[1] as usize * 4];
         let buffer = if from.framebuffer.is_some() { glow::COLOR_ATTACHMENT0 } else { glow::BACK };
         self.set_tight_pack();
-        // SAFETY: `bytes` is as long as GL writes.
+        // SAFETY: `bytes` is as long as what GL writes.
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, from.framebuffer);
             gl.read_buffer(buffer);
@@ -394,15 +395,5 @@ impl Context {
             gl.read_pixels(x, y, w, h, glow::RGBA, glow::UNSIGNED_BYTE, data);
         }
         bytes
-    }
-}
-
-impl Drop for RenderTarget {
-    fn drop(&mut self) {
-        for framebuffer in [Some(self.raw), self.raw_color_only].into_iter().flatten() {
-            // SAFETY: created in `new`, deleted once.
-            unsafe { self.gl.raw().delete_framebuffer(framebuffer) };
-            self.gl.count(-1);
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! State of a host's renderer: what synthesis must not depend on, and how it is given back.
+//! GL state of a host's renderer: set for synthesis, saved and restored.
 //!
 //! The table in the documentation of `yoro::synthesis::Synthesis` is the contract that this file keeps.
 
@@ -6,13 +6,13 @@ use glow::HasContext;
 
 use crate::{Capabilities, Context, GlApi, GlError};
 
-/// Texture units in use, counted from 0.
+/// Number of texture units in use, from unit 0 on.
 const UNITS: usize = 5;
 /// The unit of the source's colour.
 const COLOR_UNIT: u32 = 1;
-/// Units with multisample textures: the source's depth and colour.
+/// The units with multisample textures: the source's depth and colour.
 const MULTISAMPLE_UNITS: [u32; 2] = [0, 3];
-/// Draw buffers in use: colour and, where it is written, the source map.
+/// Number of draw buffers in use: colour and, if it is written, the source map.
 const DRAW_BUFFERS: usize = 2;
 /// EXT_depth_bounds_test.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
@@ -22,21 +22,21 @@ pub(crate) type IsEnabledIndexed = unsafe extern "system" fn(u32, u32) -> u8;
 /// glGetBooleani_v: state, index, values.
 pub(crate) type GetBooleanIndexed = unsafe extern "system" fn(u32, u32, *mut u8);
 
-/// Queries of single draw buffers, for which glow has no wrapper.
+/// Queries of single draw buffers, which glow does not wrap.
 #[derive(Clone, Copy)]
 pub(crate) struct IndexedQueries {
     pub(crate) is_enabled: IsEnabledIndexed,
     pub(crate) get_boolean: GetBooleanIndexed,
 }
 
-/// What a context has of the state that drawing depends on, and the samplers that synthesis reads through.
+/// The state that drawing depends on in this context, and the samplers that synthesis reads through.
 pub(crate) struct Host {
-    /// Capabilities (`glEnable`) that are off while a pipeline runs. No more than 32.
+    /// Capabilities (`glEnable`) that are off while a pipeline runs; at most 32.
     switches: Vec<u32>,
-    /// Blending and colour masks are per draw buffer and can be set so: OpenGL ES 3.2 and the desktop.
+    /// True if blending and colour masks can be set for each draw buffer: OpenGL ES 3.2 and the desktop.
     indexed: bool,
     queries: Option<IndexedQueries>,
-    /// Whether drawing encodes for sRGB framebuffers can be switched.
+    /// True if encoding for sRGB framebuffers can be switched.
     encoding: bool,
     polygon_mode: bool,
     nearest: glow::Sampler,
@@ -62,7 +62,7 @@ impl Host {
             glow::SAMPLE_ALPHA_TO_COVERAGE,
             glow::SAMPLE_COVERAGE,
         ];
-        // It is always on in WebGL, and no name there.
+        // Always on in WebGL, which has no name for it.
         if cfg!(not(target_arch = "wasm32")) {
             switches.push(glow::PRIMITIVE_RESTART_FIXED_INDEX);
         }
@@ -85,12 +85,12 @@ impl Host {
             ]);
         }
         if capabilities.clip_distances {
-            // SAFETY: a valid enum where the capability says so.
+            // SAFETY: the enum exists if the context has clip distances.
             let count = unsafe { gl.get_parameter_i32(glow::MAX_CLIP_DISTANCES) }.clamp(0, 8) as u32;
             switches.extend((0..count).map(|i| glow::CLIP_DISTANCE0 + i));
         }
         let sampler = |filter: u32| {
-            // SAFETY: a new sampler, and valid parameters.
+            // SAFETY: the parameters are valid for a sampler, which `delete` deletes.
             unsafe {
                 let sampler = gl
                     .create_sampler()
@@ -128,11 +128,11 @@ impl Host {
     }
 }
 
-/// The state that synthesis changes, as it was.
+/// The state that synthesis changes, as [`Context::save_state`] found it.
 pub struct HostState {
-    /// Bit `i`: whether switch `i` of [`Host::switches`] was on.
+    /// Bit `i` is set if switch `i` of [`Host::switches`] was on.
     switches: u32,
-    /// How many of the following belong to synthesis.
+    /// Number of draw buffers whose state is saved.
     draw_buffers: usize,
     blend: [bool; DRAW_BUFFERS],
     color_mask: [[bool; 4]; DRAW_BUFFERS],
@@ -148,19 +148,18 @@ pub struct HostState {
     vertex_array: Option<glow::VertexArray>,
     active_unit: u32,
     textures: [Option<glow::Texture>; UNITS],
-    /// Where there are such textures.
+    /// Of [`MULTISAMPLE_UNITS`], if the context has multisample textures.
     multisample_textures: [Option<glow::Texture>; MULTISAMPLE_UNITS.len()],
     samplers: [Option<glow::Sampler>; UNITS],
 }
 
 impl Context {
-    /// Sets all state that a pipeline relies on and does not set for each pass: everything in the table of
-    /// `yoro::synthesis::Synthesis` but program, vertex array, framebuffer, viewport, textures and images.
-    /// `draw_buffers` is the number of colour attachments that the target has, 1 or 2; with `encode` what is written to
-    /// sRGB framebuffers is encoded.
+    /// Sets all state that a pipeline relies on and does not set in each pass: everything in the table of
+    /// `yoro::synthesis::Synthesis` except program, vertex array, framebuffer, viewport and textures. `draw_buffers` is the
+    /// number of colour attachments of the target, 1 or 2. With `encode` writes to sRGB framebuffers are encoded.
     pub fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
         let (gl, host) = (self.raw(), &self.host);
-        // SAFETY: state calls with enums that `Host::new` found to be valid.
+        // SAFETY: state calls with enums that exist in this context, as `Host::new` found out.
         unsafe {
             host.switches.iter().for_each(|switch| gl.disable(*switch));
             if encode && host.encoding {
@@ -188,32 +187,32 @@ impl Context {
         }
     }
 
-    /// Makes texture unit 0 the active one: new buffers are bound to the active unit, which must not be one that is the
-    /// host's alone.
+    /// Makes texture unit 0 active. New textures are bound to the active unit, which must be one that synthesis may
+    /// change.
     pub fn set_first_unit(&self) {
-        // SAFETY: the unit exists.
+        // SAFETY: every context has unit 0.
         unsafe { self.raw().active_texture(glow::TEXTURE0) }
     }
 
-    /// Whether the next draws of a pipeline write depth, untested.
+    /// Turns depth writes, without a test, on or off for the next draws of a pipeline.
     pub fn set_depth_write(&self, on: bool) {
         // SAFETY: a valid enum.
         unsafe { if on { self.raw().enable(glow::DEPTH_TEST) } else { self.raw().disable(glow::DEPTH_TEST) } }
     }
 
-    /// Takes the samplers off again, which would override the filters of whatever is bound next.
+    /// Unbinds the samplers, which would override the filters of the host's textures.
     pub fn end_synthesis(&self) {
         for unit in 0..UNITS as u32 {
-            // SAFETY: the unit exists.
+            // SAFETY: every context has more units than are in use.
             unsafe { self.raw().bind_sampler(unit, None) }
         }
     }
 
-    /// Remembers all state that synthesis into a target with this many colour attachments, 1 or 2, changes. Some 50
-    /// queries; allocates nothing.
+    /// Returns all state that synthesis changes, for a target with this many colour attachments, 1 or 2. Makes about 50
+    /// queries and allocates nothing.
     pub fn save_state(&self, draw_buffers: u32) -> HostState {
         let (gl, host) = (self.raw(), &self.host);
-        // SAFETY: queries of state that `Host::new` found to be there, into arrays of the length that GL writes.
+        // SAFETY: the queried state exists, as `Host::new` found out, and the arrays are as long as what GL writes.
         unsafe {
             let integer = |name| gl.get_parameter_i32(name);
             let on = |(i, switch): (usize, &u32)| u32::from(gl.is_enabled(*switch)) << i;
@@ -269,11 +268,11 @@ impl Context {
         }
     }
 
-    /// Sets the state as it was at [`Context::save_state`].
+    /// Restores the state that [`Context::save_state`] returned.
     pub fn restore_state(&self, state: &HostState) {
         let (gl, host) = (self.raw(), &self.host);
-        // SAFETY: values that the context itself gave for the same state; what was bound is bound still or deleted
-        // by nobody since.
+        // SAFETY: the context itself returned these values for the same state, and synthesis deletes no object of the
+        // host in between.
         unsafe {
             for (i, switch) in host.switches.iter().enumerate() {
                 if state.switches >> i & 1 != 0 { gl.enable(*switch) } else { gl.disable(*switch) }
@@ -286,9 +285,10 @@ impl Context {
                     (false, true) => gl.enable(glow::BLEND),
                     (false, false) => gl.disable(glow::BLEND),
                 }
-                match host.indexed {
-                    true => gl.color_mask_draw_buffer(i as u32, r, g, b, a),
-                    false => gl.color_mask(r, g, b, a),
+                if host.indexed {
+                    gl.color_mask_draw_buffer(i as u32, r, g, b, a);
+                } else {
+                    gl.color_mask(r, g, b, a);
                 }
             }
             gl.depth_func(state.depth_func);
@@ -324,10 +324,10 @@ impl Context {
         }
     }
 
-    /// Unsets what redirects or shifts uploads of tightly packed pixels.
+    /// Resets the pixel store for uploads of tightly packed pixels.
     pub(crate) fn set_tight_unpack(&self) {
         let gl = self.raw();
-        // SAFETY: values that are the defaults, but for the alignment.
+        // SAFETY: valid values of the pixel store.
         unsafe {
             gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
             gl.pixel_store_i32(glow::UNPACK_ALIGNMENT, 1);
@@ -337,10 +337,10 @@ impl Context {
         }
     }
 
-    /// As [`Context::set_tight_unpack`], for reading back.
+    /// Resets the pixel store for readbacks of tightly packed pixels.
     pub(crate) fn set_tight_pack(&self) {
         let gl = self.raw();
-        // SAFETY: as there.
+        // SAFETY: valid values of the pixel store.
         unsafe {
             gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
             gl.pixel_store_i32(glow::PACK_ALIGNMENT, 1);

@@ -34,7 +34,7 @@ pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};
 pub use state::{Blend, DepthTest, RasterState};
 pub use texture::{Filter, Format, Texture};
 
-/// What can go wrong with GL.
+/// An error of GL.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GlError {
@@ -57,9 +57,9 @@ pub enum GlError {
     /// The driver refused to create or accept an object.
     #[error("the GL driver could not create {what}: {reason}")]
     Object {
-        /// What was to be created.
+        /// The object.
         what: String,
-        /// What the driver said.
+        /// The driver's reason.
         reason: String,
     },
     /// An image size beyond the driver's limits.
@@ -82,7 +82,7 @@ type FramebufferTextureMultiview = unsafe extern "system" fn(u32, u32, u32, i32,
 /// glGetQueryiv: target, parameter, where the value goes.
 type GetQuery = unsafe extern "system" fn(u32, u32, *mut i32);
 
-/// Entry points that glow has no wrapper for, as far as the driver has them.
+/// Entry points without a wrapper in glow; `None` if the driver lacks them.
 #[derive(Clone, Copy, Default)]
 struct EntryPoints {
     framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
@@ -91,8 +91,8 @@ struct EntryPoints {
 }
 
 impl EntryPoints {
-    /// Whether the driver's timer queries count at all: it may have them with no bits (QUERY_COUNTER_BITS of 0).
-    /// The context is current and has timer queries.
+    /// True if the driver's timer queries measure anything: QUERY_COUNTER_BITS may be 0. The context must be current
+    /// and have timer queries.
     fn counts_time(&self) -> bool {
         let Some(get_query) = self.get_query else { return true };
         let mut bits = 1;
@@ -102,13 +102,13 @@ impl EntryPoints {
     }
 }
 
-/// The name that glow lacks.
+/// Not in glow.
 const QUERY_COUNTER_BITS: u32 = 0x8864;
 
-/// A GL context with what is known of it. Shared by everything that lives in it.
+/// A GL context and its capabilities, shared by all objects that live in it.
 pub struct Context {
     raw: glow::Context,
-    /// Browsers have it without an entry point.
+    /// Browsers have the function without an entry point.
     #[cfg(not(target_arch = "wasm32"))]
     framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
     capabilities: Capabilities,
@@ -117,13 +117,13 @@ pub struct Context {
     objects: Cell<usize>,
     texture_bytes: Cell<usize>,
     recipes: RefCell<BTreeSet<ProgramRecipe>>,
-    /// Of [`Context::within_columns`].
+    /// The argument of [`Context::within_columns`].
     columns: Cell<Option<[u32; 2]>>,
     empty_vertex_array: glow::VertexArray,
 }
 
 impl Context {
-    /// Takes a current glow context and checks that it can run the shaders. Leaves the context's state as it is.
+    /// Wraps a glow context, which must be current, and checks that it can run the shaders. Does not change its state.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] when the context is older than OpenGL ES 3.0, or desktop GL that does not
@@ -132,22 +132,21 @@ impl Context {
         Context::with_entry_points(raw, EntryPoints::default())
     }
 
-    /// As [`Context::new`], with what glow has no wrapper for: multiview, the bits of timer queries, and queries of the
-    /// state of single draw buffers, without which the second one is given back its state as the first has it
-    /// ([`Context::save_state`]). `load` gives entry
-    /// points by name, null for those that do not exist.
+    /// Like [`Context::new`], with functions that glow does not wrap: multiview, the bits of timer queries, and the state
+    /// of single draw buffers. Without the last [`Context::restore_state`] sets the second draw buffer as the first one
+    /// was. `load` returns an entry point by its name, or null.
     ///
     /// # Errors
-    /// As [`Context::new`].
+    /// Those of [`Context::new`].
     ///
     /// # Safety
-    /// The pointers that `load` gives are the context's entry points of these names.
+    /// `load` must return null or this context's entry point of that name.
     pub unsafe fn with_loader(
         raw: glow::Context,
         mut load: impl FnMut(&CStr) -> *const c_void,
     ) -> Result<Rc<Context>, GlError> {
-        // SAFETY: null is `None`; otherwise the caller promises an entry point, which has this signature by
-        // GL_OVR_multiview, OpenGL 3.0 and OpenGL ES 3.0 and 3.2.
+        // SAFETY: null becomes `None`; any other pointer is the entry point of that name, whose signature
+        // GL_OVR_multiview, OpenGL 3.0 and OpenGL ES 3.0 and 3.2 define.
         let entry_points = unsafe {
             let is_enabled =
                 std::mem::transmute::<*const c_void, Option<host::IsEnabledIndexed>>(load(c"glIsEnabledi"));
@@ -173,7 +172,7 @@ impl Context {
             cfg!(target_arch = "wasm32") || entry_points.framebuffer_texture_multiview.is_some();
         let capabilities = Capabilities::query(&raw, has_multiview, || entry_points.counts_time())?;
         let host = host::Host::new(&raw, &capabilities, entry_points.indexed)?;
-        // SAFETY: plain creation.
+        // SAFETY: creates an object, which `Context` deletes when it is dropped.
         let empty_vertex_array = unsafe { raw.create_vertex_array() }
             .map_err(|reason| GlError::Object { what: "a vertex array".into(), reason })?;
         let profiler = RefCell::new(profiler::Profiler::new(&capabilities));
@@ -193,22 +192,23 @@ impl Context {
         }))
     }
 
-    /// The glow context, for calls that have no wrapper here.
+    /// Returns the glow context, for calls that have no wrapper here.
     pub fn raw(&self) -> &glow::Context {
         &self.raw
     }
 
-    /// What the driver offers.
+    /// Returns the driver's version, limits and extensions.
     pub fn capabilities(&self) -> &Capabilities {
         &self.capabilities
     }
 
-    /// Number of live textures, renderbuffers, framebuffers, programs, buffers and vertex arrays of this library.
+    /// Returns the number of live textures, renderbuffers, framebuffers, programs, buffers and vertex arrays of this
+    /// library.
     pub fn object_count(&self) -> usize {
         self.objects.get()
     }
 
-    /// What programs were made of so far, sorted, each once.
+    /// Returns the files and defines of all programs compiled so far, sorted, each once.
     pub fn program_recipes(&self) -> Vec<ProgramRecipe> {
         self.recipes.borrow().iter().cloned().collect()
     }
@@ -217,7 +217,8 @@ impl Context {
         self.objects.set(self.objects.get().wrapping_add_signed(change));
     }
 
-    /// Bytes of all live textures of this library, render targets among them, by their formats; drivers may pad.
+    /// Returns the bytes of all live textures and render targets of this library, by their formats. Drivers may add
+    /// padding.
     pub fn texture_bytes(&self) -> usize {
         self.texture_bytes.get()
     }
@@ -226,10 +227,10 @@ impl Context {
         self.texture_bytes.set(self.texture_bytes.get().wrapping_add_signed(change));
     }
 
-    /// Runs one pass inside a KHR_debug group and, while profiling, a timer, both called `name`.
+    /// Runs one pass inside a KHR_debug group called `name` and, while profiling, a timer of that name.
     pub fn pass<R>(&self, name: &'static str, body: impl FnOnce() -> R) -> R {
         let debug = self.capabilities.debug_groups;
-        // SAFETY: the entry points exist when the capability says so; groups are balanced below.
+        // SAFETY: the entry points exist if the capability is set; the group is popped below.
         unsafe {
             if debug {
                 self.raw.push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, name);
@@ -238,7 +239,7 @@ impl Context {
         self.profiler.borrow_mut().begin(&self.raw, name);
         let result = body();
         self.profiler.borrow_mut().end(&self.raw);
-        // SAFETY: as above.
+        // SAFETY: pops the group pushed above.
         unsafe {
             if debug {
                 self.raw.pop_debug_group();
@@ -247,77 +248,76 @@ impl Context {
         result
     }
 
-    /// Starts or stops timing passes. Costs a full pipeline drain per pass with [`Profiling::Finish`].
+    /// Starts or stops timing passes. [`Profiling::Finish`] waits for the GPU before and after each pass.
     pub fn set_profiling(&self, profiling: Profiling) {
         self.profiler.borrow_mut().set(&self.raw, profiling);
     }
 
-    /// The pass times since the last call, in the order in which they ran; none if timer queries would be undefined
-    /// for one of them ([`Capabilities::multiview_timer_queries`]). Waits for the GPU.
+    /// Returns the pass times since the last call, in the order in which the passes ran. Empty if timer queries are
+    /// undefined for one of them ([`Capabilities::multiview_timer_queries`]). Waits for the GPU.
     pub fn take_pass_times(&self) -> Vec<PassTime> {
         self.profiler.borrow_mut().take(&self.raw)
     }
 
-    /// Ends a frame for those who time every frame without waiting ([`Profiling::Queries`]): adds the pass times of
-    /// one frame, some frames ago, to `times`, and returns the number of frames added, 1 or 0: a frame is left out when
-    /// the clock was disturbed, or when timer queries are undefined for one of its passes.
+    /// Ends a frame, to time every frame without waiting ([`Profiling::Queries`]). Adds the pass times of one frame,
+    /// some frames ago, to `times`, and returns the number of frames added, 1 or 0. A frame is left out if the clock was
+    /// disturbed or if timer queries are undefined for one of its passes.
     pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> u32 {
         self.profiler.borrow_mut().end_frame(&self.raw, times)
     }
 
-    /// Notes that both eyes are drawn at once from here on: where timer queries are undefined for that, the frame has
-    /// no pass times.
+    /// Notes that both eyes are drawn at once from now on. If timer queries are undefined for that, the frame gets no
+    /// pass times.
     fn draws_both_eyes(&self) {
         if !self.capabilities.multiview_timer_queries {
             self.profiler.borrow_mut().make_undefined(&self.raw);
         }
     }
 
-    /// Blocks until the GPU has done everything.
+    /// Blocks until the GPU has finished all commands.
     pub fn finish(&self) {
-        // SAFETY: no arguments.
+        // SAFETY: touches no memory of ours.
         unsafe { self.raw.finish() }
     }
 
-    /// Attaches an array texture's first two layers to the framebuffer that is bound, to be drawn to at once.
+    /// Attaches the first two layers of an array texture to the bound framebuffer, to draw to both at once.
     ///
     /// # Safety
-    /// There is multiview; the texture is an array with two layers.
+    /// The context must have multiview, and the texture must be an array of at least two layers.
     #[cfg(not(target_arch = "wasm32"))]
     unsafe fn framebuffer_texture_layers(&self, attachment: u32, texture: glow::Texture) {
         if let Some(attach) = self.framebuffer_texture_multiview {
-            // SAFETY: the caller's texture fits the call.
+            // SAFETY: the entry point of GL_OVR_multiview; the caller's texture has two layers.
             unsafe { attach(glow::FRAMEBUFFER, attachment, texture.0.get(), 0, 0, 2) }
         }
     }
 
-    /// As above.
+    /// The same in WebGL.
     ///
     /// # Safety
-    /// As above.
+    /// The same.
     #[cfg(target_arch = "wasm32")]
     unsafe fn framebuffer_texture_layers(&self, attachment: u32, texture: glow::Texture) {
         let (gl, target) = (&self.raw, glow::FRAMEBUFFER);
-        // SAFETY: the caller's texture fits the call.
+        // SAFETY: the caller's texture has two layers.
         unsafe { gl.framebuffer_texture_multiview_ovr(target, attachment, Some(texture), 0, 0, 2) }
     }
 
-    /// Draws one triangle that covers the viewport; shaders make it from gl_VertexID
-    /// (`screen.vert`).
+    /// Draws one triangle that covers the viewport. The vertex shader `screen.vert` makes it from gl_VertexID.
     pub fn draw_screen(&self) {
-        // SAFETY: an empty vertex array has no attributes to read out of bounds.
+        // SAFETY: the vertex array has no attributes, so nothing is read from buffers.
         unsafe {
             self.raw.bind_vertex_array(Some(self.empty_vertex_array));
             self.raw.draw_arrays(glow::TRIANGLES, 0, 3);
         }
     }
 
-    /// The GL errors since the last call, as one sentence; for tests and debugging.
+    /// Returns the GL errors since the last call, separated by commas. For tests and debugging.
     pub fn take_errors(&self) -> Option<String> {
         let mut names = Vec::new();
-        // A lost context returns errors for ever, hence the bound.
+        // A lost context returns errors forever.
         while names.len() < 16 {
-            // SAFETY: no arguments.
+            // SAFETY: reads and clears the error flag.
             match unsafe { self.raw.get_error() } {
                 glow::NO_ERROR => break,
                 glow::INVALID_ENUM => names.push("INVALID_ENUM"),
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn timer_queries_without_bits_tell_no_time() {
+    fn timer_queries_of_zero_bits_are_not_used() {
         let with = |get_query| EntryPoints { get_query, ..EntryPoints::default() };
         assert!(!with(Some(no_bits as GetQuery)).counts_time());
         assert!(with(Some(many_bits as GetQuery)).counts_time());

@@ -17,14 +17,14 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Uploads vertices and indices; the slices are not needed afterwards. A vertex consists of `attributes`, numbers
-    /// of floats that lie one after the other, for the shader's locations from 0 on.
+    /// Uploads vertices and indices. `attributes` are the numbers of floats of a vertex's attributes, one after the other,
+    /// for the shader's locations from 0 on.
     ///
     /// # Errors
     /// [`GlError::Object`] when the driver has no memory.
     ///
     /// # Panics
-    /// When the attributes are not all of a vertex.
+    /// If the attributes do not add up to a vertex.
     pub fn new<V: bytemuck::Pod>(
         gl: &Rc<Context>,
         attributes: &[i32],
@@ -35,7 +35,7 @@ impl Mesh {
         assert_eq!(stride as usize, size_of::<V>(), "attributes and vertex differ in size");
         let object = |what: &str, reason| GlError::Object { what: what.into(), reason };
         let raw = gl.raw();
-        // SAFETY: the attributes lie inside a vertex, as was asserted.
+        // SAFETY: the attributes lie inside a vertex, as asserted above.
         unsafe {
             let array = raw.create_vertex_array().map_err(|e| object("a vertex array", e))?;
             let vertex_buffer = raw.create_buffer().map_err(|e| object("a vertex buffer", e))?;
@@ -71,21 +71,21 @@ impl Mesh {
         }
     }
 
-    /// Number of indices.
+    /// Returns the number of indices.
     pub fn index_count(&self) -> usize {
         self.index_count
     }
 
     /// Binds the vertex array for the following [`Mesh::draw`] calls.
     pub fn bind(&self) {
-        // SAFETY: a live vertex array.
+        // SAFETY: the vertex array lives as long as the mesh.
         unsafe { self.gl.raw().bind_vertex_array(Some(self.array)) }
     }
 
     /// Draws all indices as one triangle strip. The mesh must be bound.
     pub fn draw_strip(&self) {
         let gl = self.gl.raw();
-        // SAFETY: the whole index buffer, whose values the caller of `new` answers for.
+        // SAFETY: the count is that of the index buffer, whose values the caller of `new` has checked.
         unsafe { gl.draw_elements(glow::TRIANGLE_STRIP, self.index_count as i32, glow::UNSIGNED_INT, 0) }
     }
 

@@ -4,19 +4,20 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
+use crate::framebuffer::Framebuffer;
 use crate::{Context, Format, GlError, RenderTarget};
 
-/// One attachment.
+/// An attachment.
 enum Image {
     Texture(glow::Texture),
     Renderbuffer(glow::Renderbuffer),
 }
 
-/// A framebuffer with colour and depth of several samples a pixel: 4 bytes a sample each, which is what they cost in
-/// memory, and in bandwidth whenever a tile-based GPU has to write them out: see [`MultisampleTarget::discard`].
+/// A framebuffer with several samples of colour and depth in each pixel, 4 bytes each. A tile-based GPU writes all of them
+/// to memory unless they are given up: [`MultisampleTarget::discard`].
 pub struct MultisampleTarget {
     gl: Rc<Context>,
-    raw: glow::Framebuffer,
+    framebuffer: Framebuffer,
     samples: u32,
     formats: [Format; 2],
     readable: bool,
@@ -26,13 +27,13 @@ pub struct MultisampleTarget {
 }
 
 impl MultisampleTarget {
-    /// A target of `size` pixels with this many samples in each ([`crate::Capabilities::check_samples`]), of formats of
-    /// 4 bytes that can be rendered to. `readable` ones are textures, for shaders that read single samples
+    /// Creates a target of `size` pixels with this many samples in each ([`crate::Capabilities::check_samples`]). Both
+    /// formats have 4 bytes and can be rendered to. A `readable` target has textures, for shaders that read single samples
     /// ([`crate::Capabilities::multisample_textures`]).
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] when the driver has not this many samples, no multisample textures, or cannot render to
-    /// the formats; [`GlError::TooLarge`] beyond its limit, [`GlError::Object`] when it has no memory.
+    /// [`GlError::Unsupported`] if the driver lacks this many samples or multisample textures, or cannot render to the
+    /// formats; [`GlError::TooLarge`] beyond its limit, [`GlError::Object`] when it has no memory.
     pub fn new(
         gl: &Rc<Context>,
         size: [u32; 2],
@@ -47,13 +48,9 @@ impl MultisampleTarget {
             let name = &capabilities.renderer;
             return Err(GlError::Unsupported(format!("{name} has no multisample textures (OpenGL ES 3.1)")));
         }
-        // SAFETY: plain creation.
-        let raw = unsafe { gl.raw().create_framebuffer() }
-            .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
-        gl.count(1);
         let mut target = MultisampleTarget {
             gl: gl.clone(),
-            raw,
+            framebuffer: Framebuffer::new(gl)?,
             samples,
             formats: [color, depth],
             readable,
@@ -64,10 +61,10 @@ impl MultisampleTarget {
         Ok(target)
     }
 
-    /// Gives the target another size; contents are undefined afterwards if it changed.
+    /// Resizes the target. If the size changes, the contents are undefined afterwards.
     ///
     /// # Errors
-    /// As [`MultisampleTarget::new`].
+    /// Those of [`MultisampleTarget::new`].
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
         if size == self.size {
             return Ok(());
@@ -83,9 +80,9 @@ impl MultisampleTarget {
         self.size = size;
         self.gl.count_texture_bytes(self.bytes());
         let gl = self.gl.raw();
-        // SAFETY: the attachments are live objects of this target.
+        // SAFETY: the attachments were created for this target above.
         let (status, error) = unsafe {
-            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
             let attachments = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT];
             for (attachment, image) in attachments.into_iter().zip(self.images.iter().flatten()) {
                 let (target, multisample) = (glow::FRAMEBUFFER, glow::TEXTURE_2D_MULTISAMPLE);
@@ -119,7 +116,7 @@ impl MultisampleTarget {
         let ([w, h], samples) = (size.map(|n| n.max(1) as i32), self.samples as i32);
         let internal = format.gl().0;
         let refused = |reason| GlError::Object { what: "a multisample image".into(), reason };
-        // SAFETY: sizes are inside the limits, and the driver has this many samples for these formats.
+        // SAFETY: sizes are inside the limits, and `new` checked the number of samples.
         let image = unsafe {
             if self.readable {
                 let raw = gl.create_texture().map_err(refused)?;
@@ -138,7 +135,7 @@ impl MultisampleTarget {
         Ok(image)
     }
 
-    /// Of colour and depth.
+    /// Returns the bytes of colour and depth.
     fn bytes(&self) -> isize {
         2 * 4 * self.samples as isize * self.size[0] as isize * self.size[1] as isize
     }
@@ -158,19 +155,19 @@ impl MultisampleTarget {
         }
     }
 
-    /// Binds the framebuffer and sets the viewport to its lower left part of this size in pixels.
+    /// Binds the framebuffer and sets the viewport to its lower left part of this size, in pixels.
     pub fn bind(&self, size: [u32; 2]) {
-        self.gl.bind_framebuffer(Some(self.raw), [0, 0], size);
+        self.gl.bind_framebuffer(Some(self.framebuffer.raw), [0, 0], size);
     }
 
-    /// Averages the samples of the lower left pixels, as many as `to` has, into its first colour texture, which has this
-    /// target's colour format.
+    /// Averages the samples into the first colour texture of `to`, which has the same colour format. Its size selects the
+    /// lower left pixels.
     pub fn resolve_color(&self, to: &RenderTarget) {
         self.blit(to, glow::COLOR_BUFFER_BIT);
     }
 
-    /// Takes one sample's depth, which one is the driver's choice, into the depth texture of `to`, which has this
-    /// target's depth format: for drivers without multisample textures.
+    /// Copies the depth of one sample, which the driver chooses, into the depth texture of `to`, which has the same depth
+    /// format. For drivers without multisample textures.
     pub fn resolve_depth(&self, to: &RenderTarget) {
         self.blit(to, glow::DEPTH_BUFFER_BIT);
     }
@@ -178,18 +175,17 @@ impl MultisampleTarget {
     fn blit(&self, to: &RenderTarget, mask: u32) {
         let [w, h] = to.size().map(|n| n as i32);
         let gl = self.gl.raw();
-        // SAFETY: both framebuffers are live and alike in their formats; the rectangles are the same, as multisampled
-        // ones have to be.
+        // SAFETY: both targets own their framebuffers; the rectangles are equal, as GL demands for multisampled ones.
         unsafe {
             gl.disable(glow::SCISSOR_TEST);
-            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.raw));
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.framebuffer.raw));
             gl.read_buffer(glow::COLOR_ATTACHMENT0);
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(to.raw()));
             gl.blit_framebuffer(0, 0, w, h, 0, 0, w, h, mask, glow::NEAREST);
         }
     }
 
-    /// Gives up the contents of colour, of depth or of both, so that a tile-based GPU needs not write them to memory.
+    /// Gives up the contents of colour, depth or both, so that a tile-based GPU does not write them to memory.
     pub fn discard(&self, color: bool, depth: bool) {
         let attachments = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT];
         let given_up = match (color, depth) {
@@ -198,19 +194,19 @@ impl MultisampleTarget {
             (false, true) => &attachments[1..],
             (false, false) => return,
         };
-        // SAFETY: a live framebuffer with these attachments.
+        // SAFETY: this target's framebuffer has these attachments.
         unsafe {
-            self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
+            self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
             self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, given_up);
         }
     }
 
-    /// The colour of every sample as a multisample texture, where the target is readable.
+    /// Returns the colour of all samples as a multisample texture, if the target is readable.
     pub fn color(&self) -> Option<glow::Texture> {
         self.texture(0)
     }
 
-    /// The depth of every sample as a multisample texture, where the target is readable.
+    /// Returns the depth of all samples as a multisample texture, if the target is readable.
     pub fn depth(&self) -> Option<glow::Texture> {
         self.texture(1)
     }
@@ -222,12 +218,12 @@ impl MultisampleTarget {
         }
     }
 
-    /// Samples in a pixel.
+    /// Returns the number of samples in a pixel.
     pub fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -236,25 +232,22 @@ impl MultisampleTarget {
 impl Drop for MultisampleTarget {
     fn drop(&mut self) {
         self.delete_images();
-        // SAFETY: created in `new`, deleted once.
-        unsafe { self.gl.raw().delete_framebuffer(self.raw) };
-        self.gl.count(-1);
     }
 }
 
-/// A framebuffer around the textures of a render target, drawn into with several samples a pixel that a tile-based GPU
-/// keeps in its tiles and averages when it writes these out: 8 bytes a pixel, whatever the number of samples. They are gone
-/// as soon as another framebuffer is bound.
+/// A framebuffer that renders with several samples a pixel into the textures of a render target. A tile-based GPU keeps the
+/// samples in its tiles and averages them when it writes the tiles: 8 bytes a pixel, whatever the number of samples. The
+/// samples are lost as soon as another framebuffer is bound.
 pub struct TileTarget {
     gl: Rc<Context>,
-    raw: glow::Framebuffer,
+    framebuffer: Framebuffer,
     samples: u32,
     /// Colour and depth.
     textures: Option<[glow::Texture; 2]>,
 }
 
 impl TileTarget {
-    /// A framebuffer for this many samples, around nothing yet.
+    /// Creates a framebuffer for this many samples, without textures yet.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] without [`crate::Capabilities::tile_samples`]; [`GlError::Object`] when the driver
@@ -267,14 +260,10 @@ impl TileTarget {
                 capabilities.renderer
             )));
         }
-        // SAFETY: plain creation.
-        let raw = unsafe { gl.raw().create_framebuffer() }
-            .map_err(|reason| GlError::Object { what: "a framebuffer".into(), reason })?;
-        gl.count(1);
-        Ok(TileTarget { gl: gl.clone(), raw, samples, textures: None })
+        Ok(TileTarget { gl: gl.clone(), framebuffer: Framebuffer::new(gl)?, samples, textures: None })
     }
 
-    /// Puts it around the first colour texture and the depth texture of a target; nothing is done if it is there.
+    /// Attaches the first colour texture and the depth texture of a target. Does nothing if they are attached.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] when the driver cannot render to these with so many samples.
@@ -285,9 +274,9 @@ impl TileTarget {
         }
         self.textures = None;
         let gl = self.gl.raw();
-        // SAFETY: live textures; the entry point exists, as the capability says.
+        // SAFETY: the target owns the textures, and the entry point exists by `tile_samples`.
         let status = unsafe {
-            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw));
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
             for (attachment, raw) in
                 [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT].into_iter().zip(textures)
             {
@@ -312,22 +301,14 @@ impl TileTarget {
         Ok(())
     }
 
-    /// Binds the framebuffer and sets the viewport to its lower left part of this size in pixels.
+    /// Binds the framebuffer and sets the viewport to its lower left part of this size, in pixels.
     pub fn bind(&self, size: [u32; 2]) {
-        self.gl.bind_framebuffer(Some(self.raw), [0, 0], size);
+        self.gl.bind_framebuffer(Some(self.framebuffer.raw), [0, 0], size);
     }
 
-    /// Gives up the depth, while the framebuffer is bound.
+    /// Gives up the depth. The framebuffer must be bound.
     pub fn discard_depth(&self) {
-        // SAFETY: the framebuffer that is bound has the attachment.
+        // SAFETY: the bound framebuffer has the attachment.
         unsafe { self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]) }
-    }
-}
-
-impl Drop for TileTarget {
-    fn drop(&mut self) {
-        // SAFETY: created in `new`, deleted once.
-        unsafe { self.gl.raw().delete_framebuffer(self.raw) };
-        self.gl.count(-1);
     }
 }

@@ -1,4 +1,4 @@
-//! A buffer that pixels are read into without waiting for them.
+//! A buffer for asynchronous readback of pixels.
 
 use std::rc::Rc;
 
@@ -14,13 +14,13 @@ pub struct PixelBuffer {
 }
 
 impl PixelBuffer {
-    /// A buffer of `len` bytes.
+    /// Creates a buffer of `len` bytes.
     ///
     /// # Errors
     /// [`GlError::Object`] when the driver refuses.
     pub fn new(gl: &Rc<Context>, len: usize) -> Result<PixelBuffer, GlError> {
         let raw_gl = gl.raw();
-        // SAFETY: plain creation; unbound again at the end, since a bound one redirects every readback.
+        // SAFETY: the buffer is new. It is unbound at the end, since a bound one redirects every readback.
         let raw = unsafe {
             let raw = raw_gl
                 .create_buffer()
@@ -34,17 +34,20 @@ impl PixelBuffer {
         Ok(PixelBuffer { gl: gl.clone(), raw, len })
     }
 
-    /// The GL name.
+    /// Returns the GL name.
     pub(crate) fn raw(&self) -> glow::Buffer {
         self.raw
     }
 
-    /// Copies the content out, zeros if the driver cannot map it; waits for the read that fills it. `bytes` is no
-    /// longer than the buffer.
+    /// Copies the first bytes of the buffer out, zeros if the driver cannot map it. Waits for the readback that fills
+    /// it.
+    ///
+    /// # Panics
+    /// If `bytes` is longer than the buffer.
     pub fn read(&self, bytes: &mut [u8]) {
         assert!(bytes.len() <= self.len, "more bytes than the buffer has");
         let gl = self.gl.raw();
-        // WebGL maps nothing.
+        // WebGL cannot map buffers.
         #[cfg(target_arch = "wasm32")]
         // SAFETY: the buffer is as long as the slice.
         unsafe {

@@ -11,29 +11,29 @@ use web_time::Instant;
 
 use crate::{Capabilities, GlApi};
 
-/// EXT_disjoint_timer_query: whether the clock was disturbed since the last question.
+/// GL_GPU_DISJOINT_EXT of EXT_disjoint_timer_query: true if the clock was disturbed since the last query of it.
 const GPU_DISJOINT: u32 = 0x8FBB;
-/// Results are asked for this many frames late, when they are there without waiting.
+/// Results are read this many frames late, when they are available without waiting.
 const FRAMES_LATE: usize = 4;
 
-/// How passes are timed.
+/// The way in which passes are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profiling {
     /// Not at all.
     Off,
-    /// Timer queries where they can be trusted, else nothing. Never waits: for programs that show frames.
+    /// Timer queries if they can be trusted, else nothing. Never waits: for programs that show frames.
     Queries,
-    /// Timer queries where they can be trusted, else [`Profiling::Finish`].
+    /// Timer queries if they can be trusted, else [`Profiling::Finish`].
     Auto,
-    /// glFinish before and after each pass, and a CPU clock. The only right way on a CPU rasterizer, whose
-    /// timer queries cover the last tile alone.
+    /// glFinish before and after each pass, and a CPU clock. Needed on a CPU rasterizer, whose timer queries cover only
+    /// the last tile.
     Finish,
 }
 
-/// Measured time of one pass.
+/// The measured time of one pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassTime {
-    /// Name given to [`crate::Context::pass`].
+    /// The name given to [`crate::Context::pass`].
     pub name: &'static str,
     /// Time on the GPU or, on a CPU rasterizer, on the wall clock.
     pub time: Duration,
@@ -46,7 +46,7 @@ enum Record {
     Undefined(glow::Query),
 }
 
-/// Passes do not nest for timer queries: an inner pass of a timed one is part of it.
+/// Times passes. A pass within another one is part of the outer one's time, since timer queries do not nest.
 pub(crate) struct Profiler {
     mode: Profiling,
     queries: bool,
@@ -56,7 +56,7 @@ pub(crate) struct Profiler {
     records: Vec<(&'static str, Record)>,
     /// Records of frames whose results are not read yet, oldest first.
     frames: VecDeque<Vec<(&'static str, Record)>>,
-    /// Frames among those whose results are worthless, since the clock was disturbed.
+    /// Number of the oldest frames whose results are worthless, since the clock was disturbed.
     disturbed: usize,
     pool: Vec<glow::Query>,
 }
@@ -110,8 +110,7 @@ impl Profiler {
         }
     }
 
-    /// What is drawn in this pass would leave the result of its query undefined, and WebGL would not even draw it: ends
-    /// the query.
+    /// Ends the pass's query because of a draw that would leave its result undefined, and that WebGL would refuse.
     pub(crate) fn make_undefined(&mut self, gl: &glow::Context) {
         if self.depth > 0
             && let Some((_, record)) = self.records.last_mut()
@@ -174,7 +173,7 @@ impl Profiler {
             count = u32::from(read(gl, &mut spare, &mut self.pool, times));
             taken = 1;
         }
-        // SAFETY: the extension that gives ES its timer queries has this state.
+        // SAFETY: the extension with timer queries in OpenGL ES defines this state.
         if self.queries && self.api == GlApi::Es && unsafe { gl.get_parameter_bool(GPU_DISJOINT) } {
             self.disturbed = self.frames.len() + taken + 1;
         }
@@ -188,8 +187,8 @@ impl Profiler {
     }
 }
 
-/// Reads results, waiting for those that are not there yet, and takes back their queries. False, and nothing read, if
-/// one of them is undefined: times of a part of the passes would be taken for all.
+/// Reads results into `times`, waits for those that are not available yet, and returns their queries to the pool. False
+/// if one of them is undefined: then nothing is added, since times of some passes would look like those of all.
 fn read(
     gl: &glow::Context,
     records: &mut Vec<(&'static str, Record)>,

@@ -9,7 +9,7 @@ use yoro_shaders::{Assembled, MissingFile};
 
 use crate::{Context, GlApi, GlError, Texture};
 
-/// Which files and defines make a program.
+/// The shader files of a program.
 #[derive(Clone, Copy, Debug)]
 pub enum ShaderSource<'a> {
     /// Vertex and fragment shader.
@@ -25,16 +25,16 @@ pub enum ShaderSource<'a> {
     Compute(&'a str),
 }
 
-/// What a program was made of.
+/// The files and defines that a program was compiled from.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ProgramRecipe {
     /// The file of each stage, as [`yoro_shaders::files`] names it: vertex and fragment shader, or a compute shader.
     pub files: Vec<String>,
-    /// Names and values of the preprocessor's macros, in the order of definition.
+    /// Names and values of the preprocessor's macros, in order of definition.
     pub defines: Vec<(String, String)>,
 }
 
-/// A file's text, in the newest GLSL ES that the context compiles and no newer than needed.
+/// Returns a file's text with the GLSL ES version that the context compiles, at most 3.10.
 fn assemble(gl: &Context, path: &str, defines: &[(&str, String)]) -> Result<Assembled, GlError> {
     let version = match gl.capabilities().api {
         GlApi::Es if !gl.capabilities().compute => "300 es",
@@ -51,7 +51,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// Compiles and links.
+    /// Compiles and links a program.
     ///
     /// # Errors
     /// [`GlError::Shader`] with file, line and the driver's log; [`GlError::MissingShader`];
@@ -86,7 +86,7 @@ impl Program {
             files: stages.iter().map(|(_, _, file)| (*file).to_owned()).collect(),
             defines: defines.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
         };
-        // SAFETY: names are created here and used while alive.
+        // SAFETY: shaders and program are created here and deleted after their last use.
         unsafe {
             let raw = raw_gl.create_program().map_err(object)?;
             gl.count(1);
@@ -124,15 +124,15 @@ impl Program {
         }
     }
 
-    /// Makes the program current.
+    /// Makes the program current and returns it.
     pub fn bind(&self) -> &Program {
-        // SAFETY: a linked program.
+        // SAFETY: the program is linked.
         unsafe { self.gl.raw().use_program(Some(self.raw)) };
         self
     }
 
-    /// Sets a uniform of the current program by name. A name that the compiler has removed is ignored, since
-    /// variants of one shader use different uniforms. Arrays go by their name without brackets.
+    /// Sets a uniform by name; the program must be current. A name that the compiler has removed is ignored, since
+    /// variants of one shader use different uniforms. Arrays have their name without brackets.
     pub fn set(&self, name: &str, value: impl UniformValue) -> &Program {
         if let Some(location) = self.uniforms.get(name) {
             // SAFETY: the location belongs to this program, which the caller has bound.
@@ -141,19 +141,19 @@ impl Program {
         self
     }
 
-    /// Points a sampler at a texture unit and binds a texture there.
+    /// Binds a 2-D texture to a unit and points a sampler at the unit.
     pub fn texture(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
         super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D, texture);
         self.set(name, unit as i32)
     }
 
-    /// As [`Program::texture`], for a multisample texture.
+    /// Binds a multisample texture to a unit and points a sampler at the unit.
     pub fn texture_multisample(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
         super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D_MULTISAMPLE, texture);
         self.set(name, unit as i32)
     }
 
-    /// As [`Program::texture`], for a texture of this library: a 2-D one or an array.
+    /// Binds a texture of this library, 2-D or an array, to a unit and points a sampler at the unit.
     pub fn texture_of(&self, name: &str, unit: u32, texture: &Texture) -> &Program {
         texture.bind(unit);
         self.set(name, unit as i32)
@@ -168,12 +168,12 @@ impl Drop for Program {
     }
 }
 
-/// A value that can be given to a uniform.
+/// A value of a uniform.
 pub trait UniformValue {
     /// Uploads the value.
     ///
     /// # Safety
-    /// The location belongs to the current program.
+    /// The location must belong to the current program.
     unsafe fn set(self, gl: &glow::Context, location: &glow::UniformLocation);
 }
 
@@ -182,7 +182,7 @@ macro_rules! uniform {
         impl UniformValue for $ty {
             unsafe fn set(self, $gl: &glow::Context, $location: &glow::UniformLocation) {
                 let $v = self;
-                // SAFETY: promised by the caller.
+                // SAFETY: the location belongs to the current program.
                 unsafe { $body }
             }
         }

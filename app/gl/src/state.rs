@@ -7,29 +7,29 @@ use crate::Context;
 /// More rows than any framebuffer has.
 const TALLEST: i32 = 1 << 20;
 
-/// Which depth passes the depth test.
+/// The depth test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthTest {
     /// No test, no write.
     Off,
-    /// Smaller passes and is written.
+    /// Smaller depth passes and is written.
     Less,
-    /// Larger passes and is written.
+    /// Larger depth passes and is written.
     Greater,
-    /// The depth that is there passes: with that of the far plane, where nothing was drawn.
+    /// Equal depth passes: with the far plane's, fragments where nothing was drawn.
     Equal,
-    /// Everything passes and is written.
+    /// All depth passes and is written.
     Always,
 }
 
-/// How a fragment meets what is there.
+/// How a fragment is combined with the pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blend {
-    /// Replaces it.
+    /// Replaces the pixel.
     Off,
-    /// Is added to it.
+    /// Added to the pixel.
     Add,
-    /// Is mixed with it by the fragment's alpha; the target's alpha (its luma) stays.
+    /// Mixed with the pixel by the fragment's alpha. The target's alpha (its luma) stays.
     Over,
 }
 
@@ -40,20 +40,20 @@ pub struct RasterState {
     pub depth: DepthTest,
     /// Blending of all colour attachments.
     pub blend: Blend,
-    /// Whether back faces (clockwise) are culled.
+    /// True to cull back faces (clockwise).
     pub cull: bool,
 }
 
 impl RasterState {
     /// A pass over the whole screen.
     pub const SCREEN: RasterState = RasterState { depth: DepthTest::Off, blend: Blend::Off, cull: false };
-    /// A pass over the whole screen that writes depth, too.
+    /// A pass over the whole screen that also writes depth.
     pub const SCREEN_DEPTH: RasterState = RasterState { depth: DepthTest::Always, ..RasterState::SCREEN };
 }
 
 impl Context {
-    /// Sets depth test, blending and culling; stencil test and dithering are off, everything is written. The scissor test
-    /// is off but within [`Context::within_columns`].
+    /// Sets depth test, blending and culling. Turns stencil test and dithering off and all writes on. The scissor test is
+    /// off, except within [`Context::within_columns`].
     pub fn set_raster_state(&self, state: &RasterState) {
         let gl = self.raw();
         // SAFETY: state calls with valid enums.
@@ -86,8 +86,8 @@ impl Context {
         }
     }
 
-    /// Draws only within some columns of whatever framebuffer is bound, `[first, end]` from the left, as far as `body` sets
-    /// its state by [`Context::set_raster_state`]; `None` for all columns. Clearing is not bounded.
+    /// Runs `body` with all draws bounded to the columns `[first, end]`, from the left, of any framebuffer; `None` for all
+    /// columns. `body` must set its state by [`Context::set_raster_state`]. Clearing is not bounded.
     pub fn within_columns<R>(&self, columns: Option<[u32; 2]>, body: impl FnOnce() -> R) -> R {
         let before = self.columns.replace(columns);
         let result = body();
@@ -95,26 +95,26 @@ impl Context {
         result
     }
 
-    /// The columns that draws are bounded to now, by [`Context::within_columns`].
+    /// Returns the columns that [`Context::within_columns`] bounds draws to now.
     pub fn columns(&self) -> Option<[u32; 2]> {
         self.columns.get()
     }
 
-    /// Keeps the next draws from writing colour, until the state is set again: for programs that write depth alone into a
-    /// target that has colour, too. Without it colour would be undefined, and WebGL refuses to draw.
+    /// Turns colour writes off until the state is set again, for programs that write only depth into a target with
+    /// colour. Otherwise colour would be undefined, and WebGL refuses to draw.
     pub fn mask_color(&self) {
-        // SAFETY: no object is involved.
+        // SAFETY: a state call without objects.
         unsafe { self.raw().color_mask(false, false, false, false) }
     }
 
-    /// Keeps the next draws from writing depth, until the state is set again: for what is tested and blended.
+    /// Turns depth writes off until the state is set again, for surfaces that are tested and blended.
     pub fn mask_depth(&self) {
-        // SAFETY: no object is involved.
+        // SAFETY: a state call without objects.
         unsafe { self.raw().depth_mask(false) }
     }
 
-    /// Whether the alpha of a fragment decides how many of its pixel's samples it covers, instead of being stored.
-    /// Comes after [`Context::set_raster_state`]; whoever turns it on turns it off again.
+    /// Turns alpha to coverage on or off: a fragment's alpha decides how many samples it covers, and is not stored.
+    /// Call it after [`Context::set_raster_state`], and turn it off again.
     pub fn set_alpha_to_coverage(&self, on: bool) {
         let gl = self.raw();
         // SAFETY: a valid enum.
@@ -128,18 +128,17 @@ impl Context {
         }
     }
 
-    /// Maps the depth of the clip volume, -1 to 1, to another part of the depth buffer's 0 to 1 than all of it.
-    /// Whoever narrows it sets it back.
+    /// Maps depth in the clip volume, -1 to 1, to this part of the depth buffer's range 0 to 1. Set it back to all of it.
     pub fn set_depth_window(&self, [low, high]: [f32; 2]) {
         // SAFETY: GL clamps the values.
         unsafe { self.raw().depth_range_f32(low, high) }
     }
 
-    /// Whether `gl_ClipDistance[0]` clips. Whoever turns it on turns it off again: programs that do not write it
-    /// are undefined with it.
+    /// Turns clipping by `gl_ClipDistance[0]` on or off. Turn it off again: programs that do not write it are undefined
+    /// with it.
     pub fn set_clip_distance(&self, on: bool) {
         debug_assert!(self.capabilities().clip_distances);
-        // SAFETY: a valid enum where the capability says so.
+        // SAFETY: the enum exists if the context has clip distances.
         unsafe {
             if on {
                 self.raw().enable(glow::CLIP_DISTANCE0);
@@ -149,7 +148,7 @@ impl Context {
         }
     }
 
-    /// Clears the bound framebuffer: all colour attachments to zero and, if given, depth to a value.
+    /// Clears the bound framebuffer: all colour attachments to zero, and depth to a value if one is given.
     pub fn clear(&self, depth: Option<f32>) {
         let gl = self.raw();
         let mut mask = glow::COLOR_BUFFER_BIT;
@@ -189,11 +188,10 @@ impl Context {
         unsafe { self.raw().viewport(x, y, w, h) }
     }
 
-    /// Binds a framebuffer of whatever origin (`None`: the window's) and sets the viewport, in pixels from its
-    /// lower left corner.
+    /// Binds any framebuffer (`None` for the window's) and sets the viewport, in pixels from its lower left corner.
     pub fn bind_framebuffer(&self, framebuffer: Option<glow::Framebuffer>, origin: [u32; 2], size: [u32; 2]) {
         let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
-        // SAFETY: the caller's framebuffer is live.
+        // SAFETY: GL refuses a name that is not a framebuffer.
         unsafe {
             self.raw().bind_framebuffer(glow::FRAMEBUFFER, framebuffer);
             self.raw().viewport(x, y, w, h);

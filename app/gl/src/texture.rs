@@ -6,7 +6,7 @@ use glow::HasContext;
 
 use crate::{Context, GlError};
 
-/// Pixel formats in use.
+/// A pixel format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// 8-bit RGBA, linear or already encoded.
@@ -42,7 +42,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// (internal format, pixel format, type) as GL names them.
+    /// Returns GL's internal format, pixel format and type.
     pub fn gl(self) -> (u32, u32, u32) {
         match self {
             Format::Rgba8 => (glow::RGBA8, glow::RGBA, glow::UNSIGNED_BYTE),
@@ -63,13 +63,13 @@ impl Format {
         }
     }
 
-    /// Whether the format holds depth.
+    /// True if the format holds depth.
     pub fn is_depth(self) -> bool {
         matches!(self, Format::Depth24 | Format::Depth32F | Format::Depth16)
     }
 }
 
-/// How a texture is sampled.
+/// The way in which a texture is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
     /// Nearest texel, clamped to the edge: depth, integers, exact copies.
@@ -78,13 +78,13 @@ pub enum Filter {
     Linear,
     /// Trilinear, anisotropic, repeating: material maps.
     Material,
-    /// As [`Filter::Material`], with nearest magnification.
+    /// [`Filter::Material`] with nearest magnification.
     MaterialNearest,
-    /// Depth compared with a reference (LEQUAL), 2x2 results averaged: a shadow map behind `sampler2DShadow`.
+    /// Depth compared with a reference (LEQUAL), 2x2 results averaged: a shadow map for `sampler2DShadow`.
     Compare,
 }
 
-/// More taps cost time and show nothing.
+/// More taps cost time without a visible difference.
 const MAX_ANISOTROPY: f32 = 8.0;
 
 /// A 2-D texture, or an array of them.
@@ -95,12 +95,12 @@ pub struct Texture {
     target: u32,
     size: [u32; 2],
     format: Format,
-    /// All levels and layers.
+    /// Bytes of all levels and layers.
     bytes: usize,
 }
 
 impl Texture {
-    /// Allocates storage; material filters get a full mip chain, the others one level.
+    /// Creates a 2-D texture. With a material filter it has a full mip chain, otherwise one level.
     ///
     /// # Errors
     /// [`GlError::TooLarge`] beyond the driver's limit, [`GlError::Object`] when it has no memory.
@@ -108,10 +108,10 @@ impl Texture {
         Texture::with_layers(gl, size, None, format, filter)
     }
 
-    /// Allocates an array of `layers` textures, to be rendered to and sampled.
+    /// Creates an array of `layers` textures, to render to and to sample.
     ///
     /// # Errors
-    /// As [`Texture::new`].
+    /// Those of [`Texture::new`].
     pub fn array(
         gl: &Rc<Context>,
         size: [u32; 2],
@@ -144,7 +144,7 @@ impl Texture {
         };
         let target = if layers.is_some() { glow::TEXTURE_2D_ARRAY } else { glow::TEXTURE_2D };
         let raw_gl = gl.raw();
-        // SAFETY: sizes are inside the limit, enums fit each other, the texture is new.
+        // SAFETY: the texture is new, its size is inside the limit, and format and filter are valid together.
         let raw = unsafe {
             let raw = raw_gl
                 .create_texture()
@@ -180,7 +180,7 @@ impl Texture {
         let level_0 = texture.byte_len() * layers.unwrap_or(1) as usize;
         texture.bytes = if mipmapped { level_0 / 3 * 4 } else { level_0 };
         gl.count_texture_bytes(texture.bytes as isize);
-        // SAFETY: no arguments.
+        // SAFETY: reads and clears the error flag.
         if unsafe { raw_gl.get_error() } == glow::OUT_OF_MEMORY {
             let reason = "out of memory; choose a smaller size".into();
             return Err(GlError::Object { what: format!("a {width}x{height} texture"), reason });
@@ -188,7 +188,10 @@ impl Texture {
         Ok(texture)
     }
 
-    /// Uploads the whole of level 0 (rows from the bottom, tightly packed).
+    /// Uploads level 0: rows from the bottom, tightly packed.
+    ///
+    /// # Panics
+    /// If `bytes` does not have [`Texture::byte_len`] bytes.
     pub fn upload(&self, bytes: &[u8]) {
         let (_, format, ty) = self.format.gl();
         let [w, h] = self.size;
@@ -203,16 +206,16 @@ impl Texture {
         }
     }
 
-    /// Fills the mip levels from level 0.
+    /// Computes the other mip levels from level 0.
     pub fn generate_mipmaps(&self) {
-        // SAFETY: a texture of this object.
+        // SAFETY: the texture lives as long as this object.
         unsafe {
             self.gl.raw().bind_texture(glow::TEXTURE_2D, Some(self.raw));
             self.gl.raw().generate_mipmap(glow::TEXTURE_2D);
         }
     }
 
-    /// Bytes of level 0 as [`Texture::upload`] takes them.
+    /// Returns the number of bytes of level 0.
     pub fn byte_len(&self) -> usize {
         let texel = match self.format {
             Format::R8 => 1,
@@ -225,30 +228,30 @@ impl Texture {
         self.size[0] as usize * self.size[1] as usize * texel
     }
 
-    /// The GL name, to hand to code that takes foreign textures.
+    /// Returns the GL name.
     pub fn raw(&self) -> glow::Texture {
         self.raw
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Pixel format.
+    /// Returns the pixel format.
     pub fn format(&self) -> Format {
         self.format
     }
 
-    /// Makes the texture available on a texture unit.
+    /// Binds the texture to a texture unit.
     pub fn bind(&self, unit: u32) {
         bind_texture(&self.gl, unit, self.target, self.raw);
     }
 }
 
-/// Binds any texture, own or foreign, to a unit. `target` is that of the texture.
+/// Binds any texture to a unit; `target` is the texture's own.
 pub(crate) fn bind_texture(gl: &Context, unit: u32, target: u32, texture: glow::Texture) {
-    // SAFETY: a live texture name of this target.
+    // SAFETY: GL refuses a name that is not a texture of this target.
     unsafe {
         gl.raw().active_texture(glow::TEXTURE0 + unit);
         gl.raw().bind_texture(target, Some(texture));
