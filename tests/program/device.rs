@@ -61,7 +61,7 @@ fn fault(kind: &str, rest: &str) -> String {
 }
 
 #[test]
-fn nothing_is_lost_and_each_fault_is_named() {
+fn no_sample_is_lost_and_each_fault_is_named() {
     use FaultKind::*;
     let clean = minute("");
     assert_eq!((kinds(&clean), missing(&clean), clean.samples.len()), (vec![], 0, 62));
@@ -132,7 +132,7 @@ fn the_figures_of_odd_devices_are_corrected() {
 }
 
 #[test]
-fn runs_that_are_worth_nothing_say_so() {
+fn worthless_runs_fail_with_the_reason() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     for (name, script, reason) in [
@@ -237,7 +237,7 @@ fn mistakes_and_conditions_are_one_sentence() {
 }
 
 #[test]
-fn listed_and_installed() {
+fn devices_are_listed_and_installed_on() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     write(
@@ -461,7 +461,7 @@ fn a_warm_device_does_what_the_experiment_says() {
 }
 
 #[test]
-fn what_the_device_does_not_allow_is_told() {
+fn refused_settings_and_refresh_rates_are_reported() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     write(at, "s.toml", "[[device]]\nserial = \"SIM1\"\nfixed-settings = [\"peak_refresh_rate\"]\n");
@@ -704,7 +704,7 @@ esac
 
 #[cfg(unix)]
 #[test]
-fn the_program_adb_is_asked_as_it_should_be() {
+fn adb_is_called_with_the_right_arguments() {
     use std::os::unix::fs::PermissionsExt;
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();

@@ -1,4 +1,4 @@
-//! What is asked of a device, whoever answers: the program adb, or a replay.
+//! The interface to devices, which the program adb or a replay answers.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::capture::CaptureError;
 use yoro_files::FileError;
 
-/// How adb sees a device.
+/// The state in which adb lists a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum State {
     /// Ready.
@@ -48,9 +48,9 @@ impl State {
 /// A device in adb's list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Listed {
-    /// What adb calls it.
+    /// The device's serial number, as adb lists it.
     pub serial: String,
-    /// Whether it can be used.
+    /// Its state.
     pub state: State,
 }
 
@@ -63,7 +63,7 @@ pub enum DeviceError {
         "adb's server does not answer ({reason}): restart it by adb kill-server and adb start-server, and use one version of adb only"
     )]
     Server {
-        /// In adb's words.
+        /// adb's words.
         reason: String,
     },
     /// The program adb is nowhere.
@@ -71,7 +71,7 @@ pub enum DeviceError {
         "adb was not found in {looked}: install Android's platform tools (Debian and Ubuntu: apt install adb), or name its file"
     )]
     NoAdb {
-        /// Where it was looked for.
+        /// The places where it was looked for.
         looked: String,
     },
     /// It is there, but does not start.
@@ -113,9 +113,9 @@ pub enum DeviceError {
     /// See [`State::Other`].
     #[error("{serial} is in the state \"{state}\": start Android on it")]
     NotReady {
-        /// What adb calls it.
+        /// The device's serial number, as adb lists it.
         serial: String,
-        /// In adb's words.
+        /// adb's words.
         state: String,
     },
     /// It was there, and is gone.
@@ -130,7 +130,7 @@ pub enum DeviceError {
         quoted(serial)
     )]
     NoPackage {
-        /// What adb calls it.
+        /// The device's serial number, as adb lists it.
         serial: String,
         /// Its name.
         package: String,
@@ -161,7 +161,7 @@ pub enum DeviceError {
         apk.display()
     )]
     NoAbi {
-        /// What adb calls it.
+        /// The device's serial number, as adb lists it.
         serial: String,
         /// The file.
         apk: PathBuf,
@@ -169,7 +169,7 @@ pub enum DeviceError {
     /// Installing failed otherwise.
     #[error("{} cannot be installed on {serial} ({reason}): make it anew by cargo xtask apk --release", apk.display())]
     Install {
-        /// What adb calls it.
+        /// The device's serial number, as adb lists it.
         serial: String,
         /// The file.
         apk: PathBuf,
@@ -182,7 +182,7 @@ pub enum DeviceError {
         wifi(serial, address)
     )]
     PluggedIn {
-        /// What adb calls it.
+        /// The device's serial number, as adb lists it.
         serial: String,
         /// Its address in the wireless network, if it has one.
         address: Option<String>,
@@ -209,31 +209,31 @@ pub enum DeviceError {
         "{serial} has {celsius:.1} C and does not cool down to {wanted:.1} C: let it rest in a cooler place, then give the same command"
     )]
     TooWarm {
-        /// What adb calls it.
+        /// The device's serial number, as adb lists it.
         serial: String,
-        /// What it has.
+        /// Its temperature.
         celsius: f64,
-        /// What was wanted.
+        /// The temperature wanted.
         wanted: f64,
     },
     /// A command on the device failed.
     #[error("{serial} refuses \"{command}\" ({reason}): {}", after_refusal(serial, reason))]
     Refused {
-        /// What adb calls it.
+        /// The device's serial number, as adb lists it.
         serial: String,
-        /// What was to be done.
+        /// The command.
         command: String,
-        /// What it said.
+        /// Its answer.
         reason: String,
     },
     /// A command did not end.
     #[error("{serial} has not answered \"{command}\" for {seconds} s: plug it in again, or restart it")]
     Silent {
-        /// What adb calls it.
+        /// The device's serial number, as adb lists it.
         serial: String,
-        /// What was to be done.
+        /// The command.
         command: String,
-        /// How long.
+        /// Seconds waited.
         seconds: u64,
     },
     /// The replay has nothing to play.
@@ -256,7 +256,7 @@ pub enum DeviceError {
 }
 
 impl DeviceError {
-    /// Whether the device may come back by itself.
+    /// True if the device may come back by itself.
     pub fn is_lost(&self) -> bool {
         use DeviceError::{Lost, Offline, Server, Silent, Unauthorized, Unknown};
         matches!(
@@ -271,7 +271,7 @@ impl DeviceError {
     }
 }
 
-/// The commands that bring a device from the cable to the wireless network.
+/// Returns the commands that move a device from the cable to the wireless network.
 fn wifi(serial: &str, address: &Option<String>) -> String {
     if is_wireless(serial) {
         return "it already is: take the charger off".into();
@@ -283,24 +283,21 @@ fn wifi(serial: &str, address: &Option<String>) -> String {
     )
 }
 
-/// What tells a device apart, whatever connection it has: its serial number. All emulators of one image have the same
+/// Returns the serial number, the same for every connection of a device. All emulators of one image have the same
 /// (`EMULATOR34X1X19X0`); what adb calls them tells them apart.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn serial_number(device: &dyn Device) -> Result<String, DeviceError> {
     let own = device.shell(&["getprop", "ro.serialno"])?.trim().to_owned();
     let is_shared = own.is_empty() || own.starts_with("EMULATOR") || device.serial().starts_with("emulator-");
     Ok(if is_shared { device.serial().to_owned() } else { own })
 }
 
-/// Whether adb reaches the device over the network: by address and port, or by a name found in it (mDNS), such as
+/// True if adb reaches the device over the network: by address and port, or by a name found in it (mDNS), such as
 /// `adb-SERIAL-x7Fw2a._adb-tls-connect._tcp`.
 pub fn is_wireless(serial: &str) -> bool {
     serial.contains(':') || serial.contains("._adb")
 }
 
-/// A word as a shell takes it, this computer's or the device's.
+/// Returns a word quoted for a shell, this computer's or the device's.
 pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-._/:=,%+@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -310,7 +307,7 @@ pub fn quoted(word: &str) -> String {
     }
 }
 
-/// What helps against a refusal.
+/// Returns the remedy for a refusal.
 fn after_refusal(serial: &str, reason: &str) -> String {
     if reason.contains("SecurityException") {
         return "on phones by Xiaomi turn on \"USB debugging (Security settings)\" in the developer options and restart \
@@ -320,7 +317,7 @@ fn after_refusal(serial: &str, reason: &str) -> String {
     format!("try it by adb -s {} shell", quoted(serial))
 }
 
-/// What comes out of a log.
+/// An event of a log that is followed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LogEvent {
     /// A line without its end.
@@ -339,35 +336,23 @@ pub trait LogStream {
 
 /// One device.
 pub trait Device: Send {
-    /// What adb calls it.
+    /// The device's serial number, as adb lists it.
     fn serial(&self) -> &str;
 
-    /// Whether it is a replay: said wherever results of it appear.
+    /// True for a replay, which every result of it must say.
     fn is_simulated(&self) -> bool;
 
     /// Runs a command on the device, given as words, and returns what it prints.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     fn shell(&self, words: &[&str]) -> Result<String, DeviceError>;
 
     /// Writes a small file on the device.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     fn put(&self, path: &str, text: &str) -> Result<(), DeviceError>;
 
     /// Installs an APK over the one that may be there.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     fn install(&self, apk: &Path) -> Result<(), DeviceError>;
 
     /// Follows the log of the tags that [`super::log`] reads, with times in seconds since 1970; from the first line of
     /// that time on, or all that the device still has.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError>;
 
     /// Tries to get a lost device back; whether that has worked, the next command tells.
@@ -382,10 +367,7 @@ pub trait Device: Send {
 
 /// All devices.
 pub trait Adb {
-    /// Who is connected, in adb's order.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
+    /// Returns the devices that are connected, in adb's order.
     fn devices(&self) -> Result<Vec<Listed>, DeviceError>;
 
     /// A device by the name that adb has for it. Whether it is there, its answers tell.

@@ -16,7 +16,7 @@ const REMEMBERED: usize = 4096;
 /// Time between attempts to get a device back.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// What comes of following.
+/// An event while a log is followed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// A line that was not there before.
@@ -29,7 +29,7 @@ pub enum Event {
     Back {
         /// Seconds for which it was gone.
         seconds: f64,
-        /// Whether it was started anew.
+        /// True if it was started anew.
         rebooted: bool,
     },
 }
@@ -49,7 +49,7 @@ pub struct Follower<'a> {
     device: &'a dyn Device,
     stream: Option<Box<dyn LogStream>>,
     seen: VecDeque<u64>,
-    /// Whether lines may come that were seen: the connection was lost before.
+    /// True if lines may come that were seen: the connection was lost before.
     overlaps: bool,
     clock_s: Option<f64>,
     boot: String,
@@ -58,9 +58,6 @@ pub struct Follower<'a> {
 
 impl<'a> Follower<'a> {
     /// Follows from now on, or from the oldest line that the device has.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     pub fn new(device: &'a dyn Device, from_oldest: bool) -> Result<Follower<'a>, DeviceError> {
         let boot = phone::boot_id(device)?;
         let since = if from_oldest { None } else { Some(phone::clock(device)?) };

@@ -10,9 +10,9 @@ use super::phone::{self, Battery};
 use super::reading::Reading;
 use yoro_protocol::telemetry::{CurrentNormalizer, Line};
 
-/// How often the battery is asked, in seconds: each question costs the device something, too.
+/// Interval in seconds at which the battery is asked: each question costs the device something, too.
 const BATTERY_PERIOD_S: f64 = 2.0;
-/// How often it is looked which processes the application has while others say something, in seconds.
+/// Interval in seconds at which the application's processes are looked up while others log.
 const PROCESSES_PERIOD_S: f64 = 2.0;
 
 /// Whose lines of the log are read.
@@ -29,7 +29,7 @@ pub struct Foreign<'a> {
     device: &'a dyn Device,
     subject: Subject,
     processes: Vec<u32>,
-    /// When they were asked for.
+    /// Time of the last look-up.
     processes_s: f64,
     /// Processes whose lines were left out.
     strangers: BTreeSet<u32>,
@@ -41,9 +41,6 @@ pub struct Foreign<'a> {
 
 impl<'a> Foreign<'a> {
     /// Begins to follow an application.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     pub fn new(device: &'a dyn Device, subject: Subject) -> Result<Foreign<'a>, DeviceError> {
         let mut kernel_is_open = None;
         Ok(Foreign {
@@ -59,10 +56,7 @@ impl<'a> Foreign<'a> {
         })
     }
 
-    /// Whether a line is for [`Reading`]: the runtime's about this application, or one that is damaged.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
+    /// True if a line is for [`Reading`]: the runtime's about this application, or one that is damaged.
     pub fn is_its(&mut self, line: &str) -> Result<bool, DeviceError> {
         let entry = match log::parse(line) {
             Kind::Entry(entry) => entry,
@@ -84,9 +78,6 @@ impl<'a> Foreign<'a> {
     }
 
     /// Puts the battery to a second, and what is wrong with it to the reading.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     pub fn complete(&mut self, sample: &mut Sample, reading: &mut Reading) -> Result<(), DeviceError> {
         let battery = self.battery;
         let plugged = if battery.plugged() { battery.sources.max(1) } else { 0 };
@@ -117,7 +108,7 @@ impl<'a> Foreign<'a> {
         Ok(())
     }
 
-    /// Why nothing may have been read: one sentence, for people.
+    /// Returns a sentence about why nothing may have been read.
     pub fn silence(&self) -> String {
         let Subject { package, process } = &self.subject;
         if self.strangers.is_empty() {

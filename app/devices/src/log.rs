@@ -4,29 +4,29 @@ use yoro_protocol::telemetry::{LOG_TAG, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
 pub const VRAPI_TAG: &str = "VrApi";
-/// What logcat is asked for: telemetry, what Meta's runtime says of clock levels, and the last words of an application that
-/// crashes.
+/// The tags that logcat is asked for: telemetry, Meta's runtime with its clock levels, and the last words of an application
+/// that crashes.
 pub const FILTER: [&str; 6] =
     ["YORO:V", "VrApi:V", "XrPerformanceManager:V", "AndroidRuntime:E", "DEBUG:F", "*:S"];
 
-/// How a log begins that no device has written.
+/// The first words of a log that no device has written.
 pub const SIMULATED_MARK: &str = "--------- simulated";
 
 /// One line of logcat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry<'a> {
-    /// When, in seconds; since 1970 if the log was written so, and only good for differences otherwise. None if the log
+    /// Time in seconds; since 1970 if the log was written so, and only good for differences otherwise. None if the log
     /// has no times.
     pub time_s: Option<f64>,
-    /// Who.
+    /// The process.
     pub pid: Option<u32>,
-    /// About what.
+    /// The tag.
     pub tag: &'a str,
-    /// What.
+    /// The message.
     pub message: &'a str,
 }
 
-/// What a line is.
+/// The kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind<'a> {
     /// Somebody says something.
@@ -54,7 +54,7 @@ pub fn parse(line: &str) -> Kind<'_> {
     brief(rest, time_s).or_else(|| thread_time(rest, time_s)).map_or(Kind::Damaged, Kind::Entry)
 }
 
-/// Whose line this is if there is nothing before it.
+/// Returns the tag of a line that has nothing before its message.
 fn raw_tag(line: &str) -> Option<&'static str> {
     if line.starts_with("v=") || Rating::is_line(line) {
         Some(LOG_TAG)
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn logcats_formats() {
+    fn all_logcat_formats_are_parsed() {
         let of = |line| {
             let e = entry(line);
             (e.pid, e.tag, e.message)
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn times_differ_as_they_should() {
+    fn log_times_have_correct_differences() {
         let at = |line| entry(line).time_s.unwrap();
         assert_eq!(at("1700000000.250000 1 2 I A: b"), 1_700_000_000.25);
         assert_eq!(at("2023-11-14 22:13:20.250 1 2 I A: b"), 1_700_000_000.25);
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_line() {
+    fn marks_and_damaged_lines_are_told_apart() {
         assert_eq!(parse("--------- beginning of main"), Kind::Mark);
         assert_eq!(parse(""), Kind::Mark);
         for line in [
@@ -188,7 +188,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn anything_can_be_read(line in ".{0,80}") {
+        fn no_line_makes_the_parser_panic(line in ".{0,80}") {
             let _ = parse(&line);
         }
 

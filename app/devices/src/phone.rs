@@ -1,4 +1,4 @@
-//! What is asked of Android on a device, and told to it.
+//! Commands to Android on a device, and its answers.
 
 use super::adb::{Device, DeviceError, serial_number};
 use super::capture::DeviceInfo;
@@ -14,7 +14,7 @@ pub const PROPERTY_PREFIX: &str = "debug.yoro.";
 /// Size that the log's buffer is set to, so that it outlasts a lost connection. Android takes it back when it restarts.
 const LOG_BUFFER: &str = "8M";
 
-/// What the kernel says of the battery, where the shell may read it.
+/// The kernel's file about the battery, which not every shell may read.
 pub(super) const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
 /// A smaller voltage is no number of millivolts: some phones give it in whole volts, which is too coarse for power.
 pub const LEAST_MILLIVOLTS: f64 = 100.0;
@@ -26,11 +26,11 @@ pub struct Battery {
     pub level_percent: Option<f64>,
     /// Temperature in degrees Celsius.
     pub celsius: Option<f64>,
-    /// What it is plugged into, as Android's `EXTRA_PLUGGED`: 1 for AC, 2 for USB, 4 for wireless, 8 for a dock, added up.
+    /// Sources of power, as Android's `EXTRA_PLUGGED`: 1 for AC, 2 for USB, 4 for wireless, 8 for a dock, added up.
     pub sources: i32,
-    /// Whether it charges.
+    /// Charging status.
     pub status: Option<BatteryStatus>,
-    /// Whether these values were set by hand and the battery is not asked any more (`UPDATES STOPPED`).
+    /// True if these values were set by hand and the battery is not asked any more (`UPDATES STOPPED`).
     pub held: bool,
     /// Voltage in millivolts.
     pub voltage_mv: Option<f64>,
@@ -41,17 +41,14 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// Whether the current is not the device's alone: there is a charger, or the battery says that it does not discharge.
+    /// True if the current is not the device's alone: there is a charger, or the battery says that it does not discharge.
     /// Phones that have switched charging off name no source, but are "not charging".
     pub fn plugged(&self) -> bool {
         self.sources != 0 || matches!(self.status, Some(BatteryStatus::Charging | BatteryStatus::NotCharging))
     }
 }
 
-/// What the device is.
-///
-/// # Errors
-/// [`DeviceError`].
+/// Returns what the device is: maker, model, version, battery capacity.
 pub fn info(device: &dyn Device) -> Result<DeviceInfo, DeviceError> {
     let property = |name| Ok::<_, DeviceError>(device.shell(&["getprop", name])?.trim().to_owned());
     Ok(DeviceInfo {
@@ -82,9 +79,6 @@ fn capacity(text: &str) -> Option<f64> {
 }
 
 /// The state of the battery.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn battery(device: &dyn Device) -> Result<Battery, DeviceError> {
     Ok(read_battery(&device.shell(&["dumpsys", "battery"])?))
 }
@@ -114,9 +108,6 @@ fn read_battery(text: &str) -> Battery {
 }
 
 /// The battery with what the kernel says more exactly: current and voltage. `Some` in `is_open` is whether it may be read.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Battery, DeviceError> {
     let mut battery = battery(device)?;
     if *is_open != Some(false) {
@@ -134,9 +125,6 @@ pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Ba
 }
 
 /// Current and voltage as the kernel has them; nothing where the shell may not read it.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn kernel_battery(device: &dyn Device) -> Result<Battery, DeviceError> {
     Ok(read_kernel_battery(&unless_refused(device.shell(&["cat", KERNEL_BATTERY]))?))
 }
@@ -166,10 +154,7 @@ fn unless_refused(said: Result<String, DeviceError>) -> Result<String, DeviceErr
     }
 }
 
-/// Whether the battery saver is on.
-///
-/// # Errors
-/// [`DeviceError`].
+/// True if the battery saver is on.
 pub fn saves_battery(device: &dyn Device) -> Result<bool, DeviceError> {
     Ok(unless_refused(device.shell(&["settings", "get", "global", "low_power"]))?.trim() == "1")
 }
@@ -184,9 +169,6 @@ pub struct Keyguard {
 }
 
 /// The screen lock; where Android says nothing of it, there is none.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn keyguard(device: &dyn Device) -> Result<Keyguard, DeviceError> {
     Ok(read_keyguard(&unless_refused(device.shell(&["dumpsys", "window", "policy"]))?))
 }
@@ -198,18 +180,12 @@ fn read_keyguard(text: &str) -> Keyguard {
     Keyguard { secure: value("secure="), showing: value("showing=") }
 }
 
-/// What changes with each start of the device.
-///
-/// # Errors
-/// [`DeviceError`].
+/// Returns the boot id, which changes with each start of the device.
 pub fn boot_id(device: &dyn Device) -> Result<String, DeviceError> {
     Ok(device.shell(&["cat", "/proc/sys/kernel/random/boot_id"])?.trim().to_owned())
 }
 
 /// The device's clock as logcat takes it: seconds since 1970 with decimals.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn clock(device: &dyn Device) -> Result<String, DeviceError> {
     let text = device.shell(&["date", "+%s.%N"])?;
     let seconds = text.trim().parse::<f64>().ok().filter(|seconds| seconds.is_finite());
@@ -222,9 +198,6 @@ pub fn clock(device: &dyn Device) -> Result<String, DeviceError> {
 }
 
 /// Version of an application on the device; none if it is not there.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn version(device: &dyn Device, package: &str) -> Result<Option<String>, DeviceError> {
     let text = device.shell(&["dumpsys", "package", package])?;
     let version = text.lines().find_map(|line| line.trim().strip_prefix("versionName="));
@@ -241,9 +214,6 @@ pub fn wifi_address(device: &dyn Device) -> Option<String> {
 }
 
 /// Settings that the application's system properties hold, stronger than those that it is started with.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceError> {
     let property = |line: &str| {
         let (name, value) = line.trim().strip_prefix('[')?.strip_suffix(']')?.split_once("]: [")?;
@@ -253,9 +223,6 @@ pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceEr
 }
 
 /// Sets a system property; empty is as good as none.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn set_property(device: &dyn Device, name: &str, value: &str) -> Result<(), DeviceError> {
     device.shell(&["setprop", name, value]).map(drop)
 }
@@ -275,9 +242,6 @@ pub fn wake(device: &dyn Device) {
 }
 
 /// Starts the application anew with exactly these settings, whatever file lies on the device.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError> {
     let pairs = settings.pairs();
     let mut words = vec!["am", "start", "-S", "-W", "-n", ACTIVITY];
@@ -288,9 +252,6 @@ pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError
 }
 
 /// Starts another application anew; `activity` with or without its package.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn start_other(device: &dyn Device, package: &str, activity: &str) -> Result<(), DeviceError> {
     let component = if activity.contains('/') { activity.into() } else { format!("{package}/{activity}") };
     start_by(device, &["am", "start", "-S", "-W", "-n", &component], &component)
@@ -312,17 +273,11 @@ fn start_by(device: &dyn Device, words: &[&str], component: &str) -> Result<(), 
 }
 
 /// Ends an application.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn stop(device: &dyn Device, package: &str) -> Result<(), DeviceError> {
     device.shell(&["am", "force-stop", package]).map(drop)
 }
 
 /// The processes of an application; none while it does not run.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn processes(device: &dyn Device, package: &str) -> Result<Vec<u32>, DeviceError> {
     // It ends with 1 where there is no process.
     let pids = unless_refused(device.shell(&["pidof", package]))?;
@@ -334,7 +289,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_android_prints() {
+    fn battery_and_capacity_are_parsed() {
         let text = "Current Battery Service state:\n  AC powered: false\n  USB powered: true\n  Wireless powered: false\n  Max charging current: 500000\n  status: 2\n  level: 87\n  scale: 100\n  voltage: 4312\n  temperature: 285\n";
         let battery = read_battery(text);
         assert_eq!(
@@ -352,7 +307,7 @@ mod tests {
     /// As a phone prints it whose charging was switched off with the charger in (VR-25/acc issue 112), and after
     /// `dumpsys battery unplug`.
     #[test]
-    fn what_is_not_discharging_is_plugged_in() {
+    fn a_battery_that_does_not_discharge_counts_as_plugged_in() {
         let text = "Current Battery Service state:\n  AC powered: false\n  USB powered: false\n  Wireless powered: false\n  Charge counter: 3124799\n  status: 4\n  level: 89\n  voltage: 4218\n  temperature: 324\n";
         assert!(read_battery(text).plugged() && !read_battery(text).held);
         assert!(!read_battery(&text.replace("status: 4", "status: 3")).plugged());
@@ -363,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kernels_battery() {
+    fn the_kernels_battery_file_is_parsed() {
         let text = "POWER_SUPPLY_NAME=battery\nPOWER_SUPPLY_STATUS=Discharging\nPOWER_SUPPLY_VOLTAGE_NOW=3987654\nPOWER_SUPPLY_CURRENT_NOW=-512000\n";
         let battery = read_kernel_battery(text);
         assert_eq!((battery.voltage_mv, battery.current_raw), (Some(3987.654), Some(-512_000)));
@@ -372,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn the_screen_lock() {
+    fn the_screen_lock_is_parsed() {
         let text = "WINDOW MANAGER POLICY STATE\n  showing=true\n  KeyguardServiceDelegate\n    showing=false\n    inputRestricted=false\n    secure=true\n    dreaming=false\n";
         assert_eq!(read_keyguard(text), Keyguard { secure: true, showing: false });
         assert_eq!(read_keyguard("Can't find service: window"), Keyguard::default());

@@ -1,15 +1,15 @@
-//! What is held fixed on a device while it is measured, and given back afterwards.
+//! Settings of a device that are held fixed while it is measured, and restored afterwards.
 //!
-//! What there was before is written into a file on the device first: after a crash, or when the cable was pulled,
+//! The earlier values are written into a file on the device first: after a crash, or when the cable was pulled,
 //! whoever measures on the device next gives it back.
 
 use super::adb::{Device, DeviceError};
 use super::capture::DeviceInfo;
 use super::phone::{self, set_property};
 
-/// Where the device keeps what is to be given back.
+/// The file on the device with the values to be restored.
 const FILE: &str = "/data/local/tmp/yoro-restore.txt";
-/// What Android prints for a setting that was never made.
+/// Android's answer for a setting that was never made.
 const UNSET: &str = "null";
 /// Refresh rate of Meta's headsets.
 const QUEST_RATE: &str = "debug.oculus.refreshRate";
@@ -23,7 +23,7 @@ const ALARMS_ONLY: &str = "3";
 /// Displays above this many Hz have a mode of their own on phones by Samsung.
 const SAMSUNG_STANDARD_HZ: f64 = 60.0;
 
-/// What is to be held fixed.
+/// The values that are to be held fixed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wanted {
     /// Brightness of the screen, 0 to 255.
@@ -52,14 +52,14 @@ impl Table {
     }
 }
 
-/// Where a value is kept.
+/// The place of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Place {
     /// `settings get TABLE KEY`.
     Setting(Table, String),
     /// `getprop KEY`.
     Property(String),
-    /// Whether one of Meta's headsets is told that somebody wears it; it does not tell what it was told.
+    /// The wear sensor of a headset by Meta, which can be set but not read.
     Worn,
 }
 
@@ -165,9 +165,6 @@ impl Pins {
 
     /// Fixes everything again if the device was started anew: system properties do not outlast that, nor what a headset
     /// was told.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     pub fn renew(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
         let boot = phone::boot_id(device)?;
         if boot == self.boot {
@@ -177,7 +174,7 @@ impl Pins {
         self.hold(device)
     }
 
-    /// What the device did not let anybody change: a sentence each.
+    /// Returns a sentence for each value that the device did not let anybody change.
     pub fn refused(&self) -> &[String] {
         &self.refused
     }
@@ -195,9 +192,6 @@ impl Pins {
     }
 
     /// Gives everything back. A device that is gone gets it from the next measurement.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     pub fn give_back(self, device: &dyn Device) -> Result<(), DeviceError> {
         give_back(device, &self.before)
     }
@@ -261,9 +255,6 @@ fn give_back(device: &dyn Device, before: &[Pin]) -> Result<(), DeviceError> {
 }
 
 /// Gives back what a measurement that was killed has left on the device.
-///
-/// # Errors
-/// [`DeviceError`].
 pub fn give_back_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
     let text = match device.shell(&["cat", FILE]) {
         Ok(text) => text,
@@ -286,7 +277,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_headset_counts_as_worn_and_is_taken_off_again() {
+    fn a_headset_is_told_that_it_is_worn_until_restored() {
         let reboot = Fault { kind: FaultKind::Reboot, start: 1, at: 1.0, seconds: Some(2.0), by: 0.0 };
         let headset = Phone {
             manufacturer: "Oculus".into(),
@@ -312,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_to_be_given_back_is_read_again() {
+    fn pins_survive_writing_and_reading() {
         let pins = [
             Pin::new(Place::Setting(Table::System, "screen_brightness".into()), "120\n"),
             Pin::new(Place::Setting(Table::Secure, "refresh_rate_mode".into()), "null"),
@@ -329,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn each_maker_needs_its_own() {
+    fn each_maker_has_its_own_pins() {
         let lines = |manufacturer: &str, hz: f64| -> Vec<String> {
             let info = DeviceInfo { manufacturer: manufacturer.into(), ..DeviceInfo::default() };
             let wanted = Wanted { brightness: None, refresh_hz: Some(hz) };

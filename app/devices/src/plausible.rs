@@ -1,4 +1,4 @@
-//! Whether a power can be a device's at all.
+//! Plausibility of a measured power.
 
 use std::ops::RangeInclusive;
 
@@ -8,7 +8,7 @@ use super::capture::{Fault, FaultKind, Sample};
 /// unit.
 const PLAUSIBLE_MILLIWATTS: RangeInclusive<f64> = 100.0..=30_000.0;
 
-/// What is wrong with a mean power in milliwatts: one sentence. While charging it says nothing.
+/// Returns a sentence if a mean power in milliwatts is implausible. While charging it says nothing.
 pub fn implausible(milliwatts: f64) -> Option<String> {
     let is_wrong = milliwatts > 0.0 && !PLAUSIBLE_MILLIWATTS.contains(&milliwatts);
     let (least, most) = (PLAUSIBLE_MILLIWATTS.start(), PLAUSIBLE_MILLIWATTS.end() / 1e3);
@@ -38,7 +38,7 @@ impl MeanPower {
         }
     }
 
-    /// What is wrong with it.
+    /// The mistake in it.
     pub fn fault(&self) -> Option<Fault> {
         let detail = implausible(self.sum_milliwatts / self.seconds.max(1) as f64)?;
         Some(Fault { kind: FaultKind::ImplausiblePower, at_s: None, detail })
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_no_device_takes() {
+    fn power_outside_of_plausible_bounds_is_named() {
         for (milliwatts, wrong) in
             [(2.1, true), (99.0, true), (101.0, false), (3500.0, false), (38_000.0, true), (-5.0, false)]
         {

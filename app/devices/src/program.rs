@@ -14,30 +14,27 @@ use super::adb::{Adb, Device, DeviceError, Listed, LogEvent, LogStream, State, i
 use super::log;
 use yoro_files::interrupt;
 
-/// How long a command may take.
-const PATIENCE: Duration = Duration::from_secs(60);
-/// How long an installation may take.
-const INSTALL_PATIENCE: Duration = Duration::from_secs(600);
-/// How often a wait looks whether the user has asked to stop.
-const GLANCE: Duration = Duration::from_millis(50);
+/// Timeout of a command.
+const COMMAND_TIMEOUT: Duration = Duration::from_secs(60);
+/// Timeout of an installation.
+const INSTALL_TIMEOUT: Duration = Duration::from_secs(600);
+/// Interval at which a wait checks for an interrupt by the user.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// Lines that wait to be taken; more than that, and adb waits.
 const QUEUE: usize = 4096;
 
-/// How long adb's server may take, which has nothing to ask of a device.
-const SERVER_PATIENCE: Duration = Duration::from_secs(20);
+/// Timeout of adb's server, which has nothing to ask of a device.
+const SERVER_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Devices by the program adb.
 #[derive(Clone, Debug)]
 pub struct AdbProgram {
     program: PathBuf,
-    server_patience: Duration,
+    server_timeout: Duration,
 }
 
 impl AdbProgram {
     /// Finds the program (the one given, in `PATH`, or in `ANDROID_HOME`) and starts its server.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     pub fn find(given: Option<&Path>) -> Result<AdbProgram, DeviceError> {
         let name = format!("adb{}", env::consts::EXE_SUFFIX);
         let program = match given {
@@ -54,7 +51,7 @@ impl AdbProgram {
         let program = program.map(|path| std::path::absolute(&path).unwrap_or(path));
         let looked = given.map_or("PATH and ANDROID_HOME".into(), |path| path.display().to_string());
         let program = program.ok_or(DeviceError::NoAdb { looked })?;
-        let adb = AdbProgram { program, server_patience: SERVER_PATIENCE };
+        let adb = AdbProgram { program, server_timeout: SERVER_TIMEOUT };
         adb.start_server()?;
         Ok(adb)
     }
@@ -63,7 +60,7 @@ impl AdbProgram {
     fn start_server(&self) -> Result<(), DeviceError> {
         let mut start = Command::new(&self.program);
         start.arg("start-server").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        self.run(start, None, self.server_patience)?.map(drop).ok_or_else(|| self.silent("start-server"))
+        self.run(start, None, self.server_timeout)?.map(drop).ok_or_else(|| self.silent("start-server"))
     }
 
     /// Runs adb to its end; none if it does not come in time. What it says is there where its pipes are.
@@ -71,8 +68,8 @@ impl AdbProgram {
         &self,
         mut command: Command,
         input: Option<&str>,
-        patience: Duration,
-    ) -> Result<Option<Said>, DeviceError> {
+        timeout: Duration,
+    ) -> Result<Option<AdbOutput>, DeviceError> {
         let mut child = command.spawn().map_err(|error| self.does_not_start(&error))?;
         if let (Some(input), Some(mut stdin)) = (input, child.stdin.take()) {
             // A command that does not take it says why by itself.
@@ -85,22 +82,22 @@ impl AdbProgram {
             if let Some(status) = child.try_wait().map_err(|error| self.does_not_start(&error))? {
                 break status;
             }
-            if begin.elapsed() > patience {
+            if begin.elapsed() > timeout {
                 end(&mut child);
                 return Ok(None);
             }
-            thread::sleep(Duration::from_millis(2).max(begin.elapsed() / 16).min(GLANCE));
+            thread::sleep(Duration::from_millis(2).max(begin.elapsed() / 16).min(POLL_INTERVAL));
         };
-        let text = |channel: Receiver<String>| channel.recv_timeout(GLANCE * 20).unwrap_or_default();
-        Ok(Some(Said { success: status.success(), stdout: text(stdout), stderr: text(stderr) }))
+        let text = |channel: Receiver<String>| channel.recv_timeout(POLL_INTERVAL * 20).unwrap_or_default();
+        Ok(Some(AdbOutput { success: status.success(), stdout: text(stdout), stderr: text(stderr) }))
     }
 
     fn silent(&self, command: &str) -> DeviceError {
-        let seconds = self.server_patience.as_secs();
+        let seconds = self.server_timeout.as_secs();
         DeviceError::Server { reason: format!("adb {command} has not ended for {seconds} s") }
     }
 
-    /// What adb says by itself in a line, without the names that it puts before it (`adb: `, `adb.exe: `, `error: `); none
+    /// Returns adb's own words in a line, without the names that it puts before them (`adb: `, `adb.exe: `, `error: `); none
     /// where the words are those of a command on the device.
     fn own_words<'a>(&self, line: &'a str) -> Option<&'a str> {
         let name = self.program.file_name().unwrap_or_default().to_string_lossy();
@@ -115,19 +112,14 @@ impl AdbProgram {
         is_own.then_some(words)
     }
 
-    /// Why adb does not reach a device, if that is what it says. Its words come one sentence inside another
+    /// Returns the error if adb says that it does not reach a device. Its words come one sentence inside another
     /// (`failed to get feature set: device offline`); file names in them mean nothing.
     fn unreached(&self, stderr: &str, serial: &str) -> Option<DeviceError> {
         stderr.lines().filter_map(|line| self.own_words(line)).find_map(|words| {
-            words.split(": ").map(str::trim).find_map(Unreached::of).map(|why| {
-                let serial = serial.to_owned();
-                match why {
-                    Unreached::Unauthorized => DeviceError::Unauthorized(serial),
-                    Unreached::Offline => DeviceError::Offline(serial),
-                    Unreached::NoPermission => DeviceError::NoPermission(serial),
-                    Unreached::Lost => DeviceError::Lost(serial),
-                    Unreached::Server => DeviceError::Server { reason: words.trim().into() },
-                }
+            let cause = words.split(": ").map(str::trim).find_map(unreached_by)?;
+            Some(match cause {
+                Some(error) => error(serial.to_owned()),
+                None => DeviceError::Server { reason: words.trim().into() },
             })
         })
     }
@@ -141,7 +133,7 @@ impl Adb for AdbProgram {
     fn devices(&self) -> Result<Vec<Listed>, DeviceError> {
         let mut command = Command::new(&self.program);
         command.arg("devices").stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let said = self.run(command, None, self.server_patience)?;
+        let said = self.run(command, None, self.server_timeout)?;
         let said = said.ok_or_else(|| self.silent("devices"))?;
         if !said.success {
             return Err(DeviceError::Server { reason: said.reason() });
@@ -164,46 +156,38 @@ fn listed(text: &str) -> Vec<Listed> {
     text.lines().filter_map(device).collect()
 }
 
-/// Why adb does not reach a device.
-#[derive(Clone, Copy)]
-enum Unreached {
-    Unauthorized,
-    Offline,
-    NoPermission,
-    Lost,
-    Server,
-}
+/// The error of a device's serial number; `None` where adb's server is at fault.
+type Cause = Option<fn(String) -> DeviceError>;
 
-impl Unreached {
-    /// By how adb's sentences begin, and whole words where they do not (`device 'X' not found`).
-    const SENTENCES: [(&str, Unreached); 18] = [
-        ("device unauthorized", Unreached::Unauthorized),
-        ("device still authorizing", Unreached::Unauthorized),
-        ("device offline", Unreached::Offline),
-        ("device still connecting", Unreached::Offline),
-        ("insufficient permissions", Unreached::NoPermission),
-        ("no permissions", Unreached::NoPermission),
-        ("device not found", Unreached::Lost),
-        ("no devices", Unreached::Lost),
-        ("no emulators", Unreached::Lost),
-        ("closed", Unreached::Lost),
-        ("protocol fault", Unreached::Lost),
-        ("connection reset", Unreached::Lost),
-        ("couldn't read from device", Unreached::Lost),
-        ("cannot connect to daemon", Unreached::Server),
-        ("failed to check server version", Unreached::Server),
-        ("failed to start daemon", Unreached::Server),
-        ("daemon still not running", Unreached::Server),
-        ("adb server ", Unreached::Server),
-    ];
+/// The beginnings of adb's sentences about devices that it does not reach.
+const UNREACHED: [(&str, Cause); 18] = [
+    ("device unauthorized", Some(DeviceError::Unauthorized)),
+    ("device still authorizing", Some(DeviceError::Unauthorized)),
+    ("device offline", Some(DeviceError::Offline)),
+    ("device still connecting", Some(DeviceError::Offline)),
+    ("insufficient permissions", Some(DeviceError::NoPermission)),
+    ("no permissions", Some(DeviceError::NoPermission)),
+    ("device not found", Some(DeviceError::Lost)),
+    ("no devices", Some(DeviceError::Lost)),
+    ("no emulators", Some(DeviceError::Lost)),
+    ("closed", Some(DeviceError::Lost)),
+    ("protocol fault", Some(DeviceError::Lost)),
+    ("connection reset", Some(DeviceError::Lost)),
+    ("couldn't read from device", Some(DeviceError::Lost)),
+    ("cannot connect to daemon", None),
+    ("failed to check server version", None),
+    ("failed to start daemon", None),
+    ("daemon still not running", None),
+    ("adb server ", None),
+];
 
-    fn of(said: &str) -> Option<Unreached> {
-        let lower = said.trim_start_matches("* ").to_lowercase();
-        if lower.starts_with("device '") && lower.trim_end_matches('.').ends_with("' not found") {
-            return Some(Unreached::Lost);
-        }
-        Self::SENTENCES.iter().find(|(begin, _)| lower.starts_with(begin)).map(|(_, why)| *why)
+/// Returns why adb does not reach a device, by one of its sentences.
+fn unreached_by(sentence: &str) -> Option<Cause> {
+    let lower = sentence.trim_start_matches("* ").to_lowercase();
+    if lower.starts_with("device '") && lower.trim_end_matches('.').ends_with("' not found") {
+        return Some(Some(DeviceError::Lost));
     }
+    UNREACHED.iter().find(|(begin, _)| lower.starts_with(begin)).map(|(_, cause)| *cause)
 }
 
 struct ProgramDevice {
@@ -211,14 +195,14 @@ struct ProgramDevice {
     serial: String,
 }
 
-/// What a command of adb has said.
-struct Said {
+/// Output of a command of adb.
+struct AdbOutput {
     success: bool,
     stdout: String,
     stderr: String,
 }
 
-impl Said {
+impl AdbOutput {
     /// The exception that Java threw, without the calls that led there; or the last words, those of the error first.
     fn reason(&self) -> String {
         let exception = |text: &str| {
@@ -253,15 +237,15 @@ impl ProgramDevice {
         mut command: Command,
         input: Option<&str>,
         what: &str,
-        patience: Duration,
-    ) -> Result<Said, DeviceError> {
+        timeout: Duration,
+    ) -> Result<AdbOutput, DeviceError> {
         if input.is_some() {
             command.stdin(Stdio::piped());
         }
-        let said = self.adb.run(command, input, patience)?.ok_or_else(|| DeviceError::Silent {
+        let said = self.adb.run(command, input, timeout)?.ok_or_else(|| DeviceError::Silent {
             serial: self.serial.clone(),
             command: what.into(),
-            seconds: patience.as_secs(),
+            seconds: timeout.as_secs(),
         })?;
         match self.adb.unreached(&said.stderr, &self.serial) {
             Some(error) if !said.success => Err(error),
@@ -269,7 +253,7 @@ impl ProgramDevice {
         }
     }
 
-    fn refused(&self, command: &str, said: &Said) -> DeviceError {
+    fn refused(&self, command: &str, said: &AdbOutput) -> DeviceError {
         DeviceError::Refused { serial: self.serial.clone(), command: command.into(), reason: said.reason() }
     }
 }
@@ -285,19 +269,19 @@ impl Device for ProgramDevice {
 
     fn shell(&self, words: &[&str]) -> Result<String, DeviceError> {
         let line = words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
-        let said = self.finish(self.command(["shell", &line]), None, &line, PATIENCE)?;
+        let said = self.finish(self.command(["shell", &line]), None, &line, COMMAND_TIMEOUT)?;
         if said.success { Ok(said.stdout) } else { Err(self.refused(&line, &said)) }
     }
 
     fn put(&self, path: &str, text: &str) -> Result<(), DeviceError> {
         let line = format!("cat > {}", quoted(path));
-        let said = self.finish(self.command(["shell", &line]), Some(text), &line, PATIENCE)?;
+        let said = self.finish(self.command(["shell", &line]), Some(text), &line, COMMAND_TIMEOUT)?;
         if said.success { Ok(()) } else { Err(self.refused(&line, &said)) }
     }
 
     fn install(&self, apk: &Path) -> Result<(), DeviceError> {
         let arguments = [OsStr::new("install"), OsStr::new("-r"), apk.as_os_str()];
-        let said = self.finish(self.command(arguments), None, "install", INSTALL_PATIENCE)?;
+        let said = self.finish(self.command(arguments), None, "install", INSTALL_TIMEOUT)?;
         if said.success && !said.stdout.contains("Failure") {
             return Ok(());
         }
@@ -355,7 +339,7 @@ impl Device for ProgramDevice {
             self.command(["reconnect", "offline"])
         };
         command.stdout(Stdio::null()).stderr(Stdio::null());
-        let _ = self.finish(command, None, "reconnect", PATIENCE / 4);
+        let _ = self.finish(command, None, "reconnect", COMMAND_TIMEOUT / 4);
     }
 
     fn now(&self) -> f64 {
@@ -370,7 +354,7 @@ impl Device for ProgramDevice {
     fn sleep(&self, time: Duration) {
         let begin = Instant::now();
         while !interrupt::requested() && begin.elapsed() < time {
-            thread::sleep(GLANCE.min(time.saturating_sub(begin.elapsed())));
+            thread::sleep(POLL_INTERVAL.min(time.saturating_sub(begin.elapsed())));
         }
     }
 }
@@ -385,7 +369,7 @@ impl LogStream for ProgramLog {
     fn next(&mut self, wait: Duration) -> LogEvent {
         let begin = Instant::now();
         loop {
-            match self.lines.recv_timeout(GLANCE.min(wait)) {
+            match self.lines.recv_timeout(POLL_INTERVAL.min(wait)) {
                 Ok(line) => return LogEvent::Line(line),
                 Err(RecvTimeoutError::Disconnected) => return LogEvent::Ended,
                 Err(RecvTimeoutError::Timeout) if interrupt::requested() || begin.elapsed() >= wait => {
@@ -428,7 +412,7 @@ mod tests {
     use super::*;
 
     fn adb() -> AdbProgram {
-        AdbProgram { program: "/usr/bin/adb-31".into(), server_patience: SERVER_PATIENCE }
+        AdbProgram { program: "/usr/bin/adb-31".into(), server_timeout: SERVER_TIMEOUT }
     }
 
     fn unreached(stderr: &str) -> Option<DeviceError> {
@@ -438,7 +422,7 @@ mod tests {
     /// Texts of adb on Linux and Windows, as issues of scrcpy (1714, 3042), flutter (27456, 125971) and APK-Installer (25)
     /// quote them.
     #[test]
-    fn what_adb_says_of_a_device_that_may_come_back() {
+    fn adbs_words_about_lost_devices_are_recognised() {
         for said in [
             "error: device offline",
             "adb.exe: device offline",
@@ -467,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn what_others_say_is_no_lost_device() {
+    fn words_of_other_programs_mean_no_lost_device() {
         for said in [
             "adb: failed to install /home/u/offline/yoro.apk: Failure [INSTALL_FAILED_USER_RESTRICTED: no]",
             "adb: failed to install /srv/device offline/closed.apk: Failure [INSTALL_FAILED_INVALID_APK]",
@@ -483,14 +467,14 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_server_that_hangs_is_not_waited_for() {
+    fn a_hanging_adb_server_times_out() {
         use std::os::unix::fs::PermissionsExt as _;
 
         let folder = tempfile::tempdir().unwrap();
         let program = folder.path().join("adb");
         std::fs::write(&program, "#!/bin/sh\nexec sleep 60\n").unwrap();
         std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
-        let adb = AdbProgram { program, server_patience: Duration::from_millis(300) };
+        let adb = AdbProgram { program, server_timeout: Duration::from_millis(300) };
         let begin = Instant::now();
         for (result, command) in [(adb.devices().map(drop), "devices"), (adb.start_server(), "start-server")]
         {
@@ -502,7 +486,7 @@ mod tests {
 
     /// The list of states as adb prints them (dadb issue 55, flutter 27456, android-udev-rules 308).
     #[test]
-    fn what_adb_lists() {
+    fn states_in_adbs_list_are_parsed() {
         let text = "* daemon started successfully\nList of devices attached\nRF8M33XXXXX\tdevice\n3949\tauthorizing\n1WMH\tno permissions; see [http://developer.android.com/tools/device.html]\nadb-13e75597-Upleco (2)._adb-tls-connect._tcp\tdevice\n192.168.1.7:5555\tconnecting\nUYT5\trecovery\n\n";
         let found = listed(text);
         let states: Vec<&str> = found.iter().map(|device| device.state.name()).collect();
@@ -512,9 +496,9 @@ mod tests {
 
     /// A phone by Xiaomi on `settings put` (auto_set_proxy issue 1, shortened).
     #[test]
-    fn an_exception_is_its_own_line() {
+    fn the_exception_line_is_the_reason_of_a_refusal() {
         let stderr = "\nException occurred while executing 'put':\njava.lang.SecurityException: Permission denial: writing to settings requires:android.permission.WRITE_SECURE_SETTINGS\n\tat com.android.providers.settings.SettingsProvider.call(SettingsProvider.java:398)\n\tat android.os.Binder.execTransact(Binder.java:1129)\n";
-        let said = Said { success: false, stdout: String::new(), stderr: stderr.into() };
+        let said = AdbOutput { success: false, stdout: String::new(), stderr: stderr.into() };
         assert!(
             said.reason().starts_with("java.lang.SecurityException: Permission denial"),
             "{}",
@@ -526,7 +510,8 @@ mod tests {
             reason: said.reason(),
         };
         assert!(refused.to_string().contains("USB debugging (Security settings)"), "{refused}");
-        let plain = Said { success: false, stdout: "a\n".into(), stderr: "first\nlast: word\n\n".into() };
+        let plain =
+            AdbOutput { success: false, stdout: "a\n".into(), stderr: "first\nlast: word\n\n".into() };
         assert_eq!(plain.reason(), "last: word");
     }
 }

@@ -11,7 +11,7 @@ pub struct BdRate {
     pub share: f64,
     /// The qualities over which it is the mean.
     pub quality: [f64; 2],
-    /// How much of the range of the anchor's qualities that is, 0 to 1.
+    /// The share of the anchor's range of qualities that both reach, 0 to 1.
     pub overlap: f64,
 }
 
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_share_of_the_rate_comes_out_as_it_is() {
+    fn a_constant_ratio_of_rates_is_the_bd_rate() {
         let anchor = [(100.0, 30.0), (210.0, 33.0), (450.0, 36.5), (1000.0, 39.0)];
         let test = anchor.map(|(rate, quality)| (rate * 0.604, quality));
         let result = bd_rate(&anchor, &test).unwrap();
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_found_again() {
+    fn least_squares_recover_a_line() {
         let points = [(1.0, 5.0), (2.0, 7.0), (4.0, 11.0)];
         let (offset, slope) = line_through(&points).unwrap();
         assert!((offset - 3.0).abs() < 1e-12 && (slope - 2.0).abs() < 1e-12);

@@ -1,9 +1,9 @@
-//! Why a report could not be made.
+//! The error when a report cannot be made.
 
 use crate::plot::PlotError;
 use yoro_files::FileError;
 
-/// Why a report could not be made.
+/// The error when a report cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {

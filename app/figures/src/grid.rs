@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-/// What a cell stands for; decides how it looks on the page.
+/// The kind of a cell, which decides its look on the page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
@@ -13,7 +13,7 @@ pub enum Kind {
     Plain,
     /// A figure of ours.
     Ours,
-    /// What ours is to be held against.
+    /// A baseline that ours is compared with.
     Base,
     /// A figure of the paper's.
     Paper,
@@ -24,7 +24,7 @@ pub enum Kind {
 pub struct Cell {
     /// Empty where there is nothing to say.
     pub text: String,
-    /// What it stands for.
+    /// Its kind.
     pub kind: Kind,
     /// Columns that it takes.
     pub span: usize,
@@ -68,7 +68,7 @@ pub struct Column {
 /// A row.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Line {
-    /// As many as columns, counting spans.
+    /// The cells, as many as columns, counting spans.
     pub cells: Vec<Cell>,
     /// A line above separates it from other things.
     pub first: bool,
@@ -77,13 +77,13 @@ pub struct Line {
 /// A table.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Table {
-    /// What it shows.
+    /// Its heading.
     pub title: String,
     /// Heads.
     pub columns: Vec<Column>,
-    /// From top to bottom.
+    /// Rows, from top to bottom.
     pub lines: Vec<Line>,
-    /// What must be known to read it.
+    /// A note for the reader.
     pub note: String,
 }
 
@@ -119,7 +119,9 @@ impl Table {
         for line in &mut self.lines {
             match line.cells.last_mut() {
                 Some(last) if last.span > 1 => last.span -= 1,
-                _ => drop(line.cells.pop()),
+                _ => {
+                    line.cells.pop();
+                }
             }
         }
     }
@@ -131,7 +133,7 @@ impl Table {
         self.push(cells);
     }
 
-    /// As Markdown of GitHub's kind.
+    /// Returns the table in GitHub's Markdown.
     pub fn markdown(&self) -> String {
         let escape = |text: &str| text.replace('|', "\\|").replace(['\n', '\r'], " ").replace('<', "&lt;");
         let mut out = format!("**{}**\n\n|", escape(&self.title));

@@ -1,4 +1,4 @@
-//! What a sample says of what it was taken from: intervals, paired tests, effect size, power, equivalence.
+//! Inference from samples: intervals, paired tests, effect size, power, equivalence.
 //!
 //! Values agree with SciPy, statsmodels and mpmath to 1e-6 (`vectors/inference.json`).
 
@@ -16,12 +16,12 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Both ends by a function that grows with its argument.
+    /// Returns the interval with both ends mapped by a growing function.
     pub fn map(self, f: impl Fn(f64) -> f64) -> Interval {
         Interval { low: f(self.low), high: f(self.high) }
     }
 
-    /// Whether all of it lies strictly inside another.
+    /// True if all of it lies strictly inside `other`.
     pub fn inside(self, other: Interval) -> bool {
         other.low < self.low && self.high < other.high
     }
@@ -39,12 +39,12 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// `None` without values, or if one is not finite.
+    /// Returns the sample of these values; `None` without values, or if one is not finite.
     pub fn of(values: &[f64]) -> Option<Sample> {
         Summary::of(values).map(|summary| Sample { n: summary.count, mean: summary.mean, std: summary.std })
     }
 
-    /// Of the differences a - b, pair by pair; `None` without pairs, or if a value is not finite.
+    /// Returns the sample of the differences a - b, pair by pair; `None` without pairs, or if a value is not finite.
     pub fn of_differences(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<Sample> {
         Sample::of(&pairs.into_iter().map(|(a, b)| a - b).collect::<Vec<_>>())
     }
@@ -53,29 +53,29 @@ impl Sample {
         (self.n > 1).then(|| (self.n - 1) as f64)
     }
 
-    /// Standard deviation of the mean; `None` of a single value.
+    /// Returns the standard deviation of the mean; `None` of a single value.
     pub fn standard_error(&self) -> Option<f64> {
         self.df().map(|_| self.std / (self.n as f64).sqrt())
     }
 
-    /// The interval of the mean by Student's t at a confidence between 0 and 1; `None` of a single value.
+    /// Returns the interval of the mean by Student's t at a confidence between 0 and 1; `None` of a single value.
     pub fn interval(&self, confidence: f64) -> Option<Interval> {
         let reach = t_quantile(0.5 + confidence / 2.0, self.df()?) * self.standard_error()?;
         Some(Interval { low: self.mean - reach, high: self.mean + reach })
     }
 
-    /// Student's t of the mean against a value. `None` of a single value, or of values that are all equal.
+    /// Returns Student's t of the mean against a value. `None` of a single value, or of values that are all equal.
     pub fn t(&self, against: f64) -> Option<f64> {
         let error = self.standard_error()?;
         (error > 0.0).then(|| (self.mean - against) / error)
     }
 
-    /// Two-sided p of the t-test against 0: of differences, the paired t-test.
+    /// Returns the two-sided p of the t-test against 0: of differences, the paired t-test.
     pub fn p(&self) -> Option<f64> {
         Some(2.0 * t_cdf(-self.t(0.0)?.abs(), self.df()?))
     }
 
-    /// Cohen's d_z: the mean in standard deviations.
+    /// Returns Cohen's d_z: the mean in standard deviations.
     pub fn d_z(&self) -> Option<f64> {
         (self.n > 1 && self.std > 0.0).then(|| self.mean / self.std)
     }
@@ -123,18 +123,18 @@ impl Sample {
     }
 }
 
-/// What the two one-sided tests say.
+/// The result of two one-sided tests.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Equivalence {
     /// Differences within these do not matter.
     pub bounds: Interval,
     /// Against the lower bound.
     pub t_lower: f64,
-    /// That the mean is above the lower bound, one-sided.
+    /// One-sided p of the mean being above the lower bound.
     pub p_lower: f64,
     /// Against the upper bound.
     pub t_upper: f64,
-    /// That the mean is below the upper bound, one-sided.
+    /// One-sided p of the mean being below the upper bound.
     pub p_upper: f64,
     /// The larger of both: the test's p.
     pub p: f64,
@@ -144,7 +144,7 @@ pub struct Equivalence {
     pub equivalent: bool,
 }
 
-/// On what an interval of the mean of several blocks rests.
+/// The scatter that an interval of the mean of several blocks rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Basis {
@@ -160,12 +160,12 @@ pub struct BlockInterval {
     /// The interval.
     #[serde(flatten)]
     pub interval: Interval,
-    /// On what it rests.
+    /// The scatter that it rests on.
     pub basis: Basis,
 }
 
 impl BlockInterval {
-    /// Both ends by a function that grows with its argument.
+    /// Returns the interval with both ends mapped by a growing function.
     pub fn map(self, f: impl Fn(f64) -> f64) -> BlockInterval {
         BlockInterval { interval: self.interval.map(f), ..self }
     }
@@ -185,7 +185,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Of blocks with at least one value each, at a confidence between 0 and 1; empty blocks do not count. `None`
+    /// Returns the mean of blocks and its interval at a confidence between 0 and 1; empty blocks do not count. `None`
     /// without any value, or if one is not finite.
     ///
     /// As soon as one block has two values, the interval rests on repetitions: blocks are fixed, the scatter around
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_is_not() {
+    fn statistics_without_enough_values_are_none() {
         let one = Sample::of(&[3.0]).unwrap();
         assert_eq!((one.interval(0.95), one.t(0.0), one.p(), one.d_z()), (None, None, None, None));
         let equal = Sample::of(&[2.0, 2.0, 2.0]).unwrap();

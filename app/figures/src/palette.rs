@@ -20,7 +20,7 @@ pub enum Shape {
     Cross,
 }
 
-/// How a method looks.
+/// Colour and mark of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
     /// On a light page and in files.
@@ -44,10 +44,10 @@ pub const TEXT: (u32, u32) = (0x1D1E20, 0xE6E6E3);
 /// Grid lines.
 pub const GRID: (u32, u32) = (0xDCDCD8, 0x383B40);
 
-/// What belongs to no method.
+/// The colour of lines that belong to no method.
 pub const NEUTRAL: (u32, u32) = (0x777A80, 0x9DA1A8);
 
-/// Methods and patchers by name. Two that do the same thing in different suites look the same.
+/// Looks of methods and patchers by name. Two that do the same thing in different suites look the same.
 const LOOKS: [(&[&str], Look); 16] = [
     (&["conventional", "stereo-rgb"], look(0x3D3F44, 0xD2D2CE, Shape::Square)),
     (&["mono", "same image", "mono-rgb"], Look { hollow: true, ..look(NEUTRAL.0, NEUTRAL.1, Shape::Circle) }),
@@ -74,7 +74,7 @@ const OTHERS: [Look; 4] = [
     look(0x8B008C, 0xD98BD9, Shape::Cross),
 ];
 
-/// How the method or patcher of this name looks. Names that are not known share a few looks.
+/// Returns the look of the method or patcher of this name. Unknown names share a few looks.
 pub fn of(name: &str) -> Look {
     let name = name.strip_prefix("patcher-").unwrap_or(name);
     let known = LOOKS.iter().find(|(names, _)| names.contains(&name)).map(|(_, look)| *look);

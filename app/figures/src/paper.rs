@@ -6,7 +6,7 @@
 
 use serde::Serialize;
 
-/// What the paper reports of one of its scenes.
+/// The paper's figures for one of its scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PaperScene {
     /// Its name in the paper.
@@ -157,9 +157,9 @@ const fn device(name: &'static str, capacity_mah: f64, percent: [f64; 4]) -> Pap
 /// scenes, a slider from 1 to 5.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PaperQuestion {
-    /// What was rated.
+    /// The question's name.
     pub name: &'static str,
-    /// Of the paired t-test.
+    /// The statistic t of the paired t-test.
     pub t: f64,
     /// Two-sided.
     pub p: f64,
@@ -170,7 +170,7 @@ pub struct PaperQuestion {
     /// Of the difference. It is the interval of 95 %: with that t and n it follows from no other confidence, though
     /// two one-sided tests at 5 % go with 90 %.
     pub interval: [f64; 2],
-    /// Of the two one-sided tests, bounds -0.5 and 0.5.
+    /// Lower p of the two one-sided tests, bounds -0.5 and 0.5.
     pub p_lower: f64,
     /// Likewise.
     pub p_upper: f64,

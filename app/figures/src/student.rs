@@ -38,7 +38,7 @@ pub fn noncentral_t_cdf(t: f64, df: f64, delta: f64) -> f64 {
     gauss_legendre(from, to, ((to - from) / width).ceil() as usize, |s| density(s) * below(s)).clamp(0.0, 1.0)
 }
 
-/// Where `below` turns from true to false between `low` and `high`, to 1e-16 of their distance.
+/// Returns the point between `low` and `high` where `below` turns from true to false, to 1e-16 of their distance.
 pub fn bisect(mut low: f64, mut high: f64, below: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..53 {
         let middle = low + (high - low) / 2.0;

@@ -11,7 +11,7 @@ use crate::picture::{self, PictureError};
 use yoro_files::interrupt::{self, Interrupted};
 use yoro_files::{self as files, FileError};
 
-/// Why nothing could be compared.
+/// The error when nothing can be compared.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
@@ -47,7 +47,7 @@ pub enum CompareError {
         a: PathBuf,
         /// The reference.
         b: PathBuf,
-        /// What is wrong.
+        /// The mistake.
         what: MetricsError,
     },
     /// The user has asked for the end.
@@ -55,7 +55,7 @@ pub enum CompareError {
     Interrupted(#[from] Interrupted),
 }
 
-/// What is compared with what.
+/// The files that are compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Inputs {
     /// The image to judge, or a folder of them.
@@ -66,11 +66,11 @@ pub struct Inputs {
     pub mask: Option<PathBuf>,
     /// The mask is bright, not dark, where there is a hole.
     pub bright_holes: bool,
-    /// Where the error map goes, as PNG; a folder when folders are compared.
+    /// The file of the error map, as PNG; a folder when folders are compared.
     pub map: Option<PathBuf>,
 }
 
-/// How the figures are made, for readers of the JSON.
+/// The method behind the figures, for readers of the JSON.
 const SETTINGS: Settings = Settings {
     psnr: "dB, data range 255; null where both images are identical; rgb: the error over all three channels",
     ssim_gaussian: "gaussian window 11x11, sigma 1.5, population covariance (Wang et al. 2004), mean without a border of 5 pixels; rgb: mean of three channels",
@@ -90,7 +90,7 @@ struct Settings {
     mean: &'static str,
 }
 
-/// What was measured.
+/// The results of a comparison.
 #[derive(Debug, Serialize)]
 pub struct CompareReport {
     settings: &'static Settings,
@@ -107,7 +107,7 @@ pub struct CompareReport {
 pub struct Pair {
     /// The path inside the folders, or the first image.
     pub name: PathBuf,
-    /// The figures.
+    /// Returns the figures.
     #[serde(flatten)]
     pub comparison: Comparison,
 }
@@ -115,9 +115,9 @@ pub struct Pair {
 /// Means over all pairs.
 #[derive(Debug, Serialize)]
 pub struct Mean {
-    /// Of red, green and blue.
+    /// The similarity of red, green and blue.
     pub rgb: Quality,
-    /// Of luma.
+    /// The similarity of luma.
     pub luma: Quality,
     /// LDR-FLIP.
     pub flip: f64,
@@ -127,9 +127,6 @@ pub struct Mean {
 
 impl CompareReport {
     /// Compares two images, or each pair of two folders; error maps are written where they are wanted.
-    ///
-    /// # Errors
-    /// [`CompareError`].
     pub fn of(inputs: &Inputs) -> Result<CompareReport, CompareError> {
         let Inputs { a, b, .. } = inputs;
         for path in [a, b] {
@@ -339,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_get_a_sentence() {
+    fn each_mistake_is_one_sentence() {
         let (dir, a, b) = folders();
         let says = |a: &Path, b: &Path| CompareReport::of(&inputs(a, b)).unwrap_err().to_string();
         assert!(says(&a, &b.join("same.png")).contains("give two files or two folders"));

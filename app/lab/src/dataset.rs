@@ -16,7 +16,7 @@ use yoro_gl::{
 use yoro_render::stereo::{Offline, PipelineOptions};
 use yoro_render::{Fxaa, GpuScene, Renderer, ViewTargets};
 
-/// Why an image group could not be made.
+/// The error when an image group cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GroupError {
@@ -31,13 +31,13 @@ pub enum GroupError {
     Inpaint(#[from] InpaintError),
 }
 
-/// How groups are made.
+/// Options of image groups.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct GroupOptions {
     /// The pipeline that reprojects.
     pub synthesis: PipelineOptions,
-    /// How much wider the dominant eye is rendered.
+    /// The guard band by which the dominant eye is rendered wider.
     pub guard_band: GuardBand,
     /// FXAA on both rendered images. The reprojected image then moves blended edge pixels with one of their surfaces,
     /// as in the paper.

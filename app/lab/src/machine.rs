@@ -1,8 +1,8 @@
-//! What a measurement says of itself: machine, program, settings.
+//! Where a measurement was made: machine, program, settings.
 
 use serde::{Deserialize, Serialize};
 
-/// Where and how a run took place.
+/// The machine, program and command of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Model name of the processor.

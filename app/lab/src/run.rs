@@ -17,7 +17,7 @@ use yoro_render::stereo::{Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_scenes::BUILTINS;
 
-/// What is measured on each scene.
+/// The measurements to be made on each scene.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The eyes.
@@ -41,7 +41,7 @@ pub struct Plan {
 pub struct Candidate {
     /// Its name in the report, unlike that of any other.
     pub name: &'static str,
-    /// How it makes two eyes.
+    /// The stereo method.
     pub method: Method,
     /// Its options.
     pub options: StereoOptions,

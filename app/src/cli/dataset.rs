@@ -30,7 +30,7 @@ use yoro_scenes::{self, BUILTINS};
 const PICTURES: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
 /// Folder of the groups' JSON files, which are written last: a group that has one is finished.
 const GROUPS: &str = "group";
-/// What a scene's groups were made with.
+/// The options with which a scene's groups were made.
 const SETTINGS: &str = "dataset.json";
 
 /// Write image groups of scenes: both eyes, depth, the reprojected eye, its holes, and the patched eye
@@ -86,7 +86,7 @@ struct Settings<'a> {
     depth: DepthConvention,
     patcher: Option<PatcherKind>,
     model: Option<&'a Path>,
-    /// Of the forward renderer alone: folders of the deferred one stay what they are.
+    /// Settings of the forward renderer alone: folders of the deferred one stay valid.
     #[serde(skip_serializing_if = "Option::is_none")]
     renderer: Option<String>,
     #[serde(flatten)]

@@ -1,4 +1,4 @@
-//! Which machine a figure was measured on.
+//! The machine that figures are measured on.
 
 use std::fs;
 use std::time::{Duration, SystemTime};

@@ -4,6 +4,7 @@
 //! [`Compilers`] compile them. What is found is held against `docs/shader-cost.csv`; docs/performance.md says how to read it.
 
 mod compilers;
+mod gather;
 mod gpus;
 mod listing;
 mod table;
@@ -144,7 +145,8 @@ pub fn report(
         table.mesa = found.mesa;
         table.take_over(found.rows);
         write(&path, table.to_text())?;
-        text += &format!("{TABLE} renewed: look at `git diff -- {TABLE}`\n");
+        write(&root().join(gather::FILE), gather::text(&table)?)?;
+        text += &format!("{TABLE} and {0} renewed: look at `git diff -- {TABLE} {0}`\n", gather::FILE);
     }
     Ok((text, faults.is_empty()))
 }

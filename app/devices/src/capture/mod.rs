@@ -1,4 +1,4 @@
-//! What one run on a device leaves behind: a folder with `run.json`, `log.txt` and `samples.csv`.
+//! Captures: what one run on a device leaves behind, a folder with `run.json`, `log.txt` and `samples.csv`.
 //!
 //! `run.json` is a [`RunInfo`]; `log.txt` holds the raw lines of logcat as they came; `samples.csv` one [`Sample`] a
 //! row, under the column names of the OVR Metrics Tool where that has the quantity in a documented unit. An empty cell
@@ -23,14 +23,14 @@ pub use writer::Writer;
 
 /// Version of the folder's format.
 pub const VERSION: u32 = 1;
-/// What the run was and how it went.
+/// File about what the run was and how it went.
 pub const RUN_FILE: &str = "run.json";
 /// The raw lines of logcat.
 pub const LOG_FILE: &str = "log.txt";
 /// The samples.
 pub const SAMPLES_FILE: &str = "samples.csv";
 
-/// Why a capture cannot be read or written: one sentence.
+/// The error when a capture cannot be read or written: one sentence.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaptureError {
@@ -63,7 +63,7 @@ pub enum CaptureError {
     Version {
         /// Its `run.json`.
         path: PathBuf,
-        /// What it says.
+        /// The version that it names.
         version: u64,
     },
     /// `run.json` is damaged.
@@ -71,7 +71,7 @@ pub enum CaptureError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The mistake in it.
         what: String,
     },
     /// A row of `samples.csv` is damaged.
@@ -84,7 +84,7 @@ pub enum CaptureError {
         path: PathBuf,
         /// Counted from 1.
         line: u64,
-        /// What is wrong.
+        /// The mistake.
         what: String,
     },
 }
@@ -107,7 +107,7 @@ pub struct DeviceInfo {
     pub simulated: bool,
 }
 
-/// How a run has ended.
+/// The outcome of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "state")]
 pub enum Outcome {
@@ -125,7 +125,7 @@ pub enum Outcome {
     },
 }
 
-/// What can go wrong in a run without ending it.
+/// Kinds of faults that do not end a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FaultKind {
@@ -167,19 +167,19 @@ pub enum FaultKind {
 pub struct Fault {
     /// Kind.
     pub kind: FaultKind,
-    /// When, in seconds since the run began; none for what concerns all of it.
+    /// Time in seconds since the run began; `None` for what concerns all of it.
     pub at_s: Option<f64>,
     /// One sentence with the figures.
     pub detail: String,
 }
 
-/// What a run was and how it went.
+/// A description of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunInfo {
     /// [`VERSION`].
     pub version: u32,
-    /// Where it ran.
+    /// The device.
     pub device: DeviceInfo,
     /// Name of the experiment that it is part of.
     pub experiment: Option<String>,
@@ -187,15 +187,15 @@ pub struct RunInfo {
     pub method: String,
     /// Scene.
     pub scene: String,
-    /// Which repetition, from 1: runs of the same number, scene and device are paired.
+    /// Number of the repetition, from 1: runs of the same number, scene and device are paired.
     pub repetition: u32,
     /// Place in the order of the experiment, from 1.
     pub order: u32,
     /// Settings of the viewer other than the defaults.
     pub settings: BTreeMap<String, String>,
-    /// When it began, in seconds since 1970 by this computer's clock.
+    /// Start in seconds since 1970 by this computer's clock.
     pub started_unix_s: f64,
-    /// How long it should last without warm-up, in seconds.
+    /// Planned length without warm-up, in seconds.
     pub duration_s: f64,
     /// Seconds at its begin that count for nothing.
     pub warm_up_s: f64,
@@ -203,25 +203,22 @@ pub struct RunInfo {
     pub start_celsius: Option<f64>,
     /// Version of the application.
     pub application: Option<String>,
-    /// How it ended.
+    /// The outcome.
     pub outcome: Outcome,
-    /// What went wrong on the way.
+    /// Faults on the way.
     pub faults: Vec<Fault>,
 }
 
 /// One run as it lies on disk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Capture {
-    /// What it was.
+    /// Description of the run.
     pub info: RunInfo,
     /// Second by second, warm-up included, in order of time.
     pub samples: Vec<Sample>,
 }
 
 /// Reads the run in `folder`. A last row that was cut off in writing is left out.
-///
-/// # Errors
-/// [`CaptureError`].
 pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let info = read_info(folder)?;
     let path = folder.join(SAMPLES_FILE);
@@ -241,10 +238,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     Ok(Capture { info, samples })
 }
 
-/// What the run in `folder` was.
-///
-/// # Errors
-/// [`CaptureError`].
+/// Reads the description of the run in `folder`.
 pub fn read_info(folder: &Path) -> Result<RunInfo, CaptureError> {
     let path = folder.join(RUN_FILE);
     if folder.is_dir() && !path.exists() {

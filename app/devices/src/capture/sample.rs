@@ -36,7 +36,7 @@ pub struct Sample {
     pub level_percent: Option<f64>,
     /// Remaining charge in microampere-hours.
     pub charge_uah: Option<f64>,
-    /// What the device is plugged into, 0 for nothing.
+    /// Sources of power, 0 for none.
     pub plugged: Option<i32>,
     /// Battery temperature in degrees Celsius.
     pub battery_celsius: Option<f64>,
@@ -53,7 +53,7 @@ pub struct Sample {
 /// units.
 pub(super) struct Column {
     name: &'static str,
-    /// Of [`LINE_KEYS`].
+    /// A key of [`LINE_KEYS`].
     pub(super) key: &'static str,
     scale: f64,
     get: fn(&Sample) -> Option<f64>,
@@ -119,7 +119,7 @@ impl Sample {
         sample
     }
 
-    /// Whether a key of the line has a field of its own in a sample.
+    /// True if a key of the line has a field of its own in a sample.
     pub fn has_field(key: &str) -> bool {
         COLUMNS.iter().any(|column| column.key == key)
     }

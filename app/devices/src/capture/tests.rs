@@ -76,7 +76,7 @@ fn a_run_is_readable_at_any_time() {
 
 /// Column names and cells are read by other programs.
 #[test]
-fn a_row_with_every_column() {
+fn a_sample_row_has_every_column() {
     let line = "v=1,t=12.5s,method=yoro,pipeline=gather,scene=prototype,FPS=59.9/60,Stale=3,frame=16.68ms,p99=17.02ms,App=6.10ms(march=1.250),CPU=41.0%,RSS=212.4MB,mA_raw=-512000,mA=-512.0,mV=3921,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=33.5C,thermal=1,headroom=0.42,scale=1.00,imbuffer=na,frames=60,status=discharging,run=a";
     let line: Line = line.parse().unwrap();
     let dir = tempfile::tempdir().unwrap();
@@ -129,7 +129,7 @@ fn damaged_folders_are_named() {
 
 proptest! {
     #[test]
-    fn what_is_written_is_read_again(
+    fn samples_survive_writing_and_reading(
         numbers in proptest::collection::vec(proptest::option::of(-1_000_000_000i64..1_000_000_000), 10),
         key in "[A-Za-z][A-Za-z./,\" ]{0,8}", value in "[ -~]{1,12}",
     ) {

@@ -45,28 +45,22 @@ impl Writer {
         Ok(writer)
     }
 
-    /// What the run is, up to now.
+    /// Returns the description of the run so far.
     pub fn info(&self) -> &RunInfo {
         &self.info
     }
 
-    /// Where it lies.
+    /// Returns the folder of the run.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
     /// Adds a line of the log.
-    ///
-    /// # Errors
-    /// [`CaptureError::File`].
     pub fn log(&mut self, line: &str) -> Result<(), CaptureError> {
         self.append(&self.log, LOG_FILE, &format!("{line}\n"))
     }
 
     /// Adds a sample. A key that no sample had before becomes a column of the whole table.
-    ///
-    /// # Errors
-    /// [`CaptureError`].
     pub fn sample(&mut self, sample: &Sample) -> Result<(), CaptureError> {
         let before = self.others.len();
         for key in sample.other.keys() {
@@ -81,18 +75,12 @@ impl Writer {
     }
 
     /// Notes that something went wrong.
-    ///
-    /// # Errors
-    /// [`CaptureError::File`].
     pub fn fault(&mut self, fault: Fault) -> Result<(), CaptureError> {
         self.info.faults.push(fault);
         self.renew()
     }
 
     /// Ends the run.
-    ///
-    /// # Errors
-    /// [`CaptureError::File`].
     pub fn finish(mut self, outcome: Outcome) -> Result<RunInfo, CaptureError> {
         self.info.outcome = outcome;
         self.renew()?;
@@ -100,9 +88,6 @@ impl Writer {
     }
 
     /// Changes what the run says of itself.
-    ///
-    /// # Errors
-    /// [`CaptureError::File`].
     pub fn change(&mut self, change: impl FnOnce(&mut RunInfo)) -> Result<(), CaptureError> {
         change(&mut self.info);
         self.renew()

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 
-use super::{Experiment, Otherwise, file_name, length};
+use super::{Experiment, WhenTooWarm, file_name, length};
 use crate::adb::{Device, DeviceError};
 use crate::capture::{self, CaptureError, Fault, FaultKind, Outcome, RUN_FILE, RunInfo, Writer};
 use crate::phone::{self, Battery};
@@ -15,14 +15,14 @@ use crate::pins::{Pins, Wanted};
 use crate::run::{self, Found, Plan};
 use yoro_files::{FileError, interrupt};
 
-/// How often a cooling device is asked for its temperature.
+/// Interval at which a cooling device is asked for its temperature.
 const COOLING: Duration = Duration::from_secs(5);
-/// How long a device may be gone between runs, in seconds.
-const LOST_PATIENCE_S: f64 = 300.0;
+/// Seconds that a device may be gone between runs.
+const LOST_TIMEOUT_S: f64 = 300.0;
 
-/// What an experiment has come to on a device.
+/// Progress of an experiment on a device.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct Progress {
     /// Runs in the plan.
     pub planned: usize,
     /// Complete before.
@@ -33,7 +33,7 @@ pub struct Tally {
     pub failed: Vec<(PathBuf, String)>,
 }
 
-impl fmt::Display for Tally {
+impl fmt::Display for Progress {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} of {} runs complete", self.before + self.made, self.planned)?;
         if self.before > 0 {
@@ -57,7 +57,7 @@ pub fn conduct(
     experiment: &Experiment,
     out: &Path,
     bar: &ProgressBar,
-) -> Result<Tally, DeviceError> {
+) -> Result<Progress, DeviceError> {
     let found = run::look(device, phone::PACKAGE)?;
     // It is unlocked now, but nobody is there when it is locked again, by a restart at the latest.
     if phone::keyguard(device)?.secure {
@@ -93,21 +93,21 @@ struct Conductor<'a> {
 }
 
 impl Conductor<'_> {
-    fn all(&mut self) -> Result<Tally, DeviceError> {
+    fn all(&mut self) -> Result<Progress, DeviceError> {
         let planned = self.experiment.plan(&self.found.info.serial);
-        let mut tally = Tally { planned: planned.len(), ..Tally::default() };
+        let mut progress = Progress { planned: planned.len(), ..Progress::default() };
         for (i, planned) in planned.iter().enumerate() {
             let folder = self.folder.join(&planned.folder);
             if is_complete(&folder, &planned.plan)? {
-                tally.before += 1;
+                progress.before += 1;
                 continue;
             }
             if interrupt::requested() {
                 return Err(DeviceError::Interrupted);
             }
             set_aside(&folder)?;
-            let [left, _] = self.experiment.length(tally.planned - i);
-            let (run, of) = (i + 1, tally.planned);
+            let [left, _] = self.experiment.length(progress.planned - i);
+            let (run, of) = (i + 1, progress.planned);
             self.bar.set_prefix(format!(
                 "{}: run {run} of {of}, {} left",
                 self.device.serial(),
@@ -117,10 +117,10 @@ impl Conductor<'_> {
             self.bar.set_position(0);
             let info = self.one(&planned.plan, &folder)?;
             match info.outcome {
-                Outcome::Complete => tally.made += 1,
+                Outcome::Complete => progress.made += 1,
                 Outcome::Failed { reason } => {
                     self.bar.suspend(|| log::warn!("{}: {reason}", folder.display()));
-                    tally.failed.push((folder, reason));
+                    progress.failed.push((folder, reason));
                 }
                 Outcome::Interrupted { .. } if interrupt::requested() => {
                     return Err(DeviceError::Interrupted);
@@ -130,7 +130,7 @@ impl Conductor<'_> {
                 }
             }
         }
-        Ok(tally)
+        Ok(progress)
     }
 
     fn one(&mut self, plan: &Plan, folder: &Path) -> Result<RunInfo, DeviceError> {
@@ -139,9 +139,9 @@ impl Conductor<'_> {
         {
             let wanted = cool_down.celsius;
             match cool_down.otherwise {
-                Otherwise::Start => {}
-                Otherwise::Skip => return self.leave_out(plan, folder, celsius, wanted),
-                Otherwise::Stop => {
+                WhenTooWarm::Start => {}
+                WhenTooWarm::Skip => return self.leave_out(plan, folder, celsius, wanted),
+                WhenTooWarm::Stop => {
                     let serial = self.device.serial().into();
                     return Err(DeviceError::TooWarm { serial, celsius, wanted });
                 }
@@ -179,7 +179,7 @@ impl Conductor<'_> {
                 Ok(battery) => battery,
                 Err(error) if error.is_lost() => {
                     let lost_at = *lost_at.get_or_insert(self.device.now());
-                    if self.device.now() - lost_at > LOST_PATIENCE_S {
+                    if self.device.now() - lost_at > LOST_TIMEOUT_S {
                         return Err(error);
                     }
                     self.bar.set_message("lost: connect it again");
@@ -213,15 +213,16 @@ impl Conductor<'_> {
         }
     }
 
-    /// Whether to wait for somebody who charges the battery or takes the charger off. `charging` is none outside of such a
+    /// True if to wait for somebody who charges the battery or takes the charger off. `charging` is none outside of such a
     /// pause, and inside of it whether there has been a charger: who takes it off early wants to go on.
     fn must_charge(&self, battery: &Battery, charging: &mut Option<bool>) -> bool {
         let Experiment { min_level, charge_level, .. } = *self.experiment;
         let Some(level) = battery.level_percent else { return false };
         let (is_low, plugged) = (level < min_level, battery.plugged());
-        let what = match level < charge_level && (is_low || charging.is_some()) {
-            true => format!("charge it to {charge_level:.0} %, then take the charger off"),
-            false => "take the charger off".into(),
+        let what = if level < charge_level && (is_low || charging.is_some()) {
+            format!("charge it to {charge_level:.0} %, then take the charger off")
+        } else {
+            "take the charger off".into()
         };
         if charging.is_none() && (is_low || plugged) {
             *charging = Some(plugged);
@@ -258,7 +259,7 @@ impl Conductor<'_> {
     }
 }
 
-/// Whether the folder holds this run, complete.
+/// True if the folder holds this run, complete.
 fn is_complete(folder: &Path, plan: &Plan) -> Result<bool, DeviceError> {
     if !folder.join(RUN_FILE).exists() {
         return Ok(false);

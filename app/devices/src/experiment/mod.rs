@@ -37,9 +37,9 @@ use yoro_files::{self as files, FileError};
 use yoro_protocol::Method;
 use yoro_protocol::{Settings, SettingsError};
 
-pub use conduct::{Tally, conduct};
+pub use conduct::{Progress, conduct};
 
-/// What the experiment's own file is called in the folder of its runs.
+/// Name of the experiment's own file in the folder of its runs.
 pub const FILE: &str = "experiment.toml";
 /// Seconds that a start takes, for the estimate of a plan's length.
 const START_S: f64 = 5.0;
@@ -56,14 +56,14 @@ pub enum Order {
     Balanced,
     /// Methods and scenes are shuffled.
     Random,
-    /// As the file lists them.
+    /// The order of the file.
     Listed,
 }
 
-/// What becomes of a run whose device does not cool down in time.
+/// The treatment of a run whose device does not cool down in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Otherwise {
+pub enum WhenTooWarm {
     /// It is made, and says that it began too warm.
     #[default]
     Start,
@@ -82,9 +82,9 @@ pub struct CoolDown {
     /// Longest wait for it in seconds.
     #[serde(default = "CoolDown::default_max")]
     pub max_seconds: f64,
-    /// What happens then.
+    /// What is done then.
     #[serde(default)]
-    pub otherwise: Otherwise,
+    pub otherwise: WhenTooWarm,
 }
 
 impl CoolDown {
@@ -112,10 +112,10 @@ pub struct Experiment {
     pub name: String,
     /// Length of a run without warm-up.
     pub seconds: f64,
-    /// What is cut off at the begin of a run.
+    /// Seconds that are cut off at the beginning of a run.
     #[serde(default = "Experiment::default_warm_up")]
     pub warm_up_seconds: f64,
-    /// How often each method is measured in each scene.
+    /// Number of runs of each method in each scene.
     #[serde(default = "Experiment::once")]
     pub repetitions: u32,
     /// In what order.
@@ -133,7 +133,7 @@ pub struct Experiment {
     pub brightness: Option<u8>,
     /// Refresh rate to pin the display to, in Hz.
     pub refresh_hz: Option<f64>,
-    /// Whether this is about power: a device that is plugged in is refused.
+    /// True if power is measured: a device that is plugged in is refused.
     #[serde(default = "Experiment::about_power")]
     pub power: bool,
     /// Lowest level of the battery in percent that a run about power begins with; below, the experiment waits for somebody
@@ -152,7 +152,7 @@ pub struct Experiment {
     pub method: Vec<Entrant>,
 }
 
-/// Why an experiment cannot be made.
+/// The error when an experiment cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExperimentError {
@@ -164,7 +164,7 @@ pub enum ExperimentError {
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong and what is right.
+        /// The mistake and the remedy.
         what: String,
     },
     /// The folder belongs to another experiment.
@@ -180,7 +180,7 @@ pub enum ExperimentError {
 /// A run in its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
-    /// What it shall be.
+    /// The run's plan.
     pub plan: Plan,
     /// Name of its folder.
     pub folder: String,
@@ -218,9 +218,6 @@ impl Experiment {
     }
 
     /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// [`ExperimentError`].
     pub fn read(path: &Path) -> Result<Experiment, ExperimentError> {
         let text = String::from_utf8_lossy(&files::read(path)?).into_owned();
         let format = |what: String| ExperimentError::Format { path: path.into(), what };
@@ -346,9 +343,6 @@ impl Experiment {
     }
 
     /// Makes a folder this experiment's, or sees that it is.
-    ///
-    /// # Errors
-    /// [`ExperimentError`].
     pub fn claim(&self, folder: &Path, path: &Path) -> Result<(), ExperimentError> {
         let file = folder.join(FILE);
         if file.exists() {

@@ -1,4 +1,4 @@
-//! From the lines of a log to samples, and to what is wrong with them.
+//! Samples and faults from the lines of a log.
 
 #[cfg(test)]
 mod tests;
@@ -22,16 +22,16 @@ const LONGEST_PAUSE_S: f64 = 3600.0;
 /// Values of the battery's current that stand for none: of Meta's tools, and the ends of an integer's range.
 const PLACEHOLDERS: [i64; 5] = [9_999, 9_999_000, i32::MIN as i64, i32::MAX as i64, i64::MIN];
 
-/// What a line has brought.
+/// The content of a line.
 #[derive(Clone, Debug, PartialEq)]
-pub enum News {
+pub enum LineContent {
     /// A second.
     Sample(Box<Sample>),
     /// The summary at the end of a session.
     Summary,
     /// A line that cannot be read; why.
     Damaged(String),
-    /// Nothing that is measured: other words, other tags, another run.
+    /// Nothing that is measured: other messages, other tags, another run.
     Other,
 }
 
@@ -76,7 +76,7 @@ pub struct Reading {
     /// Time of the last sample.
     time_s: f64,
     methods: Vec<(String, String)>,
-    /// Whether the lines have nothing before the message; none until one was recognised.
+    /// True if the lines have nothing before the message; none until one was recognised.
     is_raw: Option<bool>,
     /// Lines before that, which are damaged, or words in a raw log.
     unknown: u64,
@@ -116,7 +116,7 @@ impl Reading {
         self.seconds
     }
 
-    /// Whether any line was one of logcat's.
+    /// True if any line was one of logcat's.
     pub fn has_read(&self) -> bool {
         self.is_raw.is_some()
     }
@@ -126,7 +126,7 @@ impl Reading {
         self.damaged.times
     }
 
-    /// Whether the voltage came in whole volts, and is left out of the samples.
+    /// True if the voltage came in whole volts, and is left out of the samples.
     pub fn has_whole_volts(&self) -> bool {
         self.volts.times > 0
     }
@@ -138,7 +138,7 @@ impl Reading {
 
     /// Reads a line of logcat. `passed_s` is how long by this computer's clock there was no line before it, where that is
     /// known: it stands in for the device's clock where that makes no sense.
-    pub fn line(&mut self, line: &str, passed_s: Option<f64>) -> News {
+    pub fn line(&mut self, line: &str, passed_s: Option<f64>) -> LineContent {
         let kind = log::parse(line);
         if let (None, Kind::Entry(entry)) = (self.is_raw, &kind) {
             let is_raw = entry.time_s.is_none() && entry.pid.is_none();
@@ -148,31 +148,31 @@ impl Reading {
         match kind {
             Kind::Entry(entry) if entry.tag == LOG_TAG => self.own(&entry, passed_s),
             Kind::Entry(entry) if entry.tag == VRAPI_TAG => self.runtime(&entry),
-            Kind::Entry(_) | Kind::Mark => News::Other,
+            Kind::Entry(_) | Kind::Mark => LineContent::Other,
             Kind::Damaged => match self.is_raw {
                 Some(false) => self.damage("it is no line of logcat".into()),
-                Some(true) => News::Other,
+                Some(true) => LineContent::Other,
                 None => {
                     self.unknown += 1;
-                    News::Other
+                    LineContent::Other
                 }
             },
         }
     }
 
-    fn damage(&mut self, why: String) -> News {
+    fn damage(&mut self, why: String) -> LineContent {
         self.damaged.add(1, self.time_s);
         self.damaged_now += 1;
-        News::Damaged(why)
+        LineContent::Damaged(why)
     }
 
-    fn own(&mut self, entry: &Entry, passed_s: Option<f64>) -> News {
+    fn own(&mut self, entry: &Entry, passed_s: Option<f64>) -> LineContent {
         let message = entry.message;
         if !message.starts_with("v=") {
-            return News::Other;
+            return LineContent::Other;
         }
         if message.contains(",summary=1,") {
-            return News::Summary;
+            return LineContent::Summary;
         }
         let line: Line = match message.parse() {
             Ok(line) => line,
@@ -184,7 +184,7 @@ impl Reading {
         if let Some(run) = &self.run {
             match line.run.as_deref() {
                 Some(name) if name == run => {}
-                Some(name) if !run.starts_with(name) => return News::Other,
+                Some(name) if !run.starts_with(name) => return LineContent::Other,
                 // The name is the last of the keys.
                 _ => return self.damage("the line has lost its end: it is cut".into()),
             }
@@ -197,7 +197,7 @@ impl Reading {
         self.judge(&line, time_s);
         self.time_s = time_s;
         self.seconds += 1;
-        News::Sample(Box::new(self.sample(line, message, time_s)))
+        LineContent::Sample(Box::new(self.sample(line, message, time_s)))
     }
 
     /// The time of a line in the run. Notes restarts, gaps, and jumps of the clock.
@@ -292,9 +292,9 @@ impl Reading {
     /// A line of Meta's runtime. Only those that begin with a frame rate are statistics; a second one with App SpaceWarp
     /// begins with `ASW=`. It goes with the application's next line; alone it is a sample only in a log without such
     /// lines, that of another application.
-    fn runtime(&mut self, entry: &Entry) -> News {
+    fn runtime(&mut self, entry: &Entry) -> LineContent {
         if !entry.message.starts_with("FPS=") {
-            return News::Other;
+            return LineContent::Other;
         }
         let mut found = BTreeMap::new();
         let mut unnamed = 0;
@@ -339,9 +339,9 @@ impl Reading {
         let before = self.runtime.replace(sample);
         // Beside the application's own lines, two between two of them are one too many.
         if self.session.is_some() || self.run.is_some() {
-            return News::Other;
+            return LineContent::Other;
         }
-        before.map_or(News::Other, |before| News::Sample(Box::new(self.alone(before))))
+        before.map_or(LineContent::Other, |before| LineContent::Sample(Box::new(self.alone(before))))
     }
 
     fn alone(&mut self, sample: Sample) -> Sample {
@@ -356,7 +356,7 @@ impl Reading {
         (self.session.is_none() && self.run.is_none()).then(|| self.alone(last))
     }
 
-    /// What was wrong up to now, in the order of [`FaultKind`].
+    /// Returns the faults so far, in the order of [`FaultKind`].
     pub fn faults(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
         let mut add = |kind, at_s, detail| faults.push(Fault { kind, at_s, detail });
@@ -416,7 +416,7 @@ impl Reading {
     }
 }
 
-/// Whether a current stands for none.
+/// True if a current is a placeholder for none.
 fn is_placeholder(raw: i64) -> bool {
     PLACEHOLDERS.contains(&raw) || PLACEHOLDERS.contains(&raw.saturating_neg())
 }

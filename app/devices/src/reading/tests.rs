@@ -24,9 +24,9 @@ fn logged(clock: f64, pid: u32, text: &dyn std::fmt::Display) -> String {
     format!("{clock:.6}  {pid}  {pid} I YORO    : {text}")
 }
 
-fn sample(news: News) -> Sample {
+fn sample(news: LineContent) -> Sample {
     match news {
-        News::Sample(sample) => *sample,
+        LineContent::Sample(sample) => *sample,
         other => panic!("{other:?}"),
     }
 }
@@ -36,7 +36,7 @@ fn kinds(reading: &Reading) -> Vec<FaultKind> {
 }
 
 #[test]
-fn nothing_is_wrong_with_a_good_log() {
+fn a_good_log_has_no_faults() {
     let mut reading = Reading::new(Some("r1".into()));
     for i in 1..=60 {
         let text = logged(1e9 + i as f64, 7, &line(i as f64 * 1.02));
@@ -47,21 +47,21 @@ fn nothing_is_wrong_with_a_good_log() {
     }
     assert_eq!((reading.samples(), reading.faults()), (60, Vec::new()));
     let other = Line { run: Some("before".into()), ..line(9.0) };
-    assert_eq!(reading.line(&logged(1e9, 6, &other), None), News::Other);
-    assert_eq!(reading.line("--------- beginning of main", None), News::Other);
-    assert_eq!(reading.line(&logged(1e9, 7, &"yoro 0.1.0 starts"), None), News::Other);
-    assert_eq!(reading.line(&logged(1e9, 7, &"v=1,summary=1,t=60.0s"), None), News::Summary);
+    assert_eq!(reading.line(&logged(1e9, 6, &other), None), LineContent::Other);
+    assert_eq!(reading.line("--------- beginning of main", None), LineContent::Other);
+    assert_eq!(reading.line(&logged(1e9, 7, &"yoro 0.1.0 starts"), None), LineContent::Other);
+    assert_eq!(reading.line(&logged(1e9, 7, &"v=1,summary=1,t=60.0s"), None), LineContent::Summary);
 }
 
 #[test]
-fn unknown_keys_stages_and_the_runtime_are_kept() {
+fn unknown_keys_stages_and_runtime_values_are_kept() {
     let mut reading = Reading::default();
-    assert_eq!(reading.line("1000000000.2 1 2 I VrApi   : FPS=70/72", None), News::Other);
+    assert_eq!(reading.line("1000000000.2 1 2 I VrApi   : FPS=70/72", None), LineContent::Other);
     let runtime = "1000000000.5 1 2 I VrApi   : FPS=72/72,Stale=3,1171/441MHz,LCnt=2(DR72,LM2),GPU%=0.43";
     let mut text = line(1.0).to_string().replace("App=na", "App=2.00ms(march=1.500,lens=0.500)");
     let first = sample(reading.line(&logged(1e9, 7, &text), None));
     assert_eq!((first.other["VrApi.FPS"].as_str(), reading.samples()), ("70/72", 1));
-    assert_eq!(reading.line(runtime, None), News::Other);
+    assert_eq!(reading.line(runtime, None), LineContent::Other);
     text = text.replace("t=1.0s", "t=2.0s") + ",gaze=0.5";
     let kept = sample(reading.line(&logged(1e9 + 1.0, 7, &text), None));
     let get = |key: &str| kept.other.get(key).map(String::as_str);
@@ -74,16 +74,16 @@ fn unknown_keys_stages_and_the_runtime_are_kept() {
 }
 
 #[test]
-fn another_application_on_a_headset() {
+fn another_applications_frame_rates_become_samples() {
     let mut reading = Reading::default();
     let mut read = Vec::new();
     for i in 0..3 {
         let text = format!("100000000{i}.5 1 2 I VrApi   : FPS=71/72,Stale=3,Temp=32.2C/0.0C,App=4.49ms");
-        if let News::Sample(sample) = reading.line(&text, None) {
+        if let LineContent::Sample(sample) = reading.line(&text, None) {
             read.push(*sample);
         }
     }
-    assert!(matches!(reading.line("1000000009.5 1 2 I VrApi   : FPS=7", None), News::Damaged(_)));
+    assert!(matches!(reading.line("1000000009.5 1 2 I VrApi   : FPS=7", None), LineContent::Damaged(_)));
     read.extend(reading.end());
     assert_eq!(read.iter().map(|sample| sample.time_s).collect::<Vec<_>>(), [0.0, 1.0, 2.0]);
     for sample in read {
@@ -94,7 +94,7 @@ fn another_application_on_a_headset() {
 }
 
 #[test]
-fn figures_of_the_battery_that_mean_none() {
+fn placeholders_of_the_battery_are_left_out() {
     let read = |change: fn(&mut Line)| {
         let mut reading = Reading::default();
         let mut last = Sample::default();
@@ -127,7 +127,7 @@ fn figures_of_the_battery_that_mean_none() {
 /// Statistics as headsets logged them: Quest 2 in 2020 (soundstagevr issue 34), App SpaceWarp (Meta's guide to it),
 /// and other lines of the same tags (GearVRf issue 383, Meta's guide to logcat), all but the first shortened.
 #[test]
-fn lines_of_metas_runtime() {
+fn lines_of_metas_runtime_are_parsed() {
     let mut reading = Reading::default();
     let mut seconds = Vec::new();
     for text in [
@@ -137,7 +137,7 @@ fn lines_of_metas_runtime() {
         "11-12 18:46:10.400  2072  2090 I XrPerformanceManager: SetClockLevels: Apply pending clock request change: 4,3 -> 3,3",
         "11-12 18:46:10.500: I/VrApi(24826): SetVrSystemPerformance( 2, 2 )",
     ] {
-        if let News::Sample(sample) = reading.line(text, None) {
+        if let LineContent::Sample(sample) = reading.line(text, None) {
             seconds.push(*sample);
         }
     }
@@ -148,7 +148,7 @@ fn lines_of_metas_runtime() {
 }
 
 #[test]
-fn each_fault_has_its_name() {
+fn each_fault_is_detected_and_named() {
     let mut reading = Reading::new(Some("r1".into()));
     let mut put = |clock: f64, pid: u32, line: &Line| reading.line(&logged(1e9 + clock, pid, line), None);
     put(1.0, 7, &line(1.0));
@@ -162,8 +162,8 @@ fn each_fault_has_its_name() {
     let again = put(28.0 - 3600.0, 8, &line(1.0));
     assert_eq!(sample(again).time_s, 28.0);
     let run = cut.find("run=").unwrap();
-    assert!(matches!(reading.line(&cut[..run + 4], None), News::Damaged(_)));
-    assert!(matches!(reading.line(&cut[..60], None), News::Damaged(_)));
+    assert!(matches!(reading.line(&cut[..run + 4], None), LineContent::Damaged(_)));
+    assert!(matches!(reading.line(&cut[..60], None), LineContent::Damaged(_)));
     use FaultKind::*;
     assert_eq!(
         kinds(&reading),
@@ -187,7 +187,7 @@ fn each_fault_has_its_name() {
 }
 
 #[test]
-fn what_is_damaged_depends_on_the_format() {
+fn raw_logs_may_contain_other_words() {
     let text = line(1.0).to_string();
     let of = |lines: &[&str]| {
         let mut reading = Reading::default();
@@ -212,7 +212,7 @@ fn a_damaged_second_is_not_missing_as_well() {
 }
 
 #[test]
-fn a_clock_without_sense_gives_way_to_this_computers() {
+fn a_senseless_device_clock_is_replaced_by_this_computers() {
     let mut reading = Reading::default();
     reading.line(&logged(1e9, 7, &line(50.0)), None);
     let after = sample(reading.line(&logged(5.0, 3, &line(1.0)), Some(40.0)));
@@ -229,7 +229,7 @@ proptest! {
             let at = (*at).min(text.len());
             if *cut { text.truncate(at) } else { text.insert_str(at, with) }
             // Each line is a sample, or damaged, or says nothing.
-            seen += match reading.line(&text, None) { News::Sample(_) => 1, _ => 0 };
+            seen += match reading.line(&text, None) { LineContent::Sample(_) => 1, _ => 0 };
         }
         prop_assert_eq!(reading.samples(), seen);
         let _ = reading.faults();

@@ -1,4 +1,4 @@
-//! Devices that do not exist, for tests and for people without a phone: scripted, in virtual time, so that ten minutes
+//! Simulated devices, for tests and for people without a phone: scripted, in virtual time, so that ten minutes
 //! go by in a moment. What comes from them is simulated, and says so.
 //!
 //! A device plays recorded logs, or generates its own from a seed and made-up figures; its script says what can go wrong.
@@ -30,9 +30,6 @@ pub struct Replay {
 
 impl Replay {
     /// Reads a script, or a folder of captures to play again.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     pub fn read(path: &Path) -> Result<Replay, DeviceError> {
         Ok(Replay::new(path, Script::read(path)?))
     }

@@ -1,4 +1,4 @@
-//! What a replay plays, as TOML. Unknown keys are refused.
+//! Scripts of replays, as TOML. Unknown keys are refused.
 //!
 //! ```toml
 //! seed = 1
@@ -43,7 +43,7 @@ pub struct Script {
     pub device: Vec<Phone>,
 }
 
-/// A device that does not exist.
+/// A simulated device.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Phone {
@@ -57,11 +57,11 @@ pub struct Phone {
     pub android: String,
     /// State in adb's word: `device`, `unauthorized`, `offline`.
     pub state: String,
-    /// Whether the application is there from the beginning.
+    /// True if the application is installed from the beginning.
     pub installed: bool,
     /// The application runs from the beginning, with these settings.
     pub running: Option<BTreeMap<String, String>>,
-    /// Whether there is no room to install anything.
+    /// True if there is no room to install anything.
     pub storage_full: bool,
     /// Capacity of the battery in mAh.
     pub capacity_mah: f64,
@@ -71,26 +71,26 @@ pub struct Phone {
     pub celsius: f64,
     /// Temperature around it in degrees Celsius.
     pub ambient_celsius: f64,
-    /// Whether there is a charger from the beginning.
+    /// True if a charger is plugged in from the beginning.
     pub plugged: bool,
-    /// How it gives the battery's current.
+    /// The form of the battery's current.
     pub current: Current,
-    /// Whether its current is positive while the battery discharges.
+    /// True if its current is positive while the battery discharges.
     pub positive: bool,
-    /// How it gives the battery's voltage.
+    /// The form of the battery's voltage.
     pub voltage: Voltage,
-    /// Whether the shell may read the kernel's current and voltage.
+    /// True if the shell may read the kernel's current and voltage.
     pub kernel_battery: bool,
-    /// Whether the values of `dumpsys battery` were set by hand.
+    /// True if the values of `dumpsys battery` were set by hand.
     pub battery_held: bool,
     /// Somebody plugs a charger in where no application runs and the level is below this percentage, and takes it off at
     /// 95 %.
     pub charged_below: Option<f64>,
-    /// Whether the screen lock asks for a PIN.
+    /// True if the screen lock asks for a PIN.
     pub secure_lock: bool,
     /// Refresh rate of the display in Hz.
     pub refresh_hz: f64,
-    /// Whether it logs a line of Meta's runtime each second, too.
+    /// True if it logs a line of Meta's runtime each second, too.
     pub vr_api: bool,
     /// Other applications on it, by package. While one runs, Meta's runtime logs a line each second for it, and one for
     /// another process.
@@ -108,9 +108,9 @@ pub struct Phone {
     /// Recorded logs, relative to the script. With them nothing of a log is generated: a method and scene that none of
     /// them has does not start.
     pub logs: Vec<PathBuf>,
-    /// What methods cost, by name, where the log is generated: made-up figures.
+    /// Made-up costs of methods, by name, for a generated log.
     pub load: BTreeMap<String, Load>,
-    /// What goes wrong.
+    /// Faults.
     pub fault: Vec<Fault>,
 }
 
@@ -155,13 +155,13 @@ impl Default for Phone {
     }
 }
 
-/// How a device gives the battery's current.
+/// The form in which a device gives the battery's current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Current {
-    /// As specified.
+    /// The unit that Android specifies.
     Microamperes,
-    /// As some do.
+    /// The unit of some devices.
     Milliamperes,
     /// Always 0.
     Zero,
@@ -169,17 +169,17 @@ pub enum Current {
     Missing,
 }
 
-/// How a device gives the battery's voltage.
+/// The form in which a device gives the battery's voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Voltage {
-    /// As specified.
+    /// The unit that Android specifies.
     Millivolts,
     /// In whole volts, as some do.
     Volts,
 }
 
-/// What a method costs.
+/// The cost of a method.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Load {
@@ -195,7 +195,7 @@ impl Default for Load {
     }
 }
 
-/// What goes wrong.
+/// Faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FaultKind {
@@ -225,20 +225,20 @@ pub enum FaultKind {
     Tap,
 }
 
-/// When what goes wrong.
+/// A fault with its time.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Fault {
-    /// What.
+    /// The message.
     pub kind: FaultKind,
-    /// In which start of the application, from 1.
+    /// The start of the application, from 1, in which it happens.
     #[serde(default = "first")]
     pub start: u32,
     /// Seconds after its first frame.
     pub at: f64,
-    /// For how many seconds; for ever if there are none.
+    /// Duration in seconds; for ever without one.
     pub seconds: Option<f64>,
-    /// By how many seconds.
+    /// Seconds by which a clock jumps.
     #[serde(default)]
     pub by: f64,
 }
@@ -249,9 +249,6 @@ fn first() -> u32 {
 
 impl Script {
     /// Reads a script; or makes one of the captures in a folder, whose logs are played again.
-    ///
-    /// # Errors
-    /// [`DeviceError`].
     pub fn read(path: &Path) -> Result<Script, DeviceError> {
         let script = if path.is_dir() { Script::of_captures(path)? } else { Script::of_file(path)? };
         let refuse = |reason: &str| Err(DeviceError::Replay { path: path.into(), reason: reason.into() });

@@ -51,7 +51,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Whether `change` is in percent.
+    /// True if `change` is in percent.
     pub fn in_percent(&self) -> bool {
         self.quantity.is_ratio()
     }

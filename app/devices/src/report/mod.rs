@@ -85,7 +85,7 @@ pub struct DeviceReport {
     pub runs: Vec<Run>,
 }
 
-/// What was written.
+/// The files that were written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// The page.
@@ -176,9 +176,6 @@ impl DeviceReport {
     }
 
     /// All figures.
-    ///
-    /// # Errors
-    /// [`ReportError::Json`].
     pub fn to_json(&self) -> Result<String, ReportError> {
         Ok(serde_json::to_string_pretty(self)?)
     }
@@ -217,10 +214,8 @@ fn device_names<'a>(captures: impl Iterator<Item = &'a Capture>) -> BTreeMap<(St
     for capture in captures {
         let device = &capture.info.device;
         let (maker, model) = (device.manufacturer.trim(), device.model.trim());
-        let name = match model.to_lowercase().starts_with(&maker.to_lowercase()) {
-            true => model.to_owned(),
-            false => format!("{maker} {model}").trim().to_owned(),
-        };
+        let has_maker = model.to_lowercase().starts_with(&maker.to_lowercase());
+        let name = if has_maker { model.to_owned() } else { format!("{maker} {model}").trim().to_owned() };
         let name = if name.is_empty() { device.serial.clone() } else { name };
         names.entry(device_key(capture)).or_insert(name);
     }

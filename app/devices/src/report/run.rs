@@ -169,7 +169,7 @@ pub struct Traces {
 /// One run in figures.
 #[derive(Clone, Debug, Serialize)]
 pub struct Run {
-    /// Where it lies.
+    /// Returns the folder of the run.
     pub folder: String,
     /// Which of the folders given it was found in, from 0: the same repetition in another is another one.
     pub set: usize,
@@ -206,7 +206,7 @@ pub struct Run {
     pub counted: Option<Counted>,
     /// As the paper did.
     pub by_level: Option<ByLevel>,
-    /// What went wrong on the way.
+    /// Faults on the way.
     pub faults: Vec<Fault>,
     /// What of it does not count.
     pub exclusions: Vec<Exclusion>,
@@ -297,7 +297,7 @@ impl Run {
         run
     }
 
-    /// Whether its value of a quantity counts.
+    /// True if its value of a quantity counts.
     pub fn counts(&self, quantity: Quantity) -> bool {
         self.exclusions.iter().all(|exclusion| exclusion.power_only && quantity != Quantity::Power)
     }

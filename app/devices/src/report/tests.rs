@@ -161,7 +161,7 @@ fn the_charge_counter_agrees_or_is_named() {
 
 /// Counters of phones by HONOR and Xiaomi are in milliampere-hours (amply pull request 80).
 #[test]
-fn a_counter_in_milliampere_hours_is_told_by_the_level() {
+fn the_level_reveals_a_counter_in_milliampere_hours() {
     let mut capture = made_up("yoro", "street", 1, |_| 20_000.0);
     capture.samples.iter_mut().for_each(|s| s.charge_uah = s.charge_uah.map(|charge| (charge / 1e3).round()));
     let counted = run_of(&capture).counted.unwrap();
@@ -172,7 +172,7 @@ fn a_counter_in_milliampere_hours_is_told_by_the_level() {
 }
 
 #[test]
-fn one_of_two_cells_is_half_the_power() {
+fn the_current_of_one_of_two_cells_doubles_power() {
     let serial = || BTreeMap::from([("MADEUP1".to_owned(), 2)]);
     let report_of = |capture: &Capture, cells: &BTreeMap<String, u32>| {
         let set = vec![(PathBuf::from("run"), capture.clone())];
@@ -203,7 +203,7 @@ fn one_of_two_cells_is_half_the_power() {
 }
 
 #[test]
-fn implausible_figures_of_power() {
+fn implausible_power_is_named() {
     // What a voltage of 4 made of 3 W, and a current 1000 times too large.
     let mut volts = made_up("yoro", "street", 1, |_| 3000.0);
     volts.samples.iter_mut().for_each(|s| s.voltage_mv = Some(4.0));
@@ -239,7 +239,7 @@ fn two_equal_pairs_have_no_scatter() {
 }
 
 #[test]
-fn the_papers_estimate_is_as_coarse_as_a_percent() {
+fn the_papers_power_estimate_has_steps_of_one_percent() {
     let mut capture = made_up("yoro", "street", 1, |_| 2000.0);
     for sample in &mut capture.samples {
         sample.level_percent = Some(if sample.time_s < 60.0 { 80.0 } else { 79.0 });
@@ -253,7 +253,7 @@ fn the_papers_estimate_is_as_coarse_as_a_percent() {
 }
 
 #[test]
-fn what_makes_a_run_worthless() {
+fn worthless_runs_are_left_out_with_the_reason() {
     let whole = || made_up("yoro", "street", 1, |_| 400.0);
     let fault = |kind: FaultKind| Fault { kind, at_s: Some(40.0), detail: "it was so".into() };
     type Change = Box<dyn Fn(&mut Capture)>;
@@ -450,7 +450,7 @@ fn devices_are_averaged_but_never_with_simulated_ones() {
 }
 
 #[test]
-fn whatever_was_replayed_says_so() {
+fn simulated_results_are_marked() {
     let captures = ["street", "atrium"].map(|scene| {
         [made_up("conventional", scene, 1, |_| 500.0), made_up("yoro", scene, 1, |t| 400.0 + t)]
     });

@@ -21,10 +21,10 @@ pub struct Other {
     pub activity: String,
 }
 
-/// What a run shall be.
+/// The plan of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// What runs in place of this project's application; of the settings only the scene's name counts then.
+    /// The application that runs in place of this project's; of the settings only the scene's name counts then.
     pub other: Option<Other>,
     /// The experiment that it is part of.
     pub experiment: Option<String>,
@@ -44,7 +44,7 @@ pub struct Plan {
     pub warmest_celsius: Option<f64>,
     /// Refresh rate that the display is held at, in Hz.
     pub refresh_hz: Option<f64>,
-    /// Whether to refuse a device that is plugged in.
+    /// True to refuse a device that is plugged in.
     pub power: bool,
 }
 
@@ -70,7 +70,7 @@ impl Plan {
         pairs.filter(|pair| !defaults.contains(pair) && !of_each.contains(&pair.0.as_str())).collect()
     }
 
-    /// What a capture of the run says, before anything has happened.
+    /// Returns the description of the run for a capture that begins.
     pub fn info(&self, found: &Found, started_unix_s: f64, start_celsius: Option<f64>) -> RunInfo {
         RunInfo {
             version: VERSION,
@@ -95,7 +95,7 @@ impl Plan {
 /// The device that runs are made on, as it was found.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// What it is.
+    /// Description of the device.
     pub info: DeviceInfo,
     /// Version of the application on it.
     pub application: String,

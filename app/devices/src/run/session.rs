@@ -13,30 +13,30 @@ use crate::foreign::Foreign;
 use crate::phone;
 use crate::pins::Pins;
 use crate::plausible::MeanPower;
-use crate::reading::{News, Reading};
+use crate::reading::{LineContent, Reading};
 use yoro_files::interrupt;
 use yoro_protocol::Method;
 use yoro_protocol::Settings;
 use yoro_scenes::BUILTINS;
 
-/// How long the application may take to load a scene and show it, in seconds.
-const START_PATIENCE_S: f64 = 180.0;
+/// Seconds that the application may take to load a scene and show it.
+const START_TIMEOUT_S: f64 = 180.0;
 /// After so many seconds without a line, one looks whether the application still runs.
 const SILENCE_S: f64 = 15.0;
-/// How long a lost device may stay away, in seconds.
-const LOST_PATIENCE_S: f64 = 300.0;
-/// How long Android may take to start, in seconds.
-const BOOT_PATIENCE_S: f64 = 180.0;
-/// How often the application is started again in one run.
+/// Seconds that a lost device may stay away.
+const LOST_TIMEOUT_S: f64 = 300.0;
+/// Seconds that Android may take to start.
+const BOOT_TIMEOUT_S: f64 = 180.0;
+/// Number of times that the application is started again in one run.
 const RESTARTS: u32 = 3;
 /// The application runs on for so many seconds, so that the last second has its line.
 const MARGIN_S: f64 = 1.5;
-/// How often the kernel is asked for the voltage where the application has it in whole volts only, in seconds.
+/// Interval in seconds at which the kernel is asked for the voltage where the application has it in whole volts only.
 const VOLTAGE_PERIOD_S: f64 = 5.0;
 /// The display's refresh rate may differ from the one that it is held at by this many Hz: 59.94 is 60.
 const REFRESH_TOLERANCE_HZ: f64 = 1.0;
-/// How often waits look around.
-const GLANCE: Duration = Duration::from_secs(1);
+/// Interval at which waits check for interrupts and silence.
+const POLL_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Makes a run and captures it into a folder. The bar's position is set to the seconds of the run, its message to what
 /// happens. A run that fails is a capture, too: its outcome says so.
@@ -133,22 +133,22 @@ struct Session<'a> {
     bar: &'a ProgressBar,
     follower: Follower<'a>,
     reading: Reading,
-    /// Of another application.
+    /// Log lines and battery of another application.
     foreign: Option<Foreign<'a>>,
     label: String,
     writer: Writer,
-    /// What went wrong between this computer and the device; the rest is in the log.
+    /// Faults between this computer and the device; the others come from the log.
     own_faults: Vec<Fault>,
     restarts: u32,
-    /// When the last second came.
+    /// Time of the last sample.
     heard_s: f64,
-    /// Since when nothing has come, after the last second or the last start.
+    /// Start of the present silence: the last sample or the last start.
     silent_since_s: f64,
-    /// Since when all lines were those of other processes than the application's.
+    /// Time since which all lines were those of other processes.
     others_since_s: Option<f64>,
-    /// How late lines come that the device has kept while it was gone.
+    /// Delay in seconds of lines that the device kept while it was gone.
     delay_s: f64,
-    /// Whether the application has logged its summary.
+    /// True once the application has logged its summary.
     has_ended: bool,
     kernel: KernelVoltage,
     power: MeanPower,
@@ -159,7 +159,7 @@ struct Session<'a> {
 #[derive(Clone, Copy, Debug)]
 struct KernelVoltage {
     millivolts: Option<f64>,
-    /// When it was asked for.
+    /// Time of the last question.
     asked_s: f64,
     is_told: bool,
 }
@@ -202,7 +202,7 @@ impl Session<'_> {
             if interrupt::requested() {
                 return Ok(Outcome::Interrupted { reason: "the user has stopped it".into() });
             }
-            match self.follower.next(GLANCE)? {
+            match self.follower.next(POLL_INTERVAL)? {
                 Event::Line(line) => {
                     if let Some(outcome) = self.line(&line)? {
                         return Ok(outcome);
@@ -235,10 +235,10 @@ impl Session<'_> {
         let passed_s = now - self.heard_s + self.delay_s;
         let damaged = self.reading.damaged();
         let is_its = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.is_its(line))?;
-        let news = if is_its { self.reading.line(line, Some(passed_s)) } else { News::Other };
+        let news = if is_its { self.reading.line(line, Some(passed_s)) } else { LineContent::Other };
         self.others_since_s = if is_its { None } else { self.others_since_s.or(Some(now)) };
         let outcome = match news {
-            News::Sample(mut sample) => {
+            LineContent::Sample(mut sample) => {
                 (self.heard_s, self.silent_since_s) = (now, now);
                 match &mut self.foreign {
                     Some(foreign) => foreign.complete(&mut sample, &mut self.reading)?,
@@ -250,15 +250,15 @@ impl Session<'_> {
                 self.show(&sample);
                 self.stranger(&sample)
             }
-            News::Summary => {
+            LineContent::Summary => {
                 self.has_ended = self.reading.samples() > 0;
                 None
             }
-            News::Damaged(why) => {
+            LineContent::Damaged(why) => {
                 self.bar.suspend(|| log::warn!("{}: a line is left out: {why}", self.device.serial()));
                 None
             }
-            News::Other => None,
+            LineContent::Other => None,
         };
         if damaged != self.reading.damaged() || self.reading.faults().len() != self.reading_faults() {
             self.renew_faults()?;
@@ -294,7 +294,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// What the display does, against what it is held at: settings that are taken need not have an effect.
+    /// Compares the display's rate with the one that was asked for: settings that are accepted need not have an effect.
     fn compare_refresh(&mut self, sample: &Sample) -> Result<(), DeviceError> {
         let (Some(wanted), Some(hz)) = (self.plan.refresh_hz, sample.refresh_hz) else { return Ok(()) };
         let is_wrong = (hz - wanted).abs() > REFRESH_TOLERANCE_HZ && sample.time_s >= self.plan.warm_up_s;
@@ -305,7 +305,7 @@ impl Session<'_> {
         self.fault(FaultKind::RefreshRate, sample.time_s, detail)
     }
 
-    /// What the device shows is not what was asked for: by a tap, or because it cannot.
+    /// Returns a failure if the device shows something else than was asked for, by a tap or because it cannot.
     fn stranger(&self, sample: &Sample) -> Option<Outcome> {
         let settings = &self.plan.settings;
         let (method, scene) = self.reading.methods().last()?;
@@ -354,7 +354,7 @@ impl Session<'_> {
         if let Some(seconds) = self.follower.lost_for() {
             let reason =
                 format!("{} was lost and did not come back within {seconds:.0} s", self.device.serial());
-            return Ok((seconds > LOST_PATIENCE_S).then_some(Outcome::Interrupted { reason }));
+            return Ok((seconds > LOST_TIMEOUT_S).then_some(Outcome::Interrupted { reason }));
         }
         let silent_s = self.device.now() - self.silent_since_s;
         if silent_s < SILENCE_S {
@@ -364,19 +364,19 @@ impl Session<'_> {
             // Mostly the log ends, too; but adb may wait for the device without a word.
             Err(error) if error.is_lost() => {
                 let outcome = Outcome::Interrupted { reason: error.to_string() };
-                return Ok((silent_s > LOST_PATIENCE_S).then_some(outcome));
+                return Ok((silent_s > LOST_TIMEOUT_S).then_some(outcome));
             }
             answer => !answer?.is_empty(),
         };
         if running {
             let reason = match &self.foreign {
-                Some(foreign) if silent_s > START_PATIENCE_S => foreign.silence(),
+                Some(foreign) if silent_s > START_TIMEOUT_S => foreign.silence(),
                 _ => format!(
                     "the application has said nothing for {silent_s:.0} s: the screen may be off, or something else in \
                      front"
                 ),
             };
-            return Ok((silent_s > START_PATIENCE_S).then_some(Outcome::Failed { reason }));
+            return Ok((silent_s > START_TIMEOUT_S).then_some(Outcome::Failed { reason }));
         }
         // The application is gone, and with it what it might have said.
         if self.reading.time_s() >= self.plan.seconds() - MARGIN_S {
@@ -402,11 +402,11 @@ impl Session<'_> {
     /// Waits until Android has started.
     fn await_boot(&self) -> Result<(), DeviceError> {
         let begin = self.device.now();
-        while self.device.now() - begin < BOOT_PATIENCE_S && !interrupt::requested() {
+        while self.device.now() - begin < BOOT_TIMEOUT_S && !interrupt::requested() {
             if self.device.shell(&["getprop", "sys.boot_completed"])?.trim() == "1" {
                 break;
             }
-            self.device.sleep(GLANCE);
+            self.device.sleep(POLL_INTERVAL);
         }
         phone::wake(self.device);
         Ok(())
@@ -417,7 +417,7 @@ impl Session<'_> {
         self.renew_faults()
     }
 
-    /// How many faults of the log stand in the capture.
+    /// Returns the number of faults in the capture that come from the log.
     fn reading_faults(&self) -> usize {
         self.writer.info().faults.len() - self.own_faults.len()
     }

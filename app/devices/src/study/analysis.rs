@@ -1,4 +1,4 @@
-//! What the ratings say: for each question each method against the baseline.
+//! Analysis of ratings: for each question each method against the baseline.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,11 +7,12 @@ use serde::Serialize;
 use super::error::StudyError;
 use super::ratings::Ratings;
 use yoro_figures::inference::{Equivalence, Interval, Sample, pairs_for_power};
+use yoro_figures::stats::unique;
 
 /// Lowest and highest rating.
 pub type Scale = [f64; 2];
 
-/// How ratings are analysed.
+/// Options of the analysis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Options {
     /// The method that the others are held against.
@@ -31,11 +32,11 @@ pub struct Options {
 pub struct Excluded {
     /// Participant.
     pub participant: String,
-    /// What is missing.
+    /// The missing ratings.
     pub reason: String,
 }
 
-/// What can be said of a difference.
+/// The verdict about a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -62,7 +63,7 @@ pub struct Question {
     pub scenes: Vec<String>,
     /// Mean over the scenes: participant, method, baseline.
     pub participants: Vec<(String, f64, f64)>,
-    /// Who is left out of this comparison, and why.
+    /// Participants left out of this comparison, with the reason.
     pub excluded: Vec<Excluded>,
     /// Ratings of the method.
     pub ours: Sample,
@@ -70,15 +71,15 @@ pub struct Question {
     pub baseline: Sample,
     /// Method minus baseline, participant by participant.
     pub difference: Sample,
-    /// Of the mean difference, at confidence 1 - alpha.
+    /// Interval of the mean difference, at confidence 1 - alpha.
     pub interval: Option<Interval>,
-    /// Of the paired t-test; none where all differences are equal.
+    /// Statistic of the paired t-test; `None` where all differences are equal.
     pub t: Option<f64>,
     /// Two-sided.
     pub p: Option<f64>,
     /// Cohen's d_z.
     pub d_z: Option<f64>,
-    /// Of d_z, at confidence 1 - alpha.
+    /// Interval of d_z, at confidence 1 - alpha.
     pub d_z_interval: Option<Interval>,
     /// Post hoc: what the test's power would be if the true effect were the one found.
     pub power: Option<f64>,
@@ -95,9 +96,9 @@ pub struct Question {
 /// An analysed study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Study {
-    /// How it was analysed.
+    /// The options.
     pub options: Options,
-    /// What made it.
+    /// Program, version and command.
     pub made_by: String,
     /// All participants.
     pub participants: usize,
@@ -124,12 +125,7 @@ impl Study {
         if methods.len() < 2 {
             return Err(nothing(format!("only {} was rated: rate another method, too", named())));
         }
-        let mut questions: Vec<&str> = Vec::new();
-        for row in &ratings.rows {
-            if !questions.contains(&row.question.as_str()) {
-                questions.push(&row.question);
-            }
-        }
+        let questions = unique(ratings.rows.iter().map(|row| row.question.as_str()));
         let mut study = Study {
             made_by,
             participants: ratings.rows.iter().map(|row| &row.participant).collect::<BTreeSet<_>>().len(),
@@ -299,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn verdicts() {
+    fn verdicts_follow_t_test_and_tost() {
         let verdict = |differences: &[f64]| study(made_up(differences)).questions[0].verdict;
         assert_eq!(verdict(&[0.1, -0.1, 0.05, -0.05, 0.0, 0.02]), Verdict::Equivalent);
         assert_eq!(verdict(&[0.1, 0.12, 0.11, 0.09, 0.1, 0.08]), Verdict::SmallDifference);

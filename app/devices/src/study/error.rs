@@ -1,10 +1,10 @@
-//! Why a study cannot be planned or analysed.
+//! Errors of planning and analysing studies.
 
 use std::path::PathBuf;
 
 use yoro_files::FileError;
 
-/// Why a study cannot be planned or analysed: one sentence.
+/// The error when a study cannot be planned or analysed: one sentence.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -26,7 +26,7 @@ pub enum StudyError {
         path: PathBuf,
         /// Counted from 1.
         line: u64,
-        /// What is wrong, and the remedy.
+        /// The mistake and the remedy.
         what: String,
     },
     /// There is nothing to analyse.

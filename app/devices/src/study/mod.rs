@@ -20,7 +20,7 @@ pub use error::StudyError;
 pub use plan::{Condition, Plan, Trial, Trials, read_trials};
 pub use ratings::{Collected, Ratings, Row};
 
-/// What was written.
+/// The files that were written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// The page.

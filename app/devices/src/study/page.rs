@@ -178,7 +178,7 @@ fn push_papers(tests: &mut Table) {
     }
 }
 
-/// Who is not part of a comparison, and why.
+/// Returns the participants that are not part of a comparison, with the reason.
 fn left_out(study: &Study) -> Table {
     let mut left_out = Table::new("Participants left out", &["<question", "<method", "<participant", "<why"]);
     for q in &study.questions {

@@ -1,4 +1,4 @@
-//! Who sees what in which order.
+//! Plans of studies: scenes and methods in each participant's order.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -109,7 +109,7 @@ impl Plan {
         Plan { seed, trials, balanced_at }
     }
 
-    /// As a table: `participant,trial,scene,method,settings`, the settings as `key=value` with spaces between.
+    /// Returns the CSV table `participant,trial,scene,method,settings`, the settings as `key=value` with spaces between.
     pub fn to_csv(&self) -> String {
         let head = ["participant", "trial", "scene", "method", "settings"].map(str::to_owned);
         let rows = self.trials.iter().map(|trial| {
@@ -175,7 +175,7 @@ mod tests {
         names("m", n).into_iter().map(condition).collect()
     }
 
-    /// How often each key occurs.
+    /// Counts each key.
     fn counts<K: Ord>(keys: impl Iterator<Item = K>) -> BTreeMap<K, usize> {
         let mut counts = BTreeMap::new();
         for key in keys {
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_decides() {
+    fn the_same_seed_gives_the_same_plan() {
         let plan = |seed| Plan::new(5, &names("s", 3), &conditions(3), &names("q", 2), seed);
         assert_eq!(plan(1), plan(1));
         assert_ne!(plan(1).trials, plan(2).trials);

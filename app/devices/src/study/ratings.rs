@@ -1,4 +1,4 @@
-//! What participants answered, from a table or from logs.
+//! Ratings of participants, from a table or from logs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ pub struct Row {
 /// A table of ratings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ratings {
-    /// Where it comes from.
+    /// The file.
     pub path: PathBuf,
     /// Each participant, method, scene and question once.
     pub rows: Vec<Row>,
@@ -101,7 +101,7 @@ impl Ratings {
 /// Ratings found in logs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Collected {
-    /// Of each participant, trial and question the last. All name a participant.
+    /// The last rating of each participant, trial and question. All name a participant.
     pub ratings: Vec<Rating>,
     /// Ratings that a later one has replaced.
     pub replaced: usize,
@@ -136,7 +136,7 @@ impl Collected {
         }
     }
 
-    /// As the table that [`Ratings::read`] takes, with the trials. A method that was rated with several pipelines is
+    /// Returns the table that [`Ratings::read`] takes, with the trials. A method that was rated with several pipelines is
     /// several methods.
     pub fn to_csv(&self) -> String {
         let mut pipelines: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();

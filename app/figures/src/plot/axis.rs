@@ -1,8 +1,8 @@
-//! Where values go along an axis, and its ticks.
+//! The range and ticks of an axis.
 
 use super::{Axis, Scale};
 
-/// Where the values of an axis go, between 0 and 1 of its length, and its ticks.
+/// The range of an axis and its ticks.
 pub(super) struct Range {
     pub scale: Scale,
     pub low: f64,
@@ -46,7 +46,7 @@ impl Range {
         }
     }
 
-    /// As drawn: logarithmic axes in powers of ten.
+    /// Returns the value as it is drawn: on logarithmic axes the power of ten.
     pub fn drawn(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value,
@@ -65,7 +65,7 @@ pub(super) fn tick_step(range: f64) -> f64 {
     [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|step| range / step >= 3.0).unwrap_or(power)
 }
 
-/// As short as it can be told apart from its neighbours.
+/// Returns the shortest label that differs from its neighbours'.
 pub(super) fn tick_label(value: f64, ticks: &[f64], scale: Scale) -> String {
     let decimals = |step: f64| (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize;
     let label = match (scale, ticks) {

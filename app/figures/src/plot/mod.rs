@@ -13,7 +13,7 @@ use crate::inference::Interval;
 /// Method, whether it is the paper's, and label.
 type LegendEntry = (String, bool, String);
 
-/// Why a figure could not be drawn.
+/// The error when a figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot draw the figure {id}: {what}")]
 pub struct PlotError {
@@ -26,15 +26,15 @@ pub struct PlotError {
 pub struct Figure {
     /// Name of its file, and its anchor on the page.
     pub id: String,
-    /// What it shows.
+    /// Its heading.
     pub title: String,
-    /// What must be known to read it.
+    /// A note for the reader.
     pub caption: String,
-    /// What is drawn.
+    /// The plot.
     pub panel: Panel,
 }
 
-/// What a figure consists of.
+/// The kinds of plots.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Panel {
     /// A value over another.
@@ -59,21 +59,21 @@ pub enum Panel {
     Paired {
         /// Upwards.
         value: Axis,
-        /// From left to right.
+        /// Methods, from left to right.
         methods: Vec<String>,
-        /// For each person a value under each method.
+        /// The values of each person, one for each method.
         persons: Vec<Vec<f64>>,
     },
     /// A line for each category with a mark for each method.
     Dots {
         /// To the right.
         value: Axis,
-        /// From top to bottom.
+        /// Rows, from top to bottom.
         rows: Vec<DotRow>,
     },
 }
 
-/// How values become positions.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps are equally far apart.
@@ -88,7 +88,7 @@ pub enum Scale {
 pub struct Axis {
     /// Quantity and unit.
     pub name: String,
-    /// How values become positions.
+    /// The scale of an axis.
     pub scale: Scale,
     /// The axis reaches at least to these.
     pub include: Vec<f64>,
@@ -186,7 +186,7 @@ impl Figure {
         Ok(svg)
     }
 
-    /// Whether there is anything to see.
+    /// True if there is nothing to see.
     pub fn is_empty(&self) -> bool {
         self.legend().is_empty()
     }

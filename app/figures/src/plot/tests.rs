@@ -11,7 +11,7 @@ fn figure(panel: Panel) -> Figure {
 }
 
 #[test]
-fn curves_have_axes_with_units_a_legend_and_points_in_place() {
+fn curves_have_axes_legend_and_correct_points() {
     let series = vec![
         curve("conventional", false, &[(1.0, 20.0), (2.0, 40.0)]),
         curve("yoro-paper", true, &[(1.0, 10.0), (2.0, f64::NAN)]),

@@ -47,7 +47,7 @@ pub mod metric {
     pub const QP: &str = "qp";
     /// Bit rate in kbit/s (1000 bits) at [`super::FRAME_RATE`], the first, intra-coded frame included.
     pub const KBIT_S: &str = "kbit_s";
-    /// Of it depth, where depth is a stream of its own.
+    /// The depth stream's part of the rate, where depth is a stream of its own.
     pub const KBIT_S_DEPTH: &str = "kbit_s_depth";
     /// PSNR (RGB) of the dominant eye after decoding, in dB. Where colours are saturated and details fine, 4:2:0
     /// bounds it, whatever the quantizer.
@@ -69,7 +69,7 @@ pub const FRAME_RATE: f32 = 30.0;
 /// SSIM takes ten times as long as PSNR.
 pub const SSIM_EVERY: usize = 6;
 
-/// What is coded how often.
+/// The quantizers of a sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandwidthOptions {
     /// Quantizers of colour, 12 to 51; four or more for a rate-distortion curve.
@@ -107,10 +107,10 @@ pub fn run(
         [STEREO_RGB, RGB_DEPTH, RGB_DEPTH_PACKED, MONO_RGB].map(|name| (name, Values::new())).to_vec();
     for &quantizer in &options.quantizers {
         for layout in [Layout::Stereo, Layout::TwoStreams, Layout::Packed] {
-            let tallies = sequence.code(layout, quantizer, options.depth_offset, &mut receiver, step)?;
-            for (name, tally) in tallies {
+            let coded = sequence.code(layout, quantizer, options.depth_offset, &mut receiver, step)?;
+            for (name, stats) in coded {
                 let stream = streams.iter_mut().find(|(stream, _)| *stream == name);
-                tally.push_into(&mut stream.context("every stream has its values")?.1, quantizer);
+                stats.push_into(&mut stream.context("every stream has its values")?.1, quantizer);
             }
         }
     }
@@ -122,7 +122,7 @@ pub fn steps(frames: usize, options: &BandwidthOptions) -> u64 {
     (frames * (1 + 3 * options.quantizers.len())) as u64
 }
 
-/// How pictures go into streams.
+/// The layout of pictures in streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Layout {
     Stereo,
@@ -189,7 +189,7 @@ impl Sequence {
         depth_offset: i8,
         receiver: &mut Offline,
         step: &mut dyn FnMut() -> anyhow::Result<()>,
-    ) -> anyhow::Result<Vec<(&'static str, Tally)>> {
+    ) -> anyhow::Result<Vec<(&'static str, StreamStats)>> {
         let depth_quantizer = quantizer.saturating_add_signed(depth_offset).min(51);
         let mut main = Coder::new(quantizer, FRAME_RATE)?;
         let mut second = Coder::new(depth_quantizer, FRAME_RATE)?;
@@ -198,8 +198,8 @@ impl Sequence {
             Layout::TwoStreams => &[RGB_DEPTH, MONO_RGB],
             Layout::Packed => &[RGB_DEPTH_PACKED],
         };
-        let mut tallies: Vec<(&'static str, Tally)> =
-            names.iter().map(|name| (*name, Tally::default())).collect();
+        let mut stats: Vec<(&'static str, StreamStats)> =
+            names.iter().map(|name| (*name, StreamStats::default())).collect();
         for (i, frame) in self.frames.iter().enumerate() {
             let ([width, height], crop_origin) = (frame.views.target.size, frame.views.dominant_crop);
             let color_size = frame.color.dimensions();
@@ -227,22 +227,22 @@ impl Sequence {
                     eyes.push([crop(&color, crop_origin, [width, height]), synthesized]);
                 }
             }
-            for ((_, tally), eyes) in tallies.iter_mut().zip(&eyes) {
-                tally.measure(i, eyes, &frame.eyes)?;
+            for ((_, stats), eyes) in stats.iter_mut().zip(&eyes) {
+                stats.measure(i, eyes, &frame.eyes)?;
             }
             step()?;
         }
-        for (name, tally) in &mut tallies {
-            tally.bytes = main.bytes;
+        for (name, stats) in &mut stats {
+            stats.bytes = main.bytes;
             if *name == RGB_DEPTH {
-                tally.bytes += second.bytes;
-                tally.depth_bytes = Some(second.bytes);
+                stats.bytes += second.bytes;
+                stats.depth_bytes = Some(second.bytes);
             }
         }
-        Ok(tallies)
+        Ok(stats)
     }
 
-    /// What the receiver makes of a decoded picture: the other eye.
+    /// Synthesizes the other eye from a decoded picture, as a receiver does.
     fn synthesize(
         &self,
         views: &SynthesisViews,
@@ -298,7 +298,7 @@ fn dequantize(sample: u8, [low, high]: [f32; 2]) -> f32 {
 
 /// Sums over the frames of a stream.
 #[derive(Clone, Debug, Default)]
-struct Tally {
+struct StreamStats {
     bytes: usize,
     depth_bytes: Option<usize>,
     frames: usize,
@@ -308,7 +308,7 @@ struct Tally {
     ssim: [Vec<f64>; 2],
 }
 
-impl Tally {
+impl StreamStats {
     fn measure(
         &mut self,
         index: usize,

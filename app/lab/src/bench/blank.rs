@@ -31,7 +31,7 @@ impl BlankFinder {
         })
     }
 
-    /// Whether the dominant eye sees no surface. Transparent ones, which have no depth, do not count: synthesis does
+    /// True if the dominant eye sees no surface. Transparent ones, which have no depth, do not count: synthesis does
     /// nothing for them.
     ///
     /// # Errors

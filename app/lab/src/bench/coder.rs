@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_finer_quantizer_costs_more_and_shows_more_and_repeats_itself() {
+    fn finer_quantizers_cost_more_bits_look_better_and_are_deterministic() {
         let frames: Vec<RgbImage> = (0..3)
             .map(|t| {
                 RgbImage::from_fn(64, 48, |x, y| {

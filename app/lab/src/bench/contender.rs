@@ -1,4 +1,4 @@
-//! Who takes part.
+//! Contenders: whatever is measured against one another.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use yoro::eyes::GuardBand;
 use yoro::synthesis::Edges;
 use yoro_render::stereo::{Method, Pipeline, StereoOptions};
 
-/// What is measured against what: a stereo method, for synthesis with its pipeline; or a patcher.
+/// A stereo method, for synthesis with its pipeline, or a patcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contender {
     /// A method without synthesis pipelines.
@@ -158,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_found_again_and_stay() {
+    fn contenders_are_found_by_their_stable_names() {
         for contender in Contender::all() {
             assert_eq!(Contender::find(&contender.name()), Some(contender));
         }

@@ -19,20 +19,17 @@ pub struct Entrant {
     unsettled: u32,
 }
 
-/// What one frame took.
+/// The time that one frame took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTime {
     /// By the wall clock, up to glFinish.
     pub wall: Duration,
-    /// Of all threads of the process.
+    /// CPU time of all threads of the process.
     pub cpu: Duration,
 }
 
 impl Entrant {
     /// Compiles the method.
-    ///
-    /// # Errors
-    /// As [`stereo::create`].
     pub fn new(
         gl: &Rc<Context>,
         method: Method,
@@ -46,9 +43,6 @@ impl Entrant {
     }
 
     /// Renders a frame at a new place, once the method has settled there, and waits for it.
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render`].
     pub fn render_settled(
         &mut self,
         prepared: &mut PreparedScene,
@@ -72,9 +66,6 @@ impl Entrant {
     }
 
     /// Renders a frame and waits for it.
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render`].
     pub fn render(
         &mut self,
         prepared: &mut PreparedScene,
@@ -87,7 +78,7 @@ impl Entrant {
         Ok(FrameTime { wall: start.elapsed(), cpu: process::cpu_time().saturating_sub(cpu) })
     }
 
-    /// As [`StereoMethod::guard_band`].
+    /// Returns [`StereoMethod::guard_band`].
     pub fn guard_band(&self) -> Option<GuardBandUse> {
         self.method.guard_band()
     }
@@ -95,9 +86,6 @@ impl Entrant {
     /// Renders a frame, settled, with a timer around each pass: names in the order in which they first ran, and
     /// milliseconds; a pass that runs more than once in a frame counts as one. Empty where the driver cannot tell
     /// ([`Context::take_pass_times`]).
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render`].
     pub fn pass_times(
         &mut self,
         prepared: &mut PreparedScene,

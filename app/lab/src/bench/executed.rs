@@ -6,7 +6,7 @@
 
 use std::rc::Rc;
 
-use anyhow::Context as _;
+use anyhow::ensure;
 
 use super::record::metric;
 use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
@@ -14,8 +14,8 @@ use yoro::synthesis::{Gather, Source, Synthesis, Uniforms};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
 use yoro_render::{PreparedScene, Selection, ViewTargets};
 
-/// The committed table of `cargo tools shader-cost`.
-const TABLE: &str = include_str!("../../../../docs/shader-cost.csv");
+/// Costs of the passes' parts on each GPU, by name; written by `cargo tools shader-cost --bless`.
+const COSTS: &str = include_str!("gather-cost.csv");
 /// Pixels of a tile, one fragment of the first two passes.
 const TILE: [u32; 2] = [16, 8];
 /// Row pairs of a tile: trips of its loop.
@@ -29,7 +29,7 @@ const BYTES: f64 = 16.0;
 pub struct Device {
     /// What it is called in results.
     pub name: &'static str,
-    /// [`TABLE`]'s name of the GPU.
+    /// [`COSTS`]'s name of the GPU.
     gpu: &'static str,
     /// Pixels of an eye.
     pub size: [u32; 2],
@@ -51,7 +51,7 @@ pub const DEVICES: [Device; 3] = [
     Device { name: "mali-g57", gpu: "g57", size: [1200, 1080], slots: 0.061e12, fetches: 7.6e9, bytes: 17e9 },
 ];
 
-/// How often the loops of the march run, as [`Gather::counting`] tells it: of one pixel, or the largest of a wave.
+/// Iterations of the march's loops, from [`Gather::counting`]: of one pixel, or the largest of a wave.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Trips {
     short: f64,
@@ -100,87 +100,57 @@ impl Work {
     }
 }
 
-/// A program of the table: what it executes if every loop runs once, and its loops.
-#[derive(Clone, Debug, PartialEq)]
-struct Listing {
-    all: Work,
-    loops: Vec<Work>,
+/// The costs of the parts of gather's passes on a GPU.
+struct Costs {
+    /// Pixels of a wave of the march.
     lanes: u32,
+    parts: Vec<(&'static str, Work)>,
 }
 
-impl Listing {
-    /// The program's row; of a loop what stands in loops inside it is left out.
-    fn of(gpu: &str, program: &str) -> anyhow::Result<Listing> {
-        let find = || {
-            let columns = TABLE.lines().map(|line| line.split(',').collect::<Vec<_>>());
-            let row =
-                columns.into_iter().find(|row| row.len() == 12 && row[0] == gpu && row[1] == program)?;
-            let mut loops: Vec<Work> = Vec::new();
-            let mut outermost = 0;
-            for text in row[11].split_whitespace() {
-                let body = text.trim_start_matches('>');
-                let (slots, fetches) = body.split_once('/')?;
-                let work = Work { slots: slots.parse().ok()?, fetches: fetches.parse().ok()? };
-                match text.len() - body.len() {
-                    0 => outermost = loops.len(),
-                    1 => loops[outermost] = loops[outermost].plus(-1.0, work),
-                    _ => return None,
+impl Costs {
+    /// Reads the costs on a GPU.
+    ///
+    /// # Errors
+    /// When [`COSTS`] has none of this GPU, or a row of it cannot be read.
+    fn of(gpu: &str) -> anyhow::Result<Costs> {
+        let mut costs = Costs { lanes: 0, parts: Vec::new() };
+        for line in COSTS.lines() {
+            let [of, lanes, part, slots, fetches] = line.split(',').collect::<Vec<_>>()[..] else { continue };
+            if of == gpu {
+                if part == "march" {
+                    costs.lanes = lanes.parse()?;
                 }
-                loops.push(work);
+                costs.parts.push((part, Work { slots: slots.parse()?, fetches: fetches.parse()? }));
             }
-            let all = Work { slots: row[4].parse().ok()?, fetches: row[8].parse().ok()? };
-            // Mali's waves have 16 lanes; its rows do not say so.
-            Some(Listing { all, loops, lanes: row[7].parse().unwrap_or(16) })
-        };
-        find().with_context(|| format!("docs/shader-cost.csv has no readable row {gpu},{program}: renew it with cargo tools shader-cost --bless"))
+        }
+        ensure!(costs.lanes > 0, "gather-cost.csv has nothing of {gpu}");
+        Ok(costs)
     }
 
-    /// What stands outside of the loops.
-    fn straight(&self) -> Work {
-        self.loops.iter().fold(self.all, |work, body| work.plus(-1.0, *body))
+    /// Returns what a part executes once.
+    fn part(&self, name: &str) -> Work {
+        let found = self.parts.iter().find(|(part, _)| *part == name);
+        found.unwrap_or_else(|| panic!("gather-cost.csv has no part {name}")).1
     }
 
-    /// Columns and rows of the pixels of a wave.
-    fn wave(&self) -> [u32; 2] {
+    /// Returns columns and rows of the pixels of a wave.
+    fn wave_size(&self) -> [u32; 2] {
         match self.lanes {
             128 => [16, 8],
             64 => [8, 8],
             _ => [4, 4],
         }
     }
-}
 
-/// The passes' programs on a GPU.
-struct Programs {
-    tiles: Listing,
-    spans: Listing,
-    march: Listing,
-    /// The march as far as every pixel runs it.
-    short_way: Listing,
-}
-
-impl Programs {
-    fn of(gpu: &str) -> anyhow::Result<Programs> {
-        let march = "synthesis/gather/march.frag TEXTURE_GATHER SHORT_WAY";
-        Ok(Programs {
-            tiles: Listing::of(gpu, "synthesis/gather/tiles.frag TEXTURE_GATHER")?,
-            spans: Listing::of(gpu, "synthesis/gather/spans.frag")?,
-            march: Listing::of(gpu, march)?,
-            short_way: Listing::of(gpu, &format!("{march} SHORT_WAY_ALONE"))?,
-        })
-    }
-
-    /// What a wave executes for each of its pixels at least: of each loop the most that one of its pixels runs it. Lanes
-    /// that walk in different rounds wait for each other, too.
-    fn wave(&self, trips: Trips) -> Work {
-        // The columns' loop is there twice, of the first tiles and in each later round.
-        let [short, columns, round, tiles, fill] = [0, 1, 2, 3, 5].map(|i| self.march.loops[i]);
-        let every = self.short_way.straight().plus(trips.short, short);
-        let rest = self.march.straight().plus(-1.0, self.short_way.straight());
-        (every.plus(trips.goes_on, rest).plus(trips.rounds, round))
-            .plus(trips.columns, columns)
-            .plus(trips.tiles, tiles)
-            .plus(trips.fill, fill)
+    /// Returns what a wave executes for each of its pixels at least: of each loop the most iterations of one of its pixels.
+    /// Lanes that walk in different rounds wait for each other, too.
+    fn march(&self, trips: Trips) -> Work {
+        let short_way = self.part("march: short way").plus(trips.short, self.part("march: short step"));
+        let rest = self.part("march").plus(-1.0, self.part("march: short way"));
+        (short_way.plus(trips.goes_on, rest).plus(trips.rounds, self.part("march: round")))
+            .plus(trips.columns, self.part("march: column"))
+            .plus(trips.tiles, self.part("march: tile"))
+            .plus(trips.fill, self.part("march: fill"))
     }
 }
 
@@ -230,7 +200,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 /// Counts what `gather` executes on a device.
 pub struct Meter {
     device: Device,
-    programs: Programs,
+    costs: Costs,
     gather: Gather,
     targets: ViewTargets,
     counts: RenderTarget,
@@ -244,7 +214,7 @@ impl Meter {
     pub fn new(gl: &Rc<Context>, device: Device) -> anyhow::Result<Meter> {
         Ok(Meter {
             device,
-            programs: Programs::of(device.gpu)?,
+            costs: Costs::of(device.gpu)?,
             gather: Gather::counting(gl)?,
             targets: ViewTargets::default(),
             counts: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
@@ -269,19 +239,19 @@ impl Meter {
         let pixels = self.counts.read_rgba8(0, [0, 0], pair.size);
         let counts = Counts { pixels: &pixels, size: pair.size };
 
-        let Meter { device, programs, .. } = self;
-        let waves = counts.waves(programs.march.wave());
+        let Meter { device, costs, .. } = self;
+        let waves = counts.waves(costs.wave_size());
         let each = counts.waves([1, 1]);
-        let march: Vec<Work> = waves.iter().map(|wave| programs.wave(*wave)).collect();
+        let march: Vec<Work> = waves.iter().map(|wave| costs.march(*wave)).collect();
         let march = Work {
             slots: mean(march.iter().map(|work| work.slots)),
             fetches: mean(march.iter().map(|work| work.fetches)),
         };
         let tile = 1.0 / f64::from(TILE[0] * TILE[1]);
-        let looped = |listing: &Listing, trips: f64| listing.straight().plus(trips, listing.loops[0]);
+        let looped = |pass: &str, trips: f64, body: &str| costs.part(pass).plus(trips, costs.part(body));
         let wider = f64::from(views.warp.source_size[0]) / f64::from(pair.size[0]);
-        let tiles = Work::default().plus(tile * wider, looped(&programs.tiles, TILE_TRIPS));
-        let spans = Work::default().plus(tile, looped(&programs.spans, span_trips(&views)));
+        let tiles = Work::default().plus(tile * wider, looped("tiles", TILE_TRIPS, "tiles: two rows"));
+        let spans = Work::default().plus(tile, looped("spans", span_trips(&views), "spans: tile"));
         let all = march.plus(1.0, tiles).plus(1.0, spans);
         let ms_of = 1e3 * f64::from(pair.size[0]) * f64::from(pair.size[1]);
         Ok(vec![
@@ -307,31 +277,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_committed_table_has_what_is_needed() {
+    fn all_devices_have_all_parts() {
         for device in DEVICES {
-            let programs = Programs::of(device.gpu).unwrap();
-            assert_eq!(programs.march.loops.len(), 6, "{}", device.name);
-            let [first, later] = [1, 4].map(|i| programs.march.loops[i].slots);
+            let costs = Costs::of(device.gpu).unwrap();
+            let [first, later] = ["march: column", "march: later column"].map(|part| costs.part(part).slots);
             assert!(
                 (0.8..1.25).contains(&(later / first)),
                 "{}: one text, {first} and {later} slots",
                 device.name
             );
-            assert_eq!(programs.short_way.loops.len(), 1, "{}", device.name);
-            assert_eq!([&programs.tiles, &programs.spans].map(|listing| listing.loops.len()), [1, 1]);
-            let (all, short) = (programs.march.straight(), programs.short_way.straight());
+            let (all, short) = (costs.part("march"), costs.part("march: short way"));
             assert!(all.slots > short.slots && short.slots > 30.0, "{}: {all:?}, {short:?}", device.name);
             assert!(
                 all.fetches > short.fetches && short.fetches >= 2.0,
                 "{}: {all:?}, {short:?}",
                 device.name
             );
+            for part in ["tiles", "tiles: two rows", "spans", "spans: tile"] {
+                assert!(costs.part(part).slots > 0.0, "{}: {part}", device.name);
+            }
         }
-        assert!(Programs::of("a999").is_err());
+        assert!(Costs::of("a999").is_err());
     }
 
     #[test]
-    fn a_wave_takes_the_trips_of_its_slowest_pixel() {
+    fn a_wave_iterates_as_often_as_its_slowest_pixel() {
         let mut pixels = vec![0u8; 6 * 3 * 4];
         let mut set = |x: usize, y: usize, counts: [u8; 4]| {
             pixels[(y * 6 + x) * 4..][..4].copy_from_slice(&counts);
@@ -346,23 +316,24 @@ mod tests {
     }
 
     #[test]
-    fn work_adds_up() {
+    fn the_work_of_loops_adds_up() {
         let body = |slots, fetches| Work { slots, fetches };
-        // The third one with two loops inside.
-        let loops = [(20.0, 1.0), (50.0, 1.0), (40.0, 1.0), (60.0, 1.0), (50.0, 1.0), (70.0, 4.0)];
-        let march = Listing {
-            all: body(390.0, 13.0),
-            loops: loops.map(|(slots, fetches)| body(slots, fetches)).to_vec(),
-            lanes: 128,
-        };
-        let short_way = Listing { all: body(100.0, 4.0), loops: vec![body(20.0, 1.0)], lanes: 128 };
-        let programs = Programs { tiles: march.clone(), spans: march.clone(), march, short_way };
+        let parts = vec![
+            ("march", body(100.0, 4.0)),
+            ("march: short way", body(80.0, 3.0)),
+            ("march: short step", body(20.0, 1.0)),
+            ("march: column", body(50.0, 1.0)),
+            ("march: round", body(40.0, 1.0)),
+            ("march: tile", body(60.0, 1.0)),
+            ("march: fill", body(70.0, 4.0)),
+        ];
+        let costs = Costs { lanes: 128, parts };
         let short = Trips { short: 2.0, ..Trips::default() };
-        assert_eq!(programs.wave(short), body(80.0 + 40.0, 3.0 + 2.0));
+        assert_eq!(costs.march(short), body(80.0 + 40.0, 3.0 + 2.0));
         // Beyond the short way 20 slots and 1 fetch outside of the loops.
         let long = Trips { short: 1.0, fill: 2.0, goes_on: 1.0, columns: 30.0, rounds: 2.0, tiles: 3.0 };
         assert_eq!(
-            programs.wave(long),
+            costs.march(long),
             body(100.0 + 20.0 + 80.0 + 1500.0 + 180.0 + 140.0, 4.0 + 1.0 + 2.0 + 30.0 + 3.0 + 8.0)
         );
     }

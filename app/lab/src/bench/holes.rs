@@ -1,4 +1,4 @@
-//! Which pixels of the other eye the dominant eye does not show.
+//! Disocclusions: pixels of the other eye that the dominant eye does not show.
 
 use std::rc::Rc;
 

@@ -1,4 +1,4 @@
-//! What of a comparison goes into a measurement, under which metrics.
+//! The metrics of a comparison, as a measurement records them.
 
 use super::contender::Contender;
 use super::record::{Measurement, Setting, metric};

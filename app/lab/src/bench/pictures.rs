@@ -1,11 +1,11 @@
-//! Where a run saves its pictures.
+//! The folders in which a run saves its pictures.
 
 use std::path::{Path, PathBuf};
 
 use super::record::Setting;
 use yoro_figures::text::slug;
 
-/// Where a run with results in `results` saves the pictures of a setting: `RUN.pictures/SUITE/SCENE` with `.LABEL` or
+/// Returns the folder for the pictures of a setting, beside the file `results`: `RUN.pictures/SUITE/SCENE` with `.LABEL` or
 /// `.POINT`, and in there `dominant.png`, `truth.png` and `CONTENDER.png`.
 pub fn picture_folder(results: &Path, setting: &Setting) -> PathBuf {
     let mut name = slug(&setting.scene);

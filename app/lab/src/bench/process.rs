@@ -1,4 +1,4 @@
-//! What the operating system says of this process.
+//! CPU time and memory of this process, from the operating system.
 
 use std::fs;
 use std::time::Duration;
@@ -32,7 +32,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_of_proc() {
+    fn figures_in_proc_are_parsed() {
         let text = "Name:\tyoro\nVmHWM:\t  204800 kB\nVmRSS:\t    1024 kB\n";
         assert_eq!(kilobytes(text, "VmHWM:"), Some(200.0));
         assert_eq!(kilobytes(text, "VmSwap:"), None);

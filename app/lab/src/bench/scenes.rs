@@ -56,9 +56,6 @@ impl Object {
     }
 
     /// An object from a file.
-    ///
-    /// # Errors
-    /// As [`scene::load()`].
     pub fn load(path: &Path) -> Result<Object, SceneError> {
         let scene = scene::load(path)?;
         Ok(Object::new(scene.name, scene.model))
@@ -283,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn every_place_is_reached() {
+    fn every_pixel_of_a_hole_is_reached() {
         for side in 1..20usize {
             let cells = side * side;
             let mut reached: Vec<usize> = (0..cells).map(|i| i * coprime_step(cells) % cells).collect();

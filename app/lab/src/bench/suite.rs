@@ -68,7 +68,7 @@ suites! {
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs that need not be here",
 }
 
-/// What is taken of a setting.
+/// The kind of measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
     /// Frames at viewpoints.
@@ -90,7 +90,7 @@ pub enum Measure {
     Executed(Device),
 }
 
-/// Where a scene comes from.
+/// The source of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A built-in scene or a file.
@@ -109,7 +109,7 @@ pub enum Source {
 /// One setting: all that is needed to measure it.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// What it is called in the results.
+    /// Its name in the results.
     pub setting: Setting,
     /// Its scene.
     pub source: Source,
@@ -119,15 +119,15 @@ pub struct Job {
     pub render: RenderSettings,
     /// The eyes.
     pub eyes: EyeOptions,
-    /// When everyone anti-aliases; none where each does as its kind does.
+    /// When all contenders anti-alias; `None` leaves it to each method.
     pub anti_aliasing: Option<AntiAliasing>,
     /// Divisor of the ImBuffer's resolution.
     pub imbuffer: u32,
     /// Quantizers of coded sequences.
     pub bandwidth: BandwidthOptions,
-    /// What is taken.
+    /// The kind of measurement.
     pub measure: Measure,
-    /// Who takes part; the conventional method first where frames are measured.
+    /// The contenders; the conventional method first where frames are measured.
     pub contenders: Vec<Contender>,
     /// Number of rounds.
     pub rounds: u32,
@@ -148,7 +148,7 @@ impl Job {
     }
 }
 
-/// What the user chose for all suites.
+/// The user's choices for all suites.
 #[derive(Clone, Debug)]
 pub struct Choices {
     /// The short form.

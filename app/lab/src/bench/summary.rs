@@ -1,4 +1,4 @@
-//! What a file of results says, in a short table for the terminal.
+//! A short table of a file of results, for the terminal.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -1,4 +1,4 @@
-//! Where the frames of a setting are seen from.
+//! The viewpoints of a setting's frames.
 
 use anyhow::{bail, ensure};
 
@@ -64,7 +64,7 @@ impl Views {
         self
     }
 
-    /// What the results say of the scene and these frames.
+    /// Returns the facts that the results record about the scene and these frames.
     pub fn facts(&self, job: &Job, prepared: &PreparedScene) -> SceneFacts {
         let scene = &prepared.scene;
         let builtin = BUILTINS.iter().find(|b| matches!(&job.source, Source::Named(name) if name == b.name));

@@ -72,7 +72,7 @@ impl Planes {
         })
     }
 
-    /// As red, green and blue, without what made the size even.
+    /// Returns red, green and blue, without the padding that made the size even.
     pub fn rgb(&self, (width, height): (u32, u32)) -> RgbImage {
         let [w, _] = self.size;
         let byte = |value: f32| value.round().clamp(0.0, 255.0) as u8;
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_survive_420_where_four_pixels_are_one() {
+    fn colours_of_2x2_blocks_survive_420() {
         let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255], [0, 0, 0], [200, 120, 40]];
         let picture = RgbImage::from_fn(13, 7, |x, y| Rgb(colors[(x / 2 + y / 2 * 5) as usize % 6]));
         let planes = Planes::of_rgb(&picture);

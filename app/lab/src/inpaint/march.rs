@@ -17,10 +17,10 @@ use super::patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, Reprojecte
 const RADIUS: i32 = 3;
 /// Cosine or projection below which a direction counts for nothing.
 const SIDEWAYS: f64 = 0.01;
-/// What such a direction weighs instead, so that there is always a mean.
+/// The weight of such a direction instead, so that there is always a mean.
 const LEAST_WEIGHT: f64 = 1e-6;
 
-/// How the pixels around are weighted.
+/// The weighting of the pixels around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rule {
     /// A. Telea, "An image inpainting technique based on the fast marching method", 2004, equations 3 and 4: by
@@ -99,7 +99,7 @@ pub(super) fn regions(image: &Reprojected) -> Vec<Vec<[u32; 2]>> {
     regions
 }
 
-/// Whether a hole is within `reach` pixels along both axes.
+/// True if a hole is within `reach` pixels along both axes.
 fn near_holes(image: &Reprojected, reach: usize) -> Vec<bool> {
     let [width, height] = image.size().map(|n| n as usize);
     let mut along_rows = vec![false; width * height];

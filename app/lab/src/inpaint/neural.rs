@@ -28,7 +28,7 @@ const MULTIPLE: usize = 16;
 
 pub(super) struct Neural {
     model: Model,
-    /// For messages: the file, or that it is the built-in one.
+    /// Name for messages: the file, or that it is the built-in one.
     name: String,
 }
 

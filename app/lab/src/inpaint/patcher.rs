@@ -1,4 +1,4 @@
-//! What a patcher is: what it gets, what it gives, and why it may fail.
+//! The trait of patchers, with its input, output and errors.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ pub const HOLE: u8 = 0;
 /// Value of a mask everywhere else.
 pub const VALID: u8 = 255;
 
-/// Why holes could not be filled.
+/// The error when holes cannot be filled.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum InpaintError {
@@ -48,7 +48,7 @@ pub enum InpaintError {
     Model {
         /// The file, or "the built-in model".
         model: String,
-        /// What is wrong with it.
+        /// The mistake in it.
         reason: String,
     },
     /// The neural patcher is a feature of the build.
@@ -59,7 +59,7 @@ pub enum InpaintError {
     Gl(#[from] GlError),
 }
 
-/// Which patcher.
+/// The patchers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PatcherKind {
@@ -193,7 +193,7 @@ impl Reprojected {
         self.color.dimensions().into()
     }
 
-    /// Whether the pixel is a hole.
+    /// True if the pixel is a hole.
     pub fn is_hole(&self, x: u32, y: u32) -> bool {
         self.mask.get_pixel(x, y).0[0] == HOLE
     }
@@ -205,7 +205,7 @@ impl Reprojected {
     }
 }
 
-/// What patching took, on the wall clock.
+/// The time that patching took, by the wall clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PatchTime {
     /// Filling the holes of an image that lies where the patcher works: in textures, with the GPU drained before
@@ -220,7 +220,7 @@ pub struct PatchTime {
 pub struct Patched {
     /// The reprojected image with its holes filled.
     pub image: RgbImage,
-    /// What it took.
+    /// The time that it took.
     pub time: PatchTime,
 }
 
@@ -234,7 +234,7 @@ pub trait Patcher {
     fn patch(&mut self, image: &Reprojected) -> Result<Patched, InpaintError>;
 }
 
-/// For each row, itself if it is `known`, or else the nearest row that is; the upper one when two are equally near.
+/// Returns for each row itself if it is `known`, or else the nearest known row; the upper one when two are equally near.
 pub(super) fn nearest_rows(height: u32, known: impl Fn(u32) -> bool) -> Vec<u32> {
     let nearest = |y: u32| {
         let around = |d: u32| [y.checked_sub(d), (y + d < height).then_some(y + d)];

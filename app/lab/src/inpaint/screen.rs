@@ -17,9 +17,9 @@ pub(super) struct Screen {
     gl: Rc<Context>,
     name: &'static str,
     program: Program,
-    /// How far a hole closes in one pass, in pixels; the whole of it without.
+    /// Pixels by which a hole closes in one pass; `None` closes it at once.
     reach: Option<u32>,
-    /// Whether a pass gives what it has filled a disparity, for the next pass.
+    /// True if a pass gives filled pixels a disparity, for the next pass.
     carries_disparity: bool,
     input: Option<Input>,
     targets: [RenderTarget; 2],

@@ -133,7 +133,7 @@ fn every_hole_is_filled_and_nothing_else_changes() {
 }
 
 #[test]
-fn means_and_medians_stay_within_what_is_valid() {
+fn means_and_medians_use_valid_pixels_only() {
     with_gl(|gl| {
         for kind in PatcherKind::ALL.into_iter().filter(|&kind| kind != PatcherKind::Neural) {
             let patched = patch(gl, kind, &scattered(Eye::Right, 6));
@@ -145,7 +145,7 @@ fn means_and_medians_stay_within_what_is_valid() {
 }
 
 #[test]
-fn a_flat_colour_goes_on() {
+fn a_flat_colour_is_continued_into_holes() {
     with_gl(|gl| {
         let holes = scattered(Eye::Left, 7);
         let color = RgbImage::from_pixel(SIZE[0], SIZE[1], Rgb([180, 90, 40]));

@@ -65,9 +65,6 @@ impl FlickerMeter {
     }
 
     /// Flicker of a method's images of the same two frames.
-    ///
-    /// # Errors
-    /// [`MetricsError::SizesDiffer`].
     pub fn flicker(&self, eye: [&RgbImage; 2]) -> Result<Flicker, MetricsError> {
         let [before, after] = eye;
         check_sizes(before, after)?;
@@ -103,7 +100,7 @@ fn difference<'a>(before: &'a RgbImage, after: &'a RgbImage) -> impl Iterator<It
     before.as_raw().iter().zip(after.as_raw()).map(|(before, after)| i16::from(*after) - i16::from(*before))
 }
 
-/// Which pixels differ by [`EDGE`] or more from a neighbour, on both sides of the step.
+/// Returns which pixels differ by [`EDGE`] or more from a neighbour, on both sides of the step.
 fn edges(image: &RgbImage) -> Vec<bool> {
     let width = image.width() as usize;
     let luma: Vec<f32> = image

@@ -1,8 +1,8 @@
-//! What is compared, and what cannot be.
+//! The channels that are compared, and the errors of comparing.
 
 use image::RgbImage;
 
-/// Why two images could not be compared.
+/// The error when two images cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MetricsError {
@@ -34,7 +34,7 @@ pub enum MetricsError {
     },
 }
 
-/// What of an image is compared.
+/// The channels of an image that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
     /// Red, green and blue: PSNR of the error over all three, SSIM as the mean of three.
@@ -53,7 +53,7 @@ impl Channels {
     }
 }
 
-/// Whether two images can be compared at all.
+/// Checks that two images can be compared at all.
 pub(super) fn check_sizes(a: &RgbImage, b: &RgbImage) -> Result<(), MetricsError> {
     if a.dimensions() != b.dimensions() {
         return Err(MetricsError::SizesDiffer { a: a.dimensions(), b: b.dimensions() });
@@ -61,7 +61,7 @@ pub(super) fn check_sizes(a: &RgbImage, b: &RgbImage) -> Result<(), MetricsError
     Ok(())
 }
 
-/// Whether a mask belongs to an image.
+/// Checks that a mask belongs to an image.
 pub(super) fn check_mask(image: &RgbImage, mask: &[bool]) -> Result<(), MetricsError> {
     let pixels = image.width() as usize * image.height() as usize;
     if mask.len() != pixels {

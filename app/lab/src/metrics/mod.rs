@@ -1,4 +1,4 @@
-//! How alike two images are.
+//! Similarity of two images.
 //!
 //! All figures are computed in f64 on display-referred 8-bit values, data range 255. PSNR and SSIM agree with
 //! scikit-image's `peak_signal_noise_ratio` and `structural_similarity`, FLIP with its authors' program.
@@ -77,9 +77,9 @@ pub struct PartQuality {
 pub struct Comparison {
     /// No sample differs; the PSNR is infinite then.
     pub identical: bool,
-    /// Of red, green and blue.
+    /// The similarity of red, green and blue.
     pub rgb: Quality,
-    /// Of luma.
+    /// The similarity of luma.
     pub luma: Quality,
     /// LDR-FLIP, mean over the image, from 0 (equal) to 1; see [`flip_map`].
     pub flip: f64,
@@ -130,7 +130,7 @@ impl Comparison {
     }
 }
 
-/// Which pixels of a mask image are holes: the dark ones (below 128), as in the paper's data set, or the bright
+/// Returns which pixels of a mask image are holes: the dark ones (below 128), as in the paper's data set, or the bright
 /// ones.
 pub fn holes_of_mask(mask: &GrayImage, dark_is_hole: bool) -> Vec<bool> {
     mask.as_raw().iter().map(|value| (*value < 128) == dark_is_hole).collect()

@@ -14,7 +14,7 @@ impl Psnr {
         Psnr(if error == 0.0 { f64::INFINITY } else { 10.0 * (255.0 * 255.0 / error).log10() })
     }
 
-    /// Whether not one sample differed.
+    /// True if no sample differs.
     pub fn is_infinite(self) -> bool {
         self.0.is_infinite()
     }

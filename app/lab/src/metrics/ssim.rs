@@ -27,7 +27,7 @@ impl SsimWindow {
         }
     }
 
-    /// What the plain mean of the products is multiplied by for the covariance.
+    /// The factor from the plain mean of the products to the covariance.
     fn covariance_factor(self) -> f64 {
         match self {
             SsimWindow::Gaussian11 => 1.0,
@@ -108,7 +108,7 @@ fn gaussian_half() -> [f64; 6] {
     half.map(|weight| weight / sum)
 }
 
-/// What SSIM needs the local mean of: a, b, a^2 + b^2 (only the sum of both variances occurs), a b.
+/// The values of which SSIM needs local means: a, b, a^2 + b^2 (only the sum of both variances occurs), a b.
 const MOMENTS: usize = 4;
 
 /// The SSIM map for the separable window whose centre and one side are `half`. Each thread walks down a band of

@@ -1,4 +1,4 @@
-//! Why a report could not be made.
+//! The error when a report cannot be made.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use crate::metrics::MetricsError;
 use crate::picture::PictureError;
 use yoro_files::FileError;
 
-/// Why a report could not be made.
+/// The error when a report cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
@@ -36,7 +36,7 @@ pub enum ReportError {
     Sizes {
         /// The folder.
         path: PathBuf,
-        /// What is wrong.
+        /// The mistake.
         source: MetricsError,
     },
     /// The figures cannot be written as JSON.

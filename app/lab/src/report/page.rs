@@ -18,7 +18,7 @@ use yoro_figures::text::short_count;
 
 const TEMPLATE: Template = Template { name: "run.html.j2", text: include_str!("templates/run.html.j2") };
 
-/// What all pictures of a page may take, encoded in base64.
+/// The most bytes that all pictures of a page may take, encoded in base64.
 pub(super) const PICTURE_BUDGET: usize = 14 << 20;
 
 /// Tried in order until the pictures fit: JPEG quality, and how many times photographs are halved.
@@ -127,16 +127,16 @@ pub(super) struct ViewpointPictures {
     name: String,
     dominant_eye: &'static str,
     other_eye: &'static str,
-    /// Of the views as rendered, in pixels.
+    /// Size of the views as rendered, in pixels.
     width: u32,
     height: u32,
     views: Vec<View>,
 }
 
 pub(super) struct Pictures {
-    /// For each scene its first viewpoints.
+    /// The first viewpoints of each scene.
     pub scenes: Vec<Vec<ViewpointPictures>>,
-    /// How the pictures were encoded.
+    /// A sentence about how the pictures were encoded.
     pub note: String,
 }
 
@@ -262,7 +262,7 @@ fn pass_columns(scene: &SceneReport) -> Vec<minijinja::Value> {
         .collect()
 }
 
-/// What a plot shows of a row.
+/// A quantity of the rows, as a plot shows it.
 struct Quantity {
     id: &'static str,
     title: &'static str,
@@ -270,7 +270,7 @@ struct Quantity {
     ours: fn(&Row) -> f64,
     baseline: fn(&Row) -> Option<f64>,
     papers: fn(&paper::PaperScene) -> f64,
-    /// Where all rows have the same baseline.
+    /// The baseline, if it is the same in all rows.
     line_at: Option<f64>,
 }
 

@@ -9,7 +9,7 @@ use yoro::eyes::Eye;
 use yoro_figures::paper::{self, PaperScene};
 use yoro_figures::stats::{Summary, geometric_mean, unique};
 
-/// How the quality figures are made; printed wherever they are.
+/// The method behind the quality figures, printed wherever they are.
 pub const QUALITY_METHOD: &str = "PSNR in dB over red, green and blue, data range 255. SSIM as the mean of red, \
 green and blue: gaussian window 11x11, sigma 1.5 (Wang et al. 2004), and uniform window 7x7 (scikit-image's \
 default). The reference is the same eye, really rendered. Error maps show 1 - SSIM (gaussian) from 0, black, to \
@@ -20,11 +20,11 @@ default). The reference is the same eye, really rendered. Error maps show 1 - SS
 pub struct RunReport {
     /// Heading of the page.
     pub title: String,
-    /// Where and how it ran.
+    /// Machine, date and command.
     pub machine: Machine,
     /// The resolved configuration, in the order to be printed.
     pub parameters: Vec<Parameter>,
-    /// How frame times were taken: rounds, warm-up, interleaving, what a frame includes.
+    /// The method behind the frame times: rounds, warm-up, interleaving, what a frame includes.
     pub timing_method: String,
     /// In the order to be printed.
     pub scenes: Vec<SceneReport>,
@@ -47,7 +47,7 @@ pub struct SceneReport {
     pub viewpoints: Vec<Viewpoint>,
 }
 
-/// What a stereo frame costs.
+/// The cost of a stereo frame.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cost {
     /// Time of a whole stereo frame in milliseconds.
@@ -65,7 +65,7 @@ pub struct PassTime {
     pub ms: f64,
 }
 
-/// What a stereo frame costs by a method.
+/// The cost of a stereo frame by one method.
 #[derive(Clone, Debug, Serialize)]
 pub struct MethodCost {
     /// The method's name.
@@ -80,9 +80,9 @@ pub struct MethodCost {
 pub struct Viewpoint {
     /// A short name, such as `pose 3`.
     pub name: String,
-    /// Which eye was rendered for the synthesis.
+    /// The eye that was rendered for the synthesis.
     pub dominant_eye: Eye,
-    /// That eye.
+    /// The image of that eye.
     #[serde(skip)]
     pub dominant: RgbImage,
     /// The other eye, really rendered.

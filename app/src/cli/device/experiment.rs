@@ -40,13 +40,13 @@ pub fn run(args: &ExperimentArgs) -> anyhow::Result<()> {
     let out = args.out.clone().unwrap_or_else(default);
     experiment.claim(&out, &args.file)?;
     each(devices, |device, bar| {
-        let tally = experiment::conduct(device, &experiment, &out, bar)?;
-        if tally.failed.is_empty() {
-            return Ok(tally.to_string());
+        let progress = experiment::conduct(device, &experiment, &out, bar)?;
+        if progress.failed.is_empty() {
+            return Ok(progress.to_string());
         }
-        let (folder, reason) = &tally.failed[0];
+        let (folder, reason) = &progress.failed[0];
         bail!(
-            "{}: {tally}, the first because {reason} ({}); the same command tries again",
+            "{}: {progress}, the first because {reason} ({}); the same command tries again",
             device.serial(),
             folder.display()
         )
@@ -56,12 +56,12 @@ pub fn run(args: &ExperimentArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What a phone takes while it renders stereo, in watts: a guess until it is measured, for the plan only.
+/// Power of a phone that renders stereo, in watts: a guess until it is measured, for the plan only.
 const GUESSED_WATTS: f64 = 3.5;
-/// What a phone's battery of 4500 mAh holds, in watt-hours.
+/// Energy of a phone's battery of 4500 mAh, in watt-hours.
 const USUAL_WATT_HOURS: f64 = 17.0;
 
-/// What a plan of so many seconds asks of a battery, where that is more than one charge.
+/// Returns a sentence if a plan of so many seconds takes more than one charge of a battery.
 fn charges(experiment: &Experiment, seconds: f64) -> Option<String> {
     let watt_hours = GUESSED_WATTS * seconds / 3600.0;
     let usable = |from: f64| USUAL_WATT_HOURS * (from - experiment.min_level) / 100.0;

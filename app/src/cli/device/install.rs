@@ -6,7 +6,7 @@ use anyhow::ensure;
 
 use super::which::{WhichArgs, each};
 
-/// Where `cargo xtask apk` puts what it makes, the release first.
+/// APKs that `cargo xtask apk` makes, the release first.
 const BUILT: [&str; 2] = ["target/apk/yoro.apk", "target/apk/yoro-debug.apk"];
 
 /// Install the application, over an earlier one

@@ -17,13 +17,13 @@ use yoro_devices::foreign::{Foreign, Subject};
 use yoro_devices::log::SIMULATED_MARK;
 use yoro_devices::phone;
 use yoro_devices::plausible::MeanPower;
-use yoro_devices::reading::{News, Reading};
+use yoro_devices::reading::{LineContent, Reading};
 use yoro_files::FileError;
 use yoro_files::interrupt;
 
 /// On a terminal, the head of the table comes again after so many rows.
 const ROWS: u64 = 24;
-/// What a capture calls its method and scene if the log has several, or does not say.
+/// Names of method and scene in a capture if the log has several, or does not say.
 const SEVERAL: &str = "several";
 const UNKNOWN: &str = "unknown";
 
@@ -231,14 +231,14 @@ impl<'a> Table<'a> {
             println!("SIMULATED: {}", line.trim_matches(['-', ' ']));
         }
         let is_its = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.is_its(line))?;
-        let news = if is_its { self.reading.line(line, passed_s) } else { News::Other };
+        let news = if is_its { self.reading.line(line, passed_s) } else { LineContent::Other };
         match news {
-            News::Sample(sample) => self.sample(*sample)?,
-            News::Damaged(why) => {
+            LineContent::Sample(sample) => self.sample(*sample)?,
+            LineContent::Damaged(why) => {
                 let text: String = line.chars().take(60).collect();
                 println!("damaged line ({why}): {text}...");
             }
-            News::Summary | News::Other => {}
+            LineContent::Summary | LineContent::Other => {}
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Which devices, and something done with all of them at the same time.
+//! The choice of devices, and work on all of them at the same time.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -101,7 +101,7 @@ where
     }
 }
 
-/// Where something of one of several devices goes.
+/// Returns the folder for something of one of several devices.
 pub fn folder_of(out: &Path, serial: &str, is_only: bool) -> PathBuf {
     if is_only { out.into() } else { out.join(yoro_devices::experiment::file_name(serial)) }
 }

@@ -1,4 +1,4 @@
-//! A device that does not exist: its time, its battery, its log, and the application on it.
+//! A simulated device: its time, its battery, its log, and the application on it.
 
 mod shell;
 
@@ -19,11 +19,11 @@ use yoro_protocol::Method;
 use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{BatteryStatus, CurrentNormalizer, Line};
 
-/// When every replay begins, in seconds since 1970: results do not depend on the day.
+/// Start of every replay in seconds since 1970, so that results do not depend on the day.
 const BEGIN: f64 = 1_750_000_000.0;
-/// What a command takes, in seconds.
+/// Seconds that a command takes.
 const COMMAND_S: f64 = 0.02;
-/// From its start to its first frame, the application takes so many seconds.
+/// Seconds from the application's start to its first frame.
 const LOADING_S: f64 = 1.5;
 /// Power in milliwatts while no application runs.
 const IDLE_MILLIWATTS: f64 = 300.0;
@@ -31,16 +31,16 @@ const IDLE_MILLIWATTS: f64 = 300.0;
 const CELSIUS_PER_WATT: f64 = 5.0;
 /// Seconds after which a difference of temperature has fallen to a third.
 const WARMING_S: f64 = 400.0;
-/// By how much the same run differs from time to time, as a share.
-const LUCK: f64 = 0.02;
+/// Largest random difference between runs of a kind, as a share.
+const VARIATION: f64 = 0.02;
 /// Time that a start of Android takes after the device is connected again, in seconds.
 const BOOT_S: f64 = 10.0;
 
-/// From this level on, in percent, whoever plugged the charger in takes it off.
+/// Level in percent at which the charger is taken off.
 const CHARGED_PERCENT: f64 = 95.0;
 /// The process of Meta's runtime that is no application.
 const RUNTIME_PID: u32 = 2072;
-/// Where a headset keeps, for those who look at what is left of the replay, that it was told that it is worn.
+/// Property under which a simulated headset records that it was told that it is worn.
 const WORN: &str = "simulated.worn";
 
 /// One line in the log.
@@ -60,33 +60,33 @@ struct Application {
     /// Lines of a recorded log, repeated; none if they are generated.
     recorded: Option<Vec<Line>>,
     lines: u32,
-    /// What this start costs more or less than others of its kind, as a factor.
-    luck: f64,
+    /// Random factor on this start's cost.
+    variation: f64,
     normalizer: CurrentNormalizer,
     faults: Vec<Fault>,
 }
 
 impl Application {
-    /// When the next line is due.
+    /// Returns the time of the next line.
     fn next_line(&self) -> f64 {
         self.first_frame + f64::from(self.lines + 1)
     }
 
-    /// When the next thing goes wrong.
+    /// Returns the time of the next fault.
     fn next_fault(&self) -> f64 {
         self.faults.first().map_or(f64::INFINITY, |fault| self.first_frame + fault.at)
     }
 }
 
-/// What a device keeps when it is off.
+/// The state that a device keeps while it is off.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Kept {
+struct Stored {
     settings: BTreeMap<String, String>,
     properties: BTreeMap<String, String>,
     files: BTreeMap<String, String>,
 }
 
-/// A device that does not exist.
+/// A simulated device.
 pub struct World {
     script: Phone,
     speed: Option<f64>,
@@ -94,7 +94,7 @@ pub struct World {
     now: f64,
     /// The device's clock less this computer's.
     clock_offset: f64,
-    /// Until when it is gone, and what it is then.
+    /// Time until which the device is gone, and its state meanwhile.
     gone_until: f64,
     gone_as: State,
     boots: u32,
@@ -107,9 +107,9 @@ pub struct World {
     forgotten: usize,
     /// Changes whenever readers of the log are cut off.
     generation: u32,
-    kept: Kept,
-    /// Where that lies between replays.
-    kept_in: Option<PathBuf>,
+    stored: Stored,
+    /// The file of that state between replays.
+    store: Option<PathBuf>,
     charge_mah: f64,
     celsius: f64,
     plugged_until: f64,
@@ -121,13 +121,13 @@ pub struct World {
 
 impl World {
     /// The device of a script, in its initial state but for what an earlier replay has kept in a file.
-    pub fn new(script: Phone, seed: u64, speed: Option<f64>, kept_in: Option<PathBuf>) -> World {
-        let first = || Kept {
+    pub fn new(script: Phone, seed: u64, speed: Option<f64>, store: Option<PathBuf>) -> World {
+        let first = || Stored {
             settings: script.settings.clone(),
             properties: script.properties.clone(),
             files: script.files.clone(),
         };
-        let earlier = kept_in.as_ref().and_then(|path| serde_json::from_slice(&files::read(path).ok()?).ok());
+        let earlier = store.as_ref().and_then(|path| serde_json::from_slice(&files::read(path).ok()?).ok());
         // Devices of one script differ.
         let own = script
             .serial
@@ -150,8 +150,8 @@ impl World {
             log: Vec::new(),
             forgotten: 0,
             generation: 0,
-            kept: earlier.unwrap_or_else(first),
-            kept_in,
+            stored: earlier.unwrap_or_else(first),
+            store,
             charge_mah: script.capacity_mah * script.level_percent / 100.0,
             celsius: script.celsius,
             plugged_until: if script.plugged { f64::INFINITY } else { f64::NEG_INFINITY },
@@ -179,7 +179,7 @@ impl World {
         self.now
     }
 
-    /// How adb sees the device; none if it does not.
+    /// Returns the state in which adb lists the device; none if it does not.
     pub fn state(&self) -> Option<State> {
         let state = State::from_adb(&self.script.state);
         if state != State::Ready {
@@ -191,7 +191,7 @@ impl World {
         (self.gone_as == State::Unauthorized).then_some(State::Unauthorized)
     }
 
-    /// An error if the device does not answer.
+    /// Lets a command's time pass; an error if the device does not answer.
     pub fn reach(&mut self) -> Result<(), DeviceError> {
         let serial = self.script.serial.clone();
         self.advance(self.now + COMMAND_S);
@@ -203,7 +203,7 @@ impl World {
         }
     }
 
-    /// Lets time pass, or less if the user asks to stop.
+    /// Lets time pass until `to`, or less if the user asks to stop.
     pub fn advance(&mut self, to: f64) {
         while self.now < to && !(self.speed.is_some() && interrupt::requested()) {
             self.step(to);
@@ -224,18 +224,18 @@ impl World {
         self.discharge(passed);
         let is_due = |time: fn(&Application) -> f64| self.application.as_ref().is_some_and(|a| time(a) <= to);
         if is_due(Application::next_fault) {
-            self.go_wrong();
+            self.apply_fault();
         } else if is_due(Application::next_line) {
             self.log_second();
         }
     }
 
-    /// What the application costs now.
+    /// Returns the application's cost now.
     fn load(&self, application: &Application) -> Load {
         let load = self.script.load.get(&application.method).copied().unwrap_or_default();
         // A scene costs what its name makes of it, the same for all methods.
         let name: u32 = application.settings.scene.bytes().map(u32::from).sum();
-        let weight = (0.85 + 0.3 * f64::from(name % 100) / 100.0) * application.luck;
+        let weight = (0.85 + 0.3 * f64::from(name % 100) / 100.0) * application.variation;
         Load { frame_ms: load.frame_ms * weight, milliwatts: load.milliwatts * weight }
     }
 
@@ -283,7 +283,7 @@ impl World {
         self.celsius = end + (self.celsius - end) * (-seconds / WARMING_S).exp();
     }
 
-    fn go_wrong(&mut self) {
+    fn apply_fault(&mut self) {
         let Some(application) = &mut self.application else { return };
         let fault = application.faults.remove(0);
         let until = fault.seconds.map_or(f64::INFINITY, |seconds| self.now + seconds);
@@ -302,7 +302,7 @@ impl World {
                 self.booted_at = until;
                 self.forgotten += self.log.len();
                 self.log.clear();
-                self.kept.properties.retain(|name, _| !name.starts_with("debug.") && name != WORN);
+                self.stored.properties.retain(|name, _| !name.starts_with("debug.") && name != WORN);
                 self.application = None;
             }
             FaultKind::Crash => {
@@ -444,7 +444,8 @@ impl World {
         }
     }
 
-    /// Where a new reader of the log begins: behind all, at the last so many lines, or at the first of a time.
+    /// Returns the place at which a new reader of the log begins: the end, the last so many lines, or the first line of a
+    /// time.
     pub fn reader(&self, since: Option<&str>) -> (usize, u32) {
         let end = self.forgotten + self.log.len();
         let begin = match since {

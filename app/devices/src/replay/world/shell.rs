@@ -1,8 +1,8 @@
-//! What a device that does not exist answers to commands.
+//! Answers of a simulated device to commands.
 
 use std::path::Path;
 
-use super::{Application, BOOT_S, LOADING_S, LUCK, WORN, World};
+use super::{Application, BOOT_S, LOADING_S, VARIATION, WORN, World};
 use crate::adb::DeviceError;
 use crate::replay::script::Fault;
 use crate::{log, phone};
@@ -28,13 +28,13 @@ impl World {
         if self.script.storage_full {
             return Err(self.refused(&["cat", ">", path], "No space left on device"));
         }
-        self.kept.files.insert(path.into(), text.into());
-        self.keep()
+        self.stored.files.insert(path.into(), text.into());
+        self.store_state()
     }
 
-    fn keep(&self) -> Result<(), DeviceError> {
-        let Some(path) = &self.kept_in else { return Ok(()) };
-        Ok(files::write_with(path, |out| Ok(serde_json::to_writer(out, &self.kept)?))?)
+    fn store_state(&self) -> Result<(), DeviceError> {
+        let Some(path) = &self.store else { return Ok(()) };
+        Ok(files::write_with(path, |out| Ok(serde_json::to_writer(out, &self.stored)?))?)
     }
 
     fn refused(&self, words: &[&str], reason: &str) -> DeviceError {
@@ -46,11 +46,13 @@ impl World {
     pub fn shell(&mut self, words: &[&str]) -> Result<String, DeviceError> {
         self.reach()?;
         match words {
-            ["getprop"] => Ok(self.kept.properties.iter().map(|(k, v)| format!("[{k}]: [{v}]\n")).collect()),
+            ["getprop"] => {
+                Ok(self.stored.properties.iter().map(|(k, v)| format!("[{k}]: [{v}]\n")).collect())
+            }
             ["getprop", name] => Ok(self.property(name) + "\n"),
             ["setprop", name, value] => {
-                self.kept.properties.insert((*name).into(), (*value).into());
-                self.keep().map(|()| String::new())
+                self.stored.properties.insert((*name).into(), (*value).into());
+                self.store_state().map(|()| String::new())
             }
             ["settings", verb, table, key, value @ ..] => {
                 let name = if *table == "system" { (*key).to_owned() } else { format!("{table}/{key}") };
@@ -59,14 +61,14 @@ impl World {
             ["cat", "/proc/sys/kernel/random/boot_id"] => Ok(format!("{:08}-simulated\n", self.boots)),
             ["cat", path] if *path == phone::KERNEL_BATTERY => self.kernel_battery(words),
             ["cat", path] => self
-                .kept
+                .stored
                 .files
                 .get(*path)
                 .cloned()
                 .ok_or_else(|| self.refused(words, "No such file or directory")),
             ["rm", "-f", path] => {
-                self.kept.files.remove(*path);
-                self.keep().map(|()| String::new())
+                self.stored.files.remove(*path);
+                self.store_state().map(|()| String::new())
             }
             ["date", "+%s.%N"] => Ok(format!("{:.9}\n", self.now + self.clock_offset)),
             ["dumpsys", "battery"] => Ok(self.battery()),
@@ -78,12 +80,12 @@ impl World {
                 self.script.secure_lock
             )),
             ["am", "broadcast", "-a", "com.oculus.vrpowermanager.prox_close"] => {
-                self.kept.properties.insert(WORN.into(), "yes".into());
-                self.keep().map(|()| String::new())
+                self.stored.properties.insert(WORN.into(), "yes".into());
+                self.store_state().map(|()| String::new())
             }
             ["am", "broadcast", "-a", "com.oculus.vrpowermanager.automation_disable"] => {
-                self.kept.properties.remove(WORN);
-                self.keep().map(|()| String::new())
+                self.stored.properties.remove(WORN);
+                self.store_state().map(|()| String::new())
             }
             ["dumpsys", "package", name] if self.script.others.iter().any(|other| other == name) => {
                 Ok("Packages:\n    versionName=7.1\n".into())
@@ -118,7 +120,7 @@ impl World {
             "sys.boot_completed" if self.now >= self.booted_at + BOOT_S => Some("1".into()),
             _ => None,
         };
-        own.or_else(|| self.kept.properties.get(name).cloned()).unwrap_or_default()
+        own.or_else(|| self.stored.properties.get(name).cloned()).unwrap_or_default()
     }
 
     fn setting(
@@ -129,16 +131,16 @@ impl World {
         value: Option<&str>,
     ) -> Result<String, DeviceError> {
         if verb == "get" {
-            return Ok(self.kept.settings.get(&name).cloned().unwrap_or_else(|| "null".into()) + "\n");
+            return Ok(self.stored.settings.get(&name).cloned().unwrap_or_else(|| "null".into()) + "\n");
         }
         if self.script.fixed_settings.contains(&name) {
             return Err(self.refused(words, "java.lang.SecurityException: you cannot change it"));
         }
         match value {
-            Some(value) => self.kept.settings.insert(name, value.into()),
-            None => self.kept.settings.remove(&name),
+            Some(value) => self.stored.settings.insert(name, value.into()),
+            None => self.stored.settings.remove(&name),
         };
-        self.keep().map(|()| String::new())
+        self.store_state().map(|()| String::new())
     }
 
     fn battery(&self) -> String {
@@ -173,7 +175,7 @@ impl World {
             return Ok(format!("Error type 3\nError: Activity class {{{activity}}} does not exist.\n"));
         }
         let pairs = extras.chunks_exact(3).map(|words| (words[1].to_owned(), words[2].to_owned()));
-        let properties = self.kept.properties.iter().filter_map(|(name, value)| {
+        let properties = self.stored.properties.iter().filter_map(|(name, value)| {
             Some((name.strip_prefix(phone::PROPERTY_PREFIX)?.to_owned(), value.clone()))
         });
         let mut settings = Settings::default();
@@ -197,7 +199,7 @@ impl World {
             first_frame: self.now + LOADING_S,
             recorded,
             lines: 0,
-            luck: 1.0 + LUCK * self.random.random_range(-1.0..1.0),
+            variation: 1.0 + VARIATION * self.random.random_range(-1.0..1.0),
             normalizer: CurrentNormalizer::default(),
             faults,
         });

@@ -114,10 +114,12 @@ fn title(report: &DeviceReport) -> String {
 
 /// Behind the title of what has replayed figures in it.
 fn simulated_mark(report: &DeviceReport) -> &'static str {
-    match report.simulated {
-        true if report.devices.iter().all(|device| device.simulated) => " (simulated)",
-        true => " (partly simulated)",
-        false => "",
+    if !report.simulated {
+        ""
+    } else if report.devices.iter().all(|device| device.simulated) {
+        " (simulated)"
+    } else {
+        " (partly simulated)"
     }
 }
 
@@ -179,9 +181,10 @@ fn facts(report: &DeviceReport, device: &Device) -> String {
         cells => format!(", current x {cells} cells"),
     };
     let applications: Vec<&str> = device.applications.iter().map(String::as_str).collect();
-    let application = match applications.is_empty() {
-        true => String::new(),
-        false => format!(", application {}", applications.join(" and ")),
+    let application = if applications.is_empty() {
+        String::new()
+    } else {
+        format!(", application {}", applications.join(" and "))
     };
     format!("Android {}{capacity}{cells}{application}; {whole} of {runs} runs count in full.", device.android)
 }

@@ -8,6 +8,7 @@ use crate::report::run::{COUNTER_TOLERANCE, PAPER_VOLTS};
 use crate::report::{CONFIDENCE, Device, DeviceReport, Difference, Note, Quantity, Run};
 use yoro_figures::grid::{Cell, Table};
 use yoro_figures::paper;
+use yoro_figures::stats::unique;
 use yoro_scenes::BUILTINS;
 
 const FIRST_HALF: [Quantity; 5] =
@@ -17,12 +18,8 @@ const SECOND_HALF: [Quantity; 5] =
 
 /// A table in the shape of the paper's for each method, its columns beside ours.
 pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
-    let mut methods: Vec<&String> = Vec::new();
-    for method in report.devices.iter().flat_map(|device| &device.methods) {
-        if *method != report.baseline && !methods.contains(&method) {
-            methods.push(method);
-        }
-    }
+    let methods = report.devices.iter().flat_map(|device| &device.methods);
+    let methods = unique(methods.filter(|method| **method != report.baseline));
     let means: Vec<&Difference> = report.differences.iter().filter(|d| d.device.is_none()).collect();
     let mut tables = Vec::new();
     for method in methods {
@@ -238,12 +235,11 @@ fn power_table(report: &DeviceReport, device: &Device) -> Table {
     let mut scene = "";
     for run in runs {
         let milliwatts = |value: Option<f64>| value.map(|value| format!("{value:.0}"));
-        let counts = match run.counts(Quantity::Power) {
-            true => "yes".to_owned(),
-            false => {
-                let names: Vec<&str> = run.exclusions.iter().map(|exclusion| exclusion.name).collect();
-                format!("no: {}", names.join(", "))
-            }
+        let reasons: Vec<&str> = run.exclusions.iter().map(|exclusion| exclusion.name).collect();
+        let counts = if run.counts(Quantity::Power) {
+            "yes".to_owned()
+        } else {
+            format!("no: {}", reasons.join(", "))
         };
         let cells = vec![
             Cell::plain(&run.scene),

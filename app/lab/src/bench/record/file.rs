@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::{Header, Measurement, Record, RoundEnd, SceneFacts, Setting, Unsupported, VERSION};
 use yoro_files::{self as files, FileError};
 
-/// Why a file of results cannot be used.
+/// The error when a file of results cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
@@ -31,7 +31,7 @@ pub enum RecordError {
     Version {
         /// The file.
         path: PathBuf,
-        /// What it says.
+        /// The version that it names.
         version: u64,
     },
     /// A line that is not the last one cannot be read.
@@ -44,7 +44,7 @@ pub enum RecordError {
         path: PathBuf,
         /// Counted from 1.
         line: usize,
-        /// What is wrong.
+        /// The mistake.
         what: String,
     },
     /// It belongs to a run with other parameters.
@@ -55,7 +55,7 @@ pub enum RecordError {
     Parameters {
         /// The file.
         path: PathBuf,
-        /// What differs.
+        /// The parameter that differs.
         name: String,
         /// The file's value.
         there: String,
@@ -67,7 +67,7 @@ pub enum RecordError {
 /// A file of results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Results {
-    /// Where it was read.
+    /// The file's path.
     pub path: PathBuf,
     /// The first line.
     pub header: Header,
@@ -121,7 +121,7 @@ impl Results {
         Ok(Results { path: path.into(), header, records, finished_bytes: finished_bytes as u64 })
     }
 
-    /// The figures.
+    /// Returns the figures.
     pub fn measurements(&self) -> impl Iterator<Item = &Measurement> {
         self.records.iter().filter_map(|record| match record {
             Record::Measurement(measurement) => Some(measurement),
@@ -129,7 +129,7 @@ impl Results {
         })
     }
 
-    /// The facts of the settings, in the order in which they were measured.
+    /// Returns the facts of the settings, in the order in which they were measured.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneFacts> {
         self.records.iter().filter_map(|record| match record {
             Record::Scene(facts) => Some(facts),
@@ -137,7 +137,7 @@ impl Results {
         })
     }
 
-    /// The contenders that could not take part.
+    /// Returns the contenders that could not take part.
     pub fn unsupported(&self) -> impl Iterator<Item = &Unsupported> {
         self.records.iter().filter_map(|record| match record {
             Record::Unsupported(unsupported) => Some(unsupported),
@@ -145,13 +145,13 @@ impl Results {
         })
     }
 
-    /// Number of finished rounds of a setting.
+    /// Returns the number of finished rounds of a setting.
     pub fn rounds(&self, setting: &Setting) -> u32 {
         let ends = self.records.iter().filter(|r| matches!(r, Record::Round(end) if end.setting == *setting));
         ends.count() as u32
     }
 
-    /// Whether a setting was left out, as one that the machine cannot carry: nobody was measured, and the file
+    /// True if a setting was left out, as one that the machine cannot carry: nobody was measured, and the file
     /// says why.
     pub fn is_left_out(&self, setting: &Setting) -> bool {
         self.rounds(setting) > 0 && !self.measurements().any(|m| m.setting == *setting)

@@ -37,7 +37,7 @@ pub use file::{RecordError, Results, Writer};
 /// Version of the format; raised when old readers would misread a new file.
 pub const VERSION: u32 = 1;
 
-/// What clock the times of passes are taken with.
+/// The clock of pass times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PassClock {
@@ -54,7 +54,7 @@ pub struct Header {
     pub yoro_bench: u32,
     /// The suites, in their order.
     pub suites: Vec<String>,
-    /// Whether this was the short form (`--quick`).
+    /// True for the short form (`--quick`).
     pub quick: bool,
     /// Machine, driver, date and command.
     pub machine: Machine,
@@ -65,7 +65,7 @@ pub struct Header {
     pub parameters: Vec<Parameter>,
 }
 
-/// What is held fixed while the contenders take turns.
+/// The conditions that are held fixed while the contenders take turns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
     /// Name of the suite.
@@ -90,10 +90,10 @@ impl fmt::Display for Setting {
     }
 }
 
-/// What there is to know of a setting's scene.
+/// Facts about a setting's scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneFacts {
-    /// Which setting.
+    /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
     /// The scene of the paper that it stands for; empty if for none.
@@ -111,7 +111,7 @@ pub struct SceneFacts {
 /// A contender in one round.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
-    /// Which setting.
+    /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
     /// [`crate::bench::Contender::name`].
@@ -123,7 +123,7 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// The finite values of a metric; empty when it was not measured.
+    /// Returns the finite values of a metric; empty when it was not measured.
     pub fn finite(&self, metric: &str) -> impl Iterator<Item = f64> + '_ {
         self.values.get(metric).into_iter().flatten().filter_map(|value| *value)
     }
@@ -137,19 +137,19 @@ impl Measurement {
 /// A contender that cannot take part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unsupported {
-    /// Which setting.
+    /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
     /// [`crate::bench::Contender::name`].
     pub contender: String,
-    /// Why not, in one sentence or clause.
+    /// The reason, as a sentence or clause.
     pub reason: String,
 }
 
 /// All of a round is in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RoundEnd {
-    /// Which setting.
+    /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
     /// Counted from 0.

@@ -64,7 +64,7 @@ fn rounds_come_back_as_they_were_written() {
 }
 
 #[test]
-fn a_run_that_was_cut_off_anywhere_goes_on() {
+fn a_run_cut_off_anywhere_resumes() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("run.jsonl");
     let (mut writer, _) = Writer::open(&path, &header()).unwrap();

@@ -21,7 +21,7 @@ use yoro_render::stereo::{ImBufferSize, StereoFrame};
 pub(super) struct Field {
     pub entrants: Vec<(Contender, Entrant)>,
     pub frame: StereoFrame,
-    /// What is written with the first round: facts, who is missing, memory.
+    /// Records of the first round: facts, contenders that are missing, memory.
     pub first: Vec<Record>,
     memory: Vec<Measurement>,
 }

@@ -28,7 +28,7 @@ use yoro_scene::{Scene, ShadingStyle, Viewpoint};
 /// Bytes that a triangle needs while its scene is made and uploaded, roughly: for the bound on memory.
 const BYTES_PER_TRIANGLE: f64 = 150.0;
 
-/// What a scene may cost before it is left out.
+/// Limits above which a scene is left out.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     /// Memory in MiB that the scene may need.
@@ -37,15 +37,15 @@ pub struct Bounds {
     pub frame: Duration,
 }
 
-/// What the jobs of a run have in common.
+/// The inputs that all jobs of a run share.
 pub struct Inputs<'a> {
-    /// What the user chose for all suites.
+    /// The user's choices for all suites.
     pub choices: &'a Choices,
     /// The object of the suites that need one.
     pub object: &'a LazyObject,
     /// Another camera path than that of the scenes.
     pub path: Option<&'a [Viewpoint]>,
-    /// When to leave a scene out.
+    /// Limits above which a scene is left out.
     pub bounds: Bounds,
     /// Model of the neural patcher.
     pub patchers: PatcherOptions,
@@ -56,13 +56,13 @@ pub struct Runner<'a> {
     gl: &'a Rc<Context>,
     inputs: Inputs<'a>,
     writer: Writer,
-    /// What the file held before.
+    /// The content of the file at the start.
     before: Results,
     bar: ProgressBar,
     prepared: Option<(SceneKey, PreparedScene)>,
 }
 
-/// What a prepared scene was made of: settings that share it do not prepare it again.
+/// Everything that a prepared scene depends on: settings that share it do not prepare it again.
 #[derive(Clone, Debug, PartialEq)]
 struct SceneKey {
     source: Source,
@@ -226,7 +226,7 @@ fn unsupported(job: &Job, contender: Contender, reason: String) -> Record {
     Record::Unsupported(Unsupported { setting: job.setting.clone(), contender: contender.name(), reason })
 }
 
-/// For a contender that could not be made.
+/// Returns the record of a contender that could not be made.
 fn left_out(job: &Job, contender: Contender, error: &impl std::fmt::Display) -> Record {
     log::info!("{}: {contender} is left out: {error}", job.setting);
     unsupported(job, contender, error.to_string())

@@ -24,7 +24,7 @@ pub struct SettingData {
     pub facts: Option<SceneFacts>,
     /// In the order of measurement.
     pub contenders: Vec<Measured>,
-    /// Who could not take part, and why.
+    /// Contenders that could not take part, with the reason.
     pub unsupported: Vec<(String, String)>,
 }
 
@@ -102,7 +102,7 @@ impl Measured {
 }
 
 impl SettingData {
-    /// What a contender did here.
+    /// Returns the measurements of a contender.
     pub fn find(&self, contender: &str) -> Option<&Measured> {
         self.contenders.iter().find(|measured| measured.name == contender)
     }
@@ -117,7 +117,7 @@ impl SettingData {
         self.find(contender)?.ratio(self.conventional()?, metric::FRAME_MS)
     }
 
-    /// What to call it: the scene, and the point of a sweep.
+    /// Returns a name for tables: the scene, and the point of a sweep.
     pub fn label(&self) -> String {
         let Setting { suite, scene, label, point } = &self.setting;
         match (label, point) {
@@ -156,7 +156,7 @@ impl Suite {
         self.measured(metric).into_iter().filter(|name| *name != CONVENTIONAL).collect()
     }
 
-    /// Why a contender could not take part anywhere, if so.
+    /// Returns the reason if a contender could take part nowhere.
     pub fn reason(&self, contender: &str) -> Option<&str> {
         if self.settings.iter().any(|setting| setting.find(contender).is_some()) {
             return None;
@@ -208,7 +208,7 @@ impl Suite {
     }
 }
 
-/// Whether figures of two files may stand in one table.
+/// True if figures of two files may stand in one table.
 fn same_conditions(a: &Header, b: &Header) -> bool {
     let (m, n) = (&a.machine, &b.machine);
     a.parameters == b.parameters

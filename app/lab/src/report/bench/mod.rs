@@ -43,15 +43,15 @@ struct Pictured {
     viewpoint: Viewpoint,
 }
 
-/// How the paper's figures are told from ours.
+/// The marks by which the paper's figures are recognised.
 const PAPERS_MARK: &str = "What is *in italics*, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): \
 its own scenes, six phones and a Quest 2.";
 
-/// How frame times are taken; printed wherever they are.
+/// The method behind the frame times, printed wherever they are.
 const TIME_METHOD: &str = "Frame times: wall clock of a whole stereo frame up to glFinish. Methods take turns within \
 each round, so that ratios pair frames of the same round; means of ratios over scenes are geometric.";
 
-/// Where a report goes.
+/// The folders of a report.
 #[derive(Clone, Copy, Debug)]
 pub struct Places<'a> {
     /// Folder of the page and of the tables in one file.
@@ -62,7 +62,7 @@ pub struct Places<'a> {
     pub results: Option<&'a Path>,
 }
 
-/// What was written.
+/// The files that were written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// The page.
@@ -290,7 +290,7 @@ fn gl(suite: &Suite) -> (&str, &str) {
     (&machine.gl_renderer, &machine.gl_version)
 }
 
-/// How a file in `folder` refers to `target`, with slashes.
+/// Returns the relative path from a file in `folder` to `target`, with slashes.
 fn link_from(folder: &Path, target: &Path) -> String {
     let normal = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let (folder, target) = (normal(folder), normal(target));

@@ -254,7 +254,7 @@ fn ratios_pair_frames_of_the_same_round() {
 }
 
 #[test]
-fn slopes_are_least_squares_and_the_papers_stand_beside() {
+fn slopes_are_least_squares_beside_the_papers() {
     let dir = tempfile::tempdir().unwrap();
     let markdown = report(dir.path()).to_markdown(None);
     let cells = row(&markdown, "**Slope and ratio**", "yoro-paper");
@@ -265,7 +265,7 @@ fn slopes_are_least_squares_and_the_papers_stand_beside() {
 }
 
 #[test]
-fn quality_stands_beside_the_same_image_and_the_papers() {
+fn quality_has_the_same_image_and_the_paper_as_baselines() {
     let dir = tempfile::tempdir().unwrap();
     let markdown = report(dir.path()).to_markdown(None);
     let cells = row(&markdown, "**PSNR in dB / SSIM**", "street &lt;b>&\"café\"&lt;/b>");
@@ -375,7 +375,7 @@ fn the_page_is_escaped_self_contained_and_has_its_pictures() {
 }
 
 #[test]
-fn two_machines_stand_side_by_side_and_one_machines_files_go_together() {
+fn machines_stand_side_by_side_and_files_of_one_are_merged() {
     let dir = tempfile::tempdir().unwrap();
     let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| dir.path().join(format!("{name}.jsonl")));
     write_results(&a, &header("llvmpipe"));

@@ -10,7 +10,7 @@ use yoro_figures::text::fixed;
 pub const CONVENTIONAL: &str = "conventional";
 /// Name of the baseline of quality: the same image to both eyes.
 pub const MONO: &str = "mono";
-/// What labels of the paper's curves begin with.
+/// The prefix of the labels of the paper's curves.
 pub const PAPERS: &str = "the paper's ";
 
 /// `530` or `12.3`: four digits say enough of a time.

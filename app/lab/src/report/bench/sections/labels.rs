@@ -22,7 +22,7 @@ struct Labels {
     details: &'static str,
     /// The paper's SSIM and PSNR in dB by label; empty where it has none.
     papers: &'static [(&'static str, f64, f64)],
-    /// Whether frame times were measured.
+    /// True if frame times were measured.
     timed: bool,
 }
 

@@ -26,13 +26,10 @@ pub fn section(suite: &Suite) -> Section {
     };
     let dots = |axis: Axis, ours: &dyn Fn(&str) -> Option<f64>, papers: fn(&paper::PaperPatcher) -> f64| {
         // The patcher is the row; colours say whose figure it is.
-        let mark = |papers: bool, value: f64| match papers {
-            true => Mark::papers("yoro-paper", "the paper's", value),
-            false => Mark::new("yoro-gather", "here", value),
-        };
         let rows = contenders.iter().map(|name| {
-            let paper = paper_of(name).map(|patcher| mark(true, papers(patcher)));
-            let ours = ours(name).map(|value| mark(false, value));
+            let paper =
+                paper_of(name).map(|patcher| Mark::papers("yoro-paper", "the paper's", papers(patcher)));
+            let ours = ours(name).map(|value| Mark::new("yoro-gather", "here", value));
             DotRow { label: (*name).into(), marks: paper.into_iter().chain(ours).collect() }
         });
         Panel::Dots { value: axis, rows: rows.collect() }

@@ -10,7 +10,7 @@ pub struct Section {
     pub id: String,
     /// Heading.
     pub title: String,
-    /// What was done, and how the paper did it.
+    /// What was measured, and how the paper did it.
     pub intro: String,
     /// In the order to be shown.
     pub figures: Vec<Figure>,
