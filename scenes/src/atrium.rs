@@ -10,7 +10,7 @@ use rand_pcg::Pcg32;
 
 use super::build::{ArchOpening, BoxFaces, SceneBuilder, around, moved, placed, random, viewpoints};
 use super::paint::{self, Canvas};
-use super::props::{self, fronds, glowing, metal, pictured, plain, textured};
+use super::props::{self, fronds, glowing, metal, palette, pictured, plain, textured};
 use yoro_scene::{PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
 /// Half the width and half the length of the court.
@@ -22,33 +22,6 @@ const GALLERY: f32 = 5.7;
 const EAVES: f32 = 10.4;
 /// Half the thickness of the arcade walls.
 const HALF_WALL: f32 = 0.32;
-
-struct Palette {
-    ashlar: usize,
-    plaster: usize,
-    trim: usize,
-    column: usize,
-    red_marble: usize,
-    floor: usize,
-    aisle_floor: usize,
-    curtains: [usize; 3],
-    banners: [usize; 3],
-    bronze: usize,
-    gold: usize,
-    wood: usize,
-    roof: usize,
-    ceramic: [usize; 2],
-    terracotta: usize,
-    soil: usize,
-    frond: usize,
-    stem: usize,
-    leaves: usize,
-    flame: usize,
-    water: usize,
-    iron: usize,
-    niche: usize,
-    rope: usize,
-}
 
 /// Generates the scene.
 pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
@@ -115,80 +88,80 @@ fn walk() -> Vec<Viewpoint> {
     ])
 }
 
-fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
-    let s = seed as u32;
-    let ashlar = paint::stone_blocks("ashlar", 1024, s, vec3(0.74, 0.65, 0.5), [4, 8]);
-    let red = vec3(0.48, 0.14, 0.11);
-    let green = vec3(0.16, 0.3, 0.19);
-    let blue = vec3(0.16, 0.21, 0.38);
-    let gold = vec3(0.72, 0.54, 0.22);
-    let double_sided = |b: &mut SceneBuilder, surface: paint::Surface, tile: f32| {
-        let id = textured(b, surface, tile, 0.85);
-        b.edit_material(id, |m| m.double_sided = true);
-        id
-    };
-    let curtains =
-        [("curtain-red", red), ("curtain-green", green), ("curtain-blue", blue)].map(|(name, color)| {
-            double_sided(b, paint::damask(name, 512, s + 5, color, color * 0.5 + gold * 0.45, 3), 1.2)
-        });
-    let banners =
-        [("banner-red", red), ("banner-green", green), ("banner-blue", blue)].map(|(name, color)| {
-            let id = pictured(b, banner_picture(name, s, color, gold), 0.85, 0.0);
+palette! {
+    fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
+        let s = seed as u32;
+        let ashlar = paint::stone_blocks("ashlar", 1024, s, vec3(0.74, 0.65, 0.5), [4, 8]);
+        let red = vec3(0.48, 0.14, 0.11);
+        let green = vec3(0.16, 0.3, 0.19);
+        let blue = vec3(0.16, 0.21, 0.38);
+        let gold = vec3(0.72, 0.54, 0.22);
+        let double_sided = |b: &mut SceneBuilder, surface: paint::Surface, tile: f32| {
+            let id = textured(b, surface, tile, 0.85);
             b.edit_material(id, |m| m.double_sided = true);
             id
-        });
-    let frond = plain(b, "frond", vec3(0.24, 0.42, 0.16), 0.5);
-    b.edit_material(frond, |m| m.double_sided = true);
-    let water = props::glass(b, "water", vec3(0.1, 0.22, 0.22), 0.55);
-    Palette {
-        ashlar: textured(b, ashlar, 3.2, 0.85),
-        plaster: textured(b, paint::plaster("vault-plaster", 512, s + 1, vec3(0.8, 0.74, 0.62)), 2.6, 0.9),
-        trim: textured(b, paint::concrete("limestone", 512, s + 2, vec3(0.8, 0.74, 0.63)), 1.9, 0.75),
-        column: textured(
-            b,
-            paint::marble("column-marble", 512, s + 3, vec3(0.78, 0.72, 0.62), vec3(0.55, 0.45, 0.34)),
-            1.6,
-            0.35,
-        ),
-        red_marble: textured(
-            b,
-            paint::marble("red-marble", 512, s + 4, vec3(0.5, 0.26, 0.2), vec3(0.82, 0.7, 0.6)),
-            1.4,
-            0.25,
-        ),
-        floor: textured(
-            b,
-            paint::tiles("floor-tiles", 1024, s + 6, [vec3(0.7, 0.64, 0.54), vec3(0.42, 0.32, 0.26)], 6),
-            3.6,
-            0.3,
-        ),
-        aisle_floor: textured(
-            b,
-            paint::tiles("aisle-tiles", 512, s + 7, [vec3(0.62, 0.5, 0.38), vec3(0.54, 0.41, 0.3)], 4),
-            2.0,
-            0.45,
-        ),
-        curtains,
-        banners,
-        bronze: metal(b, "bronze", vec3(0.42, 0.3, 0.17), 0.4),
-        gold: metal(b, "gold", vec3(0.83, 0.64, 0.28), 0.3),
-        wood: textured(b, paint::planks("dark-wood", 512, s + 8, vec3(0.33, 0.21, 0.12), 5), 1.1, 0.6),
-        roof: textured(b, paint::roof_tiles("roof", 512, s + 9, vec3(0.68, 0.39, 0.25), [8, 8]), 2.0, 0.85),
-        ceramic: [
-            plain(b, "ceramic-blue", vec3(0.2, 0.36, 0.5), 0.2),
-            plain(b, "ceramic-cream", vec3(0.84, 0.76, 0.6), 0.25),
-        ],
-        terracotta: textured(b, paint::plaster("terracotta", 256, s + 10, vec3(0.7, 0.42, 0.28)), 1.0, 0.8),
-        soil: plain(b, "soil", vec3(0.22, 0.16, 0.11), 0.95),
-        frond,
-        stem: plain(b, "stem", vec3(0.32, 0.36, 0.17), 0.7),
-        leaves: props::foliage(b, "leaves", seed, vec3(0.23, 0.42, 0.15)),
-        flame: glowing(b, "flame", vec3(1.0, 0.75, 0.4), 1.85),
-        water,
-        iron: metal(b, "iron", vec3(0.13, 0.12, 0.12), 0.5),
-        niche: plain(b, "niche", vec3(0.3, 0.24, 0.18), 0.95),
-        rope: textured(b, paint::fabric("rope", 256, s + 11, vec3(0.75, 0.6, 0.3), 16), 0.1, 0.7),
+        };
+        let curtains =
+            [("curtain-red", red), ("curtain-green", green), ("curtain-blue", blue)].map(|(name, color)| {
+                double_sided(b, paint::damask(name, 512, s + 5, color, color * 0.5 + gold * 0.45, 3), 1.2)
+            });
+        let banners =
+            [("banner-red", red), ("banner-green", green), ("banner-blue", blue)].map(|(name, color)| {
+                let id = pictured(b, banner_picture(name, s, color, gold), 0.85, 0.0);
+                b.edit_material(id, |m| m.double_sided = true);
+                id
+            });
+        let frond = plain(b, "frond", vec3(0.24, 0.42, 0.16), 0.5);
+        b.edit_material(frond, |m| m.double_sided = true);
+        let water = props::glass(b, "water", vec3(0.1, 0.22, 0.22), 0.55);
     }
+    ashlar = textured(b, ashlar, 3.2, 0.85),
+    plaster = textured(b, paint::plaster("vault-plaster", 512, s + 1, vec3(0.8, 0.74, 0.62)), 2.6, 0.9),
+    trim = textured(b, paint::concrete("limestone", 512, s + 2, vec3(0.8, 0.74, 0.63)), 1.9, 0.75),
+    column = textured(
+        b,
+        paint::marble("column-marble", 512, s + 3, vec3(0.78, 0.72, 0.62), vec3(0.55, 0.45, 0.34)),
+        1.6,
+        0.35,
+    ),
+    red_marble = textured(
+        b,
+        paint::marble("red-marble", 512, s + 4, vec3(0.5, 0.26, 0.2), vec3(0.82, 0.7, 0.6)),
+        1.4,
+        0.25,
+    ),
+    floor = textured(
+        b,
+        paint::tiles("floor-tiles", 1024, s + 6, [vec3(0.7, 0.64, 0.54), vec3(0.42, 0.32, 0.26)], 6),
+        3.6,
+        0.3,
+    ),
+    aisle_floor = textured(
+        b,
+        paint::tiles("aisle-tiles", 512, s + 7, [vec3(0.62, 0.5, 0.38), vec3(0.54, 0.41, 0.3)], 4),
+        2.0,
+        0.45,
+    ),
+    curtains: [usize; 3] = curtains,
+    banners: [usize; 3] = banners,
+    bronze = metal(b, "bronze", vec3(0.42, 0.3, 0.17), 0.4),
+    gold = metal(b, "gold", vec3(0.83, 0.64, 0.28), 0.3),
+    wood = textured(b, paint::planks("dark-wood", 512, s + 8, vec3(0.33, 0.21, 0.12), 5), 1.1, 0.6),
+    roof = textured(b, paint::roof_tiles("roof", 512, s + 9, vec3(0.68, 0.39, 0.25), [8, 8]), 2.0, 0.85),
+    ceramic: [usize; 2] = [
+        plain(b, "ceramic-blue", vec3(0.2, 0.36, 0.5), 0.2),
+        plain(b, "ceramic-cream", vec3(0.84, 0.76, 0.6), 0.25),
+    ],
+    terracotta = textured(b, paint::plaster("terracotta", 256, s + 10, vec3(0.7, 0.42, 0.28)), 1.0, 0.8),
+    soil = plain(b, "soil", vec3(0.22, 0.16, 0.11), 0.95),
+    frond = frond,
+    stem = plain(b, "stem", vec3(0.32, 0.36, 0.17), 0.7),
+    leaves = props::foliage(b, "leaves", seed, vec3(0.23, 0.42, 0.15)),
+    flame = glowing(b, "flame", vec3(1.0, 0.75, 0.4), 1.85),
+    water = water,
+    iron = metal(b, "iron", vec3(0.13, 0.12, 0.12), 0.5),
+    niche = plain(b, "niche", vec3(0.3, 0.24, 0.18), 0.95),
+    rope = textured(b, paint::fabric("rope", 256, s + 11, vec3(0.75, 0.6, 0.3), 16), 0.1, 0.7),
 }
 
 /// A heraldic banner: border, ornament and a lion-like star in gold.

@@ -11,7 +11,7 @@ use rand_pcg::Pcg32;
 
 use super::build::{BoxFaces, Railing, SceneBuilder, around, hanging, moved, placed, random, viewpoints};
 use super::paint::{self, Canvas};
-use super::props::{self, Tree, cup, fronds, glass, glowing, metal, pictured, plain, textured};
+use super::props::{self, Tree, cup, fronds, glass, glowing, metal, palette, pictured, plain, textured};
 use yoro_scene::{Alpha, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
 /// Half the size of the room, and its height.
@@ -20,46 +20,6 @@ const CEILING: f32 = 2.95;
 /// Half the size of the table top, and its height.
 const TABLE: Vec2 = vec2(3.2, 0.95);
 const TOP: f32 = 0.745;
-
-struct Palette {
-    wall: usize,
-    carpet: usize,
-    skirting: usize,
-    ceiling: usize,
-    ceiling_bar: usize,
-    lamp: usize,
-    pendant: usize,
-    bulb: usize,
-    wood: usize,
-    batten: usize,
-    table: usize,
-    dark: usize,
-    chrome: usize,
-    black: usize,
-    fabric: usize,
-    mesh: usize,
-    slat: usize,
-    cord: usize,
-    screen: usize,
-    laptop_screens: [usize; 2],
-    whiteboard: usize,
-    white: usize,
-    paper: usize,
-    art: [usize; 2],
-    china: usize,
-    coffee: usize,
-    tumbler: usize,
-    pane: usize,
-    leather: usize,
-    pot: usize,
-    bark: usize,
-    leaves: usize,
-    frond: usize,
-    soil: usize,
-    town: [usize; 2],
-    ground: usize,
-    books: usize,
-}
 
 /// Generates the scene.
 pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
@@ -115,115 +75,115 @@ fn walk() -> Vec<Viewpoint> {
     ])
 }
 
-fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
-    let s = seed as u32;
-    let mesh_map = b.texture(paint::picture("chair-mesh", [128, 128], |uv| {
-        let cell = (uv * vec2(16.0, 16.0)).fract() - 0.5;
-        let thread = cell.x.abs().max(cell.y.abs()) > 0.27;
-        vec4(0.16, 0.17, 0.19, f32::from(thread))
-    }));
-    let mesh = b.material(
-        Material {
-            name: "chair-mesh".into(),
-            diffuse: Vec3::ONE,
-            roughness: 0.8,
-            alpha: Alpha::Cutout(0.4),
-            double_sided: true,
-            diffuse_map: Some(mesh_map),
-            ..Material::default()
-        },
-        0.11,
-    );
-    let two_sided = |b: &mut SceneBuilder, name: &str, color: Vec3, roughness: f32| {
-        let id = plain(b, name, color, roughness);
-        b.edit_material(id, |m| m.double_sided = true);
-        id
-    };
-    let panels = paint::surface("ceiling-panel", [256, 256], 0.004, |uv| {
-        let hole = (uv * 24.0).fract() - 0.5;
-        let deep = hole.length() < 0.2;
-        let grain = paint::fbm(s, glam::UVec2::splat(16), 3, uv);
-        (Vec3::splat(if deep { 0.5 } else { 0.86 + 0.08 * grain }), f32::from(!deep))
-    });
-    let wood = paint::planks("walnut", 512, s + 1, vec3(0.42, 0.27, 0.16), 4);
-    let veneer = paint::surface("veneer", [512, 512], 0.0006, |uv| {
-        let stretch = paint::fbm(s + 2, glam::UVec2::new(3, 40), 5, uv);
-        let figure = paint::fbm(s + 3, glam::UVec2::new(2, 8), 4, uv);
-        let t = (stretch * 0.6 + figure * 0.6).clamp(0.0, 1.0);
-        (vec3(0.36, 0.2, 0.11).lerp(vec3(0.66, 0.43, 0.25), t), stretch)
-    });
-    let oak = paint::surface("oak-batten", [256, 256], 0.001, |uv| {
-        let grain = paint::fbm(s + 12, glam::UVec2::new(40, 2), 4, uv);
-        (vec3(0.5, 0.34, 0.2).lerp(vec3(0.72, 0.52, 0.33), grain), grain)
-    });
-    let towns = [(vec3(0.6, 0.55, 0.5), "town-stone"), (vec3(0.42, 0.47, 0.52), "town-glass")].map(
-        |(color, name)| {
-            let facade = paint::facade(name, 512, s + 9, color, vec3(0.25, 0.33, 0.42), [6, 6], 0.1);
-            textured(b, paint::Surface { color: facade.color, normal: facade.normal }, 19.0, 0.6)
-        },
-    );
-    let table = textured(b, veneer, 1.6, 0.22);
-    b.edit_material(table, |m| m.specular = Vec3::splat(0.28));
-    Palette {
-        wall: textured(b, emulsion(s + 4), 1.6, 0.9),
-        carpet: textured(b, carpet(s + 5), 2.0, 0.95),
-        skirting: plain(b, "skirting", vec3(0.3, 0.29, 0.28), 0.5),
-        ceiling: textured(b, panels, 0.6, 0.9),
-        ceiling_bar: plain(b, "ceiling-bar", vec3(0.88, 0.88, 0.87), 0.5),
-        lamp: glowing(b, "ceiling-lamp", vec3(1.0, 0.97, 0.92), 1.8),
-        pendant: metal(b, "pendant", vec3(0.72, 0.5, 0.3), 0.28),
-        bulb: glowing(b, "bulb", vec3(1.0, 0.86, 0.6), 1.8),
-        wood: textured(b, wood, 0.9, 0.5),
-        batten: textured(b, oak, 0.8, 0.5),
-        table,
-        dark: plain(b, "dark-lacquer", vec3(0.12, 0.12, 0.13), 0.35),
-        chrome: metal(b, "chrome", vec3(0.78, 0.79, 0.8), 0.15),
-        black: plain(b, "black-plastic", vec3(0.08, 0.08, 0.085), 0.45),
-        fabric: textured(b, paint::fabric("seat-fabric", 256, s + 6, vec3(0.2, 0.27, 0.36), 32), 0.24, 0.9),
-        mesh,
-        slat: two_sided(b, "blind-slat", vec3(0.86, 0.84, 0.79), 0.4),
-        cord: plain(b, "cord", vec3(0.8, 0.78, 0.72), 0.8),
-        screen: pictured(
-            b,
-            paint::screen("big-screen", [1024, 576], s, vec3(0.25, 0.7, 0.95), "QUARTERLY REVIEW"),
-            0.3,
-            1.3,
-        ),
-        laptop_screens: [
-            pictured(
-                b,
-                paint::screen("laptop-a", [256, 160], s + 7, vec3(0.95, 0.6, 0.25), "NOTES"),
-                0.3,
-                1.1,
-            ),
-            pictured(
-                b,
-                paint::screen("laptop-b", [256, 160], s + 8, vec3(0.45, 0.85, 0.45), "BUDGET"),
-                0.3,
-                1.1,
-            ),
-        ],
-        whiteboard: pictured(b, whiteboard_picture(), 0.2, 0.0),
-        white: plain(b, "white", vec3(0.93, 0.93, 0.92), 0.4),
-        paper: pictured(b, paper_picture(), 0.9, 0.0),
-        art: [
-            pictured(b, art_picture("art-a", s), 0.6, 0.0),
-            pictured(b, art_picture("art-b", s + 1), 0.6, 0.0),
-        ],
-        china: plain(b, "china", vec3(0.95, 0.95, 0.94), 0.12),
-        coffee: plain(b, "coffee", vec3(0.13, 0.07, 0.04), 0.1),
-        tumbler: glass(b, "tumbler", vec3(0.8, 0.88, 0.9), 0.22),
-        pane: glass(b, "pane", vec3(0.7, 0.8, 0.82), 0.1),
-        leather: plain(b, "leather", vec3(0.24, 0.13, 0.09), 0.4),
-        pot: textured(b, paint::concrete("pot", 256, s + 10, vec3(0.72, 0.71, 0.69)), 0.8, 0.7),
-        bark: textured(b, paint::bark("bark", 256, s + 11, vec3(0.44, 0.37, 0.28)), 0.5, 0.9),
-        leaves: props::foliage(b, "leaves", seed, vec3(0.19, 0.38, 0.14)),
-        frond: two_sided(b, "frond", vec3(0.24, 0.44, 0.17), 0.45),
-        soil: plain(b, "soil", vec3(0.2, 0.15, 0.11), 0.95),
-        town: towns,
-        ground: plain(b, "ground", vec3(0.4, 0.42, 0.4), 0.95),
-        books: pictured(b, paint::book_spines("books", [512, 128], s, 36), 0.8, 0.0),
+palette! {
+    fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
+        let s = seed as u32;
+        let mesh_map = b.texture(paint::picture("chair-mesh", [128, 128], |uv| {
+            let cell = (uv * vec2(16.0, 16.0)).fract() - 0.5;
+            let thread = cell.x.abs().max(cell.y.abs()) > 0.27;
+            vec4(0.16, 0.17, 0.19, f32::from(thread))
+        }));
+        let mesh = b.material(
+            Material {
+                name: "chair-mesh".into(),
+                diffuse: Vec3::ONE,
+                roughness: 0.8,
+                alpha: Alpha::Cutout(0.4),
+                double_sided: true,
+                diffuse_map: Some(mesh_map),
+                ..Material::default()
+            },
+            0.11,
+        );
+        let two_sided = |b: &mut SceneBuilder, name: &str, color: Vec3, roughness: f32| {
+            let id = plain(b, name, color, roughness);
+            b.edit_material(id, |m| m.double_sided = true);
+            id
+        };
+        let panels = paint::surface("ceiling-panel", [256, 256], 0.004, |uv| {
+            let hole = (uv * 24.0).fract() - 0.5;
+            let deep = hole.length() < 0.2;
+            let grain = paint::fbm(s, glam::UVec2::splat(16), 3, uv);
+            (Vec3::splat(if deep { 0.5 } else { 0.86 + 0.08 * grain }), f32::from(!deep))
+        });
+        let wood = paint::planks("walnut", 512, s + 1, vec3(0.42, 0.27, 0.16), 4);
+        let veneer = paint::surface("veneer", [512, 512], 0.0006, |uv| {
+            let stretch = paint::fbm(s + 2, glam::UVec2::new(3, 40), 5, uv);
+            let figure = paint::fbm(s + 3, glam::UVec2::new(2, 8), 4, uv);
+            let t = (stretch * 0.6 + figure * 0.6).clamp(0.0, 1.0);
+            (vec3(0.36, 0.2, 0.11).lerp(vec3(0.66, 0.43, 0.25), t), stretch)
+        });
+        let oak = paint::surface("oak-batten", [256, 256], 0.001, |uv| {
+            let grain = paint::fbm(s + 12, glam::UVec2::new(40, 2), 4, uv);
+            (vec3(0.5, 0.34, 0.2).lerp(vec3(0.72, 0.52, 0.33), grain), grain)
+        });
+        let towns = [(vec3(0.6, 0.55, 0.5), "town-stone"), (vec3(0.42, 0.47, 0.52), "town-glass")].map(
+            |(color, name)| {
+                let facade = paint::facade(name, 512, s + 9, color, vec3(0.25, 0.33, 0.42), [6, 6], 0.1);
+                textured(b, paint::Surface { color: facade.color, normal: facade.normal }, 19.0, 0.6)
+            },
+        );
+        let table = textured(b, veneer, 1.6, 0.22);
+        b.edit_material(table, |m| m.specular = Vec3::splat(0.28));
     }
+    wall = textured(b, emulsion(s + 4), 1.6, 0.9),
+    carpet = textured(b, carpet(s + 5), 2.0, 0.95),
+    skirting = plain(b, "skirting", vec3(0.3, 0.29, 0.28), 0.5),
+    ceiling = textured(b, panels, 0.6, 0.9),
+    ceiling_bar = plain(b, "ceiling-bar", vec3(0.88, 0.88, 0.87), 0.5),
+    lamp = glowing(b, "ceiling-lamp", vec3(1.0, 0.97, 0.92), 1.8),
+    pendant = metal(b, "pendant", vec3(0.72, 0.5, 0.3), 0.28),
+    bulb = glowing(b, "bulb", vec3(1.0, 0.86, 0.6), 1.8),
+    wood = textured(b, wood, 0.9, 0.5),
+    batten = textured(b, oak, 0.8, 0.5),
+    table = table,
+    dark = plain(b, "dark-lacquer", vec3(0.12, 0.12, 0.13), 0.35),
+    chrome = metal(b, "chrome", vec3(0.78, 0.79, 0.8), 0.15),
+    black = plain(b, "black-plastic", vec3(0.08, 0.08, 0.085), 0.45),
+    fabric = textured(b, paint::fabric("seat-fabric", 256, s + 6, vec3(0.2, 0.27, 0.36), 32), 0.24, 0.9),
+    mesh = mesh,
+    slat = two_sided(b, "blind-slat", vec3(0.86, 0.84, 0.79), 0.4),
+    cord = plain(b, "cord", vec3(0.8, 0.78, 0.72), 0.8),
+    screen = pictured(
+        b,
+        paint::screen("big-screen", [1024, 576], s, vec3(0.25, 0.7, 0.95), "QUARTERLY REVIEW"),
+        0.3,
+        1.3,
+    ),
+    laptop_screens: [usize; 2] = [
+        pictured(
+            b,
+            paint::screen("laptop-a", [256, 160], s + 7, vec3(0.95, 0.6, 0.25), "NOTES"),
+            0.3,
+            1.1,
+        ),
+        pictured(
+            b,
+            paint::screen("laptop-b", [256, 160], s + 8, vec3(0.45, 0.85, 0.45), "BUDGET"),
+            0.3,
+            1.1,
+        ),
+    ],
+    whiteboard = pictured(b, whiteboard_picture(), 0.2, 0.0),
+    white = plain(b, "white", vec3(0.93, 0.93, 0.92), 0.4),
+    paper = pictured(b, paper_picture(), 0.9, 0.0),
+    art: [usize; 2] = [
+        pictured(b, art_picture("art-a", s), 0.6, 0.0),
+        pictured(b, art_picture("art-b", s + 1), 0.6, 0.0),
+    ],
+    china = plain(b, "china", vec3(0.95, 0.95, 0.94), 0.12),
+    coffee = plain(b, "coffee", vec3(0.13, 0.07, 0.04), 0.1),
+    tumbler = glass(b, "tumbler", vec3(0.8, 0.88, 0.9), 0.22),
+    pane = glass(b, "pane", vec3(0.7, 0.8, 0.82), 0.1),
+    leather = plain(b, "leather", vec3(0.24, 0.13, 0.09), 0.4),
+    pot = textured(b, paint::concrete("pot", 256, s + 10, vec3(0.72, 0.71, 0.69)), 0.8, 0.7),
+    bark = textured(b, paint::bark("bark", 256, s + 11, vec3(0.44, 0.37, 0.28)), 0.5, 0.9),
+    leaves = props::foliage(b, "leaves", seed, vec3(0.19, 0.38, 0.14)),
+    frond = two_sided(b, "frond", vec3(0.24, 0.44, 0.17), 0.45),
+    soil = plain(b, "soil", vec3(0.2, 0.15, 0.11), 0.95),
+    town: [usize; 2] = towns,
+    ground = plain(b, "ground", vec3(0.4, 0.42, 0.4), 0.95),
+    books = pictured(b, paint::book_spines("books", [512, 128], s, 36), 0.8, 0.0),
 }
 
 /// Rolled emulsion paint: almost flat.

@@ -9,6 +9,28 @@ use super::build::{SceneBuilder, around, hanging};
 use super::paint;
 use yoro_scene::{Alpha, Material, TextureImage};
 
+/// Declares the materials of a scene, and the function that makes them: a struct with a field for each material. The
+/// statements in the function's body come first, then the fields in their order. A field is a `usize`, the number of a
+/// material in the [`SceneBuilder`], unless it states another type.
+macro_rules! palette {
+    (
+        fn $make:ident($($argument:ident: $argument_type:ty),*) -> $palette:ident { $($before:tt)* }
+        $($name:ident $(: $type:ty)? = $value:expr),* $(,)?
+    ) => {
+        struct $palette {
+            $($name: palette!(@type $($type)?),)*
+        }
+
+        fn $make($($argument: $argument_type),*) -> $palette {
+            $($before)*
+            $palette { $($name: $value,)* }
+        }
+    };
+    (@type) => { usize };
+    (@type $type:ty) => { $type };
+}
+pub(crate) use palette;
+
 /// A painted surface as a material; `tile_size` is the edge in metres of what the picture shows.
 pub fn textured(b: &mut SceneBuilder, surface: paint::Surface, tile_size: f32, roughness: f32) -> usize {
     let name = surface.color.name.clone();

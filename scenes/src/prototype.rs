@@ -9,25 +9,8 @@ use rand_pcg::Pcg32;
 
 use super::build::{Railing, SceneBuilder, around, hanging, moved, placed, random};
 use super::paint;
+use super::props::palette;
 use yoro_scene::{Alpha, Material, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
-
-struct Palette {
-    floor: usize,
-    wall: usize,
-    orange: usize,
-    blue: usize,
-    green: usize,
-    far: usize,
-    stripes: usize,
-    metal: usize,
-    dark: usize,
-    wood: usize,
-    red: usize,
-    yellow: usize,
-    skin: usize,
-    glow: usize,
-    mesh: usize,
-}
 
 fn grid(
     s: &mut SceneBuilder,
@@ -64,73 +47,73 @@ fn plain(s: &mut SceneBuilder, name: &str, color: Vec3, roughness: f32, specular
     )
 }
 
-fn palette(s: &mut SceneBuilder, seed: u32) -> Palette {
-    let white = Vec3::splat(0.9);
-    let stripes = s.texture(paint::picture("stripes", [128, 128], |uv| {
-        let band = ((uv.x + uv.y) * 4.0).fract() < 0.5;
-        (if band { vec3(0.95, 0.75, 0.1) } else { Vec3::splat(0.12) }).extend(1.0)
-    }));
-    let boards = paint::planks("boards", 256, seed, vec3(0.72, 0.54, 0.34), 5);
-    let (boards, boards_normal) = (s.texture(boards.color), s.texture(boards.normal));
-    // Chain link: two families of diagonal wires.
-    let links = s.texture(paint::picture("links", [128, 128], |uv| {
-        let a = ((uv.x + uv.y) * 8.0).fract();
-        let b = ((uv.x - uv.y) * 8.0).rem_euclid(1.0);
-        let wire = (a - 0.5).abs().min((b - 0.5).abs());
-        Vec3::splat(0.62).extend(paint::smoothstep(0.13, 0.07, wire))
-    }));
-    Palette {
-        floor: grid(s, "grid-floor", [Vec3::splat(0.3), Vec3::splat(0.62)], 4, "1 X 1 M", 1.0),
-        wall: grid(s, "grid-wall", [Vec3::splat(0.68), Vec3::splat(0.95)], 4, "1 M", 1.0),
-        orange: grid(s, "grid-orange", [vec3(0.92, 0.5, 0.16), white], 4, "RAMP", 1.0),
-        blue: grid(s, "grid-blue", [vec3(0.2, 0.46, 0.78), white], 4, "BLOCK", 1.0),
-        green: grid(s, "grid-green", [vec3(0.3, 0.62, 0.34), white], 4, "GOAL", 1.0),
-        far: grid(s, "grid-far", [vec3(0.42, 0.45, 0.5), Vec3::splat(0.6)], 8, "8 M", 8.0),
-        stripes: s.material(
-            Material {
-                name: "stripes".into(),
-                diffuse: Vec3::ONE,
-                diffuse_map: Some(stripes),
-                ..Material::default()
-            },
-            0.5,
-        ),
-        metal: plain(s, "metal", Vec3::splat(0.5), 0.4, 0.5),
-        dark: plain(s, "dark-metal", Vec3::splat(0.16), 0.5, 0.4),
-        wood: s.material(
-            Material {
-                name: "boards".into(),
-                diffuse: Vec3::ONE,
-                diffuse_map: Some(boards),
-                normal_map: Some(boards_normal),
-                ..Material::default()
-            },
-            1.0,
-        ),
-        red: plain(s, "red", vec3(0.78, 0.17, 0.14), 0.45, 0.3),
-        yellow: plain(s, "yellow", vec3(0.93, 0.74, 0.16), 0.5, 0.3),
-        skin: plain(s, "dummy", vec3(0.86, 0.83, 0.76), 0.6, 0.2),
-        glow: s.material(
-            Material {
-                name: "glow".into(),
-                diffuse: vec3(0.2, 0.5, 0.4),
-                emissive: vec3(0.6, 2.2, 1.5),
-                ..Material::default()
-            },
-            1.0,
-        ),
-        mesh: s.material(
-            Material {
-                name: "links".into(),
-                diffuse: Vec3::ONE,
-                alpha: Alpha::Cutout(0.5),
-                double_sided: true,
-                diffuse_map: Some(links),
-                ..Material::default()
-            },
-            0.5,
-        ),
+palette! {
+    fn palette(s: &mut SceneBuilder, seed: u32) -> Palette {
+        let white = Vec3::splat(0.9);
+        let stripes = s.texture(paint::picture("stripes", [128, 128], |uv| {
+            let band = ((uv.x + uv.y) * 4.0).fract() < 0.5;
+            (if band { vec3(0.95, 0.75, 0.1) } else { Vec3::splat(0.12) }).extend(1.0)
+        }));
+        let boards = paint::planks("boards", 256, seed, vec3(0.72, 0.54, 0.34), 5);
+        let (boards, boards_normal) = (s.texture(boards.color), s.texture(boards.normal));
+        // Chain link: two families of diagonal wires.
+        let links = s.texture(paint::picture("links", [128, 128], |uv| {
+            let a = ((uv.x + uv.y) * 8.0).fract();
+            let b = ((uv.x - uv.y) * 8.0).rem_euclid(1.0);
+            let wire = (a - 0.5).abs().min((b - 0.5).abs());
+            Vec3::splat(0.62).extend(paint::smoothstep(0.13, 0.07, wire))
+        }));
     }
+    floor = grid(s, "grid-floor", [Vec3::splat(0.3), Vec3::splat(0.62)], 4, "1 X 1 M", 1.0),
+    wall = grid(s, "grid-wall", [Vec3::splat(0.68), Vec3::splat(0.95)], 4, "1 M", 1.0),
+    orange = grid(s, "grid-orange", [vec3(0.92, 0.5, 0.16), white], 4, "RAMP", 1.0),
+    blue = grid(s, "grid-blue", [vec3(0.2, 0.46, 0.78), white], 4, "BLOCK", 1.0),
+    green = grid(s, "grid-green", [vec3(0.3, 0.62, 0.34), white], 4, "GOAL", 1.0),
+    far = grid(s, "grid-far", [vec3(0.42, 0.45, 0.5), Vec3::splat(0.6)], 8, "8 M", 8.0),
+    stripes = s.material(
+        Material {
+            name: "stripes".into(),
+            diffuse: Vec3::ONE,
+            diffuse_map: Some(stripes),
+            ..Material::default()
+        },
+        0.5,
+    ),
+    metal = plain(s, "metal", Vec3::splat(0.5), 0.4, 0.5),
+    dark = plain(s, "dark-metal", Vec3::splat(0.16), 0.5, 0.4),
+    wood = s.material(
+        Material {
+            name: "boards".into(),
+            diffuse: Vec3::ONE,
+            diffuse_map: Some(boards),
+            normal_map: Some(boards_normal),
+            ..Material::default()
+        },
+        1.0,
+    ),
+    red = plain(s, "red", vec3(0.78, 0.17, 0.14), 0.45, 0.3),
+    yellow = plain(s, "yellow", vec3(0.93, 0.74, 0.16), 0.5, 0.3),
+    skin = plain(s, "dummy", vec3(0.86, 0.83, 0.76), 0.6, 0.2),
+    glow = s.material(
+        Material {
+            name: "glow".into(),
+            diffuse: vec3(0.2, 0.5, 0.4),
+            emissive: vec3(0.6, 2.2, 1.5),
+            ..Material::default()
+        },
+        1.0,
+    ),
+    mesh = s.material(
+        Material {
+            name: "links".into(),
+            diffuse: Vec3::ONE,
+            alpha: Alpha::Cutout(0.5),
+            double_sided: true,
+            diffuse_map: Some(links),
+            ..Material::default()
+        },
+        0.5,
+    ),
 }
 
 fn ramp(s: &mut SceneBuilder, width: f32, rise: f32, run: f32) {

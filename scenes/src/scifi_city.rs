@@ -11,7 +11,9 @@ use rand_pcg::Pcg32;
 
 use super::build::{BoxFaces, Railing, SceneBuilder, around, moved, placed, random, viewpoints};
 use super::paint;
-use super::props::{self, glass, glowing, metal, pictured, plain, textured, tube_text, tube_text_width};
+use super::props::{
+    self, glass, glowing, metal, palette, pictured, plain, textured, tube_text, tube_text_width,
+};
 use yoro_scene::{PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 
 const FACADES: f32 = 9.0;
@@ -24,37 +26,6 @@ const DETAILED: f32 = 21.0;
 struct Neon {
     material: usize,
     color: Vec3,
-}
-
-struct Palette {
-    panels: [usize; 3],
-    facades: [usize; 3],
-    street: usize,
-    pavement: usize,
-    curb: usize,
-    puddle: usize,
-    dark: usize,
-    steel: usize,
-    rust: usize,
-    copper: usize,
-    rubber: usize,
-    neon: [Neon; 5],
-    lamp: Neon,
-    lantern: Neon,
-    red_light: usize,
-    window: usize,
-    signs: Vec<usize>,
-    screens: [usize; 3],
-    shutter: usize,
-    wood: usize,
-    cloth: usize,
-    china: usize,
-    broth: usize,
-    crate_: usize,
-    pane: usize,
-    hulls: [usize; 3],
-    leaves: usize,
-    stripe: usize,
 }
 
 /// Generates the scene.
@@ -107,123 +78,123 @@ fn walk() -> Vec<Viewpoint> {
     ])
 }
 
-fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
-    let s = seed as u32;
-    let panel = |b: &mut SceneBuilder, name: &str, k: u32, color: Vec3, grid: [u32; 2]| {
-        let id = textured(b, paint::metal_panels(name, 512, s + k, color, grid), 1.6, 0.42);
-        b.edit_material(id, |m| m.specular = Vec3::splat(0.4));
-        id
-    };
-    let panels = [
-        panel(b, "panels-blue", 0, vec3(0.25, 0.29, 0.36), [2, 3]),
-        panel(b, "panels-grey", 1, vec3(0.36, 0.35, 0.36), [3, 2]),
-        panel(b, "panels-brown", 2, vec3(0.36, 0.28, 0.23), [2, 2]),
-    ];
-    let facades = [
-        ("facade-a", vec3(0.2, 0.22, 0.28), [5, 6], 0.34),
-        ("facade-b", vec3(0.27, 0.24, 0.25), [8, 5], 0.22),
-        ("facade-c", vec3(0.16, 0.19, 0.24), [4, 8], 0.42),
-    ]
-    .map(|(name, color, grid, lit)| {
-        let painted = paint::facade(name, 512, s + grid[0], color, vec3(0.08, 0.1, 0.14), grid, lit);
-        let emissive = b.texture(painted.emissive);
-        let id = textured(b, paint::Surface { color: painted.color, normal: painted.normal }, 19.0, 0.4);
-        b.edit_material(id, |m| {
-            m.emissive = Vec3::splat(1.1);
-            m.emissive_map = Some(emissive);
+palette! {
+    fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
+        let s = seed as u32;
+        let panel = |b: &mut SceneBuilder, name: &str, k: u32, color: Vec3, grid: [u32; 2]| {
+            let id = textured(b, paint::metal_panels(name, 512, s + k, color, grid), 1.6, 0.42);
+            b.edit_material(id, |m| m.specular = Vec3::splat(0.4));
+            id
+        };
+        let panels = [
+            panel(b, "panels-blue", 0, vec3(0.25, 0.29, 0.36), [2, 3]),
+            panel(b, "panels-grey", 1, vec3(0.36, 0.35, 0.36), [3, 2]),
+            panel(b, "panels-brown", 2, vec3(0.36, 0.28, 0.23), [2, 2]),
+        ];
+        let facades = [
+            ("facade-a", vec3(0.2, 0.22, 0.28), [5, 6], 0.34),
+            ("facade-b", vec3(0.27, 0.24, 0.25), [8, 5], 0.22),
+            ("facade-c", vec3(0.16, 0.19, 0.24), [4, 8], 0.42),
+        ]
+        .map(|(name, color, grid, lit)| {
+            let painted = paint::facade(name, 512, s + grid[0], color, vec3(0.08, 0.1, 0.14), grid, lit);
+            let emissive = b.texture(painted.emissive);
+            let id = textured(b, paint::Surface { color: painted.color, normal: painted.normal }, 19.0, 0.4);
+            b.edit_material(id, |m| {
+                m.emissive = Vec3::splat(1.1);
+                m.emissive_map = Some(emissive);
+            });
+            id
         });
-        id
-    });
-    // Rain stands in the hollows of the asphalt: smooth and dark there, grainy between.
-    let wet = paint::surface("wet-asphalt", [1024, 1024], 0.0012, |uv| {
-        let grain = paint::fbm(s + 3, glam::UVec2::splat(128), 2, uv);
-        let hollow = paint::fbm(s + 13, glam::UVec2::splat(4), 4, uv);
-        let dry = paint::smoothstep(0.42, 0.58, hollow);
-        (Vec3::splat(0.09).lerp(vec3(0.2, 0.2, 0.22) * (0.7 + 0.6 * grain), dry), dry * (0.3 + grain))
-    });
-    let street = textured(b, wet, 5.0, 0.17);
-    let pavement = paint::tiles("pavement", 512, s + 4, [vec3(0.27, 0.27, 0.3), vec3(0.22, 0.22, 0.25)], 6);
-    let pavement = textured(b, pavement, 3.0, 0.28);
-    for id in [street, pavement] {
-        b.edit_material(id, |m| m.specular = Vec3::splat(0.42));
+        // Rain stands in the hollows of the asphalt: smooth and dark there, grainy between.
+        let wet = paint::surface("wet-asphalt", [1024, 1024], 0.0012, |uv| {
+            let grain = paint::fbm(s + 3, glam::UVec2::splat(128), 2, uv);
+            let hollow = paint::fbm(s + 13, glam::UVec2::splat(4), 4, uv);
+            let dry = paint::smoothstep(0.42, 0.58, hollow);
+            (Vec3::splat(0.09).lerp(vec3(0.2, 0.2, 0.22) * (0.7 + 0.6 * grain), dry), dry * (0.3 + grain))
+        });
+        let street = textured(b, wet, 5.0, 0.17);
+        let pavement = paint::tiles("pavement", 512, s + 4, [vec3(0.27, 0.27, 0.3), vec3(0.22, 0.22, 0.25)], 6);
+        let pavement = textured(b, pavement, 3.0, 0.28);
+        for id in [street, pavement] {
+            b.edit_material(id, |m| m.specular = Vec3::splat(0.42));
+        }
+        let puddle = plain(b, "puddle", vec3(0.05, 0.055, 0.075), 0.07);
+        b.edit_material(puddle, |m| m.specular = Vec3::splat(0.5));
+        let neon = [
+            ("neon-pink", vec3(1.0, 0.15, 0.55)),
+            ("neon-cyan", vec3(0.1, 0.85, 1.0)),
+            ("neon-amber", vec3(1.0, 0.55, 0.1)),
+            ("neon-violet", vec3(0.6, 0.25, 1.0)),
+            ("neon-green", vec3(0.25, 1.0, 0.45)),
+        ]
+        .map(|(name, color)| Neon { material: glowing(b, name, color, 1.7), color });
+        let boards = [
+            ("sign-hotel", "HOTEL 9", vec3(1.0, 0.3, 0.6), vec3(0.1, 0.02, 0.08)),
+            ("sign-data", "DATA BANK", vec3(0.3, 0.9, 1.0), vec3(0.02, 0.06, 0.12)),
+            ("sign-ramen", "RAMEN", vec3(1.0, 0.85, 0.4), vec3(0.35, 0.03, 0.03)),
+            ("sign-clinic", "CLINIC", vec3(0.5, 1.0, 0.6), vec3(0.02, 0.1, 0.05)),
+            ("sign-metro", "METRO 7", vec3(1.0, 1.0, 1.0), vec3(0.1, 0.15, 0.5)),
+            ("sign-arcade", "ARCADE", vec3(1.0, 0.9, 0.3), vec3(0.25, 0.05, 0.4)),
+            ("sign-motors", "HOVER CO", vec3(1.0, 0.6, 0.2), vec3(0.06, 0.05, 0.05)),
+            ("sign-vr", "DREAM VR", vec3(0.8, 0.5, 1.0), vec3(0.06, 0.02, 0.14)),
+        ];
+        let signs = boards.map(|(name, text, ink, ground)| {
+            pictured(b, paint::sign(name, [512, 128], text, ink, ground), 0.4, 1.6)
+        });
+        let screens = [
+            ("advert-a", vec3(0.2, 0.9, 1.0), "NEURAL LINK"),
+            ("advert-b", vec3(1.0, 0.35, 0.6), "FLY TONIGHT"),
+            ("advert-c", vec3(0.5, 1.0, 0.5), "GREEN FOOD"),
+        ]
+        .map(|(name, color, title)| pictured(b, paint::screen(name, [512, 320], s + 6, color, title), 0.3, 1.4));
+        let shutter = paint::surface("shutter", [256, 256], 0.02, |uv| {
+            let wave = (uv.y * 16.0 * TAU).sin() * 0.5 + 0.5;
+            let dirt = paint::fbm(s + 7, glam::UVec2::splat(5), 5, uv);
+            (vec3(0.36, 0.36, 0.38) * (0.6 + 0.3 * wave + 0.35 * (dirt - 0.5)), wave)
+        });
+        let stripe = paint::surface("hazard", [128, 128], 0.002, |uv| {
+            let on = ((uv.x + uv.y) * 4.0).fract() < 0.5;
+            (if on { vec3(0.8, 0.62, 0.08) } else { vec3(0.08, 0.08, 0.08) }, 0.0)
+        });
+        let cloth = textured(b, paint::fabric("awning", 256, s + 8, vec3(0.55, 0.1, 0.1), 40), 0.5, 0.8);
+        b.edit_material(cloth, |m| m.double_sided = true);
     }
-    let puddle = plain(b, "puddle", vec3(0.05, 0.055, 0.075), 0.07);
-    b.edit_material(puddle, |m| m.specular = Vec3::splat(0.5));
-    let neon = [
-        ("neon-pink", vec3(1.0, 0.15, 0.55)),
-        ("neon-cyan", vec3(0.1, 0.85, 1.0)),
-        ("neon-amber", vec3(1.0, 0.55, 0.1)),
-        ("neon-violet", vec3(0.6, 0.25, 1.0)),
-        ("neon-green", vec3(0.25, 1.0, 0.45)),
-    ]
-    .map(|(name, color)| Neon { material: glowing(b, name, color, 1.7), color });
-    let boards = [
-        ("sign-hotel", "HOTEL 9", vec3(1.0, 0.3, 0.6), vec3(0.1, 0.02, 0.08)),
-        ("sign-data", "DATA BANK", vec3(0.3, 0.9, 1.0), vec3(0.02, 0.06, 0.12)),
-        ("sign-ramen", "RAMEN", vec3(1.0, 0.85, 0.4), vec3(0.35, 0.03, 0.03)),
-        ("sign-clinic", "CLINIC", vec3(0.5, 1.0, 0.6), vec3(0.02, 0.1, 0.05)),
-        ("sign-metro", "METRO 7", vec3(1.0, 1.0, 1.0), vec3(0.1, 0.15, 0.5)),
-        ("sign-arcade", "ARCADE", vec3(1.0, 0.9, 0.3), vec3(0.25, 0.05, 0.4)),
-        ("sign-motors", "HOVER CO", vec3(1.0, 0.6, 0.2), vec3(0.06, 0.05, 0.05)),
-        ("sign-vr", "DREAM VR", vec3(0.8, 0.5, 1.0), vec3(0.06, 0.02, 0.14)),
-    ];
-    let signs = boards.map(|(name, text, ink, ground)| {
-        pictured(b, paint::sign(name, [512, 128], text, ink, ground), 0.4, 1.6)
-    });
-    let screens = [
-        ("advert-a", vec3(0.2, 0.9, 1.0), "NEURAL LINK"),
-        ("advert-b", vec3(1.0, 0.35, 0.6), "FLY TONIGHT"),
-        ("advert-c", vec3(0.5, 1.0, 0.5), "GREEN FOOD"),
-    ]
-    .map(|(name, color, title)| pictured(b, paint::screen(name, [512, 320], s + 6, color, title), 0.3, 1.4));
-    let shutter = paint::surface("shutter", [256, 256], 0.02, |uv| {
-        let wave = (uv.y * 16.0 * TAU).sin() * 0.5 + 0.5;
-        let dirt = paint::fbm(s + 7, glam::UVec2::splat(5), 5, uv);
-        (vec3(0.36, 0.36, 0.38) * (0.6 + 0.3 * wave + 0.35 * (dirt - 0.5)), wave)
-    });
-    let stripe = paint::surface("hazard", [128, 128], 0.002, |uv| {
-        let on = ((uv.x + uv.y) * 4.0).fract() < 0.5;
-        (if on { vec3(0.8, 0.62, 0.08) } else { vec3(0.08, 0.08, 0.08) }, 0.0)
-    });
-    let cloth = textured(b, paint::fabric("awning", 256, s + 8, vec3(0.55, 0.1, 0.1), 40), 0.5, 0.8);
-    b.edit_material(cloth, |m| m.double_sided = true);
-    Palette {
-        panels,
-        facades,
-        street,
-        pavement,
-        curb: textured(b, paint::concrete("concrete", 512, s + 5, vec3(0.36, 0.36, 0.38)), 2.4, 0.5),
-        puddle,
-        dark: plain(b, "dark", vec3(0.07, 0.07, 0.08), 0.45),
-        steel: metal(b, "steel", vec3(0.5, 0.52, 0.56), 0.28),
-        rust: metal(b, "rust", vec3(0.4, 0.24, 0.16), 0.6),
-        copper: metal(b, "copper", vec3(0.6, 0.36, 0.24), 0.35),
-        rubber: plain(b, "rubber", vec3(0.06, 0.06, 0.06), 0.7),
-        neon,
-        lamp: Neon { material: glowing(b, "lamp", vec3(0.85, 0.93, 1.0), 1.8), color: vec3(0.75, 0.88, 1.0) },
-        lantern: Neon {
-            material: glowing(b, "lantern", vec3(1.0, 0.4, 0.16), 1.35),
-            color: vec3(1.0, 0.4, 0.15),
-        },
-        red_light: glowing(b, "red-light", vec3(1.0, 0.08, 0.06), 1.8),
-        window: glowing(b, "lit-window", vec3(1.0, 0.78, 0.45), 1.0),
-        signs: signs.to_vec(),
-        screens,
-        shutter: textured(b, shutter, 1.4, 0.5),
-        wood: textured(b, paint::planks("wood", 256, s + 9, vec3(0.4, 0.25, 0.14), 5), 0.8, 0.5),
-        cloth,
-        china: plain(b, "china", vec3(0.85, 0.84, 0.8), 0.2),
-        broth: plain(b, "broth", vec3(0.5, 0.3, 0.12), 0.2),
-        crate_: plain(b, "crate", vec3(0.2, 0.33, 0.36), 0.55),
-        pane: glass(b, "pane", vec3(0.3, 0.5, 0.6), 0.25),
-        hulls: [
-            plain(b, "hull-yellow", vec3(0.75, 0.52, 0.1), 0.25),
-            plain(b, "hull-white", vec3(0.68, 0.7, 0.72), 0.22),
-            plain(b, "hull-teal", vec3(0.1, 0.38, 0.4), 0.22),
-        ],
-        leaves: props::foliage(b, "leaves", seed, vec3(0.2, 0.42, 0.2)),
-        stripe: textured(b, stripe, 0.6, 0.6),
-    }
+    panels: [usize; 3] = panels,
+    facades: [usize; 3] = facades,
+    street = street,
+    pavement = pavement,
+    curb = textured(b, paint::concrete("concrete", 512, s + 5, vec3(0.36, 0.36, 0.38)), 2.4, 0.5),
+    puddle = puddle,
+    dark = plain(b, "dark", vec3(0.07, 0.07, 0.08), 0.45),
+    steel = metal(b, "steel", vec3(0.5, 0.52, 0.56), 0.28),
+    rust = metal(b, "rust", vec3(0.4, 0.24, 0.16), 0.6),
+    copper = metal(b, "copper", vec3(0.6, 0.36, 0.24), 0.35),
+    rubber = plain(b, "rubber", vec3(0.06, 0.06, 0.06), 0.7),
+    neon: [Neon; 5] = neon,
+    lamp: Neon = Neon { material: glowing(b, "lamp", vec3(0.85, 0.93, 1.0), 1.8), color: vec3(0.75, 0.88, 1.0) },
+    lantern: Neon = Neon {
+        material: glowing(b, "lantern", vec3(1.0, 0.4, 0.16), 1.35),
+        color: vec3(1.0, 0.4, 0.15),
+    },
+    red_light = glowing(b, "red-light", vec3(1.0, 0.08, 0.06), 1.8),
+    window = glowing(b, "lit-window", vec3(1.0, 0.78, 0.45), 1.0),
+    signs: Vec<usize> = signs.to_vec(),
+    screens: [usize; 3] = screens,
+    shutter = textured(b, shutter, 1.4, 0.5),
+    wood = textured(b, paint::planks("wood", 256, s + 9, vec3(0.4, 0.25, 0.14), 5), 0.8, 0.5),
+    cloth = cloth,
+    china = plain(b, "china", vec3(0.85, 0.84, 0.8), 0.2),
+    broth = plain(b, "broth", vec3(0.5, 0.3, 0.12), 0.2),
+    crate_ = plain(b, "crate", vec3(0.2, 0.33, 0.36), 0.55),
+    pane = glass(b, "pane", vec3(0.3, 0.5, 0.6), 0.25),
+    hulls: [usize; 3] = [
+        plain(b, "hull-yellow", vec3(0.75, 0.52, 0.1), 0.25),
+        plain(b, "hull-white", vec3(0.68, 0.7, 0.72), 0.22),
+        plain(b, "hull-teal", vec3(0.1, 0.38, 0.4), 0.22),
+    ],
+    leaves = props::foliage(b, "leaves", seed, vec3(0.2, 0.42, 0.2)),
+    stripe = textured(b, stripe, 0.6, 0.6),
 }
 
 fn ground(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {

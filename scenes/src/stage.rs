@@ -9,7 +9,7 @@ use rand_pcg::Pcg32;
 use super::build::{BoxFaces, Railing, SceneBuilder, around, moved, placed, random};
 use super::figure::{self, Hand, Joints};
 use super::paint::{self, Face};
-use super::props;
+use super::props::{self, palette};
 use super::sculpt::Clay;
 use yoro_scene::{Alpha, Material, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 
@@ -17,21 +17,6 @@ use yoro_scene::{Alpha, Material, PointLight, Scene, ShadingStyle, Sky, Viewpoin
 const STAGE: f32 = 1.0;
 const TEAL: Vec3 = Vec3::new(0.12, 0.55, 0.6);
 const PINK: Vec3 = Vec3::new(0.95, 0.35, 0.55);
-
-struct Palette {
-    black: usize,
-    steel: usize,
-    dark: usize,
-    lens: [usize; 3],
-    strip: [usize; 2],
-    grille: usize,
-    cone: [usize; 2],
-    gold: usize,
-    crowd: [usize; 3],
-    crowd_skin: [usize; 2],
-    crowd_hair: [usize; 2],
-    sticks: [usize; 4],
-}
 
 fn two_sided(s: &mut SceneBuilder, name: &str, color: Vec3) -> usize {
     s.material(
@@ -47,159 +32,145 @@ fn two_sided(s: &mut SceneBuilder, name: &str, color: Vec3) -> usize {
     )
 }
 
-fn palette(s: &mut SceneBuilder) -> Palette {
-    let grille = paint::surface("grille", [128, 128], 0.02, |uv| {
-        let p = uv * 16.0 - (uv * 16.0).floor() - 0.5;
-        let hole = paint::smoothstep(0.36, 0.3, p.length());
-        (Vec3::splat(0.3 - 0.2 * hole), 1.0 - hole)
-    });
-    let cone = |s: &mut SceneBuilder, name: &str, color: Vec3| {
-        s.material(
-            Material {
-                name: name.into(),
-                diffuse: color * 0.5,
-                specular: Vec3::ZERO,
-                emissive: color * 0.5,
-                alpha: Alpha::Blend(0.07),
-                double_sided: true,
-                ..Material::default()
-            },
-            1.0,
-        )
-    };
-    Palette {
-        black: props::plain(s, "black", Vec3::splat(0.13), 0.6),
-        steel: props::metal(s, "truss", Vec3::splat(0.66), 0.4),
-        dark: props::metal(s, "dark-metal", Vec3::splat(0.34), 0.5),
-        lens: [
-            props::glowing(s, "lens-warm", vec3(1.0, 0.85, 0.6), 3.0),
-            props::glowing(s, "lens-pink", vec3(1.0, 0.35, 0.65), 3.0),
-            props::glowing(s, "lens-cyan", vec3(0.3, 0.85, 1.0), 3.0),
-        ],
-        strip: [
-            props::glowing(s, "strip-pink", vec3(1.0, 0.25, 0.6), 2.2),
-            props::glowing(s, "strip-cyan", vec3(0.2, 0.8, 1.0), 2.2),
-        ],
-        grille: props::textured(s, grille, 0.3, 0.7),
-        cone: [cone(s, "beam-pink", vec3(1.0, 0.4, 0.8)), cone(s, "beam-cyan", vec3(0.4, 0.8, 1.0))],
-        gold: props::metal(s, "cymbal", vec3(0.86, 0.68, 0.3), 0.3),
-        crowd: [
-            props::plain(s, "crowd-a", vec3(0.3, 0.28, 0.42), 0.9),
-            props::plain(s, "crowd-b", vec3(0.45, 0.28, 0.32), 0.9),
-            props::plain(s, "crowd-c", vec3(0.26, 0.38, 0.45), 0.9),
-        ],
-        crowd_skin: [
-            props::plain(s, "crowd-skin-a", vec3(0.85, 0.66, 0.56), 0.8),
-            props::plain(s, "crowd-skin-b", vec3(0.55, 0.38, 0.3), 0.8),
-        ],
-        crowd_hair: [
-            props::plain(s, "crowd-hair-a", vec3(0.16, 0.11, 0.1), 0.8),
-            props::plain(s, "crowd-hair-b", vec3(0.42, 0.24, 0.14), 0.8),
-        ],
-        sticks: [
-            props::glowing(s, "stick-pink", vec3(1.0, 0.3, 0.6), 2.6),
-            props::glowing(s, "stick-cyan", vec3(0.25, 0.8, 1.0), 2.6),
-            props::glowing(s, "stick-yellow", vec3(1.0, 0.85, 0.3), 2.6),
-            props::glowing(s, "stick-green", vec3(0.4, 1.0, 0.5), 2.6),
-        ],
+palette! {
+    fn palette(s: &mut SceneBuilder) -> Palette {
+        let grille = paint::surface("grille", [128, 128], 0.02, |uv| {
+            let p = uv * 16.0 - (uv * 16.0).floor() - 0.5;
+            let hole = paint::smoothstep(0.36, 0.3, p.length());
+            (Vec3::splat(0.3 - 0.2 * hole), 1.0 - hole)
+        });
+        let cone = |s: &mut SceneBuilder, name: &str, color: Vec3| {
+            s.material(
+                Material {
+                    name: name.into(),
+                    diffuse: color * 0.5,
+                    specular: Vec3::ZERO,
+                    emissive: color * 0.5,
+                    alpha: Alpha::Blend(0.07),
+                    double_sided: true,
+                    ..Material::default()
+                },
+                1.0,
+            )
+        };
     }
+    black = props::plain(s, "black", Vec3::splat(0.13), 0.6),
+    steel = props::metal(s, "truss", Vec3::splat(0.66), 0.4),
+    dark = props::metal(s, "dark-metal", Vec3::splat(0.34), 0.5),
+    lens: [usize; 3] = [
+        props::glowing(s, "lens-warm", vec3(1.0, 0.85, 0.6), 3.0),
+        props::glowing(s, "lens-pink", vec3(1.0, 0.35, 0.65), 3.0),
+        props::glowing(s, "lens-cyan", vec3(0.3, 0.85, 1.0), 3.0),
+    ],
+    strip: [usize; 2] = [
+        props::glowing(s, "strip-pink", vec3(1.0, 0.25, 0.6), 2.2),
+        props::glowing(s, "strip-cyan", vec3(0.2, 0.8, 1.0), 2.2),
+    ],
+    grille = props::textured(s, grille, 0.3, 0.7),
+    cone: [usize; 2] = [cone(s, "beam-pink", vec3(1.0, 0.4, 0.8)), cone(s, "beam-cyan", vec3(0.4, 0.8, 1.0))],
+    gold = props::metal(s, "cymbal", vec3(0.86, 0.68, 0.3), 0.3),
+    crowd: [usize; 3] = [
+        props::plain(s, "crowd-a", vec3(0.3, 0.28, 0.42), 0.9),
+        props::plain(s, "crowd-b", vec3(0.45, 0.28, 0.32), 0.9),
+        props::plain(s, "crowd-c", vec3(0.26, 0.38, 0.45), 0.9),
+    ],
+    crowd_skin: [usize; 2] = [
+        props::plain(s, "crowd-skin-a", vec3(0.85, 0.66, 0.56), 0.8),
+        props::plain(s, "crowd-skin-b", vec3(0.55, 0.38, 0.3), 0.8),
+    ],
+    crowd_hair: [usize; 2] = [
+        props::plain(s, "crowd-hair-a", vec3(0.16, 0.11, 0.1), 0.8),
+        props::plain(s, "crowd-hair-b", vec3(0.42, 0.24, 0.14), 0.8),
+    ],
+    sticks: [usize; 4] = [
+        props::glowing(s, "stick-pink", vec3(1.0, 0.3, 0.6), 2.6),
+        props::glowing(s, "stick-cyan", vec3(0.25, 0.8, 1.0), 2.6),
+        props::glowing(s, "stick-yellow", vec3(1.0, 0.85, 0.3), 2.6),
+        props::glowing(s, "stick-green", vec3(0.4, 1.0, 0.5), 2.6),
+    ],
 }
 
-struct Outfit {
-    face: usize,
-    skin: usize,
-    hair: usize,
-    white: usize,
-    teal: usize,
-    frill: usize,
-    skirt: usize,
-    red: usize,
-    stocking: usize,
-    boot: usize,
-    gold: usize,
-}
-
-fn outfit(s: &mut SceneBuilder, seed: u32) -> Outfit {
-    let skin = vec3(0.98, 0.84, 0.76);
-    // A little light of its own keeps the drawn face readable on its shadow side.
-    let fair = |s: &mut SceneBuilder, name: &str, image: Option<yoro_scene::TextureImage>| {
-        let map = image.map(|image| s.texture(image));
-        let tone = if map.is_some() { Vec3::ONE } else { skin };
-        s.material(
-            Material {
-                name: name.into(),
-                diffuse: tone * 0.9,
-                specular: Vec3::splat(0.04),
-                emissive: tone * 0.28,
-                roughness: 0.7,
-                diffuse_map: map,
-                emissive_map: map,
-                ..Material::default()
+palette! {
+    fn outfit(s: &mut SceneBuilder, seed: u32) -> Outfit {
+        let skin = vec3(0.98, 0.84, 0.76);
+        // A little light of its own keeps the drawn face readable on its shadow side.
+        let fair = |s: &mut SceneBuilder, name: &str, image: Option<yoro_scene::TextureImage>| {
+            let map = image.map(|image| s.texture(image));
+            let tone = if map.is_some() { Vec3::ONE } else { skin };
+            s.material(
+                Material {
+                    name: name.into(),
+                    diffuse: tone * 0.9,
+                    specular: Vec3::splat(0.04),
+                    emissive: tone * 0.28,
+                    roughness: 0.7,
+                    diffuse_map: map,
+                    emissive_map: map,
+                    ..Material::default()
+                },
+                1.0,
+            )
+        };
+        let face = paint::face(
+            "singer-face",
+            1024,
+            &Face {
+                skin,
+                iris: vec3(0.2, 0.5, 0.78),
+                brow: vec3(0.42, 0.22, 0.3),
+                lips: vec3(0.9, 0.45, 0.45),
+                eye: vec2(0.338, 0.455),
+                eye_radii: vec2(0.098, 0.132),
+                mouth_y: 0.235,
+                mouth_width: 0.075,
+                mouth_open: 0.6,
+                blush: 1.0,
             },
-            1.0,
-        )
-    };
-    let face = paint::face(
-        "singer-face",
-        1024,
-        &Face {
-            skin,
-            iris: vec3(0.2, 0.5, 0.78),
-            brow: vec3(0.42, 0.22, 0.3),
-            lips: vec3(0.9, 0.45, 0.45),
-            eye: vec2(0.338, 0.455),
-            eye_radii: vec2(0.098, 0.132),
-            mouth_y: 0.235,
-            mouth_width: 0.075,
-            mouth_open: 0.6,
-            blush: 1.0,
-        },
-    );
-    let hair = paint::picture("singer-hair", [256, 256], |uv| {
-        let strand = paint::fbm(seed, glam::UVec2::new(20, 1), 3, uv);
-        let shine = paint::smoothstep(0.12, 0.0, ((uv.y * 2.0).fract() - 0.4).abs() + 0.1 * (strand - 0.5));
-        (vec3(0.95, 0.62, 0.7) * (0.75 + 0.4 * strand) + Vec3::splat(0.12 * shine)).extend(1.0)
-    });
-    let striped = |name: &str, base: Vec3, stripe: Vec3, at: [f32; 2], width: f32| {
-        paint::picture(name, [64, 256], |uv| {
-            let on = at.iter().any(|a| (uv.y - a).abs() < width);
-            (if on { stripe } else { base }).extend(1.0)
-        })
-    };
-    let skirt = striped("skirt", TEAL, vec3(0.96, 0.96, 0.98), [0.12, 0.2], 0.022);
-    let stocking = paint::picture("stocking", [64, 256], |uv| {
-        let weave = 0.9 + 0.2 * (uv.x * 64.0 * PI).sin().abs();
-        (vec3(0.16, 0.15, 0.22) * weave).extend(1.0)
-    });
-    let double = |s: &mut SceneBuilder, image: yoro_scene::TextureImage| {
-        let name = image.name.clone();
-        let map = s.texture(image);
-        s.material(
-            Material {
-                name,
-                diffuse: Vec3::ONE,
-                specular: Vec3::splat(0.08),
-                roughness: 0.8,
-                double_sided: true,
-                diffuse_map: Some(map),
-                ..Material::default()
-            },
-            1.0,
-        )
-    };
-    Outfit {
-        face: fair(s, "singer-face", Some(face)),
-        skin: fair(s, "singer-skin", None),
-        hair: props::pictured(s, hair, 0.4, 0.0),
-        white: props::plain(s, "blouse", vec3(0.96, 0.95, 0.98), 0.8),
-        teal: two_sided(s, "teal-cloth", TEAL),
-        frill: two_sided(s, "frill", vec3(0.97, 0.94, 0.97)),
-        skirt: double(s, skirt),
-        red: two_sided(s, "ribbon", vec3(0.9, 0.2, 0.3)),
-        stocking: double(s, stocking),
-        boot: props::plain(s, "boot", vec3(0.94, 0.93, 0.95), 0.3),
-        gold: props::metal(s, "buckle", vec3(0.9, 0.72, 0.3), 0.3),
+        );
+        let hair = paint::picture("singer-hair", [256, 256], |uv| {
+            let strand = paint::fbm(seed, glam::UVec2::new(20, 1), 3, uv);
+            let shine = paint::smoothstep(0.12, 0.0, ((uv.y * 2.0).fract() - 0.4).abs() + 0.1 * (strand - 0.5));
+            (vec3(0.95, 0.62, 0.7) * (0.75 + 0.4 * strand) + Vec3::splat(0.12 * shine)).extend(1.0)
+        });
+        let striped = |name: &str, base: Vec3, stripe: Vec3, at: [f32; 2], width: f32| {
+            paint::picture(name, [64, 256], |uv| {
+                let on = at.iter().any(|a| (uv.y - a).abs() < width);
+                (if on { stripe } else { base }).extend(1.0)
+            })
+        };
+        let skirt = striped("skirt", TEAL, vec3(0.96, 0.96, 0.98), [0.12, 0.2], 0.022);
+        let stocking = paint::picture("stocking", [64, 256], |uv| {
+            let weave = 0.9 + 0.2 * (uv.x * 64.0 * PI).sin().abs();
+            (vec3(0.16, 0.15, 0.22) * weave).extend(1.0)
+        });
+        let double = |s: &mut SceneBuilder, image: yoro_scene::TextureImage| {
+            let name = image.name.clone();
+            let map = s.texture(image);
+            s.material(
+                Material {
+                    name,
+                    diffuse: Vec3::ONE,
+                    specular: Vec3::splat(0.08),
+                    roughness: 0.8,
+                    double_sided: true,
+                    diffuse_map: Some(map),
+                    ..Material::default()
+                },
+                1.0,
+            )
+        };
     }
+    face = fair(s, "singer-face", Some(face)),
+    skin = fair(s, "singer-skin", None),
+    hair = props::pictured(s, hair, 0.4, 0.0),
+    white = props::plain(s, "blouse", vec3(0.96, 0.95, 0.98), 0.8),
+    teal = two_sided(s, "teal-cloth", TEAL),
+    frill = two_sided(s, "frill", vec3(0.97, 0.94, 0.97)),
+    skirt = double(s, skirt),
+    red = two_sided(s, "ribbon", vec3(0.9, 0.2, 0.3)),
+    stocking = double(s, stocking),
+    boot = props::plain(s, "boot", vec3(0.94, 0.93, 0.95), 0.3),
+    gold = props::metal(s, "buckle", vec3(0.9, 0.72, 0.3), 0.3),
 }
 
 /// A bow in the XY plane: two loops, a knot, two tails.

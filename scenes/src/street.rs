@@ -12,7 +12,7 @@ use rand_pcg::Pcg32;
 use super::build::{BoxFaces, Railing, SceneBuilder, around, hanging, moved, placed, random, viewpoints};
 use super::paint::{self, Canvas};
 use super::props::{
-    self, Tree, bulb_string, cup, foliage, glass, glowing, hedge, metal, pictured, plain, textured,
+    self, Tree, bulb_string, cup, foliage, glass, glowing, hedge, metal, palette, pictured, plain, textured,
 };
 use yoro_scene::{PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 
@@ -24,45 +24,6 @@ const GROUND_FLOOR: f32 = 3.8;
 const STOREY: f32 = 3.1;
 /// The terrace along z; the café stands behind it.
 const TERRACE: [f32; 2] = [-16.0, -2.0];
-
-struct Palette {
-    plasters: [usize; 4],
-    ashlar: usize,
-    trim: usize,
-    shutters: [usize; 3],
-    frame: usize,
-    window: usize,
-    window_lit: usize,
-    pane: usize,
-    iron: usize,
-    brass: usize,
-    slate: usize,
-    cobble: usize,
-    joint: usize,
-    paving: usize,
-    curb: usize,
-    awnings: [usize; 2],
-    wood: usize,
-    shop_fronts: [usize; 3],
-    marble: usize,
-    wicker: usize,
-    chair: usize,
-    china: usize,
-    coffee: usize,
-    bulb: usize,
-    lantern: usize,
-    bark: usize,
-    leaves: usize,
-    box_leaves: usize,
-    flowers: usize,
-    terracotta: usize,
-    soil: usize,
-    rubber: usize,
-    car: usize,
-    chrome: usize,
-    dark_glass: usize,
-    books: usize,
-}
 
 /// Generates the scene.
 pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
@@ -109,81 +70,81 @@ fn walk() -> Vec<Viewpoint> {
     ])
 }
 
-fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
-    let s = seed as u32;
-    let cream = textured(b, paint::plaster("plaster-cream", 512, s, vec3(0.86, 0.78, 0.64)), 3.0, 0.9);
-    let rose = textured(b, paint::plaster("plaster-rose", 512, s + 1, vec3(0.82, 0.62, 0.52)), 3.0, 0.9);
-    let ochre = textured(b, paint::plaster("plaster-ochre", 512, s + 2, vec3(0.84, 0.66, 0.4)), 3.0, 0.9);
-    let brick = paint::bricks("brick", 512, s + 3, vec3(0.58, 0.3, 0.22), vec3(0.66, 0.62, 0.56), [8, 24]);
-    let brick = textured(b, brick, 1.7, 0.85);
-    let granite = paint::concrete("granite", 512, s + 4, vec3(0.5, 0.49, 0.48));
-    let cobble = textured(b, granite, 2.3, 0.6);
-    let paving = paint::stone_blocks("paving", 512, s + 5, vec3(0.6, 0.58, 0.54), [4, 6]);
-    let leaf = Vec3::new(0.3, 0.47, 0.14);
-    Palette {
-        plasters: [cream, rose, ochre, brick],
-        ashlar: textured(
-            b,
-            paint::stone_blocks("ashlar", 512, s + 6, vec3(0.78, 0.72, 0.6), [3, 6]),
-            2.4,
-            0.85,
-        ),
-        trim: plain(b, "trim", vec3(0.86, 0.82, 0.73), 0.8),
-        shutters: [
-            plain(b, "shutter-blue", vec3(0.36, 0.48, 0.56), 0.55),
-            plain(b, "shutter-green", vec3(0.28, 0.4, 0.3), 0.55),
-            plain(b, "shutter-grey", vec3(0.58, 0.58, 0.54), 0.55),
-        ],
-        frame: plain(b, "window-frame", vec3(0.9, 0.88, 0.83), 0.5),
-        window: pictured(b, window_picture("window", false), 0.08, 0.0),
-        window_lit: pictured(b, window_picture("window-lit", true), 0.1, 0.9),
-        pane: glass(b, "pane", vec3(0.6, 0.7, 0.7), 0.16),
-        iron: metal(b, "iron", vec3(0.12, 0.12, 0.13), 0.45),
-        brass: metal(b, "brass", vec3(0.78, 0.6, 0.3), 0.3),
-        slate: textured(
-            b,
-            paint::roof_tiles("slate", 512, s + 7, vec3(0.34, 0.36, 0.41), [10, 12]),
-            2.2,
-            0.6,
-        ),
-        cobble,
-        joint: plain(b, "joint", vec3(0.22, 0.2, 0.18), 0.95),
-        paving: textured(b, paving, 2.4, 0.8),
-        curb: plain(b, "curb", vec3(0.56, 0.55, 0.53), 0.8),
-        awnings: [
-            textured(b, striped("awning-red", s, vec3(0.7, 0.13, 0.11)), 0.6, 0.85),
-            textured(b, striped("awning-green", s, vec3(0.12, 0.38, 0.24)), 0.6, 0.85),
-        ],
-        wood: textured(b, paint::planks("wood", 512, s + 8, vec3(0.46, 0.31, 0.19), 6), 0.9, 0.55),
-        shop_fronts: [
-            plain(b, "front-green", vec3(0.1, 0.25, 0.19), 0.35),
-            plain(b, "front-red", vec3(0.42, 0.1, 0.1), 0.35),
-            plain(b, "front-blue", vec3(0.12, 0.2, 0.36), 0.35),
-        ],
-        marble: textured(
-            b,
-            paint::marble("marble", 256, s + 9, vec3(0.9, 0.89, 0.87), vec3(0.5, 0.5, 0.53)),
-            0.9,
-            0.18,
-        ),
-        wicker: textured(b, paint::fabric("wicker", 256, s + 10, vec3(0.76, 0.6, 0.36), 16), 0.16, 0.6),
-        chair: plain(b, "cane", vec3(0.5, 0.3, 0.16), 0.4),
-        china: plain(b, "china", vec3(0.95, 0.95, 0.93), 0.15),
-        coffee: plain(b, "coffee", vec3(0.16, 0.08, 0.04), 0.1),
-        bulb: glowing(b, "bulb", vec3(1.0, 0.82, 0.5), 1.85),
-        lantern: glowing(b, "lantern", vec3(1.0, 0.85, 0.6), 1.6),
-        bark: textured(b, paint::bark("bark", 256, s + 11, vec3(0.42, 0.34, 0.26)), 0.8, 0.9),
-        leaves: foliage(b, "leaves", seed, leaf),
-        box_leaves: foliage(b, "box-leaves", seed + 1, vec3(0.2, 0.4, 0.13)),
-        flowers: foliage(b, "flowers", seed + 2, vec3(0.82, 0.2, 0.26)),
-        terracotta: plain(b, "terracotta", vec3(0.72, 0.4, 0.27), 0.8),
-        soil: textured(b, paint::soil("soil", 256, s + 12, vec3(0.27, 0.19, 0.13)), 0.7, 0.95),
-        rubber: plain(b, "rubber", vec3(0.09, 0.09, 0.09), 0.75),
-        car: plain(b, "car-paint", vec3(0.62, 0.76, 0.78), 0.16),
-        chrome: metal(b, "chrome", vec3(0.8, 0.8, 0.82), 0.12),
-        dark_glass: plain(b, "dark-glass", vec3(0.07, 0.09, 0.1), 0.05),
-        books: pictured(b, paint::book_spines("books", [512, 128], s, 40), 0.8, 0.0),
+palette! {
+    fn palette(b: &mut SceneBuilder, seed: u64) -> Palette {
+        let s = seed as u32;
+        let cream = textured(b, paint::plaster("plaster-cream", 512, s, vec3(0.86, 0.78, 0.64)), 3.0, 0.9);
+        let rose = textured(b, paint::plaster("plaster-rose", 512, s + 1, vec3(0.82, 0.62, 0.52)), 3.0, 0.9);
+        let ochre = textured(b, paint::plaster("plaster-ochre", 512, s + 2, vec3(0.84, 0.66, 0.4)), 3.0, 0.9);
+        let brick = paint::bricks("brick", 512, s + 3, vec3(0.58, 0.3, 0.22), vec3(0.66, 0.62, 0.56), [8, 24]);
+        let brick = textured(b, brick, 1.7, 0.85);
+        let granite = paint::concrete("granite", 512, s + 4, vec3(0.5, 0.49, 0.48));
+        let cobble = textured(b, granite, 2.3, 0.6);
+        let paving = paint::stone_blocks("paving", 512, s + 5, vec3(0.6, 0.58, 0.54), [4, 6]);
+        let leaf = Vec3::new(0.3, 0.47, 0.14);
     }
+    plasters: [usize; 4] = [cream, rose, ochre, brick],
+    ashlar = textured(
+        b,
+        paint::stone_blocks("ashlar", 512, s + 6, vec3(0.78, 0.72, 0.6), [3, 6]),
+        2.4,
+        0.85,
+    ),
+    trim = plain(b, "trim", vec3(0.86, 0.82, 0.73), 0.8),
+    shutters: [usize; 3] = [
+        plain(b, "shutter-blue", vec3(0.36, 0.48, 0.56), 0.55),
+        plain(b, "shutter-green", vec3(0.28, 0.4, 0.3), 0.55),
+        plain(b, "shutter-grey", vec3(0.58, 0.58, 0.54), 0.55),
+    ],
+    frame = plain(b, "window-frame", vec3(0.9, 0.88, 0.83), 0.5),
+    window = pictured(b, window_picture("window", false), 0.08, 0.0),
+    window_lit = pictured(b, window_picture("window-lit", true), 0.1, 0.9),
+    pane = glass(b, "pane", vec3(0.6, 0.7, 0.7), 0.16),
+    iron = metal(b, "iron", vec3(0.12, 0.12, 0.13), 0.45),
+    brass = metal(b, "brass", vec3(0.78, 0.6, 0.3), 0.3),
+    slate = textured(
+        b,
+        paint::roof_tiles("slate", 512, s + 7, vec3(0.34, 0.36, 0.41), [10, 12]),
+        2.2,
+        0.6,
+    ),
+    cobble = cobble,
+    joint = plain(b, "joint", vec3(0.22, 0.2, 0.18), 0.95),
+    paving = textured(b, paving, 2.4, 0.8),
+    curb = plain(b, "curb", vec3(0.56, 0.55, 0.53), 0.8),
+    awnings: [usize; 2] = [
+        textured(b, striped("awning-red", s, vec3(0.7, 0.13, 0.11)), 0.6, 0.85),
+        textured(b, striped("awning-green", s, vec3(0.12, 0.38, 0.24)), 0.6, 0.85),
+    ],
+    wood = textured(b, paint::planks("wood", 512, s + 8, vec3(0.46, 0.31, 0.19), 6), 0.9, 0.55),
+    shop_fronts: [usize; 3] = [
+        plain(b, "front-green", vec3(0.1, 0.25, 0.19), 0.35),
+        plain(b, "front-red", vec3(0.42, 0.1, 0.1), 0.35),
+        plain(b, "front-blue", vec3(0.12, 0.2, 0.36), 0.35),
+    ],
+    marble = textured(
+        b,
+        paint::marble("marble", 256, s + 9, vec3(0.9, 0.89, 0.87), vec3(0.5, 0.5, 0.53)),
+        0.9,
+        0.18,
+    ),
+    wicker = textured(b, paint::fabric("wicker", 256, s + 10, vec3(0.76, 0.6, 0.36), 16), 0.16, 0.6),
+    chair = plain(b, "cane", vec3(0.5, 0.3, 0.16), 0.4),
+    china = plain(b, "china", vec3(0.95, 0.95, 0.93), 0.15),
+    coffee = plain(b, "coffee", vec3(0.16, 0.08, 0.04), 0.1),
+    bulb = glowing(b, "bulb", vec3(1.0, 0.82, 0.5), 1.85),
+    lantern = glowing(b, "lantern", vec3(1.0, 0.85, 0.6), 1.6),
+    bark = textured(b, paint::bark("bark", 256, s + 11, vec3(0.42, 0.34, 0.26)), 0.8, 0.9),
+    leaves = foliage(b, "leaves", seed, leaf),
+    box_leaves = foliage(b, "box-leaves", seed + 1, vec3(0.2, 0.4, 0.13)),
+    flowers = foliage(b, "flowers", seed + 2, vec3(0.82, 0.2, 0.26)),
+    terracotta = plain(b, "terracotta", vec3(0.72, 0.4, 0.27), 0.8),
+    soil = textured(b, paint::soil("soil", 256, s + 12, vec3(0.27, 0.19, 0.13)), 0.7, 0.95),
+    rubber = plain(b, "rubber", vec3(0.09, 0.09, 0.09), 0.75),
+    car = plain(b, "car-paint", vec3(0.62, 0.76, 0.78), 0.16),
+    chrome = metal(b, "chrome", vec3(0.8, 0.8, 0.82), 0.12),
+    dark_glass = plain(b, "dark-glass", vec3(0.07, 0.09, 0.1), 0.05),
+    books = pictured(b, paint::book_spines("books", [512, 128], s, 40), 0.8, 0.0),
 }
 
 /// Cloth with a stripe of colour on white; one stripe of each to the picture.

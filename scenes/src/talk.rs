@@ -9,27 +9,9 @@ use rand_pcg::Pcg32;
 use super::build::{BoxFaces, SceneBuilder, around, moved, placed, random};
 use super::figure::{self, Hand, Joints};
 use super::paint::{self, Face};
-use super::props;
+use super::props::{self, palette};
 use super::sculpt::Clay;
 use yoro_scene::{Material, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
-
-struct Palette {
-    wood: usize,
-    dark_wood: usize,
-    white: usize,
-    china: usize,
-    coffee: usize,
-    brass: usize,
-    shade: usize,
-    pot: usize,
-    leaf: usize,
-    card: usize,
-    paper: usize,
-    curtain: usize,
-    glass: usize,
-    cushion: usize,
-    iron: usize,
-}
 
 /// One figure's materials and ways.
 struct Look {
@@ -65,39 +47,39 @@ fn knit(seed: u32, uv: glam::Vec2) -> f32 {
     0.86 + 0.2 * stitch + 0.12 * (paint::fbm(seed, glam::UVec2::splat(6), 3, uv) - 0.5)
 }
 
-fn palette(s: &mut SceneBuilder, seed: u32) -> Palette {
-    let oak = paint::planks("oak", 512, seed + 1, vec3(0.72, 0.53, 0.34), 4);
-    let walnut = paint::planks("walnut", 512, seed + 2, vec3(0.42, 0.28, 0.18), 3);
-    let linen = paint::damask("linen", 512, seed + 3, vec3(0.85, 0.8, 0.68), vec3(0.74, 0.62, 0.46), 3);
-    let wool = paint::fabric("wool", 256, seed + 4, vec3(0.3, 0.46, 0.5), 24);
-    let curtain = props::textured(s, linen, 0.6, 0.9);
-    Palette {
-        wood: props::textured(s, oak, 0.8, 0.5),
-        dark_wood: props::textured(s, walnut, 0.7, 0.45),
-        white: props::plain(s, "white-paint", vec3(0.92, 0.9, 0.86), 0.5),
-        china: props::plain(s, "china", vec3(0.93, 0.93, 0.9), 0.2),
-        coffee: props::plain(s, "coffee", vec3(0.2, 0.11, 0.06), 0.2),
-        brass: props::metal(s, "brass", vec3(0.85, 0.66, 0.3), 0.3),
-        shade: props::glowing(s, "lamp-shade", vec3(1.0, 0.82, 0.55), 1.1),
-        pot: props::plain(s, "terracotta", vec3(0.72, 0.4, 0.27), 0.8),
-        leaf: s.material(
-            Material {
-                name: "broad-leaf".into(),
-                diffuse: vec3(0.22, 0.48, 0.2),
-                specular: Vec3::splat(0.15),
-                roughness: 0.5,
-                double_sided: true,
-                ..Material::default()
-            },
-            1.0,
-        ),
-        card: props::foliage(s, "twigs", u64::from(seed), vec3(0.36, 0.56, 0.22)),
-        paper: props::plain(s, "paper", vec3(0.93, 0.9, 0.82), 0.9),
-        curtain,
-        glass: props::glass(s, "window-glass", vec3(0.75, 0.85, 0.9), 0.12),
-        cushion: props::textured(s, wool, 0.3, 0.95),
-        iron: props::metal(s, "iron", Vec3::splat(0.25), 0.5),
+palette! {
+    fn palette(s: &mut SceneBuilder, seed: u32) -> Palette {
+        let oak = paint::planks("oak", 512, seed + 1, vec3(0.72, 0.53, 0.34), 4);
+        let walnut = paint::planks("walnut", 512, seed + 2, vec3(0.42, 0.28, 0.18), 3);
+        let linen = paint::damask("linen", 512, seed + 3, vec3(0.85, 0.8, 0.68), vec3(0.74, 0.62, 0.46), 3);
+        let wool = paint::fabric("wool", 256, seed + 4, vec3(0.3, 0.46, 0.5), 24);
+        let curtain = props::textured(s, linen, 0.6, 0.9);
     }
+    wood = props::textured(s, oak, 0.8, 0.5),
+    dark_wood = props::textured(s, walnut, 0.7, 0.45),
+    white = props::plain(s, "white-paint", vec3(0.92, 0.9, 0.86), 0.5),
+    china = props::plain(s, "china", vec3(0.93, 0.93, 0.9), 0.2),
+    coffee = props::plain(s, "coffee", vec3(0.2, 0.11, 0.06), 0.2),
+    brass = props::metal(s, "brass", vec3(0.85, 0.66, 0.3), 0.3),
+    shade = props::glowing(s, "lamp-shade", vec3(1.0, 0.82, 0.55), 1.1),
+    pot = props::plain(s, "terracotta", vec3(0.72, 0.4, 0.27), 0.8),
+    leaf = s.material(
+        Material {
+            name: "broad-leaf".into(),
+            diffuse: vec3(0.22, 0.48, 0.2),
+            specular: Vec3::splat(0.15),
+            roughness: 0.5,
+            double_sided: true,
+            ..Material::default()
+        },
+        1.0,
+    ),
+    card = props::foliage(s, "twigs", u64::from(seed), vec3(0.36, 0.56, 0.22)),
+    paper = props::plain(s, "paper", vec3(0.93, 0.9, 0.82), 0.9),
+    curtain = curtain,
+    glass = props::glass(s, "window-glass", vec3(0.75, 0.85, 0.9), 0.12),
+    cushion = props::textured(s, wool, 0.3, 0.95),
+    iron = props::metal(s, "iron", Vec3::splat(0.25), 0.5),
 }
 
 fn looks(s: &mut SceneBuilder, seed: u32) -> [Look; 2] {
