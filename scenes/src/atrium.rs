@@ -11,7 +11,7 @@ use rand_pcg::Pcg32;
 use super::build::{ArchOpening, BoxFaces, SceneBuilder, around, moved, placed, random, viewpoints};
 use super::paint::{self, Canvas};
 use super::props::{self, fronds, glowing, metal, palette, pictured, plain, textured};
-use yoro_scene::{PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
+use yoro_scene::{PointLight, Scene, Sky, TextureImage, Viewpoint};
 
 /// Half the width and half the length of the court.
 const COURT: Vec2 = vec2(4.0, 15.0);
@@ -58,14 +58,7 @@ pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
         horizon: vec3(0.5, 0.52, 0.55),
         ground: vec3(0.24, 0.2, 0.15),
     };
-    Scene {
-        name: "atrium".into(),
-        model: b.finish(),
-        style: ShadingStyle::Realistic,
-        sky,
-        lights,
-        viewpoints: walk(),
-    }
+    Scene { model: b.finish(), sky, lights, viewpoints: walk(), ..Scene::default() }
 }
 
 /// Down the court past the vases, through an arch beside a curtain, and along the aisle.

@@ -28,7 +28,7 @@ pub fn around(rng: &mut impl Rng, centre: f32, spread: f32) -> f32 {
     centre + spread * (rng.random::<f32>() * 2.0 - 1.0)
 }
 
-/// A translation followed by nothing.
+/// Returns a translation in metres.
 pub fn moved(x: f32, y: f32, z: f32) -> Affine3A {
     Affine3A::from_translation(vec3(x, y, z))
 }
@@ -38,16 +38,15 @@ pub fn placed(position: Vec3, yaw: f32) -> Affine3A {
     Affine3A::from_rotation_translation(Quat::from_rotation_y(yaw), position)
 }
 
-/// How far along and how far up a point of a [`SceneBuilder::surface`] is: the point in metres and its texture
-/// coordinates in metres.
+/// A point of a [`SceneBuilder::surface`] in metres, and its texture coordinates in metres.
 pub type SurfacePoint = (Vec3, Vec2);
 
-/// How much of a scene is there while it is built.
+/// The progress of building a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// Pictures; a scene begins with them.
+    /// Textures so far; a scene begins with them.
     pub textures: usize,
-    /// Triangles.
+    /// Triangles so far.
     pub triangles: usize,
 }
 
@@ -115,7 +114,7 @@ impl SceneBuilder {
         }
     }
 
-    /// An empty scene; `watch` is told after each texture, and now and then while there are more and more triangles.
+    /// An empty scene; `watch` is called after each texture and after each [`WATCHED_STEP`] triangles.
     pub fn watched(watch: impl FnMut(Progress) + 'static) -> SceneBuilder {
         SceneBuilder { watch: Some(Box::new(watch)), ..SceneBuilder::new() }
     }
@@ -168,8 +167,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Whether curved shapes share normals between neighbouring triangles (the default) or get one normal per
-    /// triangle.
+    /// Lets curved shapes share normals between neighbouring triangles (the default), or have one normal per triangle.
     pub fn set_smooth(&mut self, smooth: bool) -> &mut Self {
         self.smooth = smooth;
         self
@@ -210,8 +208,8 @@ impl SceneBuilder {
         self.tell();
     }
 
-    /// The finished model: one part for each object and material, objects in the order they were first drawn. Nothing
-    /// of it is left here.
+    /// Returns the finished model: one part for each object and material, objects in the order they were first drawn.
+    /// The builder is empty afterwards.
     pub fn finish(&mut self) -> Model {
         let empty = SceneBuilder { progress: self.progress, watch: self.watch.take(), ..SceneBuilder::new() };
         let mut done = std::mem::replace(self, empty);
@@ -838,7 +836,7 @@ pub fn hanging(a: Vec3, b: Vec3, sag: f32, t: f32) -> Vec3 {
     a.lerp(b, t) - Vec3::Y * (sag * 4.0 * t * (1.0 - t))
 }
 
-/// Which faces of a box are wanted, one bit each.
+/// A set of faces of a box, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoxFaces(u8);
 

@@ -12,7 +12,7 @@ use rand_pcg::Pcg32;
 use super::build::{BoxFaces, Railing, SceneBuilder, around, hanging, moved, placed, random, viewpoints};
 use super::paint::{self, Canvas};
 use super::props::{self, Tree, cup, fronds, glass, glowing, metal, palette, pictured, plain, textured};
-use yoro_scene::{Alpha, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
+use yoro_scene::{Alpha, Material, PointLight, Scene, Sky, TextureImage, Viewpoint};
 
 /// Half the size of the room, and its height.
 const ROOM: Vec2 = vec2(5.6, 4.0);
@@ -46,14 +46,7 @@ pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
         horizon: vec3(0.56, 0.62, 0.68),
         ground: vec3(0.24, 0.22, 0.2),
     };
-    Scene {
-        name: "conference".into(),
-        model: b.finish(),
-        style: ShadingStyle::Realistic,
-        sky,
-        lights,
-        viewpoints: walk(),
-    }
+    Scene { model: b.finish(), sky, lights, viewpoints: walk(), ..Scene::default() }
 }
 
 /// Along the battens behind the chairs, around the table's end below the screen, and back past the blinds.
@@ -1021,7 +1014,7 @@ fn plants(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     });
 }
 
-/// What is seen through the windows: a balcony railing, houses, the ground far below.
+/// The view through the windows: a balcony railing, houses, the ground far below.
 fn town(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     b.object("balcony").with_material(p.pot);
     b.cuboid(vec3(-ROOM.x, -0.3, -ROOM.y - 1.6), vec3(ROOM.x, -0.02, -ROOM.y - 0.3));

@@ -13,7 +13,7 @@ use super::sculpt::Clay;
 /// Half the width in metres of what a face picture covers; see [`head`].
 pub const FACE_HALF: f32 = 0.15;
 
-/// Where a figure's joints are, in metres.
+/// The positions of a figure's joints in metres.
 #[derive(Clone, Copy, Debug)]
 pub struct Joints {
     /// Centre of the head.
@@ -99,10 +99,10 @@ pub fn ears(s: &mut SceneBuilder, radii: Vec3) {
     }
 }
 
-/// How a hand is held.
+/// The pose of a hand.
 #[derive(Clone, Copy, Debug)]
 pub struct Hand {
-    /// Where it is joined to the arm.
+    /// The position of the wrist.
     pub wrist: Vec3,
     /// Along the outstretched fingers.
     pub along: Vec3,

@@ -178,7 +178,7 @@ pub fn surface(
     }
 }
 
-/// Which brick of a running bond a point lies in, and where in it.
+/// Returns the brick of a running bond that a point lies in, and the place in it.
 struct Brick {
     /// Hash of the brick.
     id: u32,
@@ -810,7 +810,7 @@ pub struct Face {
     pub mouth_y: f32,
     /// Half the width of the mouth in widths of the picture.
     pub mouth_width: f32,
-    /// How far the mouth is open, 0 to 1.
+    /// Opening of the mouth, 0 to 1.
     pub mouth_open: f32,
     /// Strength of the blush on the cheeks, 0 to 1.
     pub blush: f32,

@@ -1,4 +1,4 @@
-//! What more than one built-in scene needs: materials, plants, lettering, strings of bulbs, crockery.
+//! Things in more than one built-in scene: materials, plants, lettering, strings of bulbs, crockery.
 
 use std::f32::consts::{PI, TAU};
 

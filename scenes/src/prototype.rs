@@ -10,7 +10,7 @@ use rand_pcg::Pcg32;
 use super::build::{Railing, SceneBuilder, around, hanging, moved, placed, random};
 use super::paint;
 use super::props::palette;
-use yoro_scene::{Alpha, Material, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_scene::{Alpha, Material, PointLight, Scene, Sky, Viewpoint};
 
 fn grid(
     s: &mut SceneBuilder,
@@ -599,14 +599,13 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     .map(|(x, z, tx, tz)| (position(x, z), vec2(tx, tz)))
     .to_vec();
     Scene {
-        name: "prototype".into(),
         model: s.finish(),
-        style: ShadingStyle::LowPoly,
         sky: Sky { sun_direction: vec3(0.45, 0.75, 0.5).normalize(), ..Sky::default() },
         lights,
         viewpoints: walk
             .into_iter()
             .map(|(position, t)| Viewpoint { position, target: vec3(t.x, position.y - 0.35, t.y) })
             .collect(),
+        ..Scene::default()
     }
 }

@@ -14,7 +14,7 @@ use super::paint;
 use super::props::{
     self, glass, glowing, metal, palette, pictured, plain, textured, tube_text, tube_text_width,
 };
-use yoro_scene::{PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_scene::{PointLight, Scene, Sky, Viewpoint};
 
 const FACADES: f32 = 9.0;
 const ROAD: f32 = 5.0;
@@ -49,14 +49,7 @@ pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
         ground: vec3(0.14, 0.1, 0.15),
     };
     lights.truncate(24);
-    Scene {
-        name: "scifi-city".into(),
-        model: b.finish(),
-        style: ShadingStyle::Realistic,
-        sky,
-        lights,
-        viewpoints: walk(),
-    }
+    Scene { model: b.finish(), sky, lights, viewpoints: walk(), ..Scene::default() }
 }
 
 /// From the middle of the street to the pavement, past the noodle bar and along the railing.

@@ -11,7 +11,7 @@ use super::figure::{self, Hand, Joints};
 use super::paint::{self, Face};
 use super::props::{self, palette};
 use super::sculpt::Clay;
-use yoro_scene::{Alpha, Material, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_scene::{Alpha, Material, PointLight, Scene, Sky, Viewpoint};
 
 /// Height of the stage in metres.
 const STAGE: f32 = 1.0;
@@ -1007,9 +1007,7 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     .collect();
     confetti(&mut s, &walk, &mut rng);
     Scene {
-        name: "stage".into(),
         model: s.finish(),
-        style: ShadingStyle::Anime,
         sky: Sky {
             sun_direction: vec3(0.4, 0.7, 0.6).normalize(),
             sun_color: vec3(1.9, 1.75, 1.9),
@@ -1025,5 +1023,6 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
                 Viewpoint { position, target: vec3(0.0, STAGE + 1.5 - 0.25 * near, 0.0) }
             })
             .collect(),
+        ..Scene::default()
     }
 }

@@ -14,7 +14,7 @@ use super::paint::{self, Canvas};
 use super::props::{
     self, Tree, bulb_string, cup, foliage, glass, glowing, hedge, metal, palette, pictured, plain, textured,
 };
-use yoro_scene::{PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_scene::{PointLight, Scene, Sky, Viewpoint};
 
 const LEFT_FACADES: f32 = -7.0;
 const RIGHT_FACADES: f32 = 9.0;
@@ -40,14 +40,7 @@ pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
         horizon: vec3(0.72, 0.72, 0.7),
         ground: vec3(0.26, 0.22, 0.18),
     };
-    Scene {
-        name: "street".into(),
-        model: b.finish(),
-        style: ShadingStyle::Realistic,
-        sky,
-        lights,
-        viewpoints: walk(),
-    }
+    Scene { model: b.finish(), sky, lights, viewpoints: walk(), ..Scene::default() }
 }
 
 /// Up the street, between the tables of the terrace, and on along its railing.
@@ -158,7 +151,7 @@ fn striped(name: &str, seed: u32, color: Vec3) -> paint::Surface {
     })
 }
 
-/// What is seen through a window pane: curtains, and a dim or a lit room.
+/// The view through a window pane: curtains, and a dim or a lit room.
 fn window_picture(name: &str, lit: bool) -> yoro_scene::TextureImage {
     let mut c =
         Canvas::new([256, 512], if lit { vec4(0.85, 0.62, 0.33, 1.0) } else { vec4(0.1, 0.12, 0.14, 1.0) });

@@ -11,7 +11,7 @@ use super::figure::{self, Hand, Joints};
 use super::paint::{self, Face};
 use super::props::{self, palette};
 use super::sculpt::Clay;
-use yoro_scene::{Material, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_scene::{Material, PointLight, Scene, Sky, Viewpoint};
 
 /// One figure's materials and ways.
 struct Look {
@@ -963,9 +963,7 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
         (-1.4, 0.8, 0.85),
     ];
     Scene {
-        name: "talk".into(),
         model: s.finish(),
-        style: ShadingStyle::Cartoon,
         sky: Sky {
             sun_direction: vec3(-0.35, 0.55, -0.75).normalize(),
             sun_color: vec3(3.2, 2.8, 2.2),
@@ -983,5 +981,6 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
             .iter()
             .map(|&(x, z, tx)| Viewpoint { position: vec3(x, 1.5, z), target: vec3(tx, 1.12, -0.1) })
             .collect(),
+        ..Scene::default()
     }
 }

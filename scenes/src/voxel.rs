@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::build::{SceneBuilder, moved, random};
 use super::paint::{self, Block, Plant, hash_cell, smoothstep, unit};
-use yoro_scene::{Alpha, Material, Model, Part, PointLight, Scene, ShadingStyle, Sky, Vertex, Viewpoint};
+use yoro_scene::{Alpha, Material, Model, Part, PointLight, Scene, Sky, Vertex, Viewpoint};
 
 /// Edge of a voxel in metres.
 const EDGE: f32 = 0.5;
@@ -414,7 +414,7 @@ fn bridge(w: &mut World) {
     }
 }
 
-/// How far the path on the near bank is to the side of the bridge's axis.
+/// Returns the distance of the path on the near bank from the bridge's axis.
 fn path_bend(z: i32) -> i32 {
     let t = ((z - 50) as f32 / 40.0).max(0.0);
     (9.0 * t * t).round() as i32
@@ -642,7 +642,7 @@ fn tree(w: &mut World, rng: &mut Pcg32, root: IVec3, kind: Tree) {
     }
 }
 
-/// Whether plants leave this place free.
+/// True if plants leave this place free.
 fn is_kept_free(x: i32, z: i32, margin: i32) -> bool {
     let p = vec2(x as f32, z as f32);
     let m = margin as f32;
@@ -1031,9 +1031,7 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     model.vertices.shrink_to_fit();
     model.indices.shrink_to_fit();
     Scene {
-        name: "voxel".into(),
         model,
-        style: ShadingStyle::Voxel,
         sky: Sky {
             sun_direction: vec3(0.52, 0.58, 0.45).normalize(),
             sun_color: vec3(3.2, 2.75, 2.2),
@@ -1043,6 +1041,7 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
         },
         lights,
         viewpoints,
+        ..Scene::default()
     }
 }
 

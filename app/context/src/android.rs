@@ -20,20 +20,20 @@ type Egl = egl::Instance<egl::Static>;
 
 const OPENGL_ES3_BIT: egl::Int = 0x40;
 const CONTEXT_MINOR_VERSION: egl::Int = 0x30FB;
-/// Most configurations that are looked through for one of exactly 8 bits.
+/// The most configurations that are searched for one of exactly 8 bits.
 const MAX_CONFIGS: usize = 64;
 
-/// Why there is nothing to draw on.
+/// Errors of contexts and windows.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WindowError {
     /// EGL gives no context.
     #[error("no OpenGL ES on this device: {0}; yoro needs OpenGL ES 3.0, 3.1 for all of its methods")]
     Unavailable(String),
-    /// The window cannot be drawn on (any more); another one may come.
+    /// The window cannot be drawn on; Android may give another one.
     #[error("the window cannot be drawn on ({0}); the next one will be tried")]
     Surface(String),
-    /// The driver has lost the context with all that was in it: open another one.
+    /// The driver has lost the context and its objects: open another one.
     #[error("the driver has lost the OpenGL ES context: everything in it is made again")]
     ContextLost,
 }
@@ -117,8 +117,7 @@ impl Window {
         self.egl.get_proc_address(name).map_or(ptr::null(), |p| p as *const c_void)
     }
 
-    /// Draws on a window from now on. Its colours are stored as they are written: what is drawn is
-    /// display-referred sRGB, as everywhere here, and no conversion is wanted.
+    /// Draws on a window from now on. Colours are stored without conversion: they are display-referred sRGB already.
     ///
     /// # Errors
     /// [`WindowError::Surface`] and [`WindowError::ContextLost`].
@@ -139,7 +138,7 @@ impl Window {
         Ok(())
     }
 
-    /// Lets the window go; the context stays current.
+    /// Releases the window; the context stays current.
     pub fn detach(&mut self) {
         if let Some(Shown { surface, window }) = self.shown.take() {
             // A lost context cannot be made current; it is replaced at the next attempt to draw.
@@ -151,12 +150,12 @@ impl Window {
         }
     }
 
-    /// Whether there is a window to draw on.
+    /// True if there is a window to draw on.
     pub fn is_attached(&self) -> bool {
         self.shown.is_some()
     }
 
-    /// The window's size in pixels, of the frame that is drawn now.
+    /// Returns the window's size in pixels in the present frame.
     pub fn size(&self) -> Option<[u32; 2]> {
         let shown = self.shown.as_ref()?;
         let side = |attribute| {
@@ -178,7 +177,7 @@ impl Window {
     /// Shows one colour (RGB, display-referred), with whatever OpenGL ES there is.
     ///
     /// # Errors
-    /// As [`Window::present`].
+    /// See [`Window::present`].
     pub fn show_color(&self, [r, g, b]: [f32; 3]) -> Result<(), WindowError> {
         let gl = self.functions();
         // SAFETY: the context is current; these calls exist in every version.

@@ -26,6 +26,6 @@ pub unsafe trait Graphics {
     /// Makes the context current again, in case the runtime has changed that.
     ///
     /// # Errors
-    /// What EGL said.
+    /// EGL's reason.
     fn make_current(&self) -> Result<(), String>;
 }

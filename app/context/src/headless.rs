@@ -7,7 +7,7 @@ use yoro_gl::{Context, GlError};
 
 use crate::{Binding, Graphics, egl, osmesa};
 
-/// Where to take the GL context from.
+/// The source of the GL context.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// EGL, then OSMesa.
@@ -33,7 +33,7 @@ impl Backend {
     }
 }
 
-/// Why there is no GL context.
+/// Errors of opening a GL context.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ContextError {
@@ -52,12 +52,12 @@ pub enum ContextError {
         "no OpenGL here: EGL: {egl}; OSMesa: {osmesa}; install Mesa (Debian: apt install libegl1 libgl1-mesa-dri libosmesa6), or run `cargo xtask setup`"
     )]
     None {
-        /// What EGL said.
+        /// EGL's reason.
         egl: String,
-        /// What OSMesa said.
+        /// OSMesa's reason.
         osmesa: String,
     },
-    /// A context by OSMesa stands where one by EGL is needed.
+    /// The context is OSMesa's, but EGL's is needed.
     #[error("the GL context comes from OSMesa, but must come from EGL here: choose EGL")]
     NotEgl,
     /// The context cannot run the shaders.
@@ -86,7 +86,7 @@ impl Headless {
     /// Opens a context by the given backend.
     ///
     /// # Errors
-    /// [`ContextError`]: one sentence that says what is missing and what to install.
+    /// [`ContextError`]: one sentence with the missing library and the remedy.
     pub fn open(backend: Backend) -> Result<Headless, ContextError> {
         match backend {
             Backend::Egl => {
@@ -149,7 +149,7 @@ impl Drop for Headless {
 pub struct HeadlessGraphics<'a> {
     headless: &'a Headless,
     binding: Binding,
-    /// Where eglGetProcAddress is.
+    /// The library that has eglGetProcAddress.
     _library: libloading::Library,
 }
 

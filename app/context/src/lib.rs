@@ -1,8 +1,7 @@
-//! Where a GL context comes from: EGL without a window, OSMesa, or the window of an Android activity.
+//! GL contexts: of EGL without a window, of OSMesa, or on the window of an Android activity.
 //!
-//! A context is current on the thread that opened it until it is dropped. Platform differences end here.
-//!
-//! This crate must never know what is drawn.
+//! Opens a context, which is current on the opening thread until it is dropped. Platform differences end here. This crate
+//! must never know what is drawn.
 
 #[cfg(target_os = "android")]
 pub mod android;

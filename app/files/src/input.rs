@@ -1,4 +1,4 @@
-//! Where the files that are read come from: the file system, or in a browser, which has none, those that were
+//! The files that are read: those of the file system, or in a browser, which has none, those that were
 //! [provided](provide).
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -37,7 +37,7 @@ mod source {
         fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect()
     }
 
-    /// Whether a file or folder is there.
+    /// True if a file or folder exists.
     pub fn exists(path: &Path) -> bool {
         path.exists()
     }
@@ -101,7 +101,9 @@ mod memory {
         let mut out = PathBuf::new();
         for component in path.components() {
             match component {
-                Component::ParentDir => drop(out.pop()),
+                Component::ParentDir => {
+                    out.pop();
+                }
                 Component::Normal(name) => out.push(name),
                 _ => {}
             }
@@ -142,7 +144,7 @@ mod source {
     /// The size of a file in bytes; none for what is there and no file.
     ///
     /// # Errors
-    /// As [`open`].
+    /// See [`open`].
     pub fn size(path: &Path) -> io::Result<Option<u64>> {
         files().size(path)
     }
@@ -155,7 +157,7 @@ mod source {
         files().names(folder)
     }
 
-    /// Whether a file or folder is there.
+    /// True if a file or folder exists.
     pub fn exists(path: &Path) -> bool {
         files().exists(path)
     }
@@ -165,7 +167,7 @@ pub use source::*;
 
 use std::path::Path;
 
-/// Whether `path` is a file.
+/// True if `path` is a file.
 pub fn is_file(path: &Path) -> bool {
     matches!(size(path), Ok(Some(_)))
 }

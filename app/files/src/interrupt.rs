@@ -10,7 +10,7 @@ pub fn request() -> bool {
     REQUESTED.swap(true, Ordering::Relaxed)
 }
 
-/// Whether long work is to end.
+/// True if long work is to end.
 pub fn requested() -> bool {
     REQUESTED.load(Ordering::Relaxed)
 }

@@ -1,10 +1,8 @@
-//! Files in and out: an output is complete or absent, and an error says which file and what to do.
+//! Files in and out: an output is complete or absent, and an error names the file and the remedy.
 //!
-//! [`read`] and [`write()`] take whole files; [`write_with`] lets the caller fill one that appears under its name only
-//! when it is complete; [`find`] lists the files below a folder. Loaders that read piece by piece [`open`] their files:
-//! in a browser those are files in memory.
-//!
-//! This crate must never know what is in the files.
+//! [`read`] and [`write()`] take whole files, [`write_with`] lets the caller fill a file that appears only when it is
+//! complete, and [`find`] lists the files below a folder. Loaders that read piece by piece [`open`] their files: in a
+//! browser those are files in memory. This crate must never know the contents of the files.
 
 mod input;
 pub mod interrupt;
@@ -15,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 pub use input::*;
 
-/// Why a file could not be read or written.
+/// Errors of reading and writing files.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
@@ -64,7 +62,7 @@ fn remedy(error: &io::Error) -> String {
     }
 }
 
-/// The whole content of the file `path`.
+/// Returns the whole content of the file `path`.
 pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     if path.is_dir() {
         return Err(FileError::IsFolder { path: path.into() });
@@ -78,7 +76,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     Ok(bytes)
 }
 
-/// Makes the folder `path` and its parents where they do not exist yet.
+/// Creates the folder `path` and its parents if they do not exist.
 pub fn create_folder(path: &Path) -> Result<(), FileError> {
     if path.as_os_str().is_empty() || path.is_dir() {
         return Ok(());
@@ -95,8 +93,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 }
 
 /// Lets `fill` write a file that appears under `path` only when it is complete: it is written under a
-/// temporary name in the same folder and renamed. A crash, a full disk or Ctrl-C leaves what was there before.
-/// Missing parent folders are made. A device or pipe (`/dev/stdout`) is written in place.
+/// temporary name in the same folder and renamed. A crash, a full disk or Ctrl-C leaves the old file.
+/// Missing parent folders are created. A device or pipe (`/dev/stdout`) is written in place.
 pub fn write_with(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
@@ -139,7 +137,7 @@ fn fill_and_flush(
     out.flush()
 }
 
-/// All files below `folder` whose extension is in `extensions` (lower case, no dot), as sorted paths relative to
+/// Returns all files below `folder` with one of the `extensions` (lower case, no dot), as sorted paths relative to
 /// it. Links to folders are not followed, hidden files and folders are left out.
 pub fn find(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, FileError> {
     if !folder.exists() {
@@ -171,7 +169,7 @@ pub fn find(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, FileErro
     Ok(found)
 }
 
-/// Whether the extension of `path`, in any case, is one of `extensions` (lower case, no dot).
+/// True if the extension of `path`, in any case, is one of `extensions` (lower case, no dot).
 pub fn has_extension(path: &Path, extensions: &[&str]) -> bool {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     extension.is_some_and(|e| extensions.contains(&e.as_str()))
@@ -217,7 +215,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_devices_and_rights() {
+    fn links_are_followed_devices_stay_and_others_may_read() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let dir = tempfile::tempdir().unwrap();
         let (file, link) = (dir.path().join("file"), dir.path().join("link"));

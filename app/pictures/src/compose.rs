@@ -7,7 +7,7 @@ use crate::{PictureError, srgb};
 /// The factor by which [`difference`] multiplies.
 pub const DIFFERENCE_GAIN: u8 = 4;
 
-/// RGBA as GL reads it back, rows from the bottom, as an image; alpha is dropped.
+/// Returns an image of RGBA bytes with rows from the bottom, as GL reads them back. Alpha is dropped.
 pub fn rgb_image(rgba: &[u8], size: [u32; 2]) -> RgbImage {
     let row = size[0] as usize * 4;
     RgbImage::from_fn(size[0], size[1], |x, y| {
@@ -16,7 +16,7 @@ pub fn rgb_image(rgba: &[u8], size: [u32; 2]) -> RgbImage {
     })
 }
 
-/// Left and right eye beside each other, left eye left: for parallel viewing.
+/// Puts both eyes beside each other, the left eye on the left: for parallel viewing.
 pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureError> {
     check_sizes(left, right)?;
     let mut both = RgbImage::new(left.width() * 2, left.height());
@@ -25,13 +25,13 @@ pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, Pictu
     Ok(both)
 }
 
-/// Left and right eye beside each other, right eye left: for viewing with crossed eyes, without any device.
+/// Puts both eyes beside each other, the right eye on the left: for viewing with crossed eyes, without any device.
 pub fn cross_eyed(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureError> {
     side_by_side(right, left)
 }
 
-/// For red (left) and cyan (right) glasses, after E. Dubois, "A projection method to generate anaglyph stereo
-/// images", ICASSP 2001: the least-squares projection, on linear light.
+/// Returns an anaglyph for red (left) and cyan (right) glasses: the least-squares projection on linear light of E. Dubois,
+/// "A projection method to generate anaglyph stereo images", ICASSP 2001.
 pub fn anaglyph(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureError> {
     const LEFT: [[f32; 3]; 3] = [[0.456, 0.500, 0.176], [-0.040, -0.038, -0.016], [-0.015, -0.021, -0.005]];
     const RIGHT: [[f32; 3]; 3] = [[-0.043, -0.088, -0.002], [0.378, 0.734, -0.018], [-0.072, -0.113, 1.226]];
@@ -45,7 +45,7 @@ pub fn anaglyph(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureEr
     }))
 }
 
-/// |a - b| in each channel, times [`DIFFERENCE_GAIN`].
+/// Returns |a - b| in each channel, times [`DIFFERENCE_GAIN`].
 pub fn difference(a: &RgbImage, b: &RgbImage) -> Result<RgbImage, PictureError> {
     check_sizes(a, b)?;
     let samples = a.as_raw().iter().zip(b.as_raw());

@@ -10,8 +10,8 @@ use yoro_files as files;
 
 use crate::{DepthImage, MAX_SIZE, PictureError, srgb};
 
-/// Reads a colour image. 16-bit samples are rounded to 8, grey is repeated, alpha is dropped without blending
-/// (what engines leave there is seldom coverage), and EXR, which is linear, is encoded as sRGB.
+/// Reads a colour image. 16-bit samples are rounded to 8 bits, and grey is repeated. Alpha is dropped without blending,
+/// because engines seldom store coverage there. EXR is linear, and is encoded as sRGB.
 pub fn load_color(path: &Path) -> Result<RgbImage, PictureError> {
     Ok(match decode(path)? {
         DynamicImage::ImageRgb8(image) => image,
@@ -30,11 +30,11 @@ pub fn load_color(path: &Path) -> Result<RgbImage, PictureError> {
 pub struct DepthFile {
     /// The values; row 0 is the top.
     pub image: DepthImage,
-    /// What the values are.
+    /// The kind of values.
     pub samples: DepthSamples,
 }
 
-/// What the values of a [`DepthFile`] are.
+/// The kind of values in a [`DepthFile`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthSamples {
     /// Integers divided by their maximum: 0 to 1.

@@ -10,7 +10,7 @@ use yoro_files::{self as files, FileError};
 
 use crate::{DepthImage, PictureError};
 
-/// Writes a colour image; the extension says the format: `.png` (lossless) or `.jpg` (quality 92).
+/// Writes a colour image in the format of the extension: `.png` (lossless) or `.jpg` (quality 92).
 pub fn save_color(path: &Path, image: &RgbImage) -> Result<(), PictureError> {
     if files::has_extension(path, &["png"]) {
         write_encoded(path, encode_png(image))
@@ -56,7 +56,7 @@ fn only_extension(path: &Path, extension: &str, allowed: &'static str) -> Result
     Err(PictureError::Extension { path: path.into(), allowed })
 }
 
-/// The image as a PNG file in memory; an image without pixels cannot be encoded.
+/// Returns the image as a PNG file in memory. An image without pixels cannot be encoded.
 pub(crate) fn encode_png<P>(image: &ImageBuffer<P, Vec<P::Subpixel>>) -> image::ImageResult<Vec<u8>>
 where
     P: image::PixelWithColorType,
@@ -67,7 +67,7 @@ where
     Ok(out.into_inner())
 }
 
-/// The image as a JPEG file in memory, `quality` from 1 to 100; an image without pixels, or with more than 65535
+/// Returns the image as a JPEG file in memory, `quality` from 1 to 100. An image without pixels, or with more than 65535
 /// in a row or column, cannot be encoded.
 pub fn encode_jpeg(image: &RgbImage, quality: u8) -> image::ImageResult<Vec<u8>> {
     let mut out = Vec::new();

@@ -6,7 +6,7 @@ use yoro_files::FileError;
 
 use crate::MAX_SIZE;
 
-/// Why a picture could not be read, written or put together.
+/// Errors of reading, writing and composing pictures.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {
@@ -24,7 +24,7 @@ pub enum PictureError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What the decoder said.
+        /// The decoder's reason.
         reason: String,
     },
     /// The size is beyond [`MAX_SIZE`].
@@ -72,7 +72,7 @@ pub enum PictureError {
     Extension {
         /// The file to be written.
         path: PathBuf,
-        /// What is possible.
+        /// The possible extensions.
         allowed: &'static str,
     },
     /// Two eyes of different sizes.

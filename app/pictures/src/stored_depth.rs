@@ -1,8 +1,8 @@
-//! Depth images of others: what their values mean, made into what synthesis takes.
+//! Depth images of other programs: decodes their values into depth for synthesis.
 
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
 
-/// What the values of a depth image mean.
+/// The encoding of a depth image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StoredDepth {
     /// Depth buffer between the planes of this range, in its convention.
@@ -21,14 +21,14 @@ pub enum StoredDepth {
     },
 }
 
-/// Why values are no depth.
+/// Errors of decoding depth.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoredDepthError {
-    /// NaN is among them, as a power of a negative value gives it.
+    /// Some values are NaN, such as a power of a negative value.
     #[error("some values are no numbers")]
     NotANumber,
-    /// Some mean nothing.
+    /// Some values are outside of the encoding.
     #[error("some values are outside of what the encoding allows ({smallest} to {largest})")]
     Range {
         /// Smallest nearness, at most 0.
@@ -85,7 +85,7 @@ impl StoredDepth {
 }
 
 impl Nearness {
-    /// How an image of `size` pixels moves to an eye that is this share of the IPD away.
+    /// Returns the warp of an image of `size` pixels to an eye that is this share of the IPD away.
     pub fn warp(&self, size: [u32; 2], target_eye: Eye, share: f64) -> Warp {
         let sign = -f64::from(target_eye.side()) * share;
         Warp {
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn values_without_meaning_are_refused() {
+    fn values_outside_of_the_encoding_are_refused() {
         let decode = |v: f32| StoredDepth::Window(DepthRange::PAPER).decode([v].into_iter(), 1.0);
         assert_eq!(decode(f32::NAN), Err(StoredDepthError::NotANumber));
         assert!(matches!(decode(1.5), Err(StoredDepthError::Range { .. })));

@@ -43,7 +43,7 @@ fn linear_exr_colour_is_encoded() {
 }
 
 #[test]
-fn depth_of_every_kind() {
+fn depth_is_read_from_every_kind_of_png() {
     let dir = folder();
     let path = dir.path().join("d.png");
     let grey8 = GrayImage::from_fn(5, 3, |x, y| Luma([(x * 50 + y) as u8]));
@@ -118,7 +118,7 @@ fn exr_depth_is_unchanged_and_the_channel_is_found() {
 }
 
 #[test]
-fn bad_files_get_a_sentence() {
+fn bad_files_are_refused_with_a_remedy() {
     let dir = folder();
     let path = dir.path().join("a.png");
     assert!(matches!(load_color(&path), Err(PictureError::File(FileError::Missing { .. }))));
@@ -158,7 +158,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 #[test]
-fn composites() {
+fn both_eyes_are_composed_into_one_picture() {
     let (left, right) = (gradient(8, 5), RgbImage::from_pixel(8, 5, Rgb([10, 20, 30])));
     let both = side_by_side(&left, &right).unwrap();
     assert_eq!(

@@ -1,4 +1,4 @@
-//! What a file does not say: where to look at a model from, and what lights it.
+//! Viewpoints and lights for a model whose file has none.
 
 use std::collections::HashMap;
 use std::f32::consts::TAU;
@@ -61,7 +61,7 @@ fn orbit(bounds: &Bounds) -> Vec<Viewpoint> {
 #[derive(Clone, Copy)]
 struct Place {
     eye: Vec3,
-    /// How much there is to see and how much room to move.
+    /// Rates a place by what it sees and by its room to move.
     score: f32,
 }
 

@@ -1,9 +1,9 @@
-//! What can go wrong between a scene and its files.
+//! Errors of reading and writing scenes.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a scene could not be read or written. Every message is one sentence that names the file and the remedy.
+/// Errors of reading and writing a scene. Every message is one sentence that names the file and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -25,7 +25,7 @@ pub enum SceneError {
         /// The path given.
         path: PathBuf,
     },
-    /// The operating system refused.
+    /// The operating system refused to read.
     #[error("{path} cannot be read ({source}): check its permissions and the disk")]
     Read {
         /// The file.
@@ -33,14 +33,14 @@ pub enum SceneError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A statement that makes no sense, with its line.
+    /// A wrong statement, with its line.
     #[error("{path}, line {line}: {what}; correct the line or export the model again")]
     Statement {
         /// The file.
         path: PathBuf,
         /// Line, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
     /// A damaged file or one that uses something unsupported; `what` contains the remedy.
@@ -48,7 +48,7 @@ pub enum SceneError {
     Unusable {
         /// The file.
         path: PathBuf,
-        /// What is wrong and what helps.
+        /// The fault and the remedy.
         what: String,
     },
     /// Nothing to draw.
@@ -64,7 +64,7 @@ pub enum SceneError {
         path: PathBuf,
         /// Largest number accepted.
         limit: usize,
-        /// What is counted.
+        /// The things that are counted.
         what: &'static str,
     },
     /// A texture that is there but cannot be decoded.
@@ -72,7 +72,7 @@ pub enum SceneError {
     Texture {
         /// The picture's file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
     /// A malformed `camera.json` or `scene.json`.
@@ -80,7 +80,7 @@ pub enum SceneError {
     Sidecar {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
 }

@@ -65,7 +65,7 @@ fn square(rest: &str) -> String {
 }
 
 #[test]
-fn the_least_that_is_a_model() {
+fn three_vertices_and_a_face_are_a_model() {
     let model = obj(&square("f 1 2 3 4"));
     assert_eq!((model.triangle_count(), model.vertices.len()), (2, 4));
     assert!(model.vertices.iter().all(|v| v.normal == Vec3::Z && v.uv == Vec2::ZERO));
@@ -74,7 +74,7 @@ fn the_least_that_is_a_model() {
 }
 
 #[test]
-fn all_ways_to_write_a_corner() {
+fn corners_are_read_in_all_spellings() {
     let given = "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 2\nvn 1 0 0\n";
     for face in ["1/1/1 2/2/1 3/3/1", "-4/-3/-2 -3/-2/-2 -2/-1/-2", "1/1/-2 2/2/1 -2/3/-2"] {
         let model = obj(&square(&format!("{given}f {face}\n")));
@@ -100,7 +100,7 @@ fn corners_with_and_without_normals_do_not_mix_up() {
 }
 
 #[test]
-fn concave_polygons() {
+fn concave_polygons_keep_their_area() {
     let arrow = obj("v 0 0 0\nv 2 1 0\nv 0 2 0\nv 1 1 0\nf 1 2 3 4\n");
     assert_eq!(area(&arrow), Vec3::Z);
     let l = obj("v 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nf 1 2 3 4 5 6\n");
@@ -110,7 +110,7 @@ fn concave_polygons() {
 }
 
 #[test]
-fn lines_of_every_system() {
+fn line_ends_of_every_system_are_read() {
     let unix = obj(&square("f 1 2 3 4\n"));
     assert_eq!(obj(&square("f 1 2 3 4\n").replace('\n', "\r\n")), unix);
     assert_eq!(obj(&square("f 1 2 3 4\n").replace('\n', "\r")), unix);
@@ -124,7 +124,7 @@ fn lines_of_every_system() {
 }
 
 #[test]
-fn groups_objects_and_materials_without_library() {
+fn groups_and_materials_are_named_without_a_library() {
     let model = obj(&square(
         "usemtl a\no one\nf 1 2 3\nusemtl b\nf 1 3 4\ng two\nusemtl\ta\nf 2 3 4\ng one\nf 1 2 4",
     ));
@@ -154,7 +154,7 @@ fn vertex_colours_become_a_palette() {
 }
 
 #[test]
-fn a_large_group_is_joined_again() {
+fn a_group_that_is_read_in_pieces_is_joined() {
     let mut text = String::new();
     for i in 0..70_000 {
         text += &format!("v {i} 0 0\nv {i} 1 0\nv {i} 0 1\nvn 1 0 0\nf -3//-1 -2//-1 -1//-1\n");
@@ -195,7 +195,7 @@ fn absurd_files_are_refused_in_a_sentence() {
 }
 
 #[test]
-fn paths_that_are_no_models() {
+fn paths_of_other_things_are_refused_with_a_remedy() {
     let folder = Folder::new();
     let message = |p: &Path| load(p).unwrap_err().to_string();
     assert!(message(&folder.0.path().join("no.obj")).contains("there is no file"));
@@ -206,7 +206,7 @@ fn paths_that_are_no_models() {
 }
 
 #[test]
-fn forward_references_within_a_group() {
+fn faces_may_refer_forward_within_their_group() {
     assert_eq!(obj(&format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
     refused(format!("f 1 2 3\ng x\nf 1 2 3\n{SQUARE}"), &["line 1", "vertex 1"]);
 }
@@ -231,7 +231,7 @@ fn libraries_are_found_and_missing_ones_replaced() {
 }
 
 #[test]
-fn textures_are_found_however_they_are_written() {
+fn textures_are_found_in_all_spellings_of_their_path() {
     let folder = Folder::new();
     folder.picture("Textures/My Wood.PNG", 4, |_, _| [200, 100, 50, 255]);
     for name in [
@@ -264,7 +264,7 @@ fn textures_are_found_however_they_are_written() {
 }
 
 #[test]
-fn every_kind_of_map() {
+fn every_kind_of_map_becomes_a_texture() {
     let folder = Folder::new();
     folder.picture("leaf.png", 8, |x, _| [0, 200, 0, if x < 4 { 0 } else { 255 }]);
     folder.picture("mask.png", 8, |x, _| if x < 4 { [0, 0, 0, 255] } else { [255; 4] });
@@ -323,7 +323,7 @@ fn bad_pictures_are_named() {
 }
 
 #[test]
-fn cameras_beside_the_model() {
+fn viewpoints_are_read_from_camera_json() {
     let folder = Folder::new();
     let scene = folder.put("a.obj", square("f 1 2 3"));
     assert_eq!(load(&scene).unwrap().viewpoints.len(), 8);
@@ -351,7 +351,7 @@ fn cameras_beside_the_model() {
 }
 
 #[test]
-fn notes_beside_the_model() {
+fn light_style_and_scale_are_read_from_scene_json() {
     let folder = Folder::new();
     let scene = folder.put("a.obj", square("f 1 2 3"));
     folder.put("scene.json", r#"{"style": "anime", "scale": 2, "lights": []}"#);
@@ -554,7 +554,7 @@ fn rich_scene() -> Scene {
 }
 
 #[test]
-fn what_is_exported_is_loaded_again() {
+fn an_exported_scene_loads_as_it_was() {
     let folder = Folder::new();
     let scene = rich_scene();
     let target = folder.0.path().join("new/folder");
@@ -595,7 +595,7 @@ fn what_is_exported_is_loaded_again() {
 }
 
 #[test]
-fn an_export_that_fails_says_where() {
+fn a_failed_export_names_the_file() {
     let folder = Folder::new();
     let file = folder.put("file", "");
     let message = export(&rich_scene(), &file, "x").unwrap_err().to_string();
@@ -663,7 +663,7 @@ fn check_gltf(scene: &Scene) {
 }
 
 #[test]
-fn gltf_of_every_packing() {
+fn gltf_is_read_in_every_packing() {
     let folder = Folder::new();
     for embedded in [true, false] {
         let (text, _) = gltf_text(&folder, embedded);
@@ -720,9 +720,9 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     assert!(load(&folder.put("a.gltf", circle)).is_ok());
 }
 
-/// What the specification allows and a reader may stumble over.
+/// Unusual files that the specification allows.
 #[test]
-fn valid_gltf_of_unusual_kinds() {
+fn unusual_but_valid_gltf_is_read() {
     let folder = Folder::new();
     let (good, _) = gltf_text(&folder, true);
     let changed = |from: &str, to: &str| {
@@ -750,7 +750,7 @@ fn valid_gltf_of_unusual_kinds() {
 }
 
 #[test]
-fn sparse_accessors() {
+fn sparse_accessors_replace_their_values() {
     let folder = Folder::new();
     let (good, _) = gltf_text(&folder, true);
     // The corner at (1, 0, 0) moves to where the normals say: (0, 0, 1), by the index in bytes 100 and 101.

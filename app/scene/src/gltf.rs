@@ -29,7 +29,7 @@ use super::textures::{
 /// Largest buffer, in bytes.
 const MAX_BUFFER: u64 = 4 << 30;
 
-/// What a glTF file contains; sky and lights only if it states some.
+/// The contents of a glTF file; sky and lights only if it states some.
 #[derive(Debug)]
 pub struct GltfScene {
     /// Triangles, materials and pictures.
@@ -115,11 +115,11 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
 /// A point or spot light: position, intensity in candela, range in metres.
 type Lamp = (Vec3, Vec3, Option<f32>);
 
-/// What the nodes of a scene hold, in world space.
+/// The contents of a scene's nodes, in world space.
 #[derive(Default)]
 struct Nodes {
     meshes: Vec<RawMesh>,
-    /// Of each mesh; none where all vertices are white.
+    /// Vertex colours of each mesh; None if all vertices are white.
     colors: Vec<Option<Vec<Vec3>>>,
     cameras: Vec<Viewpoint>,
     lamps: Vec<Lamp>,
@@ -143,7 +143,7 @@ impl Nodes {
     }
 }
 
-/// Where a node is, and where its camera or light looks.
+/// A node's position, and the direction of its camera or light.
 fn placed(to_world: &Mat4) -> (Vec3, Vec3) {
     let forward = to_world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
     (to_world.w_axis.truncate(), forward)
@@ -359,7 +359,7 @@ struct Wanted {
     specular: Option<usize>,
     emissive: Option<usize>,
     normal: Option<usize>,
-    /// Where a texture gives the mean of the roughness, the roughness at 0 and at 1 of it.
+    /// The roughness at texture values 0 and 1, if the roughness is the mean of a texture.
     roughness: Option<[f32; 2]>,
     blended: bool,
     /// A sampler clamps or mirrors one of the textures.
@@ -425,7 +425,7 @@ struct Map {
     nearest: bool,
 }
 
-/// What both models of a surface come to: colours in linear RGB, factors of the maps if there are some.
+/// A surface of either material model: colours in linear RGB, which are factors of the maps if there are any.
 struct Surface {
     diffuse: Vec3,
     specular: Vec3,

@@ -1,9 +1,8 @@
-//! What is looked at: models with materials and lights, the files that they come from, camera paths.
+//! Scenes: models with materials and lights, their files, and camera paths.
 //!
-//! [`load()`] reads OBJ, glTF and GLB with what lies beside them; [`export()`] writes a scene as files. What is missing is
-//! generated or replaced by a default, with a warning that names the file.
-//!
-//! This crate must never know OpenGL, or which scenes are built in.
+//! [`load()`] reads OBJ, glTF and GLB files with their textures and sidecar files; [`export()`] writes a scene as files.
+//! Missing parts are generated or replaced by defaults, with a warning that names the file. This crate must never know
+//! OpenGL, or which scenes are built in.
 
 mod defaults;
 mod error;

@@ -17,8 +17,8 @@ use super::rays::Rays;
 /// Largest `camera.json` or `scene.json`, in bytes.
 const MAX_SIDECAR: u64 = 16 << 20;
 
-/// What OBJ cannot say: the format of `NAME.scene.json` or `scene.json` beside a model. Every key may be left
-/// out, unknown ones are refused.
+/// The properties that OBJ lacks: the format of `NAME.scene.json` or `scene.json` beside a model. Every key is
+/// optional, unknown keys are refused.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SceneNotes {
@@ -39,7 +39,7 @@ pub struct SceneNotes {
     pub nearest: Vec<String>,
 }
 
-/// What MTL cannot say of a material.
+/// The properties of a material that MTL lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialNotes {
@@ -84,8 +84,8 @@ impl From<AlphaNotes> for Alpha {
 /// Loads a scene from an `.obj`, `.gltf` or `.glb` file.
 ///
 /// Viewpoints come from `NAME.camera.json` or `camera.json` beside the file (an array of [`Viewpoint`]), light and
-/// style from `NAME.scene.json` or `scene.json` ([`SceneNotes`]). Without them a glTF file's own cameras and
-/// lights are taken, and else they are made up: at least 8 viewpoints around the model or through it at eye
+/// style from `NAME.scene.json` or `scene.json` ([`SceneNotes`]). Without these files a glTF file's own cameras and
+/// lights are used. Anything still missing is generated: at least 8 viewpoints around the model or through it at eye
 /// height, point lights for glowing surfaces, and a sky, or lamps where no sky is seen.
 ///
 /// # Errors
@@ -162,14 +162,14 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     })
 }
 
-/// `NAME.suffix`, or else `suffix`, beside a file; none if there is neither.
+/// Returns `NAME.suffix`, or else `suffix`, beside a file; None if neither exists.
 pub fn sidecar_file(path: &Path, suffix: &str) -> Option<PathBuf> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let candidates = [path.with_file_name(format!("{stem}.{suffix}")), path.with_file_name(suffix)];
     candidates.into_iter().find(|c| yoro_files::is_file(c))
 }
 
-/// Reads [`sidecar_file`]; none if there is none.
+/// Reads the [`sidecar_file`]; None if there is none.
 fn sidecar<T: serde::de::DeserializeOwned>(
     path: &Path,
     suffix: &str,

@@ -1,4 +1,4 @@
-//! What a scene is made of, in memory, before any GL.
+//! The parts of a scene in memory, before any GL.
 
 use std::ops::Range;
 
@@ -39,7 +39,7 @@ pub struct Part {
     pub indices: Range<usize>,
 }
 
-/// How the alpha of the diffuse map is used.
+/// The use of the diffuse map's alpha.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Alpha {
     /// Ignored.
@@ -118,7 +118,7 @@ pub struct Model {
     pub vertices: Vec<Vertex>,
     /// Triangle list.
     pub indices: Vec<u32>,
-    /// What is drawn with which material.
+    /// The triangles of each material.
     pub parts: Vec<Part>,
     /// Materials.
     pub materials: Vec<Material>,
@@ -161,7 +161,7 @@ impl Bounds {
         (self.min + self.max) * 0.5
     }
 
-    /// Whether nothing is inside.
+    /// True if nothing is inside.
     pub fn is_empty(&self) -> bool {
         self.min.x > self.max.x
     }
@@ -172,7 +172,7 @@ impl Bounds {
     }
 }
 
-/// How the lighting pass turns light into colour.
+/// The way in which the lighting pass turns light into colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShadingStyle {
@@ -265,14 +265,14 @@ impl Viewpoint {
     }
 }
 
-/// A scene: a model, its light and where to look at it from.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+/// A scene: a model, its light, and viewpoints.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Scene {
     /// Name: a built-in one, or the file's stem.
     pub name: String,
     /// Triangles, materials and pictures.
     pub model: Model,
-    /// Shading style it is made for.
+    /// The shading style that it is made for.
     pub style: ShadingStyle,
     /// Sun and sky.
     pub sky: Sky,

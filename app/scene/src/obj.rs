@@ -249,7 +249,7 @@ impl Names {
     }
 }
 
-/// What the faces of one tobj model share.
+/// The properties that the faces of one tobj model share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PartKey {
     name: usize,
@@ -272,12 +272,12 @@ struct Normalizer<R> {
     /// `v`, `vt`, `vn` so far.
     counts: [usize; 3],
     corners: usize,
-    /// Whether the first vertex had a colour; then all have.
+    /// True if the first vertex had a colour; then all have.
     coloured: bool,
     name: String,
     material: String,
     flat: bool,
-    /// Whether name, material or smoothing have been stated since the last face.
+    /// True if a name, material or smoothing was stated since the last face.
     restated: bool,
     faces_in_part: usize,
     names: Names,

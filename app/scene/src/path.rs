@@ -8,7 +8,7 @@ use super::model::Viewpoint;
 use yoro::eyes::Pose;
 use yoro_files::{self as files, FileError};
 
-/// Why a file is not a camera path.
+/// Errors of reading a camera path.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PathError {
@@ -20,7 +20,7 @@ pub enum PathError {
     Malformed {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
 }
@@ -37,7 +37,7 @@ pub fn read(file: &Path) -> Result<Vec<Viewpoint>, PathError> {
     Ok(viewpoints)
 }
 
-/// What is wrong with the viewpoints of a file.
+/// Checks the viewpoints of a file; the error is the fault.
 pub(super) fn check(viewpoints: &[Viewpoint]) -> Result<(), String> {
     if viewpoints.is_empty() {
         return Err("there is no viewpoint in it".into());
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn one_viewpoint_stays() {
+    fn a_path_of_one_viewpoint_does_not_move() {
         let v = view([1.0, 2.0, 3.0], [0.0, 0.0, 0.0]);
         let path = CameraPath::new(&[v, v]);
         for t in [-1.0, 0.0, 0.3, 1.0, f32::NAN] {
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn two_viewpoints_make_a_straight_even_way() {
+    fn a_path_of_two_viewpoints_is_straight_and_even() {
         let path = CameraPath::new(&[
             view([0.0, 0.0, 0.0], [0.0, 0.0, -5.0]),
             view([4.0, 0.0, 0.0], [4.0, 0.0, -5.0]),

@@ -24,14 +24,14 @@ struct Node {
     count: u32,
 }
 
-/// What a ray meets first.
+/// The first triangle that a ray meets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
     /// In lengths of the direction.
     pub distance: f32,
     /// Unit normal of the face, either way.
     pub normal: Vec3,
-    /// Whether the side that the ray meets is drawn: the inside of a solid body mostly is not.
+    /// True if the side that the ray meets is drawn; the inside of a solid body mostly is not.
     pub is_drawn: bool,
 }
 
@@ -144,7 +144,7 @@ mod tests {
     use crate::Vertex;
 
     #[test]
-    fn rays_find_the_nearest_of_many() {
+    fn rays_find_the_nearest_of_many_triangles() {
         let mut model = Model::default();
         // Floors at y = 0, 1, ... 99 in tiles.
         for level in 0..100 {

@@ -1,5 +1,5 @@
-//! From what a file contains to what can be drawn: bad triangles dropped, missing normals and texture
-//! coordinates made up, triangles sorted by material.
+//! Makes a file's contents fit to be drawn: drops bad triangles, generates missing normals and texture coordinates, and
+//! sorts triangles by material.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -153,7 +153,7 @@ fn box_projection(p: Vec3, normal: Vec3) -> Vec2 {
 struct Neighbours {
     /// For every mesh, the point of every vertex; empty for meshes that need none.
     points: Vec<Vec<u32>>,
-    /// Where the faces of a point start; one more at the end.
+    /// Index of each point's first face, and one more at the end.
     starts: Vec<u32>,
     /// Normals times area.
     faces: Vec<Vec3>,
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_triangles_and_lonely_vertices_go() {
+    fn bad_triangles_and_unused_vertices_are_dropped() {
         let m = mesh(
             &[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [f32::NAN, 0., 0.], [2., 0., 0.], [1e30, 0., 0.]],
             &[0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 0, 1, 0, 1, 99],
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn tiny_triangles_stay() {
+    fn tiny_triangles_are_kept() {
         let m = mesh(&[[0., 0., 0.], [1e-12, 0., 0.], [0., 1e-12, 0.]], &[0, 1, 2]);
         let model = assemble(Path::new("x"), vec![m], vec![Material::default()]).unwrap();
         assert_eq!(model.vertices[0].normal, Vec3::Z);

@@ -25,7 +25,7 @@ const PIXEL_BUDGET: u64 = 1 << 28;
 /// they would be black.
 pub(super) const METAL_DIFFUSE_LOSS: f32 = 0.7;
 
-/// Where a picture comes from.
+/// The source of a picture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Source {
     File(PathBuf),
@@ -33,7 +33,7 @@ pub(super) enum Source {
     Memory(usize),
 }
 
-/// How a texture is made from pictures. Numbers are bits of f32, so that equal recipes make one texture.
+/// The making of a texture from pictures. Numbers are the bits of f32, so that equal recipes make one texture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Recipe {
     /// The picture as it is.
@@ -50,7 +50,7 @@ pub(super) enum Recipe {
     Specular(Source),
 }
 
-/// What the alpha of a texture is good for.
+/// The use of a texture's alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum AlphaUse {
     Opaque,
@@ -96,12 +96,12 @@ pub(super) struct TextureSet {
 }
 
 impl TextureSet {
-    /// The number under which a texture will be found in [`Built`].
+    /// Requests a texture, and returns its number in [`Built`].
     pub fn request(&mut self, recipe: Recipe) -> usize {
         self.request_sampled(recipe, false)
     }
 
-    /// As [`TextureSet::request`], of a texture that is not filtered when magnified if it is `nearest`.
+    /// Requests a texture as [`TextureSet::request`] does. If it is `nearest`, it is not filtered when magnified.
     pub fn request_sampled(&mut self, recipe: Recipe, nearest: bool) -> usize {
         let next = self.recipes.len();
         *self.known.entry((recipe.clone(), nearest)).or_insert_with(|| {
@@ -310,7 +310,7 @@ fn fitted([w, h]: [u32; 2], edge: u32) -> [u32; 2] {
     [w, h].map(|n| ((n as u64 * edge as u64 / longest as u64) as u32).max(1))
 }
 
-/// What the alpha channel holds. Some hold something else, such as gloss: transparency is believed only where a
+/// Returns the use of the alpha channel. Some hold something else, such as gloss: transparency is believed only if a
 /// good part is either clearly opaque or nearly everything is translucent.
 fn alpha_use(image: &RgbaImage) -> AlphaUse {
     let total = image.pixels().len().max(1) as f32;
@@ -589,7 +589,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_fit() {
+    fn pictures_are_scaled_to_the_longest_edge() {
         assert_eq!(fitted([100, 50], 100), [100, 50]);
         assert_eq!(fitted([16384, 1], 1024), [1024, 1]);
     }
