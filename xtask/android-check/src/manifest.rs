@@ -12,34 +12,78 @@ use super::archive::Archive;
 use super::report::Report;
 
 const PACKAGE: &str = "io.github.yoro";
-const ACTIVITY: &str = "android.app.NativeActivity";
 const LIBRARY: &str = "yoro_android";
-/// What the application asks the user or the system for: OpenXR runtimes may want to be asked.
-const PERMISSIONS: [&str; 2] =
-    ["org.khronos.openxr.permission.OPENXR", "org.khronos.openxr.permission.OPENXR_SYSTEM"];
-/// Whom it means to talk to: without that Android hides them.
-const AUTHORITIES: &str = "org.khronos.openxr.runtime_broker;org.khronos.openxr.system_runtime_broker";
-const SERVICES: [&str; 2] =
-    ["org.khronos.openxr.OpenXRRuntimeService", "org.khronos.openxr.OpenXRApiLayerService"];
-/// What makes it an immersive application on headsets, besides the launcher's category.
-const IMMERSIVE: [&str; 3] = [
-    "com.oculus.intent.category.VR",
-    "com.htc.intent.category.VRAPP",
-    "org.khronos.openxr.intent.category.IMMERSIVE_HMD",
-];
-/// Facts about the application that headsets ask for, and the values that they take. `true` may be a boolean or a text.
-const META_DATA: [(&str, &[&str]); 3] = [
-    ("com.oculus.vr.focusaware", &["true", "0xffffffff"]),
-    ("pvr.app.type", &["vr"]),
-    ("pvr.sdk.version", &["OpenXR"]),
-];
+/// Permissions that the application asks for: OpenXR runtimes may want to be asked.
+const PERMISSIONS: &str = "org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
 /// Headsets by Meta that it has to be made for by name, and all, for those that do not know the later names.
 const DEVICES: [&str; 2] = ["all", "quest3"];
 /// Everything that may change while the activity goes on: locale, touchscreen, keyboard, keyboardHidden, navigation,
 /// orientation, screenLayout, uiMode, screenSize, smallestScreenSize, density, layoutDirection, colorMode, fontScale.
 const CONFIG_CHANGES: u64 = 0x4000_7ffc;
 
-/// An element of the manifest with its attributes; values are texts without quotes or numbers like `0x1d`.
+const NAME: &str = "android:name";
+const VALUE: &str = "android:value";
+const REQUIRED: &str = "android:required";
+/// Any value but none.
+const ANY: &str = "*";
+
+/// An element that must be there with these attributes.
+struct Rule<'a> {
+    element: &'a str,
+    attributes: &'a [(&'a str, &'a str)],
+    /// What happens without it.
+    consequence: &'a str,
+}
+
+const fn rule<'a>(element: &'a str, attributes: &'a [(&'a str, &'a str)], consequence: &'a str) -> Rule<'a> {
+    Rule { element, attributes, consequence }
+}
+
+const NO_LAUNCHER: &str = "it would not be among the applications";
+const FLAT: &str = "headsets would show a flat panel";
+const NO_SERVICE: &str = "an installed runtime would not reach its service";
+
+const LAUNCHER: [Rule<'_>; 3] = [
+    rule("activity", &[("android:exported", "true")], "Android would not start it"),
+    rule("action", &[(NAME, "android.intent.action.MAIN")], NO_LAUNCHER),
+    rule("category", &[(NAME, "android.intent.category.LAUNCHER")], NO_LAUNCHER),
+];
+/// What makes it an immersive application that finds its OpenXR runtime.
+const HEADSETS: [Rule<'_>; 9] = [
+    rule("category", &[(NAME, "com.oculus.intent.category.VR")], FLAT),
+    rule("category", &[(NAME, "com.htc.intent.category.VRAPP")], FLAT),
+    rule("category", &[(NAME, "org.khronos.openxr.intent.category.IMMERSIVE_HMD")], FLAT),
+    // Android hides the brokers from an application that does not say that it means to talk to them.
+    rule(
+        "provider",
+        &[(
+            "android:authorities",
+            "org.khronos.openxr.runtime_broker;org.khronos.openxr.system_runtime_broker",
+        )],
+        FLAT,
+    ),
+    rule("action", &[(NAME, "org.khronos.openxr.OpenXRRuntimeService")], NO_SERVICE),
+    rule("action", &[(NAME, "org.khronos.openxr.OpenXRApiLayerService")], NO_SERVICE),
+    rule("meta-data", &[(NAME, "com.oculus.vr.focusaware"), (VALUE, "true")], FLAT),
+    rule("meta-data", &[(NAME, "pvr.app.type"), (VALUE, "vr")], FLAT),
+    rule("meta-data", &[(NAME, "pvr.sdk.version"), (VALUE, "OpenXR")], FLAT),
+];
+const SCREEN: [Rule<'_>; 3] = [
+    rule("activity", &[("android:screenOrientation", "0x0")], "the picture would be upright"),
+    rule(
+        "activity",
+        &[("android:resizeableActivity", "false")],
+        "in a split screen the lenses' centres would be wrong",
+    ),
+    rule("application", &[("android:theme", ANY)], "a title bar would be in the picture"),
+];
+const OPTIONAL: [Rule<'_>; 1] = [rule(
+    "uses-feature",
+    &[(NAME, "android.hardware.vr.headtracking"), (REQUIRED, "false")],
+    "devices without it would be shut out",
+)];
+
+/// An element of the manifest with its attributes; values are texts without quotes, `true`, `false`, or numbers like `0x1d`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Element {
     name: String,
@@ -55,14 +99,9 @@ impl Element {
     fn number(&self, attribute: &str) -> Option<u64> {
         u64::from_str_radix(self.text(attribute).strip_prefix("0x")?, 16).ok()
     }
-
-    /// Booleans are stored as all ones or zero.
-    fn is(&self, attribute: &str) -> Option<bool> {
-        self.number(attribute).map(|value| value != 0)
-    }
 }
 
-/// What Android is told.
+/// The manifest of an APK.
 #[derive(Debug)]
 pub struct Manifest {
     elements: Vec<Element>,
@@ -99,16 +138,7 @@ impl Manifest {
                 && let Some((name, value)) = attribute.split_once('=')
             {
                 let name = name.split('(').next().unwrap_or_default();
-                // `"text" (Raw: "text")`, `(type 0x10)0x1d (Raw: "29")`, or a resource: `@0x7f050000`.
-                let value = match value.strip_prefix('"') {
-                    Some(text) => text.split('"').next(),
-                    None => {
-                        let typed = value.strip_prefix("(type ").and_then(|rest| rest.split_once(')'));
-                        typed.map_or(value, |(_, number)| number).split(' ').next()
-                    }
-                }
-                .unwrap_or_default();
-                element.attributes.push((name.to_owned(), value.to_owned()));
+                element.attributes.push((name.to_owned(), self::value(value).to_owned()));
             }
         }
         let application = badging.lines().find(|line| line.starts_with("application:")).unwrap_or_default();
@@ -125,14 +155,45 @@ impl Manifest {
         self.all(name).next().cloned().unwrap_or_default()
     }
 
-    /// A build for development.
-    pub fn is_debuggable(&self) -> bool {
-        self.one("application").is("android:debuggable") == Some(true)
+    /// The value of the first meta-data of this name.
+    fn meta_data(&self, name: &str) -> &str {
+        self.elements
+            .iter()
+            .find(|element| element.name == "meta-data" && element.text(NAME) == name)
+            .map_or("", |element| element.text(VALUE))
     }
 
-    /// Libraries are unpacked at installation, not mapped out of the APK.
+    /// The names of elements, in their order.
+    fn names(&self, element: &str, is: impl Fn(&Element) -> bool) -> String {
+        let names: Vec<&str> = self.all(element).filter(|e| is(e)).map(|e| e.text(NAME)).collect();
+        names.join(" ")
+    }
+
+    /// The first rule that is broken, in words.
+    fn broken<'a>(&self, rules: impl IntoIterator<Item = &'a Rule<'a>>) -> Option<String> {
+        let keeps = |rule: &&Rule<'_>| {
+            self.all(rule.element).any(|element| {
+                rule.attributes.iter().all(|(attribute, wanted)| {
+                    let found = element.text(attribute);
+                    found == *wanted || *wanted == ANY && !found.is_empty()
+                })
+            })
+        };
+        rules.into_iter().find(|rule| !keeps(rule)).map(|Rule { element, attributes, consequence }| {
+            let wanted: Vec<String> =
+                attributes.iter().map(|(name, value)| format!("{name}={value}")).collect();
+            format!("no {element} with {}: {consequence}", wanted.join(" "))
+        })
+    }
+
+    /// True for a build for development.
+    pub fn is_debuggable(&self) -> bool {
+        self.one("application").text("android:debuggable") == "true"
+    }
+
+    /// True if libraries are unpacked at installation, and not mapped out of the APK.
     pub fn unpacks_libraries(&self) -> bool {
-        self.one("application").is("android:extractNativeLibs") != Some(false)
+        self.one("application").text("android:extractNativeLibs") != "false"
     }
 
     /// Adds a row for everything that matters.
@@ -149,85 +210,64 @@ impl Manifest {
             format!("{}, made for {}", level("android:minSdkVersion"), level("android:targetSdkVersion"));
         report.equal("API level", &levels, &format!("{MIN_API}, made for {TARGET_API}"));
 
-        self.check_features(report);
-        let permissions: Vec<&str> =
-            self.all("uses-permission").map(|element| element.text("android:name")).collect();
-        report.equal("permissions", &permissions.join(" "), &PERMISSIONS.join(" "));
-        self.check_activity(archive, report);
+        let version = self.all("uses-feature").find_map(|element| element.number("android:glEsVersion"));
+        let version = version.map(|v| format!("{}.{}", v >> 16, v & 0xffff)).unwrap_or_default();
+        report.equal("OpenGL ES", &version, "3.0");
+        let is_optional = |feature: &Element| feature.text(REQUIRED) == "false";
+        let required =
+            self.names("uses-feature", |feature| !feature.text(NAME).is_empty() && !is_optional(feature));
+        let problem =
+            (!required.is_empty()).then(|| format!("{required} shuts devices out: required = false"));
+        report.row(
+            "optional",
+            self.names("uses-feature", is_optional),
+            problem.or_else(|| self.broken(&OPTIONAL)),
+        );
+        report.equal("permissions", &self.names("uses-permission", |_| true), PERMISSIONS);
 
-        let application = self.one("application");
+        report.equal("activity", self.one("activity").text(NAME), "android.app.NativeActivity");
+        report.row("launcher", "exported, MAIN, LAUNCHER", self.broken(&LAUNCHER));
+        report.row("headsets", "immersive by OpenXR", self.no_headset());
+        let changes = self.one("activity").number("android:configChanges").unwrap_or(0);
+        let lost = CONFIG_CHANGES & !changes;
+        let problem = (lost != 0).then(|| format!("changes {lost:#x} of configChanges would start it anew"));
+        report.row(
+            "screen",
+            "landscape, full, goes on when the device changes",
+            self.broken(&SCREEN).or(problem),
+        );
+        self.check_files(archive, report);
+    }
+
+    /// Why headsets would not start it as an immersive application, or not let it find its runtime.
+    fn no_headset(&self) -> Option<String> {
+        let libraries = NATIVE_LIBRARIES.map(|name| [(NAME, name), (REQUIRED, "false")]);
+        let libraries = libraries
+            .iter()
+            .map(|attributes| rule("uses-native-library", attributes, "Android would not load it"));
+        let properties = PROPERTIES.map(|(name, value)| [(NAME, name), (VALUE, value)]);
+        let properties = properties
+            .iter()
+            .map(|attributes| rule("property", attributes, "Android XR would show a flat panel"));
+        let rules: Vec<Rule<'_>> = libraries.chain(properties).collect();
+        let devices = self.meta_data("com.oculus.supportedDevices");
+        let missing = DEVICES.iter().find(|device| !devices.split('|').any(|listed| listed == **device));
+        let problem = missing.map(|device| format!("com.oculus.supportedDevices should list {device}"));
+        self.broken(HEADSETS.iter().chain(&rules)).or(problem)
+    }
+
+    /// Adds rows for the files that the manifest names.
+    fn check_files(&self, archive: &Archive, report: &mut Report) {
         let problem = (!archive.has(&self.icon)).then(|| "no such file".to_owned());
         report.row("icon", self.icon.as_str(), problem);
-        report.equal("label", application.text("android:label"), "yoro");
-        let extracted = self.unpacks_libraries();
-        let problem = (!extracted && archive.compresses_libraries())
+        report.equal("label", self.one("application").text("android:label"), "yoro");
+        let unpacked = self.unpacks_libraries();
+        let problem = (!unpacked && archive.compresses_libraries())
             .then(|| "compressed libraries must be unpacked (extract_native_libs)".to_owned());
-        report.row("libraries", if extracted { "unpacked at installation" } else { "in the APK" }, problem);
-    }
-
-    fn check_features(&self, report: &mut Report) {
-        let version = self.all("uses-feature").find_map(|element| element.number("android:glEsVersion"));
-        let shown = version.map(|v| format!("{}.{}", v >> 16, v & 0xffff)).unwrap_or_default();
-        report.equal("OpenGL ES", &shown, "3.0");
-        let named = self.all("uses-feature").filter(|element| !element.text("android:name").is_empty());
-        let (optional, required): (Vec<_>, Vec<_>) =
-            named.partition(|element| element.is("android:required") == Some(false));
-        let names = |elements: &[&Element]| {
-            let names: Vec<&str> = elements.iter().map(|element| element.text("android:name")).collect();
-            names.join(" ")
-        };
-        let missing = !optional.iter().any(|e| e.text("android:name") == "android.hardware.vr.headtracking");
-        let problem = if !required.is_empty() {
-            Some(format!("{} shuts devices out: required = false", names(&required)))
-        } else {
-            missing.then(|| "android.hardware.vr.headtracking should be optional".to_owned())
-        };
-        report.row("optional", names(&optional), problem);
-    }
-
-    fn check_activity(&self, archive: &Archive, report: &mut Report) {
-        let activity = self.one("activity");
-        report.equal("activity", activity.text("android:name"), ACTIVITY);
-        let has = |element, name: &str| self.all(element).any(|e| e.text("android:name") == name);
-        let problem = if activity.is("android:exported") != Some(true) {
-            Some("not exported: Android does not start it")
-        } else if !has("action", "android.intent.action.MAIN")
-            || !has("category", "android.intent.category.LAUNCHER")
-        {
-            Some("no intent filter with MAIN and LAUNCHER: it would not be among the applications")
-        } else {
-            None
-        };
-        report.row("launcher", "exported, MAIN, LAUNCHER", problem.map(str::to_owned));
-
-        let value = |name: &str| {
-            let data = self.all("meta-data").find(|e| e.text("android:name") == name);
-            data.map(|element| element.text("android:value").to_owned()).unwrap_or_default()
-        };
-        report.row("headsets", "immersive by OpenXR", self.no_headset(&has, &value));
-
-        let landscape = activity.number("android:screenOrientation") == Some(0);
-        let themed = !self.one("application").text("android:theme").is_empty();
-        let changes = activity.number("android:configChanges").unwrap_or(0);
-        let lost = CONFIG_CHANGES & !changes;
-        let problem = if !landscape {
-            Some("orientation should be landscape".to_owned())
-        } else if lost != 0 {
-            Some(format!("changes {lost:#x} of configChanges would start it anew"))
-        } else if activity.is("android:resizeableActivity") != Some(false) {
-            Some("should not be resizeable: in a split screen the lenses' centres are wrong".to_owned())
-        } else {
-            (!themed).then(|| "the theme is missing: a title bar would be in the picture".to_owned())
-        };
-        report.row("screen", "landscape, full, goes on when the device changes", problem);
-
-        let name = self.all("meta-data").find(|e| e.text("android:name") == "android.app.lib_name");
-        let name = name.map(|element| element.text("android:value")).unwrap_or_default();
-        let absent: Vec<String> = ARCHITECTURES
-            .iter()
-            .map(|architecture| format!("lib/{}/lib{name}.so", architecture.abi))
-            .filter(|path| !archive.has(path))
-            .collect();
+        report.row("libraries", if unpacked { "unpacked at installation" } else { "in the APK" }, problem);
+        let name = self.meta_data("android.app.lib_name");
+        let paths = ARCHITECTURES.map(|architecture| format!("lib/{}/lib{name}.so", architecture.abi));
+        let absent: Vec<String> = paths.into_iter().filter(|path| !archive.has(path)).collect();
         let problem = if name != LIBRARY {
             Some(format!("should be {LIBRARY}"))
         } else {
@@ -237,46 +277,18 @@ impl Manifest {
     }
 }
 
-impl Manifest {
-    /// Why headsets would not start it as an immersive application, or not let it find its runtime.
-    fn no_headset(
-        &self,
-        has: &dyn Fn(&'static str, &str) -> bool,
-        value: &dyn Fn(&str) -> String,
-    ) -> Option<String> {
-        if let Some(category) = IMMERSIVE.iter().find(|category| !has("category", category)) {
-            return Some(format!("no category {category}: headsets would show a flat panel"));
-        }
-        if self.one("provider").text("android:authorities") != AUTHORITIES {
-            return Some("no queries for the runtime brokers: headsets would show a flat panel".to_owned());
-        }
-        if let Some(service) = SERVICES.iter().find(|service| !has("action", service)) {
-            return Some(format!("no query for {service}: an installed runtime would not reach its service"));
-        }
-        let optional = |name: &&&str| {
-            let mut libraries = self.all("uses-native-library");
-            libraries.any(|e| e.text("android:name") == **name && e.is("android:required") == Some(false))
-        };
-        if let Some(library) = NATIVE_LIBRARIES.iter().find(|name| !optional(name)) {
-            return Some(format!(
-                "{library} should be an optional uses-native-library: Android would not load it"
-            ));
-        }
-        let property = |(name, value): &&(&str, &str)| {
-            let mut properties = self.all("property");
-            properties.any(|e| e.text("android:name") == *name && e.text("android:value") == *value)
-        };
-        if let Some((name, value)) = PROPERTIES.iter().find(|wanted| !property(wanted)) {
-            return Some(format!(
-                "the property {name} should be {value}: Android XR would show a flat panel"
-            ));
-        }
-        if let Some((name, fit)) = META_DATA.iter().find(|(name, fit)| !fit.contains(&value(name).as_str())) {
-            return Some(format!("the meta-data {name} should be {}", fit[0]));
-        }
-        let devices = value("com.oculus.supportedDevices");
-        let missing = DEVICES.iter().find(|device| !devices.split('|').any(|listed| listed == **device));
-        missing.map(|device| format!("com.oculus.supportedDevices should list {device}"))
+/// Reads `"text" (Raw: "text")`, `(type 0x10)0x1d (Raw: "29")`, a boolean `(type 0x12)0x0`, or a resource `@0x7f050000`.
+fn value(dumped: &str) -> &str {
+    if let Some(text) = dumped.strip_prefix('"') {
+        return text.split('"').next().unwrap_or_default();
+    }
+    let typed = dumped.strip_prefix("(type ").and_then(|rest| rest.split_once(')'));
+    let (kind, value) = typed.unwrap_or(("", dumped));
+    let value = value.split(' ').next().unwrap_or_default();
+    match (kind, value) {
+        ("0x12", "0x0") => "false",
+        ("0x12", _) => "true",
+        _ => value,
     }
 }
 
@@ -302,13 +314,6 @@ mod tests {
         report
     }
 
-    #[track_caller]
-    fn changed_fails(from: &str, to: &str, what: &str) {
-        assert!(TREE.contains(from), "{from}");
-        let report = report(&TREE.replacen(from, to, 1), BADGING, &FILES);
-        assert_eq!(report.problems(), [what], "{report}");
-    }
-
     #[test]
     fn the_manifest_passes() {
         let report = report(TREE, BADGING, &FILES);
@@ -318,60 +323,63 @@ mod tests {
 
     #[test]
     fn every_change_is_seen() {
-        changed_fails("package=\"io.github.yoro\"", "package=\"rust.yoro\"", "package");
-        changed_fails(
-            "minSdkVersion(0x0101020c)=(type 0x10)0x1d",
-            "minSdkVersion(0x0101020c)=(type 0x10)0x17",
-            "API level",
-        );
-        changed_fails("targetSdkVersion(0x01010270)=(type 0x10)0x22", "x=(type 0x10)0x22", "API level");
-        changed_fails("(type 0x11)0x30000", "(type 0x11)0x30001", "OpenGL ES");
-        changed_fails(
-            "E: application ",
-            "E: uses-permission (line=1)\n A: android:name(0x01010003)=\"android.permission.CAMERA\"\n E: application ",
-            "permissions",
-        );
-        changed_fails("A: android:required(0x0101028e)=(type 0x12)0x0", "", "optional");
-        changed_fails("\"android.hardware.vr.headtracking\"", "\"android.hardware.other\"", "optional");
-        changed_fails("\"android.app.NativeActivity\"", "\"android.app.Activity\"", "activity");
-        changed_fails(
-            "exported(0x01010010)=(type 0x12)0xffffffff",
-            "exported(0x01010010)=(type 0x12)0x0",
-            "launcher",
-        );
-        changed_fails("android.intent.category.LAUNCHER", "android.intent.category.HOME", "launcher");
-        changed_fails("com.oculus.intent.category.VR", "com.oculus.intent.category.2D", "headsets");
-        changed_fails("IMMERSIVE_HMD", "PANEL", "headsets");
-        changed_fails("org.khronos.openxr.runtime_broker;", "", "headsets");
-        changed_fails("com.htc.intent.category.VRAPP", "com.htc.intent.category.2D", "headsets");
-        changed_fails("org.khronos.openxr.OpenXRRuntimeService", "org.khronos.openxr.Other", "headsets");
-        changed_fails("com.oculus.vr.focusaware", "com.oculus.vr.other", "headsets");
-        changed_fails("\"pvr.app.type\"", "\"pvr.app.kind\"", "headsets");
-        changed_fails("\"OpenXR\" (Raw", "\"PXR\" (Raw", "headsets");
-        changed_fails("quest3|", "", "headsets");
-        changed_fails("\"all|", "\"", "headsets");
-        changed_fails("libopenxr.google.so", "libopenxr.other.so", "headsets");
-        changed_fails("libopenxr_forwardloader.oculus.so", "libother.so", "headsets");
-        changed_fails("FULL_SPACE_UNMANAGED", "HOME_SPACE", "headsets");
-        changed_fails(
-            "screenOrientation(0x0101001e)=(type 0x10)0x0",
-            "screenOrientation(0x0101001e)=(type 0x10)0x1",
-            "screen",
-        );
-        changed_fails("(type 0x11)0x40007ffc", "(type 0x11)0x4a0", "screen");
-        changed_fails(
-            "resizeableActivity(0x010104f6)=(type 0x12)0x0",
-            "resizeableActivity(0x010104f6)=(type 0x12)0xffffffff",
-            "screen",
-        );
-        changed_fails("android:theme", "android:other", "screen");
-        changed_fails("\"yoro_android\"", "\"yoro\"", "its library");
-        changed_fails("android:label(0x01010001)=\"yoro\"", "android:label(0x01010001)=\"\"", "label");
-        changed_fails(
-            "extractNativeLibs(0x010104ea)=(type 0x12)0xffffffff",
-            "extractNativeLibs(0x010104ea)=(type 0x12)0x0",
-            "libraries",
-        );
+        let changes = [
+            ("package=\"io.github.yoro\"", "package=\"rust.yoro\"", "package"),
+            (
+                "minSdkVersion(0x0101020c)=(type 0x10)0x1d",
+                "minSdkVersion(0x0101020c)=(type 0x10)0x17",
+                "API level",
+            ),
+            ("targetSdkVersion(0x01010270)=(type 0x10)0x22", "x=(type 0x10)0x22", "API level"),
+            ("(type 0x11)0x30000", "(type 0x11)0x30001", "OpenGL ES"),
+            (
+                "E: application ",
+                "E: uses-permission (line=1)\n A: android:name(0x01010003)=\"android.permission.CAMERA\"\n E: application ",
+                "permissions",
+            ),
+            ("A: android:required(0x0101028e)=(type 0x12)0x0", "", "optional"),
+            ("\"android.hardware.vr.headtracking\"", "\"android.hardware.other\"", "optional"),
+            ("\"android.app.NativeActivity\"", "\"android.app.Activity\"", "activity"),
+            ("exported(0x01010010)=(type 0x12)0xffffffff", "exported(0x01010010)=(type 0x12)0x0", "launcher"),
+            ("android.intent.category.LAUNCHER", "android.intent.category.HOME", "launcher"),
+            ("com.oculus.intent.category.VR", "com.oculus.intent.category.2D", "headsets"),
+            ("IMMERSIVE_HMD", "PANEL", "headsets"),
+            ("org.khronos.openxr.runtime_broker;", "", "headsets"),
+            ("com.htc.intent.category.VRAPP", "com.htc.intent.category.2D", "headsets"),
+            ("org.khronos.openxr.OpenXRRuntimeService", "org.khronos.openxr.Other", "headsets"),
+            ("com.oculus.vr.focusaware", "com.oculus.vr.other", "headsets"),
+            ("\"pvr.app.type\"", "\"pvr.app.kind\"", "headsets"),
+            ("\"OpenXR\" (Raw", "\"PXR\" (Raw", "headsets"),
+            ("quest3|", "", "headsets"),
+            ("\"all|", "\"", "headsets"),
+            ("libopenxr.google.so", "libopenxr.other.so", "headsets"),
+            ("libopenxr_forwardloader.oculus.so", "libother.so", "headsets"),
+            ("FULL_SPACE_UNMANAGED", "HOME_SPACE", "headsets"),
+            (
+                "screenOrientation(0x0101001e)=(type 0x10)0x0",
+                "screenOrientation(0x0101001e)=(type 0x10)0x1",
+                "screen",
+            ),
+            ("(type 0x11)0x40007ffc", "(type 0x11)0x4a0", "screen"),
+            (
+                "resizeableActivity(0x010104f6)=(type 0x12)0x0",
+                "resizeableActivity(0x010104f6)=(type 0x12)0xffffffff",
+                "screen",
+            ),
+            ("android:theme", "android:other", "screen"),
+            ("\"yoro_android\"", "\"yoro\"", "its library"),
+            ("android:label(0x01010001)=\"yoro\"", "android:label(0x01010001)=\"\"", "label"),
+            (
+                "extractNativeLibs(0x010104ea)=(type 0x12)0xffffffff",
+                "extractNativeLibs(0x010104ea)=(type 0x12)0x0",
+                "libraries",
+            ),
+        ];
+        for (from, to, what) in changes {
+            assert!(TREE.contains(from), "{from}");
+            let report = report(&TREE.replacen(from, to, 1), BADGING, &FILES);
+            assert_eq!(report.problems(), [what], "{from}: {report}");
+        }
     }
 
     #[test]
