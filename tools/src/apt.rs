@@ -1,4 +1,4 @@
-//! What is needed of the system, and apt, which brings it.
+//! Needs of the system, and apt, which installs them.
 
 use std::env;
 use std::ffi::OsStr;
@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::{Context as _, bail};
 
-/// Whoever updates lists or installs holds this. Debian's container images run a hook after every update, even that of
+/// Held while apt updates lists or installs. Debian's container images run a hook after every update, even that of
 /// a private state, which removes all packages that wait for installation.
 static TURN: Mutex<()> = Mutex::new(());
 
@@ -23,9 +23,9 @@ pub fn turn() -> MutexGuard<'static, ()> {
 pub struct Need {
     /// Its name, for people.
     pub what: &'static str,
-    /// Where it is, or what is wrong.
+    /// Its place, or the problem.
     pub found: Result<String, String>,
-    /// What to do when it is missing.
+    /// The remedy when it is missing.
     pub remedy: String,
     /// Debian's packages that bring it.
     pub packages: &'static [&'static str],
@@ -88,7 +88,7 @@ pub fn find_program(name: impl AsRef<OsStr>) -> Option<PathBuf> {
     env::split_paths(&path).map(|folder| folder.join(name.as_ref())).find(|program| program.is_file())
 }
 
-/// Whether [`install`] can do its work without asking anybody for anything.
+/// True if [`install`] can do its work without asking anybody for anything.
 pub fn installs_by_itself() -> bool {
     is_root() && find_program("apt-get").is_some()
 }

@@ -20,7 +20,7 @@ pub const TRIPLE: &str = "aarch64-unknown-linux-gnu";
 const PACKAGES: [&str; 5] = ["libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri", "libc6-dev"];
 const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 
-/// Installs, without asking, what compiling for arm64 needs, and fetches what its programs run in; the folder.
+/// Installs, without asking, what compiling for arm64 needs, and fetches what its programs run in. Returns the folder.
 ///
 /// # Errors
 /// When something cannot be had on this machine.
@@ -35,7 +35,7 @@ pub fn fetch() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Compiles the simulated Android host; its launcher: `launcher APK SCRIPT ...`.
+/// Compiles the simulated Android host. Returns its launcher: `launcher APK SCRIPT ...`.
 ///
 /// # Errors
 /// When it does not compile although everything is there.
@@ -88,7 +88,7 @@ impl System {
     }
 }
 
-/// Downloads the packages and all that they need; their files.
+/// Downloads the packages and all that they need, and returns their files.
 fn download(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
     apt.update()?;
     let libgcc = newest_libgcc(&apt.names("libgcc-")?)
@@ -98,7 +98,7 @@ fn download(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
     apt.download(&packages)
 }
 
-/// Of package names, one per line, the `libgcc-N-dev` of the largest number.
+/// Returns the `libgcc-N-dev` of the largest number among package names, one per line.
 fn newest_libgcc(names: &str) -> Option<String> {
     let number = |name: &str| name.strip_prefix("libgcc-")?.strip_suffix("-dev")?.parse::<u32>().ok();
     let newest = names.lines().filter_map(number).max()?;
@@ -106,7 +106,7 @@ fn newest_libgcc(names: &str) -> Option<String> {
 }
 
 /// A cargo that compiles and links for arm64 with `--target` [`TRIPLE`], for which it fetches and installs what is missing.
-/// What it compiles can unwind.
+/// Panics in its programs unwind.
 ///
 /// # Errors
 /// When something cannot be had on this machine.
@@ -131,7 +131,7 @@ fn command(system: &System, panic: Panic) -> anyhow::Result<Command> {
     Ok(command)
 }
 
-/// Compiles the host for arm64; the program.
+/// Compiles the host for arm64, and returns the program.
 fn build(system: &System, target: &Path) -> anyhow::Result<PathBuf> {
     let mut command = command(system, Panic::Abort)?;
     let arguments =

@@ -14,7 +14,7 @@ pub fn cargo() -> Command {
     command
 }
 
-/// What cargo is told for these packages, or without any for the whole workspace.
+/// Cargo's arguments that choose these packages, or without any the whole workspace.
 pub fn choice(packages: &[String]) -> Vec<&str> {
     if packages.is_empty() {
         return vec!["--workspace"];
@@ -22,7 +22,7 @@ pub fn choice(packages: &[String]) -> Vec<&str> {
     packages.iter().flat_map(|package| ["--package", package.as_str()]).collect()
 }
 
-/// Shows the command that follows.
+/// Prints the command that follows.
 pub fn announce(arguments: &[&str]) {
     eprintln!("$ cargo {}", arguments.join(" "));
 }
@@ -49,13 +49,13 @@ pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
     }
 }
 
-/// Runs cargo and says whether it went well.
+/// Runs cargo, and returns true if it succeeds.
 pub fn succeeds(arguments: &[&str], environment: &[(&str, &str)]) -> bool {
     announce(arguments);
     cargo().args(arguments).envs(environment.iter().copied()).status().is_ok_and(|status| status.success())
 }
 
-/// What cargo prints for programs to read; what it tells people goes on to standard error.
+/// Runs cargo, and returns its standard output. What it prints for people goes on to standard error.
 ///
 /// # Errors
 /// When it fails.

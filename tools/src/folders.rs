@@ -1,4 +1,4 @@
-//! Where the workspace and its target folder are; writing files there.
+//! The folders of the workspace and of its target, and files in them.
 
 use std::fs;
 use std::path::{Path, PathBuf};

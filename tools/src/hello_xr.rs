@@ -17,12 +17,12 @@ const RELEASE: &str = "sid";
 const PACKAGE: &str = "libopenxr-utils";
 /// Tests do without it where it cannot be had.
 const VALIDATION: &str = "openxr-layer-corevalidation";
-/// Of all that they depend on, what Monado's folder does not have.
+/// Those of their dependencies that Monado's folder does not have.
 const UNPACKED: [&str; 4] = ["libopenxr-utils_", "libopenxr-loader1_", "libjsoncpp", VALIDATION];
 const WITHOUT: [&str; 1] = ["./usr/share/*"];
 const LOADER: &str = "libopenxr_loader.so.1";
 
-/// Sets it up; how it is used.
+/// Sets it up, and returns how to use it.
 ///
 /// # Errors
 /// When it cannot be had on this machine.

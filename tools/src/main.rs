@@ -1,4 +1,4 @@
-//! `cargo tools`: what maintainers run.
+//! `cargo tools`: the commands that only maintainers run.
 
 mod spirv;
 
@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use yoro_tools::{hello_xr, monado, shader_cost};
 
-/// What maintainers of yoro run
+/// Commands for maintainers of yoro
 #[derive(Parser)]
 #[command(name = "cargo tools", bin_name = "cargo tools", arg_required_else_help = true)]
 struct Arguments {
@@ -18,7 +18,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Print what the shader programs cost on mobile GPUs, by Mesa's compilers: instructions, registers, waves, fetches, spills
+    /// Print the cost of the shader programs on mobile GPUs, by Mesa's compilers: instructions, registers, waves, fetches, spills
     ShaderCost {
         /// Only programs whose names contain this
         filter: Option<String>,

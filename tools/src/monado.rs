@@ -16,7 +16,7 @@ use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher
 const RELEASE: &str = "trixie";
 /// Monado; the version is fixed, so that every machine tests with the same one.
 const MONADO: [&str; 2] = ["monado-service=25.0.0+dfsg-2", "libopenxr1-monado=25.0.0+dfsg-2"];
-/// What it draws with: lavapipe, and EGL for the application.
+/// Its drivers: lavapipe, and EGL for the application.
 const MESA: [&str; 5] = ["mesa-vulkan-drivers", "libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri"];
 /// Needed by nothing here, and large.
 const WITHOUT: [&str; 12] = [
@@ -33,10 +33,10 @@ const WITHOUT: [&str; 12] = [
     "./var/*",
     "./etc/*",
 ];
-/// Where in the root the runtime's manifest is.
+/// The runtime's manifest in the root.
 pub const MANIFEST: &str = "usr/share/openxr/1/openxr_monado.json";
 
-/// Sets it up; how it is used.
+/// Sets it up, and returns how to use it.
 ///
 /// # Errors
 /// When it cannot be had on this machine.
@@ -49,7 +49,7 @@ pub fn usage() -> anyhow::Result<String> {
     ))
 }
 
-/// The folder with both programs: fetches and unpacks them, unless what is there is complete.
+/// Fetches and unpacks both programs, unless what is there is complete. Returns their folder.
 ///
 /// # Errors
 /// When it cannot be had on this machine.
@@ -77,7 +77,7 @@ pub fn make() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// What begins the command line of a program that is to have the libraries of this root, after those in the folders `first`.
+/// The beginning of a command line that gives a program the libraries of this root, after those in the folders `first`.
 pub fn linker(root: &Path, first: &[PathBuf]) -> String {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");

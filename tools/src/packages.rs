@@ -102,7 +102,7 @@ impl PrivateApt {
         Ok(String::from_utf8_lossy(&names).into_owned())
     }
 
-    /// Downloads packages and all that they need; their files. A package may be followed by `=VERSION`.
+    /// Downloads packages and all that they need, and returns their files. A package may be followed by `=VERSION`.
     ///
     /// # Errors
     /// When apt-get fails.
@@ -173,7 +173,7 @@ pub fn debian_sources(releases: &[&str]) -> anyhow::Result<String> {
     Ok(releases.iter().map(line).collect())
 }
 
-/// Of `place component` lines, the place of Debian itself: not that of its security updates, nor somebody else's.
+/// Returns the place of Debian itself among `place component` lines: not that of its security updates, nor somebody else's.
 fn debian(targets: &str) -> Option<&str> {
     let mut places = targets.lines().filter_map(|line| line.split_once(' '));
     let is_debian = |place: &str| place.trim_end_matches('/').ends_with("/debian");

@@ -21,7 +21,7 @@ pub struct Rust {
     version: (u32, u32),
 }
 
-/// What a panic does.
+/// The behaviour of a panic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panic {
     /// It ends the process.
@@ -99,8 +99,8 @@ impl Rust {
         Ok(command)
     }
 
-    /// Has a command use this Rust: cargo's subcommands take the first cargo in PATH. What the cargo that started this
-    /// program has set for its own must not reach it.
+    /// Makes a command use this Rust: cargo's subcommands take the first cargo in PATH. Variables that the cargo of this
+    /// program has set must not reach it.
     ///
     /// # Errors
     /// When PATH cannot be extended.
@@ -118,7 +118,7 @@ impl Rust {
     }
 }
 
-/// Has cargo compile std from its source, without backtraces: there are no symbols to show.
+/// Makes cargo compile std from its source, without backtraces: there are no symbols to show.
 pub fn build_std(command: &mut Command, panic: Panic) {
     let (crates, features) = match panic {
         Panic::Abort => ("std,panic_abort", ""),

@@ -6,7 +6,7 @@ use anyhow::bail;
 use yoro_tools::cargo;
 use yoro_tools::folders::target_folder;
 
-/// Has it written to `target/kit`; the folder.
+/// Writes it to `target/kit`, and returns the folder.
 ///
 /// # Errors
 /// When the program that writes it does not compile, or the folder cannot be written.

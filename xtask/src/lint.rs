@@ -1,13 +1,13 @@
-//! What can be said about the source without running it.
+//! Checks of the source that do not run it.
 
 use anyhow::{Context as _, bail};
 use serde_json::Value;
 use yoro_tools::cargo;
 
-/// What others could take from a registry: the library's core and what it stands on.
+/// The packages that others could take from a registry: the library's core and what it stands on.
 const PUBLISHED: [&str; 3] = ["yoro-shaders", "yoro-gl", "yoro"];
 
-/// Looks at everything, even when something was found.
+/// Runs every check, even after one has found something.
 ///
 /// # Errors
 /// When something was found.
@@ -34,7 +34,7 @@ pub fn lint() -> anyhow::Result<()> {
     if !failed.is_empty() {
         bail!("{} found something: see above", failed.join(", "));
     }
-    println!("lint: nothing to say");
+    println!("lint: nothing found");
     Ok(())
 }
 
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn libraries_are_told_from_programs() {
+    fn libraries_are_distinguished_from_programs() {
         let metadata = r#"{"packages": [
             {"name": "yoro", "targets": [{"kind": ["test"]}, {"kind": ["lib"]}]},
             {"name": "yoro-app", "targets": [{"kind": ["bin"]}]},

@@ -27,9 +27,9 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Find out which system libraries are missing and install them (apt), or say what to install
+    /// Install missing system libraries with apt, or say what to install
     Setup,
-    /// Set up, then `yoro run`: the built-in scenes, conventional against synthesized, with a report
+    /// Set up, then run `yoro run`: renders the built-in scenes in both ways and writes a report
     Run {
         /// Passed on to `yoro run`
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -37,58 +37,58 @@ enum Task {
     },
     /// Set up, then run all tests
     Test {
-        /// Only tests whose names contain one of these; in documentation, if there is no other
+        /// Run only tests whose names contain one of these; tests in documentation only if no other test fits
         filters: Vec<String>,
-        /// Only tests of these packages, without those in documentation
+        /// Run only the tests of these packages, without those in documentation
         #[arg(long = "package", short, value_name = "NAME")]
         packages: Vec<String>,
         /// Renew the golden images of tests/golden instead of comparing with them
         #[arg(long)]
         bless: bool,
-        /// Processes of tests at a time [default: one for each processor]
+        /// Run this many test processes at a time [default: one for each processor]
         #[arg(long, value_name = "N")]
         jobs: Option<NonZeroUsize>,
     },
     /// Build, sign and check the Android application
     Apk {
-        /// Small and fast, instead of debuggable
+        /// Build a small and fast release instead of a debuggable build
         #[arg(long)]
         release: bool,
         /// Install missing packages (apt) without asking
         #[arg(long)]
         yes: bool,
-        /// An OpenXR loader for the APK: the file that somebody else's libopenxr_loader.so lies in; once for each processor
+        /// Pack this libopenxr_loader.so into the APK; at most one for each processor
         #[arg(long = "openxr-loader", value_name = "FILE")]
         openxr_loaders: Vec<PathBuf>,
     },
-    /// What the Android application would be built with, what is missing, and how to get it
+    /// Print what builds the Android application, what is missing, and how to get it
     Doctor,
-    /// Look whether an APK is as Android wants it
+    /// Check that Android will install and start an APK
     CheckApk {
         /// The APK
         file: PathBuf,
     },
-    /// Make packages of the C library, in target/package: for Linux with pkg-config and CMake files, for Android an AAR
+    /// Pack the C library into target/package: with pkg-config and CMake files for Linux, as an AAR for Android
     Package {
-        /// Only these [default: all]
+        /// Make only these packages [default: all]
         #[arg(long = "target", value_name = "NAME", value_delimiter = ',')]
         targets: Vec<package::Target>,
     },
-    /// Write the shader kit to target/kit: synthesis for engines that want no library
+    /// Write the shader kit into target/kit: synthesis for engines that want no library
     Kit,
-    /// The page: every method in a browser's WebGL 2, as files for any static host
+    /// Build the page, which shows every method in a browser's WebGL 2, as files for any static host
     Web {
-        /// Then serve them on this machine, to browsers here and, by `adb reverse tcp:8080 tcp:8080`, on a phone or headset
+        /// Then serve it to browsers on this machine and, by `adb reverse tcp:8080 tcp:8080`, on a phone or headset
         #[arg(long)]
         serve: bool,
-        /// As they were built before
+        /// Do not build it again
         #[arg(long, requires = "serve")]
         as_built: bool,
-        /// Where to serve; 0 for any free port
+        /// Port to serve at; 0 for any free one
         #[arg(long, default_value_t = 8080, value_name = "NUMBER")]
         port: u16,
     },
-    /// Formatting, clippy, documentation, each library by itself without its default features, and what would be published
+    /// Check formatting, clippy, documentation, each library without its default features, and the packages to publish
     Lint,
 }
 
@@ -103,7 +103,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// False when what was looked at is not as it should be.
+/// Returns false if what was checked is not as it should be.
 fn perform(task: Task) -> anyhow::Result<bool> {
     match task {
         Task::Setup => {
@@ -132,8 +132,12 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::CheckApk { file } => {
             return android::check::check(&file);
         }
-        Task::Package { targets } => drop(package::package(&targets)?),
-        Task::Kit => drop(kit::kit()?),
+        Task::Package { targets } => {
+            package::package(&targets)?;
+        }
+        Task::Kit => {
+            kit::kit()?;
+        }
         Task::Web { serve, as_built, port } => {
             let folder = if as_built { web::built()? } else { web::build()? };
             if serve {

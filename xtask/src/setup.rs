@@ -1,4 +1,4 @@
-//! What the program needs of the system: EGL, OpenGL ES, a driver, OSMesa; and what the tests of Vulkan need: a driver
+//! The system libraries that the program needs: EGL, OpenGL ES, a driver, OSMesa; and those for the tests of Vulkan: a driver
 //! without a GPU, Khronos's validation layer, glslang.
 
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use anyhow::{anyhow, bail};
 use yoro_tools::apt;
 
-/// Something that the system must have, and who brings it.
+/// Something that the system must have, and the packages that bring it.
 struct Need {
     /// For people.
     what: &'static str,
@@ -43,7 +43,6 @@ const DRIVER: Need = Need {
 const OSMESA: Need =
     Need { what: "OSMesa", any_of: &["libOSMesa.so.8", "libOSMesa.so.6"], apt: &["libosmesa6"] };
 
-/// Who loads Vulkan's drivers and layers.
 const VULKAN: Need = Need { what: "the Vulkan loader", any_of: &["libvulkan.so.1"], apt: &["libvulkan1"] };
 const VULKAN_DRIVER: Need = Need {
     what: "a Vulkan driver without a GPU",
@@ -56,7 +55,7 @@ const VALIDATION: Need = Need {
     apt: &["vulkan-validationlayers"],
 };
 const VULKAN_NEEDS: [&Need; 3] = [&VULKAN, &VULKAN_DRIVER, &VALIDATION];
-/// What the samples in C are compiled with, without which their tests are skipped.
+/// Headers for the samples in C, without which their tests are skipped.
 const HEADERS: [Need; 2] = [
     Need { what: "Vulkan's headers", any_of: &["libvulkan.so"], apt: &["libvulkan-dev"] },
     Need { what: "headers of OpenGL ES", any_of: &["libGLESv2.so"], apt: &["libgles-dev", "libegl-dev"] },
@@ -64,7 +63,7 @@ const HEADERS: [Need; 2] = [
 /// Debian's package of glslangValidator.
 const GLSLANG: &[&str] = &["glslang-tools"];
 
-/// Which of the optional libraries are here after set-up.
+/// The optional libraries: true for those that are here after set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Libraries {
     /// Mesa dropped it in version 25.1, so that new distributions do not have it. Only `--gl osmesa` and its
@@ -73,7 +72,7 @@ pub struct Libraries {
 }
 
 impl Libraries {
-    /// Nothing is missing, not even what one can do without.
+    /// True if nothing is missing, not even what is optional.
     pub fn complete(self) -> bool {
         self.osmesa
     }
@@ -112,7 +111,7 @@ pub fn ensure() -> anyhow::Result<Libraries> {
     }
 }
 
-/// The browser that the tests of pages use; it is installed where apt has one.
+/// Returns the browser that the tests of pages use, after installing it where apt has one.
 pub fn browser() -> Option<PathBuf> {
     let find = || ["chromium", "chromium-browser", "google-chrome"].into_iter().find_map(apt::find_program);
     find().or_else(|| {
@@ -157,7 +156,7 @@ pub fn glslang() -> Option<PathBuf> {
     apt::find_program("glslangValidator")
 }
 
-/// What is left is an error unless it is optional.
+/// Fails if something that is not optional is still missing.
 fn conclude(missing: &[&Need], remedy: &str) -> anyhow::Result<Libraries> {
     let required: Vec<&str> =
         missing.iter().filter(|need| need.what != OSMESA.what).map(|need| need.what).collect();
@@ -176,7 +175,7 @@ fn missing(folders: &[PathBuf]) -> Vec<&'static Need> {
     NEEDS.iter().filter(|need| !need.is_in(folders)).collect()
 }
 
-/// Where the dynamic linker looks, as far as that can be told from outside.
+/// The folders that the dynamic linker searches, as far as they are known from outside.
 fn library_folders() -> Vec<PathBuf> {
     let mut folders: BTreeSet<PathBuf> = BTreeSet::new();
     if let Some(path) = env::var_os("LD_LIBRARY_PATH") {
@@ -207,7 +206,7 @@ fn exists(folders: &[PathBuf], name: &str) -> bool {
     })
 }
 
-/// How everything is installed on a distribution without apt, by its os-release file.
+/// The command that installs everything on a distribution without apt, by its os-release file.
 fn advice(release: &str) -> &'static str {
     let value = |key: &str| {
         let line = release.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));

@@ -27,7 +27,7 @@ const PROPERTIES: &str = "Pkg.Desc = Android NDK stand-in\nPkg.Revision = 0.0.1\
 /// cargo-apk takes an empty line for a broken file: there is no newline at the end.
 const PLATFORMS: &str = "NDK_MIN_PLATFORM_LEVEL := 21\nNDK_MAX_PLATFORM_LEVEL := 36";
 
-/// Where the two are.
+/// The folders of the two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StandIn {
     /// For ANDROID_HOME.
@@ -77,14 +77,14 @@ impl StandIn {
         self.ndk.join("toolchains/llvm/prebuilt/linux-x86_64/bin/clang")
     }
 
-    /// What rustc has to be told for Debian's clang to link like the NDK's own.
+    /// The arguments with which Debian's clang links like the NDK's own.
     pub fn link_arguments(&self) -> [String; 2] {
         let sysroot = self.ndk.join("toolchains/llvm/prebuilt/linux-x86_64/sysroot");
         ["-fuse-ld=lld".to_owned(), format!("--sysroot={}", sysroot.display())]
     }
 }
 
-/// Everything that the stand-in depends on, as a number; cargo itself does not notice when a stub changes.
+/// A hash of everything that the stand-in depends on; cargo itself does not notice when a stub changes.
 fn recipe() -> String {
     let mut hasher = DefaultHasher::new();
     (LISTS, CRTBEGIN, UNWIND, PROPERTIES, PLATFORMS, MIN_API, TARGET_API).hash(&mut hasher);
@@ -122,7 +122,7 @@ pub fn make_libraries(folder: &Path, architecture: Architecture, api: u32) -> an
 /// The library that std has for unwinding, of this source: nothing where libc has it all.
 ///
 /// # Errors
-/// As [`make_libraries`].
+/// Those of [`make_libraries`].
 pub fn make_unwinder(folder: &Path, architecture: Architecture, content: &str) -> anyhow::Result<()> {
     let target = format!("--target={}{MIN_API}", architecture.triple);
     let common = folder.join(architecture.triple);

@@ -1,4 +1,4 @@
-//! Which functions Android's public libraries offer.
+//! The functions that Android's public libraries offer.
 
 /// The lists that the stand-in NDK is made of. They hold all of EGL, GLES and libandroid, and of libc and libm what
 /// Rust's std and this project ask for.
@@ -16,9 +16,9 @@ pub const LISTS: [(&str, &str); 8] = [
 /// A public name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Symbol<'a> {
-    /// As the linker knows it.
+    /// Its name for the linker.
     pub name: &'a str,
-    /// Data, not a function.
+    /// True for data, false for a function.
     pub object: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What the application is built for, as in android/Cargo.toml.
+//! The versions of Android and the processors that the application is built for, as in android/Cargo.toml.
 
 /// The oldest Android that the application runs on (Android 10).
 pub const MIN_API: u32 = 29;

@@ -44,7 +44,7 @@ const LIBRARIES: &str = "usr/lib/aarch64-linux-gnu";
 /// Mesa's drivers lack these, those of the GPUs' makers have them.
 const CLAIMED: &str = "+GL_OVR_multiview +GL_OVR_multiview2 +GL_EXT_clip_cull_distance";
 
-/// What one run for one GPU gives.
+/// The results of one run for one GPU.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// Mesa's own version: `26.1.6-1~bpo13+1`.
@@ -53,10 +53,10 @@ pub struct Run {
     pub programs: Vec<Said>,
 }
 
-/// What the driver says of one program.
+/// The driver's statement about one program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Said {
-    /// It compiles and links.
+    /// True if it compiles and links.
     pub ok: bool,
     /// Errors and warnings of compiler and linker.
     pub log: String,
@@ -110,12 +110,12 @@ impl Compilers {
         Ok(compilers)
     }
 
-    /// Those that [`make`](Self::make) has left in a folder.
+    /// The compilers that [`make`](Self::make) has left in a folder.
     pub fn at(folder: PathBuf) -> Self {
         Self { folder }
     }
 
-    /// Where they are.
+    /// Their folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -186,7 +186,7 @@ impl Compilers {
     }
 }
 
-/// What the guest has printed. None when it said nothing of a mobile GPU's driver.
+/// Reads the guest's output; `None` if no driver of a mobile GPU answered.
 fn read(lines: &str, listings: &str) -> Option<Run> {
     let mut values = lines.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
     let driver = values.next()?;

@@ -1,4 +1,4 @@
-//! The GPUs that Mesa compiles for, and how its stand-ins for kernel drivers are told to be one of them.
+//! The GPUs that Mesa compiles for, and how its stand-ins for kernel drivers become one of them.
 
 use std::str::FromStr;
 
@@ -38,11 +38,11 @@ impl Compiler {
 pub struct Gpu {
     /// Its name on the command line and in the table.
     pub name: &'static str,
-    /// What it is, for people.
+    /// Its name for people.
     pub title: &'static str,
     /// Mesa's compiler for it.
     pub compiler: Compiler,
-    /// What FD_GPU_ID or PAN_GPU_ID says.
+    /// The value of FD_GPU_ID or PAN_GPU_ID.
     pub id: &'static str,
     /// The stand-in does not know it: one of its entries is replaced.
     pub replaces: Option<Replacement>,

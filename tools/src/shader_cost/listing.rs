@@ -1,4 +1,4 @@
-//! What the compilers print: statistics and disassembled shaders.
+//! The output of the compilers: statistics and disassembled shaders.
 
 use std::collections::HashMap;
 use std::collections::{BTreeMap, btree_map};
@@ -44,7 +44,7 @@ impl Stage {
 pub struct Statistics(HashMap<String, f64>);
 
 impl Statistics {
-    /// Of `FRAG shader: 437 inst, 191 nops, ...`; None for any other message.
+    /// Reads `FRAG shader: 437 inst, 191 nops, ...`; `None` for any other message.
     pub fn parse(message: &str) -> Option<(Stage, Self)> {
         let (name, list) = message.trim().split_once(" shader: ")?;
         let mut values = HashMap::new();
@@ -212,7 +212,9 @@ impl Code {
         let mut spans: BTreeMap<usize, usize> = BTreeMap::new();
         for &(tail, head) in &self.back_edges {
             match spans.entry(head) {
-                btree_map::Entry::Vacant(vacant) => drop(vacant.insert(tail)),
+                btree_map::Entry::Vacant(vacant) => {
+                    vacant.insert(tail);
+                }
                 btree_map::Entry::Occupied(mut last) => *last.get_mut() = tail.max(*last.get()),
             }
         }
@@ -230,7 +232,7 @@ impl Code {
     }
 }
 
-/// Of an Adreno instruction, the slots that its flags `(rptN)` and `(nopN)` add, and its operation.
+/// Splits an Adreno instruction into the slots that its flags `(rptN)` and `(nopN)` add, and its operation.
 fn flags(line: &str) -> (u32, &str) {
     let (mut rest, mut slots) = (line, 0);
     while let Some((flag, after)) = rest.strip_prefix('(').and_then(|rest| rest.split_once(')')) {

@@ -1,4 +1,4 @@
-//! `cargo tools shader-cost`: what the shader programs cost on mobile GPUs, by Mesa's compilers and without the GPUs.
+//! `cargo tools shader-cost`: the cost of the shader programs on mobile GPUs, by Mesa's compilers and without the GPUs.
 //!
 //! The library makes all programs in a context of this machine, `shader-programs` of tests/ prints their texts, and
 //! [`Compilers`] compile them. What is found is held against `docs/shader-cost.csv`; docs/performance.md says how to read it.
@@ -42,13 +42,13 @@ struct Exception {
 }
 
 impl Exception {
-    /// It is about this shader.
+    /// True if it is about this shader.
     fn is_of(&self, row: &Row) -> bool {
         self.gpu == row.gpu && row.program.starts_with(self.program)
     }
 }
 
-/// What a compiled program must not do.
+/// A fault that a compiled program must not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
     Spills,
@@ -56,7 +56,7 @@ enum Fault {
     FewWaves,
 }
 
-/// Where people find the following.
+/// The file of the following list.
 const EXCEPTIONS_IN: &str = "tools/src/shader_cost/mod.rs";
 
 const EXCEPTIONS: [Exception; 2] = [
@@ -77,7 +77,7 @@ const EXCEPTIONS: [Exception; 2] = [
 const BOTH_OUTPUTS: &str =
     "two registers too many, with both depth and the source map, which no viewer asks for";
 
-/// Which programs on which GPUs, and what to do with the figures.
+/// The choice of programs and GPUs, and what to do with the figures.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Only programs whose names contain this.
@@ -210,7 +210,7 @@ fn refusals(gpu: &Gpu, names: &[String], run: &Run) -> Vec<String> {
     faults
 }
 
-/// What is wrong with a compiled shader.
+/// A fault of a compiled shader, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Finding {
     /// It is an error.
@@ -224,7 +224,7 @@ fn fault(row: &Row) -> Option<Fault> {
     if row.spills > 0 { Some(Fault::Spills) } else { (2 * row.waves < most).then_some(Fault::FewWaves) }
 }
 
-/// None for a shader that is as it should be.
+/// Judges a shader; `None` if it has no fault.
 fn judge(row: &Row) -> Option<Finding> {
     let gpu: Gpu = row.gpu.parse().ok()?;
     let fault = fault(row)?;
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn exceptions_that_are_not_needed_are_told() {
+    fn exceptions_that_are_not_needed_are_listed() {
         let of = |spills| stale(&[row("g52", EXCEPTIONS[0].program, 2, spills)]).count();
         assert_eq!((of(2), of(0)), (0, 1));
         assert_eq!(stale(&[]).count(), 0);

@@ -1,4 +1,4 @@
-//! Rows of `docs/shader-cost.csv`: what each compiled shader costs on each GPU.
+//! Rows of `docs/shader-cost.csv`: the cost of each compiled shader on each GPU.
 
 use std::fmt::Write as _;
 use std::str::FromStr;
@@ -54,7 +54,7 @@ const UNITS: [(&str, &str); 8] = [
 ];
 
 impl Row {
-    /// Of what the driver says of a program; stages that the compiler has removed are left out.
+    /// Reads the driver's statement about a program; stages that the compiler has removed are left out.
     pub fn all(gpu: &Gpu, program: &str, said: &Said) -> Vec<Self> {
         let mut rows: Vec<Self> = Vec::new();
         for (stage, statistics) in said.messages.iter().filter_map(|message| Statistics::parse(message)) {
@@ -108,7 +108,7 @@ impl Row {
         (&self.gpu, &self.program, &self.stage)
     }
 
-    /// Numbers that changes are told of, by name.
+    /// The numbers that are compared, by name.
     fn numbers(&self) -> [(&'static str, u32); 6] {
         [
             ("instructions", self.instructions),
@@ -120,7 +120,7 @@ impl Row {
         ]
     }
 
-    /// What is different from an older row, `instructions 437 -> 440, waves 10 -> 8`; empty when nothing is.
+    /// The differences from an older row, `instructions 437 -> 440, waves 10 -> 8`; empty if there are none.
     pub fn change_from(&self, old: &Self) -> String {
         let pairs = self.numbers().into_iter().zip(old.numbers());
         let changes = pairs.filter(|((_, new), (_, old))| new != old);
@@ -211,7 +211,7 @@ impl Table {
         self.rows.sort_by(|a, b| a.key().cmp(&b.key()));
     }
 
-    /// As [`Table::parse`] reads it.
+    /// The text that [`Table::parse`] reads.
     pub fn to_text(&self) -> String {
         let mut text = format!("# Mesa {}; cargo tools shader-cost --bless\n{COLUMNS}\n", self.mesa);
         let optional = |number: Option<u32>| number.map_or_else(String::new, |number| number.to_string());
@@ -283,7 +283,7 @@ pub mod tests {
     }
 
     #[test]
-    fn changes_are_told_by_number() {
+    fn changes_are_listed_by_number() {
         let (old, new) = (row("a650", "a", 10, 0), row("a650", "a", 8, 2));
         assert_eq!(new.change_from(&old), "waves 10 -> 8, spills 0 -> 2");
         let unrolled = Row { loops: String::new(), ..old.clone() };

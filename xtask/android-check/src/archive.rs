@@ -16,7 +16,7 @@ use super::report::{Report, some};
 /// Mapped out of the APK.
 const RESOURCES: &str = "resources.arsc";
 
-/// What is in an APK.
+/// The content of an APK.
 #[derive(Debug, Default)]
 pub struct Archive {
     entries: BTreeMap<String, Entry>,
@@ -53,7 +53,7 @@ impl Archive {
         Ok(archive)
     }
 
-    /// A file of this name is in it.
+    /// True if a file of this name is in it.
     pub fn has(&self, name: &str) -> bool {
         self.entries.contains_key(name)
     }
@@ -63,7 +63,7 @@ impl Archive {
         self.libraries.iter().map(|(name, content)| (name.as_str(), content.as_slice()))
     }
 
-    /// A native library is compressed.
+    /// True if a native library is compressed.
     pub fn compresses_libraries(&self) -> bool {
         self.entries.iter().any(|(name, entry)| name.starts_with("lib/") && !entry.stored)
     }

@@ -1,4 +1,4 @@
-//! Is an APK as Android wants it? The file itself is asked, not what it was built from.
+//! Checks that Android will install and start an APK. It looks at the file itself, not at what it was built from.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ use crate::{library, manifest, signature};
 /// A release with its built-in scenes is smaller than this, in bytes.
 const SIZE_LIMIT: u64 = 8_000_000;
 
-/// Looks at everything.
+/// Runs every check.
 ///
 /// # Errors
 /// When the file is missing or no APK, or a tool for looking at it is missing.

@@ -1,4 +1,4 @@
-//! A native library: will Android's linker load it, and find what it asks for?
+//! Checks that Android's linker will load a native library, and find every symbol that it needs.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use super::loader;
 use super::public::Public;
 use super::report::{Report, some};
 
-/// What NativeActivity looks for.
+/// The function that NativeActivity calls.
 const ENTRY: &str = "ANativeActivity_onCreate";
 
 /// Adds rows for a library that lies in the APK under this name.
@@ -163,7 +163,7 @@ fn defined<'a>(elf: &'a Elf<'_>) -> impl Iterator<Item = &'a str> {
 mod tests {
     use super::*;
 
-    /// What a small library made here is like.
+    /// A small library that is made here.
     #[derive(Clone)]
     struct Made {
         machine: u16,

@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use goblin::elf::{Elf, header};
 use yoro_tools::ndk::target::ARCHITECTURES;
 
-/// What makes a library a loader.
+/// The function that every loader exports.
 pub const ENTRY: &str = "xrGetInstanceProcAddr";
 
 /// Returns the processor that a loader is for, by its folder in an APK.

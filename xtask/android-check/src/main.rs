@@ -1,5 +1,5 @@
-//! What lies in packages for Android. `check APK` prints whether it is as Android wants it, `loader LIBRARY` which
-//! processor an OpenXR loader is for, and `pack AAR FOLDER` packs the files of a folder.
+//! Archives and libraries for Android. `check APK` checks that Android will install and start it, `loader LIBRARY` prints
+//! the processor that an OpenXR loader is for, and `pack AAR FOLDER` packs the files of a folder.
 //!
 //! A program of its own, so that only those who build for Android wait for its dependencies.
 

@@ -1,4 +1,4 @@
-//! Which functions Android's public libraries offer to an application.
+//! The functions that Android's public libraries offer to an application.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use goblin::elf::section_header::SHN_UNDEF;
 use yoro_tools::ndk::symbols::{LISTS, listed};
 use yoro_tools::ndk::target::{Architecture, MIN_API};
 
-/// Where the check learns what is public.
+/// The source of the public names.
 #[derive(Debug)]
 pub enum Public {
     /// The lists of this project.
@@ -29,7 +29,7 @@ impl Public {
         }
     }
 
-    /// What a library offers to the oldest Android; `None` when it is not public.
+    /// The names that a library offers to the oldest Android; `None` when it is not public.
     ///
     /// # Errors
     /// When a stub of the NDK cannot be read.

@@ -1,15 +1,15 @@
-//! What a check found, as a table.
+//! The findings of a check, as a table.
 
 use std::fmt;
 
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// What was looked at.
+    /// The thing that was checked.
     pub what: String,
-    /// What is there.
+    /// The value that was found.
     pub found: String,
-    /// What is wrong with it.
+    /// The problem with it, if there is one.
     pub problem: Option<String>,
 }
 
@@ -21,7 +21,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Nothing is wrong.
+    /// True if there is no problem.
     pub fn passed(&self) -> bool {
         self.rows.iter().all(|row| row.problem.is_none())
     }
@@ -37,7 +37,7 @@ impl Report {
         self.row(what, if found.is_empty() { "none" } else { found }, problem);
     }
 
-    /// What is wrong.
+    /// The things with a problem.
     #[cfg(test)]
     pub fn problems(&self) -> Vec<&str> {
         let wrong = self.rows.iter().filter(|row| row.problem.is_some());

@@ -21,7 +21,7 @@ use super::toolchain::{self, Surroundings, Toolchain};
 /// `apk_name` of android/Cargo.toml.
 const NAME: &str = "yoro";
 
-/// How to build.
+/// Options of the build.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Small and fast, by the profile `android`, instead of debuggable.
@@ -32,7 +32,7 @@ pub struct Options {
     pub openxr_loaders: Vec<PathBuf>,
 }
 
-/// Builds, signs and checks the APK; where it is.
+/// Builds, signs and checks the APK, and returns its path.
 ///
 /// # Errors
 /// When something is missing or fails, or the result is not as it should be.
@@ -112,7 +112,7 @@ pub fn ready_for_tests() -> anyhow::Result<()> {
     toolchain::ensure(&toolchain, true)
 }
 
-/// What is asked of the linker with any NDK: pages of 16 KiB, and no name that a public library does not have.
+/// Returns the linker's flags for any NDK: pages of 16 KiB, and no name that a public library does not have.
 pub fn link_flags() -> Vec<String> {
     let pages = format!("-Wl,-z,max-page-size={PAGE},-z,common-page-size={PAGE}");
     let mut flags: Vec<String> = [pages.as_str(), "-Wl,-z,defs", "-Wl,--build-id=sha1"]

@@ -11,7 +11,7 @@ use super::keystore;
 
 const CARGO_APK: &str = "0.10.0";
 
-/// cargo-apk of the one version that this works with, in the project's own folder.
+/// Installs cargo-apk, of the one version that this works with, in the project's own folder. Returns its path.
 ///
 /// # Errors
 /// When it cannot be installed.
@@ -51,7 +51,7 @@ fn is_cargo_apk(program: &Path) -> bool {
     version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == wanted)
 }
 
-/// What the building brings along by itself, for people: cargo-apk and the key.
+/// Describes what the build brings along: cargo-apk and the key.
 ///
 /// # Errors
 /// When the target folder is not known.

@@ -9,7 +9,7 @@ use anyhow::{Context as _, bail};
 /// The variable that names the release's keystore; with `_PASSWORD` at its end, the password's.
 const RELEASE: &str = "CARGO_APK_RELEASE_KEYSTORE";
 
-/// Which key a release would be signed with, for people.
+/// Describes the key that a release would be signed with.
 pub fn describe() -> String {
     match env::var_os(RELEASE) {
         Some(path) => format!("{} ({RELEASE})", PathBuf::from(path).display()),
@@ -22,7 +22,7 @@ pub fn describe() -> String {
 pub struct Keystore {
     /// The file.
     pub path: PathBuf,
-    /// Of the keystore and of the key.
+    /// The password of both the keystore and the key.
     pub password: String,
     /// Made for development: Android accepts it, stores do not.
     pub debug: bool,

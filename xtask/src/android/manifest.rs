@@ -1,9 +1,9 @@
-//! What the manifest says beyond what cargo-apk can express.
+//! The parts of the manifest that cargo-apk cannot express.
 
 use anyhow::Context as _;
 use yoro_tools::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
 
-/// The manifest that cargo-apk has written, with [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application.
+/// Completes the manifest that cargo-apk has written: adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application.
 ///
 /// # Errors
 /// When there is no application in it.

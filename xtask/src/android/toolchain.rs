@@ -1,4 +1,4 @@
-//! What the APK is built with: Google's SDK and NDK with rustup's targets, or what stands in for them.
+//! The toolchain for the APK: Google's SDK and NDK with rustup's targets, or the stand-in for them.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use yoro_tools::rust::{Rust, source};
 
 use super::cargo_apk;
 
-/// What the user has, as far as it decides.
+/// The parts of the user's machine that decide between the two toolchains.
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     android_home: Option<PathBuf>,
@@ -21,7 +21,7 @@ pub struct Surroundings {
     targets: Vec<&'static str>,
 }
 
-/// Which of the two ways.
+/// One of the two toolchains.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Toolchain {
     /// The user's own SDK, NDK and rustup targets.
@@ -36,7 +36,7 @@ pub enum Toolchain {
 }
 
 impl Surroundings {
-    /// Of this process.
+    /// Reads them from this process's environment.
     pub fn here() -> Self {
         let rust = Rust::own();
         let has = |triple: &&str| rust.as_ref().is_some_and(|rust| rust.has_target(triple));
@@ -47,14 +47,14 @@ impl Surroundings {
         }
     }
 
-    /// The user wants Google's way.
+    /// True if the user wants Google's toolchain.
     pub fn names_google(&self) -> bool {
         self.android_home.is_some() || self.ndk_root.is_some()
     }
 }
 
 impl Toolchain {
-    /// The user's own where it is complete. With it the reasons against the other way, one sentence each.
+    /// Chooses the user's own where it is complete. Returns the reasons against Google's, too, a sentence each.
     pub fn choose(surroundings: &Surroundings) -> (Self, Vec<String>) {
         let mut against = Vec::new();
         let mut folder = |name: &str, value: &Option<PathBuf>| match value {
@@ -79,7 +79,7 @@ impl Toolchain {
         }
     }
 
-    /// Everything that this way needs.
+    /// The needs of this toolchain.
     pub fn needs(&self) -> Vec<Need> {
         match self {
             Self::Google { sdk, ndk } => google(sdk, ndk),
@@ -135,7 +135,7 @@ fn stand_in() -> Vec<Need> {
     ]
 }
 
-/// Installs what the way lacks, after asking unless `yes`.
+/// Installs what the toolchain lacks, after asking unless `yes`.
 ///
 /// # Errors
 /// When something is still missing: what, and the remedy.
@@ -148,7 +148,8 @@ pub fn ensure(toolchain: &Toolchain, yes: bool) -> anyhow::Result<()> {
     })
 }
 
-/// Which way `cargo xtask apk` would go, and what it lacks, as a text; and whether nothing is missing.
+/// Describes the toolchain that `cargo xtask apk` would choose, and what it lacks. Returns the text, and true if nothing is
+/// missing.
 ///
 /// # Errors
 /// When the target folder is not known.

@@ -14,7 +14,7 @@ use crate::android::{LIBRARY_API, check, library_cargo};
 /// Soname and file: Android's packages know no versions of libraries.
 const LIBRARY: &str = "libyoro.so";
 
-/// Builds and packs `yoro-VERSION.aar`; the file.
+/// Builds and packs `yoro-VERSION.aar`, and returns the file.
 pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
     let header = read(&root().join("app/capi/include/yoro.h"))?;
     let mut files: Vec<(String, Vec<u8>)> = vec![
@@ -57,7 +57,7 @@ pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
 }
 
-/// What every AAR begins with.
+/// The manifest of an AAR.
 pub fn android_manifest(package: &str) -> String {
     format!(
         "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn prefab_is_told_the_version_and_the_level() {
+    fn prefab_has_the_version_and_the_api_level() {
         assert!(prefab().contains(&format!("\"version\": \"{VERSION}\"")));
         assert!(android_manifest("org.yoro.library").contains("minSdkVersion=\"30\""));
         assert!(abi(ARCHITECTURES[0]).contains("\"api\": 30"));

@@ -17,7 +17,7 @@ use crate::android::library_cargo;
 const LIBRARY: &str = "libyoro_layer.so";
 const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
 
-/// Builds and packs `yoro-layer-VERSION.aar`; the file.
+/// Builds and packs `yoro-layer-VERSION.aar`, and returns the file.
 pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
     aar_for(&ARCHITECTURES, folder)
 }

@@ -26,7 +26,7 @@ pub fn aarch64(folder: &Path) -> anyhow::Result<PathBuf> {
     archive(&built, "aarch64", "llvm-strip", folder)
 }
 
-/// Packs `yoro-VERSION-linux-ARCHITECTURE.tar.xz`; the file.
+/// Packs `yoro-VERSION-linux-ARCHITECTURE.tar.xz`, and returns the file.
 fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> anyhow::Result<PathBuf> {
     let name = format!("yoro-{VERSION}-linux-{architecture}");
     let content = folder.join(&name);
@@ -69,7 +69,7 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     Ok(packed)
 }
 
-/// Where a link of docs/library.md leads in a package; None for what is in none.
+/// The target in a package of a link in docs/library.md; `None` if it is not packed.
 fn packaged(target: &str) -> Option<String> {
     let stays = target.starts_with('#') || target == "integration-mistakes.png";
     let example =

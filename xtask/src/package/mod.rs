@@ -1,4 +1,4 @@
-//! What others build in: archives of the C library for Linux, an AAR of it for Android, and one of the OpenXR API layer.
+//! Packages for other people's builds: the C library for Linux and Android, and the OpenXR API layer for Android.
 
 mod android;
 mod layer;
@@ -54,7 +54,7 @@ pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
 struct Built {
     shared: PathBuf,
     archive: PathBuf,
-    /// What the archive has to be linked with, such as `-lm`.
+    /// The libraries that the archive has to be linked with, such as `-lm`.
     needs: Vec<String>,
 }
 
@@ -99,9 +99,9 @@ fn build(cargo: Command, target: Option<&str>, soname: &str, folder: &Path) -> a
     Ok(Built { shared, archive: built.join("libyoro_c.a"), needs })
 }
 
-/// What rustc notes about the libraries that a static one needs, each once.
-fn needs(told: &str) -> Option<Vec<String>> {
-    let line = told.lines().find_map(|line| line.trim().strip_prefix("note: native-static-libs:"))?;
+/// Reads rustc's note about the libraries that a static one needs, each once.
+fn needs(output: &str) -> Option<Vec<String>> {
+    let line = output.lines().find_map(|line| line.trim().strip_prefix("note: native-static-libs:"))?;
     let mut needs: Vec<String> = Vec::new();
     for library in line.split_whitespace() {
         if !needs.iter().any(|known| known == library) {
@@ -117,8 +117,8 @@ mod tests {
 
     #[test]
     fn what_an_archive_needs_is_read_once() {
-        let told = "   Compiling x\nnote: link against\n\nnote: native-static-libs: -lgcc_s -lm -lm -lc\n";
-        assert_eq!(needs(told).unwrap(), ["-lgcc_s", "-lm", "-lc"]);
+        let output = "   Compiling x\nnote: link against\n\nnote: native-static-libs: -lgcc_s -lm -lm -lc\n";
+        assert_eq!(needs(output).unwrap(), ["-lgcc_s", "-lm", "-lc"]);
         assert_eq!(needs("nothing"), None);
     }
 }

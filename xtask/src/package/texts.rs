@@ -51,7 +51,7 @@ pub fn cmake(needs: &[String]) -> String {
     )
 }
 
-/// Whether the package is what `find_package(yoro VERSION)` asks for.
+/// CMake's file that says whether the package is what `find_package(yoro VERSION)` asks for.
 pub fn cmake_version() -> String {
     let soname = soname();
     let series = soname.trim_start_matches("libyoro.so.");
@@ -71,7 +71,7 @@ pub fn cmake_version() -> String {
     )
 }
 
-/// Markdown with other targets of its links, and without links where there is none.
+/// Replaces the targets of Markdown's links; a link without a target becomes its label.
 pub fn with_links(text: &str, mut target: impl FnMut(&str) -> Option<String>) -> String {
     let (mut out, mut rest) = (String::new(), text);
     while let Some((before, label, link, after)) = next_link(rest) {
@@ -85,7 +85,7 @@ pub fn with_links(text: &str, mut target: impl FnMut(&str) -> Option<String>) ->
     out + rest
 }
 
-/// What stands before the first link, its text, its target, and what stands after it.
+/// Splits at the first link: the text before it, its label, its target, and the text after it.
 fn next_link(text: &str) -> Option<(&str, &str, &str, &str)> {
     let middle = text.find("](")?;
     let start = text[..middle].rfind('[')?;

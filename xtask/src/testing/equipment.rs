@@ -12,11 +12,11 @@ use super::binaries::Program;
 use super::summary::Summary;
 use crate::{android, package, setup, web};
 
-/// Something that some tests need.
+/// A program or package that some tests need.
 struct Item {
     /// For people.
     what: &'static str,
-    /// Tests are told where it is by `YORO_TEST_variable`, or by `YORO_TEST_WITHOUT_variable` that they are left out.
+    /// `YORO_TEST_variable` tells tests where it is; with `YORO_TEST_WITHOUT_variable` they are left out.
     variable: &'static str,
     /// The tests that need it: their package, and a part of their names.
     users: &'static [(&'static str, &'static str)],
@@ -46,7 +46,7 @@ static ITEMS: [Item; 9] = [
     Item {
         what: "Chromium",
         variable: "CHROMIUM",
-        // Which of the program's tests open a page is not told by their names.
+        // The names of the program's tests do not say which of them open a page.
         users: &[("yoro-app", "")],
         fetch: || setup::browser().context("it cannot be installed"),
         build: None,
@@ -108,7 +108,7 @@ pub fn is_needed(package: &str, test: &str) -> bool {
     ITEMS.iter().any(|item| item.is_for(package, test))
 }
 
-/// Patterns of the table that fit no test: the tests have other names by now.
+/// Returns the patterns of the table that fit no test, since tests were renamed.
 pub fn stale(programs: &[Program]) -> Vec<String> {
     let users = ITEMS.iter().flat_map(|item| item.users);
     let fits = |(package, part): &(&str, &str)| {
@@ -125,14 +125,14 @@ pub struct Preparation<'scope> {
     items: Vec<(&'static Item, ScopedJoinHandle<'scope, anyhow::Result<PathBuf>>)>,
 }
 
-/// Which of the system's libraries are here that the program can do without.
+/// The optional system libraries: true for those that are here.
 #[derive(Clone, Copy, Debug, Default)]
 struct Libraries {
     osmesa: bool,
     vulkan: bool,
 }
 
-/// What is here.
+/// The equipment of this machine.
 #[derive(Debug, Default)]
 pub struct Equipment {
     libraries: Libraries,
@@ -214,8 +214,8 @@ fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T>
 }
 
 impl Equipment {
-    /// Tells a test program what is here.
-    pub fn tell(&self, command: &mut Command) {
+    /// Sets the variables by which a test program knows what is here.
+    pub fn set_variables(&self, command: &mut Command) {
         if !self.libraries.osmesa {
             command.env("YORO_TEST_WITHOUT_OSMESA", "1");
         }
@@ -248,14 +248,14 @@ mod tests {
     }
 
     #[test]
-    fn tests_are_told_what_is_here_and_what_is_not() {
+    fn variables_say_what_is_here_and_what_is_not() {
         let equipment = Equipment {
             libraries: Libraries { osmesa: true, vulkan: false },
             items: vec![("APK", Some("yoro.apk".into())), ("MONADO", None)],
             ..Equipment::default()
         };
         let mut command = Command::new("test");
-        equipment.tell(&mut command);
+        equipment.set_variables(&mut command);
         let set: Vec<_> = command.get_envs().filter_map(|(name, _)| name.to_str()).collect();
         assert_eq!(set, ["YORO_TEST_APK", "YORO_TEST_WITHOUT_MONADO", "YORO_TEST_WITHOUT_VULKAN"]);
     }

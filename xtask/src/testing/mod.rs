@@ -42,7 +42,7 @@ const UNIT: usize = 60;
 /// More failures than this are no accident, and not retried.
 const RETRIED: usize = 8;
 
-/// Which tests, and how.
+/// The choice of tests, and how to run them.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Only those whose names contain one of these.
@@ -65,10 +65,10 @@ impl Options {
     }
 }
 
-/// What one process runs.
+/// The work of one process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Job {
-    /// Some tests of the program at this place among all.
+    /// These tests of a program, which is named by its index.
     Tests(usize, Vec<String>),
     /// The tests in the documentation of all libraries.
     Documentation,
@@ -77,9 +77,9 @@ enum Job {
 /// All jobs, in groups that run one after the other.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Plan {
-    /// Whatever needs no equipment.
+    /// Tests that need no equipment.
     first: Vec<Job>,
-    /// Whatever needs some.
+    /// Tests that need equipment.
     equipped: Vec<Job>,
     /// [`ALONE`].
     alone: Vec<Job>,
@@ -141,7 +141,7 @@ fn is_alone(program: &str, name: &str) -> bool {
     ALONE.iter().any(|part| format!("{program} {name}").contains(part))
 }
 
-/// Patterns of the tables that fit no test: the tests have other names by now.
+/// Returns the patterns of the tables that fit no test, since tests were renamed.
 fn stale(programs: &[Program]) -> Vec<String> {
     let fits = |part: &&&str| {
         programs.iter().any(|(binary, names)| {
@@ -179,7 +179,7 @@ fn plan(programs: &[Program], options: &Options) -> Plan {
     plan
 }
 
-/// What processes are started with.
+/// A run of the chosen tests.
 struct Run<'a> {
     programs: &'a [Program],
     options: &'a Options,
@@ -218,7 +218,7 @@ impl<'a> Run<'a> {
         if self.options.bless {
             command.env("YORO_BLESS", "1");
         }
-        self.equipment.tell(&mut command);
+        self.equipment.set_variables(&mut command);
         process::run(command, names, &self.folder)
     }
 
@@ -247,7 +247,7 @@ impl<'a> Run<'a> {
             drop(sender);
             for (job, finished) in receiver {
                 let program = self.program(&job);
-                tell(program, &finished, |i| format!("[{:4}/{total}] ", summary.count() + i + 1));
+                print_tests(program, &finished, |i| format!("[{:4}/{total}] ", summary.count() + i + 1));
                 summary.add(program, &finished);
             }
         });
@@ -265,7 +265,7 @@ impl<'a> Run<'a> {
                 if summary.failed.contains(&format!("{} {name}", binary.label)) {
                     let finished = self.process(&Job::Tests(program, vec![name.clone()]));
                     summary.add_retry(&binary.label, &finished);
-                    tell(&binary.label, &finished, |_| String::new());
+                    print_tests(&binary.label, &finished, |_| String::new());
                 }
             }
         }
@@ -273,7 +273,7 @@ impl<'a> Run<'a> {
 }
 
 /// Prints a line for each test, and everything that a process with a failed test has printed.
-fn tell(program: &str, finished: &Finished, count: impl Fn(usize) -> String) {
+fn print_tests(program: &str, finished: &Finished, count: impl Fn(usize) -> String) {
     for (i, test) in finished.tests.iter().enumerate() {
         let word = match test.outcome {
             Outcome::Passed => "ok",

@@ -16,12 +16,12 @@ const TIMEOUT: Duration = Duration::from_secs(900);
 /// Interval at which a process and its output are looked at.
 const POLL: Duration = Duration::from_millis(10);
 
-/// How a test ended.
+/// The outcome of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Well.
+    /// It ended well.
     Passed,
-    /// By a panic, or together with its process.
+    /// It panicked, or its process ended.
     Failed,
     /// It did not run.
     Ignored,
@@ -32,7 +32,7 @@ pub enum Outcome {
 pub struct Test {
     /// Its name.
     pub name: String,
-    /// How it ended.
+    /// Its outcome.
     pub outcome: Outcome,
     /// Its duration.
     pub seconds: f64,
@@ -77,7 +77,7 @@ pub fn run(command: Command, names: Option<&[String]>, folder: &Path) -> Finishe
     finished
 }
 
-/// What a process prints until it ends, its status, and whether it was killed for its silence.
+/// Waits for a process. Returns the lines that it printed, its status, and true if it was killed for its silence.
 fn output(mut command: Command, folder: &Path, start: Instant) -> io::Result<(Vec<Line>, ExitStatus, bool)> {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -120,8 +120,8 @@ fn whole_lines(bytes: &[u8]) -> usize {
     bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1)
 }
 
-/// The test that a line `test NAME ... ` begins, and the rest of the line. With one thread, libtest prints the name before
-/// the test runs, so that it is known which one ends its process.
+/// Splits a line `test NAME ... REST` into the name and the rest. With one thread, libtest prints the name before the test
+/// runs, so that the test that ends its process is known.
 fn started(line: &str) -> Option<(&str, &str)> {
     let (name, rest) = line.strip_prefix("test ")?.split_once(" ... ")?;
     Some((name.trim_end_matches(" - should panic"), rest))
@@ -179,7 +179,7 @@ fn read(names: Option<&[String]>, lines: Vec<Line>, status: ExitStatus, seconds:
     Finished { tests, rest, lines, trouble, seconds }
 }
 
-/// What the process of a failed test printed, without the lines of tests that passed.
+/// The output of a failed test's process, without the lines of tests that passed.
 pub fn shown(lines: &[Line]) -> String {
     let is_noise = |text: &str| text.starts_with("test ") && text.ends_with(" ... ok");
     lines.iter().filter(|line| !is_noise(&line.text)).map(|line| format!("    {}\n", line.text)).collect()

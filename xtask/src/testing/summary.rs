@@ -1,4 +1,4 @@
-//! What all tests together came to, and where the time went.
+//! The sums of all tests, and where the time went.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -24,7 +24,7 @@ pub struct Summary {
     /// Tests that failed beside others and passed alone.
     flaky: Vec<String>,
     ignored: usize,
-    /// What tests had to do without, and how many said so.
+    /// The things that tests had to do without, and how many tests said so.
     left_out: BTreeMap<String, usize>,
 }
 

@@ -9,7 +9,7 @@ use yoro_tools::folders::{make_once, target_folder};
 
 const PACKAGE: &str = "iwer@2.5.0";
 
-/// Fetches it, unless it is here; the script.
+/// Fetches it, unless it is here, and returns the script.
 ///
 /// # Errors
 /// When there is no npm, or it cannot fetch.

@@ -1,4 +1,4 @@
-//! The page: `app/web` compiled for browsers, and what it lies among, as files for any static host.
+//! The page: `app/web` compiled for browsers, and the files around it, for any static host.
 
 mod emulator;
 mod serve;
@@ -17,10 +17,10 @@ pub use serve::serve;
 
 const TRIPLE: &str = "wasm32-unknown-unknown";
 const MODULE: &str = "yoro_web";
-/// What may be transferred of the module, in bytes: phones load it over the air.
+/// The most bytes of the module that may be transferred: phones load it over the air.
 const BUDGET: u64 = 2_000_000;
 
-/// Where the page lies when it is built.
+/// Returns the folder of the built page.
 ///
 /// # Errors
 /// When it is not built.
@@ -32,7 +32,7 @@ pub fn built() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Builds the page; its folder, `target/web`.
+/// Builds the page, and returns its folder, `target/web`.
 ///
 /// # Errors
 /// When something is missing or does not compile, or the module has become too large.
@@ -58,12 +58,12 @@ pub fn build() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Whether there are a Rust and a linker for it.
+/// True if there are a Rust and a linker for it.
 pub fn can_be_built() -> bool {
     Rust::for_target(TRIPLE).is_some_and(|(rust, _)| rust.wasm_linker().is_some())
 }
 
-/// Compiles the module; its file.
+/// Compiles the module, and returns its file.
 fn compile(target: &Path) -> anyhow::Result<PathBuf> {
     let (rust, with_std) = Rust::for_target(TRIPLE).with_context(|| {
         format!(
@@ -87,7 +87,7 @@ fn compile(target: &Path) -> anyhow::Result<PathBuf> {
     Ok(target.join(TRIPLE).join("web").join(MODULE).with_extension("wasm"))
 }
 
-/// Makes the module ready for browsers; its bytes, and those that are transferred.
+/// Makes the module ready for browsers. Returns its size and the size that is transferred, in bytes.
 fn bind(module: &Path, folder: &Path) -> anyhow::Result<(u64, u64)> {
     let mut command = cargo();
     command.args(["run", "--quiet", "--package", "yoro-web-bindgen", "--"]).arg(module).arg(folder);

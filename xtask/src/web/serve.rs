@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 
-/// Longest line of a request that is read, in bytes.
+/// The longest line of a request that is read, in bytes.
 const MAX_LINE: u64 = 8 << 10;
 
 /// Serves a folder until the program is ended.
@@ -61,7 +61,7 @@ fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
     stream.flush()
 }
 
-/// The file that a request's target names; none outside of the folder.
+/// Returns the file that a request's target names; none outside of the folder.
 fn file(folder: &Path, target: &str) -> Option<PathBuf> {
     let path = Path::new(target.split(['?', '#']).next()?.trim_start_matches('/'));
     let inside = path.components().all(|component| matches!(component, Component::Normal(_)));
@@ -69,7 +69,7 @@ fn file(folder: &Path, target: &str) -> Option<PathBuf> {
     inside.then(|| if path.is_dir() { path.join("index.html") } else { path })
 }
 
-/// Browsers run nothing whose type they are not told.
+/// The content type of a file: browsers run nothing without one.
 fn kind(path: &Path) -> &'static str {
     match path.extension().and_then(|extension| extension.to_str()) {
         Some("html") => "text/html; charset=utf-8",
