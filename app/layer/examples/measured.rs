@@ -1,7 +1,7 @@
-//! An OpenXR API layer for measurements. Below the one that is measured it has every view recommended at the size that
-//! YORO_MEASURED_SIZE says (`1680x1760`), and at the session's end tells the median time of a frame, to the standard error
-//! output: from the return of xrWaitFrame until the application's queue is idle after xrEndFrame. What the runtime has the
-//! application wait for its display is not in it.
+//! An OpenXR API layer that measures another one from below. It recommends the size in YORO_MEASURED_SIZE (`1680x1760`)
+//! for every view. When the session ends, it writes the median time of a frame to the standard error output: from the
+//! return of xrWaitFrame until the application's queue is idle after xrEndFrame. So the wait for the display is not
+//! included.
 
 use std::ffi::{CStr, c_char};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
@@ -12,10 +12,10 @@ use ash::vk::Handle as _;
 use openxr_sys as sys;
 use sys::{Handle as _, pfn};
 
-/// Frames in which things are made that last.
+/// The number of first frames that do not count: they create what later ones use.
 const FIRST: usize = 5;
 
-/// The functions of the runtime; one instance in a process is measured.
+/// The functions of the runtime. One instance of a process is measured.
 struct Next {
     get_instance_proc_addr: pfn::GetInstanceProcAddr,
     enumerate_view_configuration_views: pfn::EnumerateViewConfigurationViews,
@@ -25,7 +25,7 @@ struct Next {
     destroy_session: pfn::DestroySession,
 }
 
-/// What is measured.
+/// The measurements of a session.
 struct Measured {
     device: ash::Device,
     queue: vk::Queue,
@@ -40,17 +40,17 @@ fn measured() -> MutexGuard<'static, Option<Measured>> {
     MEASURED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What a loader calls first.
+/// Negotiates the interface. It is the first function that a loader calls.
 ///
 /// # Safety
-/// As the loader's interface says.
+/// `request` points to a complete structure.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn xrNegotiateLoaderApiLayerInterface(
     _: *const sys::NegotiateLoaderInfo,
     _: *const c_char,
     request: *mut sys::NegotiateApiLayerRequest,
 ) -> sys::Result {
-    // SAFETY: promised by the caller.
+    // SAFETY: the loader's structure.
     let request = unsafe { &mut *request };
     request.layer_interface_version = sys::CURRENT_LOADER_API_LAYER_VERSION as u32;
     request.layer_api_version = sys::CURRENT_API_VERSION;

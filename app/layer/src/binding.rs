@@ -84,8 +84,8 @@ impl Binding {
         }
     }
 
-    /// Remembers the current OpenGL context. It is current again when the result is dropped, whatever the runtime does in
-    /// between.
+    /// Remembers the current OpenGL context. It is current again when the result is dropped, whatever the runtime does
+    /// in between.
     ///
     /// # Safety
     /// The session is live.

@@ -1,15 +1,15 @@
-//! Which view is offered to the application, and what of the image that it submits is which eye's.
+//! The view that the application is offered, and the parts of its image that the eyes get.
 
 use openxr_sys as sys;
 use yoro::eyes::{DepthRange, Eye, EyePair, EyesError, Frustum, GuardBand, Pose, Warp};
 
-/// A pixel's share by which edges may miss the pixel grid: rounding of the angles in between.
+/// The part of a pixel by which edges may miss the pixel grid, because angles are rounded on their way.
 const ROUNDING: f32 = 2e-3;
 
-/// Why an image cannot be turned into two.
+/// The reason why an image cannot be turned into two.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GeometryError {
-    /// The eyes, or what was submitted for one, fit no synthesis.
+    /// Nothing can be synthesized between the eyes, or from the submitted view.
     #[error(transparent)]
     Eyes(#[from] EyesError),
     /// minDepth and maxDepth are not in order.
@@ -22,7 +22,7 @@ pub enum GeometryError {
         /// maxDepth as submitted.
         max: f32,
     },
-    /// Rounding took the rectangle to be read out of the image.
+    /// The rectangle to read lies outside the image, because of rounding.
     #[error("the eyes' rectangles do not fit the submitted image of {}x{} pixels", size[0], size[1])]
     Rectangle {
         /// Width and height of the submitted rectangle.
@@ -42,7 +42,7 @@ pub fn pose(pose: sys::Posef) -> Pose {
     Pose { position: glam::Vec3::new(p.x, p.y, p.z), orientation: glam::Quat::from_xyzw(q.x, q.y, q.z, q.w) }
 }
 
-/// The counterpart of [`pose`].
+/// Converts a pose to OpenXR.
 pub fn xr_pose(pose: Pose) -> sys::Posef {
     let (p, q) = (pose.position, pose.orientation);
     sys::Posef {
@@ -51,12 +51,12 @@ pub fn xr_pose(pose: Pose) -> sys::Posef {
     }
 }
 
-/// A field of view of OpenXR as tangents.
+/// Converts a field of view of OpenXR to tangents.
 pub fn frustum(fov: sys::Fovf) -> Frustum {
     Frustum::from_fov(fov.angle_left, fov.angle_right, fov.angle_up, fov.angle_down)
 }
 
-/// The counterpart of [`frustum`].
+/// Converts tangents to a field of view of OpenXR.
 pub fn xr_fov(frustum: Frustum) -> sys::Fovf {
     sys::Fovf {
         angle_left: frustum.left.atan(),
@@ -69,22 +69,22 @@ pub fn xr_fov(frustum: Frustum) -> sys::Fovf {
 /// The one view that the application gets, and the eyes behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offer {
-    /// The eyes that will be shown: the runtime's own, or, where those are canted or unlike, parallel ones of one size that
-    /// contain them. The compositor turns these back, because they are submitted with their poses and fields of view.
+    /// The eyes that will be shown: the runtime's own, or, if those are canted or unlike, parallel ones of one size
+    /// that contain them. They are submitted with their poses and fields of view, so the compositor turns them back.
     pub eyes: EyePair,
     /// The dominant eye's pose.
     pub pose: Pose,
     /// The union of both frusta and the guard band.
     pub frustum: Frustum,
-    /// Size in pixels at which the dominant eye's part has as many as the runtime recommends for an eye.
+    /// Width and height in pixels. The dominant eye's part of it has the size that the runtime recommends for an eye.
     pub size: [u32; 2],
 }
 
 impl Offer {
-    /// For the runtime's two views and the size in pixels that it recommends for one.
+    /// Returns the offer for the runtime's two views and the size in pixels that it recommends for one.
     ///
     /// # Errors
-    /// [`EyesError`] for eyes that nothing can be synthesized between.
+    /// [`EyesError`] if nothing can be synthesized between the eyes.
     pub fn new(
         views: [(Pose, Frustum); 2],
         size: [u32; 2],
@@ -94,7 +94,7 @@ impl Offer {
         let own = EyePair {
             poses: views.map(|(pose, _)| pose),
             frusta: views.map(|(_, frustum)| frustum),
-            // Not known before the application submits it; it has no influence on the view.
+            // Known only when the application submits it; it does not change the view.
             depth: DepthRange::PAPER,
             size,
             dominant,
@@ -103,9 +103,8 @@ impl Offer {
         let sized = |eyes: EyePair| {
             // Larger frusta at the same pixels per tangent.
             let (old, new) = (own.frusta[dominant.index()], eyes.frusta[dominant.index()]);
-            let grow = |size: u32, by: f32| match by > 1.0001 && by < 16.0 {
-                true => (size as f32 * by).ceil() as u32,
-                false => size,
+            let grow = |size: u32, by: f32| {
+                if by > 1.0001 && by < 16.0 { (size as f32 * by).ceil() as u32 } else { size }
             };
             let size = [grow(size[0], new.width() / old.width()), grow(size[1], new.height() / old.height())];
             EyePair { size, ..eyes }
@@ -123,25 +122,25 @@ impl Offer {
     }
 }
 
-/// One view as the application submits it.
+/// One view as the application has submitted it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Submitted {
-    /// Pose that it was rendered with, in the space of its composition layer.
+    /// The pose that it was rendered with, in the space of its composition layer.
     pub pose: Pose,
     /// Its field of view.
     pub frustum: Frustum,
     /// Size in pixels of the rectangle.
     pub size: [u32; 2],
-    /// What its depth buffer means.
+    /// The meaning of its depth buffer.
     pub depth: SubmittedDepth,
 }
 
 /// The numbers of XrCompositionLayerDepthInfoKHR.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SubmittedDepth {
-    /// Distance in metres of what is stored as `min`; beyond `far` where depth is reversed, and possibly infinite.
+    /// The distance in metres that is stored as `min`. It is beyond `far` if depth is reversed, and may be infinite.
     pub near: f32,
-    /// Distance in metres of what is stored as `max`.
+    /// The distance in metres that is stored as `max`.
     pub far: f32,
     /// minDepth, usually 0.
     pub min: f32,
@@ -159,40 +158,38 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// A part of it, counted from its upper left corner, as a rectangle of the image that both are in. With rows that are not
-    /// counted from the top, as in OpenGL, the corners of both rectangles in the image are the lower left ones.
+    /// Converts a part of this rectangle to a rectangle of the image. The part counts from this one's upper left
+    /// corner. If rows of the image are counted from the bottom, as in OpenGL, this rectangle and the result begin at
+    /// their lower left corners.
     pub fn part(&self, part: Rectangle, rows_from_top: bool) -> Rectangle {
-        let row = match rows_from_top {
-            true => part.origin[1],
-            false => self.size[1] - part.origin[1] - part.size[1],
-        };
+        let row = if rows_from_top { part.origin[1] } else { self.size[1] - part.origin[1] - part.size[1] };
         Rectangle { origin: [self.origin[0] + part.origin[0], self.origin[1] + row], size: part.size }
     }
 }
 
-/// What becomes of a submitted view.
+/// The two eyes of a submitted view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
     /// The dominant eye's part of the submitted rectangle, relative to it.
     pub crop: Rectangle,
-    /// Poses to submit, by [`Eye::index`].
+    /// The poses to submit, by [`Eye::index`].
     pub poses: [Pose; 2],
-    /// Fields of view to submit, by [`Eye::index`]: they end on edges of pixels.
+    /// The fields of view to submit, by [`Eye::index`]. They end at edges of pixels.
     pub frusta: [Frustum; 2],
-    /// What is read, relative to the submitted rectangle.
+    /// The part that is read, relative to the submitted rectangle.
     pub source: Rectangle,
     /// How it becomes the other eye, whose image has the size of `crop`.
     pub warp: Warp,
 }
 
-/// Splits what was submitted, at whichever pose, field of view and size, into two eyes that stand to one another as those
-/// of the offer do. What the submitted image does not contain of them, they do not show.
+/// Splits a submitted view into two eyes that stand to one another as those of the offer do. Its pose, field of view
+/// and size need not be the offered ones; the eyes show as much as the image contains.
 ///
 /// # Errors
-/// [`GeometryError`], after which the image can still be shown as it is.
+/// [`GeometryError`]. The image can still be shown as it is.
 pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryError> {
     let SubmittedDepth { near, far, min, max } = submitted.depth;
-    // In this form NaN fails, too.
+    // NaN fails in this form, too.
     let ordered = 0.0 <= min && min < max && max <= 1.0;
     if !ordered {
         return Err(GeometryError::Depth { min, max });
@@ -203,7 +200,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
         return Err(EyesError::Empty.into());
     }
     let tangents = [whole.width() / size[0] as f32, whole.height() / size[1] as f32];
-    // The pixels that an interval of tangents touches, counted from the left or from the top.
+    // The first pixel that an interval of tangents touches, and their number, from the left or from the top.
     let touched = |from: f32, to: f32, axis: usize| {
         let first = (from / tangents[axis] + ROUNDING).floor();
         (first, (to / tangents[axis] - ROUNDING).ceil() - first)
@@ -241,7 +238,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
         size: part,
         dominant: eyes.dominant,
     };
-    // The guard band is what there is on its side beyond the union of both eyes.
+    // The guard band is what the image has on that side beyond both eyes.
     let beyond = |columns: f32| (columns - ROUNDING).ceil().max(0.0) as u32;
     let guard = match eyes.dominant.other() {
         Eye::Left => crop.origin[0].saturating_sub(beyond(left - first)),
@@ -255,7 +252,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
     };
     let origin = origin.filter(fits).ok_or(GeometryError::Rectangle { size })?;
     let source = Rectangle { origin: [origin.0, origin.1], size: views.source.size };
-    // The law is that of depth from 0 to 1, and what is stored goes from minDepth to maxDepth.
+    // The law is for depth from 0 to 1; the stored depth goes from minDepth to maxDepth.
     let mut warp = views.warp;
     warp.law.scale /= f64::from(max - min);
     warp.law.offset -= warp.law.scale * f64::from(min);

@@ -12,8 +12,8 @@ use crate::dispatch::{Dispatch, XrResult, check};
 use crate::lock;
 use crate::settings::{OfferedAs, Settings};
 
-/// The estimated width of the offered view in widths of an eye's, before a session can tell. The frusta of common headsets'
-/// eyes differ by about as much.
+/// The estimated width of the offered view in widths of an eye's, before a session can tell. The frusta of common
+/// headsets' eyes differ by about as much.
 const ESTIMATED_WIDTH: f32 = 1.25;
 
 /// The recommended width and height in pixels of an image that is not used.

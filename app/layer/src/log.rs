@@ -11,8 +11,8 @@ use crate::{lock, xdg};
 /// The longest line in bytes; the rest is cut off.
 const LONGEST: usize = 1024;
 
-/// Returns the path of the log of the last program, `$XDG_STATE_HOME/yoro/layer.log` (`~/.local/state` if that is not set); None
-/// without a home.
+/// Returns the path of the log of the last program, `$XDG_STATE_HOME/yoro/layer.log` (`~/.local/state` if that is not
+/// set); None without a home.
 pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_STATE_HOME", ".local/state")?.join("yoro/layer.log"))
 }
@@ -20,8 +20,8 @@ pub fn path() -> Option<PathBuf> {
 /// Open while there is an instance. Loaders unload the layer with the last one, and what it has open then stays open.
 static FILE: Mutex<Option<File>> = Mutex::new(None);
 
-/// Returns the first line of the file, which tells this process from others: its number and when it began, in ticks of the
-/// system's clock.
+/// Returns the first line of the file, which tells this process from others: its number and when it began, in ticks of
+/// the system's clock.
 fn first_line() -> String {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     // The name of the program, in parentheses, may have spaces.
@@ -69,8 +69,8 @@ fn show(line: &[u8]) {
     unsafe { __android_log_write(INFO, c"yoro".as_ptr(), text.as_ptr().cast()) };
 }
 
-/// Writes a line at once, so that no line of the application gets in between, and without an allocation. The application may
-/// have closed its standard error output.
+/// Writes a line at once, so that no line of the application gets in between, and without an allocation. The
+/// application may have closed its standard error output.
 pub fn say(text: fmt::Arguments) {
     let mut line = [b'\n'; LONGEST];
     let (place, _) = line.split_at_mut(LONGEST - 1);

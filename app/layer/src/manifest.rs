@@ -1,28 +1,28 @@
-//! What loaders read to find the layer.
+//! The manifest, by which loaders find the layer.
 
 use std::path::Path;
 
-/// Name of the layer, as in XR_ENABLE_API_LAYERS.
+/// The name of the layer, as in XR_ENABLE_API_LAYERS.
 pub const NAME: &str = "XR_APILAYER_YORO_one_view";
-/// File name of the manifest.
+/// The file name of the manifest.
 pub const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
-/// With this variable set to 1, loaders load the implicit layer.
+/// If this variable is set, to anything, loaders load the implicit layer.
 pub const ENABLE: &str = "YORO_LAYER_ENABLE";
-/// With this variable set to anything, loaders leave the implicit layer out.
+/// If this variable is set, to anything, loaders leave the implicit layer out.
 pub const DISABLE: &str = "YORO_LAYER_DISABLE";
 
-/// In which applications loaders load the layer.
+/// The applications in which loaders load the layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Where it is asked for by name.
+    /// Those that ask for it by name.
     Explicit,
-    /// Everywhere where [`ENABLE`] is set.
+    /// Those that run with [`ENABLE`].
     Implicit,
-    /// In the one that it is packaged with: on Android, whose loaders know no variables.
+    /// The one that it is packaged with. On Android loaders know no variables.
     Packaged,
 }
 
-/// The manifest's text, for the layer's library at a path.
+/// Returns the manifest's text for the layer's library at a path.
 pub fn manifest(library: &Path, kind: Kind) -> String {
     let mut layer = serde_json::json!({
         "name": NAME,
@@ -47,9 +47,9 @@ pub fn manifest(library: &Path, kind: Kind) -> String {
 mod tests {
     use super::*;
 
-    /// An application has it in its assets, and Android finds the library by its name.
+    /// An application has the manifest in its assets; Android finds the library by its name.
     #[test]
-    fn the_packaged_manifest_is_this_one() {
+    fn the_packaged_manifest_is_the_generated_one() {
         let json = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap();
         let packaged = json(include_str!("../android/XR_APILAYER_YORO_one_view.json"));
         assert_eq!(packaged, json(&manifest(Path::new("libyoro_layer.so"), Kind::Packaged)));

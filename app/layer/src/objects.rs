@@ -1,7 +1,7 @@
 //! The application's instances, sessions and swapchains by their handles. They are kept here and nowhere else.
 //!
-//! References point upwards only: a session holds its instance, a swapchain its instance and the handle of its session. So an
-//! object is freed when it was removed here and its last call has ended.
+//! References point upwards only: a session holds its instance, a swapchain its instance and the handle of its session.
+//! So an object is freed when it was removed here and its last call has ended.
 //!
 //! # Locks
 //! A thread that holds one of these locks takes only locks further down:
@@ -9,10 +9,12 @@
 //! 1. [`LiveSession::frames`]: the layer's own work in xrEndFrame, and forgetting images.
 //! 2. The state of a swapchain (`swapchain.rs`): which images are acquired. The runtime's acquire and release are called
 //!    under it, so that both sides agree on the order.
-//! 3. The registry below, `Session::offer`, `Session::begun`, `Instance::size` and the log's file: held for a look or a change. No other lock
-//!    is taken and no function of the runtime is called under them.
+//! 3. The registry below, `Session::offer`, `Session::begun`, `Instance::size` and the log's file: held for a look or a
+//!    change. No other lock is taken and no function of the runtime is called under them.
 //!
-//! No lock is held while the runtime waits: in xrWaitFrame, in the application's xrWaitSwapchainImage and in the runtime's xrEndFrame.
+//! No lock is held while the runtime waits for the display or the compositor: in xrWaitFrame, in the application's
+//! xrWaitSwapchainImage and in the runtime's xrEndFrame. The layer waits for its own images under the first lock, half
+//! a second at most.
 
 use std::sync::{Arc, Mutex};
 

@@ -1,4 +1,4 @@
-//! Why a frame is not synthesized.
+//! The reasons why a frame is not synthesized.
 
 use std::sync::Arc;
 
@@ -10,63 +10,63 @@ use yoro::vulkan::VulkanError;
 
 use crate::geometry::GeometryError;
 
-/// The same image is shown to both eyes, for this reason.
+/// The reason why both eyes are shown the same image.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum Reason {
-    /// No XrCompositionLayerDepthInfoKHR.
+    /// The view has no XrCompositionLayerDepthInfoKHR.
     #[error("it submits no depth; let it enable XR_KHR_composition_layer_depth and submit its depth buffer")]
     NoDepth,
-    /// The session is bound to something else.
+    /// The session is bound to another graphics interface.
     #[error("its session is bound to neither Vulkan, OpenGL by Xlib or EGL, nor OpenGL ES by EGL")]
     NoGraphics,
-    /// The system's library is not there.
+    /// A library of the system is missing.
     #[error("{0} cannot be loaded")]
     NoLibrary(&'static str),
-    /// No view was located yet, or none could be offered.
+    /// No views were located yet.
     #[error("the headset's views are not known")]
     NoViews,
-    /// The runtime's eyes fit no synthesis.
+    /// Nothing can be synthesized between the runtime's eyes.
     #[error("{0}")]
     Views(EyesError),
-    /// What was submitted fits no synthesis.
+    /// Nothing can be synthesized from the submitted view.
     #[error("{0}")]
     Geometry(GeometryError),
     /// The swapchain's images cannot be read.
     #[error("{0} is in a swapchain that cannot be read (multisampled, protected, or a cube)")]
     Unreadable(&'static str),
-    /// The image was not released in this frame.
+    /// The runtime has the image already: it was not released since the last frame, or too early.
     #[error("{0} was not released since the last frame")]
     Old(&'static str),
     /// Colour and depth lie in different places.
     #[error("colour and depth have different sizes or rectangles")]
     Apart,
-    /// A rectangle or an array index beyond the swapchain.
+    /// A rectangle or an array index lies beyond the swapchain.
     #[error("a rectangle or an array index lies beyond its swapchain")]
     Beyond,
-    /// More than one layer of one view in a frame.
+    /// The frame has more than one layer to rewrite.
     #[error("it submits more than one projection layer; only the first with depth is synthesized")]
     Another,
-    /// The GPU, or the runtime, does not get ready.
+    /// The GPU or the runtime was not ready in [`TIMEOUT`](crate::synthesizer::TIMEOUT).
     #[error("the GPU or the runtime is late by half a second")]
     Late,
-    /// A command of Vulkan.
+    /// A command of Vulkan has failed.
     #[error("Vulkan fails with {0:?}")]
     Vulkan(vk::Result),
-    /// A command of the synthesis.
+    /// The synthesis on Vulkan has failed.
     #[error("{0}")]
     Synthesis(VulkanError),
-    /// The application's context of OpenGL.
+    /// The application's OpenGL context is in use elsewhere.
     #[error(
         "its OpenGL context cannot be made current in xrEndFrame; let it be current there, or on no thread"
     )]
     NotCurrent,
-    /// The image is one that OpenGL before 4.3, or OpenGL ES before 3.2, cannot copy.
+    /// OpenGL before 4.3 and OpenGL ES before 3.2 cannot copy a part of an image.
     #[error("it submits a part of an image or of an array, which needs OpenGL 4.3 or OpenGL ES 3.2")]
     Part,
-    /// OpenGL, or its synthesis. Shared, since it is told in each frame if there is no pipeline.
+    /// OpenGL, or the synthesis on it, has failed. Shared, because without a pipeline it is returned in each frame.
     #[error("{0}")]
     Gl(Arc<GlError>),
-    /// A call of the runtime.
+    /// A function of the runtime has failed.
     #[error("{0} fails with {1:?}")]
     Runtime(&'static str, sys::Result),
     /// A mistake in the layer.

@@ -126,8 +126,8 @@ impl Session {
         Offer::new(views, self.eye_size, settings.dominant, settings.guard_band)
     }
 
-    /// Returns the view that the application gets in place of the runtime's two, and remembers the offer. If nothing can be
-    /// synthesized between them, it is the dominant eye's own view.
+    /// Returns the view that the application gets in place of the runtime's two, and remembers the offer. If nothing
+    /// can be synthesized between them, it is the dominant eye's own view.
     pub fn offer(&self, views: &[sys::View; 2]) -> (Pose, Frustum) {
         let offer = self.offer_for(views);
         *lock(&self.offer) = Some(offer);
@@ -140,8 +140,8 @@ impl Session {
         self.views.store(views, Ordering::Relaxed);
     }
 
-    /// The number of views in a projection layer that the layer rewrites: 1, or 2 if one of them is tiny. 0 if everything
-    /// passes through.
+    /// The number of views in a projection layer that the layer rewrites: 1, or 2 if one of them is tiny. 0 if
+    /// everything passes through.
     pub fn views(&self) -> usize {
         self.views.load(Ordering::Relaxed)
     }

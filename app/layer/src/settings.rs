@@ -1,5 +1,5 @@
-//! What a user can choose: for one run by environment variables (on Android system properties), in a file for one application
-//! or for all.
+//! What a user can choose: for one run by environment variables (on Android system properties), in a file for one
+//! application or for all.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -36,8 +36,8 @@ pub struct Settings {
     /// YORO_LAYER_CAPTURE: a folder for pictures of what the runtime gets in one frame.
     #[cfg(feature = "capture")]
     pub capture: Option<PathBuf>,
-    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located. The world stands still, so that
-    /// pictures of two runs can be compared.
+    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located. The world stands still, so
+    /// that pictures of two runs can be compared.
     #[cfg(feature = "capture")]
     pub time: Option<i64>,
 }
@@ -192,8 +192,8 @@ pub enum SettingsError {
     },
 }
 
-/// Returns the path of the settings file, `$XDG_CONFIG_HOME/yoro/layer.toml` (`~/.config` if that is not set); None without
-/// a home.
+/// Returns the path of the settings file, `$XDG_CONFIG_HOME/yoro/layer.toml` (`~/.config` if that is not set); None
+/// without a home.
 pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_CONFIG_HOME", ".config")?.join("yoro/layer.toml"))
 }
@@ -206,8 +206,8 @@ fn variable(name: &str) -> Option<OsString> {
     std::env::var_os(name)
 }
 
-/// On Android YORO_LAYER_OFFER is the system property `debug.yoro.layer.offer`. A property cannot be deleted, so an empty one
-/// counts as unset.
+/// On Android YORO_LAYER_OFFER is the system property `debug.yoro.layer.offer`. A property cannot be deleted, so an
+/// empty one counts as unset.
 #[cfg(target_os = "android")]
 fn variable(name: &str) -> Option<OsString> {
     let key = name.strip_prefix("YORO_LAYER_")?.to_ascii_lowercase();
@@ -253,8 +253,8 @@ fn check_keys(section: &Table) -> Result<(), String> {
 }
 
 impl Settings {
-    /// Returns the settings of an application: those of the environment before those of the file for this application, before
-    /// those of the file for all, before the defaults. A mistake is returned as an error and changes nothing.
+    /// Returns the settings of an application: those of the environment before those of the file for this application,
+    /// before those of the file for all, before the defaults. A mistake is returned as an error and changes nothing.
     pub fn of(application: &str) -> (Settings, Vec<SettingsError>) {
         let path = path();
         let text = path.as_deref().map(std::fs::read_to_string);

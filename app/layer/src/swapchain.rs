@@ -1,7 +1,8 @@
 //! The application's swapchains: their images, and when these are released.
 //!
-//! The layer reads an image in xrEndFrame, when the application has already released it. So it holds the release back until
-//! then: as long as the runtime does not know of it, the image is not the runtime's, and in Vulkan it is in the layout of an attachment.
+//! The layer reads an image in xrEndFrame, when the application has already released it. So it holds the release back
+//! until then: as long as the runtime does not know of it, the image is not the runtime's, and in Vulkan it is in the
+//! layout of an attachment.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -122,8 +123,8 @@ impl Swapchain {
         Ok(result)
     }
 
-    /// xrReleaseSwapchainImage. Where images are read at the end of the frame, the release is held back until then, or until
-    /// the next acquire.
+    /// xrReleaseSwapchainImage. Where images are read at the end of the frame, the release is held back until then, or
+    /// until the next acquire.
     ///
     /// # Safety
     /// The arguments are those of the application's call.
@@ -133,8 +134,9 @@ impl Swapchain {
         reads_images: bool,
     ) -> XrResult<sys::Result> {
         let mut state = lock(&self.state);
-        // With another image acquired already, this one is not the frame's. Its release must not wait for a later call: the
-        // runtime may use the application's queue in this one, but not in xrWaitSwapchainImage (XR_KHR_vulkan_enable).
+        // With another image acquired already, this one is not the frame's. Its release must not wait for a later call:
+        // the runtime may use the application's queue in this one, but not in xrWaitSwapchainImage
+        // (XR_KHR_vulkan_enable).
         let is_last = state.acquired.len() == 1;
         if is_last && state.waited && self.content.is_some() && reads_images {
             state.waited = false;
@@ -182,8 +184,8 @@ impl Swapchain {
         Ok(())
     }
 
-    /// Forgets a release that is held back: the swapchain is about to be destroyed, and a frame that ends at the same time
-    /// must not use it any more.
+    /// Forgets a release that is held back: the swapchain is about to be destroyed, and a frame that ends at the same
+    /// time must not use it any more.
     pub fn retire(&self) {
         lock(&self.state).held = None;
     }

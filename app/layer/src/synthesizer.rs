@@ -41,8 +41,8 @@ pub struct Job<'a> {
 
 /// The synthesis pipeline of a session, with all that it needs.
 pub trait Synthesizer: Send {
-    /// Submits the synthesis of one frame to the GPU, after the application's own work, and does not wait for it. Returns the
-    /// GPU time of an earlier frame, if it has become known.
+    /// Submits the synthesis of one frame to the GPU, after the application's own work, and does not wait for it.
+    /// Returns the GPU time of an earlier frame, if it has become known.
     ///
     /// # Errors
     /// The reason why nothing was submitted.

@@ -1,10 +1,10 @@
-//! This user's folders, by the XDG Base Directory Specification.
+//! The user's folders, by the XDG Base Directory Specification.
 
 use std::env;
 use std::path::PathBuf;
 
-/// The folder that a variable names, or this one in the user's home where it is not set; None without a home, as
-/// applications on Android are.
+/// Returns the folder that a variable names, or this one in the user's home if it is not set. None without a home, and
+/// on Android.
 pub fn folder(variable: &str, in_home: &str) -> Option<PathBuf> {
     if cfg!(target_os = "android") {
         return None;

@@ -1,4 +1,4 @@
-//! The layer between Khronos's hello_xr, as Debian has it, and Monado, by itself and with Khronos's validation layer.
+//! The layer between Debian's build of Khronos's hello_xr and Monado, alone and with Khronos's validation layer.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-/// No run takes this long, not even one of large images at the moments at which synthesis takes seconds.
+/// The longest time of a run. Large images can take seconds at some moments.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// The folder of `cargo tools hello-xr`; None where the tests are told to do without.
+/// The folder of `cargo tools hello-xr`; None if the tests are told to do without.
 fn programs() -> Option<PathBuf> {
     let programs = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from);
     let without = std::env::var_os("YORO_TEST_WITHOUT_HELLO_XR").is_some();
@@ -73,13 +73,13 @@ impl Monado {
         monado
     }
 
-    /// Validation's library, which may not be there.
+    /// Returns the path of the validation layer's library, which may not exist.
     fn validation(&self) -> PathBuf {
         let libraries = self.programs.join("root/usr/lib/x86_64-linux-gnu");
         libraries.join("openxr/1/api_layers/libXrApiLayer_core_validation.so")
     }
 
-    /// Puts another layer where the loader finds it.
+    /// Adds another layer where the loader finds it.
     fn add(&self, name: &str, library: &Path) {
         let manifest = serde_json::json!({ "file_format_version": "1.0.0", "api_layer": {
             "name": name, "library_path": library, "api_version": "1.1", "implementation_version": "1",
@@ -88,7 +88,7 @@ impl Monado {
         fs::write(self.folder.path().join(format!("{name}.json")), manifest.to_string()).unwrap();
     }
 
-    /// Runs hello_xr as it is told until it is `done` by its output and the files in the folder; its output.
+    /// Runs hello_xr until it is `done`, by its output and the files in the folder. Returns its output.
     fn hello(&self, run: &Hello, folder: &Path, done: impl Fn(&str) -> bool) -> String {
         fs::create_dir(folder).unwrap();
         let mut child = self.start_hello(run, folder, done);
@@ -103,7 +103,7 @@ impl Monado {
         text()
     }
 
-    /// The same without ending it.
+    /// Starts hello_xr, and waits until it is `done`.
     fn start_hello(&self, run: &Hello, folder: &Path, done: impl Fn(&str) -> bool) -> Running {
         let file = fs::File::create(folder.join("log")).unwrap();
         let child = Command::new(self.programs.join("hello_xr"))
@@ -116,7 +116,7 @@ impl Monado {
             .env("XR_CORE_VALIDATION_EXPORT_TYPE", "text")
             .env("XR_CORE_VALIDATION_FILE_NAME", folder.join("validation"))
             .envs(run.environment.iter().map(|(name, value)| (*name, value)))
-            // It ends with the first key that is pressed, or with the end of its input.
+            // It ends when a key is pressed, or when its input ends.
             .stdin(Stdio::piped())
             .stdout(file.try_clone().unwrap())
             .stderr(file)
@@ -143,17 +143,17 @@ struct Hello<'a> {
     environment: Vec<(&'static str, OsString)>,
 }
 
-/// What it has written so far.
+/// Returns the output so far.
 fn output(folder: &Path) -> String {
     String::from_utf8_lossy(&fs::read(folder.join("log")).unwrap()).into_owned()
 }
 
-/// Whether there are pictures of both eyes in a folder.
+/// True if a folder has pictures of both eyes.
 fn has_pictures(folder: &Path) -> bool {
     ["left.png", "right.png"].iter().all(|name| folder.join(name).exists())
 }
 
-/// How many frames the lines of the log say were synthesized.
+/// Returns the number of synthesized frames, from the lines of the log.
 fn synthesized(log: &str) -> u64 {
     let each = log.lines().filter_map(|line| {
         let (before, _) = line.strip_prefix("yoro layer: ")?.split_once(" synthesized in ")?;
@@ -166,10 +166,10 @@ fn picture(folder: &Path, eye: &str) -> image::RgbImage {
     image::open(folder.join(format!("{eye}.png"))).unwrap().to_rgb8()
 }
 
-/// So often at most the two runs are made.
+/// The largest number of tries of both runs.
 const TRIES: usize = 8;
 
-/// hello_xr rendering one view, and both, at one moment of the world.
+/// Runs of hello_xr with one view and with two, at one moment of the world.
 struct Run {
     /// Output.
     one: String,
@@ -179,10 +179,10 @@ struct Run {
     stereo: PathBuf,
 }
 
-/// With a size per eye, at that in place of Monado's.
+/// Runs hello_xr with two views and with one, at this size per eye if there is one.
 fn run_both(monado: &Monado, folder: &Path, size: Option<&str>) -> Run {
     fs::create_dir(folder).unwrap();
-    // Any moment of the monotonic clock since the service began: what CLOCK_MONOTONIC is now, from the time since boot.
+    // Any moment since the service began will do. The time since boot is that of CLOCK_MONOTONIC.
     let uptime = fs::read_to_string("/proc/uptime").unwrap();
     let seconds: f64 = uptime.split(' ').next().unwrap().parse().unwrap();
     let time = format!("{}", (seconds * 1e9) as u64);
@@ -199,11 +199,12 @@ fn run_both(monado: &Monado, folder: &Path, size: Option<&str>) -> Run {
     Run { one, two, mono, stereo }
 }
 
-/// Runs hello_xr with one view and with two, until both have seen the same; how the dominant eye's images, the other's, and
-/// the dominant one's and the other's compare, in dB.
+/// Runs hello_xr with one view and with two, until both have seen the same scene. Returns the PSNR in dB of the
+/// dominant eye's images, of the other eye's images, and of the same image for both eyes.
 fn compared(monado: &Monado, size: Option<&str>) -> ([f64; 3], Run) {
-    // hello_xr draws a cube at the origin of LOCAL space, which Monado puts where its swaying head is when a session begins:
-    // around the eyes, where it is not seen, or beside them. Only runs that have it in the same place compare.
+    // hello_xr draws a cube at the origin of LOCAL space. Monado puts that where its swaying head is when a session
+    // begins: around the eyes, where it is not seen, or beside them. Only runs with the cube in the same place can be
+    // compared.
     let compare = |run: &Run| {
         let [mono_left, mono_right] = ["left", "right"].map(|eye| picture(&run.mono, eye));
         let [left, right] = ["left", "right"].map(|eye| picture(&run.stereo, eye));
@@ -217,8 +218,8 @@ fn compared(monado: &Monado, size: Option<&str>) -> ([f64; 3], Run) {
     found.unwrap_or(first)
 }
 
-/// An unmodified application renders one view, and the runtime gets two: the one it would have rendered itself, and
-/// one that is much closer to the other one that it would have rendered than the same image for both eyes is.
+/// An unmodified application renders one view, and the runtime gets two. One is as the application would have rendered
+/// it; the other one is much closer to what it would have rendered than the same image for both eyes.
 #[test]
 fn monado_gets_two_views_of_one_that_hello_xr_renders() {
     let Some(programs) = programs() else { return };
@@ -243,13 +244,13 @@ fn monado_gets_two_views_of_one_that_hello_xr_renders() {
     println!(
         "the dominant eye: {own:.2} dB; synthesized: {made:.2} dB; the same image for both eyes: {same:.2} dB"
     );
-    // Angles are rounded on their way: a silhouette's pixel may fall to the other side.
+    // Rounded angles may move pixels at silhouettes.
     assert!(own > 35.0, "the dominant eye's image has changed: {own} dB");
     assert!(made > same + 6.0, "{made} dB, and the same image {same} dB");
 }
 
-/// Khronos's validation layer has nothing to say about what the application calls of the layer, nor about what the layer calls
-/// of the runtime. An application that is killed leaves nothing behind.
+/// Khronos's validation layer has no message, neither above nor below the layer. A killed application leaves nothing
+/// behind.
 #[test]
 fn hello_xr_is_valid_above_and_below_the_layer() {
     let Some(programs) = programs() else { return };
@@ -286,18 +287,18 @@ fn hello_xr_is_valid_above_and_below_the_layer() {
     monado.hello(&run, &folder.join("next"), |log| synthesized(log) >= 10);
 }
 
-/// The middle one.
+/// Returns the median.
 fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
 
-/// The number between two texts, in each line that has both.
+/// Returns the numbers between two texts, of each line that has both.
 fn numbers<'a>(log: &'a str, before: &'a str, after: &'a str) -> impl Iterator<Item = f64> + 'a {
     log.lines().filter_map(move |line| line.split_once(before)?.1.split_once(after)?.0.parse().ok())
 }
 
-/// hello_xr's frame time with two views and with one and the layer, in turn, and a picture of what there is to see:
+/// Measures hello_xr's frame time with two views, and with one and the layer, in turn, and writes a picture:
 /// `cargo test --release -p yoro-layer hello_xr_measured -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures for some minutes"]
@@ -345,7 +346,7 @@ fn hello_xr_measured() {
     for (name, picture) in all {
         picture.save(place.join(format!("{name}.png"))).unwrap();
     }
-    // In a row: what is rendered, what both eyes get, and the error.
+    // In a row: the rendered view, both eyes, and the error.
     const HEIGHT: u32 = 440;
     let small = [&rendered, &left, &right, &error].map(|picture| {
         let width = picture.width() * HEIGHT / picture.height();
@@ -362,7 +363,7 @@ fn hello_xr_measured() {
     println!("{}", place.display());
 }
 
-/// In dB, over all channels. Not the metrics of yoro-lab: a layer's tests need not wait for all that comes with them.
+/// Returns the PSNR in dB over all channels. The lab's metrics would make these tests wait for all of that crate.
 fn psnr(a: &image::RgbImage, b: &image::RgbImage) -> f64 {
     assert_eq!(a.dimensions(), b.dimensions());
     let squares = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));

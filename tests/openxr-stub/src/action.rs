@@ -1,4 +1,4 @@
-//! Actions: what controllers do, as the script says.
+//! Actions: the input of controllers, from the script.
 
 use std::collections::HashMap;
 use std::ffi::c_char;
@@ -11,19 +11,19 @@ use crate::log::Entry;
 use crate::script::State;
 use crate::world::{Answer, Array, DONE, Instance, Refusal, World, forbid_if, forbidden, found};
 
-/// Every action of an instance.
+/// The actions of an instance.
 #[derive(Default)]
 pub struct Actions {
     sets: HashMap<u64, Set>,
     actions: HashMap<u64, Action>,
-    /// What each profile's parts are bound to.
+    /// The suggested bindings of each profile: actions and paths of parts.
     bindings: HashMap<String, Vec<(u64, String)>>,
     attached: Vec<u64>,
-    /// Sets that were named when actions were last synchronised.
+    /// The sets of the last synchronisation.
     active: Vec<u64>,
-    /// Values at the last and the last but one synchronisation, by action and part.
+    /// The values at the last two synchronisations, the last one first, by action and part.
     values: HashMap<(u64, String), [[f32; 2]; 2]>,
-    /// In nanoseconds of the stub's time.
+    /// The time of the last change in nanoseconds.
     changed_at: i64,
 }
 
@@ -38,7 +38,7 @@ struct Action {
 }
 
 impl Actions {
-    /// The action exists.
+    /// Refuses an action that does not exist.
     pub fn check(&self, action: sys::Action) -> Result<(), Refusal> {
         self.get(action).map(|_| ())
     }
@@ -48,7 +48,7 @@ impl Actions {
         found(known, "not an action")
     }
 
-    /// The session is gone.
+    /// Forgets what belongs to the session.
     pub fn detach(&mut self) {
         self.attached.clear();
         self.active.clear();
@@ -128,7 +128,7 @@ pub fn destroy_action(world: &mut World, action: sys::Action) -> Answer {
     DONE
 }
 
-/// Profiles that the stub knows, and the extension that each belongs to.
+/// The known profiles, and the extension that each needs.
 const PROFILES: [(&str, Option<&str>); 5] = [
     ("/interaction_profiles/khr/simple_controller", None),
     ("/interaction_profiles/oculus/touch_controller", None),
@@ -136,7 +136,7 @@ const PROFILES: [(&str, Option<&str>); 5] = [
     ("/interaction_profiles/bytedance/pico_neo3_controller", Some("XR_BD_controller_interaction")),
     ("/interaction_profiles/bytedance/pico4_controller", Some("XR_BD_controller_interaction")),
 ];
-/// Profiles that some runtimes know, and that an application may try.
+/// Profiles that an application may try, because some runtimes know them.
 const TRIED: [&str; 1] = ["/interaction_profiles/bytedance/pico4s_controller"];
 
 pub fn suggest_bindings(
@@ -185,7 +185,7 @@ pub fn suggest_bindings(
     DONE
 }
 
-/// Whether a controller has the part, as the specification lists them.
+/// True if a controller has the part, by the lists of the specification.
 fn part_exists(profile: &str, part: &str, left: bool) -> bool {
     const SIMPLE: [&str; 5] =
         ["input/select/click", "input/menu/click", "input/grip/pose", "input/aim/pose", "output/haptic"];
@@ -218,7 +218,7 @@ fn part_exists(profile: &str, part: &str, left: bool) -> bool {
             const MORE: [&str; 3] = ["input/trigger/click", "input/squeeze/click", "input/system/click"];
             MORE.contains(&part) || touch && part != "input/thumbrest/touch"
         }
-        // The others' parts are not checked.
+        // Parts of other profiles are not checked.
         _ => true,
     }
 }
@@ -242,7 +242,7 @@ pub fn attach_action_sets(
         actions.attached.push(set);
     }
     world.session(session)?.attached = true;
-    // The controllers are found when it is known what they are for.
+    // Runtimes find controllers once they know the actions.
     world.current()?.events.push_back(crate::world::Event::Profile);
     DONE
 }
@@ -284,7 +284,7 @@ pub fn sync_actions(world: &mut World, session: sys::Session, info: &sys::Action
     world.success()
 }
 
-/// The values of an action now and at the synchronisation before; none where nothing is bound to it.
+/// Returns the values of an action at the last two synchronisations; None if nothing is bound to it.
 fn state(
     world: &mut World,
     session: sys::Session,
@@ -308,7 +308,7 @@ fn state(
         return Ok(None);
     }
     let prefix = instance.path(info.subaction_path).unwrap_or_default();
-    // Of several parts the one counts that is pressed most.
+    // Of several parts, the one that is pressed most counts.
     let mut best: Option<[[f32; 2]; 2]> = None;
     let strength = |value: [f32; 2]| value[0].hypot(value[1]);
     for ((handle, path), history) in &instance.actions.values {
@@ -325,7 +325,7 @@ fn state(
     Ok(best)
 }
 
-/// The fields that the states of all types have.
+/// Fills the fields that the states of all types have.
 fn put_state<T: PartialEq + Copy>(
     values: Option<[T; 2]>,
     idle: T,

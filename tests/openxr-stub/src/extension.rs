@@ -49,7 +49,7 @@ pub fn set_performance_level(
     DONE
 }
 
-/// The type of [`set_android_application_thread`], which the bindings have on Android alone.
+/// The type of xrSetAndroidApplicationThreadKHR, which openxr-sys has on Android only.
 pub type SetAndroidApplicationThreadKHR =
     unsafe extern "system" fn(sys::Session, sys::AndroidThreadTypeKHR, u32) -> sys::Result;
 
@@ -69,7 +69,7 @@ pub fn set_android_application_thread(
     DONE
 }
 
-/// Triangles that cut off the outer upper corner, in the view's plane at distance 1.
+/// Answers with triangles that cut off the outer upper corner, in the view's plane at distance 1.
 pub fn get_visibility_mask(
     world: &mut World,
     session: sys::Session,
@@ -109,7 +109,7 @@ pub fn get_visibility_mask(
     to_indices.fill(&indices, |to, from| *to = *from)
 }
 
-/// The corners of a triangle counter-clockwise.
+/// Returns the corners of a triangle counter-clockwise.
 fn orient(vertices: &[[f32; 2]], [a, b, c]: [u32; 3]) -> Vec<u32> {
     let [p, q, r] = [a, b, c].map(|i| vertices[i as usize]);
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);

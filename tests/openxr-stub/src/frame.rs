@@ -1,4 +1,4 @@
-//! Frames, views, and what is submitted.
+//! Frames, views, and submitted layers.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -13,15 +13,15 @@ use crate::session::{Frame, views_of};
 use crate::space::{compose, inverse, pose, raw_pose};
 use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden};
 
-/// When the stub's time begins.
+/// The time of frame 0.
 const BEGINNING_NS: i64 = 1_000_000_000;
 
-/// Before the first picture a scene is loaded: frames without anything in them must not take its time.
+/// The pause of each frame before the first picture, so that empty frames do not slow the loading of a scene.
 const LOADING_PAUSE: Duration = Duration::from_millis(5);
-/// There was no picture yet.
+/// True until the first picture.
 pub static IS_BLANK: AtomicBool = AtomicBool::new(true);
 
-/// Called before every frame.
+/// A function that is called before every frame.
 pub static PACE: Mutex<Option<extern "C" fn()>> = Mutex::new(None);
 
 impl World {
@@ -29,13 +29,13 @@ impl World {
         (1e9 / f64::from(self.refresh_rate)) as i64
     }
 
-    /// The time at which the last frame that was waited for is displayed.
+    /// Returns the display time of the last frame that was waited for.
     pub fn time(&self) -> sys::Time {
         sys::Time::from_nanos(BEGINNING_NS + i64::from(self.frames) * self.period_ns())
     }
 }
 
-/// Lets time go on before a frame.
+/// Calls [`PACE`], or pauses.
 pub fn pace() {
     let pace = *PACE.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(pace) = pace {
@@ -87,7 +87,7 @@ pub fn begin_frame(world: &mut World, session: sys::Session, _: *const sys::Fram
     world.success()
 }
 
-/// Frames are for running sessions.
+/// Refuses frames of a session that is not running.
 fn running(world: &mut World, session: sys::Session) -> Result<(), Refusal> {
     forbid_if(world.session(session)?.views == 0, Code::ERROR_SESSION_NOT_RUNNING, "it is not running")?;
     Ok(())
@@ -119,7 +119,7 @@ pub fn locate_views(
     let views: Vec<(sys::Posef, sys::Fovf)> = (0..number as usize)
         .map(|i| {
             let eye = world.script.eyes[i];
-            // Left, right; outwards is to the left for the left eye.
+            // Outwards is to the left for the left eye.
             let side = if i == 0 { -1.0 } else { 1.0 };
             let (offset, cant) =
                 if number == 1 { (0.0, 0.0) } else { (side * ipd / 2.0, -side * eye.cant_degrees) };
@@ -180,7 +180,7 @@ pub fn end_frame(world: &mut World, session: sys::Session, info: &sys::FrameEndI
     world.success()
 }
 
-/// Checks a layer and puts down what it shows.
+/// Checks a layer, and returns its entry in the log.
 ///
 /// # Safety
 /// `layer` points to a structure of the type that it says.
@@ -262,7 +262,7 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
                 format!("depth {range:?} stands for {near_far:?} m"),
             )?;
             let image = submitted_image(world, &info.sub_image, true)?;
-            // JSON knows no infinity.
+            // JSON has no infinity.
             depth = Some(Depth { image, range, near_far: near_far.map(|z| z.min(f32::MAX)) });
         }
         next = structure.next;
@@ -314,7 +314,7 @@ fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: boo
     })
 }
 
-/// Whether the left view is of more than one colour.
+/// True if the left view has more than one colour.
 fn is_picture(world: &mut World, layers: &[Layer]) -> bool {
     let left = layers.iter().find_map(|layer| match layer {
         Layer::Projection { views } => views.first().map(|view| view.image.clone()),
@@ -324,13 +324,13 @@ fn is_picture(world: &mut World, layers: &[Layer]) -> bool {
     pixels.is_some_and(|pixels| pixels.chunks_exact(4).any(|pixel| pixel != &pixels[..4]))
 }
 
-/// The pixels of a submitted image.
+/// Returns the pixels of a submitted image.
 fn read(world: &mut World, image: &Image) -> Option<Vec<u8>> {
     let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()?;
     world.its_session().ok()?.graphics.read(texture, image.layer, image.rect)
 }
 
-/// Writes what was submitted in a frame, where the script wants it.
+/// Writes pictures of a frame's layers, if the script wants them.
 fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(), Refusal> {
     let Some(pictures) = world.script.pictures.clone().filter(|p| p.from <= frame) else {
         return Ok(());
@@ -356,7 +356,7 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
             let size = [image.rect[2] as u32, image.rect[3] as u32];
             let picture = image::RgbaImage::from_raw(size[0], size[1], pixels).expect("four bytes a pixel");
             let picture = image::imageops::flip_vertical(&picture);
-            // Views are opaque, whatever their alpha is.
+            // Views are opaque, whatever their alpha.
             let written = match layer {
                 Layer::Quad { .. } => picture.save(&path),
                 _ => image::DynamicImage::from(picture).into_rgb8().save(&path),
@@ -365,7 +365,7 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
         }
         let Layer::Projection { views } = layer else { continue };
         for (i, depth) in views.iter().enumerate().filter_map(|(i, view)| Some((i, view.depth.as_ref()?))) {
-            // Not every format can be read as it is.
+            // Not every format can be read.
             if let Some(depth) = read(world, &depth.image) {
                 let path = pictures.folder.join(format!("depth-{i}"));
                 std::fs::write(&path, depth).unwrap_or_else(|e| panic!("{}: {e}", path.display()));

@@ -11,12 +11,12 @@ use crate::log::Entry;
 use crate::script::{At, State};
 use crate::world::{Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden};
 
-/// What negotiation gives.
+/// The version that negotiation returns.
 pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
 /// The one system.
 pub const SYSTEM: u64 = 1;
 
-/// Every extension that the stub can offer, with its version.
+/// The extensions that can be offered, with their versions.
 pub const EXTENSIONS: [(&str, u32); 13] = [
     ("XR_KHR_opengl_es_enable", 8),
     ("XR_KHR_vulkan_enable", 8),
@@ -33,13 +33,13 @@ pub const EXTENSIONS: [(&str, u32); 13] = [
     ("XR_BD_controller_interaction", 2),
 ];
 
-/// The text of an array of characters.
+/// Returns the text in an array of characters.
 pub fn text(characters: &[c_char]) -> String {
     let bytes: Vec<u8> = characters.iter().take_while(|c| **c != 0).map(|c| *c as u8).collect();
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Puts a text into an array of characters.
+/// Writes a text to an array of characters.
 pub fn put_text(target: &mut [c_char], text: &str) {
     target.fill(0);
     for (to, from) in target.iter_mut().zip(text.bytes()) {
@@ -227,7 +227,7 @@ pub fn get_system_properties(
     DONE
 }
 
-/// There is one system.
+/// Refuses all systems but one.
 pub fn check_system(system: sys::SystemId) -> Result<(), crate::world::Refusal> {
     forbid_if(system.into_raw() != SYSTEM, Code::ERROR_SYSTEM_INVALID, "not a system")?;
     Ok(())
@@ -254,7 +254,7 @@ pub fn string_to_path(
 }
 
 impl Instance {
-    /// The text of a path; none for the null path.
+    /// Returns the text of a path; None for the null path.
     pub fn path(&self, path: sys::Path) -> Option<&str> {
         let index = path.into_raw().checked_sub(1)?;
         self.paths.get(index as usize).map(String::as_str)
@@ -272,7 +272,7 @@ pub fn path_to_string(
     buffer.fill_text(&text)
 }
 
-/// Writes a structure of an event into the buffer for all of them.
+/// Writes an event to the buffer, which has room for each of them.
 fn tell<T: Copy>(buffer: &mut sys::EventDataBuffer, event: T) -> Answer {
     const { assert!(size_of::<T>() <= size_of::<sys::EventDataBuffer>()) };
     // SAFETY: there is room, and events are plain data.
@@ -289,7 +289,7 @@ pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::
     )?;
     let (now, frames) = (world.time(), world.frame());
     let known = world.any_instance(instance)?;
-    // Of a lost instance nothing but its loss is told.
+    // A lost instance has no event but its loss.
     if known.lost {
         known.events.retain(|event| matches!(event, Event::InstanceLoss));
         if known.events.is_empty() {
@@ -387,7 +387,7 @@ pub fn initialize_loader(world: &mut World, info: &sys::LoaderInitInfoBaseHeader
     if ty != sys::StructureType::LOADER_INIT_INFO_ANDROID_KHR {
         return refuse("not Android's structure");
     }
-    // Some keep the context of the first time, others fail: nobody says what a second time means.
+    // The specification does not say what a second call means: some loaders keep the first context, others fail.
     if std::mem::replace(&mut world.is_initialized, true) {
         return refuse("it is initialised already");
     }

@@ -1,15 +1,15 @@
 //! A simulated OpenXR runtime for tests.
 //!
-//! The library is negotiated with like any runtime. Its headset is scripted ([`script`]): frusta, canted views, a
-//! changing IPD, states, losses, controllers, and results instead of calls. Time is virtual: `xrWaitFrame` does not
-//! wait for a display, and each frame is one period later than the last. Swapchain images are real ones, made in the application's
-//! GL context or on its Vulkan device. What the application does is checked against the specification and written to a log ([`log`]); what is
-//! forbidden is a [`log::Entry::Violation`].
+//! A loader loads the library like any runtime. A script ([`script`]) says what the headset does: frusta, canted views,
+//! a changing IPD, states, losses, controllers, and calls that fail. The runtime checks every call against the
+//! specification and writes a log ([`log`]); a forbidden call is a [`log::Entry::Violation`]. It composes and shows
+//! nothing, and must not know what is tested with it.
 //!
-//! Nothing is composed and nothing is shown. Only what an application on OpenGL ES needs is there, and on Vulkan what one needs
-//! that makes its device itself; the functions of other extensions are not offered.
+//! Time is virtual: `xrWaitFrame` does not wait for a display, and each frame is one period later than the last. Images
+//! of swapchains are real ones, in the application's GL context or on its Vulkan device. The functions are those that
+//! an application on OpenGL ES needs, or one on Vulkan that creates its device itself.
 //!
-//! Tests that link it as a Rust library begin with a script ([`begin`]), as often as they like.
+//! Tests that link it as a Rust library call [`begin`] with a script, as often as they like.
 
 mod action;
 mod extension;
@@ -28,7 +28,8 @@ pub use world::{begin, is_inside};
 
 use openxr_sys as sys;
 
-/// Has `pace` called before every frame, outside all locks: a simulated Android decides there when time goes on.
+/// Sets a function that is called before every frame, outside all locks. A simulated Android decides there when time
+/// goes on.
 ///
 /// # Safety
 /// `pace` can be called from any thread until the process ends.
@@ -37,7 +38,7 @@ pub unsafe extern "C" fn yoro_openxr_stub_pace(pace: extern "C" fn()) {
     *frame::PACE.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(pace);
 }
 
-/// What a loader calls first.
+/// Negotiates the interface. It is the first function that a loader calls.
 ///
 /// # Safety
 /// Both point to structures of the sizes that they say.
@@ -46,7 +47,7 @@ pub unsafe extern "system" fn xrNegotiateLoaderRuntimeInterface(
     info: *const sys::NegotiateLoaderInfo,
     request: *mut sys::NegotiateRuntimeRequest,
 ) -> sys::Result {
-    // SAFETY: the caller gives complete structures.
+    // SAFETY: the loader's structures.
     let (info, request) = unsafe { (&*info, &mut *request) };
     let fits = info.struct_type == sys::NegotiateLoaderInfo::TYPE
         && info.struct_size == size_of::<sys::NegotiateLoaderInfo>()

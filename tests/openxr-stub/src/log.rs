@@ -1,4 +1,4 @@
-//! What the stub saw: JSON lines.
+//! The log of what the runtime has seen: JSON lines.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -22,23 +22,23 @@ pub enum Entry {
     Begun { views: u32 },
     /// A swapchain was created.
     Swapchain { id: u64, format: i64, width: u32, height: u32, layers: u32 },
-    /// The application was told of a state.
+    /// The application got the event of a state.
     State { state: State },
     /// A frame has ended.
     Frame { frame: u32, should_render: bool, layers: Vec<Layer> },
-    /// A request: a rate of the display, a level of performance, the end of the session, haptics.
+    /// The application requested something: a display rate, a performance level, the end of the session, haptics.
     Request { what: String, value: f64 },
-    /// Bindings were suggested.
+    /// The application suggested bindings.
     Bindings { profile: String, paths: Vec<String> },
-    /// Something has happened as the script says.
+    /// An event of the script has happened.
     Scripted { what: String },
-    /// A call failed as the script says.
+    /// A call failed because of the script.
     Fault { call: String, nth: u32, result: i32 },
     /// The application did something that the specification forbids.
     Violation { call: String, what: String },
     /// A session or an instance was destroyed.
     Destroyed { what: String },
-    /// How often each function was called; at the end of an instance.
+    /// The number of calls of each function, at the end of an instance.
     Calls { counts: BTreeMap<String, u32> },
 }
 
@@ -55,15 +55,15 @@ pub enum Layer {
 /// A submitted view.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct View {
-    /// Where the view was rendered from, in the layer's space.
+    /// The position in the layer's space, in metres.
     pub position: [f32; 3],
-    /// x, y, z, w.
+    /// The orientation: x, y, z, w.
     pub orientation: [f32; 4],
-    /// Left, right, up, down.
+    /// The field of view: left, right, up, down.
     pub fov_degrees: [f32; 4],
-    /// Its colour.
+    /// The image of colour.
     pub image: Image,
-    /// Its depth, where it was submitted.
+    /// Its depth, if it was submitted.
     pub depth: Option<Depth>,
 }
 
@@ -81,24 +81,24 @@ pub struct Image {
 /// Depth of a view.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Depth {
-    /// Where it is.
+    /// The image.
     pub image: Image,
     /// The smallest and the largest value of the depth buffer.
     pub range: [f32; 2],
-    /// What they stand for, in metres, f32::MAX for infinity.
+    /// The distances in metres that these stand for; f32::MAX for infinity.
     pub near_far: [f32; 2],
 }
 
 /// Reads a log.
 ///
 /// # Panics
-/// When the file is none: a test is mistaken.
+/// If the file is no log: the test is wrong.
 pub fn read(path: &Path) -> Vec<Entry> {
     let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     text.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{line}: {e}"))).collect()
 }
 
-/// The end that is written to. Every line is written at once: a crash must lose none.
+/// The writer. Every line is written at once, so that a crash loses none.
 pub(crate) struct Log(Option<File>);
 
 impl Log {

@@ -1,4 +1,4 @@
-//! What the simulated headset does: a JSON file, named by the environment variable [`VARIABLE`].
+//! The script of the simulated headset: a JSON file, named by the environment variable [`VARIABLE`].
 
 use std::path::PathBuf;
 
@@ -7,62 +7,62 @@ use serde::{Deserialize, Serialize};
 /// The environment variable that names the script's file. Without it the headset is that of [`Script::default`].
 pub const VARIABLE: &str = "YORO_OPENXR_STUB";
 
-/// A headset, and what happens to it. Frames are counted from 0 by `xrWaitFrame`, over all sessions of the process, and from
-/// the first whose left view is not of one colour: until then it is frame 0, however long a scene takes to load.
+/// A headset, and what happens to it. `xrWaitFrame` counts frames over all sessions of the process. The count stays 0
+/// until the first frame whose left view has more than one colour, however long a scene takes to load.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Script {
-    /// Where the log goes, as JSON lines; it is appended to.
+    /// The file of the log, to which JSON lines are appended.
     pub log: Option<PathBuf>,
-    /// Extensions that are not offered, of all those that the stub knows.
+    /// Known extensions that are not offered.
     pub missing_extensions: Vec<String>,
-    /// No headset is connected: `xrGetSystem` says so this many times.
+    /// How often `xrGetSystem` answers that no headset is connected.
     pub unavailable: u32,
-    /// Formats of swapchains as GL or Vulkan numbers, the preferred one first.
+    /// Formats of swapchains in numbers of GL or Vulkan, the preferred one first.
     pub formats: Vec<i64>,
-    /// `PRIMARY_STEREO` is offered.
+    /// True if `PRIMARY_STEREO` is offered.
     pub stereo: bool,
-    /// `PRIMARY_MONO` is offered.
+    /// True if `PRIMARY_MONO` is offered.
     pub mono: bool,
-    /// Left, right. A mono configuration has the left one, without its offset.
+    /// The left and the right eye. A mono configuration has the left one, without its offset.
     pub eyes: [Eye; 2],
-    /// Distance of the eyes in metres, each from a frame on.
+    /// The distance of the eyes in metres, each from a frame on.
     pub ipd: Vec<(u32, f32)>,
     /// The head's position above the floor's centre, in metres.
     pub position: [f32; 3],
-    /// How far the head is turned to the left, in degrees.
+    /// The head's turn to the left.
     pub yaw_degrees: f32,
-    /// How far it turns in each frame.
+    /// The additional turn in each frame.
     pub yaw_per_frame_degrees: f32,
-    /// Frames in which the head's pose is not known.
+    /// Frames without a valid pose of the head.
     pub untracked: Vec<u32>,
-    /// Frames in which the views' quaternions are not of unit length but of this one, although they are said to be valid.
+    /// Frames in which the views' quaternions have this length instead of 1, and are called valid.
     pub quaternion_lengths: Vec<(u32, f32)>,
-    /// Asked with an instance for a function that needs none, `xrGetInstanceProcAddr` succeeds and gives none.
+    /// True if `xrGetInstanceProcAddr` with an instance succeeds but returns null for functions that need none.
     pub no_globals: bool,
-    /// The first frame that is to be rendered in a session, counted from its first.
+    /// The first frame of a session with `shouldRender`, counted from 0.
     pub should_render_from: u32,
-    /// Rates of the display in hertz; the first is the one it begins with.
+    /// The display's rates in hertz; it begins with the first.
     pub refresh_rates: Vec<f32>,
     /// Events and losses.
     pub events: Vec<Event>,
-    /// Results instead of calls.
+    /// Calls that fail.
     pub faults: Vec<Fault>,
-    /// The controllers' profile; none: no controllers.
+    /// The controllers' profile; None without controllers.
     pub profile: Option<String>,
-    /// What the controllers' parts are set to, each from a frame on: a path such as
-    /// `/user/hand/right/input/a/click`, and its one or two numbers.
+    /// The input of the controllers.
     pub inputs: Vec<Input>,
-    /// Triangles that hide the corners of the left and the mirrored right view are offered as visibility mask.
+    /// True if there is a visibility mask: triangles that hide the outer upper corners of the views.
     pub visibility_mask: bool,
-    /// Some runtimes leave another context current, or none: after every call that may, none is.
+    /// True if no context is current after any call that may change it, as with some runtimes.
     pub unbind_context: bool,
-    /// The application may have images for later frames while it submits one; if not, one that it has is one that it has
-    /// forgotten to release.
+    /// True if the application may have acquired images for later frames when it submits one. Else an acquired image is
+    /// one that it has forgotten to release.
     pub acquires_ahead: bool,
-    /// Images are filled with [`POISON`] when they are acquired, so that what was not drawn is seen.
+    /// True if images are filled with [`POISON`] when they are acquired, so that pixels that were not drawn can be
+    /// seen.
     pub poison: bool,
-    /// Pictures of the submitted views are written as PNG.
+    /// Where pictures of the submitted views are written.
     pub pictures: Option<Pictures>,
 }
 
@@ -75,31 +75,31 @@ pub const POISON: [u8; 4] = [255, 0, 255, 255];
 pub struct Eye {
     /// Recommended width and height in pixels.
     pub size: [u32; 2],
-    /// Left, right, up, down, as OpenXR has them: left and down are usually negative.
+    /// The field of view: left, right, up, down. Left and down are usually negative.
     pub fov_degrees: [f32; 4],
-    /// How far the view is turned outwards.
+    /// The view's turn outwards.
     pub cant_degrees: f32,
 }
 
-/// Something happens.
+/// An event.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Event {
-    /// When.
+    /// The moment.
     pub at: At,
-    /// What.
+    /// What happens.
     pub what: What,
 }
 
-/// When something happens; once only.
+/// The moment of an event, which happens once.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum At {
-    /// When this frame is waited for.
+    /// `xrWaitFrame` for this frame.
     Frame(u32),
-    /// When the application has been told of this state.
+    /// The application gets the event of this state.
     State(State),
-    /// When the application has asked for events this often while nothing was to be told.
+    /// The application has asked for events this often while there was none.
     Poll(u32),
 }
 
@@ -122,23 +122,23 @@ pub enum State {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum What {
-    /// From now on every call says that the session is lost; the event of it comes too.
+    /// The session is lost: every call returns that from now on, and its event comes.
     LoseSession,
-    /// The application is told that the session will be lost; calls go on to succeed.
+    /// The event comes that the session will be lost; calls still succeed.
     SessionLossPending,
-    /// From now on every call says that the instance is lost; the event of it comes too.
+    /// The instance is lost: every call returns that from now on, and its event comes.
     LoseInstance,
     /// The user ends the application: `STOPPING`, then `EXITING`.
     Exit,
-    /// The user takes the headset off: `STOPPING`, and `READY` again after this many calls for events in vain.
+    /// The user takes the headset off: `STOPPING`, and `READY` again after this many polls without an event.
     TakeOff(u32),
-    /// How far the session may get: `synchronized`, `visible` or `focused`.
+    /// The highest state of the session: `synchronized`, `visible` or `focused`.
     Level(State),
-    /// The local space is set anew: turned to the left by this many degrees.
+    /// The user recentres: the local space turns to the left by this many degrees.
     Recenter(f32),
-    /// The system changes the rate of the display.
+    /// The system changes the display's rate, in hertz.
     RefreshRate(f32),
-    /// Other controllers, or none.
+    /// The user takes other controllers, or none.
     Profile(Option<String>),
     /// The visibility mask has changed.
     MaskChanged,
@@ -150,37 +150,37 @@ pub enum What {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Fault {
-    /// Its name, `xrWaitFrame` for instance.
+    /// The function, such as `xrWaitFrame`.
     pub call: String,
-    /// Which of its calls, from 1.
+    /// The number of its call, from 1.
     pub nth: u32,
-    /// All later ones, too.
+    /// True if all later calls fail, too.
     #[serde(default)]
     pub and_later: bool,
-    /// The number of the result, `-2` for `XR_ERROR_RUNTIME_FAILURE` for instance.
+    /// The number of the result, such as -2 for `XR_ERROR_RUNTIME_FAILURE`.
     pub result: i32,
 }
 
-/// A part of a controller has a value from a frame on.
+/// The value of a controller's part from a frame on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Input {
-    /// From this frame on.
+    /// The first frame.
     pub frame: u32,
-    /// The part.
+    /// The part's path, such as `/user/hand/right/input/a/click`.
     pub path: String,
-    /// Its value; buttons are pressed from 0.5 on, and only thumbsticks have a second number.
+    /// The value. Buttons are pressed from 0.5 on; only thumbsticks have a second number.
     pub value: [f32; 2],
 }
 
-/// Where pictures are written: `view-0.png` is what was last submitted for the left eye, `quad-0.png` what the first quad layer
-/// showed, with alpha.
+/// Where pictures are written. `view-0.png` is the left eye's last image; `quad-0.png` is that of the first quad layer,
+/// with alpha.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Pictures {
     /// The folder, which must exist.
     pub folder: PathBuf,
-    /// From this frame on.
+    /// The first frame.
     pub from: u32,
 }
 
@@ -226,7 +226,7 @@ impl Default for Eye {
 }
 
 impl Script {
-    /// The frusta of current headsets: 52 degrees outwards, 42 inwards.
+    /// Sets the frusta of current headsets: 52 degrees outwards, 42 inwards.
     #[must_use]
     pub fn asymmetric(mut self) -> Script {
         self.eyes[0].fov_degrees = [-52.0, 42.0, 47.0, -50.0];
@@ -234,28 +234,28 @@ impl Script {
         self
     }
 
-    /// The script that [`VARIABLE`] names.
+    /// Loads the script that [`VARIABLE`] names.
     ///
     /// # Panics
-    /// When it cannot be read: a test is mistaken.
+    /// If it cannot be read: the test is wrong.
     pub(crate) fn load() -> Script {
         let Some(path) = std::env::var_os(VARIABLE) else { return Script::default() };
         let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
     }
 
-    /// The eyes' distance in a frame.
+    /// Returns the eyes' distance in a frame, in metres.
     pub(crate) fn ipd(&self, frame: u32) -> f32 {
         let past = self.ipd.iter().filter(|(from, _)| *from <= frame);
         past.max_by_key(|(from, _)| *from).map_or(0.063, |(_, ipd)| *ipd)
     }
 
-    /// The length of the views' quaternions in a frame.
+    /// Returns the length of the views' quaternions in a frame.
     pub(crate) fn quaternion_length(&self, frame: u32) -> f32 {
         self.quaternion_lengths.iter().find(|(odd, _)| *odd == frame).map_or(1.0, |(_, length)| *length)
     }
 
-    /// The value of a controller's part in a frame.
+    /// Returns the value of a controller's part in a frame.
     pub(crate) fn input(&self, path: &str, frame: u32) -> [f32; 2] {
         let past = self.inputs.iter().filter(|input| input.path == path && input.frame <= frame);
         past.max_by_key(|input| input.frame).map_or([0.0; 2], |input| input.value)

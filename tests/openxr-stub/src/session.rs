@@ -15,14 +15,14 @@ pub struct Session {
     pub handle: u64,
     pub lost: bool,
     pub loss_pending: bool,
-    /// Views of the configuration that it was begun with; 0 while it is not running.
+    /// The number of views of its configuration; 0 while it is not running.
     pub views: u32,
     pub state: State,
-    /// The last state that the application was told of.
+    /// The state of the application's last event.
     pub told: State,
-    /// The state that it may get to.
+    /// The highest state that it may reach.
     pub level: State,
-    /// What follows the end: `EXITING`, or `READY` after a number of calls for events.
+    /// After the end it becomes `READY` at this number of polls, or else `EXITING`.
     put_on_again_at: Option<u32>,
     exiting: bool,
     pub frames: FrameCalls,
@@ -30,14 +30,14 @@ pub struct Session {
     pub graphics: Box<dyn Graphics>,
 }
 
-/// Frames between `xrWaitFrame` and `xrEndFrame`.
+/// The frames of a running session.
 #[derive(Default)]
 pub struct FrameCalls {
     pub waited: Option<Frame>,
     pub begun: Option<Frame>,
-    /// Frames that have ended since the session began.
+    /// The number of frames that have ended.
     pub ended: u32,
-    /// Frames that were waited for since the session began.
+    /// The number of frames that were waited for.
     pub count: u32,
 }
 
@@ -54,7 +54,7 @@ impl Session {
         events.push_back(Event::State(state));
     }
 
-    /// Goes from state to state as far as `level` and the frames so far allow.
+    /// Goes from state to state as far as `level` and the ended frames allow.
     pub fn settle(&mut self, events: &mut VecDeque<Event>) {
         const LEVELS: [State; 4] = [State::Ready, State::Synchronized, State::Visible, State::Focused];
         let index = |state| LEVELS.iter().position(|level| *level == state);
@@ -68,7 +68,7 @@ impl Session {
         }
     }
 
-    /// The runtime ends the session: for ever, or until the headset is put on again.
+    /// Ends the session: for ever, or until the headset is put on again.
     pub fn stop(&mut self, events: &mut VecDeque<Event>, put_on_again_at: Option<u32>) {
         self.put_on_again_at = put_on_again_at;
         self.exiting = put_on_again_at.is_none();
@@ -87,7 +87,7 @@ impl Session {
         self.go(State::Stopping, events);
     }
 
-    /// After enough calls for events the headset is on a head again.
+    /// Makes the session ready again after enough polls.
     pub fn put_on_again(&mut self, polls: u32, events: &mut VecDeque<Event>) {
         if self.state == State::Idle && self.put_on_again_at.is_some_and(|at| at <= polls) {
             self.put_on_again_at = None;
@@ -110,7 +110,7 @@ pub fn get_graphics_requirements(
     DONE
 }
 
-/// Of Vulkan nothing else is offered: the application makes instance and device itself, as it likes.
+/// The only function for Vulkan: the application creates instance and device itself.
 pub fn get_vulkan_graphics_requirements(
     world: &mut World,
     instance: sys::Instance,
@@ -194,7 +194,7 @@ pub fn begin_session(world: &mut World, session: sys::Session, info: &sys::Sessi
     world.success()
 }
 
-/// How many views a configuration has.
+/// Returns the number of views of a configuration.
 pub fn views_of(world: &World, configuration: sys::ViewConfigurationType) -> Result<u32, Refusal> {
     match configuration {
         sys::ViewConfigurationType::PRIMARY_STEREO if world.script.stereo => Ok(2),
@@ -267,7 +267,8 @@ pub fn get_view_configuration_properties(
     DONE
 }
 
-/// What XR_EXT_view_configuration_depth_range says, whose structure is filled whether or not it is enabled: metres.
+/// The recommended planes in metres of XR_EXT_view_configuration_depth_range, whose structure is filled even without
+/// it.
 const DEPTH_RANGE: (f32, f32) = (0.1, 50.0);
 
 pub fn enumerate_view_configuration_views(

@@ -6,7 +6,7 @@ use sys::{Handle, Result as Code};
 
 use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, found};
 
-/// A turn, then a shift: from a space to the one that it lies in.
+/// A rotation, then a translation: from a space to its parent.
 pub type Pose = (Quat, Vec3);
 
 pub struct Space {
@@ -36,7 +36,7 @@ pub fn raw_pose((turn, position): Pose) -> sys::Posef {
     }
 }
 
-/// A pose of the application's.
+/// Checks and converts a pose of the application.
 pub fn pose(raw: &sys::Posef) -> Result<Pose, Refusal> {
     let turn = Quat::from_xyzw(raw.orientation.x, raw.orientation.y, raw.orientation.z, raw.orientation.w);
     let position = Vec3::new(raw.position.x, raw.position.y, raw.position.z);
@@ -49,7 +49,7 @@ pub fn pose(raw: &sys::Posef) -> Result<Pose, Refusal> {
 }
 
 impl World {
-    /// A space in the floor's.
+    /// Returns the pose of a space in that of the floor.
     pub fn space_pose(&mut self, space: sys::Space) -> Result<Pose, Refusal> {
         let head = self.head();
         let position = Vec3::from(self.script.position);
@@ -132,7 +132,7 @@ pub fn create_action_space(
 }
 
 pub fn destroy_space(world: &mut World, space: sys::Space) -> Answer {
-    // What is lost can still be destroyed, and what was destroyed with its session is gone.
+    // Lost spaces can still be destroyed, but not those that were destroyed with their session.
     let known = world.instance.as_mut().and_then(|instance| instance.spaces.remove(&space.into_raw()));
     found(known, "not a space")?;
     DONE

@@ -16,20 +16,20 @@ pub struct Swapchain {
     pub size: [u32; 2],
     pub layers: u32,
     pub textures: Vec<Texture>,
-    /// Images in the order in which they were acquired, and whether they were waited for.
+    /// Acquired images, oldest first; true if they were waited for.
     pub acquired: VecDeque<(usize, bool)>,
-    /// The image that was released last: the one that is shown.
+    /// The image that was released last, which is shown.
     pub released: Option<usize>,
     next: usize,
 }
 
 impl Swapchain {
     pub fn is_depth(&self) -> bool {
-        // As GL numbers them, then as Vulkan does.
+        // Numbers of GL, then of Vulkan.
         matches!(self.format, 0x81A5 | 0x81A6 | 0x8CAC | 0x88F0 | 0x8CAD | 124 | 126 | 129 | 130)
     }
 
-    /// The texture that is shown.
+    /// Returns the texture that is shown.
     pub fn shown(&self) -> Option<Texture> {
         self.released.map(|index| self.textures[index])
     }
@@ -42,7 +42,7 @@ impl World {
         found(known, "not a swapchain")
     }
 
-    /// Runtimes use the application's context in these calls.
+    /// Refuses a call in which runtimes use the application's context, unless it is current.
     fn need_context(&mut self) -> Result<(), Refusal> {
         forbid_if(
             !self.its_session()?.graphics.is_current(),

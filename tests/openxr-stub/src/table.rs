@@ -36,9 +36,9 @@ macro_rules! argument {
     };
 }
 
-/// Makes a C function for each line: the name without `xr`, the Rust function, its parameters (values, structures that are read or
-/// written, texts), and after a semicolon an array that is asked for by capacity and count. After the parentheses comes the
-/// extension that the function needs.
+/// Makes a C function for each line: the name without `xr`, the Rust function, its parameters (values, structures that
+/// are read or written, texts), and after a semicolon an array that is asked for by capacity and count. After the
+/// parentheses comes the extension that the function needs.
 macro_rules! table {
     ($($call:ident = $module:ident::$function:ident(
         $($parameter:ident $how:tt $type:ty),* $(; $array:ident: $item:ty)?
@@ -219,7 +219,7 @@ table! {
     ), "XR_KHR_android_thread_settings";
 }
 
-/// Without an instance only these are there.
+/// The functions that can be found without an instance.
 const BEFORE_INSTANCE: [&str; 5] = [
     "xrGetInstanceProcAddr",
     "xrEnumerateInstanceExtensionProperties",
@@ -233,10 +233,10 @@ pub unsafe extern "system" fn get_instance_proc_addr(
     name: *const c_char,
     out: *mut Option<pfn::VoidFunction>,
 ) -> sys::Result {
-    // SAFETY: as the caller says.
+    // SAFETY: applications give a string that ends in zero.
     let name = unsafe { CStr::from_ptr(name) }.to_string_lossy().into_owned();
     enter("xrGetInstanceProcAddr", |world| {
-        // SAFETY: as the caller says.
+        // SAFETY: applications give a place for a function.
         unsafe { *out = None };
         let early = BEFORE_INSTANCE.contains(&name.as_str());
         if instance == sys::Instance::NULL && !early {
@@ -257,7 +257,7 @@ pub unsafe extern "system" fn get_instance_proc_addr(
                 format!("{name} without {extension}"),
             ));
         }
-        // SAFETY: as the caller says.
+        // SAFETY: as above.
         unsafe { *out = Some(function) };
         DONE
     })

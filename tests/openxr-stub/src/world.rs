@@ -1,4 +1,4 @@
-//! All that the stub knows, and how calls get at it.
+//! The state of the runtime, and the entry of every call.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -25,12 +25,16 @@ pub struct Array<T> {
 }
 
 impl<T> Array<T> {
+    /// Makes the array of a call.
+    ///
     /// # Safety
     /// `count` can be written; `items` has room for `capacity` of them.
     pub unsafe fn new(capacity: u32, count: *mut u32, items: *mut T) -> Array<T> {
         Array { capacity, count, items }
     }
 
+    /// Changes the type of the items.
+    ///
     /// # Safety
     /// The items are structures of this type.
     pub unsafe fn cast<U>(self) -> Array<U> {
@@ -57,14 +61,14 @@ impl<T> Array<T> {
 }
 
 impl Array<c_char> {
-    /// The same for a text, which ends in zero.
+    /// Writes a text, which ends in zero.
     pub fn fill_text(self, text: &str) -> Answer {
         let characters: Vec<c_char> = text.bytes().chain([0]).map(|c| c as c_char).collect();
         self.fill(&characters, |to, from| *to = *from)
     }
 }
 
-/// Why a call fails; with a violation, the application is to blame.
+/// The result of a refused call. With a violation, the application has broken the specification.
 pub struct Refusal {
     pub result: sys::Result,
     pub violation: Option<String>,
@@ -76,17 +80,17 @@ impl From<sys::Result> for Refusal {
     }
 }
 
-/// The application did something that it must not do.
+/// Makes the refusal of a call that the specification forbids.
 pub fn forbidden(result: sys::Result, what: impl Into<String>) -> Refusal {
     Refusal { result, violation: Some(what.into()) }
 }
 
-/// Refuses a call if the application has done something that it must not do.
+/// Refuses a call if `is_wrong`, because the specification forbids it.
 pub fn forbid_if(is_wrong: bool, result: sys::Result, what: impl Into<String>) -> Result<(), Refusal> {
     if is_wrong { Err(forbidden(result, what)) } else { Ok(()) }
 }
 
-/// Refuses a call with a handle that is not known.
+/// Refuses a call with an unknown handle.
 pub fn found<T>(object: Option<T>, what: &str) -> Result<T, Refusal> {
     object.ok_or_else(|| forbidden(Code::ERROR_HANDLE_INVALID, what))
 }
@@ -94,26 +98,26 @@ pub fn found<T>(object: Option<T>, what: &str) -> Result<T, Refusal> {
 pub type Answer = Result<sys::Result, Refusal>;
 pub const DONE: Answer = Ok(Code::SUCCESS);
 
-/// The process: script and log are there as long as it is, also over several instances.
+/// The state of the process. Script and log last over several instances.
 pub struct World {
     pub script: Script,
     pub log: Log,
-    /// Calls of each function.
+    /// The number of calls of each function.
     calls: BTreeMap<String, u32>,
-    /// Which events of the script have happened.
+    /// For each event of the script, true if it has happened.
     happened: Vec<bool>,
     last_handle: u64,
-    /// Frames that were waited for.
+    /// The number of frames that were waited for.
     pub frames: u32,
-    /// How many of them came before the first picture, once there was one.
+    /// The number of frames before the first picture, once there was one.
     before_picture: Option<u32>,
-    /// Calls for events while there were none.
+    /// The number of polls without an event.
     pub idle_polls: u32,
-    /// `xrGetSystem` in vain.
+    /// How often `xrGetSystem` found no headset.
     pub unavailable: u32,
     pub profile: Option<String>,
     pub refresh_rate: f32,
-    /// `xrInitializeLoaderKHR` was called.
+    /// True after `xrInitializeLoaderKHR`.
     pub is_initialized: bool,
     pub instance: Option<Instance>,
 }
@@ -130,11 +134,11 @@ pub struct Instance {
     pub session: Option<Session>,
     pub spaces: HashMap<u64, Space>,
     pub swapchains: HashMap<u64, Swapchain>,
-    /// The local space's turn, in radians.
+    /// The local space's turn to the left, in radians.
     pub local_yaw: f32,
 }
 
-/// An event, not yet told.
+/// An event for the application.
 pub enum Event {
     State(State),
     InstanceLoss,
@@ -151,18 +155,18 @@ thread_local! {
     static IS_INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread is in a call of the runtime: what it allocates there is not the caller's.
+/// True if this thread is in a call of the runtime. Allocations there are not the caller's.
 pub fn is_inside() -> bool {
     IS_INSIDE.get()
 }
 
-/// Forgets all that there was, and goes on with this script in place of the file's.
+/// Forgets everything, and continues with this script in place of the file's.
 pub fn begin(script: Script) {
     *WORLD.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(World::new(script));
     crate::frame::IS_BLANK.store(true, Ordering::Relaxed);
 }
 
-/// Every call comes through here: it is counted, may fail as the script says, and is logged where it is forbidden.
+/// Runs a call: counts it, fails it if the script says so, and logs it if it is forbidden.
 pub fn enter(call: &str, work: impl FnOnce(&mut World) -> Answer) -> sys::Result {
     if call == "xrWaitFrame" {
         crate::frame::pace();
@@ -225,7 +229,7 @@ impl World {
         self.last_handle
     }
 
-    /// The instance, whether or not it is lost.
+    /// Returns the instance, even if it is lost.
     pub fn any_instance(&mut self, handle: sys::Instance) -> Result<&mut Instance, Refusal> {
         let instance = self.instance.as_mut().filter(|instance| instance.handle == handle.into_raw());
         found(instance, "not an instance")
@@ -239,7 +243,7 @@ impl World {
         Ok(instance)
     }
 
-    /// The instance of an object that is not the instance itself.
+    /// Returns the instance of any object, unless it is lost.
     pub fn current(&mut self) -> Result<&mut Instance, Refusal> {
         let instance =
             self.instance.as_mut().ok_or_else(|| forbidden(Code::ERROR_HANDLE_INVALID, "no instance"))?;
@@ -249,7 +253,7 @@ impl World {
         Ok(instance)
     }
 
-    /// The session, if neither it nor its instance is lost.
+    /// Returns the session, unless it or its instance is lost.
     pub fn session(&mut self, handle: sys::Session) -> Result<&mut Session, Refusal> {
         let session = self.current()?.session.as_mut().filter(|s| s.handle == handle.into_raw());
         let session = found(session, "not a session")?;
@@ -259,7 +263,7 @@ impl World {
         Ok(session)
     }
 
-    /// The session of an object that belongs to one.
+    /// Returns the session of an object that belongs to it.
     pub fn its_session(&mut self) -> Result<&mut Session, Refusal> {
         let session = self.current()?.session.as_mut();
         let session = found(session, "no session")?;
@@ -269,18 +273,18 @@ impl World {
         Ok(session)
     }
 
-    /// Whether the session will be lost: the result of calls that go well.
+    /// Returns the result of a call that succeeds, which may tell that the session will be lost.
     pub fn success(&mut self) -> Answer {
         let pending = self.its_session().is_ok_and(|session| session.loss_pending);
         Ok(if pending { Code::SESSION_LOSS_PENDING } else { Code::SUCCESS })
     }
 
-    /// The script's number of the last frame that was waited for.
+    /// Returns the number of the last frame that was waited for, as the script counts.
     pub fn frame(&self) -> u32 {
         self.before_picture.map_or(0, |before| self.frames.saturating_sub(before + 1))
     }
 
-    /// Whether there was a picture; if not, it is there now if `look` says so.
+    /// Notes the first picture: until there was one, `look` says if this is it.
     pub fn picture(&mut self, look: impl FnOnce(&mut World) -> bool) {
         if self.before_picture.is_none() && look(self) {
             // The next one is frame 1.
@@ -289,7 +293,7 @@ impl World {
         }
     }
 
-    /// Everything that the script has for a moment.
+    /// Lets the script's events of a moment happen.
     pub fn happen(&mut self, now: impl Fn(&At) -> bool) {
         for i in 0..self.script.events.len() {
             if !self.happened[i] && now(&self.script.events[i].at) {
@@ -355,12 +359,12 @@ impl World {
         }
     }
 
-    /// How often each function was called.
+    /// Returns the number of calls of each function.
     pub fn counts(&self) -> BTreeMap<String, u32> {
         self.calls.clone()
     }
 
-    /// The head in the floor's space.
+    /// Returns the head's pose in the floor's space.
     pub fn head(&self) -> (Quat, Vec3) {
         let turns = self.frame() as f32;
         let yaw = self.script.yaw_degrees + turns * self.script.yaw_per_frame_degrees;

@@ -1,7 +1,7 @@
 //! The functions that loader and application call: a table of what is intercepted, and the work by trade.
 //!
-//! No panic leaves them. Calls with handles that the layer does not know, such as swapchains that an extension has created,
-//! pass on to the runtime as they are.
+//! No panic leaves them. Calls with handles that the layer does not know, such as swapchains that an extension has
+//! created, pass on to the runtime as they are.
 
 mod loader;
 mod sessions;
@@ -28,8 +28,8 @@ fn without_panic(work: impl FnOnce() -> XrResult<sys::Result>) -> sys::Result {
     }
 }
 
-/// Makes a C function for each line, and finds it by its name. Its first parameter is the handle of an instance, a session
-/// or a swapchain; the work gets the known object in its place.
+/// Makes a C function for each line, and finds it by its name. Its first parameter is the handle of an instance, a
+/// session or a swapchain; the work gets the known object in its place.
 macro_rules! intercept {
     ($($name:literal $function:ident: $kind:ident($handle:ident: $type:ty $(, $parameter:ident: $other:ty)*) => $work:path;)*) => {
         $(unsafe extern "system" fn $function($handle: $type $(, $parameter: $other)*) -> sys::Result {

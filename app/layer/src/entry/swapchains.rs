@@ -9,7 +9,8 @@ use crate::lock;
 use crate::objects::{self, LiveSession};
 use crate::swapchain::{Content, Swapchain};
 
-/// Creates a swapchain whose images the layer can read. If the runtime refuses that, it is created as the application wants it.
+/// Creates a swapchain whose images the layer can read. If the runtime refuses that, it is created as the application
+/// wants it.
 pub unsafe fn create(
     live: &LiveSession,
     info: *const sys::SwapchainCreateInfo,

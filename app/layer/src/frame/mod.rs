@@ -307,14 +307,16 @@ impl Frames {
     fn synthesizer(&mut self, binding: Binding) -> Result<&mut dyn Synthesizer, Reason> {
         // The context may be free in the next frame.
         self.synthesizer.take_if(|made| matches!(made, Err(Reason::NotCurrent)));
-        // SAFETY: the application keeps its device or context until the session is destroyed, and `end` drops this before.
+        // SAFETY: the application keeps its device or context until the session is destroyed, and `end` drops this
+        // before.
         match self.synthesizer.get_or_insert_with(|| unsafe { binding.synthesizer() }) {
             Ok(synthesizer) => Ok(synthesizer.as_mut()),
             Err(reason) => Err(reason.clone()),
         }
     }
 
-    /// Acquires images for the other eye, in swapchains like the application's: colour, and depth if the runtime takes it.
+    /// Acquires images for the other eye, in swapchains like the application's: colour, and depth if the runtime takes
+    /// it.
     fn acquire(
         &mut self,
         session: &Session,

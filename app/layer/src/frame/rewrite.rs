@@ -19,8 +19,8 @@ impl Eyes {
     }
 }
 
-/// Layers of a frame, which point to one another. A local of xrEndFrame: it must not move after [`Rewritten::link`], which
-/// its borrow ensures. Usual numbers of layers need no allocation.
+/// Layers of a frame, which point to one another. A local of xrEndFrame: it must not move after [`Rewritten::link`],
+/// which its borrow ensures. Usual numbers of layers need no allocation.
 #[derive(Default)]
 pub struct Rewritten {
     eyes: SmallVec<[Eyes; 2]>,

@@ -71,8 +71,8 @@ impl Synthesized {
         Synthesized { split, ..*self }.eyes(view, info)
     }
 
-    /// Returns the views of both eyes: the dominant one's is a part of the application's image, the other one's is in the
-    /// targets.
+    /// Returns the views of both eyes: the dominant one's is a part of the application's image, the other one's is in
+    /// the targets.
     pub fn eyes(
         &self,
         view: &sys::CompositionLayerProjectionView,

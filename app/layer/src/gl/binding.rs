@@ -1,4 +1,4 @@
-//! Contexts that others have made: EGL's and GLX's, found by the loader that the application or the system gives.
+//! Contexts of the application, from EGL or GLX.
 
 #[cfg(not(target_os = "android"))]
 use std::ffi::c_ulong;
@@ -10,7 +10,7 @@ use openxr_sys as sys;
 
 use crate::reason::Reason;
 
-/// Gives an entry point by its name, of GL and of EGL or GLX.
+/// Returns an entry point of GL, EGL or GLX by its name.
 type Load = unsafe extern "system" fn(*const c_char) -> *const c_void;
 
 const EGL_OPENGL_API: c_uint = 0x30A2;
@@ -18,13 +18,13 @@ const EGL_CONTEXT_CLIENT_TYPE: c_int = 0x3097;
 const EGL_DRAW: c_int = 0x3059;
 const EGL_READ: c_int = 0x305A;
 
-/// Where to look for the function that gives all others, if the application does not say.
+/// The libraries that may have the function that finds all others, and its name, if the application does not give it.
 #[cfg(target_os = "android")]
 const SYSTEM_LOADER: (&[&str], &[u8]) = (&["libEGL.so"], b"eglGetProcAddress\0");
 #[cfg(not(target_os = "android"))]
 const SYSTEM_LOADER: (&[&str], &[u8]) = (&["libGLX.so.0", "libGL.so.1"], b"glXGetProcAddressARB\0");
 
-/// The context that a session is bound to. Its pointers are not followed here, but handed to EGL or GLX.
+/// The context of a session. Its pointers are only handed to EGL or GLX.
 #[derive(Clone, Copy)]
 pub enum Binding {
     Egl(Egl),
@@ -38,18 +38,19 @@ unsafe impl Send for Binding {}
 unsafe impl Sync for Binding {}
 
 impl Binding {
-    /// That of a structure in the chain of XrSessionCreateInfo, if it is one, and if what it names can be found.
+    /// Returns the context that a structure in the chain of XrSessionCreateInfo names; None for other structures, and
+    /// if EGL or GLX cannot be found.
     ///
     /// # Safety
-    /// The structure is what its type says, of a call that has succeeded.
+    /// The structure is of its type, and was given to a call of xrCreateSession that has succeeded.
     pub unsafe fn of(header: &sys::BaseInStructure) -> Option<Binding> {
         let structure = std::ptr::from_ref(header);
-        // SAFETY: promised by the caller.
+        // SAFETY: the type says what the structure is, and the runtime has accepted it.
         unsafe {
             match header.ty {
                 sys::GraphicsBindingEGLMNDX::TYPE => {
                     let info = &*structure.cast::<sys::GraphicsBindingEGLMNDX>();
-                    // A function, or null, that returns another one, or null.
+                    // Both types are functions, or null, that return a function, or null.
                     let load = std::mem::transmute::<Option<sys::pfn::EglGetProcAddressMNDX>, Option<Load>>(
                         info.get_proc_address,
                     );
@@ -70,7 +71,7 @@ impl Binding {
         }
     }
 
-    /// Which structure xrEnumerateSwapchainImages fills.
+    /// Returns the type of structure that xrEnumerateSwapchainImages fills.
     pub fn image_type(&self) -> sys::StructureType {
         match self {
             Binding::Egl(egl) if egl.api != EGL_OPENGL_API => sys::SwapchainImageOpenGLESKHR::TYPE,
@@ -78,26 +79,26 @@ impl Binding {
         }
     }
 
-    /// An entry point of GL, null for those that do not exist.
+    /// Returns an entry point of GL; null if it does not exist.
     pub fn load(&self, name: &CStr) -> *const c_void {
         let load = match self {
             Binding::Egl(egl) => egl.load,
             #[cfg(not(target_os = "android"))]
             Binding::Glx(glx) => glx.load,
         };
-        // SAFETY: it takes a name.
+        // SAFETY: a name that ends in zero.
         unsafe { load(name.as_ptr()) }
     }
 
     /// Makes the context current on this thread, until the result is dropped.
     ///
     /// # Errors
-    /// [`Reason::NotCurrent`]: it may be current on another thread.
+    /// [`Reason::NotCurrent`]; the context may be current on another thread.
     ///
     /// # Safety
     /// The context exists.
     pub unsafe fn make_current(&self) -> Result<Current, Reason> {
-        // SAFETY: promised by the caller.
+        // SAFETY: the context exists.
         let current = unsafe {
             match self {
                 Binding::Egl(egl) => egl.make_current(),
@@ -109,7 +110,7 @@ impl Binding {
     }
 }
 
-/// What was current before, and is again when this is dropped, whoever has changed it.
+/// The context that was current before. It is current again when this is dropped, whoever has changed it.
 pub enum Current {
     Egl(Egl, EglState),
     #[cfg(not(target_os = "android"))]
@@ -118,7 +119,7 @@ pub enum Current {
 
 impl Drop for Current {
     fn drop(&mut self) {
-        // SAFETY: what was current on this thread at `make_current`. What fails here fails for the application, too.
+        // SAFETY: the state of this thread at `make_current`. A call that fails here fails for the application, too.
         unsafe {
             match self {
                 Current::Egl(egl, state) => egl.restore(state),
@@ -129,7 +130,7 @@ impl Drop for Current {
     }
 }
 
-/// The system's, of a library that is never unloaded.
+/// Returns the system's loader function. Its library is never unloaded.
 fn system_loader() -> Option<Load> {
     let (libraries, name) = SYSTEM_LOADER;
     static LIBRARY: OnceLock<Option<Library>> = OnceLock::new();
@@ -151,12 +152,12 @@ macro_rules! functions {
 
             $(#[$attribute])+
             impl $table {
-                /// None where one is missing.
+                /// Loads all functions; None if one is missing.
                 ///
                 /// # Safety
-                /// What the loader gives for these names are the functions that are known by them.
+                /// `load` returns the functions that are known by these names.
                 unsafe fn new(load: Load) -> Option<$table> {
-                    // SAFETY: promised by the caller; null is `None`.
+                    // SAFETY: functions of these names have these types; null is `None`.
                     unsafe {
                         Some($table {
                             $($field: std::mem::transmute::<
@@ -172,7 +173,7 @@ macro_rules! functions {
 }
 
 functions! {
-    /// Of EGL 1.5, or with EGL_KHR_get_all_proc_addresses.
+    /// Functions of EGL 1.5, or of earlier ones with EGL_KHR_get_all_proc_addresses.
     EglFunctions {
         query_api: fn() -> c_uint = c"eglQueryAPI",
         bind_api: fn(c_uint) -> c_uint = c"eglBindAPI",
@@ -182,7 +183,7 @@ functions! {
         current_surface: fn(c_int) -> *mut c_void = c"eglGetCurrentSurface",
         make_current: fn(*mut c_void, *mut c_void, *mut c_void, *mut c_void) -> c_uint = c"eglMakeCurrent",
     }
-    /// Of GLX 1.3.
+    /// Functions of GLX 1.3.
     #[cfg(not(target_os = "android"))]
     GlxFunctions {
         current_context: fn() -> *mut c_void = c"glXGetCurrentContext",
@@ -199,14 +200,14 @@ pub struct Egl {
     load: Load,
     display: *mut c_void,
     context: *mut c_void,
-    /// EGL_OPENGL_API or EGL_OPENGL_ES_API: each has a current context of its own.
+    /// EGL_OPENGL_API or EGL_OPENGL_ES_API. Each has its own current context.
     api: c_uint,
     functions: EglFunctions,
 }
 
-/// What was current in EGL.
+/// The current state of EGL on a thread.
 pub struct EglState {
-    /// The one that is chosen; the others are those of [`Egl::api`].
+    /// The chosen interface; the fields below belong to [`Egl::api`].
     api: c_uint,
     display: *mut c_void,
     draw: *mut c_void,
@@ -251,7 +252,7 @@ impl Egl {
     unsafe fn restore(&self, state: &EglState) {
         let functions = &self.functions;
         let display = if state.display.is_null() { self.display } else { state.display };
-        // SAFETY: promised by the caller.
+        // SAFETY: this was the state of this thread.
         unsafe {
             if (functions.query_api)() != self.api {
                 (functions.bind_api)(self.api);
@@ -277,7 +278,7 @@ pub struct Glx {
     functions: GlxFunctions,
 }
 
-/// What was current in GLX.
+/// The current state of GLX on a thread.
 #[cfg(not(target_os = "android"))]
 pub struct GlxState {
     display: *mut c_void,
@@ -319,7 +320,7 @@ impl Glx {
 
     unsafe fn restore(&self, state: &GlxState) {
         let display = if state.display.is_null() { self.display } else { state.display };
-        // SAFETY: promised by the caller.
+        // SAFETY: this was the state of this thread.
         unsafe {
             if (self.functions.current_context)() != state.context {
                 (self.functions.make_current)(display, state.draw, state.read, state.context);

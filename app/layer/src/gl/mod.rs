@@ -1,4 +1,4 @@
-//! Synthesis in the application's context of OpenGL or OpenGL ES, which is as it was afterwards.
+//! Synthesis in the application's context of OpenGL or OpenGL ES. The context's state is set back afterwards.
 
 mod binding;
 #[cfg(feature = "capture")]
@@ -24,17 +24,17 @@ use timer::Timer;
 /// The pipeline in the application's context.
 pub struct Synthesizer {
     binding: Binding,
-    /// Deleted while the context is current, or not at all.
+    /// Deleted only while the context is current.
     objects: ManuallyDrop<Objects>,
 }
 
-/// What lives in the context, and is used while it is current.
+/// The objects in the context, which are used only while it is current.
 struct Objects {
     context: Rc<Context>,
     pipeline: Option<(Outputs, Box<dyn Synthesis>)>,
-    /// Framebuffers by what is attached to them.
+    /// Framebuffers by the colour and depth that are attached to them.
     targets: Vec<([Option<Image>; 2], glow::Framebuffer)>,
-    /// Copies of colour and depth, where these are parts of what is submitted.
+    /// Copies of colour and depth, if only a part of an image is submitted.
     copies: [Option<Copy>; 2],
     timer: Option<Timer>,
 }
@@ -46,15 +46,17 @@ struct Copy {
     size: [u32; 2],
 }
 
-// SAFETY: objects of a context are used only while it is current, on one thread at a time, and so are the reference counts
-// beside them: `Frames` is locked meanwhile.
+// SAFETY: objects of a context are used only while it is current, on one thread at a time, and so are the reference
+// counts beside them: `Frames` is locked meanwhile.
 unsafe impl Send for Synthesizer {}
 
 impl Synthesizer {
+    /// Creates a pipeline in the context.
+    ///
     /// # Safety
     /// The binding's context exists until this is dropped.
     pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
-        // SAFETY: promised by the caller; entry points of the context, which is current.
+        // SAFETY: the context exists and is current; these are its entry points.
         let objects = unsafe {
             let _current = binding.make_current()?;
             let glow = glow::Context::from_loader_function_cstr(|name| binding.load(name));
@@ -68,8 +70,8 @@ impl Synthesizer {
 
 impl Drop for Synthesizer {
     fn drop(&mut self) {
-        // SAFETY: the context exists, and its objects are not used any more. If it is current elsewhere they stay, and go
-        // with it.
+        // SAFETY: the context exists, and its objects are not used any more. If it is current elsewhere, they stay
+        // until it is destroyed.
         unsafe {
             if let Ok(_current) = self.binding.make_current() {
                 self.objects.delete();
@@ -81,7 +83,7 @@ impl Drop for Synthesizer {
 
 impl synthesizer::Synthesizer for Synthesizer {
     unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
-        // SAFETY: promised by the caller.
+        // SAFETY: the context exists, and its images are not in use.
         unsafe {
             let _current = self.binding.make_current()?;
             self.objects.synthesize(job)
@@ -94,13 +96,13 @@ impl synthesizer::Synthesizer for Synthesizer {
         if !self.objects.targets.iter().any(|(target, _)| attached(target)) {
             return;
         }
-        // SAFETY: the context exists. If it is current elsewhere the framebuffers stay until it goes.
+        // SAFETY: the context exists. If it is current elsewhere, the framebuffers stay until it is destroyed.
         let current = unsafe { self.binding.make_current() };
         let Objects { context, targets, .. } = &mut *self.objects;
         targets.retain(|(target, framebuffer)| {
             let keep = !attached(target);
             if !keep && current.is_ok() {
-                // SAFETY: made here, and used no more.
+                // SAFETY: made here, and not used any more.
                 unsafe { context.raw().delete_framebuffer(*framebuffer) };
             }
             keep
@@ -119,7 +121,7 @@ fn texture(name: u64) -> Result<glow::Texture, Reason> {
     Ok(glow::NativeTexture(name.ok_or(Reason::Beyond)?))
 }
 
-/// Framebuffers that are bound for drawing and for reading.
+/// Returns the framebuffers that are bound for drawing and for reading.
 fn bound_framebuffers(gl: &glow::Context) -> [Option<glow::Framebuffer>; 2] {
     // SAFETY: queries.
     [glow::DRAW_FRAMEBUFFER_BINDING, glow::READ_FRAMEBUFFER_BINDING]
@@ -139,7 +141,7 @@ impl Objects {
         let context = Rc::clone(&self.context);
         let context = &*context;
         let _silence = Silence::begin(context);
-        // SAFETY: promised by the caller.
+        // SAFETY: the context is current, and the images are textures of it.
         let (source, framebuffer) = unsafe {
             let color = self.source(0, job.color, job.source)?;
             let depth = self.source(1, job.depth, job.source)?;
@@ -166,7 +168,7 @@ impl Objects {
         Ok(self.timer.as_mut().and_then(|timer| timer.time(context)))
     }
 
-    /// A texture that is this part of an image: its own, or a copy.
+    /// Returns a texture of this part of an image: the image itself, or a copy.
     unsafe fn source(
         &mut self,
         which: usize,
@@ -212,7 +214,7 @@ impl Objects {
         }
     }
 
-    /// A framebuffer around an image of colour and, if there is one, of depth, which stays until one of them is forgotten.
+    /// Returns a framebuffer of an image of colour and perhaps of depth. It stays until one of them is forgotten.
     unsafe fn framebuffer(&mut self, images: [Option<Image>; 2]) -> Result<glow::Framebuffer, Reason> {
         if let Some((_, framebuffer)) = self.targets.iter().find(|(known, _)| *known == images) {
             return Ok(*framebuffer);
@@ -247,10 +249,10 @@ impl Objects {
         }
     }
 
-    /// Before it is dropped: what does not delete itself.
+    /// Deletes the objects that do not delete themselves. Called before the drop.
     fn delete(&mut self) {
         let gl = self.context.raw();
-        // SAFETY: made here, and used no more.
+        // SAFETY: made here, and not used any more.
         unsafe {
             for (_, framebuffer) in self.targets.drain(..) {
                 gl.delete_framebuffer(framebuffer);
@@ -265,7 +267,7 @@ impl Objects {
     }
 }
 
-/// Keeps the names of passes, and all else that is the layer's, out of what the application logs of its context.
+/// Keeps the layer's debug messages, such as names of passes, out of the application's log of its context.
 struct Silence<'a>(Option<&'a Context>);
 
 impl Silence<'_> {

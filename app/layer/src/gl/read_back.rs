@@ -35,13 +35,13 @@ impl Synthesizer {
 }
 
 impl Objects {
-    /// Four bytes a pixel, rows from the bottom.
+    /// Returns four bytes a pixel, rows from the bottom.
     unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
         // SAFETY: the caller's obligation is the same.
         let framebuffer = unsafe { self.framebuffer([Some(image), None])? };
         let gl = self.context.raw();
         let before = bound_framebuffers(gl);
-        // SAFETY: queries of state that there is, and its own values again.
+        // SAFETY: state of the current context, which is set back.
         unsafe {
             let buffer = gl.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING);
             let stores =

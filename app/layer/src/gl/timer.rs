@@ -7,24 +7,24 @@ use yoro::gl::{Context, GlApi};
 
 use super::Binding;
 
-/// Frames whose times may be pending at the same time.
+/// The number of frames whose times may be pending at the same time.
 const TIMED_FRAMES: usize = 4;
-/// Both in OpenGL and, with GL_EXT_disjoint_timer_query, in OpenGL ES.
+/// Numbers of OpenGL, and of OpenGL ES with GL_EXT_disjoint_timer_query.
 const QUERY_COUNTER_BITS: u32 = 0x8864;
 const GPU_DISJOINT: u32 = 0x8FBB;
 
-/// Time stamps before and after the synthesis of each frame. Unlike queries of elapsed time they do not disturb those of
-/// the application.
+/// Time stamps before and after the synthesis of each frame. Queries of elapsed time would disturb those of the
+/// application.
 pub struct Timer {
     queries: [[glow::Query; 2]; TIMED_FRAMES],
-    /// The frame that is timed next, and how many before it are pending.
+    /// The number of the next frame, and how many before it are pending.
     next: usize,
     pending: usize,
-    /// Whether the clock can be disturbed, and says so.
+    /// True if the clock can be disturbed, and tells so.
     disjoint: bool,
 }
 
-/// The query that ends what is timed.
+/// The query for the end of a frame's synthesis.
 pub struct Timing(glow::Query);
 
 impl Timing {
@@ -35,10 +35,10 @@ impl Timing {
 }
 
 impl Timer {
-    /// None where the driver has no time stamps.
+    /// Creates the queries; None if the driver has no time stamps.
     ///
     /// # Safety
-    /// The context is current, and the binding's.
+    /// The context is that of the binding, and current.
     pub unsafe fn new(binding: &Binding, context: &Context) -> Option<Timer> {
         type GetQuery = unsafe extern "system" fn(u32, u32, *mut i32);
         if !context.capabilities().timer_queries {
@@ -63,7 +63,7 @@ impl Timer {
         }
     }
 
-    /// None while as many frames are pending as can be.
+    /// Begins to time a frame; None if as many frames are pending as can be.
     pub fn begin(&mut self, context: &Context) -> Option<Timing> {
         if self.pending == TIMED_FRAMES {
             return None;
@@ -76,7 +76,7 @@ impl Timer {
         Some(Timing(last))
     }
 
-    /// That of the oldest frame that is pending, if it is known. Does not wait.
+    /// Returns the time of the oldest pending frame, if it is known. Does not wait.
     pub fn time(&mut self, context: &Context) -> Option<Duration> {
         if self.pending == 0 {
             return None;

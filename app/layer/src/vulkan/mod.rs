@@ -19,10 +19,10 @@ use crate::geometry::Rectangle;
 use crate::reason::Reason;
 use crate::synthesizer::{self, Image, Job, TIMEOUT};
 
-/// Frames whose commands may be pending at the same time.
+/// The number of frames whose commands may be pending at the same time.
 const FRAMES: usize = 3;
 
-/// What the application binds its session to.
+/// The device and the queue of a session.
 #[derive(Clone, Copy)]
 pub struct Binding {
     instance: vk::Instance,
@@ -33,7 +33,7 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Of a session's graphics binding.
+    /// Returns the device and the queue that a graphics binding names.
     pub fn new(binding: &sys::GraphicsBindingVulkanKHR) -> Binding {
         let raw = |handle: *const c_void| handle as u64;
         Binding {
@@ -68,7 +68,7 @@ struct Slot {
     fence: vk::Fence,
 }
 
-/// Vulkan's loader, which the application has loaded, too.
+/// Returns Vulkan's loader, which the application has loaded, too.
 fn entry() -> Option<&'static ash::Entry> {
     static ENTRY: OnceLock<Option<ash::Entry>> = OnceLock::new();
     // SAFETY: the system's library, which is never unloaded.
@@ -76,24 +76,26 @@ fn entry() -> Option<&'static ash::Entry> {
 }
 
 impl Synthesizer {
+    /// Creates command buffers on the device.
+    ///
     /// # Safety
     /// The binding's handles are valid until this is dropped.
     pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
         let entry = entry().ok_or(Reason::NoLibrary("Vulkan's loader"))?;
-        // SAFETY: promised by the caller.
+        // SAFETY: handles of the application's session.
         let (instance, device) = unsafe {
             let instance = ash::Instance::load(entry.static_fn(), binding.instance);
             let device = ash::Device::load(instance.fp_v1_0(), binding.device);
             (instance, device)
         };
-        // SAFETY: promised by the caller; all objects are this device's.
+        // SAFETY: all objects are this device's.
         unsafe {
             let queue = device.get_device_queue(binding.queue_family, binding.queue);
             let info = vk::CommandPoolCreateInfo::default()
                 .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER)
                 .queue_family_index(binding.queue_family);
             let pool = device.create_command_pool(&info, None).map_err(Reason::Vulkan)?;
-            // From here on dropping it destroys what there is.
+            // From here on its drop destroys what was created.
             let mut synthesizer = Synthesizer {
                 gather: None,
                 sources: Vec::new(),
@@ -120,7 +122,7 @@ impl Synthesizer {
         }
     }
 
-    /// A pipeline for these formats and sizes.
+    /// Creates a pipeline for the formats and sizes of a job, unless there is one.
     unsafe fn make_gather(&mut self, job: &Job) -> Result<(), Reason> {
         let [source, target] = [job.color.size, job.target.size];
         let fits = |limit: [u32; 2], size: [u32; 2]| limit[0] >= size[0] && limit[1] >= size[1];
@@ -149,7 +151,7 @@ impl Synthesizer {
             physical_device: self.binding.physical_device,
             device: &self.device,
             queue_family: self.binding.queue_family,
-            // Whether the application has enabled it is not known.
+            // The layer does not know if the application has enabled it.
             dynamic_rendering: false,
         };
         // SAFETY: the handles are valid until this is dropped, which waits for its commands.
@@ -237,7 +239,7 @@ impl Synthesizer {
         Ok(())
     }
 
-    /// What could not be submitted signals no fence: another one, so that nobody waits for it.
+    /// Replaces the fence of commands that could not be submitted, since they will never signal it.
     unsafe fn renew_fence(&mut self) {
         let slot = &mut self.slots[self.frame % FRAMES];
         let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
@@ -252,8 +254,7 @@ impl Synthesizer {
 
     fn wait_for_all(&self) {
         for slot in self.slots.iter().filter(|slot| !slot.fence.is_null()) {
-            // SAFETY: this device's fence. A device that is lost or hangs has nothing pending any more that could be
-            // waited for.
+            // SAFETY: this device's fence. On a device that is lost or hangs nothing is worth waiting for.
             unsafe {
                 self.device
                     .wait_for_fences(&[slot.fence], true, Duration::from_secs(5).as_nanos() as u64)
@@ -266,7 +267,7 @@ impl Synthesizer {
 impl synthesizer::Synthesizer for Synthesizer {
     unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
         let slot = self.slots[self.frame % FRAMES];
-        // SAFETY: promised by the caller; commands and images are this device's, and the slot's commands are not pending.
+        // SAFETY: commands and images are this device's, and the slot's commands are not pending.
         unsafe {
             self.wait_for(slot)?;
             self.make_gather(job)?;
@@ -277,7 +278,7 @@ impl synthesizer::Synthesizer for Synthesizer {
             gather.record(slot.commands, &frame, job.warp).map_err(Reason::Synthesis)?;
             self.device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
             self.submit(slot)?;
-            // Without times there is nothing to say about them.
+            // An error here only means that there are no times.
             let times = made(&mut self.gather)?.pass_times().ok().flatten();
             Ok(times.map(|times| times.tiles + times.spans + times.march))
         }
@@ -317,7 +318,7 @@ impl synthesizer::Synthesizer for Synthesizer {
     }
 }
 
-/// The pipeline, which is made before anything is done with it.
+/// Returns the pipeline, which was made before.
 fn made(gather: &mut Option<(Gather, Options)>) -> Result<&mut Gather, Reason> {
     gather.as_mut().map(|(gather, _)| gather).ok_or(Reason::Panic)
 }

@@ -27,7 +27,8 @@ impl Synthesizer {
         Ok(bytes.chunks_exact(4).flat_map(|pixel| places.map(|place| pixel[place])).collect())
     }
 
-    /// Copies a rectangle of an image that is in the layout of a colour attachment, and waits for it. Returns four bytes a pixel.
+    /// Copies a rectangle of an image that is in the layout of a colour attachment, and waits for it. Returns four
+    /// bytes a pixel.
     unsafe fn read_back(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
         let slot = self.slots[self.frame % FRAMES];
         let bytes = u64::from(part.size[0]) * u64::from(part.size[1]) * 4;
@@ -95,7 +96,7 @@ impl Synthesizer {
     }
 }
 
-/// Memory that the CPU reads.
+/// A buffer that the CPU reads.
 struct Staging {
     device: ash::Device,
     buffer: vk::Buffer,

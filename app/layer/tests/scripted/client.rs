@@ -1,4 +1,4 @@
-//! An OpenXR application that does as it is told, on the layer, with the simulated runtime below it.
+//! A scripted OpenXR application on the layer, with the simulated runtime below.
 
 use std::ffi::CStr;
 use std::ptr;
@@ -16,7 +16,7 @@ use crate::scene::{self, Picture};
 
 pub const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
 
-/// A call of the application's that has failed.
+/// A failed call of the application.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
     pub call: &'static str,
@@ -31,16 +31,18 @@ fn check(call: &'static str, result: sys::Result) -> Outcome<sys::Result> {
 
 macro_rules! functions {
     ($($field:ident: $kind:ident = $name:literal,)*) => {
-        /// OpenXR, as the layer gives it to an application.
+        /// The functions of OpenXR that an application gets.
         struct Functions { $($field: pfn::$kind,)* }
 
         impl Functions {
+            /// Finds all functions.
+            ///
             /// # Safety
-            /// A live instance of this function's.
+            /// `get` is the xrGetInstanceProcAddr of this live instance.
             unsafe fn new(get: pfn::GetInstanceProcAddr, instance: sys::Instance) -> Functions {
                 Functions { $($field: {
                     let mut function = None;
-                    // SAFETY: promised by the caller; a function of this name has this type.
+                    // SAFETY: a live instance, and a function of this name has this type.
                     unsafe {
                         assert_eq!(get(instance, $name.as_ptr(), &mut function), sys::Result::SUCCESS);
                         std::mem::transmute::<pfn::VoidFunction, pfn::$kind>(function.unwrap())
@@ -74,7 +76,7 @@ functions! {
     release_swapchain_image: ReleaseSwapchainImage = c"xrReleaseSwapchainImage",
 }
 
-/// The runtime's part of a loader: the end of the chain that a layer calls when an instance is made.
+/// Creates the runtime's instance: the end of the chain of layers, as a loader has it.
 unsafe extern "system" fn create_runtime_instance(
     info: *const sys::InstanceCreateInfo,
     _: *const sys::ApiLayerCreateInfo,
@@ -139,7 +141,7 @@ pub struct Chain {
     images: Vec<u64>,
 }
 
-/// A part of one.
+/// A part of a swapchain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
     pub chain: sys::Swapchain,
@@ -163,7 +165,7 @@ impl Part {
     }
 }
 
-/// What the depth in a swapchain means: distances of what is stored as `min` and as `max`.
+/// The meaning of depth: the distances in metres that are stored as `min` and as `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planes {
     pub near: f32,
@@ -181,7 +183,7 @@ impl Planes {
     }
 }
 
-/// A view that the application has located.
+/// A located view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     pub pose: Pose,
@@ -190,7 +192,7 @@ pub struct View {
 }
 
 impl View {
-    /// The same view somewhere else.
+    /// Returns the view moved by an offset.
     pub fn at(self, offset: glam::Vec3) -> View {
         let mut view = self;
         view.pose.position += offset;
@@ -200,7 +202,7 @@ impl View {
     }
 }
 
-/// A view that it submits.
+/// A view to submit.
 #[derive(Clone, Copy)]
 pub struct Submitted {
     pub view: View,
@@ -208,7 +210,7 @@ pub struct Submitted {
     pub depth: Option<(Part, Planes)>,
 }
 
-/// A composition layer that it submits.
+/// A composition layer to submit.
 pub enum Layer {
     Projection(Vec<Submitted>),
     Quad(Part),
@@ -228,7 +230,7 @@ pub struct Painted<'a> {
     planes: Planes,
     formats: [vk::Format; 2],
     pub picture: Picture,
-    /// Its depth as it is stored.
+    /// Its depth in the form in which it is stored.
     stored: Vec<f32>,
     /// Colour and depth on Vulkan.
     images: Option<[harness::Image<'a>; 2]>,
@@ -265,7 +267,7 @@ const IDENTITY: sys::Posef = sys::Posef {
 };
 
 impl<'a> Client<'a> {
-    /// Makes an instance with these extensions and those of what it draws with, and finds the headset.
+    /// Creates an instance with these extensions and those of its graphics, and finds the headset.
     pub fn new(drawing: impl Into<Drawing<'a>>, name: &str, extensions: &[&CStr]) -> Outcome<Client<'a>> {
         let (drawing, layer) = (drawing.into(), layer());
         let mut next = sys::ApiLayerNextInfo {
@@ -337,7 +339,7 @@ impl<'a> Client<'a> {
         Ok(client)
     }
 
-    /// The view configurations that are offered.
+    /// Returns the offered view configurations.
     pub fn configurations(&self) -> Outcome<Vec<ViewsOf>> {
         let (mut list, mut count) = ([ViewsOf::PRIMARY_MONO; 8], 0);
         let call = self.xr.enumerate_view_configurations;
@@ -347,7 +349,7 @@ impl<'a> Client<'a> {
         Ok(list[..count as usize].to_vec())
     }
 
-    /// The recommended sizes of the configuration's views.
+    /// Returns the recommended sizes of the configuration's views.
     pub fn sizes(&self) -> Outcome<Vec<[u32; 2]>> {
         // SAFETY: plain data; the type is set below.
         let empty: sys::ViewConfigurationView = unsafe { std::mem::zeroed() };
@@ -364,7 +366,7 @@ impl<'a> Client<'a> {
         Ok(views[..count as usize].iter().map(size).collect())
     }
 
-    /// The recommended near and far planes that the runtime writes to structures chained to the configuration's views.
+    /// Returns the near and far planes that the runtime recommends in structures chained to the configuration's views.
     pub fn chained_depth_ranges(&self, count: usize) -> Outcome<Vec<[f32; 2]>> {
         // SAFETY: plain data; the types and chains are set below.
         let (empty_view, empty_range) =
@@ -387,7 +389,7 @@ impl<'a> Client<'a> {
         Ok(ranges.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
     }
 
-    /// Makes a session with a space.
+    /// Creates a session and a space.
     pub fn create_session(&mut self) -> Outcome<()> {
         (self.running, self.over) = (false, false);
         let (instance, system, create) = (self.instance, self.system, self.xr.create_session);
@@ -419,7 +421,7 @@ impl<'a> Client<'a> {
         Ok(())
     }
 
-    /// Takes the runtime's events, and begins and ends the session as they say.
+    /// Takes the runtime's events, and begins and ends the session accordingly.
     pub fn poll(&mut self) -> Outcome<()> {
         loop {
             // SAFETY: plain data.
@@ -482,7 +484,7 @@ impl<'a> Client<'a> {
         }
     }
 
-    /// Makes a swapchain for colour or for depth.
+    /// Creates a swapchain for colour or for depth.
     pub fn chain(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Outcome<Chain> {
         let info = self.chain_info(format, size, layers);
         let mut handle = sys::Swapchain::NULL;
@@ -494,7 +496,7 @@ impl<'a> Client<'a> {
         Ok(Chain { handle, images })
     }
 
-    /// Makes a swapchain below the layer, as functions of extensions do that the layer does not know.
+    /// Creates a swapchain that the layer does not know, as functions of extensions do.
     pub fn chain_below_the_layer(&self) -> Outcome<Chain> {
         // SAFETY: a live instance of the runtime's, too.
         let xr = unsafe { Functions::new(runtime(), self.instance) };
@@ -509,7 +511,7 @@ impl<'a> Client<'a> {
     }
 
     pub fn destroy_chain(&self, chain: Chain) -> Outcome<()> {
-        // SAFETY: used no more.
+        // SAFETY: not used any more.
         check("xrDestroySwapchain", unsafe { (self.xr.destroy_swapchain)(chain.handle) }).map(|_| ())
     }
 
@@ -538,7 +540,7 @@ impl<'a> Client<'a> {
         check("xrBeginFrame", unsafe { (self.xr.begin_frame)(self.session, ptr::null()) }).map(|_| ())
     }
 
-    /// The views for a frame: so many as the configuration has.
+    /// Locates the views of a frame: as many as the configuration has.
     pub fn locate(&mut self, frame: Frame) -> Outcome<[Option<View>; 2]> {
         let info = sys::ViewLocateInfo {
             ty: sys::ViewLocateInfo::TYPE,
@@ -605,7 +607,7 @@ impl<'a> Client<'a> {
         check("xrReleaseSwapchainImage", result).map(|_| ())
     }
 
-    /// Renders what the view sees, if that is not what was rendered last.
+    /// Renders what a view sees, unless it was rendered last.
     pub fn paint(
         &mut self,
         view: View,
@@ -637,7 +639,7 @@ impl<'a> Client<'a> {
         self.painted = Some(Painted { view, samples, planes, formats, picture, stored, images });
     }
 
-    /// Copies the colour that was painted to a part of a swapchain's image.
+    /// Copies the painted colour to a part of a swapchain's image.
     pub fn copy_color(&self, to: u64, part: Part) {
         let painted = self.painted.as_ref().unwrap();
         match self.drawing {
@@ -646,7 +648,7 @@ impl<'a> Client<'a> {
         }
     }
 
-    /// The same with its depth.
+    /// Copies the painted depth.
     pub fn copy_depth(&self, to: u64, part: Part) {
         let painted = self.painted.as_ref().unwrap();
         match self.drawing {
@@ -657,7 +659,7 @@ impl<'a> Client<'a> {
 
     /// Ends a frame with these layers.
     pub fn end_frame(&mut self, frame: Frame, layers: &[Layer]) -> Outcome<()> {
-        // Eight layers of two views suffice, on the stack: what this test allocates is not the layer's.
+        // Eight layers of two views are enough. They are on the stack, because the tests count the layer's allocations.
         // SAFETY: plain data; what is not filled is not used.
         let (mut depths, mut views, mut projections, mut quads) = unsafe {
             (
@@ -743,7 +745,7 @@ impl<'a> Client<'a> {
 
     pub fn destroy_session(&mut self) -> Outcome<()> {
         self.running = false;
-        // SAFETY: used no more.
+        // SAFETY: not used any more.
         let result =
             unsafe { (self.xr.destroy_session)(std::mem::replace(&mut self.session, sys::Session::NULL)) };
         check("xrDestroySession", result).map(|_| ())
@@ -753,9 +755,10 @@ impl<'a> Client<'a> {
 /// Copies an image to a part of a swapchain's.
 fn copy(gpu: &Gpu, from: &harness::Image, to: vk::Image, part: Part) {
     let depth = harness::is_depth(from.format);
-    let (state, aspect_mask) = match depth {
-        true => (ImageState::DEPTH_ATTACHMENT, vk::ImageAspectFlags::DEPTH),
-        false => (ImageState::COLOR_ATTACHMENT, vk::ImageAspectFlags::COLOR),
+    let (state, aspect_mask) = if depth {
+        (ImageState::DEPTH_ATTACHMENT, vk::ImageAspectFlags::DEPTH)
+    } else {
+        (ImageState::COLOR_ATTACHMENT, vk::ImageAspectFlags::COLOR)
     };
     let stencil =
         from.format == vk::Format::D32_SFLOAT_S8_UINT || from.format == vk::Format::D24_UNORM_S8_UINT;
@@ -805,7 +808,7 @@ fn copy(gpu: &Gpu, from: &harness::Image, to: vk::Image, part: Part) {
 
 impl Drop for Client<'_> {
     fn drop(&mut self) {
-        // SAFETY: used no more. Whatever is left is destroyed with it.
+        // SAFETY: not used any more. Whatever is left is destroyed with it.
         unsafe { (self.xr.destroy_instance)(self.instance) };
     }
 }

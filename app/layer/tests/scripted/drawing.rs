@@ -1,4 +1,4 @@
-//! What the application draws with: Vulkan, or OpenGL ES in a context of EGL.
+//! The application's graphics: Vulkan, or OpenGL ES in a context of EGL.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr;
@@ -27,7 +27,7 @@ pub struct Gles<'a> {
     binding: Binding,
 }
 
-/// Runs a test body with a context, and with settings of its own.
+/// Runs a test with a context and the tests' settings.
 pub fn with_gles(body: impl FnOnce(&Gles)) {
     world::settle();
     let headless = Headless::open(Backend::Egl).unwrap();
@@ -37,7 +37,7 @@ pub fn with_gles(body: impl FnOnce(&Gles)) {
 }
 
 impl Gles<'_> {
-    /// Objects that there are, by the names that they have, which drivers give in turn.
+    /// Counts the objects of each kind. Drivers number them in turn.
     fn objects(&self) -> Vec<(&'static CStr, usize)> {
         const KINDS: [&CStr; 9] = [
             c"glIsBuffer",
@@ -60,12 +60,12 @@ impl Gles<'_> {
                 NAMES.filter(|name| is(*name) != 0).count()
             }
         };
-        // Where no context is current there is nothing.
+        // Without a current context there would be none.
         assert!(count(c"glIsTexture") > 0);
         KINDS.into_iter().map(|kind| (kind, count(kind))).collect()
     }
 
-    /// Fills a part of a texture: of an array, if that is not the first layer.
+    /// Fills a part of a texture. With a layer other than the first, the texture is an array.
     fn upload(&self, texture: u64, part: Part, [format, kind]: [u32; 2], bytes: &[u8]) {
         let texture = u32::try_from(texture).ok().and_then(std::num::NonZeroU32::new);
         let ([x, y], [width, height]) = (part.origin.map(|n| n as i32), part.size.map(|n| n as i32));
@@ -106,7 +106,7 @@ impl<'a> From<&'a Gles<'a>> for Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Objects of OpenGL.
+    /// Counts objects of OpenGL.
     pub fn objects(self) -> Vec<(&'static CStr, usize)> {
         match self {
             Drawing::Vulkan(_) => Vec::new(),
@@ -121,7 +121,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// What must be asked before there is a session: the call, and its result.
+    /// Makes the call that must come before a session. Returns its name and its result.
     pub fn ask_requirements(
         self,
         get: pfn::GetInstanceProcAddr,
@@ -155,7 +155,7 @@ impl Drawing<'_> {
         (name.to_str().unwrap(), result)
     }
 
-    /// Gives the structure to which a session is bound.
+    /// Calls `work` with the graphics binding of a session.
     pub fn with_binding<T>(self, work: impl FnOnce(*const c_void) -> T) -> T {
         match self {
             Drawing::Vulkan(gpu) => {
@@ -190,7 +190,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The number of a format in XrSwapchainCreateInfo.
+    /// Returns the number of a format in XrSwapchainCreateInfo.
     pub fn format(self, format: vk::Format) -> i64 {
         match self {
             Drawing::Vulkan(_) => format.as_raw().into(),
@@ -199,7 +199,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The images of a swapchain: VkImages, or names of textures.
+    /// Returns the images of a swapchain: VkImages, or names of textures.
     pub fn images(
         self,
         enumerate: pfn::EnumerateSwapchainImages,

@@ -1,5 +1,5 @@
-//! The layer between a scripted application and the simulated runtime: on Vulkan, under the validation layer, and what is
-//! OpenGL ES's own, on that.
+//! The layer between a scripted application and the simulated runtime: on Vulkan under the validation layer, and on
+//! OpenGL ES where that differs.
 
 #[path = "../../../core/tests/vulkan/harness.rs"]
 #[expect(dead_code, reason = "shared with the core's tests, which use all of it")]
@@ -26,20 +26,20 @@ use world::{Seen, allocations, script, uncounted, watched, with_gpu, with_unwatc
 const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const D32: vk::Format = vk::Format::D32_SFLOAT;
 
-/// What an application does, frame by frame.
+/// How an application renders its frames.
 #[derive(Clone, Copy, Debug)]
 struct Habits {
     /// The name that it gives itself.
     name: &'static str,
-    /// Images' size by the recommended one.
+    /// The size of its images in recommended sizes.
     scale: f32,
-    /// Pixels of the swapchains around the rectangle that is rendered to.
+    /// Pixels of the swapchains on each side of the rendered rectangle.
     margin: [u32; 2],
-    /// Layers of the swapchains, and the one that is rendered to.
+    /// The number of layers of the swapchains, and the rendered one.
     layers: [u32; 2],
     formats: [vk::Format; 2],
     planes: Planes,
-    /// Along one side of a pixel.
+    /// Samples along one side of a pixel.
     samples: u32,
     submits_depth: bool,
     frames: u32,
@@ -86,7 +86,7 @@ impl Chains {
     }
 }
 
-/// Renders a view to the swapchains; what is to be submitted.
+/// Renders a view to the swapchains. Returns what is to be submitted.
 fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View) -> Outcome<Submitted> {
     client.paint(view, chains.part.size, habits.samples, habits.formats, habits.planes);
     let image = client.acquire(&chains.color)?;
@@ -102,7 +102,7 @@ fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View) -> 
     Ok(Submitted { view, color: chains.part, depth })
 }
 
-/// One frame; whether anything was to be rendered.
+/// Runs one frame. Returns true if it was to be rendered.
 fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<bool> {
     client.poll()?;
     let frame = client.begin_frame()?;
@@ -116,7 +116,7 @@ fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<bool>
     Ok(true)
 }
 
-/// Frames until so many were rendered.
+/// Runs frames until `count` were rendered.
 fn frames(client: &mut Client, chains: &Chains, habits: &Habits, count: u32) -> Outcome<()> {
     let mut rendered = 0;
     while rendered < count {
@@ -125,7 +125,7 @@ fn frames(client: &mut Client, chains: &Chains, habits: &Habits, count: u32) -> 
     Ok(())
 }
 
-/// A whole run of an application that renders one view.
+/// Runs an application that renders one view.
 fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Client<'a>> {
     let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
     client.create_session()?;
@@ -136,7 +136,7 @@ fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Client<'
     Ok(client)
 }
 
-/// The views of a frame's first projection layer.
+/// Returns the views of a frame's first projection layer.
 fn views_of(layers: &[log::Layer]) -> &[log::View] {
     let mut views = layers.iter().filter_map(|layer| match layer {
         log::Layer::Projection { views } => Some(views.as_slice()),
@@ -154,7 +154,7 @@ fn frustum_of(view: &log::View) -> Frustum {
     Frustum::from_fov(left, right, up, down)
 }
 
-/// In dB, over red, green and blue.
+/// Returns the PSNR in dB over red, green and blue.
 fn psnr(a: &[u8], b: &[u8]) -> f64 {
     assert_eq!(a.len(), b.len());
     let color = |i: &usize| i % 4 != 3;
@@ -162,13 +162,13 @@ fn psnr(a: &[u8], b: &[u8]) -> f64 {
     10.0 * (255f64.powi(2) * a.len() as f64 * 0.75 / squares.sum::<f64>()).log10()
 }
 
-/// What the eye whose view was submitted to the runtime sees.
+/// Renders the reference of a view that was submitted to the runtime.
 fn truth(view: &log::View, samples: u32) -> Vec<u8> {
     let [.., width, height] = view.image.rect.map(|n| n as u32);
     scene::render(pose_of(view), frustum_of(view), [width, height], samples).rgba
 }
 
-/// Both eyes must be what is seen from where the runtime was told that they are.
+/// Both eyes' images must be like the references at the submitted poses.
 fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
     let views = seen.views();
     assert_eq!(views.len(), 2, "{what}");
@@ -179,7 +179,7 @@ fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
     assert!(other > 31.0, "{what}: the other eye's image is none of that eye: {other} dB");
 }
 
-/// The runtime must have both eyes' depth: in the rectangles of their colour, and what is seen from there.
+/// The runtime must have both eyes' depth: in the rectangles of their colour, and like the references.
 fn assert_depth(seen: &Seen, habits: &Habits, what: &str) {
     let Planes { near, far, min, max } = habits.planes;
     for (eye, view) in seen.views().iter().enumerate() {
@@ -194,7 +194,7 @@ fn assert_depth(seen: &Seen, habits: &Habits, what: &str) {
         let truth = scene::render(pose_of(view), frustum_of(view), [width, height], 1).distance;
         let close = |(stored, distance): (&f32, &f32)| {
             let error = (stored - habits.planes.stored(*distance)).abs();
-            // What a pixel to the side is off by, away from silhouettes.
+            // The difference of neighbouring pixels, away from silhouettes.
             error < 0.02 * (max - min) * (habits.planes.stored(0.8) - habits.planes.stored(6.0)).abs()
         };
         let got = seen.depth(eye);
@@ -206,7 +206,7 @@ fn assert_depth(seen: &Seen, habits: &Habits, what: &str) {
     }
 }
 
-/// The synthesized eye must be what the core makes of the same source for the submitted views.
+/// The synthesized eye must be what the core synthesizes from the same source for the submitted views.
 fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habits, what: &str) {
     let views = seen.views();
     let painted = client.painted.as_ref().unwrap();
@@ -246,7 +246,7 @@ fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habits, 
     let (want, got) = (target.read_rgba8(0, WRITTEN), seen.picture(habits.dominant().other().index()));
     let differs = |(a, b): &(&[u8], &[u8])| (0..3).any(|i| a[i].abs_diff(b[i]) > 2);
     let different = want.chunks_exact(4).zip(got.chunks_exact(4)).filter(differs).count();
-    // A pixel at a silhouette may fall to the other side: angles are rounded on their way.
+    // Rounded angles may move pixels at silhouettes.
     assert!(different * 200 <= want.len() / 4, "{what}: {different} pixels are not the core's");
 }
 
@@ -265,7 +265,7 @@ fn assert_own_eyes(seen: &Seen, script: &Script, pixels: f32, what: &str) {
 }
 
 #[test]
-fn one_view_becomes_the_two_that_the_runtime_asks_for() {
+fn one_view_becomes_the_two_views_of_the_runtime() {
     let plain = Habits::PLAIN;
     let depth = |near, far, min, max| Habits { planes: Planes { near, far, min, max }, ..plain };
     let cases = [
@@ -303,7 +303,7 @@ fn one_view_becomes_the_two_that_the_runtime_asks_for() {
     });
 }
 
-/// A headset's eyes as they may be: turned outwards, and with frusta of different heights.
+/// Eyes of headsets may be turned outwards, and have frusta of different heights.
 #[test]
 fn canted_and_unlike_eyes_are_served_by_parallel_ones() {
     with_gpu(|gpu| {
@@ -318,7 +318,7 @@ fn canted_and_unlike_eyes_are_served_by_parallel_ones() {
                 assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
                 assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
                 assert_seen(&seen, &habits, what);
-                // Nothing that the runtime's own eye sees is missing, to a pixel.
+                // The submitted view contains that of the runtime's own eye, to a pixel.
                 for (i, view) in seen.views().iter().enumerate() {
                     let eye = script.eyes[i];
                     let turn = [1.0, -1.0][i] * eye.cant_degrees.to_radians();
@@ -339,9 +339,8 @@ fn canted_and_unlike_eyes_are_served_by_parallel_ones() {
     });
 }
 
-/// Whatever the application shows besides stays as it is, and where it is.
 #[test]
-fn other_layers_keep_their_places() {
+fn other_layers_stay_as_they_are_and_in_order() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
@@ -361,7 +360,7 @@ fn other_layers_keep_their_places() {
                 Layer::Quad(part(0)),
                 Layer::Projection(vec![submitted]),
                 Layer::Quad(part(8)),
-                // What is not synthesized is shown nevertheless.
+                // This one is not synthesized, but shown.
                 Layer::Projection(vec![Submitted { depth: None, ..submitted }]),
                 Layer::Quad(part(16)),
             ];
@@ -388,7 +387,7 @@ fn other_layers_keep_their_places() {
     });
 }
 
-/// An application that renders both views itself gets the runtime's own, and its layers and depth arrive as they are.
+/// An application that renders both views gets the runtime's own; its layers and depth arrive unchanged.
 #[test]
 fn stereo_passes_through() {
     with_gpu(|gpu| {
@@ -428,9 +427,9 @@ fn stereo_passes_through() {
     });
 }
 
-/// An application that insists on two views renders a tiny one, which is replaced.
+/// With `shrink`, an application that begins in stereo renders one tiny view.
 #[test]
-fn a_second_view_may_be_tiny() {
+fn shrink_replaces_the_tiny_view() {
     with_gpu(|gpu| {
         let habits = Habits { name: "shrink", ..Habits::PLAIN };
         let seen = watched(script(), || {
@@ -467,9 +466,9 @@ fn a_second_view_may_be_tiny() {
     });
 }
 
-/// One view is offered where the setting says, and in place of a runtime's own; not on a runtime that has no two.
+/// The setting `offer` says where. It replaces a runtime's own; a runtime without two views offers its own alone.
 #[test]
-fn one_view_is_offered_where_there_are_two() {
+fn one_view_is_offered_where_the_runtime_has_two() {
     use ViewsOf as V;
     let cases = [
         ("right", true, vec![V::PRIMARY_MONO, V::PRIMARY_STEREO]),
@@ -485,7 +484,7 @@ fn one_view_is_offered_where_there_are_two() {
                     let client = Client::new(gpu, name, &[DEPTH]).unwrap();
                     assert_eq!(client.configurations().unwrap(), want);
                     if want.contains(&V::PRIMARY_MONO) {
-                        // As wide as both eyes if it is the layer's, as the runtime says if it is its own.
+                        // The layer's is as wide as both eyes, the runtime's own as one.
                         assert_eq!(client.sizes().unwrap()[0][0] > 128, stereo, "{name}");
                     }
                 });
@@ -494,7 +493,6 @@ fn one_view_is_offered_where_there_are_two() {
     });
 }
 
-/// An application chains structures of extensions to the views that it asks for.
 #[test]
 fn the_runtime_fills_what_is_chained_to_views() {
     with_gpu(|gpu| {
@@ -512,7 +510,7 @@ fn the_runtime_fills_what_is_chained_to_views() {
     });
 }
 
-/// A system with one view alone, such as a handheld one, works as without the layer.
+/// A handheld system, for example, has one view alone.
 #[test]
 fn a_system_with_one_view_passes_through() {
     with_gpu(|gpu| {
@@ -526,7 +524,7 @@ fn a_system_with_one_view_passes_through() {
     });
 }
 
-/// Swapchains that a function of an extension has made, such as those of Android surfaces, are the runtime's own.
+/// Functions of extensions create swapchains that the layer does not see, such as those of Android surfaces.
 #[test]
 fn calls_with_unknown_swapchains_reach_the_runtime() {
     with_gpu(|gpu| {
@@ -559,7 +557,7 @@ fn waiting_for_an_image_releases_no_other_one() {
                 client.acquire_only(&chains.color)?;
                 client.acquire_only(&chains.color)?;
                 client.wait_image(&chains.color)?;
-                // Where the runtime is called, its error appears.
+                // The runtime's error shows where it was called.
                 let released = client.release(&chains.color);
                 assert_eq!(released, Err(Failure { call: "xrReleaseSwapchainImage", result: failed }));
                 client.release(&chains.color)?;
@@ -571,7 +569,6 @@ fn waiting_for_an_image_releases_no_other_one() {
     });
 }
 
-/// The layer reads none, and the runtime reports the mistake.
 #[test]
 fn a_count_of_layers_without_layers_is_the_applications_mistake() {
     with_gpu(|gpu| {
@@ -595,14 +592,14 @@ fn a_count_of_layers_without_layers_is_the_applications_mistake() {
     });
 }
 
-/// The layer offers depth where the runtime does not take it, and keeps it to itself.
+/// The layer offers the extension for depth even if the runtime lacks it, and keeps the depth.
 #[test]
-fn a_runtime_without_depth_will_do() {
+fn a_runtime_without_depth_gets_two_views() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let missing_extensions = vec![DEPTH.to_str().unwrap().to_owned()];
         let seen = watched(Script { missing_extensions, ..script() }, || drop(run(gpu, &habits).unwrap()));
-        // That it was asked for depth is all that the runtime complains about.
+        // The runtime's only complaint is the extension that it lacks.
         assert!(
             matches!(&seen.violations()[..], [log::Entry::Violation { call, .. }] if call == "xrCreateInstance"),
             "{:?}",
@@ -614,9 +611,9 @@ fn a_runtime_without_depth_will_do() {
     });
 }
 
-/// What cannot be synthesized is shown to both eyes as it is; the reason is told once, and the frames are counted.
+/// The log gives the reason once, and counts the frames.
 #[test]
-fn what_cannot_be_synthesized_is_shown_as_it_is() {
+fn a_view_that_cannot_be_synthesized_is_shown_to_both_eyes() {
     type Spoil = fn(Submitted) -> Submitted;
     fn with_planes(submitted: Submitted, planes: Planes) -> Submitted {
         Submitted { depth: submitted.depth.map(|(part, _)| (part, planes)), ..submitted }
@@ -668,7 +665,7 @@ fn what_cannot_be_synthesized_is_shown_as_it_is() {
     });
 }
 
-/// Runs an application that has a session, swapchains, and one view; what it does with them is told.
+/// Runs an application with a session and swapchains; `work` is what it does with them.
 fn with_session<'a>(
     drawing: impl Into<Drawing<'a>>,
     habits: &Habits,
@@ -683,9 +680,9 @@ fn with_session<'a>(
     client.destroy_session()
 }
 
-/// The next frame is waited for before the last one ends, and images are released before their frame begins.
+/// The application waits for the next frame before the last one ends, and releases images before their frame begins.
 #[test]
-fn frames_overlap() {
+fn overlapping_frames_are_synthesized() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
@@ -713,10 +710,10 @@ fn frames_overlap() {
     });
 }
 
-/// Where the runtime has an image before the frame ends, the layer cannot read it: because the application has acquired the
-/// next one meanwhile, or because it shows an old one again.
+/// When the application acquires the next image before the frame ends, the runtime gets the last one, and the layer
+/// cannot read it.
 #[test]
-fn what_the_runtime_has_already_is_shown_as_it_is() {
+fn an_image_that_the_runtime_has_is_shown_to_both_eyes() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let seen = watched(Script { acquires_ahead: true, ..script() }, || {
@@ -757,7 +754,7 @@ fn an_image_that_is_shown_again_stays_stereo() {
                         let begun = client.begin_frame()?;
                         client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
                     }
-                    // The next image is on its way, and the old one is shown at another place.
+                    // The next image is acquired, and the old one is shown at another place.
                     let begun = client.begin_frame()?;
                     let view = client.locate(begun)?[0].unwrap();
                     let submitted = render(client, chains, &habits, view)?;
@@ -766,7 +763,7 @@ fn an_image_that_is_shown_again_stays_stereo() {
                     let begun = client.begin_frame()?;
                     let moved = Submitted { view: view.at(glam::Vec3::new(0.5, 0.25, 1.0)), ..submitted };
                     client.end_frame(begun, &[Layer::Projection(vec![moved])])?;
-                    // Only with the same planes it is the same view.
+                    // With other planes it is another view.
                     let begun = client.begin_frame()?;
                     let planes = Planes { near: 0.2, ..Planes::PLAIN };
                     let depth = submitted.depth.map(|(part, _)| (part, planes));
@@ -793,7 +790,7 @@ fn an_image_that_is_shown_again_stays_stereo() {
 }
 
 #[test]
-fn swapchains_are_made_anew_at_other_sizes() {
+fn the_layers_swapchains_follow_new_sizes_and_formats() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
@@ -818,7 +815,7 @@ fn swapchains_are_made_anew_at_other_sizes() {
     });
 }
 
-/// Programs that look for a headset with an instance of its own keep its lines, and no file stays open.
+/// Some programs look for a headset with a first instance, and then create another one.
 #[test]
 fn the_log_outlives_an_instance_but_not_its_descriptor() {
     with_gpu(|gpu| {
@@ -858,15 +855,15 @@ fn one_session_follows_another() {
     });
 }
 
-/// A call of the runtime fails, once or from then on: no call of the application's fails but the one of the same name,
-/// which fails without the layer, too. After a single failure everything is synthesized again.
+/// When a function of the runtime fails, once or from then on, the application's call of the same name may fail, as
+/// without the layer, and no other one. After a single failure everything is synthesized again.
 #[test]
 fn no_fault_of_the_runtime_fails_another_call() {
     with_gpu(|gpu| {
         let habits = Habits { frames: 2, ..Habits::PLAIN };
         let quiet = |faults| Script { faults, pictures: None, ..script() };
         let all = watched(quiet(vec![]), || drop(run(gpu, &habits).unwrap())).calls();
-        // What the layer passes through without looking, and what fails before it is there.
+        // Functions that the layer does not intercept, or that come before it.
         let not = [
             "xrCreateInstance",
             "xrDestroyInstance",
@@ -888,7 +885,7 @@ fn no_fault_of_the_runtime_fails_another_call() {
                 });
                 match outcome {
                     Err(Failure { call: failed, result: got }) => {
-                        // The layer keeps releases back until the frame ends, and with them what they return.
+                        // A release that is held back returns its error in xrEndFrame.
                         let late = call == "xrReleaseSwapchainImage" && failed == "xrEndFrame";
                         assert!(failed == call || late, "{what}: {failed} fails: {}", seen.said);
                         assert_eq!(got.into_raw(), result, "{what}");
@@ -899,7 +896,7 @@ fn no_fault_of_the_runtime_fails_another_call() {
                         let counts = seen.counts();
                         assert_eq!(counts.iter().flatten().sum::<u64>(), 4, "{what}: {}", seen.said);
                         let synthesized = seen.views()[0].image != seen.views()[1].image;
-                        // A swapchain that the layer could not make as it wants it stays as it is.
+                        // Swapchains that the layer could not create readable stay so.
                         let lasts = and_later || making.contains(&call.as_str());
                         assert!(synthesized || lasts, "{what}: {}", seen.said);
                         assert_eq!(
@@ -918,14 +915,15 @@ fn no_fault_of_the_runtime_fails_another_call() {
     });
 }
 
-/// What the runtime refuses of the layer's own is submitted again as it was; where it is late, the frame does not wait.
+/// Views that the runtime refuses are submitted again as the application has rendered them; a late runtime is not
+/// waited for.
 #[test]
 fn a_refused_or_late_runtime_costs_one_frame() {
     with_gpu(|gpu| {
         let cases = [
             ("xrEndFrame", 3, sys::Result::ERROR_LAYER_INVALID, "xrEndFrame fails with ERROR_LAYER_INVALID"),
             ("xrEndFrame", 3, sys::Result::ERROR_POSE_INVALID, "xrEndFrame fails with ERROR_POSE_INVALID"),
-            // In each frame the application's colour and depth come first, then the layer's.
+            // In each frame the application waits for colour and depth, then the layer does.
             ("xrWaitSwapchainImage", 7, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
             ("xrWaitSwapchainImage", 8, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
         ];
@@ -942,7 +940,7 @@ fn a_refused_or_late_runtime_costs_one_frame() {
     });
 }
 
-/// Frames until the session is over or lost, at most so many.
+/// Runs frames until the session is over or lost, `most` at most.
 fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, most: u32) -> Outcome<()> {
     for _ in 0..most {
         client.poll()?;
@@ -956,15 +954,15 @@ fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, most: u32) 
     Ok(())
 }
 
-/// Session and instance are lost, or end, in every state, and the application goes on with a new session.
+/// The application goes on with a new session.
 #[test]
-fn losses_in_every_state() {
+fn sessions_and_instances_can_be_lost_in_every_state() {
     with_gpu(|gpu| {
         let states = [State::Idle, State::Ready, State::Synchronized, State::Visible, State::Focused];
         let ends =
             [What::LoseSession, What::LoseInstance, What::SessionLossPending, What::Exit, What::TakeOff(2)];
         for (state, end) in states.iter().flat_map(|state| ends.iter().map(move |end| (*state, end))) {
-            // Who is told to begin and to end at the same time cannot do right.
+            // An application that is to begin and to end at the same time cannot do right.
             if matches!(end, What::Exit | What::TakeOff(_)) && state < State::Synchronized {
                 continue;
             }
@@ -984,7 +982,7 @@ fn losses_in_every_state() {
                         let loss = [sys::Result::ERROR_SESSION_LOST, sys::Result::ERROR_INSTANCE_LOST];
                         assert!(session == 0 && loss.contains(&result), "{what}: {result:?}");
                     }
-                    // A lost one must still be destroyed.
+                    // A lost session must still be destroyed.
                     client.destroy_session().unwrap();
                 }
             });
@@ -996,7 +994,7 @@ fn losses_in_every_state() {
     });
 }
 
-/// What this process has open, its threads, and its memory in bytes.
+/// Returns the number of open files, of threads, and the memory in bytes of this process.
 fn resources() -> [usize; 3] {
     let count = |folder: &str| std::fs::read_dir(folder).unwrap().count();
     let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
@@ -1004,7 +1002,7 @@ fn resources() -> [usize; 3] {
     [count("/proc/self/fd"), count("/proc/self/task"), resident * 4096]
 }
 
-/// So many frames after a hundred first ones leave nothing behind, and the layer allocates nothing for them.
+/// After a hundred frames, `count` more leave nothing behind, and the layer allocates nothing for them.
 fn steady(drawing: Drawing, script: Script, habits: &Habits, count: u32) {
     let (mut most, mut grown) = (0, 0);
     let seen = watched(Script { pictures: None, log: None, ..script }, || {
@@ -1032,25 +1030,25 @@ fn steady(drawing: Drawing, script: Script, habits: &Habits, count: u32) {
     assert_eq!(seen.counts(), [[u64::from(count) + 100, 0]], "{}", seen.said);
     println!("{count} frames: {most} allocations in the layer in one of them, {grown} bytes more");
     assert_eq!(most, 0, "the layer allocates in a frame");
-    // Neither an image nor a line for each frame.
+    // Less than an image or a line for each frame.
     assert!(grown < 1 << 20, "{grown} bytes more");
 }
 
 #[test]
-fn nothing_grows_from_frame_to_frame() {
+fn frames_allocate_nothing_and_leave_nothing_behind() {
     with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 300));
 }
 
 /// `cargo test -p yoro-layer --test scripted -- --ignored --nocapture`
 #[test]
 #[ignore = "takes a quarter of a minute"]
-fn nothing_grows_in_ten_thousand_frames() {
+fn ten_thousand_frames_leave_nothing_behind() {
     with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 10_000));
 }
 
-/// On OpenGL ES the frame's path is another one: of whole images, and of a part of one in an array, which is copied.
+/// On OpenGL ES whole images are read as they are; a part of an image in an array is copied first.
 #[test]
-fn nothing_grows_on_opengl_es() {
+fn frames_on_opengl_es_leave_nothing_behind() {
     with_gles(|gles| {
         let part = Habits { margin: [13, 7], layers: [2, 1], ..Habits::PLAIN };
         for (what, habits) in [("whole", Habits::PLAIN), ("part", part)] {

@@ -1,4 +1,4 @@
-//! The simulated runtime, and what can be seen of a run: its log, its pictures, and what the layer says.
+//! The simulated runtime, and the results of a run: its log, its pictures, and the layer's log.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -15,7 +15,7 @@ use yoro_openxr_stub::script::{Pictures, Script};
 
 use crate::harness::{self, Gpu, Rendering};
 
-/// Counts what this thread allocates outside the simulated runtime.
+/// Counts the allocations of this thread outside the simulated runtime.
 struct Counting;
 
 thread_local! {
@@ -45,7 +45,7 @@ pub fn allocations() -> usize {
     ALLOCATIONS.get()
 }
 
-/// Does what allocates, and is not to be counted.
+/// Runs code whose allocations do not count.
 pub fn uncounted<T>(work: impl FnOnce() -> T) -> T {
     let before = ALLOCATIONS.get();
     let result = work();
@@ -53,26 +53,26 @@ pub fn uncounted<T>(work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Settings by the names that applications give themselves.
+/// The settings file, with sections by the names of applications.
 const SETTINGS: &str = "guard_band = '16px'\n\
     [application.left]\ndominant = 'left'\n\
     [application.shrink]\nshrink = 'on'\n\
     [application.only]\noffer = 'only'\n\
     [application.last]\noffer = 'last'\n";
 
-/// Runs a test body on a device, with settings of its own.
+/// Runs a test on a device under Vulkan's validation layer, with the tests' settings.
 pub fn with_gpu(body: impl FnOnce(&Gpu)) {
     settle();
     harness::with_gpu(Rendering::RenderPasses, body);
 }
 
-/// The same without Vulkan's validation layer.
+/// Runs a test on a device without the validation layer.
 pub fn with_unwatched_gpu(body: impl FnOnce(&Gpu)) {
     settle();
     harness::with_unwatched_gpu(Rendering::RenderPasses, body);
 }
 
-/// Settings and the log in a folder of the tests.
+/// Puts settings and log into a folder of the tests.
 pub fn settle() {
     static SETTLED: Once = Once::new();
     SETTLED.call_once(|| {
@@ -90,21 +90,21 @@ pub fn settle() {
 /// The formats of a runtime on Vulkan: R8G8B8A8_SRGB, _UNORM, B8G8R8A8_SRGB, _UNORM, and depth in 16, 32 and 32+8 bits.
 const FORMATS: [i64; 7] = [43, 37, 50, 44, 124, 126, 130];
 
-/// A headset as they are, with Vulkan.
+/// A headset with the frusta of current ones, on Vulkan.
 pub fn script() -> Script {
     let pictures = Some(Pictures { folder: "in each run's own".into(), from: 0 });
     Script { formats: FORMATS.into(), pictures, ..Script::default() }.asymmetric()
 }
 
-/// What could be seen of a run.
+/// The results of a run.
 pub struct Seen {
     pub log: Vec<Entry>,
-    /// What the layer has said.
+    /// The layer's log.
     pub said: String,
     folder: TempDir,
 }
 
-/// What is written to the standard error output, instead of being shown.
+/// Captures the standard error output.
 struct Overheard {
     shown: OwnedFd,
     file: File,
@@ -156,7 +156,7 @@ pub fn watched(mut script: Script, application: impl FnOnce()) -> Seen {
 }
 
 impl Seen {
-    /// What was submitted in each frame that was not empty.
+    /// Returns the submitted layers of each frame that is not empty.
     pub fn frames(&self) -> Vec<&Vec<Layer>> {
         let layers = self.log.iter().filter_map(|entry| match entry {
             Entry::Frame { layers, .. } if !layers.is_empty() => Some(layers),
@@ -165,7 +165,7 @@ impl Seen {
         layers.collect()
     }
 
-    /// The views of the last frame's projection layer.
+    /// Returns the views of the last frame's projection layer.
     pub fn views(&self) -> &[View] {
         let frames = self.frames();
         let layers = frames.last().expect("there are frames").iter();
@@ -176,27 +176,27 @@ impl Seen {
         views.next().expect("there is a projection layer")
     }
 
-    /// What the runtime got last for an eye, rows from the bottom.
+    /// Returns the last picture that the runtime got for an eye, rows from the bottom.
     pub fn picture(&self, eye: usize) -> Vec<u8> {
         let path = self.folder.path().join(format!("view-{eye}.png"));
         let picture: RgbaImage = image::open(path).unwrap().into_rgba8();
         image::imageops::flip_vertical(&picture).into_raw()
     }
 
-    /// The depth that the runtime got last for an eye, in 32 bits of float, rows from the bottom.
+    /// Returns the last depth that the runtime got for an eye, rows from the bottom.
     pub fn depth(&self, eye: usize) -> Vec<f32> {
         let bytes = fs::read(self.folder.path().join(format!("depth-{eye}"))).unwrap();
         bytes.chunks_exact(4).map(|four| f32::from_ne_bytes([four[0], four[1], four[2], four[3]])).collect()
     }
 
-    /// What the runtime says that the specification forbids. A layer may ask for functions of extensions that are not
-    /// enabled: how else would it know.
+    /// Returns what the specification forbids. Asking for functions of extensions that are not enabled does not count:
+    /// a layer cannot know them otherwise.
     pub fn violations(&self) -> Vec<&Entry> {
         let is_one = |entry: &&Entry| matches!(entry, Entry::Violation { call, .. } if call != "xrGetInstanceProcAddr");
         self.log.iter().filter(is_one).collect()
     }
 
-    /// How often each function of the runtime was called.
+    /// Returns how often each function of the runtime was called.
     pub fn calls(&self) -> std::collections::BTreeMap<String, u32> {
         let counts = self.log.iter().rev().find_map(|entry| match entry {
             Entry::Calls { counts } => Some(counts.clone()),
@@ -205,7 +205,7 @@ impl Seen {
         counts.unwrap_or_default()
     }
 
-    /// Synthesized and not, as the layer counts them at the end of each session.
+    /// Returns the layer's counts at the end of each session: synthesized views, and others.
     pub fn counts(&self) -> Vec<[u64; 2]> {
         let ends = self.said.lines().filter_map(|line| {
             let (_, counts) = line.split_once("session ended after ")?.1.split_once(" frames: ")?;
@@ -215,7 +215,7 @@ impl Seen {
         ends.collect()
     }
 
-    /// How often a text is in what the layer has said.
+    /// Returns how often a text is in the layer's log.
     pub fn said(&self, text: &str) -> usize {
         self.said.matches(text).count()
     }

@@ -21,7 +21,7 @@ type MakeCurrent =
 
 /// The context that a session is bound to.
 pub struct Gles {
-    /// Functions of GL, from the first time that they are needed.
+    /// The functions of GL, once they were needed.
     gl: Option<glow::Context>,
     get_proc_address: GetProcAddress,
     get_current_context: GetCurrentContext,
@@ -33,7 +33,7 @@ pub struct Gles {
 // SAFETY: it is only used on threads that have made the context current, which can be only one at a time.
 unsafe impl Send for Gles {}
 
-/// The binding of `XR_KHR_opengl_es_enable`, which the crate of the types has on Android only.
+/// The binding of `XR_KHR_opengl_es_enable`, which openxr-sys has on Android only.
 #[repr(C)]
 struct AndroidBinding {
     ty: sys::StructureType,
@@ -43,7 +43,7 @@ struct AndroidBinding {
     context: *const c_void,
 }
 
-/// Name, display and context, if the structure is a binding of them.
+/// Returns name, display and context, if the structure is a binding.
 ///
 /// # Safety
 /// The structure is of the type that it says.
@@ -98,7 +98,7 @@ impl Gles {
         Ok(Gles { gl: None, get_proc_address, get_current_context, make_current, display, context })
     }
 
-    /// GL's functions; the context must be current.
+    /// Returns GL's functions; the context must be current.
     fn gl(&mut self) -> &glow::Context {
         let get = self.get_proc_address;
         self.gl.get_or_insert_with(|| {
@@ -112,7 +112,7 @@ impl Gles {
         })
     }
 
-    /// Runs with a layer of a texture as the framebuffer's colour; the application's state is put back.
+    /// Runs `work` with a layer of a texture as the framebuffer's colour. The application's state is set back.
     fn with_layer<T>(
         &mut self,
         texture: Texture,
@@ -146,7 +146,7 @@ impl Gles {
     }
 }
 
-/// The texture's name in GL.
+/// Returns the texture's name in GL.
 fn name(texture: Texture) -> Option<glow::Texture> {
     u32::try_from(texture.raw).ok().and_then(NonZeroU32::new).map(glow::NativeTexture)
 }

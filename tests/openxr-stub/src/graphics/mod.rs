@@ -10,42 +10,42 @@ use sys::Result as Code;
 
 use crate::world::{Refusal, forbid_if, forbidden};
 
-/// The extensions with which an application tells its graphics.
+/// The extensions for graphics.
 pub const OPENGL_ES: &str = "XR_KHR_opengl_es_enable";
 pub const VULKAN: [&str; 2] = ["XR_KHR_vulkan_enable", "XR_KHR_vulkan_enable2"];
 
-/// An image of a swapchain: a GL texture's name or a VkImage, of an array where there are several layers.
+/// An image of a swapchain: the name of a GL texture, or a VkImage. With several layers it is an array.
 #[derive(Clone, Copy)]
 pub struct Texture {
     pub raw: u64,
     pub layers: u32,
 }
 
-/// What a session is bound to.
+/// The graphics that a session is bound to.
 pub trait Graphics: Send {
-    /// The runtime may use it on this thread.
+    /// True if the runtime may use it on this thread.
     fn is_current(&self) -> bool;
 
-    /// Leaves no context current, where there are contexts.
+    /// Leaves no context current.
     fn unbind(&self);
 
-    /// The structure in which an image is told to the application.
+    /// Returns the type of structure in which the application gets an image.
     fn image_type(&self) -> sys::StructureType;
 
-    /// A new image of a swapchain.
+    /// Creates an image of a swapchain.
     fn texture(&mut self, info: &sys::SwapchainCreateInfo) -> Option<Texture>;
 
-    /// Deletes textures, where that is possible.
+    /// Deletes textures, if that is possible.
     fn delete(&mut self, textures: &[Texture]);
 
     /// Fills every layer with [`POISON`](crate::script::POISON).
     fn poison(&mut self, texture: Texture);
 
-    /// The bytes of a rectangle of colour, four a pixel as RGBA, the lowest row first, as they are stored.
+    /// Reads a rectangle of colour as it is stored: RGBA, the lowest row first.
     fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>>;
 }
 
-/// The graphics binding in a chain of structures, and its name.
+/// Returns the graphics binding in a chain of structures, and its name.
 ///
 /// # Safety
 /// `next` begins a chain of structures of the types that they say.
@@ -62,7 +62,7 @@ pub unsafe fn bind(
     )?;
     let mut next = next.cast::<sys::BaseInStructure>();
     while !next.is_null() {
-        // SAFETY: as the caller says.
+        // SAFETY: every structure of a chain begins with this header.
         let structure = unsafe { &*next };
         if enabled(OPENGL_ES) {
             // SAFETY: of the type that it says.

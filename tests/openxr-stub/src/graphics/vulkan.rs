@@ -1,5 +1,5 @@
-//! Vulkan on the application's device. Images are the runtime's: they are in the layout of an attachment when the
-//! application gets them, and must be so again when it releases them.
+//! Vulkan on the application's device. An image is in the layout of an attachment when the application gets it, and
+//! must be so again when it is released.
 
 use std::collections::HashMap;
 use std::ffi::c_void;
@@ -27,15 +27,15 @@ struct Image {
     memory: vk::DeviceMemory,
     format: vk::Format,
     aspects: vk::ImageAspectFlags,
-    /// Between the application's uses.
+    /// The layout between the application's uses.
     layout: vk::ImageLayout,
 }
 
 impl Vulkan {
     pub fn new(binding: &sys::GraphicsBindingVulkanKHR) -> Result<Vulkan, Refusal> {
         let raw = |handle: *const c_void| handle as u64;
-        // SAFETY: the application's handles, which it keeps until the session is destroyed; the loader stays, because the
-        // application has it.
+        // SAFETY: the application's handles, which it keeps until the session is destroyed; the loader stays, because
+        // the application has it.
         unsafe {
             let entry = ash::Entry::load().map_err(|_| Code::ERROR_RUNTIME_FAILURE)?;
             let instance = vk::Instance::from_raw(raw(binding.instance));
@@ -54,8 +54,8 @@ impl Vulkan {
     fn run(&self, record: impl FnOnce(&ash::Device, vk::CommandBuffer)) -> Option<()> {
         let device = &self.device;
         let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
-        // SAFETY: the device is live, nobody else uses the queue during the calls in which the runtime may use it, and the
-        // commands have ended when they are freed.
+        // SAFETY: the device is live, nobody else uses the queue during the calls in which the runtime may use it, and
+        // the commands have ended when they are freed.
         unsafe {
             let commands = device.allocate_command_buffers(&info).ok()?;
             device.begin_command_buffer(commands[0], &vk::CommandBufferBeginInfo::default()).ok()?;
@@ -120,7 +120,7 @@ impl Vulkan {
         }
     }
 
-    /// A host's copy of a rectangle of four bytes a pixel.
+    /// Copies a rectangle with four bytes a pixel to the host.
     fn copy(&self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
         let [x, y, width, height] = rect;
         let image = self.images.get(&texture.raw)?;
@@ -177,7 +177,7 @@ fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
     }
 }
 
-/// What the application asks for, and what the runtime itself needs to fill and to read images.
+/// Returns the usage that the application asks for, with what the runtime needs to fill and read images.
 fn usage(asked: sys::SwapchainUsageFlags) -> vk::ImageUsageFlags {
     use sys::SwapchainUsageFlags as Asked;
     use vk::ImageUsageFlags as Usage;
