@@ -1,0 +1,134 @@
+//! Faults and losses of the runtime.
+
+use openxr_sys as sys;
+use yoro_openxr_stub::script::{At, Event, Fault, Script, State, What};
+
+use crate::checks::assert_seen;
+use crate::client::{Client, DEPTH, Failure, Outcome};
+use crate::habits::{Chains, Habits, run, until_over};
+use crate::world::{script, watched, with_gpu};
+
+/// When a function of the runtime fails, once or from then on, the application's call of the same name may fail, as
+/// without the layer, and no other one. After a single failure everything is synthesized again.
+#[test]
+fn no_fault_of_the_runtime_fails_another_call() {
+    with_gpu(|gpu| {
+        let habits = Habits { frames: 2, ..Habits::PLAIN };
+        let quiet = |faults| Script { faults, pictures: None, ..script() };
+        let all = watched(quiet(vec![]), || drop(run(gpu, &habits).unwrap())).calls();
+        // Functions that the layer does not intercept, or that come before it.
+        let not = [
+            "xrCreateInstance",
+            "xrDestroyInstance",
+            "xrGetInstanceProcAddr",
+            "xrGetSystem",
+            "xrGetVulkanGraphicsRequirements2KHR",
+            "xrPollEvent",
+        ];
+        let making = ["xrCreateSwapchain", "xrEnumerateSwapchainImages"];
+        let (mut own, mut passed) = (0, 0);
+        for (call, count) in all.iter().filter(|(call, _)| !not.contains(&call.as_str())) {
+            for (nth, and_later) in (1..=*count).flat_map(|nth| [(nth, false), (nth, true)]) {
+                let result = sys::Result::ERROR_RUNTIME_FAILURE.into_raw();
+                let fault = Fault { call: call.clone(), nth, and_later, result };
+                let what = format!("{call}, {nth}{}", if and_later { " and later" } else { "" });
+                let mut outcome = Ok(());
+                let seen = watched(quiet(vec![fault]), || {
+                    outcome = run(gpu, &Habits { frames: 4, ..habits }).map(|_| ());
+                });
+                match outcome {
+                    Err(Failure { call: failed, result: got }) => {
+                        // A release that is held back returns its error in xrEndFrame.
+                        let late = call == "xrReleaseSwapchainImage" && failed == "xrEndFrame";
+                        assert!(failed == call || late, "{what}: {failed} fails: {}", seen.said);
+                        assert_eq!(got.into_raw(), result, "{what}");
+                        passed += 1;
+                    }
+                    Ok(()) => {
+                        assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+                        let counts = seen.counts();
+                        assert_eq!(counts.iter().flatten().sum::<u64>(), 4, "{what}: {}", seen.said);
+                        let synthesized = seen.views()[0].image != seen.views()[1].image;
+                        // Swapchains that the layer could not create readable stay so.
+                        let lasts = and_later || making.contains(&call.as_str());
+                        assert!(synthesized || lasts, "{what}: {}", seen.said);
+                        assert_eq!(
+                            seen.said("the same image for both eyes") > 0,
+                            counts[0][1] > 0,
+                            "{}",
+                            seen.said
+                        );
+                        own += 1;
+                    }
+                }
+            }
+        }
+        println!("{own} faults that the application does not notice, {passed} that are its own");
+        assert!(own > 20 && passed > 20, "{own} {passed}");
+    });
+}
+
+/// Views that the runtime refuses are submitted again as the application has rendered them; a late runtime is not
+/// waited for.
+#[test]
+fn a_refused_or_late_runtime_costs_one_frame() {
+    with_gpu(|gpu| {
+        let cases = [
+            ("xrEndFrame", 3, sys::Result::ERROR_LAYER_INVALID, "xrEndFrame fails with ERROR_LAYER_INVALID"),
+            ("xrEndFrame", 3, sys::Result::ERROR_POSE_INVALID, "xrEndFrame fails with ERROR_POSE_INVALID"),
+            // In each frame the application waits for colour and depth, then the layer does.
+            ("xrWaitSwapchainImage", 7, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
+            ("xrWaitSwapchainImage", 8, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
+        ];
+        for (call, nth, result, reason) in cases {
+            let fault = Fault { call: call.into(), nth, and_later: false, result: result.into_raw() };
+            let habits = Habits { frames: 4, ..Habits::PLAIN };
+            let seen =
+                watched(Script { faults: vec![fault], ..script() }, || drop(run(gpu, &habits).unwrap()));
+            assert!(seen.violations().is_empty(), "{reason}: {:?}", seen.violations());
+            assert_eq!(seen.counts(), [[3, 1]], "{reason}: {}", seen.said);
+            assert_eq!(seen.said(reason), 1, "{}", seen.said);
+            assert_seen(&seen, &habits, reason);
+        }
+    });
+}
+
+/// The application goes on with a new session.
+#[test]
+fn sessions_and_instances_can_be_lost_in_every_state() {
+    with_gpu(|gpu| {
+        let states = [State::Idle, State::Ready, State::Synchronized, State::Visible, State::Focused];
+        let ends =
+            [What::LoseSession, What::LoseInstance, What::SessionLossPending, What::Exit, What::TakeOff(2)];
+        for (state, end) in states.iter().flat_map(|state| ends.iter().map(move |end| (*state, end))) {
+            // An application that is to begin and to end at the same time cannot do right.
+            if matches!(end, What::Exit | What::TakeOff(_)) && state < State::Synchronized {
+                continue;
+            }
+            let what = format!("{end:?} in {state:?}");
+            let habits = Habits::PLAIN;
+            let event = Event { at: At::State(state), what: end.clone() };
+            let seen = watched(Script { events: vec![event], pictures: None, ..script() }, || {
+                for session in 0..2 {
+                    let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
+                    let mut life = || -> Outcome<()> {
+                        client.create_session()?;
+                        client.poll()?;
+                        let chains = Chains::new(&client, &habits)?;
+                        until_over(&mut client, &chains, &habits, 12)
+                    };
+                    if let Err(Failure { result, .. }) = life() {
+                        let loss = [sys::Result::ERROR_SESSION_LOST, sys::Result::ERROR_INSTANCE_LOST];
+                        assert!(session == 0 && loss.contains(&result), "{what}: {result:?}");
+                    }
+                    // A lost session must still be destroyed.
+                    client.destroy_session().unwrap();
+                }
+            });
+            assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+            let counts = seen.counts();
+            let [synthesized, not] = counts.last().unwrap();
+            assert!(*synthesized > 8 && *not == 0, "{what}: {}", seen.said);
+        }
+    });
+}

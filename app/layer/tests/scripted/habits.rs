@@ -1,0 +1,150 @@
+//! How the application of a test renders its frames.
+
+use yoro::eyes::Eye;
+use yoro::vulkan::ash::vk;
+
+use crate::client::{Chain, Client, DEPTH, Layer, Outcome, Part, Planes, Submitted, View};
+use crate::drawing::Drawing;
+use crate::world::uncounted;
+
+pub const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
+pub const D32: vk::Format = vk::Format::D32_SFLOAT;
+
+/// How an application renders its frames.
+#[derive(Clone, Copy, Debug)]
+pub struct Habits {
+    /// The name that it gives itself.
+    pub name: &'static str,
+    /// The size of its images in recommended sizes.
+    pub scale: f32,
+    /// Pixels of the swapchains on each side of the rendered rectangle.
+    pub margin: [u32; 2],
+    /// The number of layers of the swapchains, and the rendered one.
+    pub layers: [u32; 2],
+    pub formats: [vk::Format; 2],
+    pub planes: Planes,
+    /// Samples along one side of a pixel.
+    pub samples: u32,
+    pub submits_depth: bool,
+    pub frames: u32,
+}
+
+impl Habits {
+    pub const PLAIN: Habits = Habits {
+        name: "right",
+        scale: 1.0,
+        margin: [0; 2],
+        layers: [1, 0],
+        formats: [SRGB, D32],
+        planes: Planes::PLAIN,
+        samples: 1,
+        submits_depth: true,
+        frames: 3,
+    };
+
+    pub fn dominant(&self) -> Eye {
+        if self.name == "left" { Eye::Left } else { Eye::Right }
+    }
+}
+
+/// The swapchains of an application with one view.
+pub struct Chains {
+    pub color: Chain,
+    pub depth: Chain,
+    pub part: Part,
+}
+
+impl Chains {
+    pub fn new(client: &Client, habits: &Habits) -> Outcome<Chains> {
+        let size = client.sizes()?[0].map(|n| (n as f32 * habits.scale) as u32);
+        let whole = [0, 1].map(|i| size[i] + 2 * habits.margin[i]);
+        let [layers, layer] = habits.layers;
+        let [color, depth] = habits.formats;
+        let (color, depth) = (client.chain(color, whole, layers)?, client.chain(depth, whole, layers)?);
+        let part = Part { chain: color.handle, origin: habits.margin, size, layer };
+        Ok(Chains { color, depth, part })
+    }
+
+    pub fn depth_part(&self) -> Part {
+        Part { chain: self.depth.handle, ..self.part }
+    }
+}
+
+/// Renders a view to the swapchains. Returns what is to be submitted.
+pub fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View) -> Outcome<Submitted> {
+    client.paint(view, chains.part.size, habits.samples, habits.formats, habits.planes);
+    let image = client.acquire(&chains.color)?;
+    uncounted(|| client.copy_color(image, chains.part));
+    let mut depth = None;
+    if habits.submits_depth {
+        let image = client.acquire(&chains.depth)?;
+        uncounted(|| client.copy_depth(image, chains.depth_part()));
+        client.release(&chains.depth)?;
+        depth = Some((chains.depth_part(), habits.planes));
+    }
+    client.release(&chains.color)?;
+    Ok(Submitted { view, color: chains.part, depth })
+}
+
+/// Runs one frame. Returns true if it was to be rendered.
+pub fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<bool> {
+    client.poll()?;
+    let frame = client.begin_frame()?;
+    if !frame.should_render {
+        client.end_frame(frame, &[])?;
+        return Ok(false);
+    }
+    let view = client.locate(frame)?[0].unwrap();
+    let submitted = render(client, chains, habits, view)?;
+    client.end_frame(frame, &[Layer::Projection(vec![submitted])])?;
+    Ok(true)
+}
+
+/// Runs frames until `count` were rendered.
+pub fn frames(client: &mut Client, chains: &Chains, habits: &Habits, count: u32) -> Outcome<()> {
+    let mut rendered = 0;
+    while rendered < count {
+        rendered += u32::from(frame(client, chains, habits)?);
+    }
+    Ok(())
+}
+
+/// Runs an application that renders one view.
+pub fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Client<'a>> {
+    let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
+    client.create_session()?;
+    client.poll()?;
+    let chains = Chains::new(&client, habits)?;
+    frames(&mut client, &chains, habits, habits.frames)?;
+    client.destroy_session()?;
+    Ok(client)
+}
+
+/// Runs an application with a session and swapchains; `work` is what it does with them.
+pub fn with_session<'a>(
+    drawing: impl Into<Drawing<'a>>,
+    habits: &Habits,
+    work: impl FnOnce(&mut Client, &Chains) -> Outcome<()>,
+) -> Outcome<()> {
+    let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
+    client.create_session()?;
+    client.poll()?;
+    let chains = Chains::new(&client, habits)?;
+    frame(&mut client, &chains, habits)?;
+    work(&mut client, &chains)?;
+    client.destroy_session()
+}
+
+/// Runs frames until the session is over or lost, `most` at most.
+pub fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, most: u32) -> Outcome<()> {
+    for _ in 0..most {
+        client.poll()?;
+        if client.over {
+            break;
+        }
+        if client.is_running() {
+            frame(client, chains, habits)?;
+        }
+    }
+    Ok(())
+}

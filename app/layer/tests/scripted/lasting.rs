@@ -1,0 +1,117 @@
+//! What stays after frames, sessions and instances.
+
+use yoro_openxr_stub::script::Script;
+
+use crate::checks::assert_seen;
+use crate::client::{Client, DEPTH, Layer};
+use crate::drawing::{Drawing, with_gles};
+use crate::habits::{Chains, Habits, frames, render, run, with_session};
+use crate::world::{allocations, script, uncounted, watched, with_gpu, with_unwatched_gpu};
+
+/// Some programs look for a headset with a first instance, and then create another one.
+#[test]
+fn the_log_outlives_an_instance_but_not_its_descriptor() {
+    with_gpu(|gpu| {
+        let path = yoro_layer::log::path().unwrap();
+        let lines = || {
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            text.matches("renders one view").count()
+        };
+        let before = lines();
+        for _ in 0..2 {
+            watched(script(), || drop(run(gpu, &Habits { frames: 1, ..Habits::PLAIN }).unwrap()));
+            let open = std::fs::read_dir("/proc/self/fd").unwrap();
+            let open = open.filter_map(|entry| std::fs::read_link(entry.unwrap().path()).ok());
+            assert_eq!(open.filter(|file| *file == path).count(), 0);
+        }
+        assert_eq!(lines(), before + 2);
+    });
+}
+
+#[test]
+fn one_session_follows_another() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
+            for _ in 0..2 {
+                client.create_session().unwrap();
+                client.poll().unwrap();
+                let chains = Chains::new(&client, &habits).unwrap();
+                frames(&mut client, &chains, &habits, 2).unwrap();
+                client.destroy_session().unwrap();
+            }
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[2, 0]; 2], "{}", seen.said);
+        assert_seen(&seen, &habits, "the second session");
+    });
+}
+
+/// Returns the number of open files, of threads, and the memory in bytes of this process.
+fn resources() -> [usize; 3] {
+    let count = |folder: &str| std::fs::read_dir(folder).unwrap().count();
+    let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
+    let resident: usize = pages.split(' ').nth(1).unwrap().parse().unwrap();
+    [count("/proc/self/fd"), count("/proc/self/task"), resident * 4096]
+}
+
+/// After a hundred frames, `count` more leave nothing behind, and the layer allocates nothing for them.
+fn steady(drawing: Drawing, script: Script, habits: &Habits, count: u32) {
+    let (mut most, mut grown) = (0, 0);
+    let seen = watched(Script { pictures: None, log: None, ..script }, || {
+        let work = |client: &mut Client, chains: &Chains| {
+            frames(client, chains, habits, 100)?;
+            let (before, objects) = (resources(), drawing.objects());
+            for _ in 0..count {
+                let first = allocations();
+                client.poll()?;
+                let frame = client.begin_frame()?;
+                let view = client.locate(frame)?[0].unwrap();
+                let submitted = render(client, chains, habits, view)?;
+                let layers = uncounted(|| [Layer::Projection(vec![submitted])]);
+                client.end_frame(frame, &layers)?;
+                most = most.max(allocations() - first);
+            }
+            let after = resources();
+            assert_eq!((before[0], before[1]), (after[0], after[1]), "open files and threads");
+            assert_eq!(objects, drawing.objects(), "objects of OpenGL");
+            grown = after[2].saturating_sub(before[2]);
+            Ok(())
+        };
+        with_session(drawing, habits, work).unwrap();
+    });
+    assert_eq!(seen.counts(), [[u64::from(count) + 100, 0]], "{}", seen.said);
+    println!("{count} frames: {most} allocations in the layer in one of them, {grown} bytes more");
+    assert_eq!(most, 0, "the layer allocates in a frame");
+    // Less than an image or a line for each frame.
+    assert!(grown < 1 << 20, "{grown} bytes more");
+}
+
+#[test]
+fn frames_allocate_nothing_and_leave_nothing_behind() {
+    with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 300));
+}
+
+/// `cargo test -p yoro-layer --test scripted -- --ignored --nocapture`
+#[test]
+#[ignore = "takes a quarter of a minute"]
+fn ten_thousand_frames_leave_nothing_behind() {
+    with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 10_000));
+}
+
+/// On OpenGL ES whole images are read as they are; a part of an image in an array is copied first.
+#[test]
+fn frames_on_opengl_es_leave_nothing_behind() {
+    with_gles(|gles| {
+        let part = Habits { margin: [13, 7], layers: [2, 1], ..Habits::PLAIN };
+        for (what, habits) in [("whole", Habits::PLAIN), ("part", part)] {
+            let script = Script { formats: Script::default().formats, ..script() };
+            let seen = watched(script.clone(), || drop(run(gles, &habits).unwrap()));
+            assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+            assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+            assert_seen(&seen, &habits, what);
+            steady(gles.into(), script, &habits, 300);
+        }
+    });
+}

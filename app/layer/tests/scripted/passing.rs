@@ -1,0 +1,196 @@
+//! Calls that pass through, and what the application is offered.
+
+use openxr_sys as sys;
+use sys::ViewConfigurationType as ViewsOf;
+use yoro_openxr_stub::log;
+use yoro_openxr_stub::script::{Fault, Script};
+
+use crate::checks::{assert_own_eyes, assert_seen, psnr, truth};
+use crate::client::{Client, DEPTH, Failure, Layer};
+use crate::habits::{Chains, Habits, frames, render, run, with_session};
+use crate::world::{script, watched, with_gpu};
+
+/// An application that renders both views gets the runtime's own; its layers and depth arrive unchanged.
+#[test]
+fn stereo_passes_through() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
+            client.views = ViewsOf::PRIMARY_STEREO;
+            assert_eq!(client.sizes().unwrap(), [[128, 128]; 2]);
+            client.create_session().unwrap();
+            client.poll().unwrap();
+            let chains = [Chains::new(&client, &habits).unwrap(), Chains::new(&client, &habits).unwrap()];
+            for _ in 0..3 {
+                client.poll().unwrap();
+                let frame = client.begin_frame().unwrap();
+                let views = client.locate(frame).unwrap();
+                let mut submitted = Vec::new();
+                for (chains, view) in chains.iter().zip(views) {
+                    submitted.push(render(&mut client, chains, &habits, view.unwrap()).unwrap());
+                }
+                client.end_frame(frame, &[Layer::Projection(submitted)]).unwrap();
+            }
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert!(seen.views().iter().all(|view| view.depth.is_some()));
+        assert_own_eyes(&seen, &script(), 0.0, "stereo");
+        for (i, view) in seen.views().iter().enumerate() {
+            assert!(psnr(&seen.picture(i), &truth(view, 1)) > 45.0);
+        }
+        assert_eq!(
+            seen.said("passed through: it begins its session with PRIMARY_STEREO"),
+            1,
+            "{}",
+            seen.said
+        );
+        assert_eq!(seen.counts(), [[0; 2]; 0]);
+    });
+}
+
+/// The setting `offer` says where. It replaces a runtime's own; a runtime without two views offers its own alone.
+#[test]
+fn one_view_is_offered_where_the_runtime_has_two() {
+    use ViewsOf as V;
+    let cases = [
+        ("right", true, vec![V::PRIMARY_MONO, V::PRIMARY_STEREO]),
+        ("last", true, vec![V::PRIMARY_STEREO, V::PRIMARY_MONO]),
+        ("only", true, vec![V::PRIMARY_MONO]),
+        ("only", false, vec![V::PRIMARY_MONO]),
+    ];
+    with_gpu(|gpu| {
+        for (name, stereo, want) in cases {
+            for mono in [true, false] {
+                let want = if stereo || mono { want.clone() } else { vec![] };
+                watched(Script { stereo, mono, ..script() }, || {
+                    let client = Client::new(gpu, name, &[DEPTH]).unwrap();
+                    assert_eq!(client.configurations().unwrap(), want);
+                    if want.contains(&V::PRIMARY_MONO) {
+                        // The layer's is as wide as both eyes, the runtime's own as one.
+                        assert_eq!(client.sizes().unwrap()[0][0] > 128, stereo, "{name}");
+                    }
+                });
+            }
+        }
+    });
+}
+
+#[test]
+fn the_runtime_fills_what_is_chained_to_views() {
+    with_gpu(|gpu| {
+        for (name, views, count) in [
+            ("right", ViewsOf::PRIMARY_MONO, 1),
+            ("left", ViewsOf::PRIMARY_MONO, 1),
+            ("shrink", ViewsOf::PRIMARY_STEREO, 2),
+        ] {
+            watched(script(), || {
+                let mut client = Client::new(gpu, name, &[DEPTH]).unwrap();
+                client.views = views;
+                assert_eq!(client.chained_depth_ranges(count).unwrap(), vec![[0.1, 50.0]; count], "{name}");
+            });
+        }
+    });
+}
+
+/// A handheld system, for example, has one view alone.
+#[test]
+fn a_system_with_one_view_passes_through() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let script = Script { stereo: false, ..script() };
+        let seen = watched(script, || drop(run(gpu, &habits).unwrap()));
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.views().len(), 1);
+        assert_eq!(seen.said("passed through: the system itself has one view"), 1, "{}", seen.said);
+        assert!(psnr(&seen.picture(0), &truth(&seen.views()[0], 1)) > 45.0);
+    });
+}
+
+/// Functions of extensions create swapchains that the layer does not see, such as those of Android surfaces.
+#[test]
+fn calls_with_unknown_swapchains_reach_the_runtime() {
+    with_gpu(|gpu| {
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, Habits::PLAIN.name, &[DEPTH]).unwrap();
+            client.create_session().unwrap();
+            let unknown = client.chain_below_the_layer().unwrap();
+            client.acquire(&unknown).unwrap();
+            client.release(&unknown).unwrap();
+            client.destroy_chain(unknown).unwrap();
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+    });
+}
+
+/// XR_KHR_vulkan_enable lets the runtime use the queue in xrReleaseSwapchainImage, but not in xrWaitSwapchainImage.
+#[test]
+fn waiting_for_an_image_releases_no_other_one() {
+    with_gpu(|gpu| {
+        let failed = sys::Result::ERROR_RUNTIME_FAILURE;
+        let fault = Fault {
+            call: "xrReleaseSwapchainImage".into(),
+            nth: 1,
+            and_later: false,
+            result: failed.into_raw(),
+        };
+        watched(Script { faults: vec![fault], ..script() }, || {
+            let work = |client: &mut Client, chains: &Chains| {
+                client.acquire_only(&chains.color)?;
+                client.acquire_only(&chains.color)?;
+                client.wait_image(&chains.color)?;
+                // The runtime's error shows where it was called.
+                let released = client.release(&chains.color);
+                assert_eq!(released, Err(Failure { call: "xrReleaseSwapchainImage", result: failed }));
+                client.release(&chains.color)?;
+                client.wait_image(&chains.color)?;
+                client.release(&chains.color)
+            };
+            with_session(gpu, &Habits::PLAIN, work).unwrap();
+        });
+    });
+}
+
+#[test]
+fn a_count_of_layers_without_layers_is_the_applications_mistake() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let work = |client: &mut Client, chains: &Chains| {
+                for first in [true, false] {
+                    let begun = client.begin_frame()?;
+                    let result = sys::Result::ERROR_LAYER_INVALID;
+                    let mistake = client.submit(begun, 2, std::ptr::null());
+                    assert_eq!(mistake, Err(Failure { call: "xrEndFrame", result }), "first: {first}");
+                    client.end_frame(begun, &[])?;
+                    frames(client, chains, &habits, 2)?;
+                }
+                Ok(())
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert_eq!(seen.counts(), [[4, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "afterwards");
+    });
+}
+
+/// The layer offers the extension for depth even if the runtime lacks it, and keeps the depth.
+#[test]
+fn a_runtime_without_depth_gets_two_views() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let missing_extensions = vec![DEPTH.to_str().unwrap().to_owned()];
+        let seen = watched(Script { missing_extensions, ..script() }, || drop(run(gpu, &habits).unwrap()));
+        // The runtime's only complaint is the extension that it lacks.
+        assert!(
+            matches!(&seen.violations()[..], [log::Entry::Violation { call, .. }] if call == "xrCreateInstance"),
+            "{:?}",
+            seen.violations()
+        );
+        assert_eq!(seen.counts(), [[3, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "without depth");
+        assert!(seen.views().iter().all(|view| view.depth.is_none()));
+    });
+}

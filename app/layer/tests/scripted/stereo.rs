@@ -1,0 +1,366 @@
+//! Two views of one.
+
+use openxr_sys as sys;
+use sys::{Handle as _, ViewConfigurationType as ViewsOf};
+use yoro::vulkan::ash::vk;
+use yoro_openxr_stub::log;
+use yoro_openxr_stub::script::Script;
+
+use crate::checks::{
+    assert_depth, assert_own_eyes, assert_seen, assert_synthesized, frustum_of, pose_of, psnr, truth,
+    views_of,
+};
+use crate::client::{Client, DEPTH, Layer, Part, Planes, Submitted};
+use crate::habits::{Chains, D32, Habits, SRGB, frame, frames, render, run, with_session};
+use crate::world::{script, watched, with_gpu};
+
+#[test]
+fn one_view_becomes_the_two_views_of_the_runtime() {
+    let plain = Habits::PLAIN;
+    let depth = |near, far, min, max| Habits { planes: Planes { near, far, min, max }, ..plain };
+    let cases = [
+        ("plain", plain),
+        ("the left eye rendered", Habits { name: "left", ..plain }),
+        ("one layer of an array", Habits { layers: [2, 1], ..plain }),
+        ("a part of the image", Habits { margin: [13, 7], layers: [3, 2], ..plain }),
+        ("another size", Habits { scale: 1.31, ..plain }),
+        ("a smaller size", Habits { scale: 0.77, margin: [1, 2], ..plain }),
+        ("resolved samples", Habits { samples: 2, ..plain }),
+        ("16 bits of depth", Habits { formats: [SRGB, vk::Format::D16_UNORM], ..plain }),
+        ("depth with stencil", Habits { formats: [SRGB, vk::Format::D32_SFLOAT_S8_UINT], ..plain }),
+        ("linear colour", Habits { formats: [vk::Format::R8G8B8A8_UNORM, D32], ..plain }),
+        ("near and far swapped", depth(100.0, 0.1, 0.0, 1.0)),
+        ("infinite far", depth(0.1, f32::INFINITY, 0.0, 1.0)),
+        ("infinite near", depth(f32::INFINITY, 0.05, 0.0, 1.0)),
+        ("a part of the depth's range", depth(0.1, 50.0, 0.25, 0.75)),
+        ("a part of it, swapped", depth(f32::INFINITY, 0.1, 0.5, 1.0)),
+    ];
+    with_gpu(|gpu| {
+        for (what, habits) in cases {
+            let mut client = None;
+            let script = script();
+            let seen = watched(script.clone(), || client = Some(run(gpu, &habits).unwrap()));
+            assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+            assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+            let pixels = if habits.scale == 1.0 { 0.0 } else { 1.0 / habits.scale };
+            assert_own_eyes(&seen, &script, pixels, what);
+            assert_seen(&seen, &habits, what);
+            assert_depth(&seen, &habits, what);
+            if habits.scale == 1.0 && (habits.planes.min, habits.planes.max) == (0.0, 1.0) {
+                assert_synthesized(gpu, &seen, client.as_ref().unwrap(), &habits, what);
+            }
+        }
+    });
+}
+
+/// Eyes of headsets may be turned outwards, and have frusta of different heights.
+#[test]
+fn canted_and_unlike_eyes_are_served_by_parallel_ones() {
+    with_gpu(|gpu| {
+        for name in ["left", "right"] {
+            let habits = Habits { name, ..Habits::PLAIN };
+            let mut canted = script();
+            canted.eyes.iter_mut().for_each(|eye| eye.cant_degrees = 5.0);
+            let mut unlike = script();
+            unlike.eyes[1].fov_degrees = [-40.0, 50.0, 44.0, -53.0];
+            for (what, script) in [("canted", canted), ("unlike", unlike)] {
+                let seen = watched(script.clone(), || drop(run(gpu, &habits).unwrap()));
+                assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+                assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+                assert_seen(&seen, &habits, what);
+                // The submitted view contains that of the runtime's own eye, to a pixel.
+                for (i, view) in seen.views().iter().enumerate() {
+                    let eye = script.eyes[i];
+                    let turn = [1.0, -1.0][i] * eye.cant_degrees.to_radians();
+                    let frustum = frustum_of(view);
+                    let [left, right, up, down] = eye.fov_degrees.map(|angle| angle.to_radians().tan());
+                    for (x, y) in [(left, up), (left, down), (right, up), (right, down)] {
+                        let ray = glam::Quat::from_rotation_y(turn) * glam::Vec3::new(x, y, -1.0);
+                        let (x, y) = (ray.x / -ray.z, ray.y / -ray.z);
+                        let inside = x > frustum.left - 0.02
+                            && x < frustum.right + 0.02
+                            && y > frustum.bottom - 0.02
+                            && y < frustum.top + 0.02;
+                        assert!(inside, "{what}: eye {i} does not see {x}, {y}: {frustum:?}");
+                    }
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn other_layers_stay_as_they_are_and_in_order() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
+            client.create_session().unwrap();
+            client.poll().unwrap();
+            let chains = Chains::new(&client, &habits).unwrap();
+            let panel = client.chain(SRGB, [32, 16], 1).unwrap();
+            frames(&mut client, &chains, &habits, 1).unwrap();
+            let frame = client.begin_frame().unwrap();
+            let view = client.locate(frame).unwrap()[0].unwrap();
+            let submitted = render(&mut client, &chains, &habits, view).unwrap();
+            client.acquire(&panel).unwrap();
+            client.release(&panel).unwrap();
+            let part = |x| Part { chain: panel.handle, origin: [x, 0], size: [8, 16], layer: 0 };
+            let layers = [
+                Layer::Quad(part(0)),
+                Layer::Projection(vec![submitted]),
+                Layer::Quad(part(8)),
+                // This one is not synthesized, but shown.
+                Layer::Projection(vec![Submitted { depth: None, ..submitted }]),
+                Layer::Quad(part(16)),
+            ];
+            client.end_frame(frame, &layers).unwrap();
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        let frames = seen.frames();
+        let found: Vec<_> = frames
+            .last()
+            .unwrap()
+            .iter()
+            .map(|layer| match layer {
+                log::Layer::Projection { views } if views[0].image == views[1].image => {
+                    "the same twice".into()
+                }
+                log::Layer::Projection { views } => format!("{} views", views.len()),
+                log::Layer::Quad { image, .. } => format!("quad {}", image.rect[0]),
+                log::Layer::Other { .. } => "other".into(),
+            })
+            .collect();
+        assert_eq!(found, ["quad 0", "2 views", "quad 8", "the same twice", "quad 16"]);
+        assert_eq!(seen.said("submits more than one projection layer"), 1, "{}", seen.said);
+    });
+}
+
+/// With `shrink`, an application that begins in stereo renders one tiny view.
+#[test]
+fn shrink_replaces_the_tiny_view() {
+    with_gpu(|gpu| {
+        let habits = Habits { name: "shrink", ..Habits::PLAIN };
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
+            client.views = ViewsOf::PRIMARY_STEREO;
+            client.create_session().unwrap();
+            client.poll().unwrap();
+            let sizes = client.sizes().unwrap();
+            assert!(sizes[0] == [16; 2] && sizes[1][0] > 128 && sizes[1][1] == 128, "{sizes:?}");
+            let (color, depth) =
+                (client.chain(SRGB, sizes[1], 1).unwrap(), client.chain(D32, sizes[1], 1).unwrap());
+            let part = Part { chain: color.handle, origin: [0; 2], size: sizes[1], layer: 0 };
+            let own = Chains { color, depth, part };
+            let tiny = client.chain(SRGB, sizes[0], 1).unwrap();
+            let part = Part { chain: tiny.handle, size: sizes[0], ..part };
+            for _ in 0..3 {
+                client.poll().unwrap();
+                let frame = client.begin_frame().unwrap();
+                let views = client.locate(frame).unwrap().map(Option::unwrap);
+                let rendered = render(&mut client, &own, &habits, views[1]).unwrap();
+                client.acquire(&tiny).unwrap();
+                client.release(&tiny).unwrap();
+                let unused = Submitted { view: views[0], color: part, depth: None };
+                client.end_frame(frame, &[Layer::Projection(vec![unused, rendered])]).unwrap();
+            }
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[3, 0]], "{}", seen.said);
+        assert_eq!(seen.said("renders a tiny image for the left eye"), 1, "{}", seen.said);
+        assert_own_eyes(&seen, &script(), 0.0, "a tiny view");
+        assert_seen(&seen, &habits, "a tiny view");
+        assert_depth(&seen, &habits, "a tiny view");
+    });
+}
+
+/// The log gives the reason once, and counts the frames.
+#[test]
+fn a_view_that_cannot_be_synthesized_is_shown_to_both_eyes() {
+    type Spoil = fn(Submitted) -> Submitted;
+    fn with_planes(submitted: Submitted, planes: Planes) -> Submitted {
+        Submitted { depth: submitted.depth.map(|(part, _)| (part, planes)), ..submitted }
+    }
+    fn with_depth_part(submitted: Submitted, change: impl Fn(Part) -> Part) -> Submitted {
+        Submitted { depth: submitted.depth.map(|(part, planes)| (change(part), planes)), ..submitted }
+    }
+    let plain = Habits::PLAIN;
+    let cases: [(&str, Habits, Spoil); 6] = [
+        ("it submits no depth", Habits { submits_depth: false, ..plain }, |s| s),
+        ("it submits no depth", Habits { submits_depth: false, layers: [2, 1], ..plain }, |s| s),
+        ("have different sizes or rectangles", Habits { margin: [4, 4], ..plain }, |s| {
+            with_depth_part(s, |part| Part { origin: [3, 4], ..part })
+        }),
+        ("depth is in a swapchain that cannot be read", plain, |s| {
+            with_depth_part(s, |part| Part { chain: sys::Swapchain::NULL, ..part })
+        }),
+        ("out of order", plain, |s| with_planes(s, Planes { min: 0.5, max: 0.5, ..Planes::PLAIN })),
+        ("near", plain, |s| with_planes(s, Planes { near: 0.0, ..Planes::PLAIN })),
+    ];
+    with_gpu(|gpu| {
+        for (reason, habits, spoil) in cases {
+            let seen = watched(script(), || {
+                let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
+                client.create_session().unwrap();
+                client.poll().unwrap();
+                let chains = Chains::new(&client, &habits).unwrap();
+                frame(&mut client, &chains, &habits).unwrap();
+                for _ in 0..3 {
+                    let frame = client.begin_frame().unwrap();
+                    let view = client.locate(frame).unwrap()[0].unwrap();
+                    let submitted = render(&mut client, &chains, &habits, view).unwrap();
+                    client.end_frame(frame, &[Layer::Projection(vec![spoil(submitted)])]).unwrap();
+                }
+                client.destroy_session().unwrap();
+            });
+            assert!(seen.violations().is_empty(), "{reason}: {:?}", seen.violations());
+            assert_eq!(seen.said("the same image for both eyes"), 1, "{reason}: {}", seen.said);
+            assert_eq!(seen.said(reason), 1, "{reason}: {}", seen.said);
+            assert_eq!(seen.counts(), [[0, 3]], "{reason}: {}", seen.said);
+            let views = seen.views();
+            assert_eq!(
+                (&views[0].image, views[0].position),
+                (&views[1].image, views[1].position),
+                "{reason}"
+            );
+            assert!(psnr(&seen.picture(0), &truth(&views[0], 1)) > 45.0, "{reason}");
+        }
+    });
+}
+
+/// The application waits for the next frame before the last one ends, and releases images before their frame begins.
+#[test]
+fn overlapping_frames_are_synthesized() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let pipelined = |client: &mut Client, chains: &Chains| {
+                let mut now = client.begin_frame()?;
+                for _ in 0..5 {
+                    let view = client.locate(now)?[0].unwrap();
+                    let submitted = render(client, chains, &habits, view)?;
+                    let next = client.wait_frame()?;
+                    client.end_frame(now, &[Layer::Projection(vec![submitted])])?;
+                    client.begin_waited()?;
+                    now = next;
+                }
+                let view = client.locate(now)?[0].unwrap();
+                client.end_frame(now, &[])?;
+                let early = render(client, chains, &habits, view)?;
+                let frame = client.begin_frame()?;
+                client.end_frame(frame, &[Layer::Projection(vec![early])])
+            };
+            with_session(gpu, &habits, pipelined).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[6, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "overlapping frames");
+    });
+}
+
+/// When the application acquires the next image before the frame ends, the runtime gets the last one, and the layer
+/// cannot read it.
+#[test]
+fn an_image_that_the_runtime_has_is_shown_to_both_eyes() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(Script { acquires_ahead: true, ..script() }, || {
+            let work = |client: &mut Client, chains: &Chains| {
+                let begun = client.begin_frame()?;
+                let view = client.locate(begun)?[0].unwrap();
+                let submitted = render(client, chains, &habits, view)?;
+                let ahead = client.acquire(&chains.color)?;
+                client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                let begun = client.begin_frame()?;
+                client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                client.copy_color(ahead, chains.part);
+                client.release(&chains.color)?;
+                frames(client, chains, &habits, 2)
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[2, 2]], "{}", seen.said);
+        assert_eq!(seen.said("was not released since the last frame"), 1, "{}", seen.said);
+        assert_seen(&seen, &habits, "afterwards");
+    });
+}
+
+/// Applications at half the display's rate, and those with static images, submit an image more than once.
+#[test]
+fn an_image_that_is_shown_again_stays_stereo() {
+    with_gpu(|gpu| {
+        for name in ["left", "right"] {
+            let habits = Habits { name, ..Habits::PLAIN };
+            let seen = watched(Script { acquires_ahead: true, ..script() }, || {
+                let work = |client: &mut Client, chains: &Chains| {
+                    for _ in 0..3 {
+                        let begun = client.begin_frame()?;
+                        let view = client.locate(begun)?[0].unwrap();
+                        let submitted = render(client, chains, &habits, view)?;
+                        client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                        let begun = client.begin_frame()?;
+                        client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                    }
+                    // The next image is acquired, and the old one is shown at another place.
+                    let begun = client.begin_frame()?;
+                    let view = client.locate(begun)?[0].unwrap();
+                    let submitted = render(client, chains, &habits, view)?;
+                    client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                    client.acquire(&chains.color)?;
+                    let begun = client.begin_frame()?;
+                    let moved = Submitted { view: view.at(glam::Vec3::new(0.5, 0.25, 1.0)), ..submitted };
+                    client.end_frame(begun, &[Layer::Projection(vec![moved])])?;
+                    // With other planes it is another view.
+                    let begun = client.begin_frame()?;
+                    let planes = Planes { near: 0.2, ..Planes::PLAIN };
+                    let depth = submitted.depth.map(|(part, _)| (part, planes));
+                    client.end_frame(begun, &[Layer::Projection(vec![Submitted { depth, ..submitted }])])
+                };
+                with_session(gpu, &habits, work).unwrap();
+            });
+            assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+            assert_eq!(seen.counts(), [[8, 1]], "{}", seen.said);
+            let frames: Vec<_> = seen.frames().into_iter().map(|layers| views_of(layers)).collect();
+            for pair in frames[..8].chunks_exact(2) {
+                let images = |views: &[log::View]| [0, 1].map(|eye| views[eye].image.clone());
+                assert_eq!(images(pair[0]), images(pair[1]), "{name}");
+                assert_ne!(pair[1][0].image, pair[1][1].image, "{name}");
+                assert!(pair[1].iter().all(|view| view.depth.is_some()), "{name}");
+            }
+            assert_eq!(frames[4], frames[5], "{name}");
+            for eye in 0..2 {
+                let moved = pose_of(&frames[7][eye]).position - pose_of(&frames[6][eye]).position;
+                assert!((moved - glam::Vec3::new(0.5, 0.25, 1.0)).length() < 1e-5, "{name}: {moved}");
+            }
+        }
+    });
+}
+
+#[test]
+fn the_layers_swapchains_follow_new_sizes_and_formats() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let work = |client: &mut Client, chains: &Chains| {
+                frames(client, chains, &habits, 2)?;
+                for (scale, format) in
+                    [(1.5, SRGB), (0.5, SRGB), (0.5, vk::Format::B8G8R8A8_UNORM), (1.0, SRGB)]
+                {
+                    let habits = Habits { scale, formats: [format, D32], ..habits };
+                    let chains = Chains::new(client, &habits)?;
+                    frames(client, &chains, &habits, 2)?;
+                    client.destroy_chain(chains.color)?;
+                    client.destroy_chain(chains.depth)?;
+                }
+                frames(client, chains, &habits, 2)
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[12, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "the first size again");
+    });
+}
