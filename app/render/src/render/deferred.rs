@@ -6,7 +6,7 @@ use super::bloom::{BloomPass, BloomTargets};
 use super::cluster::Culler;
 use super::common::Common;
 use super::g_buffer::{GBuffer, Layout};
-use super::geometry::GeometryPass;
+use super::geometry::{GeometryPass, Part};
 use super::lighting::LightingPass;
 use super::request::{Columns, ViewRequest};
 use super::role::{Role, RoleKind};
@@ -15,7 +15,7 @@ use super::settings::RenderSettings;
 use super::ssao::{SsaoPass, SsaoTargets};
 use super::tonemap::TonemapPass;
 use super::transparent::{DepthImage, Onto};
-use super::{Renderer, ViewImages, ViewRenderer, of_columns};
+use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::View;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
@@ -185,25 +185,14 @@ impl DeferredRenderer {
         Ok(())
     }
 
-    /// Fills a g-buffer with what the culler of its one view lets through.
-    fn draw_selected(&self, g_buffer: &GBuffer, scene: &GpuScene, view: &View, culler: &Culler) {
-        let Some(pass) = &self.geometry[Layout::Single.index()] else { return };
-        let gl = &self.common.gl;
-        gl.pass("g-buffer", || {
-            g_buffer.target().bind();
-            gl.clear(Some(view.depth.clear_value()));
-            pass.draw_selected(scene, view, culler);
-        });
-    }
-
-    /// Clears a g-buffer and draws one view, or both eyes, into it. Only what lies in `slice` (metres) is drawn;
-    /// `mark` may mark pixels before that. The g-buffer fits the views, and its layout is prepared.
+    /// Clears a g-buffer and draws a part of the scene into it, in one view or in both eyes. `mark` may mark pixels before
+    /// that. The g-buffer fits the views, and its layout is prepared.
     pub(crate) fn draw(
         &self,
         g_buffer: &GBuffer,
         scene: &GpuScene,
         views: &[View],
-        slice: Option<[f32; 2]>,
+        part: Option<Part>,
         mark: impl FnOnce(&RenderTarget),
     ) {
         let (Some(pass), Some(view)) = (&self.geometry[g_buffer.layout().index()], views.first()) else {
@@ -214,9 +203,9 @@ impl DeferredRenderer {
             target.bind();
             gl.clear(Some(view.depth.clear_value()));
             mark(target);
-            if let Some(slice) = slice {
+            if let Some(part) = &part {
                 target.bind();
-                pass.draw(scene, views, slice);
+                pass.draw(scene, views, part);
             }
         });
     }
@@ -279,13 +268,6 @@ impl DeferredRenderer {
 impl ViewRenderer for DeferredRenderer {
     type Targets = DeferredTargets;
 
-    fn of(renderer: &mut Renderer) -> Option<&mut DeferredRenderer> {
-        match renderer {
-            Renderer::Deferred(renderer) => Some(renderer),
-            Renderer::Forward(_) => None,
-        }
-    }
-
     fn common(&self) -> &Common {
         &self.common
     }
@@ -310,10 +292,10 @@ impl ViewRenderer for DeferredRenderer {
         targets.finish.resize(view.size)?;
         targets.light.columns = request.columns;
         let drawn = request.bounds(view);
-        let seen = drawn.map_or(*view, |drawn| of_columns(view, drawn));
-        let culler = Culler::selecting(&seen, request.selection);
+        let culler = request.culler(view);
         self.common.gl.within_columns(drawn, || {
-            self.draw_selected(&targets.g_buffer, scene, view, &culler);
+            let part = Some(Part::Selected(&culler));
+            self.draw(&targets.g_buffer, scene, &[*view], part, |_| {});
             self.light(&targets.light, &targets.g_buffer, scene, view, Role::Whole);
         });
         self.finish(&targets.finish, &targets.light);

@@ -8,16 +8,15 @@ use std::rc::Rc;
 use super::bloom::BloomPass;
 use super::cluster::{Culler, Selection};
 use super::common::Common;
-use super::forward_passes::Part;
 use super::forward_targets::ForwardTargets;
 use super::g_buffer::Layout;
-use super::geometry::GeometryPass;
+use super::geometry::{GeometryPass, Part};
 use super::light_tiles::LightTiles;
 use super::lighting::shading_defines;
 use super::request::{PixelDepth, ViewRequest};
 use super::scene::GpuScene;
 use super::settings::RenderSettings;
-use super::{Renderer, ViewImages, ViewRenderer, of_columns};
+use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, View};
 use yoro_gl::{Context, GlError, Program, RenderTarget, ShaderSource};
 use yoro_scene::ShadingStyle;
@@ -111,13 +110,6 @@ impl ForwardRenderer {
 impl ViewRenderer for ForwardRenderer {
     type Targets = ForwardTargets;
 
-    fn of(renderer: &mut Renderer) -> Option<&mut ForwardRenderer> {
-        match renderer {
-            Renderer::Forward(renderer) => Some(renderer),
-            Renderer::Deferred(_) => None,
-        }
-    }
-
     fn common(&self) -> &Common {
         &self.common
     }
@@ -136,8 +128,7 @@ impl ViewRenderer for ForwardRenderer {
         targets.fit(view.size, self.develops(), false)?;
         targets.request = *request;
         let drawn = request.bounds(view);
-        let seen = drawn.map_or(*view, |drawn| of_columns(view, drawn));
-        let culler = Culler::selecting(&seen, request.selection);
+        let culler = request.culler(view);
         self.common.gl.within_columns(drawn, || {
             self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         });

@@ -2,12 +2,12 @@
 
 use glam::{IVec2, Vec2, Vec3};
 
-use super::ViewImages;
 use super::bloom;
 use super::cluster::Culler;
 use super::forward::ForwardRenderer;
 use super::forward_targets::ForwardTargets;
 use super::g_buffer::Layout;
+use super::geometry::Part;
 use super::light_tiles::LightTiles;
 use super::lighting::line_width;
 use super::lights::Lights;
@@ -16,6 +16,7 @@ use super::scene::{FREE_UNIT, GpuScene};
 use super::shadow::ShadowMap;
 use super::transparent::Onto;
 use super::uniforms::{nearer, set_view};
+use super::view::ViewImages;
 use yoro::eyes::{Eye, View};
 use yoro_gl::{DepthTest, Program, RasterState, RenderTarget, Texture};
 
@@ -40,14 +41,6 @@ impl Illumination<'_> {
         self.lights.set(program, &self.scene.sky);
         self.tiles.set(program);
     }
-}
-
-/// A part of the opaque surfaces.
-pub enum Part<'a> {
-    /// What a culler lets through, in one view.
-    Selected(&'a Culler),
-    /// What lies between two distances in metres.
-    Slice([f32; 2]),
 }
 
 impl ForwardRenderer {
@@ -147,10 +140,7 @@ impl ForwardRenderer {
         targets.bind(targets.layout().texture_size(view.size));
         targets.draws_depth();
         pass.programs().for_each(|program| light.set(program.bind()));
-        match part {
-            Part::Selected(culler) => pass.draw_selected(light.scene, view, culler),
-            Part::Slice(slice) => pass.draw(light.scene, views, *slice),
-        }
+        pass.draw(light.scene, views, part);
     }
 
     /// Draws the sky where nothing was drawn.

@@ -3,12 +3,12 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
-use super::ViewImages;
 use super::bloom::BloomTargets;
 use super::deferred::hdr_format;
 use super::g_buffer::Layout;
 use super::request::ViewRequest;
 use super::settings::RenderSettings;
+use super::view::ViewImages;
 use yoro::eyes::Eye;
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,

@@ -1,11 +1,14 @@
 //! The forward renderer on small scenes.
 
+use std::rc::Rc;
+
 use glam::Vec3;
 
 use super::tests::{Rig, STYLES, depths, open, picture, scene, settings, view};
 use super::*;
 use crate::fixture::quad;
-use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose};
+use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
+use yoro_gl::{Context, RenderTarget};
 use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 
 const SIZE: [u32; 2] = [96, 64];

@@ -4,12 +4,21 @@ use std::rc::Rc;
 
 use glam::{Mat4, Vec3};
 
-use super::cluster::{Culler, Selection, visible};
+use super::cluster::{Culler, visible};
 use super::g_buffer::{Layout, Seam};
 use super::scene::{Features, GpuScene};
 use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{DepthRange, Eye, View};
 use yoro_gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
+
+/// A part of the opaque triangles.
+#[derive(Clone, Copy)]
+pub enum Part<'a> {
+    /// What a culler lets through, in one view.
+    Selected(&'a Culler),
+    /// What lies between two distances in metres, with the depth that it has in the views.
+    Slice([f32; 2]),
+}
 
 /// Draws the opaque triangles of a scene into what is bound.
 ///
@@ -69,27 +78,25 @@ impl GeometryPass {
         self.programs.iter().flatten()
     }
 
-    /// Draws into a target of the pass's layout: of one view, or of both eyes, which are alike in size and depth.
-    /// Only what lies in `slice` is drawn (near and far plane in metres), with the depth that it has in the views.
-    pub fn draw(&self, scene: &GpuScene, views: &[View], slice: [f32; 2]) {
+    /// Draws into a target of the pass's layout: one view, or both eyes, which are alike in size and depth.
+    pub fn draw(&self, scene: &GpuScene, views: &[View], part: &Part) {
         let Some(first) = views.first() else { return };
-        let range = first.depth;
-        let sliced =
-            |view: &View| View { depth: DepthRange { near: slice[0], far: slice[1], ..range }, ..*view };
-        // One of each for an eye; what a single view does not use repeats the first.
-        let of = |i: usize| views.get(i).unwrap_or(first);
-        let eyes: [Vec3; 2] = std::array::from_fn(|i| of(i).pose.position);
-        let matrices: [Mat4; 2] = std::array::from_fn(|i| eye_to_clip(&sliced(of(i))));
-        let cullers: [Culler; 2] =
-            std::array::from_fn(|i| Culler::new(eyes[i], &matrices[i], Selection::All));
-        self.draw_culled(scene, views, &cullers[..views.len()], &matrices, window(&range, slice));
-    }
-
-    /// As [`GeometryPass::draw`] of one whole view, with a culler that also selects.
-    pub fn draw_selected(&self, scene: &GpuScene, view: &View, culler: &Culler) {
-        let views = std::slice::from_ref(view);
-        let matrix = eye_to_clip(view);
-        self.draw_culled(scene, views, std::slice::from_ref(culler), &[matrix; 2], [0.0, 1.0]);
+        match *part {
+            Part::Selected(culler) => {
+                let cullers = std::slice::from_ref(culler);
+                self.draw_culled(scene, views, cullers, &[eye_to_clip(first); 2], [0.0, 1.0]);
+            }
+            Part::Slice([near, far]) => {
+                let depth = DepthRange { near, far, ..first.depth };
+                // One of each for an eye; what a single view does not use repeats the first.
+                let sliced: [View; 2] =
+                    std::array::from_fn(|i| View { depth, ..*views.get(i).unwrap_or(first) });
+                let (cullers, matrices) =
+                    (sliced.map(|view| Culler::of_view(&view)), sliced.map(|view| eye_to_clip(&view)));
+                let cullers = &cullers[..views.len()];
+                self.draw_culled(scene, views, cullers, &matrices, window(&first.depth, [near, far]));
+            }
+        }
     }
 
     fn draw_culled(

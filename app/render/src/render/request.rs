@@ -1,7 +1,7 @@
 //! What a renderer is asked for.
 
-use super::cluster::Selection;
-use yoro::eyes::View;
+use super::cluster::{Culler, Selection};
+use yoro::eyes::{Frustum, View};
 
 /// Columns of a view of which not all are needed, each `[first, end]` from the left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,5 +52,22 @@ impl ViewRequest {
     /// The columns to which drawing is bounded; none if they are all columns of the view.
     pub(super) fn bounds(&self, view: &View) -> Option<[u32; 2]> {
         self.columns.map(|columns| columns.drawn).filter(|drawn| *drawn != [0, view.size[0]])
+    }
+
+    /// A culler for what is drawn of a view.
+    pub(super) fn culler(&self, view: &View) -> Culler {
+        Culler::selecting(&self.bounds(view).map_or(*view, |drawn| of_columns(view, drawn)), self.selection)
+    }
+}
+
+/// The part of a view that some of its columns show, `[first, end]` from the left.
+fn of_columns(view: &View, [first, end]: [u32; 2]) -> View {
+    let tangent = view.frustum.width() / view.size[0] as f32;
+    let left = view.frustum.left + first as f32 * tangent;
+    let right = view.frustum.left + end as f32 * tangent;
+    View {
+        frustum: Frustum { left, right, ..view.frustum },
+        size: [end.saturating_sub(first), view.size[1]],
+        ..*view
     }
 }

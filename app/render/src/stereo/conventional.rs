@@ -3,7 +3,7 @@
 use super::finish::{EyeImage, Finish};
 use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
-use crate::render::{ViewImages, ViewRenderer};
+use crate::render::{RendererOfKind, ViewImages, ViewRenderer};
 use yoro_gl::{GlError, Texture};
 
 /// Two full renders.
@@ -32,7 +32,7 @@ impl<R: ViewRenderer> Conventional<R> {
     }
 }
 
-impl<R: ViewRenderer> FrameMethod for Conventional<R> {
+impl<R: RendererOfKind> FrameMethod for Conventional<R> {
     type Renderer = R;
 
     fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
 use super::options::StereoOptions;
-use crate::render::{GpuScene, RenderSettings, Renderer, ViewRenderer};
+use crate::render::{GpuScene, RenderSettings, Renderer, RendererOfKind};
 use yoro::eyes::{Eye, EyePair};
 use yoro_gl::{Context, GlError};
 
@@ -39,7 +39,7 @@ impl<R> Frame<'_, R> {
 /// A stereo method for one kind of renderer.
 pub(super) trait FrameMethod: Sized {
     /// The kind of renderer.
-    type Renderer: ViewRenderer;
+    type Renderer: RendererOfKind;
 
     /// Compiles what the method needs for the materials of a scene; nothing is done for what is there already.
     fn compile(&mut self, _renderer: &mut Self::Renderer, _scene: &GpuScene) -> Result<(), GlError> {
@@ -56,7 +56,10 @@ pub(super) trait FrameMethod: Sized {
 }
 
 /// Returns a renderer as one of the kind that a method was made for, for this scene.
-fn of_kind<'a, R: ViewRenderer>(renderer: &'a mut Renderer, scene: &GpuScene) -> Result<&'a mut R, GlError> {
+fn of_kind<'a, R: RendererOfKind>(
+    renderer: &'a mut Renderer,
+    scene: &GpuScene,
+) -> Result<&'a mut R, GlError> {
     let renderer = R::of(renderer).ok_or_else(|| {
         GlError::Unsupported(
             "the stereo method was made for another kind of renderer: make both with the same settings"

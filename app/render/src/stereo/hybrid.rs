@@ -13,7 +13,7 @@ use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
 use crate::render::{
     DeferredRenderer, DepthImage, FinishTargets, ForwardRenderer, ForwardTargets, GBuffer, GpuScene, Layout,
-    LightTargets, Role, RoleKind, ViewRenderer, depth_test,
+    LightTargets, Part, RendererOfKind, Role, RoleKind, ViewRenderer, depth_test,
 };
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Pose, View};
 use yoro_gl::{Context, Destination, GlError, Program, RasterState, RenderTarget, ShaderSource};
@@ -115,7 +115,7 @@ fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
 /// The images of near and far field, for one kind of renderer.
 pub(super) trait FieldTargets: Sized {
     /// The kind of renderer.
-    type Renderer: ViewRenderer;
+    type Renderer: RendererOfKind;
 
     fn new(setup: &Setup) -> Result<Self, GlError>;
 
@@ -216,13 +216,13 @@ impl FieldTargets for DeferredFields {
         self.image.resize(pair.size)?;
         for (near, eye) in self.near.iter_mut().zip(Eye::BOTH) {
             near.fit(pair.size, pair.depth.convention)?;
-            renderer.draw(near, scene, &[pair.view(eye)], split.near, |_| {});
+            renderer.draw(near, scene, &[pair.view(eye)], split.near.map(Part::Slice), |_| {});
         }
         if split.far.is_some() {
             self.far.fit(view.size, pair.depth.convention)?;
             self.far_light.resize(view.size)?;
             let mark = |target: &RenderTarget| self.mark_hidden(target, view, crops);
-            renderer.draw(&self.far, scene, &[*view], split.far, mark);
+            renderer.draw(&self.far, scene, &[*view], split.far.map(Part::Slice), mark);
             renderer.light(&self.far_light, &self.far, scene, view, Role::FarField);
         }
         Ok(())

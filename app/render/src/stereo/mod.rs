@@ -6,6 +6,7 @@ mod finish;
 mod frame;
 mod guard_band;
 mod hybrid;
+mod kinds;
 mod method;
 mod mono;
 mod near_field_policy;
@@ -24,45 +25,23 @@ mod tests;
 
 use std::rc::Rc;
 
-use crate::render::{DeferredRenderer, ForwardRenderer, Layout, RenderSettings, RendererKind, ViewRenderer};
+use crate::render::{DeferredRenderer, ForwardRenderer, Layout, RenderSettings, RendererKind};
 use yoro_gl::{Context, GlError};
 
 use conventional::Conventional;
 use frame::Setup;
-use hybrid::{DeferredFields, FieldTargets, ForwardFields, Hybrid};
+use hybrid::Hybrid;
+use kinds::StereoRenderer;
 pub use method::{DepthTarget, EyeTarget, GuardBandUse, StereoError, StereoFrame, StereoMethod};
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
 pub use options::{AntiAliasing, Method, Pipeline, PipelineOptions, StereoOptions};
-use overlay::{DeferredOverlay, ForwardOverlay, Overlay};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 use shading_reprojection::ShadingReprojection;
-use single_pass::{DeferredPair, ForwardPair, PairTargets, SinglePass};
+use single_pass::{DeferredPair, SinglePass};
 pub use substitute::Substitute;
 use synthesized::Synthesized;
-
-/// A kind of renderer with what the methods do differently for it.
-trait StereoRenderer: ViewRenderer + 'static {
-    /// Both eyes in one set of draw calls.
-    type Pair: PairTargets<Renderer = Self>;
-    /// The near field for each eye and the far field for both.
-    type Fields: FieldTargets<Renderer = Self>;
-    /// What comes after synthesis.
-    type Overlay: Overlay<Renderer = Self>;
-}
-
-impl StereoRenderer for DeferredRenderer {
-    type Pair = DeferredPair;
-    type Fields = DeferredFields;
-    type Overlay = DeferredOverlay;
-}
-
-impl StereoRenderer for ForwardRenderer {
-    type Pair = ForwardPair;
-    type Fields = ForwardFields;
-    type Overlay = ForwardOverlay;
-}
 
 /// Makes a method; all that does not depend on the scene is compiled here ([`StereoMethod::prepare`] does the rest).
 ///

@@ -3,7 +3,7 @@
 use super::finish::Finish;
 use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
-use crate::render::{DepthImage, ViewImages, ViewRenderer};
+use crate::render::{DepthImage, RendererOfKind, ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, EyePair, GuardBand, View};
 use yoro_gl::GlError;
 
@@ -21,7 +21,7 @@ impl<R: ViewRenderer> Mono<R> {
     }
 }
 
-impl<R: ViewRenderer> FrameMethod for Mono<R> {
+impl<R: RendererOfKind> FrameMethod for Mono<R> {
     type Renderer = R;
 
     fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {

@@ -5,7 +5,8 @@ use std::rc::Rc;
 use super::finish::EyeImage;
 use super::frame::{Frame, Setup};
 use crate::render::{
-    DeferredRenderer, DepthImage, ForwardRenderer, Fxaa, Selection, ViewImages, ViewRenderer, ViewRequest,
+    DeferredRenderer, DepthImage, ForwardRenderer, Fxaa, RendererOfKind, Selection, ViewImages, ViewRenderer,
+    ViewRequest,
 };
 use yoro::eyes::{DepthConvention, SynthesisViews};
 use yoro_gl::{
@@ -56,7 +57,7 @@ pub(super) enum EyeSource<'a> {
 /// The way a kind of renderer draws over both eyes after synthesis.
 pub(super) trait Overlay: Sized {
     /// The kind of renderer.
-    type Renderer: ViewRenderer;
+    type Renderer: RendererOfKind;
 
     fn new(setup: &Setup) -> Result<Self, GlError>;
 

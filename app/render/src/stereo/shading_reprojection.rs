@@ -12,8 +12,8 @@ use super::finish::{EyeImage, Finish};
 use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
 use crate::render::{
-    DeferredRenderer, DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, Reprojection, Role,
-    RoleKind,
+    DeferredRenderer, DepthImage, FinishTargets, GBuffer, GpuScene, Layout, LightTargets, Part, Reprojection,
+    Role, RoleKind,
 };
 use yoro::eyes::{DisparityLaw, EyePair, GuardBand};
 use yoro_gl::{
@@ -104,7 +104,13 @@ impl FrameMethod for ShadingReprojection {
         self.disocclusion.resize(pair.size)?;
         for (i, eye) in [pair.dominant, pair.dominant.other()].into_iter().enumerate() {
             let (view, g_buffer) = (pair.view(eye), &self.g_buffers[i]);
-            renderer.draw(g_buffer, scene, &[view], Some([pair.depth.near, pair.depth.far]), |_| {});
+            renderer.draw(
+                g_buffer,
+                scene,
+                &[view],
+                Some(Part::Slice([pair.depth.near, pair.depth.far])),
+                |_| {},
+            );
             let mut role = Role::Whole;
             if eye != pair.dominant {
                 let reprojection = Reprojection {

@@ -6,7 +6,7 @@ use super::frame::{Frame, FrameMethod, Setup};
 use super::method::StereoError;
 use crate::render::{
     DeferredRenderer, DepthImage, FinishTargets, ForwardRenderer, ForwardTargets, GBuffer, GpuScene, Layout,
-    LightTargets, Role, Seam, ViewImages, ViewRenderer,
+    LightTargets, Part, RendererOfKind, Role, Seam, ViewImages,
 };
 use yoro::eyes::{Eye, View};
 use yoro_gl::{Destination, Filter, Format, GlError, RenderTarget};
@@ -23,7 +23,7 @@ pub struct SinglePass<T> {
 /// The images of both eyes at once, for one kind of renderer.
 pub(super) trait PairTargets: Sized {
     /// The kind of renderer.
-    type Renderer: ViewRenderer;
+    type Renderer: RendererOfKind;
 
     fn new(setup: &Setup, layout: Layout) -> Result<Self, GlError>;
 
@@ -99,7 +99,7 @@ impl PairTargets for DeferredPair {
         self.g_buffer.fit(pair.size, pair.depth.convention)?;
         self.light.resize(pair.size)?;
         self.image.resize(pair.size)?;
-        let all = Some([pair.depth.near, pair.depth.far]);
+        let all = Some(Part::Slice([pair.depth.near, pair.depth.far]));
         frame.renderer.draw(&self.g_buffer, frame.scene, views, all, |_| {});
         Ok(())
     }

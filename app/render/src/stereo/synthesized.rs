@@ -2,11 +2,11 @@
 
 use std::rc::Rc;
 
-use super::StereoRenderer;
 use super::conventional::Conventional;
 use super::finish::Finish;
 use super::frame::{Frame, FrameMethod, Setup};
 use super::guard_band::AutoGuardBand;
+use super::kinds::StereoRenderer;
 use super::method::{GuardBandUse, StereoError};
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::{DepthMap, NearFraction};

@@ -9,7 +9,7 @@ use super::*;
 use crate::fixture::quad;
 use crate::render::{
     Columns, DepthCopy, GpuScene, KeptSamples, PixelDepth, Renderer, RendererKind, Seam, ViewImages,
-    ViewRequest,
+    ViewRenderer, ViewRequest,
 };
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews};
 use yoro::synthesis::{self, Edges, Outputs, Source, SynthesisOptions};
