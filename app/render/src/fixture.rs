@@ -1,4 +1,4 @@
-//! What the tests of several modules draw.
+//! Shapes that the tests of several modules draw.
 
 use glam::{Vec2, Vec3};
 

@@ -1,7 +1,8 @@
-//! Frames to synthesize from, and every way to make two eyes of them.
+//! The renderer and the stereo methods: frames to synthesize from, and every way to make two eyes of them.
 //!
-//! [`Renderer`] draws one view of a scene to colour and depth; [`stereo`] has the methods, a file for each
-//! kind: two real renders, single-pass stereo, hybrid, shading reprojection, mono, and synthesis.
+//! [`Renderer`] takes a scene and a view and gives colour and depth, deferred or forward. A [`stereo::StereoMethod`] takes
+//! a pair of eyes and fills both images: two real renders, single-pass stereo, hybrid, shading reprojection, mono, or
+//! synthesis, by `yoro`'s pipeline or the paper's.
 //!
 //! This crate must never know where a GL context comes from, what a viewer's lenses do, or how a result is measured.
 

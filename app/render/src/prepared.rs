@@ -1,4 +1,4 @@
-//! A scene that can be drawn.
+//! A scene with its renderer.
 
 use std::rc::Rc;
 

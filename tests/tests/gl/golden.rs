@@ -54,7 +54,7 @@ fn check(images: &[(String, &RgbImage)]) {
 }
 
 #[test]
-fn every_pipeline() {
+fn every_pipeline_gives_its_golden_image() {
     let headless = Headless::open(backends()[0]).unwrap();
     let frames = render(headless.gl(), "prototype", &Pipeline::ALL).unwrap();
     let mut images = vec![("prototype-rendered".to_owned(), &frames[0][1])];
@@ -65,7 +65,7 @@ fn every_pipeline() {
 }
 
 #[test]
-fn scenes_by_the_default() {
+fn scenes_give_their_golden_images() {
     let headless = Headless::open(backends()[0]).unwrap();
     for name in ["talk", "stage"] {
         let frames = render(headless.gl(), name, &[Pipeline::default()]).unwrap();
@@ -74,7 +74,7 @@ fn scenes_by_the_default() {
 }
 
 #[test]
-fn backends_agree() {
+fn backends_agree_on_every_pipeline() {
     let frames: Vec<_> = backends()
         .into_iter()
         .map(|backend| {

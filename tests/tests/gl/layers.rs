@@ -1,4 +1,4 @@
-//! Synthesis from anti-aliased sources against a plain version in f64, in which rows run forward.
+//! Synthesis from anti-aliased sources against a plain reference in f64, whose rows run in forward columns.
 
 use std::rc::Rc;
 
@@ -45,7 +45,7 @@ struct Back {
     color: Color,
 }
 
-/// What a pixel shows; displacements in pixels.
+/// The surfaces of a pixel; displacements in pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer {
     front: f64,
@@ -79,7 +79,7 @@ pub struct Pixels {
     resolved: Image<Color>,
 }
 
-/// In which of the samples the front is, and displacements of front and back.
+/// Returns which samples the front covers, and the displacements of front and back.
 fn surfaces(reaches: [f64; 4]) -> ([bool; 4], f64, Option<f64>) {
     let nearest = reaches.into_iter().fold(f64::MIN, f64::max);
     let front = reaches.map(|reach| reach > nearest - LINK);
@@ -151,7 +151,7 @@ fn with_back(front: f64, resolved: Color, mask: [f64; 4], back: Back) -> Layer {
     Layer { front, color, mask, back: Some(back) }
 }
 
-/// Front and back of a pixel with one depth, and whether its depth is that of the back.
+/// Returns front and back of a pixel with one depth, and true if its depth is that of the back.
 fn split(reach: &Image<f64>, x: i64, y: i64, apart: f64, first_sample: bool) -> Option<(f64, f64, bool)> {
     let here = reach.at(x, y);
     let all = RING.map(|(dx, dy)| reach.at(x + dx, y + dy));
@@ -181,7 +181,7 @@ fn resolved_layers(reach: &Image<f64>, resolved: &Image<Color>, first_sample: bo
         let here = resolved.at(x, y);
         let single = Layer { front: reach.at(x, y), color: here, mask: [1.0; 4], back: None };
         let Some((front, back, shows_back)) = split(reach, x, y, apart, first_sample) else { return single };
-        // Of front and back: pure taps, and all.
+        // For front and back: pure taps, and all taps.
         let mut taps: [[Vec<(f64, Color)>; 2]; 2] = Default::default();
         for (dx, dy) in RING.into_iter().chain(NEXT) {
             let tap = (4.0 / (dx * dx + dy * dy) as f64, resolved.at(x + dx, y + dy));
@@ -250,8 +250,8 @@ fn resolved_layers(reach: &Image<f64>, resolved: &Image<Color>, first_sample: bo
     })
 }
 
-/// Where the search for each target tile begins, in displacement, and how many columns it goes on: as the tile passes
-/// find it, with their sixteenths of a pixel.
+/// Returns the displacement at which the search for each target tile begins, and its number of columns, as the tile passes
+/// find them in sixteenths of a pixel.
 pub fn spans(layers: &Image<Layer>, width: usize, range: [f64; 2]) -> Image<Option<(f64, i64)>> {
     let [far, near] = range;
     let [w, h] = layers.size;
@@ -310,9 +310,9 @@ struct Candidate {
 /// Texels that the shader fetches for a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fetches {
-    /// Of the layers.
+    /// Fetches of the layers.
     pub layers: u32,
-    /// Of colour: the filtered one of a single surface, or two for each layer that takes part.
+    /// Fetches of colour: the filtered one of a single surface, or two for each layer that takes part.
     pub colors: u32,
 }
 
@@ -331,7 +331,7 @@ impl Composition {
     }
 }
 
-/// Colour of target pixel (t, y), whether more than half of it is filled from beside the hole, and what that fetches.
+/// Returns the colour of target pixel (t, y), true if more than half of it is filled from beside the hole, and its fetches.
 pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Color, bool, Fetches) {
     let last = layers.size[0] as i64 - 1;
     let (mut x, limit) = match span {
@@ -536,12 +536,11 @@ pub fn forward(samples: &Samples, warp: &Warp) -> (Pixels, [f64; 2]) {
     let mirrored = warp.target_eye == Eye::Right;
     let size = samples.size.map(|n| n as usize);
     let law = warp.law;
-    let (offset, scale) = match mirrored {
-        true => {
-            let wider = f64::from(warp.target_size[0]) - f64::from(warp.source_size[0]);
-            (wider - law.offset, -law.scale)
-        }
-        false => (law.offset, law.scale),
+    let (offset, scale) = if mirrored {
+        let wider = f64::from(warp.target_size[0]) - f64::from(warp.source_size[0]);
+        (wider - law.offset, -law.scale)
+    } else {
+        (law.offset, law.scale)
     };
     let mut stripes = [0, 1, 2, 3];
     stripes.sort_by(|&a: &usize, &b| STANDARD[a][0].total_cmp(&STANDARD[b][0]));
@@ -659,7 +658,7 @@ fn agrees(gl: &Rc<Context>, given: Given, dominant: Eye, convention: DepthConven
 }
 
 #[test]
-fn anti_aliased_sources_give_what_the_plain_version_gives() {
+fn anti_aliased_sources_equal_the_f64_reference() {
     on_every_backend(|gl| {
         for given in [Given::Nearest, Given::Sample, Given::Depths, Given::Samples] {
             agrees(gl, given, Eye::Right, DepthConvention::Standard, GuardBand::Pixels(21));

@@ -129,7 +129,7 @@ fn single_pass_stereo_equals_two_renders() {
 }
 
 #[test]
-fn what_a_driver_lacks_is_one_sentence() {
+fn a_missing_driver_feature_is_one_sentence() {
     on_every_backend(|gl| {
         for method in Method::ALL {
             for renderer in RendererKind::ALL {
@@ -197,7 +197,7 @@ fn the_far_field_of_hybrid_is_the_same_for_both_eyes() {
 }
 
 #[test]
-fn hybrid_is_near_conventional_with_the_split_in_the_midst() {
+fn hybrid_with_a_split_is_close_to_conventional() {
     on_every_backend(|gl| {
         let small = scenes().swap_remove(0);
         let deferred = scenes().into_iter().map(|scene| (scene, RendererKind::Deferred));
@@ -227,7 +227,7 @@ fn hybrid_is_near_conventional_with_the_split_in_the_midst() {
 }
 
 #[test]
-fn reprojected_shading_is_near_that_of_two_renders() {
+fn reprojected_shading_is_close_to_two_renders() {
     on_every_backend(|gl| {
         let options = StereoOptions::default();
         for scene in scenes() {

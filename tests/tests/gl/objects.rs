@@ -1,4 +1,4 @@
-//! Frames leave nothing behind.
+//! Frames leak no GL objects.
 
 use std::rc::Rc;
 
@@ -55,7 +55,7 @@ fn tiny(gl: &Rc<Context>) -> GpuScene {
     GpuScene::upload(gl, scene).unwrap()
 }
 
-/// Of both renderers.
+/// Settings of both renderers.
 fn settings() -> [RenderSettings; 2] {
     RendererKind::ALL.map(|renderer| RenderSettings {
         renderer,
@@ -73,7 +73,7 @@ fn pair(frame: u32, dominant: Eye) -> EyePair {
 }
 
 #[test]
-fn a_hundred_frames_make_as_many_objects_as_ten() {
+fn a_hundred_frames_hold_as_many_objects_as_ten() {
     for backend in backends() {
         let headless = Headless::open(backend).unwrap();
         let gl = headless.gl();
@@ -101,7 +101,7 @@ fn a_hundred_frames_make_as_many_objects_as_ten() {
 }
 
 #[test]
-fn other_sizes_and_eyes_replace_objects() {
+fn new_sizes_and_eyes_replace_objects() {
     let headless = Headless::open(backends()[0]).unwrap();
     let gl = headless.gl();
     let scene = tiny(gl);

@@ -1,4 +1,4 @@
-//! What cannot be done is refused with a sentence.
+//! Eyes that cannot be synthesized are refused with a sentence.
 
 use glam::Quat;
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum, Pose};

@@ -5,7 +5,7 @@ use yoro_tests::on_every_backend;
 use yoro_tests::programs::{self, Variants};
 
 #[test]
-fn every_file_in_every_variant() {
+fn every_shader_compiles_in_every_variant() {
     on_every_backend(|gl| {
         programs::make(gl, Variants::Every)?;
         // Only the renderer's unit tests read depth back.

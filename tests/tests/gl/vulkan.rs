@@ -18,7 +18,7 @@ use harness::{Gpu, Image, READ, Rendering, WRITTEN, flipped, with_gpu};
 const SIZE: [u32; 2] = [256, 256];
 
 #[test]
-fn scenes_are_those_of_opengl() {
+fn vulkan_equals_opengl_on_scenes() {
     let headless = Headless::open(backends()[0]).unwrap();
     let (gl, settings) = (headless.gl(), RenderSettings::default());
     let mut groups = GroupRenderer::new(gl, &GroupOptions::default()).unwrap();
@@ -45,7 +45,7 @@ fn scenes_are_those_of_opengl() {
     }
 }
 
-/// What OpenGL has synthesized, by Vulkan.
+/// Returns by Vulkan what OpenGL has synthesized.
 fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
     let warp = &group.views.warp;
     let (color_format, depth_format) = (vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT);

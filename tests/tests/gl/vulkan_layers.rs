@@ -20,7 +20,7 @@ use super::vulkan::harness::{Gpu, Image, READ, Rendering, WRITTEN, with_gpu};
 const COLOR: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
-/// What is told of the edges, and whether the samples' colours are handed over.
+/// The meaning of the edges, and true if the samples' colours are handed over.
 const GIVEN: [(Edges, bool); 4] = [
     (Edges::Nearest, false),
     (Edges::Sample, false),
@@ -240,7 +240,7 @@ fn one_depth(samples: &Samples, edges: Edges, warp: &Warp) -> Vec<f32> {
     }
 }
 
-/// As [`on_opengl`], with maps for sources and targets of the largest size.
+/// Does the same as [`on_opengl`], with maps for sources and targets of the largest size.
 fn on_vulkan(
     gpu: &Gpu,
     host: &Host,
@@ -296,7 +296,7 @@ fn on_vulkan(
 }
 
 #[test]
-fn anti_aliased_sources_are_those_of_opengl() {
+fn vulkan_equals_opengl_for_anti_aliased_sources() {
     let headless = Headless::open(backends()[0]).unwrap();
     for dynamic_rendering in [true, false] {
         with_gpu(Rendering::Core, |gpu| {
@@ -330,7 +330,7 @@ fn anti_aliased_sources_are_those_of_opengl() {
 }
 
 #[test]
-fn what_no_device_samples_is_refused() {
+fn samples_that_vulkan_does_not_have_are_refused() {
     with_gpu(Rendering::Core, |gpu| {
         for samples in [0, 1, 3, 8, 64] {
             let options = Options { edges: Edges::Multisample, samples, ..Options::default() };

@@ -8,7 +8,7 @@ use yoro_gl::{
     Blend, Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
 
-/// What of the bloom is added to the picture.
+/// Share of the bloom that is added to the picture.
 pub const STRENGTH: f32 = 0.12;
 /// Levels of the pyramid; the first has half the view's size.
 const LEVELS: usize = 5;
@@ -74,8 +74,8 @@ impl BloomPass {
         });
     }
 
-    /// As [`BloomPass::run`], of a display-referred source to which `exposure` was applied: of the rectangle with the lower
-    /// left corner `origin` and this size in pixels, and there of columns `[first, end]`.
+    /// Computes the bloom of a part of a display-referred source, to which `exposure` was applied. The part has the lower
+    /// left corner `origin` and this size in pixels, and in it only columns `[first, end]` count.
     pub fn run_display_referred(
         &self,
         targets: &BloomTargets,

@@ -33,7 +33,7 @@ pub struct Batch {
     pub clusters: Range<usize>,
 }
 
-/// What [`build`] makes of a model's parts.
+/// A model's triangles in clusters: the result of [`build`].
 pub struct Clusters {
     /// All clusters, batch after batch.
     pub clusters: Vec<Cluster>,
@@ -128,7 +128,7 @@ fn gather_units(model: &Model, units: &mut [Unit], triangles: &[u32], built: &mu
     gather_units(model, high, triangles, built);
 }
 
-/// Which objects of a scene to draw.
+/// A choice of objects of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Selection {
     /// All of them.
@@ -160,7 +160,7 @@ impl Selection {
     }
 }
 
-/// Decides what a view sees: the six planes of its clip volume, and a selection.
+/// Decides what a view sees: the six planes of its clip volume and a selection.
 #[derive(Clone, Copy, Debug)]
 pub struct Culler {
     planes: [Vec4; 6],
@@ -186,7 +186,7 @@ impl Culler {
         Culler { planes: [w + x, w - x, w + y, w - y, w + z, w - z], eye, selection }
     }
 
-    /// Whether any of the box may be seen.
+    /// True if any part of the box may be seen.
     pub fn sees(&self, bounds: &Bounds) -> bool {
         let (min, max) = (bounds.min - self.eye, bounds.max - self.eye);
         self.planes.iter().all(|plane| {
@@ -198,7 +198,7 @@ impl Culler {
         }) && self.selection.contains(bounds)
     }
 
-    /// Whether any of the sphere may be seen.
+    /// True if any part of the sphere may be seen.
     pub fn sees_sphere(&self, center: Vec3, radius: f32) -> bool {
         let center = center - self.eye;
         self.planes.iter().all(|plane| {
@@ -207,13 +207,13 @@ impl Culler {
         })
     }
 
-    /// The index ranges of the clusters that may be seen, adjacent ones merged.
+    /// Returns the index ranges of the clusters that may be seen. Adjacent ranges are merged.
     pub fn visible<'a>(&'a self, clusters: &'a [Cluster]) -> impl Iterator<Item = Range<usize>> + 'a {
         visible(std::slice::from_ref(self), clusters)
     }
 }
 
-/// The index ranges of the clusters that any of the cullers lets through, adjacent ones merged.
+/// Returns the index ranges of the clusters that any of the cullers sees. Adjacent ranges are merged.
 pub fn visible<'a>(
     cullers: &'a [Culler],
     clusters: &'a [Cluster],
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_visible_is_culled_and_most_invisible_is() {
+    fn nothing_visible_is_culled_and_most_of_the_rest_is() {
         let mut rng = Pcg64::seed_from_u64(3);
         let (mut hidden, mut culled) = (0, 0);
         for _ in 0..300 {
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_are_merged_and_selections_are_complementary() {
+    fn adjacent_ranges_merge_and_near_plus_far_is_all() {
         let mut rng = Pcg64::seed_from_u64(4);
         let model = random_model(&mut rng);
         let built = build(&model);
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn float_keys_keep_the_order() {
+    fn integer_keys_keep_the_order_of_floats() {
         let values = [f32::NEG_INFINITY, -3.5, -1e-20, -0.0, 0.0, 1e-20, 2.0, f32::INFINITY];
         assert!(values.windows(2).all(|w| ordered(w[0]) <= ordered(w[1]) || w[0] == w[1]));
     }

@@ -1,4 +1,4 @@
-//! What renderers of both kinds have of a scene.
+//! The parts that renderers of both kinds share.
 
 use std::rc::Rc;
 
@@ -48,7 +48,7 @@ impl Common {
         )))
     }
 
-    /// The point lights of one view or of both eyes, relative to the first.
+    /// Returns the point lights of one view or of both eyes, relative to the first.
     pub(super) fn lights(&self, scene: &GpuScene, views: &[View]) -> Lights {
         // One culler for each eye; that of a single view is there twice, and not used.
         let cullers: [Culler; 2] =

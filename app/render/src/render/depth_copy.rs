@@ -1,4 +1,4 @@
-//! Depth for others: compositors that move images by it.
+//! Depth for compositors that move images by it.
 
 use std::rc::Rc;
 

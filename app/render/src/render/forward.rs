@@ -32,12 +32,12 @@ pub struct ForwardRenderer {
     pub(super) geometry: [Option<GeometryPass>; Layout::COUNT],
     pub(super) sky: Program,
     pub(super) load: Program,
-    /// Where there is more than one sample.
+    /// If a pixel has several samples.
     pub(super) soften: Option<Program>,
-    /// Where samples can be read.
+    /// If shaders can read samples.
     pub(super) nearest: Option<Program>,
     pub(super) bloom: Option<BloomPass>,
-    /// Where there are bloom or outlines.
+    /// If there are bloom or outlines.
     pub(super) develop: Option<Program>,
 }
 
@@ -51,7 +51,7 @@ impl ForwardRenderer {
         ForwardRenderer::build(gl, settings, scene, gl.capabilities().multisample_textures)
     }
 
-    /// As [`ForwardRenderer::new`], for targets that are `readable` sample by sample or not.
+    /// Compiles it for targets whose samples shaders can read or not.
     pub(super) fn build(
         gl: &Rc<Context>,
         settings: &RenderSettings,

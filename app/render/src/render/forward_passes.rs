@@ -20,7 +20,7 @@ use super::view::ViewImages;
 use yoro::eyes::{Eye, View};
 use yoro_gl::{DepthTest, Program, RasterState, RenderTarget, Texture};
 
-/// The light of a frame's views.
+/// The light in a frame's views.
 pub struct Illumination<'a> {
     pub scene: &'a GpuScene,
     pub shadow: Option<&'a ShadowMap>,
@@ -32,7 +32,7 @@ pub struct Illumination<'a> {
 }
 
 impl Illumination<'_> {
-    /// Sets what `include/shade.glsl` needs in a program that is bound.
+    /// Sets the uniforms of `include/shade.glsl` in a program that is bound.
     fn set(&self, program: &Program) {
         program.set("exposure", self.exposure);
         if let Some(shadow) = self.shadow {
@@ -94,8 +94,8 @@ impl ForwardRenderer {
         }
     }
 
-    /// Begins with an image and its depth instead of nothing: the rectangle of the view's size whose lower left corner is
-    /// pixel `crop`.
+    /// Fills the targets from an image and its depth: the rectangle of the view's size whose lower left corner is pixel
+    /// `crop`.
     pub(super) fn load(
         &self,
         targets: &ForwardTargets,
@@ -108,7 +108,8 @@ impl ForwardRenderer {
         self.copy((color, depth), crop);
     }
 
-    /// Makes the edges soft against which the rest is tested, after [`ForwardRenderer::load`] of an image whose own edges are.
+    /// Softens the edges of the depth that later surfaces are tested against, after [`ForwardRenderer::load`] of an image
+    /// whose own edges are soft.
     pub(super) fn soften(&self, targets: &ForwardTargets, depth: &Texture, view: &View) {
         let Some(program) = &self.soften else { return };
         targets.bind(view.size);
@@ -121,7 +122,7 @@ impl ForwardRenderer {
         self.common.gl.set_alpha_to_coverage(false);
     }
 
-    /// Fills what is bound by colour and depth of an image, from pixel `crop` on.
+    /// Fills the bound framebuffer from colour and depth of an image, from pixel `crop` on.
     fn copy(&self, (color, depth): (&Texture, &Texture), crop: [u32; 2]) {
         self.common.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
         self.load

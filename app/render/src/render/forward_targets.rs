@@ -35,7 +35,7 @@ pub struct ForwardTargets {
     pub(super) bloom: Option<BloomTargets>,
     /// Colour of one eye with bloom and outlines, if there are any.
     pub(super) developed: Option<RenderTarget>,
-    /// What the view in the targets was rendered for.
+    /// The request that the view in the targets was rendered for.
     pub(super) request: ViewRequest,
     /// True if the resolved depth is that of what was drawn.
     has_depth: Cell<bool>,
@@ -53,7 +53,7 @@ impl ForwardTargets {
         ForwardTargets::build(gl, layout, settings, gl.capabilities().multisample_textures)
     }
 
-    /// As [`ForwardTargets::new`], `readable` by shaders sample by sample or not.
+    /// Makes targets whose samples are `readable` by shaders or not.
     pub(super) fn build(
         gl: &Rc<Context>,
         layout: Layout,

@@ -84,7 +84,7 @@ fn pixel(picture: &[u8], x: u32, y: u32) -> &[u8] {
 /// The pictures differ by what the g-buffer and half floats round: 8 bits of the square root of albedo, 6 of a colour's
 /// mantissa.
 #[test]
-fn it_lights_as_the_deferred_renderer_does() {
+fn forward_lights_as_deferred_does() {
     let head = open();
     for style in STYLES {
         let deferred = RenderSettings { renderer: RendererKind::Deferred, ..with_samples(1) };
@@ -169,7 +169,7 @@ fn without_multisample_textures_only_depth_at_edges_differs() {
 }
 
 #[test]
-fn transparent_surfaces_meet_each_sample_by_itself() {
+fn transparent_surfaces_are_tested_per_sample() {
     let head = open();
     let gl = head.gl();
     // A pane whose own edge is slanted, too, behind the slanted surface and before the wall.
@@ -232,7 +232,7 @@ fn drawing_resumes_over_a_synthesized_eye() {
 
 /// An image has one depth in a pixel: at an edge half of the nearer pixel lets see what is drawn behind.
 #[test]
-fn what_is_drawn_over_an_image_meets_soft_edges() {
+fn surfaces_over_a_loaded_image_have_soft_edges() {
     let head = open();
     let gl = head.gl();
     let pane = [Vec3::new(-9.0, -9.0, -6.0), Vec3::new(18.0, 0.0, 0.0), Vec3::new(0.0, 18.0, 0.0)];
@@ -300,7 +300,7 @@ fn cut_out_edges_cover_samples_by_alpha() {
 
 /// Twenty lamps over a floor: tiles leave none out.
 #[test]
-fn lights_by_tile_are_all_lights() {
+fn light_tiles_leave_no_light_out() {
     let head = open();
     let mut many = scene(ShadingStyle::Realistic);
     let lamp = |i: i32| PointLight {
@@ -339,7 +339,7 @@ fn every_variant_compiles_and_draws_forward() {
 }
 
 #[test]
-fn what_it_cannot_do_is_refused() {
+fn numbers_of_samples_that_are_not_there_are_refused() {
     let head = open();
     let gl = head.gl();
     let refusal =
@@ -372,7 +372,7 @@ fn targets_follow_the_renderers_kind_and_settings() {
 
 /// OpenGL ES 3.0 again: they read the resolved depth, which nobody else may want.
 #[test]
-fn outlines_have_a_depth_where_samples_cannot_be_read() {
+fn outlines_work_without_readable_samples() {
     let head = open();
     let gl = head.gl();
     let settings = with_samples(4);
@@ -390,7 +390,7 @@ fn outlines_have_a_depth_where_samples_cannot_be_read() {
 
 #[test]
 #[should_panic(expected = "rendered without its depth")]
-fn a_depth_that_was_not_asked_for_is_not_to_be_had() {
+fn reading_a_depth_that_was_not_requested_panics() {
     let head = open();
     let (scene, renderer, mut targets) = forward(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
     for depth in [PixelDepth::Nearest, PixelDepth::Unread] {

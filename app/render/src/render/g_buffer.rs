@@ -10,7 +10,7 @@ use yoro_gl::{Context, Filter, Format, GlError, RenderTarget};
 /// Colour attachments of the g-buffer: albedo and roughness, normal and reflectance, emission and material.
 const COLOR_FORMATS: [(Format, Filter); 3] = [(Format::Rgba8, Filter::Nearest); 3];
 
-/// Which views a g-buffer holds, and how they are drawn.
+/// The views that a g-buffer holds, and the way they are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// One view.
@@ -21,7 +21,7 @@ pub enum Layout {
     Layered,
 }
 
-/// What keeps an eye's triangles out of the other half of a double-wide target.
+/// The way that an eye's triangles are kept out of the other half of a double-wide target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seam {
     /// gl_ClipDistance.
@@ -34,7 +34,7 @@ impl Layout {
     /// Number of layouts.
     pub const COUNT: usize = 4;
 
-    /// Place among the layouts.
+    /// Index among the layouts.
     pub fn index(self) -> usize {
         match self {
             Layout::Single => 0,
@@ -130,7 +130,7 @@ impl GBuffer {
         self.target.resize(self.layout.texture_size(size))
     }
 
-    /// Which views it holds.
+    /// The views that it holds.
     pub fn layout(&self) -> Layout {
         self.layout
     }
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn eyes_stand_side_by_side() {
+    fn a_double_wide_layout_puts_the_eyes_side_by_side() {
         let layout = Layout::DoubleWide(Seam::Discard);
         for size in [[64, 32], [17, 5]] {
             let whole = layout.texture_size(size)[0] as f32;

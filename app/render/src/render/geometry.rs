@@ -14,9 +14,9 @@ use yoro_gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
 /// A part of the opaque triangles.
 #[derive(Clone, Copy)]
 pub enum Part<'a> {
-    /// What a culler lets through, in one view.
+    /// Clusters that a culler lets through, in one view.
     Selected(&'a Culler),
-    /// What lies between two distances in metres, with the depth that it has in the views.
+    /// Surfaces between two distances in metres, with the depth that they have in the views.
     Slice([f32; 2]),
 }
 
@@ -27,7 +27,7 @@ pub enum Part<'a> {
 pub struct GeometryPass {
     gl: Rc<Context>,
     layout: Layout,
-    /// What is cut out covers samples by its alpha.
+    /// True if cut-out materials cover samples by their alpha.
     alpha_to_coverage: bool,
     /// By [`Features::index`]; those that the scene uses.
     programs: [Option<Program>; Features::COMBINATIONS],
@@ -40,7 +40,7 @@ impl GeometryPass {
     }
 
     /// Lit at once: compiles the variants that the scene's materials need, with the defines of `render/forward.frag`.
-    /// With `multisample`, what is cut out covers samples by its alpha.
+    /// With `multisample`, cut-out materials cover samples by their alpha.
     pub fn forward(
         gl: &Rc<Context>,
         scene: &GpuScene,
@@ -73,7 +73,7 @@ impl GeometryPass {
         Ok(GeometryPass { gl: gl.clone(), layout, alpha_to_coverage, programs })
     }
 
-    /// Its programs, for uniforms that are the same in all of them.
+    /// Returns all programs, for uniforms that are the same in all of them.
     pub fn programs(&self) -> impl Iterator<Item = &Program> {
         self.programs.iter().flatten()
     }
@@ -152,7 +152,7 @@ impl GeometryPass {
     }
 }
 
-/// The part of the depth buffer that a slice (near and far plane in metres) of a depth range takes.
+/// Returns the part of the depth buffer that a slice (near and far plane in metres) of a depth range takes.
 fn window(range: &DepthRange, [near, far]: [f32; 2]) -> [f32; 2] {
     // Exactly all of it, whatever the rounding.
     let depth = |distance: f32, plane: f32, at_plane: f32| {

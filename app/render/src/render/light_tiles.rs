@@ -1,4 +1,4 @@
-//! Which lights reach which part of an image, so that a surface is lit by those around it alone.
+//! The lights that reach each tile of an image, so that a surface is lit by nearby lights alone.
 
 use glam::{IVec4, Vec2, Vec3};
 
@@ -12,7 +12,7 @@ const COLUMNS: usize = 16;
 const ROWS: usize = 8;
 const COUNT: usize = COLUMNS * ROWS;
 
-/// For each tile of an image the lights that reach into its part of the view, at whatever distance.
+/// The lights that reach into each tile's part of the view, at any distance.
 pub struct LightTiles {
     /// Bit `i` is light `i` of [`Lights`]; four tiles in each, row by row from the bottom.
     masks: [IVec4; COUNT / 4],
@@ -20,7 +20,7 @@ pub struct LightTiles {
 }
 
 impl LightTiles {
-    /// The defines of `include/shade.glsl`.
+    /// Returns the defines of `include/shade.glsl`.
     pub fn defines() -> [(&'static str, String); 2] {
         [("LIGHT_TILES", COUNT.to_string()), ("LIGHT_TILE_COLUMNS", COLUMNS.to_string())]
     }
@@ -50,7 +50,7 @@ impl LightTiles {
         LightTiles { masks, tiles_per_pixel: Vec2::new(1.0 / tile[0], 1.0 / tile[1]) }
     }
 
-    /// Sets what `include/shade.glsl` needs.
+    /// Sets the uniforms of `include/shade.glsl`.
     pub fn set(&self, program: &Program) {
         program.set("light_tiles", &self.masks[..]).set("tiles_per_pixel", self.tiles_per_pixel);
     }
@@ -65,19 +65,19 @@ struct Reach {
 }
 
 impl Reach {
-    /// Whether it reaches into a column of tiles that are `width` of the view wide.
+    /// True if the light reaches into a column of tiles. A tile is `width` of the view wide.
     fn column(&self, column: usize, width: f32) -> bool {
         let tangent = |edge: usize| self.frustum.left + edge as f32 * width * self.frustum.width();
         self.is_between(self.center.x, tangent(column), tangent(column + 1))
     }
 
-    /// Whether it reaches into a row of tiles that are `height` of the view high.
+    /// True if the light reaches into a row of tiles. A tile is `height` of the view high.
     fn row(&self, row: usize, height: f32) -> bool {
         let tangent = |edge: usize| self.frustum.bottom + edge as f32 * height * self.frustum.height();
         self.is_between(self.center.y, tangent(row), tangent(row + 1))
     }
 
-    /// Whether it reaches between the planes through the eye at two tangents; `across` is its centre's coordinate.
+    /// True if the light reaches between the planes through the eye at two tangents. `across` is its centre's coordinate.
     fn is_between(&self, across: f32, low: f32, high: f32) -> bool {
         // Distance of the centre from the plane, on the side of larger tangents.
         let beyond = |tangent: f32| (across + tangent * self.center.z) / (1.0 + tangent * tangent).sqrt();
@@ -93,9 +93,9 @@ mod tests {
     use yoro::eyes::{DepthRange, Pose};
     use yoro_scene::PointLight;
 
-    /// Every point that a light reaches lies in a tile that knows it; far from all tiles know it.
+    /// Every point that a light reaches lies in a tile that lists it, and most tiles do not list it.
     #[test]
-    fn tiles_know_the_lights_that_reach_them() {
+    fn tiles_list_the_lights_that_reach_them() {
         let pose = Pose { position: Vec3::new(2.0, 1.0, 5.0), orientation: Quat::from_rotation_y(0.7) };
         let view = View {
             pose,

@@ -9,7 +9,7 @@ use yoro_scene::{PointLight, Sky};
 
 /// The point lights of one view, or of both eyes, strongest first.
 pub struct Lights {
-    /// Where positions are relative to.
+    /// The point that positions are relative to.
     eye: Vec3,
     positions: [Vec4; MAX_POINT_LIGHTS],
     colors: [Vec4; MAX_POINT_LIGHTS],
@@ -17,7 +17,7 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// Chooses, of the lights that reach into any of the views, the `limit` strongest at the eye.
+    /// Chooses the `limit` lights that are strongest at the eye, among those that reach into any of the views.
     pub fn choose(lights: &[PointLight], eye: Vec3, cullers: &[Culler], limit: usize) -> Lights {
         let limit = limit.min(MAX_POINT_LIGHTS);
         let mut scores = [(0.0, 0); MAX_POINT_LIGHTS];
@@ -48,18 +48,18 @@ impl Lights {
         Lights { eye, positions, colors, count }
     }
 
-    /// The same lights, relative to another eye.
+    /// Returns the same lights relative to another eye.
     pub fn seen_from(&self, eye: Vec3) -> Lights {
         let shift = (self.eye - eye).extend(0.0);
         Lights { eye, positions: self.positions.map(|p| p + shift), ..*self }
     }
 
-    /// Centres relative to the eye, along the world's axes, and ranges in metres.
+    /// Returns centres relative to the eye, along the world's axes, and ranges in metres.
     pub fn spheres(&self) -> impl Iterator<Item = (Vec3, f32)> {
         self.positions[..self.count].iter().map(|p| (p.truncate(), 1.0 / p.w))
     }
 
-    /// Sets what `include/shade.glsl` needs of the sky and these lights.
+    /// Sets the uniforms of `include/shade.glsl` for the sky and these lights.
     pub fn set(&self, program: &Program, sky: &Sky) {
         program
             .set("zenith", sky.zenith)

@@ -1,11 +1,11 @@
 //! One view of a scene: colour and depth, rendered the deferred way or the forward way.
 //!
-//! Deferred: sun shadow map (once per scene) -> g-buffer -> ambient occlusion -> lighting -> bloom -> tone mapping. What
-//! belongs to the finished image of one eye comes after synthesis: [`Fxaa`] and the transparent surfaces
-//! ([`DeferredRenderer::draw_transparent`]).
+//! Deferred: sun shadow map (once per scene) -> g-buffer -> ambient occlusion -> lighting -> bloom -> tone mapping. [`Fxaa`] and
+//! transparent surfaces ([`DeferredRenderer::draw_transparent`]) belong to the finished image of one eye, so that they
+//! come after synthesis.
 //!
 //! Forward, with several samples in each pixel: sun shadow map -> lit surfaces -> average of the samples -> bloom and
-//! outlines. What comes after synthesis is drawn into the same samples ([`ForwardRenderer::resume_samples`]).
+//! outlines. After synthesis drawing resumes in the same samples ([`ForwardRenderer::resume_samples`]).
 
 mod bloom;
 mod cluster;

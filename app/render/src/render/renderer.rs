@@ -1,4 +1,4 @@
-//! A renderer of the kind that the settings say.
+//! A renderer of either kind, as the settings say.
 
 use std::rc::Rc;
 

@@ -1,9 +1,9 @@
-//! What a renderer is asked for.
+//! Requests for one view.
 
 use super::cluster::{Culler, Selection};
 use yoro::eyes::{Frustum, View};
 
-/// Columns of a view of which not all are needed, each `[first, end]` from the left.
+/// Columns of a view that is not needed as a whole: each `[first, end]`, counted from the left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
     /// The columns to draw. In the others depth is the far plane's, and colour that of the nearest column that is drawn.
@@ -49,18 +49,18 @@ pub struct ViewRequest {
 }
 
 impl ViewRequest {
-    /// The columns to which drawing is bounded; none if they are all columns of the view.
+    /// Returns the columns to which drawing is bounded, or `None` for all columns of the view.
     pub(super) fn bounds(&self, view: &View) -> Option<[u32; 2]> {
         self.columns.map(|columns| columns.drawn).filter(|drawn| *drawn != [0, view.size[0]])
     }
 
-    /// A culler for what is drawn of a view.
+    /// Returns a culler for the requested part of a view.
     pub(super) fn culler(&self, view: &View) -> Culler {
         Culler::selecting(&self.bounds(view).map_or(*view, |drawn| of_columns(view, drawn)), self.selection)
     }
 }
 
-/// The part of a view that some of its columns show, `[first, end]` from the left.
+/// Returns the part of a view that its columns `[first, end]` show.
 fn of_columns(view: &View, [first, end]: [u32; 2]) -> View {
     let tangent = view.frustum.width() / view.size[0] as f32;
     let left = view.frustum.left + first as f32 * tangent;

@@ -1,4 +1,4 @@
-//! What a view is to its frame: where its pixels lie, which of them are lit, and what the others show.
+//! The part that a view plays in its frame: where its pixels lie, which are lit, and what the others show.
 
 use glam::{IVec2, Vec2};
 
@@ -50,16 +50,16 @@ impl RoleKind {
     }
 }
 
-/// What a view is to its frame.
+/// The part that a view plays in its frame.
 #[derive(Clone, Copy)]
 pub enum Role<'a> {
     /// A view by itself: what is drawn is lit, the rest is sky.
     Whole,
-    /// As `Whole`, in a part of its g-buffer that has its lower left corner here.
+    /// `Whole` in a part of the g-buffer, with its lower left corner here.
     Half([u32; 2]),
-    /// As `Whole`, in a layer of its g-buffer.
+    /// `Whole` in a layer of the g-buffer.
     Layer(u32),
-    /// Where nothing is drawn, the far field shows.
+    /// The far field shows where nothing is drawn.
     NearField {
         /// Scene-referred colour of the far field.
         far: &'a Texture,
@@ -68,16 +68,16 @@ pub enum Role<'a> {
     },
     /// Pixels with the near plane's depth are hidden and stay dark.
     FarField,
-    /// Pixels that the dominant eye sees, too, take its colour.
+    /// Pixels that the dominant eye also sees take its colour.
     Reprojected(Reprojection<'a>),
 }
 
-/// Where the second eye's pixels are in the dominant eye's image.
+/// The way from the second eye's pixels to those of the dominant eye.
 #[derive(Clone, Copy)]
 pub struct Reprojection<'a> {
     /// Scene-referred colour of the dominant eye, filtered linearly.
     pub color: &'a Texture,
-    /// What `stereo/disocclusion.frag` has written.
+    /// Output of `stereo/disocclusion.frag`.
     pub disocclusion: &'a Texture,
     /// From a column of the dominant eye to that of the second.
     pub law: DisparityLaw,

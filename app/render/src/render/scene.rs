@@ -10,7 +10,7 @@ use yoro::eyes::{DepthRange, View};
 use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
 use yoro_scene::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
-/// What a material has; each combination that a scene uses is a shader variant of its own.
+/// The features of a material. Each combination that a scene uses is a shader variant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Features(u8);
 
@@ -42,17 +42,17 @@ impl Features {
         Features(Features::NAMES.iter().zip(present).fold(0, |bits, ((f, _), on)| bits | (f.0 * on as u8)))
     }
 
-    /// Place among the combinations.
+    /// Index among the combinations.
     pub fn index(self) -> usize {
         self.0 as usize
     }
 
-    /// The features that are in both.
+    /// Returns the features that are in both.
     pub fn and(self, other: Features) -> Features {
         Features(self.0 & other.0)
     }
 
-    /// Those of either.
+    /// Returns the features that are in either.
     pub fn or(self, other: Features) -> Features {
         Features(self.0 | other.0)
     }
@@ -61,7 +61,7 @@ impl Features {
         self.0 & other.0 == other.0
     }
 
-    /// The defines of the shader variant.
+    /// Returns the defines of the shader variant.
     pub fn defines(self) -> Vec<(&'static str, String)> {
         let present = Features::NAMES.iter().filter(|(feature, _)| self.contains(*feature));
         present.map(|&(_, name)| (name, String::new())).collect()
@@ -118,7 +118,7 @@ impl GpuMaterial {
 
 /// A scene whose triangles and pictures live on the GPU, in clusters that are culled by themselves.
 pub struct GpuScene {
-    /// Unlike that of any other scene of this process.
+    /// Unique in this process.
     pub(super) id: u64,
     /// Name: a built-in one, or the file's stem.
     pub name: String,
@@ -158,7 +158,7 @@ impl GpuScene {
         let bounds = model.bounds();
         let triangle_count = model.triangle_count();
         let cluster::Clusters { clusters, mut batches, indices } = cluster::build(&model);
-        // What is cut out comes last: much of it is hidden by then, and `discard` defeats early depth tests.
+        // Cut-out materials come last: much of them is hidden by then, and `discard` defeats early depth tests.
         batches.sort_by_key(|b| matches!(model.materials[b.material].alpha, Alpha::Cutout(_)));
         model.indices = Vec::new();
         let mesh = Mesh::new(gl, &VERTEX_ATTRIBUTES, &model.vertices, &indices)?;
@@ -198,12 +198,12 @@ impl GpuScene {
         self.triangle_count
     }
 
-    /// Whether there is a sun.
+    /// True if there is a sun.
     pub fn has_sun(&self) -> bool {
         self.sky.sun_color.max_element() > 0.0
     }
 
-    /// Whether anything is blended.
+    /// True if anything is blended.
     pub fn has_transparent(&self) -> bool {
         self.batches.iter().any(|batch| self.materials[batch.material].blended)
     }
@@ -214,7 +214,7 @@ impl GpuScene {
         self.opaque().any(|(_, clusters)| clusters.iter().any(|c| culler.sees(&c.bounds)))
     }
 
-    /// The defines of the scene's shading style.
+    /// Returns the defines of the scene's shading style.
     pub(super) fn style_defines(&self) -> Vec<(&'static str, String)> {
         let name = match self.style {
             ShadingStyle::Realistic => "STYLE_REALISTIC",
@@ -279,7 +279,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_are_reversed() {
+    fn flipping_reverses_the_rows() {
         let mut bytes = [1, 2, 3, 4, 5, 6];
         flip_rows(&mut bytes, 2);
         assert_eq!(bytes, [5, 6, 3, 4, 1, 2]);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn srgb_curve() {
+    fn srgb_decodes_to_linear() {
         assert_eq!(linear(Vec3::new(0.0, 1.0, 0.04045)).x, 0.0);
         assert!((linear(Vec3::ONE) - Vec3::ONE).length() < 1e-6);
         assert!((linear(Vec3::splat(0.5)).x - 0.21404).abs() < 1e-4);

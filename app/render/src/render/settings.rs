@@ -1,16 +1,16 @@
-//! What the renderer does and how well.
+//! Settings of the renderer.
 
 use yoro_gl::{Capabilities, GlError};
 pub use yoro_protocol::{MAX_POINT_LIGHTS, MSAA, RendererKind};
 use yoro_protocol::{Settings, Ssao};
 
-/// What the renderer does and how well.
+/// Settings of the renderer.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RenderSettings {
-    /// How a view is rendered.
+    /// The kind of renderer.
     pub renderer: RendererKind,
-    /// Samples in each pixel of the forward renderer: 1, or what the driver has of 2 and 4. The deferred one has one.
+    /// Samples in each pixel of the forward renderer: 1, 2 or 4, as far as the driver has them. The deferred one has one.
     pub msaa: u32,
     /// Edge of the sun's shadow map in texels; 0 for no shadows.
     pub shadow_map_size: u32,
@@ -59,17 +59,17 @@ impl RenderSettings {
         }
     }
 
-    /// Whether the forward renderer is chosen.
+    /// True for the forward renderer.
     pub fn is_forward(&self) -> bool {
         self.renderer == RendererKind::Forward
     }
 
-    /// Samples in each pixel of a rendered view.
+    /// Returns the number of samples in each pixel of a rendered view.
     pub fn samples(&self) -> u32 {
         if self.is_forward() { self.msaa } else { 1 }
     }
 
-    /// The renderer in a few words: `forward, 4 samples a pixel`.
+    /// Describes the renderer in a few words: `forward, 4 samples a pixel`.
     pub fn summary(&self) -> String {
         match self.renderer {
             RendererKind::Deferred => self.renderer.name().into(),
@@ -77,10 +77,10 @@ impl RenderSettings {
         }
     }
 
-    /// Whether a driver has as many samples as are asked for.
+    /// Checks that a driver has the number of samples.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] with the numbers that there are.
+    /// [`GlError::Unsupported`] with the numbers that the driver has.
     pub fn supported(&self, capabilities: &Capabilities) -> Result<(), GlError> {
         let samples = self.samples();
         if !MSAA.contains(&samples) {
@@ -91,7 +91,7 @@ impl RenderSettings {
         capabilities.check_samples(samples)
     }
 
-    /// How many pixels share a texel of ambient occlusion, along each axis.
+    /// Pixels per texel of ambient occlusion, along each axis.
     pub(super) fn ssao_scale(&self) -> u32 {
         if self.ssao_half_size { 2 } else { 1 }
     }

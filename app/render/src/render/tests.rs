@@ -154,7 +154,7 @@ pub const STYLES: [ShadingStyle; 5] = [
 ];
 
 #[test]
-fn every_style_renders_a_picture_of_its_own() {
+fn every_style_renders_its_own_picture() {
     let head = open();
     let gl = head.gl();
     let mut pictures: Vec<Vec<u8>> = Vec::new();
@@ -215,7 +215,7 @@ fn every_variant_compiles_and_draws() {
             assert_eq!(gl.take_errors(), None, "{style:?}");
         }
     }
-    // What drivers without float render targets compile.
+    // Drivers without float render targets compile these.
     let scene = GpuScene::upload(gl, self::scene(ShadingStyle::Realistic)).unwrap();
     let mut defines = lighting::shading_defines(gl, &scene, &settings());
     defines.push(("NO_FLOAT_TARGETS", String::new()));
@@ -240,7 +240,7 @@ fn both_depth_conventions_give_one_picture() {
 }
 
 #[test]
-fn depth_is_what_the_view_says() {
+fn depth_is_the_distance_in_the_views_convention() {
     let head = open();
     let gl = head.gl();
     let mut wall = scene(ShadingStyle::Realistic);
@@ -348,7 +348,7 @@ fn fxaa_of_a_crop_is_the_crop_of_fxaa() {
 }
 
 #[test]
-fn pictures_stand_upright_and_grey_is_grey() {
+fn textures_are_upright_and_middle_grey_stays_grey() {
     let head = open();
     let mut scene = scene(ShadingStyle::Realistic);
     scene.model = Model {
@@ -387,9 +387,9 @@ fn unknown_settings_are_refused() {
     assert_eq!(parsed, RenderSettings { bloom: false, ..RenderSettings::default() });
 }
 
-/// As on a GPU with EXT_color_buffer_half_float alone, which refuses packed floats: here a depth format stands for them.
+/// A GPU with EXT_color_buffer_half_float alone refuses packed floats. Here a depth format stands for them.
 #[test]
-fn scene_referred_colour_falls_back_to_what_can_be_rendered_to() {
+fn hdr_falls_back_to_a_renderable_format() {
     let headless = open();
     let gl = headless.gl();
     let objects = gl.object_count();

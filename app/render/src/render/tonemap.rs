@@ -1,4 +1,4 @@
-//! Scene-referred to display-referred colour.
+//! Tone mapping: scene-referred to display-referred colour.
 
 use std::rc::Rc;
 
@@ -22,7 +22,7 @@ impl TonemapPass {
         Ok(TonemapPass { gl: gl.clone(), program })
     }
 
-    /// Writes all of `target`. Of the source only columns `[first, end]` are there; they are repeated beyond.
+    /// Writes all of `target`. The source has columns `[first, end]` alone; the outermost are repeated beyond.
     pub fn run(
         &self,
         target: &RenderTarget,

@@ -15,7 +15,7 @@ use super::uniforms::{depth_test, eye_to_clip, nearer};
 use yoro::eyes::View;
 use yoro_gl::{Blend, Context, DepthTest, Destination, GlError, Program, RasterState, ShaderSource, Texture};
 
-/// Draws what is blended, from back to front, over an image.
+/// Draws blended surfaces over an image, from back to front.
 ///
 /// Beside the deferred renderer it reads the window depth of what is there from a texture, so that it works on a
 /// rendered eye and on a synthesized one alike; beside the forward one it is tested against the depth of each sample.
@@ -29,7 +29,7 @@ pub struct TransparentPass {
     order: RefCell<Vec<(f32, u32, u32)>>,
 }
 
-/// By [`Features::index`]; those that the scene uses.
+/// Programs by [`Features::index`]: those that the scene uses.
 type Programs = [Option<Program>; Features::COMBINATIONS];
 
 /// Window depth of an image.
@@ -50,16 +50,16 @@ impl<'a> DepthImage<'a> {
     }
 }
 
-/// What transparent surfaces are drawn over.
+/// The image that transparent surfaces are drawn over.
 #[derive(Clone, Copy)]
 pub enum Onto<'a> {
     /// An image whose depth is a texture.
     Image(&'a Destination, DepthImage<'a>),
-    /// What is bound, with its depth buffer.
+    /// The framebuffer that is bound, with its depth buffer.
     Bound,
 }
 
-/// What the scene's blended materials need.
+/// Compiles what the scene's blended materials need.
 fn compile(
     gl: &Rc<Context>,
     scene: &GpuScene,
@@ -107,7 +107,7 @@ impl TransparentPass {
         Ok(())
     }
 
-    /// Draws what `culler` lets through and nothing hides. `light` sets what `include/shade.glsl` needs, for
+    /// Draws what `culler` lets through and nothing hides. `light` sets the uniforms of `include/shade.glsl`, for
     /// positions relative to the view's.
     pub fn run(&self, onto: Onto, scene: &GpuScene, view: &View, culler: &Culler, light: impl Fn(&Program)) {
         let eye = view.pose.position;
@@ -162,7 +162,7 @@ impl TransparentPass {
     }
 }
 
-/// Sets what `render/transparent.frag` tests against.
+/// Sets the depth that `render/transparent.frag` tests against.
 fn set_depth_image(program: &Program, to: &Destination, depth: DepthImage, view: &View) {
     let offset = IVec2::from(depth.origin.map(|n| n as i32)) - IVec2::from(to.origin.map(|n| n as i32));
     program
@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn farthest_first_and_equal_distances_in_a_fixed_order() {
+    fn transparent_clusters_sort_farthest_first_with_ties_fixed() {
         let mut order = [(1.0, 2, 7), (9.0, 0, 1), (4.0, 1, 5), (4.0, 1, 3), (4.0, 0, 2)];
         back_to_front(&mut order);
         assert_eq!(order, [(9.0, 0, 1), (4.0, 0, 2), (4.0, 1, 3), (4.0, 1, 5), (1.0, 2, 7)]);

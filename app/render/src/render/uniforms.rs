@@ -5,12 +5,12 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 use yoro::eyes::{DepthConvention, View};
 use yoro_gl::{DepthTest, Program};
 
-/// World axes around the eye to clip space.
+/// Returns the matrix from world axes around the eye to clip space.
 pub fn eye_to_clip(view: &View) -> Mat4 {
     view.projection() * Mat4::from_quat(view.pose.orientation.inverse())
 }
 
-/// The depth test of a convention.
+/// Returns the depth test of a convention.
 pub fn depth_test(convention: DepthConvention) -> DepthTest {
     match convention {
         DepthConvention::Standard => DepthTest::Less,
@@ -18,7 +18,7 @@ pub fn depth_test(convention: DepthConvention) -> DepthTest {
     }
 }
 
-/// Times a depth: smaller is nearer.
+/// Returns a factor: a depth times it is smaller where it is nearer.
 pub fn nearer(convention: DepthConvention) -> f32 {
     match convention {
         DepthConvention::Standard => 1.0,
@@ -26,7 +26,7 @@ pub fn nearer(convention: DepthConvention) -> f32 {
     }
 }
 
-/// Sets what `include/view.glsl` needs.
+/// Sets the uniforms of `include/view.glsl`.
 pub fn set_view(program: &Program, view: &View) {
     let f = &view.frustum;
     let axes = |v: Vec3| view.pose.orientation * v;
@@ -39,8 +39,8 @@ pub fn set_view(program: &Program, view: &View) {
         .set("far_depth", view.depth.clear_value());
 }
 
-/// Rays at distance 1 along the viewing axis, along the world's axes: through the middle of the lower left pixel, and what
-/// the next pixel to the right and the next one above add.
+/// Returns rays at distance 1 along the viewing axis, in world axes. Columns: the ray through the middle of the lower left
+/// pixel, the step to the next pixel on the right, and the step to the next one above.
 pub fn pixel_rays(view: &View) -> Mat3 {
     let f = &view.frustum;
     let [right, up] = [f.width() / view.size[0] as f32, f.height() / view.size[1] as f32];

@@ -14,13 +14,13 @@ pub(crate) trait ViewRenderer: Sized {
     /// The images of one view.
     type Targets: ViewImages;
 
-    /// What renderers of both kinds have.
+    /// Returns what renderers of both kinds have.
     fn common(&self) -> &Common;
 
     /// Makes targets, which are fitted to each view that is rendered.
     ///
     /// # Errors
-    /// As [`RenderTarget::new`]; [`GlError::Unsupported`] when the driver has not as many samples as the settings say.
+    /// As [`RenderTarget::new`]; [`GlError::Unsupported`] if the driver lacks the settings' number of samples.
     fn targets(gl: &Rc<Context>, settings: &RenderSettings) -> Result<Self::Targets, GlError>;
 
     /// Renders opaque surfaces. Where nothing is drawn, depth keeps its far value and colour is the sky.

@@ -1,5 +1,5 @@
-//! Which columns of a guard band the other eye will see, told by the surfaces that an earlier frame showed at its border
-//! and by the head's motion since.
+//! The columns of a guard band that the other eye will see, from the surfaces that an earlier frame showed at its border
+//! and from the head's motion since.
 
 use glam::Vec3;
 
@@ -10,22 +10,21 @@ use yoro::synthesis::Uniforms;
 pub(super) const CELLS: usize = 64;
 /// Texels of a profile down the rows.
 pub(super) const BANDS: usize = 16;
-/// Disparity is measured in so many parts of a pixel.
+/// Parts of a pixel in which disparity is measured.
 const UNIT: f32 = 16.0;
-/// Columns that are drawn beyond what is seen: filters of the renderer read so far to each side.
+/// Columns that are drawn beyond those that are seen: the renderer's filters read so far to each side.
 const SPARE: u32 = 4;
-/// The band stays as wide as the last frames asked for.
+/// Number of last frames whose widest request holds.
 const HOLD: usize = 8;
-/// All of the band is drawn once in so many frames: what is near and lies wholly outside of what is drawn is seen by
-/// nobody else.
+/// All of the band is drawn once in so many frames: nothing else finds near surfaces wholly outside of the drawn part.
 const LOOK_EVERY: u32 = 30;
-/// One row of so many is looked at.
+/// One row in so many is measured.
 const ROWS: u32 = 2;
-/// The head was put elsewhere, rather than moved, if it moved by so many times the distance between the eyes.
+/// A head that moves by more than so many times the distance between the eyes was put elsewhere.
 const LEAP: f32 = 2.0;
-/// No surface is taken to have come nearer than to this part of its distance.
+/// Least factor on a surface's distance that is taken for its approach.
 const APPROACH: f32 = 0.25;
-/// The range of no number.
+/// The empty range.
 const NOTHING: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// The border at which the band lies, and the eyes' geometry as far as things move along it.
@@ -36,7 +35,7 @@ pub(super) struct Border {
     /// Disparity, in pixels and 0 at the far plane, at which a surface reaches the other eye's border from the band's
     /// inner end. Nothing at infinity unless the frusta differ.
     pub beyond: f32,
-    /// Of the rendered eye.
+    /// The rendered eye's pose.
     pose: Pose,
     /// 1 where the band is on the right, -1 on the left.
     side: f32,
@@ -51,17 +50,17 @@ pub(super) struct Border {
     ipd: f32,
 }
 
-/// How surfaces at the border have moved from one frame to another, in columns outwards: the least and the most of those
-/// up and down the border and as far out and in as the band is wide.
+/// The motion of surfaces at the border from one frame to another, in columns outwards. Ranges are the least and the most of
+/// all rows of the border, as far out and in as the band is wide.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
-    /// At infinity.
+    /// Motion of surfaces at infinity.
     turned: [f32; 2],
-    /// More for each pixel of the disparity that they have now.
+    /// Additional motion for each pixel of the disparity that they have now.
     along: [f32; 2],
-    /// How much turning has made of a disparity, at most.
+    /// The factor on disparity by turning, at most.
     turning: f32,
-    /// How much nearer they are: disparity over what it was, less one, for each pixel of it.
+    /// Approach: the relative growth of disparity, for each pixel of it.
     nearer: f32,
 }
 
@@ -87,14 +86,14 @@ impl Border {
         }
     }
 
-    /// Whether both are of the same eyes, as exactly as poses give the distance between them.
+    /// True if both are of the same eyes, as exactly as poses give the distance between them.
     fn is_of(&self, other: &Border) -> bool {
         let numbers = |b: &Border| [b.side, b.outwards, b.down, b.up, b.focal_length, b.far, b.ipd];
         let near = |(a, b): (f32, f32)| (a - b).abs() <= 0.01 * a.abs().max(b.abs());
         self.guard_columns == other.guard_columns && numbers(self).into_iter().zip(numbers(other)).all(near)
     }
 
-    /// None if these are other eyes, or if the head has been put elsewhere rather than moved.
+    /// Returns the motion since this frame, or `None` for other eyes and for a head that was put elsewhere.
     fn motion_to(&self, now: &Border) -> Option<Motion> {
         if !self.is_of(now) {
             return None;
@@ -130,20 +129,20 @@ fn widen(range: &mut [f32; 2], by: f32) {
 }
 
 impl Motion {
-    /// Least and most columns that surfaces as near as this or farther have moved.
+    /// Returns the least and the most columns that surfaces of at most this disparity have moved.
     fn columns(&self, disparity: f32) -> [f32; 2] {
         let now = self.disparity(disparity);
         let along = self.along.map(|along| along * now);
         [self.turned[0] + along[0].min(0.0), self.turned[1] + along[1].max(0.0)]
     }
 
-    /// What a disparity has become.
+    /// Returns the present value of an earlier disparity.
     fn disparity(&self, disparity: f32) -> f32 {
         self.turning * disparity / (1.0 - self.nearer * disparity).max(APPROACH)
     }
 }
 
-/// What a frame showed at its border.
+/// The surfaces that a frame showed at its border.
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
     pub border: Border,
@@ -151,14 +150,14 @@ pub(super) struct Profile {
     pub drawn: u32,
     /// Pixels that were seen and not drawn, as far as the outermost column that was drawn tells.
     pub undrawn: u32,
-    /// Columns to each of `disparities`.
+    /// Columns per entry of `disparities`.
     step: u32,
-    /// Of the nearest surface in some columns, against infinity; from the outermost that was drawn inwards.
+    /// Disparities of the nearest surfaces against infinity, from the outermost column that was drawn inwards.
     disparities: [f32; CELLS],
 }
 
 impl Profile {
-    /// From the texels of `stereo/border_profile.frag`; none if they are a driver's that could not give them.
+    /// Reads the texels of `stereo/border_profile.frag`. Returns `None` for the zeros of a driver that could not give them.
     pub(super) fn read(texels: &[u8], border: Border, drawn: u32, step: u32) -> Option<Profile> {
         let mut profile = Profile { border, drawn, undrawn: 0, step, disparities: [0.0; CELLS] };
         for (i, texel) in texels.chunks_exact(4).enumerate() {
@@ -170,7 +169,7 @@ impl Profile {
         Some(profile)
     }
 
-    /// Columns of the band that are seen from `now`; none if this frame does not tell.
+    /// Returns the columns of the band that are seen from `now`, or `None` if this frame does not tell.
     fn seen(&self, now: &Border) -> Option<u32> {
         let motion = self.border.motion_to(now)?;
         let (step, drawn) = (self.step as f32, self.drawn as f32);
@@ -179,7 +178,7 @@ impl Profile {
         let mut seen = 0f32;
         let mut edge = 0f32;
         for (i, &before) in self.disparities.iter().enumerate() {
-            // This cell reaches so far out, and is seen so far.
+            // The outermost column of this cell.
             let out = drawn - i as f32 * step;
             let [least, most] = motion.columns(before);
             if out - step + 1.0 + least < reach(before) {
@@ -189,7 +188,7 @@ impl Profile {
                 edge = edge.max(before);
             }
         }
-        // What was not drawn is taken to be as near as what was, up to half a band's width beside it.
+        // Surfaces that were not drawn are taken to be as near as those up to half a band's width beside them.
         let [unknown, _] = motion.columns(edge);
         if drawn + unknown < reach(edge).min(self.border.guard_columns as f32) {
             seen = seen.max(reach(edge));
@@ -198,16 +197,16 @@ impl Profile {
     }
 }
 
-/// How many columns to draw.
+/// The number of columns to draw.
 #[derive(Debug, Default)]
 pub(super) struct Width {
-    /// What the last frames asked for, in no order.
+    /// The numbers that the last frames asked for, in no order.
     asked: [u32; HOLD],
     frames: u32,
 }
 
 impl Width {
-    /// For a frame, from what an earlier one showed: all columns if that does not tell, and no fewer than `least`.
+    /// Returns the number for a frame, from an earlier one's profile: at least `least`, and all if that does not tell.
     pub(super) fn next(&mut self, profile: Option<&Profile>, now: &Border, least: u32) -> u32 {
         let Some(seen) = profile.and_then(|profile| profile.seen(now)) else {
             *self = Width::default();
@@ -218,7 +217,7 @@ impl Width {
         if self.frames.is_multiple_of(LOOK_EVERY) {
             return now.guard_columns;
         }
-        // Another band may be narrower.
+        // The band itself may have become narrower.
         self.asked.into_iter().fold(least, u32::max).min(now.guard_columns)
     }
 }
@@ -231,7 +230,7 @@ mod tests {
 
     const LEAST: u32 = 14;
 
-    /// Of a right eye that is rendered with a band of 56 columns on its left; or a left eye, mirrored.
+    /// The border of a right eye that is rendered with a band of 56 columns on its left; or of a left eye, mirrored.
     fn border(head: Pose, dominant: Eye) -> Border {
         let pair = EyeOptions { dominant, ..EyeOptions::default() }.pair(head);
         Border::new(&pair, &pair.synthesis(GuardBand::Distance(1.0)).unwrap())
@@ -249,7 +248,7 @@ mod tests {
         Pose { position: Vec3::new(x, 0.0, z), ..Pose::IDENTITY }
     }
 
-    /// Of a frame at rest: two columns to a cell, disparities by the column outwards from the band's inner end.
+    /// A frame at rest: two columns per cell, disparities by the column outwards from the band's inner end.
     fn profile(drawn: u32, disparity: impl Fn(i32) -> f32) -> Profile {
         let disparities = std::array::from_fn(|i| disparity(drawn as i32 - 2 * i as i32));
         Profile { border: at(Pose::IDENTITY), drawn, undrawn: 0, step: 2, disparities }
@@ -261,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_seen_as_far_out_as_their_disparity_is_large() {
+    fn a_surface_shows_as_many_band_columns_as_its_disparity() {
         let rest = at(Pose::IDENTITY);
         assert_eq!((rest.guard_columns, (rest.beyond + rest.far).abs() < 0.01), (56, true));
         assert_eq!(profile(56, |_| 20.0).seen(&rest), Some(20));
@@ -272,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_frusta_differ_infinity_is_beyond_the_border() {
+    fn with_different_frusta_infinity_lies_beyond_the_border() {
         // The rendered eye sees a tenth of a tangent, 88.7 columns, further out than the other.
         let mut pair = EyeOptions::default().pair(Pose::IDENTITY);
         let shifted = |f: Frustum, by: f32| Frustum { left: f.left + by, right: f.right + by, ..f };
@@ -292,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_brings_to_the_border_what_was_beside_it() {
+    fn a_turn_moves_surfaces_to_the_border() {
         // A degree at a border 30 degrees off the middle: 20.6 columns, and less at its ends.
         let motion = at(Pose::IDENTITY).motion_to(&at(turned(-1.0))).unwrap();
         let [least, most] = motion.turned;
@@ -336,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_drawn_is_taken_to_be_as_near_as_what_is_beside_it() {
+    fn undrawn_columns_count_as_near_as_their_neighbours() {
         let rest = at(Pose::IDENTITY);
         assert_eq!(profile(14, |_| 9.0).seen(&rest), Some(10));
         assert_eq!(profile(14, |_| 40.0).seen(&rest), Some(41));
@@ -348,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn other_eyes_and_leaps_tell_nothing() {
+    fn other_eyes_and_leaps_give_no_prediction() {
         let seen = |now: Border| profile(56, |_| 9.0).seen(&now);
         assert_eq!(seen(Border { focal_length: 800.0, ..at(Pose::IDENTITY) }), None);
         for far in [turned(4.0), turned(-4.0), turned(90.0), turned(180.0), moved(0.2, 0.0), moved(0.0, -1.0)]
@@ -365,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn it_widens_at_once_and_narrows_after_some_frames() {
+    fn the_band_widens_at_once_and_narrows_later() {
         let rest = at(Pose::IDENTITY);
         let mut width = Width::default();
         let mut next = |disparity: f32| width.next(Some(&profile(56, |_| disparity)), &rest, LEAST);
@@ -383,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn texels_are_read_and_a_drivers_zeros_are_none() {
+    fn profiles_are_read_and_zeros_are_refused() {
         let rest = at(Pose::IDENTITY);
         let mut texels = [0u8; CELLS * BANDS * 4];
         assert!(Profile::read(&texels, rest, 14, 2).is_none());

@@ -19,14 +19,14 @@ pub(super) struct EyeImage<'a> {
 }
 
 impl<'a> EyeImage<'a> {
-    /// All of a rendered view, with its depth if that is wanted.
+    /// The whole image of a rendered view, with its depth if that is wanted.
     pub(super) fn whole(view: &'a impl ViewImages, depth: bool) -> EyeImage<'a> {
         let depth = depth.then(|| DepthImage::whole(view.depth()));
         EyeImage { color: view.color(), origin: [0, 0], depth }
     }
 }
 
-/// Anti-aliasing or a plain copy of an eye's image to where it goes.
+/// Anti-aliasing or a plain copy of an eye's image into its target.
 pub(super) struct Finish {
     gl: Rc<Context>,
     fxaa: Option<Fxaa>,
@@ -45,7 +45,7 @@ impl Finish {
         Ok(Finish { gl: setup.gl.clone(), fxaa: fxaa.then(|| Fxaa::new(setup.gl)).transpose()? })
     }
 
-    /// Hands an eye's colour and depth to where they go.
+    /// Writes an eye's colour, and its depth if somebody wants it.
     pub(super) fn run(&self, eye: &EyeImage, to: &EyeTarget) {
         self.color(eye.color, eye.origin, &to.color);
         Finish::depth(eye.depth, to);
@@ -59,7 +59,7 @@ impl Finish {
         }
     }
 
-    /// Hands an eye's depth to whoever wants it.
+    /// Writes an eye's depth, if somebody wants it.
     pub(super) fn depth(from: Option<DepthImage>, to: &EyeTarget) {
         if let (Some(from), Some(to)) = (from, &to.depth) {
             to.copy.run(from, &to.to);

@@ -1,4 +1,4 @@
-//! A frame as methods see it: the renderer is of the kind that the method was made for.
+//! A frame as stereo methods see it: with a renderer of the kind that they were made for.
 
 use std::rc::Rc;
 
@@ -8,7 +8,7 @@ use crate::render::{GpuScene, RenderSettings, Renderer, RendererOfKind};
 use yoro::eyes::{Eye, EyePair};
 use yoro_gl::{Context, GlError};
 
-/// What a method is made for.
+/// The context, renderer and options that a method is made for.
 #[derive(Clone, Copy)]
 pub(super) struct Setup<'a> {
     pub(super) gl: &'a Rc<Context>,
@@ -16,7 +16,7 @@ pub(super) struct Setup<'a> {
     pub(super) options: &'a StereoOptions,
 }
 
-/// What a frame is rendered from, and where it goes.
+/// A frame to render: its scene, its eyes and their targets.
 pub(super) struct Frame<'a, R> {
     pub(super) renderer: &'a R,
     pub(super) scene: &'a GpuScene,
@@ -25,7 +25,7 @@ pub(super) struct Frame<'a, R> {
 }
 
 impl<R> Frame<'_, R> {
-    /// Returns where an eye goes.
+    /// Returns the target of an eye.
     pub(super) fn to(&self, eye: Eye) -> &EyeTarget<'_> {
         &self.to[eye.index()]
     }
@@ -46,7 +46,7 @@ pub(super) trait FrameMethod: Sized {
         Ok(())
     }
 
-    /// Renders both eyes to where they go.
+    /// Renders both eyes into their targets.
     fn render_frame(&mut self, frame: &Frame<Self::Renderer>) -> Result<(), StereoError>;
 
     /// As [`StereoMethod::guard_band`].
@@ -55,7 +55,7 @@ pub(super) trait FrameMethod: Sized {
     }
 }
 
-/// Returns a renderer as one of the kind that a method was made for, for this scene.
+/// Returns the renderer as one of the method's kind, checked for this scene.
 fn of_kind<'a, R: RendererOfKind>(
     renderer: &'a mut Renderer,
     scene: &GpuScene,

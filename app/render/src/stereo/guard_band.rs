@@ -1,5 +1,4 @@
-//! A guard band as wide as it must be: how near the surfaces at its border are, measured, and how much of it is drawn,
-//! decided.
+//! The automatic guard band: measures how near the surfaces at its border are, and decides how much of it to draw.
 
 use std::rc::Rc;
 
@@ -13,19 +12,17 @@ use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 
 /// Bytes of a profile; `stereo/border_profile.frag`.
 const BYTES: usize = CELLS * BANDS * 4;
-/// This part of the band is drawn in every frame: what reaches far, ambient occlusion and bloom, stops there, and must not
-/// stop anywhere else in the next frame.
+/// This part of the band is drawn in every frame. Ambient occlusion and bloom, which reach far, stop there in all frames.
 const PART: u32 = 4;
-/// It has as many columns at least: beside its own a pixel that is shown may depend on those that filters reach, of ambient
-/// occlusion at half size (5) and of FXAA (4).
+/// Least columns of that part: a pixel depends on those that filters reach, ambient occlusion at half size (5) and FXAA (4).
 const REACH: u32 = 10;
 
-/// Columns of a band that are drawn in every frame.
+/// Returns the columns of a band that are drawn in every frame.
 fn least(guard_columns: u32) -> u32 {
     guard_columns.div_ceil(PART).max(REACH).min(guard_columns)
 }
 
-/// Decides and measures.
+/// Measures each frame and decides the width of the next.
 pub(super) struct AutoGuardBand {
     gl: Rc<Context>,
     program: Program,
@@ -36,11 +33,11 @@ pub(super) struct AutoGuardBand {
     last: Option<GuardBandUse>,
 }
 
-/// A frame that is measured.
+/// A frame to measure.
 struct Frame {
     border: Border,
     drawn: u32,
-    /// Columns to a texel of its profile.
+    /// Columns per texel of its profile.
     step: u32,
 }
 
@@ -56,7 +53,7 @@ impl AutoGuardBand {
         })
     }
 
-    /// The columns of the source to draw in a frame.
+    /// Returns the columns of the source to draw in a frame.
     pub(super) fn columns(&mut self, pair: &EyePair, views: &SynthesisViews) -> Columns {
         let border = Border::new(pair, views);
         let mut texels = [0u8; BYTES];
@@ -69,7 +66,7 @@ impl AutoGuardBand {
         });
         let guard = views.guard_columns;
         let drawn = self.width.next(profile.as_ref(), &border, least(guard));
-        // As far into the picture as the band is wide: what turns out of it comes from there.
+        // As far into the picture as the band is wide: surfaces that turn out of it come from there.
         self.frame = Some(Frame { border, drawn, step: (drawn + guard).div_ceil(CELLS as u32) });
         let without = |left_out: u32| match views.warp.target_eye {
             Eye::Left => [left_out, views.source.size[0]],
@@ -102,12 +99,12 @@ impl AutoGuardBand {
         });
     }
 
-    /// The newest frame that is measured and read back.
+    /// Returns the newest measured frame.
     pub(super) fn last(&self) -> Option<GuardBandUse> {
         self.last
     }
 
-    /// Forgets what was seen: a frame goes by without the band.
+    /// Forgets all measurements: a frame goes by without the band.
     pub(super) fn interrupt(&mut self) {
         self.readback.forget();
         self.frame = None;

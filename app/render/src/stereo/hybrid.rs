@@ -22,8 +22,8 @@ use yoro_gl::{Context, Destination, GlError, Program, RasterState, RenderTarget,
 /// seen at an angle passes from one to the other.
 const OVERLAP: f32 = 0.95;
 
-/// Two renders of what is near, one of what is far. Where nothing is far the frame is that of two full renders and costs
-/// as much.
+/// Two renders of the near field, one of the far field. Where nothing is far, the frame is that of two full renders and
+/// costs as much.
 pub struct Hybrid<T> {
     threshold: f32,
     targets: T,
@@ -96,8 +96,8 @@ impl Fields {
     }
 }
 
-/// Pixel of the far field that belongs to each eye's lower left pixel, to the nearest whole pixel: where frusta differ
-/// by a fraction, the far field is off by at most half a pixel, which is what it leaves out anyway.
+/// Returns the pixel of the far field that belongs to each eye's lower left pixel. It is rounded: where frusta differ by a
+/// fraction, the far field is off by at most half a pixel, less than the disparity that it leaves out.
 fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
     Eye::BOTH.map(|eye| {
         let (frustum, size) = (&pair.frusta[eye.index()], far.size.map(|n| n as f32));
@@ -146,7 +146,7 @@ pub(super) struct DeferredFields {
     near: [GBuffer; 2],
     far: GBuffer,
     far_light: LightTargets,
-    /// Of the eye that is being lit.
+    /// Light of the eye that is being lit.
     light: LightTargets,
     image: FinishTargets,
     hidden: Program,
@@ -169,7 +169,7 @@ impl DeferredFields {
         self.gl.set_raster_state(&RasterState::SCREEN);
     }
 
-    /// Completes an eye's depth by that of the far field, for whoever needs the depth of the finished image.
+    /// Completes an eye's depth by that of the far field, if the depth of the finished image is read.
     fn merge_depth(&self, eye: &RenderTarget, view: &View, crop: IVec2) {
         self.gl.pass("merge depth", || {
             let depth = depth_test(view.depth.convention);
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn both_eyes_lie_inside_the_far_field() {
+    fn the_far_field_holds_both_eyes() {
         for dominant in Eye::BOTH {
             let mut pair = EyePair::parallel(
                 Pose::IDENTITY,

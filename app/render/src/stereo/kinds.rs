@@ -1,17 +1,17 @@
-//! What the methods do differently for each kind of renderer.
+//! The parts of methods that differ by the kind of renderer.
 
 use super::hybrid::{DeferredFields, FieldTargets, ForwardFields};
 use super::overlay::{DeferredOverlay, ForwardOverlay, Overlay};
 use super::single_pass::{DeferredPair, ForwardPair, PairTargets};
 use crate::render::{DeferredRenderer, ForwardRenderer, RendererOfKind};
 
-/// A kind of renderer with what the methods do differently for it.
+/// A kind of renderer with the parts of methods that are its own.
 pub(super) trait StereoRenderer: RendererOfKind {
     /// Both eyes in one set of draw calls.
     type Pair: PairTargets<Renderer = Self>;
     /// The near field for each eye and the far field for both.
     type Fields: FieldTargets<Renderer = Self>;
-    /// What comes after synthesis.
+    /// Drawing after synthesis.
     type Overlay: Overlay<Renderer = Self>;
 }
 

@@ -1,4 +1,4 @@
-//! What a method is: a trait, where its frames go, and why it may fail.
+//! The interface of stereo methods: their trait, the targets of frames, errors.
 
 use std::rc::Rc;
 
@@ -6,7 +6,7 @@ use crate::render::{DepthCopy, GpuScene, Renderer};
 use yoro::eyes::{Eye, EyePair, EyesError};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
-/// Why a stereo frame could not be rendered.
+/// The reason why a stereo frame could not be rendered.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StereoError {
@@ -24,7 +24,7 @@ pub struct StereoFrame {
 }
 
 impl StereoFrame {
-    /// A frame of two images of `size` pixels.
+    /// Makes a frame of two images of `size` pixels.
     ///
     /// # Errors
     /// As [`RenderTarget::new`].
@@ -33,7 +33,7 @@ impl StereoFrame {
         Ok(StereoFrame { eyes: [eye()?, eye()?] })
     }
 
-    /// Gives the images another size; nothing happens at the same size.
+    /// Resizes the images; nothing happens at the same size.
     ///
     /// # Errors
     /// As [`RenderTarget::resize`].
@@ -41,18 +41,18 @@ impl StereoFrame {
         self.eyes.iter_mut().try_for_each(|eye| eye.resize(size))
     }
 
-    /// One eye's image.
+    /// Returns one eye's image.
     pub fn eye(&self, eye: Eye) -> &RenderTarget {
         &self.eyes[eye.index()]
     }
 
-    /// Both images as targets, without depth.
+    /// Returns both images as targets, without depth.
     pub fn targets(&self) -> [EyeTarget<'static>; 2] {
         Eye::BOTH.map(|eye| EyeTarget { color: Destination::whole(self.eye(eye)), depth: None })
     }
 }
 
-/// Where one eye of a frame goes. The rectangles have the pair's size.
+/// The target of one eye of a frame. The rectangles have the pair's size.
 #[derive(Clone, Copy)]
 pub struct EyeTarget<'a> {
     /// Takes display-referred sRGB with luma in alpha, and stores it as it is written.
@@ -61,7 +61,7 @@ pub struct EyeTarget<'a> {
     pub depth: Option<DepthTarget<'a>>,
 }
 
-/// Where the window depth of an eye goes.
+/// The target of an eye's window depth.
 #[derive(Clone, Copy)]
 pub struct DepthTarget<'a> {
     /// Framebuffer with a depth attachment and nothing else.
@@ -70,15 +70,15 @@ pub struct DepthTarget<'a> {
     pub copy: &'a DepthCopy,
 }
 
-/// How much of its guard band a method with [`yoro::eyes::GuardBand::Auto`] drew in a frame.
+/// The part of its guard band that a method with [`yoro::eyes::GuardBand::Auto`] drew in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GuardBandUse {
     /// Columns that were drawn.
     pub columns: u32,
-    /// Columns that the band has at most.
+    /// Columns of the whole band.
     pub most: u32,
-    /// Pixels at the other eye's border that were filled, since what they show lies in the band and was not drawn: as far as
-    /// the outermost column that was drawn tells.
+    /// Pixels at the other eye's border that were filled because their surfaces lie in the part of the band that was not
+    /// drawn: an estimate from the outermost column that was drawn.
     pub undrawn: u32,
 }
 
@@ -93,8 +93,8 @@ pub trait StereoMethod {
         Ok(())
     }
 
-    /// The use of the guard band two frames before the last one that was rendered, which is measured by now. None for methods
-    /// and settings that always draw all of it, and before anything was measured.
+    /// Returns the use of the guard band two frames before the last one, which is measured by now. `None` for methods and
+    /// settings that always draw all of it, and before anything was measured.
     fn guard_band(&self) -> Option<GuardBandUse> {
         None
     }

@@ -1,4 +1,4 @@
-//! How a frame gets its two eyes, one file a method.
+//! The stereo methods: ways to make the two eyes of a frame, one file each.
 
 mod border;
 mod conventional;
@@ -43,7 +43,7 @@ use single_pass::{DeferredPair, SinglePass};
 pub use substitute::Substitute;
 use synthesized::Synthesized;
 
-/// Makes a method; all that does not depend on the scene is compiled here ([`StereoMethod::prepare`] does the rest).
+/// Makes a method and compiles all that does not depend on the scene. [`StereoMethod::prepare`] does the rest.
 ///
 /// # Errors
 /// [`GlError`] when the driver cannot run it.

@@ -1,4 +1,4 @@
-//! The dominant eye's view shown to both eyes: what doing nothing costs and looks like.
+//! The dominant eye's view shown to both eyes: the lower bound of cost and quality.
 
 use super::finish::Finish;
 use super::frame::{Frame, FrameMethod, Setup};
@@ -49,7 +49,7 @@ impl<R: RendererOfKind> FrameMethod for Mono<R> {
     }
 }
 
-/// The pixel of `whole` that is nearest to the lower left corner of `part`, a view from the same place.
+/// Returns the pixel of `whole` that is nearest to the lower left corner of `part`, a view from the same place.
 fn origin_in(whole: &View, part: &View) -> [u32; 2] {
     let pixels = |tangents: f32, size: u32, extent: f32| (tangents / extent * size as f32).round() as u32;
     [

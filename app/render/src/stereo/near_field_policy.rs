@@ -1,6 +1,6 @@
-//! When to give up synthesis for a frame: most of the view is too near.
+//! The switch from synthesis to two real renders while most of the view is too near.
 
-/// How the two eyes of a frame are made.
+/// The way that the two eyes of a frame are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrameMode {
@@ -31,7 +31,7 @@ impl Default for NearFieldPolicy {
 }
 
 impl NearFieldPolicy {
-    /// The mode of the next frame, from the mode of this one and the fraction of its view that is too near.
+    /// Returns the mode of the next frame, from this frame's mode and the fraction of its view that is too near.
     pub fn next(&self, mode: FrameMode, near_fraction: f32) -> FrameMode {
         match mode {
             FrameMode::Synthesized if near_fraction >= self.switch_on => FrameMode::BothRendered,

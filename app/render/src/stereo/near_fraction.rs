@@ -1,4 +1,4 @@
-//! How much of a view is too near.
+//! The fraction of a view that is too near.
 
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 /// Texels per side of the image that [`NearFraction`] reads back; `stereo/near_fraction.frag`.
 const GRID: u32 = 16;
 
-/// A depth image that [`NearFraction`] looks at.
+/// A depth image to measure.
 #[derive(Clone, Copy)]
 pub(super) enum DepthMap<'a> {
     Resolved(&'a Texture),
@@ -19,17 +19,17 @@ pub(super) enum DepthMap<'a> {
     Samples(glow::Texture),
 }
 
-/// Measures which fraction of a view is nearer than a distance, two frames late so that nothing waits.
+/// Measures the fraction of a view that is nearer than a distance. The result comes two frames late, so that nothing waits.
 pub(super) struct NearFraction {
     gl: Rc<Context>,
     resolved: Program,
-    /// Where it was asked for.
+    /// If it was asked for.
     samples: Option<Program>,
     readback: Readback<()>,
 }
 
 impl NearFraction {
-    /// For resolved depth; with `samples` also for that of all samples.
+    /// Compiles the pass for resolved depth; with `samples` also for the depth of all samples.
     pub(super) fn new(gl: &Rc<Context>, samples: bool) -> Result<NearFraction, GlError> {
         let program =
             |defines: &[_]| Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), defines);
@@ -68,7 +68,7 @@ impl NearFraction {
         });
     }
 
-    /// The result of the last [`NearFraction::measure`] but one, 0 to 1; once.
+    /// Returns the result of the last [`NearFraction::measure`] but one, 0 to 1, once.
     pub(super) fn take(&mut self) -> Option<f32> {
         let mut cells = [0u8; (GRID * GRID * 4) as usize];
         self.readback.take(&mut cells)?;

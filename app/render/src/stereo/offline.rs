@@ -17,7 +17,7 @@ pub struct Offline {
     target: RenderTarget,
 }
 
-/// What [`Offline::run`] gives back.
+/// The result of [`Offline::run`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SynthesizedImage {
     /// RGBA, 8 bits each, of the target's size.

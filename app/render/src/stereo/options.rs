@@ -11,7 +11,7 @@ use yoro_gl::{Capabilities, Context, GlError};
 use yoro_protocol::Settings;
 pub use yoro_protocol::{AntiAliasing, Method, Pipeline};
 
-/// What the forward renderer does not have for a method, if anything.
+/// Returns what the forward renderer lacks for a method, if anything.
 fn lacking_forward(method: Method) -> Option<&'static str> {
     match method {
         Method::ShadingReprojection => Some("the g-buffer of both eyes"),
@@ -89,9 +89,10 @@ impl PipelineOptions {
 pub struct StereoOptions {
     /// Synthesis pipeline and its knobs.
     pub synthesis: PipelineOptions,
-    /// What the synthesis takes the rendered eye's edges for; `None` for what fits the renderer: [`StereoOptions::edges`].
+    /// The meaning of the rendered eye's edges for the synthesis; `None` for that which fits the renderer
+    /// ([`StereoOptions::edges`]).
     pub edges: Option<Edges>,
-    /// How much wider the dominant eye is rendered.
+    /// The band by which the dominant eye is rendered wider.
     pub guard_band: GuardBand,
     /// When anti-aliasing runs.
     pub anti_aliasing: AntiAliasing,
@@ -119,9 +120,8 @@ impl Default for StereoOptions {
 }
 
 impl StereoOptions {
-    /// What the synthesis takes the edges of images with so many samples in a pixel for. By itself, of several samples,
-    /// all of them where shaders can read them, else the first one's depth; one surface a pixel for pipelines that know
-    /// no other.
+    /// Returns the meaning of edges for the synthesis. The default depends on the samples of a pixel: with several, all of them
+    /// if shaders can read them, else the first one's depth. Pipelines other than gather know one surface a pixel.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for [`Edges::Multisample`] of one sample.

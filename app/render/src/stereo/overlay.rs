@@ -25,13 +25,13 @@ impl Smooth {
         Ok(Smooth { fxaa: Fxaa::new(gl)?, image })
     }
 
-    /// Smooths an image of this object's size.
+    /// Smooths an image of the same size.
     pub(super) fn run(&self, from: &RenderTarget) {
         self.fxaa.run(from.color(0), [0, 0], &Destination::whole(&self.image));
     }
 }
 
-/// What comes over both eyes of a frame.
+/// The surfaces that are drawn over both eyes of a frame.
 pub(super) struct Over {
     /// Near objects, if they are left out of the synthesis.
     pub(super) near: Option<Selection>,

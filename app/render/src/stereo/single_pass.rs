@@ -1,5 +1,5 @@
 //! Both eyes in one set of draw calls: instancing into double-wide targets, or GL_OVR_multiview2 into a layered g-buffer.
-//! What comes after the surfaces runs for each eye.
+//! All later passes run for each eye.
 
 use super::finish::{EyeImage, Finish};
 use super::frame::{Frame, FrameMethod, Setup};
@@ -72,7 +72,7 @@ impl<T: PairTargets> FrameMethod for SinglePass<T> {
 pub(super) struct DeferredPair {
     layout: Layout,
     g_buffer: GBuffer,
-    /// Of the eye that is being lit.
+    /// Light of the eye that is being lit.
     light: LightTargets,
     image: FinishTargets,
 }

@@ -24,14 +24,14 @@ pub struct Synthesized<R: StereoRenderer> {
     targets: R::Targets,
     synthesizers: Synthesizers,
     auto_guard_band: Option<AutoGuardBand>,
-    /// Where anti-aliasing comes before synthesis.
+    /// Anti-aliasing before synthesis, if it comes there.
     smooth: Option<Smooth>,
     overlay: R::Overlay,
     finish: Finish,
     switch: Option<Switch<R>>,
 }
 
-/// Pipelines without and with depth of the synthesized eye: those that were asked for so far.
+/// Pipelines without and with depth of the synthesized eye, as far as they were asked for.
 struct Synthesizers {
     gl: Rc<Context>,
     options: PipelineOptions,
@@ -130,7 +130,7 @@ impl<R: StereoRenderer> Synthesized<R> {
         let from = frame.pair.middle();
         let near_field = self.options.near_field;
         let multisample = self.edges == Edges::Multisample;
-        // With near objects, which are drawn after synthesis, another depth is handed on.
+        // Near objects are drawn after synthesis, and renew the depth that is handed on.
         let hands_on = frame.wants_depth(frame.pair.dominant) && near_field.is_none();
         let reads_depth = !multisample || self.auto_guard_band.is_some() || hands_on;
         let request = ViewRequest {
@@ -151,7 +151,7 @@ impl<R: StereoRenderer> Synthesized<R> {
         Ok(())
     }
 
-    /// The depth of every sample, if that is what is read of the rendered eye.
+    /// Returns the depth of every sample, if synthesis reads the samples.
     fn depth_samples(&self) -> Option<glow::Texture> {
         self.targets.depth_samples().filter(|_| self.edges == Edges::Multisample)
     }
@@ -163,7 +163,7 @@ impl<R: StereoRenderer> Synthesized<R> {
             auto.measure(self.targets.depth(), views);
         }
         if let Some(switch) = &mut self.switch {
-            // Of the far layer alone when near objects have their own: what they hide is not too near.
+            // This is the far layer alone if near objects have their own: surfaces behind them are not too near.
             let resolved = || DepthMap::Resolved(self.targets.depth());
             let depth = samples.map_or_else(resolved, DepthMap::Samples);
             let (pair, distance) = (frame.pair, switch.policy.distance);

@@ -1,4 +1,4 @@
-//! What cannot be seen from outside: the seam without clip distances, and the mask of disocclusions.
+//! Tests of what is private: seams, the mask of disocclusions, requested depths, guard bands.
 
 use std::rc::Rc;
 
@@ -124,7 +124,7 @@ fn every_seam_separates_the_eyes() {
 }
 
 #[test]
-fn disocclusions_are_shaded_as_by_two_renders_and_the_rest_is_close() {
+fn disocclusions_are_shaded_exactly_and_the_rest_closely() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
@@ -161,7 +161,7 @@ fn disocclusions_are_shaded_as_by_two_renders_and_the_rest_is_close() {
 }
 
 #[test]
-fn without_distance_between_the_eyes_nothing_is_disoccluded() {
+fn ipd_0_disoccludes_nothing() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let options = StereoOptions::default();
@@ -174,7 +174,7 @@ fn without_distance_between_the_eyes_nothing_is_disoccluded() {
 }
 
 #[test]
-fn ambient_occlusion_is_right_at_the_rims_of_disocclusions() {
+fn ambient_occlusion_is_exact_at_rims_of_disocclusions() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
@@ -238,7 +238,7 @@ fn auto_band() -> StereoOptions {
 }
 
 #[test]
-fn a_band_as_wide_as_it_must_be_gives_the_picture_of_a_whole_one() {
+fn an_automatic_band_gives_the_picture_of_a_whole_one() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     // With ambient occlusion and bloom, which reach far.
@@ -252,7 +252,7 @@ fn a_band_as_wide_as_it_must_be_gives_the_picture_of_a_whole_one() {
             asymmetric.frusta[1].right *= 1.2;
             for pair in [pair(dominant, DepthConvention::Standard), asymmetric.evened()] {
                 let mut method = create(gl, Method::Yoro, &settings, &auto_band()).unwrap();
-                // What a frame shows is known two frames later.
+                // A frame is measured two frames later.
                 let [whole, _, part] = [(); 3].map(|()| rig.render(&mut *method, &pair));
                 let looked = method.guard_band().unwrap();
                 assert!(looked.columns == looked.most && looked.most > 30, "{looked:?}");
@@ -270,7 +270,7 @@ fn a_band_as_wide_as_it_must_be_gives_the_picture_of_a_whole_one() {
 }
 
 #[test]
-fn a_head_that_moves_sees_what_a_whole_band_shows() {
+fn an_automatic_band_keeps_up_with_a_moving_head() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut rig = Rig::new(gl, &local());
@@ -305,7 +305,7 @@ fn a_head_that_moves_sees_what_a_whole_band_shows() {
 }
 
 #[test]
-fn what_comes_to_the_border_is_filled_counted_and_drawn_two_frames_later() {
+fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut far = scene();
@@ -346,7 +346,7 @@ fn forward() -> RenderSettings {
     RenderSettings { renderer: RendererKind::Forward, ..local() }
 }
 
-/// How often the nearest depth was taken of a view's samples in a frame, each eye's depth wanted or not by [`Eye::index`].
+/// Counts how often a frame takes the nearest depth of a view's samples. `wanted`: by [`Eye::index`], who wants its depth.
 fn depths_taken(gl: &Rc<Context>, rig: &mut Rig, method: &mut dyn StereoMethod, wanted: [bool; 2]) -> usize {
     let pair = pair(Eye::Right, DepthConvention::Reversed);
     let copy = DepthCopy::new(gl).unwrap();
@@ -364,7 +364,7 @@ fn depths_taken(gl: &Rc<Context>, rig: &mut Rig, method: &mut dyn StereoMethod, 
 }
 
 #[test]
-fn the_nearest_depth_is_taken_of_the_samples_where_something_reads_it() {
+fn the_nearest_depth_is_resolved_only_where_it_is_read() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut rig = Rig::new(gl, &forward());
@@ -403,7 +403,7 @@ fn the_nearest_depth_is_taken_of_the_samples_where_something_reads_it() {
 }
 
 #[test]
-fn whoever_reads_the_nearest_depth_changes_no_picture() {
+fn reading_the_nearest_depth_changes_no_picture() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     for near_field in [None, Some(1.6)] {
@@ -420,7 +420,7 @@ fn whoever_reads_the_nearest_depth_changes_no_picture() {
 }
 
 #[test]
-fn the_first_samples_tell_how_much_is_near_as_the_nearest_do() {
+fn first_and_nearest_samples_measure_the_same_near_fraction() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
@@ -434,7 +434,7 @@ fn the_first_samples_tell_how_much_is_near_as_the_nearest_do() {
         let samples = DepthMap::Samples(targets.depth_samples().unwrap());
         let mut fraction = NearFraction::new(gl, true).unwrap();
         let [first, nearest] = [samples, DepthMap::Resolved(targets.depth())].map(|depth| {
-            // What is measured is known after the next measurement.
+            // A measurement is known after the next one.
             (0..2).for_each(|_| fraction.measure(depth, [0, 0], SIZE, &view.depth, 3.0));
             fraction.take().unwrap()
         });
@@ -474,7 +474,7 @@ fn of_columns(
 
 /// Without bloom the synthesis reads the samples' colours, which are those of nothing in columns that are not drawn.
 #[test]
-fn samples_beside_the_columns_that_are_drawn_are_seen_by_nobody() {
+fn undrawn_samples_are_seen_by_neither_eye() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut scene = scene();
@@ -490,7 +490,7 @@ fn samples_beside_the_columns_that_are_drawn_are_seen_by_nobody() {
             let views = pair.synthesis(GuardBand::Distance(0.2)).unwrap();
             let of = |columns| of_columns(gl, (&renderer, &scene), &pair, &views, columns);
             let whole = of(None);
-            // How far the nearest post may move in from beside, and a soft edge.
+            // The columns that the nearest post may move in from beside, and a soft edge.
             let seen = (pair.focal_length_pixels() * pair.ipd() / 1.4).ceil() as u32 + 1;
             assert!(2 * seen < views.guard_columns);
             for (band, expected) in [(2 * seen, 0), (0, seen)] {
