@@ -134,11 +134,6 @@ impl SceneSlot {
         sources.into_iter().nth(next).filter(|source| *source != self.source)
     }
 
-    /// Number of the viewpoint.
-    pub fn viewpoint(&self) -> usize {
-        self.viewpoint
-    }
-
     /// Goes to a viewpoint; beyond the last it starts over.
     pub fn go_to(&mut self, viewpoint: usize) {
         self.viewpoint = viewpoint % self.viewpoints.len().max(1);

@@ -7,9 +7,12 @@ use glam::{Quat, Vec3};
 
 use super::*;
 use crate::cardboard::{Cardboard, HeldHead};
+use crate::event::{Action, Event};
+use crate::frame::{FrameReport, FrameTiming};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Filter, Format, RenderTarget};
+use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
+use yoro_protocol::telemetry::{DeviceState, Line};
 
 const WINDOW: [u32; 2] = [320, 180];
 const PERIOD_NS: i64 = 16_666_667;

@@ -1,0 +1,102 @@
+//! Takes over other settings while the viewer runs.
+
+use std::path::PathBuf;
+
+use super::{Viewer, profiling};
+use crate::error::ViewerError;
+use crate::loading::SceneSource;
+use yoro_gl::GlError;
+use yoro_protocol::Settings;
+use yoro_render::stereo::StereoOptions;
+use yoro_render::{RenderSettings, Renderer};
+
+impl Viewer {
+    /// Takes over other settings; only what differs from the ones before is made again. What the user has changed by
+    /// hand stays, unless that very setting differs.
+    ///
+    /// # Errors
+    /// [`ViewerError::NoScene`], and [`ViewerError::Gl`] when the driver cannot do what is asked for; the settings
+    /// before stay.
+    pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
+        // What may fail by a mistake in the settings comes first.
+        let source = self.other_scene(&settings, folders)?;
+        let (render, method_differs) =
+            (RenderSettings::of_settings(&settings), settings.method != self.settings.method);
+        if let Some(attached) = &self.attached
+            && (method_differs || render != RenderSettings::of_settings(&self.settings))
+        {
+            let method = if method_differs { settings.method } else { self.method.method() };
+            render.supports(method, attached.gl.capabilities())?;
+        }
+        let before = std::mem::replace(&mut self.settings, settings);
+        let in_use = self.method.choice();
+        if let Err(error) = self.remake(&before) {
+            self.settings = before;
+            self.method.set_choice(in_use);
+            return Err(error.into());
+        }
+        let settings = &self.settings;
+        if settings.ipd != before.ipd {
+            self.ipd.chosen = settings.ipd;
+        }
+        if settings.hud != before.hud {
+            self.caption.is_shown = settings.hud;
+        }
+        if settings.viewpoint != before.viewpoint {
+            self.scene.go_to(settings.viewpoint);
+        }
+        if settings.adaptive != before.adaptive || settings.render_scale != before.render_scale {
+            self.method.restore_quality();
+        }
+        if settings.duration != before.duration {
+            self.stats.reopen();
+        }
+        if let Some(attached) = &self.attached
+            && settings.profiling != before.profiling
+        {
+            attached.gl.set_profiling(profiling(settings));
+        }
+        self.folders = folders.to_vec();
+        if let Some(source) = source {
+            self.replace_scene(source, self.settings.viewpoint);
+        }
+        Ok(())
+    }
+
+    fn other_scene(
+        &self,
+        settings: &Settings,
+        folders: &[PathBuf],
+    ) -> Result<Option<SceneSource>, ViewerError> {
+        if (&settings.scene, settings.seed) == (&self.settings.scene, self.settings.seed) {
+            return Ok(None);
+        }
+        SceneSource::find(&settings.scene, settings.seed, folders).map(Some)
+    }
+
+    /// Makes renderer and method again, if the settings before were others.
+    fn remake(&mut self, before: &Settings) -> Result<(), GlError> {
+        let settings = &self.settings;
+        let method_differs = settings.method != before.method;
+        if method_differs {
+            self.method.set_choice((settings.method, self.method.pipeline()));
+        }
+        if let Some(attached) = &self.attached {
+            self.method.choose_pipeline(&attached.gl, settings);
+        }
+        let render = RenderSettings::of_settings(settings);
+        let renderer_differs = render != RenderSettings::of_settings(before);
+        if let Some(attached) = &self.attached
+            && let Some(shown) = self.scene.shown()
+            && renderer_differs
+        {
+            shown.renderer = Renderer::new(&attached.gl, &render, &shown.scene)?;
+        }
+        let options_differ = StereoOptions::of_settings(settings, settings.pipeline)
+            != StereoOptions::of_settings(before, before.pipeline);
+        if renderer_differs || options_differ || method_differs {
+            self.make_method()?;
+        }
+        Ok(())
+    }
+}

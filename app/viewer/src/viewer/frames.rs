@@ -1,0 +1,163 @@
+//! Frames: from what has been loaded to the report, and a log line a second.
+
+use super::{Attached, Viewer};
+use crate::adaptive::Load;
+use crate::caption::Status;
+use crate::error::ViewerError;
+use crate::frame::{FrameReport, FrameTiming, SceneState};
+use yoro::eyes::EyePair;
+use yoro_gl::Destination;
+use yoro_lenses::{Content, Panel, Placement};
+use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
+use yoro_render::stereo::EyeTarget;
+
+/// The images of the eyes are multiples of this many pixels, so that small changes need no new targets.
+const SIZE_STEP: f32 = 16.0;
+/// The background while there is no scene.
+const BACKDROP: [f32; 4] = [0.03, 0.035, 0.05, 1.0];
+
+impl Viewer {
+    /// Begins a frame: what has been loaded comes into view.
+    pub fn begin(&mut self, timing: &FrameTiming) {
+        self.now_ns = timing.now_ns;
+        self.poll_scene();
+    }
+
+    /// Renders both eyes; nothing but a backdrop until the scene is there. Eyes of which neither can be synthesized
+    /// from the other (canted ones) are both rendered, whatever the method.
+    ///
+    /// # Errors
+    /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
+    pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
+        self.stats.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
+        self.method.judge(pair);
+        let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
+        let Some(shown) = self.scene.shown() else {
+            for Destination { framebuffer, origin, size } in to.iter().map(|eye| eye.color) {
+                gl.bind_framebuffer(framebuffer, origin, size);
+                gl.fill(origin, size, BACKDROP);
+            }
+            return Ok(());
+        };
+        self.method.render(gl, &self.settings, shown, pair, to)?;
+        if let Some(used) = self.method.guard_band() {
+            self.stats.guard_band(used);
+        }
+        Ok(())
+    }
+
+    /// The HUD as it should be seen in this frame, if at all.
+    ///
+    /// # Errors
+    /// [`ViewerError::NoContext`].
+    pub fn hud(&mut self) -> Result<Option<Panel<'_>>, ViewerError> {
+        self.write_caption();
+        let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
+        let text = self.caption.text();
+        if let Some(question) = self.stats.question() {
+            let progress = Some(question.position());
+            return Ok(Some(attached.hud.set(Content { text, progress }, Placement::Middle)));
+        }
+        let is_empty = !self.scene.is_shown();
+        if !is_empty && !self.caption.is_in_view(self.now_ns) {
+            return Ok(None);
+        }
+        // To and fro once in two seconds.
+        let phase = (self.now_ns.rem_euclid(2_000_000_000)) as f32 * 1e-9;
+        let progress = (is_empty && self.scene.is_loading()).then_some(1.0 - (1.0 - phase).abs());
+        let placement = if is_empty { Placement::Middle } else { Placement::Below };
+        Ok(Some(attached.hud.set(Content { text, progress }, placement)))
+    }
+
+    /// Writes what the HUD says now.
+    fn write_caption(&mut self) {
+        if let Some(question) = self.stats.question() {
+            return question.write(self.caption.text_mut());
+        }
+        if let Some(failure) = self.scene.failure() {
+            return self.caption.write_sentence(failure);
+        }
+        let status = Status {
+            frames: self.stats.last_line(),
+            celsius: self.stats.celsius(),
+            method: self.method.name(),
+            pipeline: self.method.pipeline_name(),
+            loading: self.scene.is_loading().then(|| self.scene.name()),
+        };
+        self.caption.write_status(&status, self.now_ns);
+    }
+
+    /// Ends a frame that is on its way to the display.
+    ///
+    /// # Errors
+    /// [`ViewerError::NoContext`]; [`ViewerError::Gl`] when an adapted method cannot be made.
+    pub fn end(&mut self, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
+        let &FrameTiming { now_ns, refresh_hz, .. } = timing;
+        self.now_ns = now_ns;
+        let Attached { gl, pass_times, .. } = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
+        pass_times.clear();
+        let timed = gl.end_timed_frame(pass_times);
+        let gpu_ms = (timed > 0).then(|| pass_times.iter().map(|p| p.time.as_secs_f32() * 1e3).sum());
+        let late_refreshes = self.stats.frame(now_ns, refresh_hz, pass_times, timed);
+        let scene = self.scene.state();
+        let load = Load { now_ns, refresh_hz, late_refreshes, gpu_ms };
+        if self.settings.adaptive && scene == SceneState::Ready && self.method.adapt(&load, &self.settings) {
+            self.make_method()?;
+        }
+        let was_over = self.stats.is_over();
+        if !was_over && self.stats.is_time_up(&self.settings, now_ns) && self.ask() {
+            self.stats.end();
+        }
+        let is_over = self.stats.is_over();
+        Ok(FrameReport {
+            scene,
+            late_refreshes,
+            gpu_ms,
+            telemetry_due: self.stats.is_line_due(now_ns),
+            session_over: is_over && !was_over,
+            exit: is_over && self.settings.auto_exit,
+        })
+    }
+
+    /// Ends a second: makes its line for the log. Call it when a [`FrameReport`] says so, with what the device says
+    /// now.
+    pub fn telemetry(&mut self, now_ns: i64, device: &DeviceState) -> Line {
+        self.method.set_thermal_headroom(device.thermal_headroom);
+        let state = self.state();
+        self.stats.line(now_ns, &state, device)
+    }
+
+    /// Returns the viewer's own part of a log line.
+    pub(super) fn state(&self) -> ViewerState {
+        ViewerState {
+            method: self.method.name().to_owned(),
+            pipeline: self.method.pipeline_name().map(str::to_owned),
+            scene: self.scene.name().to_owned(),
+            render_scale: self.render_scale(),
+            imbuffer: self.method.imbuffer_divisor(&self.settings),
+            run: self.settings.run.clone(),
+        }
+    }
+
+    /// The session since the scene came into view, for the log at its end.
+    pub fn summary(&self, now_ns: i64) -> SessionSummary {
+        self.stats.summary(now_ns)
+    }
+
+    /// The answers to the questions of the settings so far; each is logged when it is given.
+    pub fn ratings(&self) -> &[Rating] {
+        self.stats.ratings()
+    }
+
+    /// Size in pixels of each eye's image on a display whose full size is `full`.
+    pub fn eye_size(&self, full: [f32; 2]) -> [u32; 2] {
+        // Methods render a guard band beside the image.
+        let limit = self.attached.as_ref().map_or(4096, |g| g.gl.capabilities().max_texture_size) / 2;
+        let steps = |pixels: f32| (pixels * self.render_scale() / SIZE_STEP).round().max(4.0) * SIZE_STEP;
+        full.map(|n| (steps(n) as u32).min(limit))
+    }
+
+    fn render_scale(&self) -> f32 {
+        self.settings.render_scale * self.method.render_scale()
+    }
+}

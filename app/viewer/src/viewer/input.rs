@@ -1,0 +1,112 @@
+//! Does what the user wants, and asks questions.
+
+use super::{Viewer, gl_with_scene};
+use crate::error::ViewerError;
+use crate::event::{Action, Event};
+use yoro_protocol::telemetry::{Rating, ViewerState};
+use yoro_protocol::{Ipd, Settings};
+
+/// The IPD changes by this much at a time, in metres.
+const IPD_STEP: f32 = 0.001;
+
+impl Viewer {
+    /// Does what the user wants.
+    ///
+    /// # Errors
+    /// [`ViewerError::Gl`] when a method cannot be made; the one before stays.
+    pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
+        if self.stats.question().is_some() {
+            return Ok(self.reply(event));
+        }
+        let action = match event {
+            Event::Tap => self.other_method(1)?,
+            Event::PreviousMethod => self.other_method(-1)?,
+            Event::LongPress => Action::Recenter,
+            Event::IpdUp => self.change_ipd(IPD_STEP),
+            Event::IpdDown => self.change_ipd(-IPD_STEP),
+            Event::ToggleHud => {
+                self.caption.is_shown = !self.caption.is_shown;
+                Action::Hud(self.caption.is_shown)
+            }
+            Event::NextViewpoint => self.scene.next_viewpoint().map_or(Action::Nothing, Action::Viewpoint),
+            Event::NextScene => self.next_scene(),
+        };
+        let message = match action {
+            Action::Method(method) => method.name().to_owned(),
+            Action::Recenter => "recentered".into(),
+            Action::Ipd(ipd) => format!("IPD {:.0} mm", ipd.metres() * 1e3),
+            Action::Viewpoint(n) => format!("viewpoint {n}"),
+            Action::Hud(_) | Action::Scene | Action::Marker(_) | Action::Answer | Action::Nothing => {
+                String::new()
+            }
+        };
+        self.caption.announce(message, self.now_ns);
+        Ok(action)
+    }
+
+    /// Takes an event while a question is in view.
+    fn reply(&mut self, event: Event) -> Action {
+        let now_ns = self.now_ns;
+        let Some(question) = self.stats.question_mut() else { return Action::Nothing };
+        let mut nudge = |steps| {
+            question.nudge(steps, now_ns);
+            Action::Marker(question.rating())
+        };
+        match event {
+            Event::IpdUp => nudge(1.0),
+            Event::IpdDown => nudge(-1.0),
+            Event::Tap => {
+                self.answer();
+                Action::Answer
+            }
+            Event::LongPress => {
+                question.recenter();
+                Action::Recenter
+            }
+            Event::PreviousMethod | Event::ToggleHud | Event::NextViewpoint | Event::NextScene => {
+                Action::Nothing
+            }
+        }
+    }
+
+    /// Keeps and logs the answer to the question in view.
+    fn answer(&mut self) {
+        let answer = self.stats.question_mut().and_then(|question| question.answer());
+        let Some((question, rating)) = answer else { return };
+        let ViewerState { method, pipeline, scene, .. } = self.state();
+        let Settings { participant, trial, .. } = &self.settings;
+        let (participant, trial, rating) = (participant.clone(), *trial, f64::from(rating));
+        let rating = Rating { participant, trial, method, pipeline, scene, question, rating };
+        log::info!("{rating}");
+        self.stats.keep(rating);
+    }
+
+    /// Asks the questions of the settings when the session's time is up; true when there is nothing more to ask.
+    pub(super) fn ask(&mut self) -> bool {
+        self.stats.ask(&self.settings);
+        if self.stats.question().is_some_and(|question| question.has_settled(self.now_ns)) {
+            self.answer();
+        }
+        self.stats.question().is_none()
+    }
+
+    fn change_ipd(&mut self, change: f32) -> Action {
+        let ipd = Ipd::nearest(self.ipd().metres() + change);
+        self.ipd.chosen = Some(ipd);
+        Action::Ipd(ipd)
+    }
+
+    /// Loads the scene after this one.
+    fn next_scene(&mut self) -> Action {
+        let Some(source) = self.scene.next(self.settings.seed, &self.folders) else { return Action::Nothing };
+        self.replace_scene(source, 0);
+        Action::Scene
+    }
+
+    /// Goes to the next (1) or previous (-1) method of the list that the driver can do.
+    fn other_method(&mut self, step: isize) -> Result<Action, ViewerError> {
+        let gl = gl_with_scene(&self.attached, &self.scene);
+        let other = self.method.switch(gl, &self.settings, step)?;
+        Ok(other.map_or(Action::Nothing, Action::Method))
+    }
+}

@@ -1,0 +1,238 @@
+//! The application without a platform.
+//!
+//! A [`Viewer`] owns scene, renderer, stereo method, HUD, settings and statistics; where the eyes are, how large their
+//! images are and how a person comes to see them is a display's matter. There are two, and each owns its viewer:
+//! [`Cardboard`](crate::Cardboard), a phone behind lenses with its own motion sensors, and
+//! [`Headset`](crate::openxr::Headset), a headset with an OpenXR runtime. A platform (the Android application,
+//! `yoro view` and `yoro xr` on the desktop) gives a GL context, events and somewhere to draw.
+//!
+//! ```text
+//! new ──> attach(gl) ──> [ event()* ── begin() ── render_eyes() ── hud() ── end() ]* ──> summary()
+//!             ^   context lost: detach()   |          telemetry() when a report says so
+//!             └────────────────────────────┘
+//! ```
+//!
+//! All calls come from one thread; those that may touch GL (`attach`, `event`, `configure`, `begin`, `render_eyes`,
+//! `hud`, `end`, `detach`, drop) need the context to be current there. Times are nanoseconds of a monotonic clock.
+
+mod configure;
+mod frames;
+mod input;
+#[cfg(test)]
+mod tests;
+
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use crate::caption::Caption;
+use crate::error::ViewerError;
+use crate::frame::SceneState;
+use crate::loading::SceneSource;
+use crate::method_slot::MethodSlot;
+use crate::scene_slot::{SceneSlot, Shown};
+use crate::session_stats::SessionStats;
+use yoro::eyes::Pose;
+use yoro_gl::{Context, GlError, PassTime, Profiling};
+use yoro_lenses::Hud;
+use yoro_protocol::{Ipd, Settings};
+use yoro_render::RenderSettings;
+use yoro_render::stereo::Method;
+use yoro_scene::Scene;
+
+/// Passes of a frame for whose times there is room from the start.
+const MOST_PASSES: usize = 64;
+
+/// Objects that live in the GL context besides scene and method.
+struct Attached {
+    gl: Rc<Context>,
+    hud: Hud,
+    pass_times: Vec<PassTime>,
+}
+
+/// The sources of the distance between the eyes.
+#[derive(Clone, Copy, Debug)]
+struct IpdSources {
+    /// The settings or the user.
+    chosen: Option<Ipd>,
+    /// The display by itself.
+    native: Ipd,
+}
+
+/// The application without a platform.
+pub struct Viewer {
+    settings: Settings,
+    folders: Vec<PathBuf>,
+    scene: SceneSlot,
+    method: MethodSlot,
+    stats: SessionStats,
+    caption: Caption,
+    ipd: IpdSources,
+    attached: Option<Attached>,
+    now_ns: i64,
+}
+
+impl Viewer {
+    /// Starts to load the scene in the background. `folders` are where scenes given by name are looked for.
+    ///
+    /// # Errors
+    /// [`ViewerError::NoScene`]: a mistake in the settings.
+    pub fn new(settings: Settings, folders: &[PathBuf]) -> Result<Viewer, ViewerError> {
+        let source = SceneSource::find(&settings.scene, settings.seed, folders)?;
+        log::info!("settings: {settings}");
+        Ok(Viewer {
+            folders: folders.to_vec(),
+            scene: SceneSlot::new(source, settings.viewpoint),
+            method: MethodSlot::new(&settings),
+            stats: SessionStats::default(),
+            caption: Caption::new(settings.hud),
+            ipd: IpdSources { chosen: settings.ipd, native: Ipd::nearest(0.0) },
+            attached: None,
+            now_ns: 0,
+            settings,
+        })
+    }
+
+    /// Takes a GL context and makes everything that lives in it. The scene is shown as soon as it is loaded.
+    ///
+    /// # Errors
+    /// [`ViewerError::Gl`].
+    pub fn attach(&mut self, gl: Rc<Context>) -> Result<(), ViewerError> {
+        gl.set_profiling(profiling(&self.settings));
+        self.method.choose_pipeline(&gl, &self.settings);
+        // What a context before this one held.
+        self.detach();
+        let hud = Hud::new(&gl)?;
+        self.attached = Some(Attached { hud, pass_times: Vec::with_capacity(MOST_PASSES), gl });
+        self.scene.reload();
+        Ok(())
+    }
+
+    /// Drops everything that lives in the GL context, which is lost or about to be destroyed. After another
+    /// [`Viewer::attach`] the scene is loaded again.
+    pub fn detach(&mut self) {
+        self.method.drop_made();
+        self.scene.drop_shown();
+        self.attached = None;
+    }
+
+    /// True if there is a GL context.
+    pub fn is_attached(&self) -> bool {
+        self.attached.is_some()
+    }
+
+    fn replace_scene(&mut self, source: SceneSource, viewpoint: usize) {
+        self.scene.replace(source, viewpoint);
+        self.stats.expect_scene();
+    }
+
+    /// Compiles the current method, if there is a scene to use it on.
+    fn make_method(&mut self) -> Result<(), GlError> {
+        let gl = gl_with_scene(&self.attached, &self.scene);
+        self.method.make(gl, &self.settings)
+    }
+
+    /// The application goes to the background: nothing moves on, and the time until the next frame is not
+    /// counted.
+    pub fn pause(&mut self) {
+        self.stats.pause();
+        self.method.interrupt();
+    }
+
+    /// The application is back.
+    pub fn resume(&mut self) {
+        self.method.interrupt();
+    }
+
+    /// The settings the viewer was made with, or has taken over since.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The method in use.
+    pub fn method(&self) -> Method {
+        self.method.method()
+    }
+
+    /// Distance between the eyes in metres.
+    pub fn ipd(&self) -> Ipd {
+        self.ipd.chosen.unwrap_or(self.ipd.native)
+    }
+
+    /// The distance between the eyes that the settings or the user ask for, if not that of the display.
+    pub fn chosen_ipd(&self) -> Option<Ipd> {
+        self.ipd.chosen
+    }
+
+    /// Sets the distance between the eyes that the display has by itself.
+    pub fn set_native_ipd(&mut self, ipd: Ipd) {
+        self.ipd.native = ipd;
+    }
+
+    /// Takes back what the user has made of the distance between the eyes.
+    pub(crate) fn reset_ipd(&mut self) {
+        self.ipd.chosen = self.settings.ipd;
+    }
+
+    /// The scene that is in view or on its way.
+    pub fn scene_name(&self) -> &str {
+        self.scene.name()
+    }
+
+    /// Time of the last frame in nanoseconds.
+    pub fn now_ns(&self) -> i64 {
+        self.now_ns
+    }
+
+    /// Transforms a pose relative to the viewpoint (metres, Y up, -Z ahead) into the scene.
+    pub fn place(&self, pose: Pose) -> Pose {
+        self.scene.place(pose)
+    }
+
+    /// The state of the scene.
+    pub fn scene_state(&self) -> SceneState {
+        self.scene.state()
+    }
+
+    /// The reason why the scene cannot be shown, in one sentence.
+    pub fn failure(&self) -> Option<&str> {
+        self.scene.failure()
+    }
+
+    /// Uploads the scene if its thread is done; [`Viewer::begin`] does so by itself.
+    pub fn poll_scene(&mut self) {
+        let Some(attached) = &self.attached else { return };
+        let Some(loaded) = self.scene.take_loaded() else { return };
+        let gl = attached.gl.clone();
+        let shown = loaded.and_then(|scene| self.show(&gl, scene).map_err(|error| error.to_string()));
+        if let Err(reason) = shown {
+            // Whether that is the end is for the platform to say.
+            log::info!("no scene: {reason}");
+            self.scene.fail(reason);
+        }
+    }
+
+    /// Brings a scene into view.
+    fn show(&mut self, gl: &Rc<Context>, scene: Scene) -> Result<(), GlError> {
+        // The old scene goes first, or both would need memory.
+        self.method.drop_made();
+        self.scene.drop_shown();
+        self.scene.set_viewpoints(&scene.viewpoints);
+        let shown = Shown::new(gl, scene, &RenderSettings::of_settings(&self.settings))?;
+        self.method.make_first(gl, &self.settings)?;
+        log::info!("{}: {} triangles", shown.scene.name, shown.scene.triangle_count());
+        self.scene.show(shown);
+        if self.stats.begin(self.now_ns) {
+            self.method.restart_controller();
+        }
+        Ok(())
+    }
+}
+
+/// The context, where there is a scene in it to use a method on.
+fn gl_with_scene<'a>(attached: &'a Option<Attached>, scene: &SceneSlot) -> Option<&'a Rc<Context>> {
+    attached.as_ref().filter(|_| scene.is_shown()).map(|attached| &attached.gl)
+}
+
+fn profiling(settings: &Settings) -> Profiling {
+    if settings.profiling { Profiling::Queries } else { Profiling::Off }
+}
