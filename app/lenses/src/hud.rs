@@ -22,7 +22,7 @@ const FONT: [usize; 2] = [10, 20];
 const MARGIN: usize = 8;
 const BAR_HEIGHT: usize = 12;
 const SIZE: [usize; 2] = [COLUMNS * FONT[0] + 2 * MARGIN, LINES * FONT[1] + 3 * MARGIN + BAR_HEIGHT];
-/// Part of the progress bar that moves to and fro.
+/// The width of the moving part of the progress bar, as a share of the bar.
 const BLOCK: f32 = 0.25;
 
 /// The panel's place: metres ahead, and tangents of its width and of its centre below the horizon.
@@ -35,7 +35,7 @@ const BELOW: f32 = 0.40;
 pub struct Content<'a> {
     /// At most four lines.
     pub text: &'a str,
-    /// Place of the moving part of a progress bar, 0 to 1; the work's end is not known.
+    /// The position of the moving part of a progress bar, 0 to 1; the work's end is not known.
     pub progress: Option<f32>,
 }
 
@@ -109,7 +109,7 @@ pub struct Hud {
 }
 
 impl Hud {
-    /// An empty panel.
+    /// Makes an empty panel.
     ///
     /// # Errors
     /// [`GlError`] when the driver refuses the program or the texture.
@@ -127,7 +127,7 @@ impl Hud {
         })
     }
 
-    /// Changes what the panel says; nothing happens if it says that already.
+    /// Changes the text of the panel; nothing happens if it is the same.
     pub fn set(&mut self, content: Content, placement: Placement) -> Panel<'_> {
         if self.text != content.text || self.progress != content.progress {
             self.text.clear();
@@ -163,7 +163,7 @@ impl Hud {
 pub enum Placement {
     /// Below what is looked at.
     Below,
-    /// Straight ahead: there is nothing else to look at.
+    /// Straight ahead, where there is nothing else to look at.
     Middle,
 }
 
@@ -174,7 +174,7 @@ pub struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    /// The largest size in pixels that a panel can have.
+    /// The largest size of a panel in pixels.
     pub const MAX_SIZE: [u32; 2] = [SIZE[0] as u32, SIZE[1] as u32];
 
     /// Size in pixels.
@@ -188,7 +188,7 @@ impl Panel<'_> {
         [width, width * self.hud.used as f32 / SIZE[0] as f32]
     }
 
-    /// Its centre in metres, as seen from between the eyes.
+    /// The panel's centre in metres, relative to the point between the eyes.
     pub fn center(&self) -> Vec3 {
         Vec3::new(0.0, below(self.placement), -1.0) * DISTANCE
     }
@@ -198,7 +198,7 @@ impl Panel<'_> {
         self.hud.version
     }
 
-    /// Fills a rectangle of its size, translucent where there are no letters; colour is not multiplied by alpha.
+    /// Fills a rectangle of the panel's size, translucent where there are no letters; colour is not multiplied by alpha.
     pub fn draw(&self, to: &Destination) {
         self.hud.gl.pass("hud", || {
             self.hud.gl.set_raster_state(&RasterState::SCREEN);
@@ -206,7 +206,7 @@ impl Panel<'_> {
         });
     }
 
-    /// Draws it into the images of both eyes.
+    /// Draws the panel into the images of both eyes.
     pub fn draw_into_eyes(&self, pair: &EyePair, eyes: &[Destination; 2]) {
         let gl = &self.hud.gl;
         gl.pass("hud", || {

@@ -19,7 +19,7 @@ pub struct GlArgs {
 }
 
 impl GlArgs {
-    /// Opens the context and says once what it is.
+    /// Opens the context and logs its driver.
     pub fn open(&self) -> Result<Headless, ContextError> {
         let headless = Headless::open(self.backend)?;
         log::info!("{}", headless.gl().capabilities().summary());

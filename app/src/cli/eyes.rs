@@ -62,13 +62,13 @@ impl EyeArgs {
         self.options().pair(head)
     }
 
-    /// Refuses what no pair of eyes can be made of.
+    /// Refuses near and far planes in the wrong order.
     pub fn check(&self) -> anyhow::Result<()> {
         ensure!(self.near < self.far, "--near {} must be less than --far {}", self.near, self.far);
         Ok(())
     }
 
-    /// One line about how near objects may come.
+    /// Returns a line about how near objects may come.
     pub fn distances(&self, guard: GuardBand) -> String {
         let frustum = self.pair(Pose::IDENTITY).frusta[self.dominant.index()];
         let fov_x = frustum.right.atan() - frustum.left.atan();
@@ -86,7 +86,7 @@ impl EyeArgs {
     }
 }
 
-/// A viewpoint from the command line.
+/// Returns the viewpoint of `--position` and `--target`.
 pub fn viewpoint(position: Option<Vec3>, target: Option<Vec3>) -> Option<Viewpoint> {
     let position = position?;
     Some(Viewpoint { position, target: target.unwrap_or(position + Vec3::NEG_Z) })

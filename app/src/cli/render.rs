@@ -194,7 +194,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     print(args, &reports)
 }
 
-/// Says how many pictures will show nothing.
+/// Warns if pictures will show nothing of the scene.
 fn warn_of_blank(
     gl: &Rc<Context>,
     args: &RenderArgs,

@@ -24,9 +24,9 @@ use yoro_viewer::openxr::runtime::{self, NoBroker, Place, Runtime};
 use yoro_viewer::openxr::{Capture, Description, Frame, Headset, Options, Step};
 use yoro_viewer::{SceneState, Viewer};
 
-/// The pause before a runtime that wants no frame is asked again.
+/// The pause before asking a runtime again that wants no frame.
 const PAUSE: Duration = Duration::from_millis(5);
-/// With --frames, a runtime that wants none for so long is given up.
+/// With --frames, the longest time without a frame.
 const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Show a scene in a headset, by any OpenXR runtime with XR_MNDX_egl_enable

@@ -10,7 +10,7 @@ pub struct Quality {
 }
 
 impl Quality {
-    /// Everything as set.
+    /// Full quality: everything as the settings ask for.
     pub const FULL: Quality = Quality { render_scale: 1.0, imbuffer: 1 };
 }
 
@@ -97,7 +97,7 @@ impl Controller {
         LADDER[self.level]
     }
 
-    /// The device's thermal headroom, where it is known.
+    /// Sets the device's thermal headroom, where it is known.
     pub fn set_thermal_headroom(&mut self, headroom: Option<f32>) {
         self.headroom = headroom.filter(|h| h.is_finite());
     }

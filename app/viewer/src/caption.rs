@@ -11,7 +11,7 @@ const MESSAGE_NS: i64 = 2_000_000_000;
 /// The application's state that the HUD shows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Status<'a> {
-    /// The last second.
+    /// The line of the last second.
     pub frames: Option<&'a Line>,
     /// The device's temperature in degrees Celsius.
     pub celsius: Option<f32>,

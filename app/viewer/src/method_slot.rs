@@ -13,7 +13,7 @@ use yoro_render::stereo::{
     self, EyeTarget, GuardBandUse, ImBufferSize, Method, Pipeline, StereoMethod, StereoOptions, Substitute,
 };
 
-/// The place of the one method.
+/// The stereo method in use, made once there is a scene.
 pub(crate) struct MethodSlot {
     method: Method,
     pipeline: Pipeline,
@@ -42,7 +42,7 @@ impl MethodSlot {
         }
     }
 
-    /// Method and pipeline, to come back to with [`MethodSlot::set_choice`].
+    /// Returns method and pipeline, to be restored by [`MethodSlot::set_choice`].
     pub fn choice(&self) -> (Method, Pipeline) {
         (self.method, self.pipeline)
     }
@@ -143,7 +143,7 @@ impl MethodSlot {
         Ok(())
     }
 
-    /// Drops what is on the GPU.
+    /// Drops the objects on the GPU.
     pub fn drop_made(&mut self) {
         (self.made, self.substitute) = (None, Substitute::default());
     }
@@ -180,7 +180,7 @@ impl MethodSlot {
         Ok(None)
     }
 
-    /// Looks whether one of the eyes can be synthesized from the other, where the method needs that.
+    /// Checks that one of the eyes can be synthesized from the other, where the method needs that.
     pub fn judge(&mut self, pair: &EyePair) {
         let unfit = Substitute::reason(self.method, pair);
         if unfit.as_ref().map(std::mem::discriminant) != self.unfit.as_ref().map(std::mem::discriminant) {
@@ -194,7 +194,7 @@ impl MethodSlot {
         self.unfit = unfit;
     }
 
-    /// Renders both eyes; unfit ones without synthesis, whatever the method.
+    /// Renders both eyes; unfit ones without synthesis, by the substitute.
     pub fn render(
         &mut self,
         gl: &Rc<Context>,
@@ -219,29 +219,29 @@ impl MethodSlot {
         self.made.as_ref().filter(|_| self.unfit.is_none())?.guard_band()
     }
 
-    /// Lets the controller judge a frame; true when the method has to be made again for another ImBuffer, which the
+    /// Lets the controller judge a frame. Returns true if the method has to be made again for another ImBuffer, which the
     /// controller keeps rare.
     pub fn adapt(&mut self, load: &Load, settings: &Settings) -> bool {
         let before = std::mem::replace(&mut self.quality, self.controller.frame(load));
         before.imbuffer != self.quality.imbuffer && self.imbuffer_divisor(settings).is_some()
     }
 
-    /// The device's thermal headroom, where it is known.
+    /// Sets the device's thermal headroom, where it is known.
     pub fn set_thermal_headroom(&mut self, headroom: Option<f32>) {
         self.controller.set_thermal_headroom(headroom);
     }
 
-    /// Frames stop, or resume after a pause: those counted so far no longer describe the load.
+    /// Forgets the frames counted so far, which no longer describe the load after a pause.
     pub fn interrupt(&mut self) {
         self.controller.restart();
     }
 
-    /// The controller starts over: another session begins.
+    /// Restarts the controller for another session.
     pub fn restart_controller(&mut self) {
         self.controller = Controller::new();
     }
 
-    /// Back to full quality: the settings of quality are others.
+    /// Goes back to full quality, after a change of the settings.
     pub fn restore_quality(&mut self) {
         self.restart_controller();
         self.quality = Quality::FULL;

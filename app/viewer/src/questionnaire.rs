@@ -62,7 +62,7 @@ impl Questionnaire {
         (self.rating() - 1.0) / (self.best - 1.0)
     }
 
-    /// The head points elsewhere: to the right for a better rating.
+    /// Turns the head: to the right for a better rating.
     pub fn look(&mut self, orientation: Quat, now_ns: i64) {
         let ahead = orientation * Vec3::NEG_Z;
         let heading = (-ahead.x).atan2(-ahead.z);
@@ -85,7 +85,7 @@ impl Questionnaire {
         }
     }
 
-    /// Straight ahead will be elsewhere, which is not a turn of the head.
+    /// Forgets the head's direction: recentering is not a turn of the head.
     pub fn recenter(&mut self) {
         self.heading = None;
     }
@@ -95,7 +95,7 @@ impl Questionnaire {
         self.moved_ns.is_some_and(|moved| now_ns - moved >= SETTLE_NS)
     }
 
-    /// Takes the marker for the answer: the question and its rating. The next question is asked.
+    /// Takes the marker as the answer, and asks the next question. Returns the question and its rating.
     pub fn answer(&mut self) -> Option<(String, f32)> {
         let answer = (self.questions.pop()?, self.rating());
         self.center();

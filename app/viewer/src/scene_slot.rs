@@ -26,7 +26,7 @@ impl Shown {
     }
 }
 
-/// The place of the one scene. While another is being loaded, the old one stays in view.
+/// The one scene. While another is being loaded, the old one stays in view.
 pub(crate) struct SceneSlot {
     source: SceneSource,
     name: String,
@@ -86,7 +86,7 @@ impl SceneSlot {
         self.shown = Some(shown);
     }
 
-    /// Drops what is on the GPU.
+    /// Drops the objects on the GPU.
     pub fn drop_shown(&mut self) {
         self.shown = None;
     }

@@ -23,8 +23,8 @@ pub(crate) struct SessionStats {
 }
 
 impl SessionStats {
-    /// A scene comes into view; true when a session begins with it. One that is only back after a lost context goes
-    /// on.
+    /// Begins a session when a scene comes into view, and returns true. A scene that is only back after a lost context goes
+    /// on with its session.
     pub fn begin(&mut self, now_ns: i64) -> bool {
         let is_new = self.begin_ns.is_none();
         if is_new {
@@ -34,7 +34,7 @@ impl SessionStats {
         is_new
     }
 
-    /// Another scene is on its way: the session that begins with it is a new one.
+    /// Makes the next scene begin a new session.
     pub fn expect_scene(&mut self) {
         self.begin_ns = None;
         self.reopen();
@@ -46,12 +46,12 @@ impl SessionStats {
         self.is_over = false;
     }
 
-    /// Frames stop; the time until the next one is not counted.
+    /// Stops counting: the time until the next frame is left out.
     pub fn pause(&mut self) {
         self.telemetry.pause();
     }
 
-    /// Counts a frame, with the GPU times of `timed` earlier ones; how many refreshes it was late.
+    /// Counts a frame, with the GPU times of `timed` earlier ones. Returns how many refreshes it was late.
     pub fn frame(&mut self, now_ns: i64, refresh_hz: f32, passes: &[PassTime], timed: u32) -> u32 {
         self.telemetry.gpu(passes.iter().map(|pass| (pass.name, pass.time)), timed);
         self.telemetry.frame(now_ns, refresh_hz)
@@ -67,7 +67,7 @@ impl SessionStats {
         self.telemetry.is_due(now_ns)
     }
 
-    /// Ends a second.
+    /// Ends a second, and returns its line.
     pub fn line(&mut self, now_ns: i64, viewer: &ViewerState, device: &DeviceState) -> Line {
         self.celsius = device.skin_celsius.or(device.battery_celsius);
         let line = self.telemetry.line(now_ns, viewer, device);
@@ -75,7 +75,7 @@ impl SessionStats {
         line
     }
 
-    /// The last second.
+    /// The line of the last second.
     pub fn last_line(&self) -> Option<&Line> {
         self.last_line.as_ref()
     }
@@ -111,7 +111,7 @@ impl SessionStats {
         self.questionnaire.as_mut().filter(|questions| !questions.is_done())
     }
 
-    /// The head has turned.
+    /// Takes the head's orientation, which moves the slider.
     pub fn look(&mut self, orientation: Quat, now_ns: i64) {
         if let Some(questions) = &mut self.questionnaire {
             questions.look(orientation, now_ns);

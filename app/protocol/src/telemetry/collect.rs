@@ -1,4 +1,4 @@
-//! A session, second after second.
+//! Collects frames and device states of a session, and makes a line a second.
 
 use std::time::Duration;
 
@@ -78,7 +78,7 @@ impl Default for Telemetry {
 }
 
 impl Telemetry {
-    /// A frame was finished. Returns how many refreshes it was late.
+    /// Counts a finished frame. Returns how many refreshes it was late.
     pub fn frame(&mut self, now_ns: i64, refresh_hz: f32) -> u32 {
         self.begin_ns.get_or_insert(now_ns);
         if self.process_ns.is_none() {
@@ -101,7 +101,7 @@ impl Telemetry {
         }
     }
 
-    /// Adds what a frame drew of a guard band that sets its own width.
+    /// Adds the columns that a frame drew of a guard band that sets its own width, and the pixels at the border that were filled.
     pub fn guard_band(&mut self, columns: u32, undrawn: u32) {
         let sum = self.guard_band.get_or_insert_default();
         sum.frames += 1;
@@ -109,7 +109,7 @@ impl Telemetry {
         sum.undrawn += u64::from(undrawn);
     }
 
-    /// Frames stop; the time until the next one is not counted.
+    /// Stops counting: the time until the next frame is left out.
     pub fn pause(&mut self) {
         self.second.pause();
         self.totals.pause();
@@ -178,7 +178,7 @@ impl Telemetry {
         }
     }
 
-    /// The session so far, up to its last line.
+    /// Returns the summary of the session so far, up to its last line.
     pub fn summary(&self, now_ns: i64) -> SessionSummary {
         self.totals.summary(self.seconds(now_ns))
     }

@@ -30,12 +30,12 @@ pub struct SecondStatistics {
 }
 
 impl FrameStatistics {
-    /// Room for the frames of a period, so that adding one does not allocate.
+    /// Reserves room for the frames of a period, so that adding one does not allocate.
     pub fn with_capacity(frames: usize) -> FrameStatistics {
         FrameStatistics { intervals_ms: Vec::with_capacity(frames), ..FrameStatistics::default() }
     }
 
-    /// A frame was finished at `now_ns`; returns how many refreshes it was late.
+    /// Counts a frame that was finished at `now_ns`. Returns how many refreshes it was late.
     pub fn add(&mut self, now_ns: i64, refresh_hz: f32) -> u32 {
         self.begin_ns.get_or_insert(now_ns);
         let Some(last) = self.last_ns.replace(now_ns) else { return 0 };
@@ -56,7 +56,7 @@ impl FrameStatistics {
         late
     }
 
-    /// A pause: the time until the next frame is not a frame time.
+    /// Begins a pause: the time until the next frame is not a frame time.
     pub fn pause(&mut self) {
         self.last_ns = None;
     }

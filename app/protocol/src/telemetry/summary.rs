@@ -56,12 +56,12 @@ impl Totals {
         }
     }
 
-    /// Frames stop; the time until the next line takes no energy into account.
+    /// Begins a pause: the time until the next line counts no energy.
     pub fn pause(&mut self) {
         self.last_line_ns = None;
     }
 
-    /// The session so far, which is `seconds` long.
+    /// Returns the summary of the session so far, which is `seconds` long.
     pub fn summary(&self, seconds: f64) -> SessionSummary {
         let some = |value: f64| (self.frames > 0).then_some(value);
         let mean_ms = self.frame_ms / self.frames as f64;

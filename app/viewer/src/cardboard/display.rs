@@ -34,9 +34,9 @@ struct Attached {
     gl: Rc<Context>,
     frame: StereoFrame,
     lens: LensPass,
-    /// Behind the last frame that was presented.
+    /// A fence behind the last frame that was presented.
     presented: Fence,
-    /// The last frame that was rendered: rotation from head to world.
+    /// Rotation from head to world of the last frame that was rendered.
     rendered: Option<Quat>,
 }
 
@@ -116,7 +116,7 @@ impl Cardboard {
         self.attached.is_some()
     }
 
-    /// The screen has another size, or is turned otherwise.
+    /// Takes a screen of another size or rotation.
     ///
     /// # Errors
     /// [`ViewerError::Gl`].
@@ -146,7 +146,7 @@ impl Cardboard {
     /// See [`Viewer::configure`].
     ///
     /// # Errors
-    /// As [`Viewer::configure`], and [`ViewerError::Params`]; the settings before stay.
+    /// See [`Viewer::configure`], and [`ViewerError::Params`]; the settings before stay.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         let before = self.viewer.settings();
         let optics_differ = (settings.chromatic, settings.screen) != (before.chromatic, before.screen);
@@ -185,7 +185,7 @@ impl Cardboard {
         self.tracker.add(sample, timestamp_ns);
     }
 
-    /// Holds the head still, whatever the sensors say, or lets it go.
+    /// Holds the head still whatever the sensors measure, or (`None`) lets it go.
     pub fn hold_head(&mut self, head: Option<HeldHead>) {
         self.held = head;
     }
@@ -201,7 +201,7 @@ impl Cardboard {
         self.viewer.resume();
     }
 
-    /// [`Cardboard::render`] and [`Cardboard::present`].
+    /// Calls [`Cardboard::render`] and [`Cardboard::present`].
     ///
     /// # Errors
     /// Those of the calls above.
@@ -231,16 +231,16 @@ impl Cardboard {
     }
 
     /// Waits until the GPU has finished the frame that was presented before; meanwhile it begins with the one that was
-    /// rendered since. Without this a GPU that is slower than the display works off a queue of frames, each of which shows
-    /// where the head pointed when it was put there. No longer than a quarter of a second.
+    /// rendered since. Without this, a GPU that is slower than the display works off a queue of frames, each of which shows
+    /// an old head pose. Waits for a quarter of a second at most.
     pub fn wait(&mut self) {
         if let Some(attached) = &mut self.attached {
             attached.presented.wait();
         }
     }
 
-    /// Puts the frame that was rendered last on the screen: through the lenses, turned to where the head points
-    /// now. May be called again for the same frame, when the next one is late.
+    /// Puts the frame that was rendered last on the screen: through the lenses, turned to the head's newest
+    /// direction. May be called again for the same frame, when the next one is late.
     ///
     /// # Errors
     /// See [`Viewer::end`].
@@ -299,7 +299,7 @@ impl Cardboard {
     }
 }
 
-/// Width and height in metres of the screen behind the lenses: what the settings say counts more than what the device says.
+/// Returns width and height in metres of the screen behind the lenses, from the settings or else from the device.
 fn metres(settings: &Settings, screen: &Screen) -> [f32; 2] {
     settings.screen.map_or_else(|| screen.metres(), |size| size.metres())
 }

@@ -6,22 +6,22 @@ use std::time::Duration;
 use glow::HasContext as _;
 use yoro_gl::Context;
 
-/// A GPU that takes longer for a frame is not waited for: it may have hung, or lost its context.
+/// The longest wait for a frame: a slower GPU may have hung, or lost its context.
 const TIMEOUT: Duration = Duration::from_millis(250);
 
-/// A place in the stream of commands that the GPU has passed, or is still to pass.
+/// A place in the stream of the GPU's commands.
 pub(super) struct Fence {
     gl: Rc<Context>,
     place: Option<glow::Fence>,
 }
 
 impl Fence {
-    /// None yet.
+    /// Makes a fence that nothing waits for yet.
     pub fn new(gl: &Rc<Context>) -> Fence {
         Fence { gl: gl.clone(), place: None }
     }
 
-    /// Puts it behind the commands so far.
+    /// Puts the fence behind the commands so far.
     pub fn set(&mut self) {
         self.clear();
         // SAFETY: the context is current, by the contract of the viewer; the arguments are the only ones that there are.
@@ -30,7 +30,7 @@ impl Fence {
         self.place = place.ok().filter(|place| !place.0.is_null());
     }
 
-    /// Has the GPU begin with all commands so far, and waits until it has passed the fence.
+    /// Makes the GPU begin with all commands so far, and waits until it has passed the fence.
     pub fn wait(&mut self) {
         if let Some(place) = self.place {
             // SAFETY: the context is current, and the fence was made in it and not deleted.

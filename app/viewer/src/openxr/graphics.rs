@@ -34,7 +34,7 @@ impl Android {
     }
 
     pub(super) fn platform(&self) -> xr::AndroidPlatformInfo {
-        // SAFETY: promised by whoever made this.
+        // SAFETY: `new` takes only valid pointers, which outlive this value.
         unsafe { xr::AndroidPlatformInfo::new(self.vm, self.activity) }
     }
 }
@@ -86,7 +86,7 @@ pub(super) fn create_session(
     Ok(unsafe { xr::Session::from_raw(instance.clone(), handle, Box::new(())) })
 }
 
-/// xrGetOpenGLESGraphicsRequirementsKHR, which must come before a session; `present` is the context's version.
+/// Calls xrGetOpenGLESGraphicsRequirementsKHR, which must come before a session; `present` is the context's version.
 pub(super) fn check_version(
     instance: &xr::Instance,
     system: xr::SystemId,

@@ -15,7 +15,7 @@ use yoro_gl::{Context, Destination, ForeignTarget};
 
 /// A compositor that holds an image for longer than this is stuck.
 const TIMEOUT: Duration = Duration::from_secs(3);
-/// One wait; in between the program stays answerable.
+/// One wait; in between the program can still be interrupted.
 const WAIT_NS: i64 = 250_000_000;
 
 /// The kind of a swapchain's images.
@@ -91,7 +91,7 @@ impl Images {
         })
     }
 
-    /// xrAcquireSwapchainImage and xrWaitSwapchainImage: the next image can be drawn into.
+    /// Acquires the next image and waits for it (xrAcquireSwapchainImage, xrWaitSwapchainImage).
     pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
         let (fp, raw) = (self.instance.fp(), self.swapchain.as_raw());
         let mut index = 0;
@@ -123,7 +123,7 @@ impl Images {
         Ok(())
     }
 
-    /// xrReleaseSwapchainImage: what was drawn can be shown.
+    /// Releases the image to the compositor (xrReleaseSwapchainImage).
     pub fn release(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
         if self.current.take().is_none() {
             return Ok(());

@@ -186,7 +186,7 @@ impl Input {
         Ok(Input { select, menu, squeeze, stick, set, memory: Memory::default() })
     }
 
-    /// Reads the controls; what the user wants goes to `events`.
+    /// Reads the controls, and adds the user's actions to `events`.
     pub fn poll(
         &mut self,
         session: &xr::Session<xr::OpenGlEs>,
@@ -210,7 +210,7 @@ impl Input {
         Ok(())
     }
 
-    /// The controls are the system's for a while: what is held now means nothing later.
+    /// Forgets what is held, while the system has the controls.
     pub fn forget(&mut self) {
         self.memory = Memory::default();
     }

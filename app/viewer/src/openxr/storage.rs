@@ -68,7 +68,7 @@ pub(super) struct Storage {
 }
 
 impl Storage {
-    /// Finds the way for images of a format.
+    /// Chooses the way for images of a format.
     pub fn new(gl: &Rc<Context>, format: u32) -> Result<Storage, GlError> {
         let is_direct = format == glow::SRGB8_ALPHA8 && has_control(gl) && stores_as_written(gl)?;
         Storage::by(gl, is_direct)
@@ -87,7 +87,7 @@ impl Storage {
         self.detour.is_none()
     }
 
-    /// Begins a frame: where to draw the eyes that are to end up in `images`.
+    /// Begins a frame. Returns the targets of the eyes that are to end up in `images`.
     pub fn begin(&mut self, images: [Destination; 2]) -> Result<[Destination; 2], GlError> {
         match &mut self.detour {
             None => {

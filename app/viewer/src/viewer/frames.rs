@@ -17,7 +17,7 @@ const SIZE_STEP: f32 = 16.0;
 const BACKDROP: [f32; 4] = [0.03, 0.035, 0.05, 1.0];
 
 impl Viewer {
-    /// Begins a frame: what has been loaded comes into view.
+    /// Begins a frame: a scene that has been loaded comes into view.
     pub fn begin(&mut self, timing: &FrameTiming) {
         self.now_ns = timing.now_ns;
         self.poll_scene();
@@ -46,7 +46,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// The HUD as it should be seen in this frame, if at all.
+    /// Returns the HUD of this frame, if it is to be seen.
     ///
     /// # Errors
     /// [`ViewerError::NoContext`].
@@ -69,7 +69,7 @@ impl Viewer {
         Ok(Some(attached.hud.set(Content { text, progress }, placement)))
     }
 
-    /// Writes what the HUD says now.
+    /// Writes the text of the HUD.
     fn write_caption(&mut self) {
         if let Some(question) = self.stats.question() {
             return question.write(self.caption.text_mut());
@@ -87,7 +87,7 @@ impl Viewer {
         self.caption.write_status(&status, self.now_ns);
     }
 
-    /// Ends a frame that is on its way to the display.
+    /// Ends a frame that was handed to the display.
     ///
     /// # Errors
     /// [`ViewerError::NoContext`]; [`ViewerError::Gl`] when an adapted method cannot be made.

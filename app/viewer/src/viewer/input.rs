@@ -10,7 +10,7 @@ use yoro_protocol::{Ipd, Settings};
 const IPD_STEP: f32 = 0.001;
 
 impl Viewer {
-    /// Does what the user wants.
+    /// Takes an action of the user.
     ///
     /// # Errors
     /// [`ViewerError::Gl`] when a method cannot be made; the one before stays.

@@ -131,14 +131,14 @@ impl Viewer {
         self.method.make(gl, &self.settings)
     }
 
-    /// The application goes to the background: nothing moves on, and the time until the next frame is not
+    /// Pauses in the background: nothing moves on, and the time until the next frame is not
     /// counted.
     pub fn pause(&mut self) {
         self.stats.pause();
         self.method.interrupt();
     }
 
-    /// The application is back.
+    /// Resumes after [`Viewer::pause`].
     pub fn resume(&mut self) {
         self.method.interrupt();
     }
@@ -168,7 +168,7 @@ impl Viewer {
         self.ipd.native = ipd;
     }
 
-    /// Takes back what the user has made of the distance between the eyes.
+    /// Resets the distance between the eyes to that of the settings.
     pub(crate) fn reset_ipd(&mut self) {
         self.ipd.chosen = self.settings.ipd;
     }

@@ -8,7 +8,7 @@ use openxr::sys;
 
 use super::places::Place;
 
-/// No place led to a runtime. Displayed, it says in one line what each of them said.
+/// The failures of all places, none of which led to a runtime. `Display` writes them in one line.
 #[derive(Debug)]
 pub struct NotFound {
     /// The places in the order in which they were tried; a broker that offers several runtimes appears once for each.
@@ -95,7 +95,7 @@ pub enum Failure {
         /// The authority asked.
         authority: String,
     },
-    /// The broker's answer lacks something.
+    /// A column is missing in the broker's answer.
     #[error("the broker {authority} names a runtime without {column}")]
     BrokerRow {
         /// The authority asked.
@@ -103,7 +103,7 @@ pub enum Failure {
         /// The column that is missing or empty.
         column: &'static str,
     },
-    /// The broker says that functions are renamed and does not say how.
+    /// The broker says that functions are renamed, but not how.
     #[error("the broker {authority} does not tell the function names of {package}")]
     BrokerFunctions {
         /// The authority asked.
@@ -119,7 +119,7 @@ pub enum Failure {
         /// The dynamic linker's message.
         reason: String,
     },
-    /// The library is not what it should be.
+    /// The library lacks a function.
     #[error("{} has no function {symbol}: it is not an OpenXR {kind}", library.display())]
     Symbol {
         /// The library.
@@ -145,7 +145,7 @@ pub enum Failure {
         /// Its answer.
         result: sys::Result,
     },
-    /// The negotiation ended with something else than what was asked for.
+    /// The negotiation ended with another version.
     #[error(
         "{} negotiates loader interface {interface} and OpenXR {}.{}; needed are interface 1 and OpenXR 1",
         library.display(), api.major(), api.minor()
@@ -158,7 +158,7 @@ pub enum Failure {
         /// The version of the API.
         api: sys::Version,
     },
-    /// The negotiation succeeded, and there is nothing to call.
+    /// The negotiation succeeded without an entry point.
     #[error("{} negotiates well and gives no xrGetInstanceProcAddr", library.display())]
     NoEntryPoint {
         /// The library.

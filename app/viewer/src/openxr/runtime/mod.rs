@@ -116,7 +116,7 @@ impl Runtime {
 /// This runs code of the library that it finds. Nothing is ever tested with `stat`: a library may lie within an APK.
 ///
 /// # Errors
-/// [`NotFound`] with what every place said.
+/// [`NotFound`] with the failure of every place.
 pub fn find(places: &[Place], broker: &dyn Broker, java: Option<&JavaContext>) -> Result<Runtime, NotFound> {
     let mut attempts = Vec::new();
     for place in places {

@@ -1,4 +1,4 @@
-//! The eyes of a frame: where the runtime has them, and as the viewer's method can have them.
+//! The eyes of a frame: as the runtime locates them, and as the viewer's method needs them.
 
 use glam::{Quat, Vec3};
 use openxr as xr;
@@ -46,7 +46,7 @@ impl Session {
         Ok(Some(EyePair { poses, frusta, depth: DepthRange::PAPER, size, dominant }))
     }
 
-    /// Eyes that the viewer's method can do, near those of the runtime.
+    /// Returns eyes that the viewer's method can use, near those of the runtime.
     pub(super) fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
         let reason = Substitute::reason(viewer.method(), &native);
         let aligned = match reason {
@@ -86,7 +86,7 @@ impl Session {
     }
 }
 
-/// A pose of this library; none where the numbers are no pose. The specification lets a runtime be off unit length by a
+/// Returns a pose of this library; `None` if the numbers are no pose. The specification lets a runtime be off unit length by a
 /// hundredth, and some are off by more, so the quaternion is normalised.
 pub(super) fn to_pose(pose: &xr::Posef) -> Option<Pose> {
     let (p, q) = (pose.position, pose.orientation);
@@ -105,7 +105,7 @@ pub(super) fn from_pose(pose: &Pose) -> xr::Posef {
     }
 }
 
-/// None for a field of view that no image can have.
+/// Returns the frustum of a field of view; `None` if no image can have it.
 fn to_frustum(fov: &xr::Fovf) -> Option<Frustum> {
     let angles = [fov.angle_left, fov.angle_right, fov.angle_down, fov.angle_up];
     let fits = angles.iter().all(|angle| angle.abs() < WIDEST);

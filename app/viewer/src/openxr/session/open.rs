@@ -266,7 +266,7 @@ fn make_depth(
     Ok(Some(Depth { images, copy: DepthCopy::new(gl)?, format }))
 }
 
-/// The hidden part of each eye's image, where the runtime tells.
+/// The hidden part of each eye's image, if the runtime gives it.
 fn make_mask(
     gl: &Rc<Context>,
     session: &xr::Session<xr::OpenGlEs>,
@@ -294,7 +294,7 @@ fn make_spaces(session: &xr::Session<xr::OpenGlEs>) -> Result<Spaces, XrError> {
     })
 }
 
-/// The display's refresh rates in Hz; none where the runtime does not tell.
+/// The display's refresh rates in Hz; empty if the runtime does not give them.
 fn ask_refresh_rates(session: &xr::Session<xr::OpenGlEs>) -> Result<Vec<f32>, XrError> {
     if session.instance().exts().fb_display_refresh_rate.is_none() {
         return Ok(Vec::new());

@@ -98,7 +98,7 @@ impl Session {
         call("xrRequestExitSession", self.session.request_exit())
     }
 
-    /// The value of a call of the viewer. Its error goes to the log, once if it comes with every frame.
+    /// Returns the value of a call of the viewer, and logs its error, once if it comes with every frame.
     pub(super) fn told<T>(&mut self, result: Result<T, ViewerError>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
