@@ -101,7 +101,7 @@ fn split_triangles(model: &Model, triangles: &mut [u32], first: usize, units: &m
     split_triangles(model, triangles, first + middle, units);
 }
 
-/// A total order of finite floats as integers.
+/// Returns integers in the order of finite floats.
 fn ordered(x: f32) -> i32 {
     let bits = x.to_bits() as i32;
     bits ^ (((bits >> 31) as u32) >> 1) as i32
@@ -131,17 +131,17 @@ fn gather_units(model: &Model, units: &mut [Unit], triangles: &[u32], built: &mu
 /// A choice of objects of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Selection {
-    /// All of them.
+    /// All objects.
     #[default]
     All,
-    /// Those whose bounds come nearer to `from` than `distance` metres.
+    /// Objects whose bounds come nearer to `from` than `distance` metres.
     Nearer {
         /// Usually the midpoint between the eyes.
         from: Vec3,
         /// Metres.
         distance: f32,
     },
-    /// The others.
+    /// The other objects.
     Farther {
         /// Usually the midpoint between the eyes.
         from: Vec3,
@@ -169,17 +169,17 @@ pub struct Culler {
 }
 
 impl Culler {
-    /// A culler for all that a view shows.
+    /// Makes a culler for all that a view shows.
     pub fn of_view(view: &View) -> Culler {
         Culler::selecting(view, Selection::All)
     }
 
-    /// A culler for what a view shows of a selection.
+    /// Makes a culler for the part of a selection that a view shows.
     pub fn selecting(view: &View, selection: Selection) -> Culler {
         Culler::new(view.pose.position, &eye_to_clip(view), selection)
     }
 
-    /// A culler for the clip volume of `eye_to_clip`, which takes positions relative to `eye`.
+    /// Makes a culler for the clip volume of `eye_to_clip`, which takes positions relative to `eye`.
     pub fn new(eye: Vec3, eye_to_clip: &Mat4, selection: Selection) -> Culler {
         let m = eye_to_clip.transpose();
         let (x, y, z, w) = (m.x_axis, m.y_axis, m.z_axis, m.w_axis);

@@ -19,7 +19,7 @@ use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::View;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
-/// Scene-referred colour of one view, and what it is made with.
+/// Scene-referred colour of one view, and the images that it is made with.
 pub struct LightTargets {
     ssao: Option<SsaoTargets>,
     hdr: RenderTarget,
@@ -53,7 +53,7 @@ impl LightTargets {
     }
 }
 
-/// Display-referred colour of one view, and what it is made with.
+/// Display-referred colour of one view, and the images that it is made with.
 pub struct FinishTargets {
     bloom: Option<BloomTargets>,
     color: RenderTarget,
@@ -96,7 +96,8 @@ impl ViewImages for DeferredTargets {
     }
 }
 
-/// EXT_color_buffer_half_float alone has half floats, but not the packed ones: the driver is asked by trying.
+/// Returns the format of scene-referred colour. EXT_color_buffer_half_float alone has half floats, but no packed ones, so that
+/// the driver is tried.
 pub fn hdr_format(gl: &Rc<Context>) -> Format {
     if !gl.capabilities().float_render_targets {
         return Format::Rgba8;
@@ -104,7 +105,7 @@ pub fn hdr_format(gl: &Rc<Context>) -> Format {
     first_renderable(gl, [Format::R11G11B10F, Format::Rgba16F])
 }
 
-/// The first format that the driver renders to, or the last.
+/// Returns the first format that the driver renders to, or the last.
 pub fn first_renderable<const N: usize>(gl: &Rc<Context>, formats: [Format; N]) -> Format {
     let renders = |f: &Format| RenderTarget::new(gl, [1, 1], &[(*f, Filter::Linear)], None).is_ok();
     formats.into_iter().find(renders).unwrap_or(formats[N - 1])
@@ -116,7 +117,7 @@ struct LightPasses {
     lighting: LightingPass,
 }
 
-/// Renders views of one scene the deferred way: passes made for the scene's style and materials.
+/// The deferred renderer of one scene: passes made for the scene's style and materials.
 pub struct DeferredRenderer {
     common: Common,
     ssao_radius: f32,
@@ -158,7 +159,7 @@ impl DeferredRenderer {
         Ok(renderer)
     }
 
-    /// Compiles what views of these kinds need; nothing is done for what is there already.
+    /// Compiles what views of these kinds need, if it is not there already.
     pub(crate) fn prepare(
         &mut self,
         scene: &GpuScene,
@@ -231,7 +232,7 @@ impl DeferredRenderer {
         passes.lighting.run(&targets.hdr, g_buffer, occlusion, shadow, scene, view, &lights, role);
     }
 
-    /// Bloom and tone mapping: scene-referred to display-referred colour.
+    /// Makes display-referred colour of scene-referred colour: bloom and tone mapping.
     pub(crate) fn finish(&self, targets: &FinishTargets, light: &LightTargets) {
         let Columns { drawn, always } = light.lit_columns();
         let mut glow = None;
@@ -242,8 +243,8 @@ impl DeferredRenderer {
         self.tonemap.run(&targets.color, (light.hdr(), drawn), glow, self.common.settings.exposure);
     }
 
-    /// Draws the transparent part of a scene, if there is any, over a finished image of `view`, whose window depth is
-    /// `depth`: a rendered image, or one that is synthesized from such.
+    /// Draws the transparent part of a scene, if there is any, over a finished image of `view`, rendered or synthesized.
+    /// `depth` is its window depth.
     pub(crate) fn draw_transparent(
         &self,
         to: &Destination,

@@ -21,7 +21,7 @@ use yoro::eyes::{Eye, View};
 use yoro_gl::{Context, GlError, Program, RenderTarget, ShaderSource};
 use yoro_scene::ShadingStyle;
 
-/// Renders views of one scene the forward way: passes made for the scene's style and materials.
+/// The forward renderer of one scene: passes made for the scene's style and materials.
 pub struct ForwardRenderer {
     pub(super) common: Common,
     /// True if there are outlines, which read all samples.
@@ -51,7 +51,7 @@ impl ForwardRenderer {
         ForwardRenderer::build(gl, settings, scene, gl.capabilities().multisample_textures)
     }
 
-    /// Compiles it for targets whose samples shaders can read or not.
+    /// Compiles it for targets whose samples are `readable` by shaders or not.
     pub(super) fn build(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -95,7 +95,7 @@ impl ForwardRenderer {
         Ok(renderer)
     }
 
-    /// Compiles what views of a layout need; nothing is done if that is there already.
+    /// Compiles what views of a layout need, if it is not there already.
     pub(crate) fn prepare(&mut self, scene: &GpuScene, layout: Layout) -> Result<(), GlError> {
         let pass = &mut self.geometry[layout.index()];
         if pass.is_none() {
@@ -159,20 +159,20 @@ impl ViewRenderer for ForwardRenderer {
 
 /// Views in parts.
 impl ForwardRenderer {
-    /// Fits targets to views that are drawn to the end at once, so that no sample is needed afterwards.
+    /// Fits targets to a view that is completed at once, so that no sample is needed afterwards.
     fn fit_for_all(&self, targets: &mut ForwardTargets, view: &View) -> Result<(), GlError> {
         targets.request = ViewRequest::default();
         // Outlines read the samples.
         targets.fit(view.size, self.develops(), !self.ink)
     }
 
-    /// True if something is done to an image after its samples are averaged.
+    /// True if bloom or outlines come after the average of the samples.
     fn develops(&self) -> bool {
         self.develop.is_some()
     }
 
-    /// Resumes drawing into the kept samples of a view: near objects and transparent surfaces, as they come after synthesis.
-    /// Colour is renewed, and with `depth` the depth.
+    /// Resumes drawing into the kept samples of a view, after synthesis: near objects and transparent surfaces. Resolves colour
+    /// again, and with `depth` the depth.
     pub(crate) fn resume_samples(
         &self,
         targets: &ForwardTargets,
@@ -187,7 +187,7 @@ impl ForwardRenderer {
     }
 
     /// Does the same as [`ForwardRenderer::resume_samples`] with an image that was not rendered: 8-bit colour and float
-    /// depth, of the view's size. The targets are those of a view that is no smaller; what they hold is gone afterwards.
+    /// depth, of the view's size. The targets must be no smaller than the view; their contents are gone afterwards.
     pub(crate) fn resume_samples_with(
         &self,
         targets: &ForwardTargets,

@@ -14,7 +14,7 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,
 };
 
-/// Float for both conventions: what begins with a synthesized image has its depth format.
+/// Float for both conventions, as synthesized images have it, whose depth is loaded.
 const DEPTH: Format = Format::Depth32F;
 
 /// The images of one view, or of both eyes side by side.
@@ -28,7 +28,7 @@ pub struct ForwardTargets {
     samples: Option<MultisampleTarget>,
     /// The samples where they can stay in tiles.
     tile: Option<TileTarget>,
-    /// True if they do in the frame that is drawn.
+    /// True if samples stay in tiles in the present frame.
     in_tile: bool,
     /// Average colour, nearest depth.
     pub(super) resolved: RenderTarget,
@@ -181,7 +181,7 @@ impl ForwardTargets {
 }
 
 impl ViewImages for ForwardTargets {
-    /// Display-referred sRGB, filtered linearly. Alpha is luma; with several samples that of what is cut out is undefined.
+    /// Display-referred sRGB, filtered linearly. Alpha is luma; with several samples it is undefined where materials are cut out.
     fn color(&self) -> &RenderTarget {
         self.developed.as_ref().unwrap_or(&self.resolved)
     }
@@ -190,7 +190,7 @@ impl ViewImages for ForwardTargets {
     /// where samples stayed in tiles.
     ///
     /// # Panics
-    /// When it was not asked for since the last surface was drawn.
+    /// If it was not requested since the last surface was drawn.
     fn depth(&self) -> &Texture {
         assert!(self.has_depth.get(), "this view was rendered without its depth");
         self.resolved.depth()

@@ -19,7 +19,7 @@ pub struct LightingPass {
     program: Program,
 }
 
-/// The defines of `include/shade.glsl` and `include/hdr.glsl` for a scene.
+/// Returns the defines of `include/shade.glsl` and `include/hdr.glsl` for a scene.
 pub fn shading_defines(
     gl: &Context,
     scene: &GpuScene,
@@ -40,7 +40,7 @@ pub fn shading_defines(
     defines
 }
 
-/// Width of ink outlines in pixels.
+/// Returns the width of ink outlines in pixels.
 pub fn line_width(view: &View) -> i32 {
     (view.size[1] as f32 / 900.0).round().max(1.0) as i32
 }

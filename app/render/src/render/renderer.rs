@@ -14,10 +14,10 @@ use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::View;
 use yoro_gl::{Context, GlError, RenderTarget, Texture};
 
-/// Renders views of one scene: its programs, made for the scene's style and materials, and the scene's shadow
-/// map. Single views are ready after [`Renderer::new`]; what a stereo method needs besides is compiled once, with
-/// its first frame of the scene or when [`crate::stereo::StereoMethod::prepare`] asks for it. Nothing is compiled
-/// or allocated after that.
+/// A renderer of one scene: programs for the scene's style and materials, and its shadow map.
+///
+/// Single views are ready after [`Renderer::new`]. A stereo method compiles the rest once, with its first frame of the scene
+/// or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
 pub enum Renderer {
     /// [`RendererKind::Deferred`].
     Deferred(Box<DeferredRenderer>),
@@ -73,7 +73,7 @@ impl Renderer {
     /// Compiles the programs for a scene and draws its shadow map.
     ///
     /// # Errors
-    /// [`GlError`] when the driver refuses a program or a target, or has not as many samples as the settings say.
+    /// [`GlError`] when the driver refuses a program or a target, or lacks the settings' number of samples.
     pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Renderer, GlError> {
         Ok(match settings.renderer {
             RendererKind::Deferred => {
@@ -98,7 +98,7 @@ impl Renderer {
         self.draw(targets, scene, view, Some(ViewRequest { selection, ..ViewRequest::default() }))
     }
 
-    /// Renders all of a scene, transparent surfaces too; depth is that of the opaque ones.
+    /// Renders all of a scene, with transparent surfaces. Depth is that of opaque surfaces.
     ///
     /// # Errors
     /// As [`Renderer::render`].
@@ -111,7 +111,7 @@ impl Renderer {
         self.draw(targets, scene, view, None)
     }
 
-    /// Renders what is requested, or all.
+    /// Renders the request, or all surfaces without one.
     fn draw<'a>(
         &self,
         targets: &'a mut ViewTargets,

@@ -25,8 +25,8 @@ pub enum PixelDepth {
     FirstSample,
 }
 
-/// Samples that are still needed once a view is rendered, to be read or to draw into them. The others never leave the
-/// tiles of a tile-based GPU, as far as its driver can help it.
+/// Samples that are still needed once a view is rendered, to be read or to draw into them. The others stay in
+/// the tiles of a tile-based GPU, if its driver can do that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KeptSamples {
     /// The samples' colour.

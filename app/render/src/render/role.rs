@@ -13,17 +13,11 @@ const ROLE_UNIT: u32 = FREE_UNIT + 2;
 /// A kind of [`Role`]: a shader variant of ambient occlusion and lighting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoleKind {
-    /// [`Role::Whole`].
     Whole,
-    /// [`Role::Half`].
     Half,
-    /// [`Role::Layer`].
     Layer,
-    /// [`Role::NearField`].
     NearField,
-    /// [`Role::FarField`].
     FarField,
-    /// [`Role::Reprojected`].
     Reprojected,
 }
 

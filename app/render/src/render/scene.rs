@@ -84,14 +84,13 @@ pub(super) struct GpuMaterial {
     id: f32,
 }
 
-/// sRGB to linear.
+/// Decodes sRGB to linear.
 fn linear(srgb: Vec3) -> Vec3 {
     let channel = |c: f32| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
     Vec3::new(channel(srgb.x), channel(srgb.y), channel(srgb.z))
 }
 
-/// Ks of 1 is a mirror in no MTL file: the brightest are taken for a third, the usual 0.2 for about 0.01 less
-/// than glass.
+/// Reflectance of Ks = 1, which means a mirror in no MTL file. The usual 0.2 becomes about 0.01 less than glass.
 const REFLECTANCE_OF_WHITE: f32 = 0.35;
 
 impl GpuMaterial {
@@ -116,7 +115,7 @@ impl GpuMaterial {
     }
 }
 
-/// A scene whose triangles and pictures live on the GPU, in clusters that are culled by themselves.
+/// A scene whose triangles and pictures live on the GPU, in clusters that are culled one by one.
 pub struct GpuScene {
     /// Unique in this process.
     pub(super) id: u64,
@@ -147,8 +146,7 @@ const MAP_NAMES: [&str; 4] = ["diffuse_map", "specular_map", "emissive_map", "no
 pub(super) const FREE_UNIT: u32 = MAP_NAMES.len() as u32;
 
 impl GpuScene {
-    /// Uploads a scene. Its triangles are sorted into clusters; its memory is given back as soon as GL has
-    /// taken it over.
+    /// Uploads a scene, and sorts its triangles into clusters. Its memory is freed as soon as GL has copied it.
     ///
     /// # Errors
     /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::Object`] without memory.
@@ -188,12 +186,12 @@ impl GpuScene {
         })
     }
 
-    /// Smallest box around all vertices.
+    /// Returns the smallest box around all vertices.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangle_count
     }
@@ -230,7 +228,7 @@ impl GpuScene {
         defines
     }
 
-    /// The batches of the deferred pass with their materials and clusters.
+    /// Returns the batches of opaque triangles with their materials and clusters.
     pub(super) fn opaque(&self) -> impl Iterator<Item = (&GpuMaterial, &[Cluster])> {
         self.batches.iter().filter_map(|batch| {
             let material = &self.materials[batch.material];
@@ -263,7 +261,7 @@ fn upload_picture(gl: &Rc<Context>, mut image: TextureImage) -> Result<Texture, 
     Ok(texture)
 }
 
-/// Pictures start at the top, GL at the bottom.
+/// Reverses the rows: pictures start at the top, GL at the bottom.
 fn flip_rows(bytes: &mut [u8], row: usize) {
     let (mut low, mut high) = (0, bytes.len() / row.max(1));
     while low + 1 < high {

@@ -10,7 +10,7 @@ use yoro_protocol::{Settings, Ssao};
 pub struct RenderSettings {
     /// The kind of renderer.
     pub renderer: RendererKind,
-    /// Samples in each pixel of the forward renderer: 1, 2 or 4, as far as the driver has them. The deferred one has one.
+    /// Samples in each pixel of the forward renderer: 1, 2 or 4, if the driver has them. The deferred one has one.
     pub msaa: u32,
     /// Edge of the sun's shadow map in texels; 0 for no shadows.
     pub shadow_map_size: u32,

@@ -71,7 +71,7 @@ impl ShadowMap {
         Ok(ShadowMap { target, matrix: to_unit * to_clip, texel })
     }
 
-    /// Sets what `include/shade.glsl` needs, for positions relative to `eye`.
+    /// Sets the uniforms of `include/shade.glsl`, for positions relative to `eye`.
     pub fn set(&self, program: &Program, unit: u32, eye: Vec3) {
         program
             .texture("shadow_map", unit, self.target.depth().raw())
@@ -80,8 +80,8 @@ impl ShadowMap {
     }
 }
 
-/// The orthographic projection along the sun's rays that contains the scene, or of a large one the
-/// surroundings of its viewpoints; and the box's extent in metres.
+/// Returns the orthographic projection along the sun's rays, and its box's extent in metres. It contains the scene, or the
+/// surroundings of the viewpoints of a large scene.
 fn light_box(scene: Bounds, viewpoints: &[Viewpoint], sun: Vec3) -> (Mat4, Vec3) {
     let sun = sun.normalize_or(Vec3::Y);
     let rotation = Pose::look_at(Vec3::ZERO, -sun).view_matrix();

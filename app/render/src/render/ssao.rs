@@ -12,7 +12,7 @@ use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarg
 
 /// Samples per pixel; even.
 const SAMPLES: usize = 12;
-/// Texels that are computed beside the columns that are wanted.
+/// Texels that are computed on either side of the requested columns.
 const BESIDE: u32 = 3;
 /// Turns of the spiral on which they lie, without a common divisor with their number.
 const TURNS: f32 = 5.0;
@@ -56,7 +56,7 @@ pub struct SsaoPass {
 }
 
 impl SsaoPass {
-    /// Occlusion by what is within `radius` metres, at 1 / `scale` of the resolution (1 or 2), in views of a role.
+    /// Compiles occlusion by surfaces within `radius` metres, at 1 / `scale` of the resolution (1 or 2), in views of a role.
     pub fn new(gl: &Rc<Context>, radius: f32, scale: u32, role: RoleKind) -> Result<SsaoPass, GlError> {
         let defines =
             [("SAMPLES", SAMPLES.to_string()), ("STRENGTH", "3.2".to_owned()), ("SCALE", scale.to_string())];
@@ -79,8 +79,8 @@ impl SsaoPass {
         })
     }
 
-    /// Computes the occlusion of the pixels that the role lights; the others' is undefined. What lies beside the columns
-    /// `[first, end]` that are always drawn occludes nothing in them.
+    /// Computes the occlusion of the pixels that the role lights; that of others is undefined. Surfaces beside the columns
+    /// `[first, end]` that are always drawn occlude nothing in them.
     pub fn run(
         &self,
         targets: &SsaoTargets,

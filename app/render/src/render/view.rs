@@ -35,8 +35,8 @@ pub(crate) trait ViewRenderer: Sized {
         request: &ViewRequest,
     ) -> Result<(), GlError>;
 
-    /// Renders all of a scene, transparent surfaces too. With `depth` the targets have that of the opaque ones afterwards;
-    /// without, a renderer with several samples in each pixel spends nothing on it.
+    /// Renders all of a scene, with transparent surfaces. With `depth` the targets have the depth of opaque surfaces
+    /// afterwards; without it, a renderer with several samples in each pixel spends nothing on depth.
     ///
     /// # Errors
     /// As [`ViewRenderer::render`].
@@ -57,14 +57,14 @@ pub(crate) trait ViewImages {
     /// Window depth in the view's convention.
     fn depth(&self) -> &Texture;
 
-    /// The window depth of every sample, a `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples in float: where a
-    /// pixel has several, there are such textures, and they are kept. Opaque surfaces only, until transparent ones are drawn
-    /// after synthesis.
+    /// The window depth of every sample: a float `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples. `None` for
+    /// one sample a pixel, for drivers without such textures, and if samples are not kept. It shows opaque surfaces alone
+    /// until drawing resumes.
     fn depth_samples(&self) -> Option<glow::Texture> {
         None
     }
 
-    /// The colour of every sample, likewise.
+    /// The colour of every sample, under the same conditions.
     fn color_samples(&self) -> Option<glow::Texture> {
         None
     }

@@ -27,7 +27,7 @@ const APPROACH: f32 = 0.25;
 /// The empty range.
 const NOTHING: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
-/// The border at which the band lies, and the eyes' geometry as far as things move along it.
+/// The border at which the band lies, and the geometry of motion along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Border {
     /// Columns that the band has at most.
@@ -148,7 +148,7 @@ pub(super) struct Profile {
     pub border: Border,
     /// Columns of the band that were drawn.
     pub drawn: u32,
-    /// Pixels that were seen and not drawn, as far as the outermost column that was drawn tells.
+    /// Pixels that were seen and not drawn: an estimate from the outermost column that was drawn.
     pub undrawn: u32,
     /// Columns per entry of `disparities`.
     step: u32,
@@ -341,7 +341,7 @@ mod tests {
         assert_eq!(profile(14, |_| 40.0).seen(&rest), Some(41));
         // Far within the picture it says nothing of what is outside.
         assert_eq!(profile(14, |out| if out < -30 { 40.0 } else { 9.0 }).seen(&rest), Some(10));
-        // A turn of a degree brings in twenty columns: nobody has seen what is there.
+        // A turn of a degree brings in twenty columns that no frame has shown.
         let turned = |disparity: f32| profile(14, |_| disparity).seen(&at(turned(1.0))).unwrap();
         assert!((10..=11).contains(&turned(9.0)) && (31..=32).contains(&turned(30.0)));
     }

@@ -37,7 +37,7 @@ impl<R: RendererOfKind> FrameMethod for Conventional<R> {
 
     fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
         let dominant = frame.pair.dominant;
-        // The dominant eye last, so that its depth is at hand.
+        // The dominant eye comes last, so that its depth stays in the targets.
         for eye in [dominant.other(), dominant] {
             let depth = frame.wants_depth(eye) || (self.keeps_depth && eye == dominant);
             frame.renderer.render_all(&mut self.targets, frame.scene, &frame.pair.view(eye), depth)?;

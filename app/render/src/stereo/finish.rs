@@ -14,7 +14,7 @@ pub(super) struct EyeImage<'a> {
     pub(super) color: &'a RenderTarget,
     /// Pixel of `color` that belongs to the lower left pixel of the eye.
     pub(super) origin: [u32; 2],
-    /// Window depth, if somebody wants it.
+    /// Window depth, if the target has depth.
     pub(super) depth: Option<DepthImage<'a>>,
 }
 
@@ -45,7 +45,7 @@ impl Finish {
         Ok(Finish { gl: setup.gl.clone(), fxaa: fxaa.then(|| Fxaa::new(setup.gl)).transpose()? })
     }
 
-    /// Writes an eye's colour, and its depth if somebody wants it.
+    /// Writes an eye's colour, and its depth if the target has depth.
     pub(super) fn run(&self, eye: &EyeImage, to: &EyeTarget) {
         self.color(eye.color, eye.origin, &to.color);
         Finish::depth(eye.depth, to);
@@ -59,7 +59,7 @@ impl Finish {
         }
     }
 
-    /// Writes an eye's depth, if somebody wants it.
+    /// Writes an eye's depth, if the target has depth.
     pub(super) fn depth(from: Option<DepthImage>, to: &EyeTarget) {
         if let (Some(from), Some(to)) = (from, &to.depth) {
             to.copy.run(from, &to.to);

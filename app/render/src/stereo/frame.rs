@@ -30,7 +30,7 @@ impl<R> Frame<'_, R> {
         &self.to[eye.index()]
     }
 
-    /// True if somebody wants an eye's depth.
+    /// True if an eye's target has depth.
     pub(super) fn wants_depth(&self, eye: Eye) -> bool {
         self.to(eye).depth.is_some()
     }

@@ -97,7 +97,7 @@ impl Fields {
 }
 
 /// Returns the pixel of the far field that belongs to each eye's lower left pixel. It is rounded: where frusta differ by a
-/// fraction, the far field is off by at most half a pixel, less than the disparity that it leaves out.
+/// fraction, the far field is off by at most half a pixel, about as much as it leaves out anyway.
 fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
     Eye::BOTH.map(|eye| {
         let (frustum, size) = (&pair.frusta[eye.index()], far.size.map(|n| n as f32));

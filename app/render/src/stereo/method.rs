@@ -57,7 +57,7 @@ impl StereoFrame {
 pub struct EyeTarget<'a> {
     /// Takes display-referred sRGB with luma in alpha, and stores it as it is written.
     pub color: Destination,
-    /// Takes the eye's window depth, if somebody wants it.
+    /// Takes the eye's window depth; `None` if it is not needed.
     pub depth: Option<DepthTarget<'a>>,
 }
 
@@ -99,7 +99,7 @@ pub trait StereoMethod {
         None
     }
 
-    /// Renders both eyes of a frame to wherever they are wanted, by [`Eye::index`].
+    /// Renders both eyes of a frame into their targets, by [`Eye::index`].
     ///
     /// # Errors
     /// [`StereoError`] for a pair of eyes that the method cannot do, or when GL refuses.

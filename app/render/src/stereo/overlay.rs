@@ -50,7 +50,7 @@ impl Over {
 pub(super) enum EyeSource<'a> {
     /// The rendered eye: what its targets hold, or that after anti-aliasing, as it was synthesized from.
     Rendered(Option<&'a Smooth>),
-    /// The synthesized eye, with float depth if anything is drawn or somebody wants it.
+    /// The synthesized eye, with float depth if anything is drawn or its target has depth.
     Synthesized(&'a RenderTarget),
 }
 

@@ -31,7 +31,7 @@ pub struct Synthesized<R: StereoRenderer> {
     switch: Option<Switch<R>>,
 }
 
-/// Pipelines without and with depth of the synthesized eye, as far as they were asked for.
+/// Pipelines without and with depth of the synthesized eye, made when they are needed.
 struct Synthesizers {
     gl: Rc<Context>,
     options: PipelineOptions,
@@ -120,7 +120,7 @@ impl<R: StereoRenderer> Synthesized<R> {
         Ok(true)
     }
 
-    /// Renders the dominant eye, without near objects, as far as it is seen.
+    /// Renders the dominant eye without near objects, in the columns that are needed.
     fn render_dominant(
         &mut self,
         frame: &Frame<R>,

@@ -334,7 +334,7 @@ fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
         (0..2).for_each(|_| drop(rigs[1].render(&mut *method, &pair)));
         let used = method.guard_band().unwrap();
         assert!(used.columns >= 20 && used.undrawn == 0, "{renderer:?}: {used:?}");
-        // The board goes on to the border, as it does where it was drawn.
+        // The board is continued to the border.
         let share = equal_share(&filled, &drawn);
         assert!(share > 0.95, "{renderer:?}: {share} of the picture as it should be");
     }
