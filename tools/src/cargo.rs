@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 
-use crate::folders::root;
+use crate::folders::{root, target_folder};
 
 /// The cargo that runs this program, in the workspace's root.
 pub fn cargo() -> Command {
@@ -47,6 +47,20 @@ pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
         Some(0) => Ok(()),
         code => std::process::exit(code.unwrap_or(130)),
     }
+}
+
+/// Builds a program of the workspace, and returns the command that runs it in the workspace's root.
+///
+/// # Errors
+/// When it does not compile.
+pub fn program(name: &str) -> anyhow::Result<Command> {
+    // With the features that the whole workspace gives its dependencies: those that the tests need are not compiled twice.
+    if !succeeds(&["build", "--quiet", "--workspace", "--bin", name], &[]) {
+        bail!("{name} does not compile: see above");
+    }
+    let mut command = Command::new(target_folder()?.join("debug").join(name));
+    command.current_dir(root());
+    Ok(command)
 }
 
 /// Runs cargo, and returns true if it succeeds.

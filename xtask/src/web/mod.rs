@@ -5,10 +5,11 @@ mod serve;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::cargo::{announce, cargo};
+use yoro_tools::cargo::{self, announce};
 use yoro_tools::folders::{self, remove, root, target_folder};
 use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
 
@@ -89,10 +90,9 @@ fn compile(target: &Path) -> anyhow::Result<PathBuf> {
 
 /// Makes the module ready for browsers. Returns its size and the size that is transferred, in bytes.
 fn bind(module: &Path, folder: &Path) -> anyhow::Result<(u64, u64)> {
-    let mut command = cargo();
-    command.args(["run", "--quiet", "--package", "yoro-web-bindgen", "--"]).arg(module).arg(folder);
-    let output =
-        command.stderr(std::process::Stdio::inherit()).output().context("cargo cannot be started")?;
+    let mut command = cargo::program("yoro-web-bindgen")?;
+    let output = command.arg(module).arg(folder).stderr(Stdio::inherit()).output();
+    let output = output.context("yoro-web-bindgen cannot be started")?;
     if !output.status.success() {
         bail!("the module cannot be made ready for browsers: see above");
     }
