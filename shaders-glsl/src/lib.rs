@@ -1,13 +1,12 @@
-//! The shaders of yoro, and how their files become the text that a driver compiles.
+//! The GLSL files of yoro, and the assembly of a file and its includes into the text that a driver compiles.
 //!
-//! Files are named by their path in this package, such as `synthesis/gather/march.frag`; folders are named after
-//! the modules that use them. A file may `#include "PATH"` another one; [`assemble`] puts each in once, with `#line`, so
-//! that a driver's messages lead back to file and line ([`Assembled::name_files`]).
+//! It takes a file's path in this package, such as `synthesis/gather/march.frag`, a GLSL version and defines, and gives the
+//! text. This crate must never know OpenGL or any other interface to a GPU: it handles text.
 //!
-//! With the feature `hot-reload` the environment variable `YORO_SHADERS` may name a folder from which shaders are read
-//! instead: a change is seen at the next start, without compiling.
-//!
-//! This crate must never know OpenGL or any other interface to a GPU: it deals in text.
+//! Folders are named after the modules that use them. [`assemble`] resolves each `#include "PATH"` once, and adds `#line`, so
+//! that a driver's messages lead back to file and line ([`Assembled::name_files`]). With the feature `hot-reload` the
+//! environment variable `YORO_SHADERS` may name a folder from which shaders are read instead: a change takes effect at the
+//! next start, without compiling.
 
 use std::fmt::Write as _;
 
@@ -89,14 +88,14 @@ static FILES: &[(&str, &str)] = embed![
     "viewer/show.frag",
 ];
 
-/// What GLSL wants before every declaration.
+/// The `#extension` directives, which GLSL requires before every declaration.
 const EXTENSIONS: &str = "include/extensions.glsl";
 
-/// A file that is not part of this package, or an `#include` of one.
+/// The path of a file that is not part of this package, given or included.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingFile(pub String);
 
-/// The paths of all files, sorted.
+/// Returns the paths of all files, sorted.
 pub fn files() -> impl Iterator<Item = &'static str> {
     FILES.iter().map(|(path, _)| *path)
 }
@@ -104,36 +103,40 @@ pub fn files() -> impl Iterator<Item = &'static str> {
 /// A shader's text with its includes resolved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assembled {
-    /// What the driver compiles.
+    /// The text that the driver compiles.
     pub text: String,
-    /// File by source string number; number 0 is what comes before all files.
+    /// Files by source string number; number 0 is the text before all files.
     files: Vec<String>,
 }
 
 impl Assembled {
-    /// The files that the text is made of, the includes among them.
+    /// Returns the files that the text consists of, includes among them.
     pub fn files(&self) -> &[String] {
         &self.files[1..]
     }
 
-    /// Replaces `NUMBER:LINE` at the start of a driver's messages (Mesa, most mobile drivers) by the file's name.
+    /// Replaces the source string number at the start of each of a driver's messages, `NUMBER:LINE`, by the file's name.
+    /// Mesa and most mobile drivers write messages so.
     pub fn name_files(&self, log: &str) -> String {
         let mut named = String::new();
         for line in log.trim_end_matches(['\0', '\n']).lines() {
             let body = line.trim_start_matches("ERROR: ");
             let digits = body.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
             let file = body[..digits].parse::<usize>().ok().and_then(|n| self.files.get(n));
-            match file {
-                Some(file) => drop(writeln!(named, "{file}{}", &body[digits..])),
-                None => drop(writeln!(named, "{line}")),
+            if let Some(file) = file {
+                named.push_str(file);
+                named.push_str(&body[digits..]);
+            } else {
+                named.push_str(line);
             }
+            named.push('\n');
         }
         named.trim_end().to_owned()
     }
 }
 
-/// Puts `#version` (such as `310 es`), the defines, the extensions and the precision statements first, then the file
-/// with its `#include`s resolved (each file once).
+/// Returns a file's text with its `#include`s resolved, each file once. `#version` (such as `310 es`), the defines, the
+/// extensions and the precision statements come first.
 ///
 /// # Errors
 /// [`MissingFile`].
@@ -216,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn each_file_is_included_once_and_lines_are_counted() {
+    fn each_file_is_included_once_with_its_lines() {
         let assembled = assemble("synthesis/gather/march.frag", "300 es", &[("A", "1".into())]).unwrap();
         assert!(assembled.text.starts_with("#version 300 es\n#define A 1\n#line 1 1\n"));
         assert!(!assembled.text.contains("#include"));

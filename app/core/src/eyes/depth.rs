@@ -1,6 +1,6 @@
-//! What the values in a depth buffer mean.
+//! The meaning of the values in a depth buffer.
 
-/// What the values in a depth buffer mean.
+/// The direction of the values in a depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -20,7 +20,7 @@ pub struct DepthRange {
     pub near: f32,
     /// Distance of the far plane in metres, possibly infinite.
     pub far: f32,
-    /// Meaning of the stored value.
+    /// Direction of the stored values.
     pub convention: DepthConvention,
 }
 
@@ -29,16 +29,17 @@ impl DepthRange {
     pub const PAPER: DepthRange =
         DepthRange { near: 0.3, far: 1000.0, convention: DepthConvention::Standard };
 
-    /// The range of a depth buffer that holds 0 at one distance and 1 at another, in metres, as OpenXR's `nearZ` and
-    /// `farZ` say it: the larger one, which may be infinite, is the far plane.
+    /// Returns the range of a depth buffer that holds 0 at one distance and 1 at another, in metres: OpenXR's `nearZ` and
+    /// `farZ`. The larger distance, which may be infinite, is the far plane.
     pub fn from_distances(at_0: f32, at_1: f32) -> DepthRange {
-        match at_0 <= at_1 {
-            true => DepthRange { near: at_0, far: at_1, convention: DepthConvention::Standard },
-            false => DepthRange { near: at_1, far: at_0, convention: DepthConvention::Reversed },
+        if at_0 <= at_1 {
+            DepthRange { near: at_0, far: at_1, convention: DepthConvention::Standard }
+        } else {
+            DepthRange { near: at_1, far: at_0, convention: DepthConvention::Reversed }
         }
     }
 
-    /// `(c, m)` of the affine law `1 / z = c + m * depth`, z in metres.
+    /// Returns `(c, m)` of the affine law `1 / z = c + m * depth`, z in metres.
     pub fn inverse_distance_law(&self) -> (f64, f64) {
         let (near, far) = (1.0 / self.near as f64, 1.0 / self.far as f64);
         match self.convention {
@@ -47,19 +48,19 @@ impl DepthRange {
         }
     }
 
-    /// Distance along the axis in metres of a stored depth value.
+    /// Returns the distance along the viewing axis, in metres, of a stored value.
     pub fn distance(&self, depth: f32) -> f32 {
         let (c, m) = self.inverse_distance_law();
         (1.0 / (c + m * depth as f64)) as f32
     }
 
-    /// Stored depth value of a distance along the axis in metres.
+    /// Returns the stored value of a distance along the viewing axis, in metres.
     pub fn depth(&self, distance: f32) -> f32 {
         let (c, m) = self.inverse_distance_law();
         ((1.0 / distance as f64 - c) / m) as f32
     }
 
-    /// The stored value of the far plane, with which the depth buffer is cleared.
+    /// Returns the stored value of the far plane, to which the depth buffer is cleared.
     pub fn clear_value(&self) -> f32 {
         match self.convention {
             DepthConvention::Standard => 1.0,
@@ -73,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn swapped_planes_are_reversed_depth() {
+    fn a_larger_first_distance_means_reversed_depth() {
         for (at_0, at_1) in [(0.1f32, 50.0f32), (50.0, 0.1), (f32::INFINITY, 0.1), (0.1, f32::INFINITY)] {
             let range = DepthRange::from_distances(at_0, at_1);
             assert_eq!((range.near, range.far), (0.1, at_0.max(at_1)));
@@ -83,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn depth_round_trips() {
+    fn depth_and_distance_are_inverse() {
         for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
             for far in [1000.0, f32::INFINITY] {
                 let range = DepthRange { near: 0.1, far, convention };

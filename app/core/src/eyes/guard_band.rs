@@ -1,34 +1,34 @@
-//! How much wider than its eye the dominant view is rendered.
+//! The guard band: the part of the dominant view beyond its own eye's image.
 
 use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// How much wider than its eye the dominant view is rendered, so that the other eye finds its outer border.
+/// The width by which the dominant view is rendered wider than its eye's image, so that it contains the other eye's outer
+/// border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum GuardBand {
-    /// No guard band: as in the paper; the outer border of the other eye is a hole.
+    /// No guard band, as in the paper: the outer border of the other eye is a hole.
     None,
-    /// As many pixels as it takes for surfaces at this distance (metres, in [`GuardBand::DISTANCES`]) or farther.
+    /// Wide enough for all surfaces at this distance or farther: metres, in [`GuardBand::DISTANCES`].
     Distance(f32),
     /// A number of pixels, up to [`GuardBand::MAX_PIXELS`].
     Pixels(u32),
-    /// As [`GuardBand::Distance`]; whoever renders may leave out those of its columns that the other eye does not
-    /// see at the moment.
+    /// [`GuardBand::Distance`], but the renderer may leave out columns that the other eye does not see at the moment.
     Auto(f32),
 }
 
 impl GuardBand {
-    /// [`GuardBand::Auto`] as `auto` alone says it: complete from 1 m.
+    /// [`GuardBand::Auto`] that is complete from 1 m: the text `auto`.
     pub const AUTO: GuardBand = GuardBand::Auto(1.0);
     /// The widest band.
     pub const MAX_PIXELS: u32 = 1024;
-    /// Distances in metres from which a band can be complete.
+    /// The distances, in metres, from which a band can be complete.
     pub const DISTANCES: RangeInclusive<f32> = 0.05..=1000.0;
 
-    /// Whether the value lies in its range.
+    /// True if the value lies in its range.
     pub fn is_valid(&self) -> bool {
         match self {
             GuardBand::None => true,
@@ -37,7 +37,7 @@ impl GuardBand {
         }
     }
 
-    /// Width in pixels, for a focal length in pixels and a distance between the eyes in metres.
+    /// Returns the width in pixels, for a focal length in pixels and a distance between the eyes in metres.
     pub(super) fn pixels(self, focal_length: f32, ipd: f32) -> u32 {
         match self {
             GuardBand::None => 0,
@@ -49,7 +49,7 @@ impl GuardBand {
     }
 }
 
-/// A text that is no [`GuardBand`].
+/// A text that is not a [`GuardBand`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "give none, pixels such as 40px, metres such as 1.0, or auto, which may have metres such as auto:0.5"
@@ -75,7 +75,7 @@ impl FromStr for GuardBand {
     }
 }
 
-/// As [`FromStr`] reads it.
+/// The text that [`FromStr`] reads.
 impl Display for GuardBand {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match *self {
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_are_read_again() {
+    fn texts_round_trip_and_others_are_refused() {
         for (text, band) in [
             ("none", GuardBand::None),
             ("40px", GuardBand::Pixels(40)),

@@ -1,7 +1,7 @@
-//! Which eye is where: poses, frusta, depth ranges, and the law that moves a pixel from one eye to the other.
+//! Geometry of the eyes: poses, frusta, depth ranges, and the law that moves a pixel from one eye to the other.
 //!
-//! Units are metres and radians; pixels have their centre at +0.5. The world is right-handed with Y up,
-//! and an eye looks along its own -Z with X to the right.
+//! Units are metres and radians. A world in other units works as well, if all lengths are in that unit. Pixels have their
+//! centre at +0.5. The world is right-handed with Y up, and an eye looks along its own -Z with X to the right.
 
 mod depth;
 mod guard_band;
@@ -30,7 +30,7 @@ impl Eye {
     /// Both eyes, left first.
     pub const BOTH: [Eye; 2] = [Eye::Left, Eye::Right];
 
-    /// The other eye.
+    /// Returns the other eye.
     pub fn other(self) -> Eye {
         match self {
             Eye::Left => Eye::Right,
@@ -38,12 +38,12 @@ impl Eye {
         }
     }
 
-    /// 0 for left, 1 for right: the layer of the eye in every two-element array.
+    /// Returns the eye's index in arrays of two: 0 for left, 1 for right.
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// -1 for left, +1 for right: the side of the head along its X axis.
+    /// Returns the eye's side along the head's X axis: -1 for left, +1 for right.
     pub fn side(self) -> f32 {
         match self {
             Eye::Left => -1.0,
@@ -51,7 +51,7 @@ impl Eye {
         }
     }
 
-    /// `left` or `right`.
+    /// Returns `left` or `right`.
     pub fn name(self) -> &'static str {
         match self {
             Eye::Left => "left",

@@ -1,13 +1,13 @@
-//! The two eyes of a frame, and what it takes to synthesize one from the other.
+//! The two eyes of a frame, and the views and displacements for synthesizing one from the other.
 
 use glam::{Quat, Vec3};
 
 use super::{DepthRange, DisparityLaw, Eye, Frustum, GuardBand, Pose, View, Warp};
 
-/// Images of more pixels than this on a side are refused: no GL driver renders them.
+/// The largest side of an image in pixels. No driver renders larger ones.
 const MAX_SIDE: f64 = 65536.0;
 
-/// Why a pair of eyes cannot be synthesized from one.
+/// The reason why one eye of a pair cannot be synthesized from the other.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EyesError {
@@ -33,13 +33,13 @@ pub enum EyesError {
         /// The distance in metres.
         distance: f32,
     },
-    /// The nearest surfaces move further from eye to eye than the shaders can tell ([`Warp::MAX_DISPLACEMENT`]).
+    /// Surfaces at the near plane move further than the shaders can store ([`Warp::MAX_DISPLACEMENT`]).
     #[error(
-        "the nearest surfaces move by {pixels:.0} pixels from eye to eye, and {max} are the most that can be synthesized; move the near plane away, bring the eyes together, or render fewer pixels",
+        "surfaces at the near plane move by {pixels:.0} pixels from eye to eye, and at most {max} can be synthesized; move the near plane away, bring the eyes together, or render fewer pixels",
         max = Warp::MAX_DISPLACEMENT
     )]
     Displacement {
-        /// Pixels.
+        /// Displacement in pixels.
         pixels: f64,
     },
     /// The two frusta have different tangents per pixel.
@@ -60,10 +60,8 @@ pub enum EyesError {
         /// Rows from the left eye's lower edge up to the right eye's.
         rows: f32,
     },
-    /// A pose or a frustum with a value that is no finite number, or an orientation that is no rotation.
-    #[error(
-        "an eye has a pose or a frustum that is none: need finite numbers and an orientation of length 1"
-    )]
+    /// A pose or a frustum with a value that is not finite, or an orientation that is not a rotation.
+    #[error("an eye's pose or frustum is invalid: need finite numbers and an orientation of length 1")]
     Invalid,
     /// A frustum or an image without area, or depth planes out of order.
     #[error(
@@ -76,14 +74,14 @@ pub enum EyesError {
         max = GuardBand::MAX_PIXELS, near = GuardBand::DISTANCES.start(), far = GuardBand::DISTANCES.end()
     )]
     GuardBand(GuardBand),
-    /// The union of both frusta and the guard band has more pixels on a side than any driver renders.
+    /// The union of both frusta and the guard band has more pixels on a side than drivers render.
     #[error(
         "the view to render would have {width:.0}x{height:.0} pixels; give the eyes fewer pixels, or frusta that overlap"
     )]
     TooLarge {
-        /// Pixels.
+        /// Width in pixels.
         width: f64,
-        /// Pixels.
+        /// Height in pixels.
         height: f64,
     },
 }
@@ -101,7 +99,7 @@ pub struct EyeOptions {
     pub dominant: Eye,
     /// Depth planes and encoding.
     pub depth: DepthRange,
-    /// Outer and inner half-angle in radians, for asymmetric frusta instead of the width that follows from `fov_y`.
+    /// Outer and inner half-angle in radians, for asymmetric frusta; `None` for the width that follows from `fov_y`.
     pub outer_inner: Option<[f32; 2]>,
 }
 
@@ -120,7 +118,7 @@ impl Default for EyeOptions {
 }
 
 impl EyeOptions {
-    /// The two eyes around a head pose.
+    /// Returns the two eyes around a head pose.
     pub fn pair(&self, head: Pose) -> EyePair {
         let symmetric = Frustum::symmetric(self.fov_y, self.size[0] as f32 / self.size[1] as f32);
         let mut pair = EyePair::parallel(head, symmetric, self.ipd, self.depth, self.size, self.dominant);
@@ -149,7 +147,7 @@ pub struct EyePair {
 }
 
 impl EyePair {
-    /// Parallel eyes around a head pose, with one frustum for both.
+    /// Returns parallel eyes around a head pose, with one frustum for both.
     pub fn parallel(
         head: Pose,
         frustum: Frustum,
@@ -162,7 +160,7 @@ impl EyePair {
         EyePair { poses, frusta: [frustum; 2], depth, size, dominant }
     }
 
-    /// The image of one eye.
+    /// Returns the view of one eye.
     pub fn view(&self, eye: Eye) -> View {
         View {
             pose: self.poses[eye.index()],
@@ -172,18 +170,17 @@ impl EyePair {
         }
     }
 
-    /// The point halfway between the eyes.
+    /// Returns the point halfway between the eyes.
     pub fn middle(&self) -> Vec3 {
         (self.poses[0].position + self.poses[1].position) * 0.5
     }
 
-    /// Distance between the eyes in metres along their X axis.
+    /// Returns the distance between the eyes along their X axis, in metres.
     pub fn ipd(&self) -> f32 {
         (self.poses[1].position - self.poses[0].position).dot(self.poses[0].right())
     }
 
-    /// The same eyes with frusta of one width and one height, over the same rows: each grows around its own as far
-    /// as it takes.
+    /// Returns the same eyes with frusta of equal width over the same rows. Each frustum contains its original.
     pub fn evened(&self) -> EyePair {
         let [l, r] = self.frusta;
         let width = l.width().max(r.width());
@@ -195,10 +192,9 @@ impl EyePair {
         EyePair { frusta: self.frusta.map(grown), ..*self }
     }
 
-    /// Eyes at the same places that look in one direction, at right angles to the line between them, with frusta
-    /// that contain those of these eyes. An image that is rendered so holds what a canted eye sees, turned about the
-    /// eye's own centre: whoever shows it can turn it back, exactly. Not for eyes that see further than 80 degrees
-    /// from that direction.
+    /// Returns parallel eyes at the same positions, at right angles to the line between them, with frusta that contain the
+    /// original ones. They serve canted eyes: a view of a parallel eye can be turned back to the canted eye exactly, since
+    /// both have the same centre. `None` if an eye sees further than 80 degrees from the common direction.
     pub fn parallelized(&self) -> Option<EyePair> {
         let between = self.poses[1].position - self.poses[0].position;
         let x = between.try_normalize().unwrap_or(self.poses[0].right());
@@ -231,7 +227,7 @@ impl EyePair {
         Some(eyes.evened())
     }
 
-    /// Focal length in pixels along X: pixels per unit tangent.
+    /// Returns the focal length along X in pixels.
     pub fn focal_length_pixels(&self) -> f32 {
         self.size[0] as f32 / self.frusta[self.dominant.index()].width()
     }
@@ -242,7 +238,7 @@ impl EyePair {
     /// own image is a crop of it) to the union of both frusta and by the guard band.
     ///
     /// # Errors
-    /// [`EyesError`] for eyes whose pixels do not move along rows only, or move too far.
+    /// [`EyesError`] if pixels do not move along rows only, or move too far.
     pub fn synthesis(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
         self.check_values()?;
         if !guard.is_valid() {
@@ -298,7 +294,7 @@ impl EyePair {
         Ok(SynthesisViews { source, target: t, dominant_crop: [left, bottom], guard_columns: guard, warp })
     }
 
-    /// Checks that poses, frusta, depth planes and size are any at all.
+    /// Checks poses, frusta, depth planes and size.
     fn check_values(&self) -> Result<(), EyesError> {
         if !self.poses.iter().all(Pose::is_valid) || !self.frusta.iter().all(Frustum::is_finite) {
             return Err(EyesError::Invalid);
@@ -366,14 +362,15 @@ pub struct SynthesisViews {
     pub target: View,
     /// Lower left corner, in pixels of the source image, of the dominant eye's own image.
     pub dominant_crop: [u32; 2],
-    /// Columns of the guard band: the source's first on the left for a synthesized left eye, its last for a right eye.
+    /// Number of columns of the guard band: the source's leftmost for a synthesized left eye, its rightmost for a right
+    /// eye.
     pub guard_columns: u32,
-    /// How the source's pixels move.
+    /// Displacement of the source's pixels.
     pub warp: Warp,
 }
 
 impl SynthesisViews {
-    /// Upper left corner, in pixels of a source image whose row 0 is at the top, of the dominant eye's own image.
+    /// Returns the upper left corner of the dominant eye's own image, in pixels of a source image with row 0 at the top.
     pub fn dominant_crop_from_top(&self) -> [u32; 2] {
         let [left, bottom] = self.dominant_crop;
         [left, self.source.size[1] - self.target.size[1] - bottom]
@@ -487,7 +484,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_lie_between_rows_are_told_from_other_densities() {
+    fn rows_between_rows_have_their_own_error() {
         let mut p = pair(Eye::Right);
         let own = p.frusta[0];
         let row = own.height() / 512.0;
@@ -501,7 +498,6 @@ mod tests {
         p.evened().synthesis(GuardBand::None).unwrap();
     }
 
-    /// What [`GuardBand`]'s parser refuses must not come in past it.
     #[test]
     fn guard_bands_out_of_range_are_refused() {
         let bands = [0.0, 1e-30, -1.0, 0.04, 1001.0, f32::NAN, f32::INFINITY].map(GuardBand::Distance);
@@ -515,7 +511,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_are_no_numbers_are_refused() {
+    fn nan_and_infinite_values_are_refused() {
         type Spoil = fn(&mut EyePair);
         let spoilt: [(Spoil, EyesError); 9] = [
             (|p| (p.depth.near, p.depth.far) = (f32::MAX, f32::INFINITY), EyesError::Empty),
@@ -535,9 +531,8 @@ mod tests {
         }
     }
 
-    /// Frusta side by side, one a million pixels from the other, and an eye of as many pixels as the type holds.
     #[test]
-    fn views_that_no_driver_renders_are_refused() {
+    fn views_with_more_pixels_than_drivers_render_are_refused() {
         let mut apart = pair(Eye::Right);
         apart.frusta = [0.0, -2000.0].map(|left| Frustum { left, right: left + 1.0, bottom: -0.5, top: 0.5 });
         let huge = EyePair { size: [u32::MAX; 2], ..pair(Eye::Right) };
@@ -582,7 +577,7 @@ mod tests {
                 error.to_string().contains("near plane") && error.to_string().contains("4095"),
                 "{error}"
             );
-            // What moves across the whole image is seen nowhere: it need not be told from what moves further.
+            // A surface that moves across the whole image is not seen, however far it moves.
             synthesis(pair(2048, 0.005, 0.063)).unwrap();
             synthesis(pair(64, 0.3, 100.0)).unwrap();
             let error = synthesis(pair(64, 1e-7, 0.063)).unwrap_err();
@@ -604,7 +599,7 @@ mod tests {
     }
 
     #[test]
-    fn canted_eyes_see_nothing_beside_their_parallel_ones() {
+    fn parallelized_eyes_contain_the_canted_ones() {
         let mut eyes = pair(Eye::Right);
         eyes.frusta = [Frustum::from_fov(-0.8, 0.7, 0.75, -0.75), Frustum::from_fov(-0.7, 0.8, 0.75, -0.75)];
         // Outwards by 5 degrees each, and the head askew.

@@ -1,4 +1,4 @@
-//! One eye: its pose, its frustum, its image.
+//! One eye: pose, frustum, image.
 
 use glam::{Mat4, Quat, Vec3, Vec4};
 
@@ -15,11 +15,11 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// At the origin, looking along -Z.
+    /// The pose at the origin that looks along -Z.
     pub const IDENTITY: Pose = Pose { position: Vec3::ZERO, orientation: Quat::IDENTITY };
 
-    /// A pose at `position` that looks at `target` with the world's Y up. Looking straight up or down
-    /// takes -Z as the up direction.
+    /// Returns a pose at `position` that looks at `target`, with the world's Y up. A pose that looks straight up or down has
+    /// -Z as its up direction.
     pub fn look_at(position: Vec3, target: Vec3) -> Pose {
         let forward = (target - position).try_normalize().unwrap_or(Vec3::NEG_Z);
         let up = if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
@@ -28,34 +28,34 @@ impl Pose {
         Pose { position, orientation }
     }
 
-    /// Whether the position is finite and the orientation a rotation, but for rounding.
+    /// True if the position is finite and the orientation is a rotation, within rounding.
     pub(super) fn is_valid(&self) -> bool {
         self.position.is_finite() && (self.orientation.length_squared() - 1.0).abs() < 1e-2
     }
 
-    /// The unit vector to the right.
+    /// Returns the unit vector to the right.
     pub fn right(&self) -> Vec3 {
         self.orientation * Vec3::X
     }
 
-    /// The unit vector straight ahead.
+    /// Returns the unit vector straight ahead.
     pub fn forward(&self) -> Vec3 {
         self.orientation * Vec3::NEG_Z
     }
 
-    /// The same pose moved along its own axes by `offset` metres.
+    /// Returns the same pose moved along its own axes by `offset`, in metres.
     pub fn translated_local(&self, offset: Vec3) -> Pose {
         Pose { position: self.position + self.orientation * offset, orientation: self.orientation }
     }
 
-    /// World to local.
+    /// Returns the matrix from world to local space.
     pub fn view_matrix(&self) -> Mat4 {
         Mat4::from_rotation_translation(self.orientation, self.position).inverse()
     }
 }
 
-/// A view frustum by the tangents of its four half-angles; `left` and `bottom` are negative for a frustum
-/// that contains its axis. [`Frustum::from_fov`] makes it of OpenXR's angles.
+/// A view frustum, by the tangents of its four half-angles. `left` and `bottom` are negative if it contains its axis.
+/// [`Frustum::from_fov`] converts OpenXR's angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frustum {
@@ -70,15 +70,15 @@ pub struct Frustum {
 }
 
 impl Frustum {
-    /// A symmetric frustum from the vertical field of view (radians) and the aspect ratio width / height.
+    /// Returns a symmetric frustum with this vertical field of view, in radians, and aspect ratio width / height.
     pub fn symmetric(fov_y: f32, aspect: f32) -> Frustum {
         let top = (fov_y * 0.5).tan();
         let right = top * aspect;
         Frustum { left: -right, right, bottom: -top, top }
     }
 
-    /// The frustum of OpenXR's `XrFovf`: angles in radians from the axis, `left` and `down` negative for a frustum
-    /// that contains it.
+    /// Returns the frustum of OpenXR's `XrFovf`: angles in radians from the axis, `left` and `down` negative if the frustum
+    /// contains the axis.
     pub fn from_fov(angle_left: f32, angle_right: f32, angle_up: f32, angle_down: f32) -> Frustum {
         Frustum {
             left: angle_left.tan(),
@@ -88,12 +88,12 @@ impl Frustum {
         }
     }
 
-    /// Width at distance 1.
+    /// Returns the width at distance 1.
     pub fn width(&self) -> f32 {
         self.right - self.left
     }
 
-    /// Height at distance 1.
+    /// Returns the height at distance 1.
     pub fn height(&self) -> f32 {
         self.top - self.bottom
     }
@@ -103,7 +103,7 @@ impl Frustum {
     }
 }
 
-/// Everything that defines one rendered image: pose, frustum, depth range and size.
+/// A rendered image: pose, frustum, depth range and size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Pose of the eye.
@@ -117,8 +117,8 @@ pub struct View {
 }
 
 impl View {
-    /// Local to clip space, for OpenGL's default clip volume (-w..w on each axis): a depth buffer then holds
-    /// what [`DepthRange`] says, in both conventions.
+    /// Returns the matrix from local to clip space, for OpenGL's default clip volume (-w..w on each axis). The depth buffer
+    /// then has the values of [`DepthRange`], in both conventions.
     pub fn projection(&self) -> Mat4 {
         let f = &self.frustum;
         let (c, m) = self.depth.inverse_distance_law();
@@ -132,8 +132,8 @@ impl View {
         )
     }
 
-    /// Local to clip space, for Vulkan: y points down, depth is 0..w, and what is rendered has row 0 at the top. The depth
-    /// buffer holds what [`DepthRange`] says, in both conventions.
+    /// Returns the matrix from local to clip space for Vulkan: y points down, depth is 0..w, and the image has row 0 at the
+    /// top. The depth buffer then has the values of [`DepthRange`], in both conventions.
     pub fn vulkan_projection(&self) -> Mat4 {
         let to_vulkan = Mat4::from_cols(
             Vec4::X,
@@ -144,7 +144,7 @@ impl View {
         to_vulkan * self.projection()
     }
 
-    /// World to clip space.
+    /// Returns the matrix from world to clip space.
     pub fn view_projection(&self) -> Mat4 {
         self.projection() * self.pose.view_matrix()
     }
@@ -155,9 +155,8 @@ mod tests {
     use super::super::DepthConvention;
     use super::*;
 
-    /// Near and far plane at the corners of Vulkan's clip volume, and what is above at small y.
     #[test]
-    fn vulkan_has_its_own_clip_volume() {
+    fn vulkan_projects_planes_to_0_and_w_and_up_to_small_y() {
         for (convention, far, at_planes) in [
             (DepthConvention::Standard, 50.0, [0.0, 1.0]),
             (DepthConvention::Reversed, 50.0, [1.0, 0.0]),
@@ -180,7 +179,6 @@ mod tests {
         }
     }
 
-    /// An eye that sees further to the left than to the right, and further down than up.
     #[test]
     fn angles_have_the_signs_of_openxr() {
         let frustum = Frustum::from_fov(-0.9, 0.7, 0.6, -0.8);

@@ -1,9 +1,10 @@
-//! How pixels move from one eye to the other.
+//! The displacement of pixels from one eye to the other.
 
 use super::{DepthConvention, Eye, EyesError};
 
-/// The affine form of the paper's Eq. 5 for parallel eyes: `x_target = x_source + offset + scale * depth`, in
-/// pixels, for the value stored in the depth buffer. The same for pixel indices and for pixel centres.
+/// The displacement of a pixel as an affine function of the value in the depth buffer, in pixels:
+/// `x_target = x_source + offset + scale * depth`. This is the paper's Eq. 5 for parallel eyes. It holds for pixel indices
+/// and for pixel centres alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DisparityLaw {
@@ -14,13 +15,13 @@ pub struct DisparityLaw {
 }
 
 impl DisparityLaw {
-    /// Displacement in pixels of a stored depth value.
+    /// Returns the displacement in pixels of a stored depth value.
     pub fn displacement(&self, depth: f64) -> f64 {
         self.offset + self.scale * depth
     }
 }
 
-/// All that synthesis has to know about the eyes: sizes, the law of displacement, and what "nearer" means.
+/// All that synthesis knows about the eyes: sizes, displacement, and the direction of depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Warp {
     /// Size of the rendered colour and depth in pixels.
@@ -33,17 +34,17 @@ pub struct Warp {
     pub row_offset: i32,
     /// The eye that is synthesized: nearer pixels move to the right for the left eye, to the left for the right.
     pub target_eye: Eye,
-    /// Whether smaller or larger depth is nearer.
+    /// Direction of the stored depth: standard if smaller values are nearer.
     pub convention: DepthConvention,
 }
 
-/// Beyond so many pixels positions in the shaders, 32-bit floats, are rounded by more than a sixteenth of a pixel.
+/// The largest displacement in pixels that the shaders' 32-bit floats hold to a sixteenth of a pixel.
 const MAX_OFFSET: f64 = (1 << 20) as f64;
 
 impl Warp {
-    /// The largest displacement in pixels, beyond that of the far plane, that the shaders can tell: 16 bits of a
-    /// sixteenth of a pixel (`include/tiles.glsl` of `yoro-shaders`). It matters only where images are wider: what moves
-    /// across the whole image is seen nowhere.
+    /// The largest displacement beyond that of the far plane, in pixels, that the shaders can store: 16 bits in units of
+    /// 1/16 pixel (`include/tiles.glsl` of `yoro-shaders`). It bounds only images that are wider, since a surface that moves
+    /// across the whole image is not seen.
     pub const MAX_DISPLACEMENT: f64 = 4095.0;
 
     /// Returns the displacements of the far plane and of the near plane in pixels, in forward columns: the direction in
@@ -62,25 +63,24 @@ impl Warp {
         })
     }
 
-    /// Checks that the shaders can tell all displacements that land in the target.
+    /// Checks that the shaders can store all displacements that land in the target.
     pub(super) fn check_displacement(&self) -> Result<(), EyesError> {
         let [far, near] = self.forward_displacements();
         let landing = (near - far).min(f64::from(self.target_size[0]) - far);
-        let tellable = landing <= Warp::MAX_DISPLACEMENT;
-        let exact = far.abs().max(near.abs()) <= MAX_OFFSET;
-        if tellable && exact { Ok(()) } else { Err(EyesError::Displacement { pixels: near - far }) }
+        let fits = landing <= Warp::MAX_DISPLACEMENT && far.abs().max(near.abs()) <= MAX_OFFSET;
+        if fits { Ok(()) } else { Err(EyesError::Displacement { pixels: near - far }) }
     }
 }
 
-/// The paper's minimum object distance `D = IPD / 2 * cot(fov / 2)` in metres (section "Impact of Object
-/// Distance"), fov in radians. With IPD 75 mm and 60 degrees it gives 0.065 m, not the 0.129 m that the text
-/// states; that value is [`full_overlap_distance`].
+/// Returns the paper's minimum object distance `D = IPD / 2 * cot(fov / 2)` in metres, for an angle in radians (section
+/// "Impact of Object Distance"). For an IPD of 75 mm and 60 degrees it is 0.065 m, not the 0.129 m that the text states:
+/// that value is [`full_overlap_distance`].
 pub fn minimum_object_distance(ipd: f32, fov: f32) -> f32 {
     0.5 * ipd / (0.5 * fov).tan()
 }
 
-/// `IPD * cot(fov / 2)` in metres: 0.130 m for IPD 75 mm and 60 degrees, the paper's stated 0.129 m. At this
-/// distance the disparity is half the image's width.
+/// Returns `IPD * cot(fov / 2)` in metres, the distance at which the disparity is half the image's width. For an IPD of
+/// 75 mm and 60 degrees it is 0.130 m, which the paper states as 0.129 m.
 pub fn full_overlap_distance(ipd: f32, fov: f32) -> f32 {
     ipd / (0.5 * fov).tan()
 }
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn minimum_distances_are_the_papers_two_readings() {
+    fn minimum_distances_match_the_papers_formula_and_value() {
         let fov = 60f32.to_radians();
         assert!((minimum_object_distance(0.075, fov) - 0.065).abs() < 1e-3);
         assert!((full_overlap_distance(0.075, fov) - 0.129).abs() < 2e-3);

@@ -1,6 +1,6 @@
-//! What the source knows of its edges.
+//! The kinds of sources: without and with anti-aliased edges.
 
-/// What the source knows of its edges, where a pixel shows more than one surface, and with it what its depth is.
+/// The kind of source, by its edges: there a pixel of an anti-aliased source shows more than one surface.
 ///
 /// | | source | synthesized eye |
 /// |---|---|---|
@@ -8,7 +8,7 @@
 /// | [`Edges::Nearest`], [`Edges::Sample`] | resolved colour, one depth per pixel | anti-aliased; the share of each surface is estimated from colour and depth around |
 /// | [`Edges::Multisample`] | resolved colour, depth of all samples | anti-aliased; with the samples' colours, too, nothing is estimated |
 ///
-/// Depth that was averaged over samples belongs to no surface, and gives halos by each of them.
+/// Never average depth over samples: the result belongs to no surface and gives halos at all edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -18,7 +18,7 @@ pub enum Edges {
     Hard,
     /// Resolved (anti-aliased) colour; depth of each pixel's nearest sample.
     Nearest,
-    /// Resolved colour; depth of each pixel's first sample, as drivers resolve it, or of its middle.
+    /// Resolved colour; depth of each pixel's first sample, as drivers resolve it, or of its centre.
     Sample,
     /// Depth of every sample, in a multisample texture of 2 or 4 samples in the standard pattern; colour resolved, and
     /// optionally of every sample, too (`Source::samples`). Needs OpenGL ES 3.1.
@@ -26,10 +26,10 @@ pub enum Edges {
 }
 
 impl Edges {
-    /// All of them, the default first.
+    /// All kinds, the default first.
     pub const ALL: [Edges; 4] = [Edges::Hard, Edges::Nearest, Edges::Sample, Edges::Multisample];
 
-    /// Its name in settings.
+    /// Returns the name in settings.
     pub fn name(self) -> &'static str {
         match self {
             Edges::Hard => "hard",

@@ -1,9 +1,9 @@
-//! Forward columns: the direction in which the shaders count.
+//! Forward columns: the direction in which the shaders count columns.
 
 use crate::eyes::{Eye, Warp};
 
-/// The disparity law in forward columns (`include/warp.glsl`): mirrored for the right eye, so that a larger
-/// displacement always means nearer.
+/// [`DisparityLaw`](crate::eyes::DisparityLaw) in forward columns (`include/warp.glsl`). Columns are mirrored for the right
+/// eye, so that a larger displacement always means nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ForwardLaw {
     pub offset: f64,

@@ -1,26 +1,25 @@
-//! Where each pixel of the synthesized eye comes from.
+//! The source map: the source column of each pixel of the synthesized eye.
 
 use crate::eyes::{Eye, Warp};
 
-/// Bit of a source map entry that marks a hole.
+/// The bit of a source map entry that marks a hole.
 pub const SOURCE_MAP_HOLE: u32 = 1 << 31;
-/// Source map entries count columns in this fraction of a pixel.
+/// Units per pixel of the column in a source map entry.
 pub const SOURCE_MAP_FIXED: f32 = 65536.0;
 
-/// One decoded entry of a source map.
+/// A decoded entry of a source map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SourceMapEntry {
-    /// No source pixel is seen here: the colour was filled in.
+    /// True if no source pixel is seen here: the colour was filled in.
     pub hole: bool,
-    /// Column in the source image, counted from the left, with pixel centres at whole numbers: 0 is the centre
-    /// of the first pixel.
+    /// Column in the source image, from the left. 0 is the centre of the first pixel.
     pub column: f32,
     /// Displacement in pixels, `target column - source column`, both from the left.
     pub displacement: f32,
 }
 
 impl SourceMapEntry {
-    /// Decodes the entry at target column `x`, counted from the left.
+    /// Decodes the entry at target column `x`, from the left.
     pub fn decode(entry: u32, x: u32, warp: &Warp) -> SourceMapEntry {
         let forward = (entry & !SOURCE_MAP_HOLE) as f32 / SOURCE_MAP_FIXED;
         let column = match warp.target_eye {

@@ -1,4 +1,4 @@
-//! What the passes are given, in OpenGL as uniforms and in Vulkan as one block.
+//! The inputs of the passes: uniforms in OpenGL, one block in Vulkan.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{IVec2, Vec2, Vec4};
@@ -9,16 +9,16 @@ use crate::eyes::Warp;
 /// Columns and rows of a tile; `include/tiles.glsl`.
 const TILE: [u32; 2] = [16, 8];
 
-/// Tiles that an image of this size has across and up.
+/// Returns the number of tiles of an image, in columns and rows.
 pub(crate) fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
     [columns.div_ceil(TILE[0]), rows.div_ceil(TILE[1])]
 }
 
 macro_rules! uniforms {
     ($($(#[doc = $doc:literal])* $name:ident: $ty:ty = $glsl:literal,)*) => {
-        /// All uniforms of the synthesis passes but textures, with the layout of a std140 block:
+        /// All uniforms of the synthesis passes except textures, with the layout of a std140 block:
         /// `include/uniforms.glsl` of `yoro-shaders`. "Forward" columns are counted from the left for a synthesized
-        /// left eye and from the right for a right eye; rows from the side on which row 0 is, the bottom in OpenGL and
+        /// left eye and from the right for a right eye. Rows are counted from row 0: from the bottom in OpenGL, from
         /// the top in Vulkan.
         #[repr(C)]
         #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -31,7 +31,7 @@ macro_rules! uniforms {
             pub const LAYOUT: &[(&str, &str, usize)] =
                 &[$((stringify!($name), $glsl, std::mem::offset_of!(Uniforms, $name)),)*];
 
-            /// Sets those that the program has.
+            /// Sets the uniforms that the program has. The program must be current.
             #[cfg(feature = "gl")]
             pub fn set(&self, program: &yoro_gl::Program) {
                 $(program.set(stringify!($name), self.$name);)*
@@ -47,7 +47,7 @@ uniforms! {
     target_size: IVec2 = "ivec2",
     /// Displacement in pixels, in forward columns: `law.x + law.y * depth`.
     law: Vec2 = "vec2",
-    /// 1 where forward columns are counted from the right.
+    /// 1 if forward columns are counted from the right.
     mirrored: u32 = "bool",
     /// Target row minus source row.
     row_offset: i32 = "int",
@@ -59,24 +59,24 @@ uniforms! {
     near_displacement: f32 = "float",
     /// Texture coordinate of the source at forward column x: `columns.x * x + columns.y`.
     columns: Vec2 = "vec2",
-    /// Source column that the law's offset alone takes to a fragment: `origins.x * gl_FragCoord.x + origins.y`.
+    /// Source column that the law's offset moves to a fragment: `origins.x * gl_FragCoord.x + origins.y`.
     origins: Vec2 = "vec2",
-    /// Where a fragment's span is in the span map: `span_place.xy * gl_FragCoord.xy + span_place.zw`, as a texture
-    /// coordinate, or in tiles for a part.
+    /// Place of a fragment's span in the span map: `span_place.xy * gl_FragCoord.xy + span_place.zw`. A texture
+    /// coordinate; in tiles if the source is a part of its image.
     span_place: Vec4 = "vec4",
     /// Texture coordinate of a fragment's source row: `rows.x * gl_FragCoord.y + rows.y`.
     rows: Vec2 = "vec2",
     /// Middle of a fragment's source row: `gl_FragCoord.y - first_row`.
     first_row: f32 = "float",
-    /// Displacement in pixels of the far plane beyond the law's offset, and a hundredth of a pixel for rounding.
+    /// Displacement of the far plane beyond the law's offset, in pixels, plus a hundredth of a pixel for rounding.
     farthest: f32 = "float",
-    /// Corner of the source in its image: for a part.
+    /// Corner of the source in its image, if it is a part of it.
     source_origin: IVec2 = "ivec2",
-    /// One pixel of the source's image in texture coordinates: for a part.
+    /// One pixel of the source's image in texture coordinates, if the source is a part of it.
     texel: Vec2 = "vec2",
 }
 
-/// Where source and target lie in their images.
+/// The places of source and target in their images.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Places {
     /// Corner of the source in its image.
@@ -85,20 +85,20 @@ pub(crate) struct Places {
     pub image_size: [u32; 2],
     /// Corner of the target in its framebuffer or image.
     pub target_origin: [u32; 2],
-    /// The source is a part of its image, or the maps are larger than [`tiles`] says: `PART` in the shaders.
+    /// True if the source is a part of its image or the maps are larger than [`tiles`]: `PART` in the shaders.
     pub part: bool,
 }
 
 impl Uniforms {
-    /// For a source that is all of its textures, and maps that just hold the [`Warp`].
+    /// Returns the uniforms for a source that fills its textures, and maps of the [`Warp`]'s size.
     pub fn new(warp: &Warp, target_origin: [u32; 2]) -> Uniforms {
         let places =
             Places { source_origin: [0, 0], image_size: warp.source_size, target_origin, part: false };
         Uniforms::of_part(warp, &places)
     }
 
-    /// What leads from a fragment to its columns and rows is affine in `gl_FragCoord`: it is computed here rather than
-    /// by every fragment, and in f64, since it is the difference of large numbers.
+    /// Returns the uniforms for these places. Columns and rows are affine in `gl_FragCoord`. Their factors are computed here
+    /// and not by each fragment, and in f64, since they are differences of large numbers.
     pub(crate) fn of_part(warp: &Warp, places: &Places) -> Uniforms {
         let law = ForwardLaw::new(warp);
         let size = |s: [u32; 2]| IVec2::from(s.map(|n| n as i32));
@@ -107,23 +107,24 @@ impl Uniforms {
         let [source_left, source_row] = places.source_origin.map(f64::from);
         let [left, row] = places.target_origin.map(f64::from);
         let source_right = source_left + f64::from(warp.source_size[0]);
-        let columns = match law.mirrored {
-            true => pair(-1.0 / image_width, source_right / image_width),
-            false => pair(1.0 / image_width, source_left / image_width),
+        let columns = if law.mirrored {
+            pair(-1.0 / image_width, source_right / image_width)
+        } else {
+            pair(1.0 / image_width, source_left / image_width)
         };
         // Forward target column: sense * x + first.
-        let (sense, first) = match law.mirrored {
-            true => (-1.0, f64::from(warp.target_size[0]) + left - 0.5),
-            false => (1.0, -left - 0.5),
+        let (sense, first) = if law.mirrored {
+            (-1.0, f64::from(warp.target_size[0]) + left - 0.5)
+        } else {
+            (1.0, -left - 0.5)
         };
         let first_row = row + f64::from(warp.row_offset);
         // Tiles are whole: the maps reach beyond the image.
-        let [across, up] = match places.part {
-            true => TILE.map(f64::from),
-            false => {
-                let tiles = tiles([warp.target_size[0], warp.source_size[1]]);
-                [0, 1].map(|i| f64::from(tiles[i] * TILE[i]))
-            }
+        let [across, up] = if places.part {
+            TILE.map(f64::from)
+        } else {
+            let tiles = tiles([warp.target_size[0], warp.source_size[1]]);
+            [0, 1].map(|i| f64::from(tiles[i] * TILE[i]))
         };
         let span_place = [sense / across, 1.0 / up, (first + 0.5) / across, -first_row / up];
         Uniforms {
@@ -157,7 +158,7 @@ mod tests {
             "bool" | "int" | "float" => [4, 4],
             "ivec2" | "vec2" => [8, 8],
             "vec4" => [16, 16],
-            _ => panic!("{glsl} is in no rule here"),
+            _ => panic!("no rule for {glsl}"),
         }
     }
 
@@ -169,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn the_layout_is_that_of_the_shaders_block() {
+    fn the_layout_is_std140() {
         let mut end: usize = 0;
         let mut expected = Vec::new();
         for (glsl, name) in declared() {
@@ -189,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn the_documents_table_is_the_layout() {
+    fn the_guide_lists_the_layout() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/library.md");
         // Not in the published package.
         let Ok(document) = std::fs::read_to_string(path) else { return };

@@ -9,20 +9,20 @@ use yoro_gl::{
     Capabilities, Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource,
 };
 
-/// How the shaders are written for a kind of driver. All give the same picture, to the rounding of positions.
+/// Variants of the shaders for kinds of drivers. All give the same picture, within the rounding of positions.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GatherVariant {
-    /// OpenGL ES 3.0: every depth value is a fetch, every pixel marches in one loop.
+    /// For OpenGL ES 3.0: every depth value is a fetch, every pixel marches in one loop.
     Plain,
-    /// A CPU rasterizer, which pays for every fetch in the text, taken or not: textureGather for the tiles only.
+    /// For CPU rasterizers, which execute every fetch in the text, taken or not: textureGather for the tiles only.
     Software,
-    /// A GPU: textureGather, and a short way on which nearly every pixel ends before the loop.
+    /// For GPUs: textureGather, and a short path on which nearly every pixel ends before the loop.
     ShortWay,
 }
 
 impl GatherVariant {
-    /// All of them.
+    /// All variants.
     pub const ALL: [GatherVariant; 3] =
         [GatherVariant::Plain, GatherVariant::Software, GatherVariant::ShortWay];
 
@@ -44,8 +44,8 @@ impl GatherVariant {
     }
 }
 
-/// Tile bounds, tile spans, march. Reads depth about four times and colour once per target pixel, writes the
-/// target; the intermediate buffers are 4 bytes per tile of 16 x 8 pixels.
+/// Tile bounds, tile spans, march. Reads depth about four times and colour once per target pixel. The two intermediate
+/// buffers have 4 bytes per tile of 16 x 8 pixels.
 pub struct Gather {
     gl: Rc<Context>,
     outputs: Outputs,
@@ -60,15 +60,15 @@ impl Gather {
     /// Compiles the passes.
     ///
     /// # Errors
-    /// [`GlError::Shader`] when the driver refuses a shader.
+    /// [`GlError::Shader`] if the driver refuses a shader.
     pub fn new(gl: &Rc<Context>, outputs: Outputs) -> Result<Gather, GlError> {
         Gather::with_variant(gl, outputs, GatherVariant::of(gl.capabilities()))
     }
 
-    /// As [`Gather::new`], as on another kind of driver: for tests of what this one would not take.
+    /// Compiles a variant that this driver would not choose, for tests.
     ///
     /// # Errors
-    /// As [`Gather::new`]; also where the driver is older than the variant.
+    /// Those of [`Gather::new`], also if the driver is too old for the variant.
     #[doc(hidden)]
     pub fn with_variant(
         gl: &Rc<Context>,
@@ -78,12 +78,12 @@ impl Gather {
         Gather::with_defines(gl, outputs, variant.defines())
     }
 
-    /// What GPUs run, with counts for colours: in the target's red how often a pixel runs the loop of the short way (low four
-    /// bits) and of the fill (the next two), and whether it goes the long way (the highest bit); in green, blue and alpha how
-    /// many columns it walks there, in how many rounds, and past how many tiles (of 255, and no more than that).
+    /// Compiles the variant for GPUs with counts in place of colours. Red: trips of the short path's loop (low four bits) and
+    /// of the fill's (the next two), and whether the pixel takes the long path (the highest bit). Green, blue and alpha:
+    /// columns walked on the long path, its rounds, and the tiles passed, at most 255 each.
     ///
     /// # Errors
-    /// As [`Gather::with_variant`].
+    /// Those of [`Gather::with_variant`].
     #[doc(hidden)]
     pub fn counting(gl: &Rc<Context>) -> Result<Gather, GlError> {
         let defines = [GatherVariant::ShortWay.defines(), &["COUNT_TRIPS"]].concat();

@@ -11,19 +11,19 @@ use crate::synthesis::edges::Edges;
 use crate::synthesis::uniforms::{Uniforms, tiles};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
 
-/// Colour attachments of the targets: of the split pass two.
+/// Number of draw buffers that the passes use: the split pass writes two.
 pub(super) const DRAW_BUFFERS: u32 = 2;
 
-/// Samples from left to right, in the standard patterns of 2 and 4 samples (Vulkan's `standardSampleLocations`): each
-/// stands for the stripes of the pixel that are nearest.
+/// Samples from left to right in the standard patterns of 2 and 4 samples (Vulkan's `standardSampleLocations`). Each sample
+/// stands for the nearest stripes of the pixel.
 const STANDARD_2: IVec4 = IVec4::new(1, 1, 0, 0);
 const STANDARD_4: IVec4 = IVec4::new(2, 0, 3, 1);
 
 /// Split, tile bounds, tile spans, march over layers.
 ///
-/// The split pass finds the one or two surfaces that each source pixel shows: 8 bytes per pixel of the source are
-/// written and read again. The march composes what of them covers a target pixel, front to back, so that the
-/// synthesized eye is as anti-aliased as the rendered one.
+/// The split pass finds the one or two surfaces that each source pixel shows, and writes 8 bytes per source pixel. The march
+/// composes the surfaces that cover a target pixel, front to back, so that the synthesized eye is as anti-aliased as the
+/// rendered one.
 pub struct Layers {
     gl: Rc<Context>,
     outputs: Outputs,
@@ -32,16 +32,16 @@ pub struct Layers {
     bounds: Program,
     spans: Program,
     march: Program,
-    /// Layers, colour of the backs.
+    /// Layers, and the colour of the back surfaces.
     layers: RenderTarget,
     tile_map: RenderTarget,
     span_map: RenderTarget,
 }
 
-/// The first pass, for what the source has.
+/// The first pass, without and with the colours of samples.
 struct Split {
     resolved: Program,
-    /// For sources with the samples' colours.
+    /// For sources with the colours of samples.
     samples: Option<Program>,
 }
 
@@ -49,8 +49,8 @@ impl Layers {
     /// Compiles the passes.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for [`Edges::Hard`], which are [`super::Gather`]'s, and for [`Edges::Multisample`] without
-    /// OpenGL ES 3.1; [`GlError::Shader`] when the driver refuses a shader.
+    /// [`GlError::Unsupported`] for [`Edges::Hard`], which needs [`super::Gather`], and for [`Edges::Multisample`] without
+    /// OpenGL ES 3.1; [`GlError::Shader`] if the driver refuses a shader.
     pub fn new(gl: &Rc<Context>, outputs: Outputs, edges: Edges) -> Result<Layers, GlError> {
         let define = match edges {
             Edges::Hard => {
@@ -74,7 +74,7 @@ impl Layers {
         let march = [edge_defines.clone(), outputs.defines()].concat();
         let split = "synthesis/layers/split.frag";
         let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);
-        // Backs are stored as the source's colour is: unmixing is right in the space of the resolve.
+        // Back surfaces are stored like the source's colour: unmixing is right in the colour space of the resolve.
         let back = if outputs.srgb { Format::Srgb8Alpha8 } else { Format::Rgba8 };
         let layers = [(Format::R32Ui, Filter::Nearest), (back, Filter::Nearest)];
         Ok(Layers {
@@ -94,26 +94,25 @@ impl Layers {
         })
     }
 
-    /// Binds the program of the first pass and what it reads.
+    /// Binds the program and the textures of the first pass.
     fn bind_split(&self, source: Source, uniforms: &Uniforms) {
         let program = match (&self.split.samples, source.samples) {
             (Some(program), Some(samples)) => program.bind().texture_multisample("sample_colors", 3, samples),
             _ => self.split.resolved.bind(),
         };
-        match self.edges {
-            Edges::Multisample => {
-                program.texture_multisample("sample_depths", 0, source.depth);
-                program.set("from_left", self.left_to_right());
-            }
-            _ => drop(program.texture("depth_map", 0, source.depth)),
+        if self.edges == Edges::Multisample {
+            program.texture_multisample("sample_depths", 0, source.depth);
+            program.set("from_left", self.left_to_right());
+        } else {
+            program.texture("depth_map", 0, source.depth);
         }
         program.texture("color_map", 1, source.color);
         uniforms.set(program);
     }
 
-    /// Samples of the multisample texture that was bound last, to unit 0, from left to right.
+    /// Returns the samples, from left to right, of the multisample texture that was bound last, to unit 0.
     fn left_to_right(&self) -> IVec4 {
-        // SAFETY: a query of a texture that is bound to the active unit.
+        // SAFETY: queries the texture that is bound to the active unit.
         let samples = unsafe {
             self.gl.raw().get_tex_level_parameter_i32(glow::TEXTURE_2D_MULTISAMPLE, 0, glow::TEXTURE_SAMPLES)
         };

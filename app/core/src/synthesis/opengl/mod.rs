@@ -1,4 +1,4 @@
-//! Synthesis on OpenGL: the two textures of one eye in, the other eye in a framebuffer out.
+//! Synthesis on OpenGL: two textures of one eye in, the other eye in a framebuffer out.
 
 mod gather;
 mod layers;
@@ -17,74 +17,74 @@ pub use gather::GatherVariant;
 pub use layers::Layers;
 use preserve::Preserving;
 
-/// What a pipeline writes besides colour, and how.
+/// The outputs of a pipeline besides colour, and their encoding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outputs {
-    /// Depth of the synthesized eye, in the source's encoding, to the target's depth attachment: for
-    /// transparent objects, near objects and compositors.
+    /// Write the synthesized eye's depth, in the source's encoding, to the target's depth attachment: for transparent
+    /// objects, near objects and compositors.
     pub depth: bool,
-    /// The source map, to colour attachment 1 ([`yoro_gl::Format::R32Ui`]): bit 31 marks a hole, the other bits are the
-    /// source column of the pixel (or of the edge it was filled from) in 1/65536 pixel. [`SourceMapEntry`]
-    /// decodes it. The column is counted from the left for a synthesized left eye and from the right for a
-    /// right eye.
+    /// Write the source map to colour attachment 1 ([`yoro_gl::Format::R32Ui`]). Bit 31 marks a hole; the other bits are the
+    /// source column of the pixel, or of the edge it was filled from, in 1/65536 pixel. The column is counted from the left
+    /// for a synthesized left eye and from the right for a right eye.
+    /// [`SourceMapEntry`](super::SourceMapEntry) decodes it.
     pub source_map: bool,
-    /// The source's colour and the target's are both sRGB textures ([`yoro_gl::Format::Srgb8Alpha8`]), which sampling
-    /// decodes: encode what is written. Without it sRGB encoding is off where the context can switch it, and values
-    /// are stored as they are sampled; OpenGL ES without `EXT_sRGB_write_control` always encodes for sRGB targets.
+    /// Encode colour for an sRGB target: set it if source and target are both sRGB textures
+    /// ([`yoro_gl::Format::Srgb8Alpha8`]), which sampling decodes. Otherwise encoding is off and values are stored as they
+    /// are sampled. OpenGL ES without `EXT_sRGB_write_control` always encodes for sRGB targets.
     pub srgb: bool,
 }
 
 impl Outputs {
-    /// Returns the number of colour attachments that the target has.
+    /// Returns the number of the target's colour attachments.
     pub fn draw_buffers(self) -> u32 {
         1 + u32::from(self.source_map)
     }
 
-    /// Returns the defines that select a shader's outputs, for the last pass of a pipeline.
+    /// Returns the preprocessor defines that select these outputs in the last pass of a pipeline.
     pub fn defines(self) -> Vec<(&'static str, String)> {
         let defines = [("WRITE_DEPTH", self.depth), ("SOURCE_MAP", self.source_map)];
         defines.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| (name, String::new())).collect()
     }
 }
 
-/// The rendered eye: GL names of 2-D textures of the same size. Filters, wrapping, compare mode and sampler objects are
-/// the pipelines' own, whatever the textures have.
+/// The rendered eye: GL names of 2-D textures of the same size. Their filters, wrapping, compare mode and samplers do not
+/// matter.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
-    /// Colour, in any filterable format and any encoding; all four channels are carried over. Other than with
-    /// [`Edges::Hard`] it is resolved, and lies between 0 and 1.
+    /// Colour, in any filterable format and any encoding; all four channels are synthesized. For kinds other than
+    /// [`Edges::Hard`] it is resolved, with values from 0 to 1.
     pub color: glow::Texture,
-    /// Depth: a depth texture, a depth-stencil texture whose depth is sampled, or a float texture; with
-    /// [`Edges::Multisample`] a multisample texture.
+    /// Depth: a depth texture, a depth-stencil texture whose depth is sampled, or a float texture. A multisample texture
+    /// for [`Edges::Multisample`].
     pub depth: glow::Texture,
-    /// With [`Edges::Multisample`], the multisample texture that the colour was resolved from, if it is still there.
+    /// For [`Edges::Multisample`], the multisample texture that the colour was resolved from, if it still exists.
     pub samples: Option<glow::Texture>,
 }
 
 impl Source {
-    /// A source without colours of samples.
+    /// Returns a source without the colours of samples.
     pub fn new(color: glow::Texture, depth: glow::Texture) -> Source {
         Source { color, depth, samples: None }
     }
 }
 
-/// What a call does to the context's state; the table is with [`Synthesis`].
+/// The effect of a call on the context's state, which the table of [`Synthesis`] lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GlState {
-    /// Some state is left changed: for hosts that set what they draw with, which costs least.
+    /// Leaves some state changed. This costs least, for hosts that set all state they draw with.
     #[default]
     Leave,
-    /// All that is changed is queried first and set back at the end: 3 to 4 microseconds a call on llvmpipe
-    /// (docs/library.md has the measurement). A driver with a thread of its own may have to wait for it.
+    /// Queries all state first and restores it at the end. This takes 3 to 4 microseconds a call on llvmpipe
+    /// (docs/library.md has the measurement). A driver that works in its own thread may have to wait for it.
     Preserve,
 }
 
-/// A way to synthesize the other eye.
+/// A pipeline that synthesizes the other eye.
 ///
-/// The context is current on the calling thread. Whatever state it is in, the picture is the same: a call sets all that
-/// it relies on. What it leaves is the choice in [`SynthesisOptions::gl_state`]: [`GlState::Leave`] does as the table says,
-/// [`GlState::Preserve`] leaves everything as it was. What is not in the table is neither read nor changed, and what a
-/// context does not have (by version or extension) is neither set nor queried.
+/// The context must be current on the calling thread. The picture does not depend on its state: a call sets all state that
+/// it relies on. Afterwards the state is as [`SynthesisOptions::gl_state`] says: with [`GlState::Leave`] as in the table,
+/// with [`GlState::Preserve`] as before the call. State that is not in the table is neither read nor changed. State that a
+/// context lacks, by version or extension, is neither set nor queried.
 ///
 /// | state | set to | left |
 /// |---|---|---|
@@ -110,41 +110,40 @@ pub enum GlState {
 /// blend function and equation, stencil function, clear values, other texture targets and units. GL's error flag is read
 /// where buffers are allocated.
 ///
-/// The host sees to the rest: transform feedback and conditional rendering are not active (an occlusion query counts
-/// the passes' fragments), the shading rate is one fragment a pixel, the target's draw buffers are its colour
-/// attachments from 0 on, and neither texture of the source is attached to it.
+/// The host ensures the rest: transform feedback and conditional rendering are not active, the shading rate is one fragment
+/// a pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the source is attached
+/// to it. An active occlusion query counts the passes' fragments.
 pub trait Synthesis {
-    /// Gets ready for images of these sizes: allocates intermediate buffers, for which it binds framebuffers and a 2-D
-    /// texture to the active unit. Costs nothing when the sizes are the same as before; [`Synthesis::synthesize`]
-    /// calls it.
+    /// Allocates intermediate buffers for images of these sizes, for which it binds framebuffers and a 2-D texture to the
+    /// active unit. Costs nothing if the sizes are the same as before. [`Synthesis::synthesize`] calls it.
     ///
     /// # Errors
-    /// [`GlError`] when the sizes are beyond the driver's limits.
+    /// [`GlError`] if the sizes are beyond the driver's limits.
     fn prepare(&mut self, warp: &Warp) -> Result<(), GlError>;
 
-    /// Synthesizes the other eye into a rectangle of [`Warp::target_size`], all of which is overwritten; the
-    /// framebuffer's attachments fit the pipeline's [`Outputs`].
+    /// Synthesizes the other eye into a rectangle of [`Warp::target_size`] and overwrites all of it. The framebuffer's
+    /// attachments must fit the pipeline's [`Outputs`].
     ///
     /// # Errors
-    /// As [`Synthesis::prepare`].
+    /// Those of [`Synthesis::prepare`].
     fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError>;
 }
 
-/// How to synthesize: the host's business, and in no file.
+/// Options of a pipeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SynthesisOptions {
-    /// What the source knows of its edges.
+    /// The kind of source.
     pub edges: Edges,
-    /// What becomes of the host's GL state.
+    /// The effect of calls on the host's GL state.
     pub gl_state: GlState,
 }
 
-/// Compiles the pipeline: [`Gather`] for hard edges, [`Layers`] for the others. Leaves the context's state as
-/// [`Synthesis::prepare`] does, or as it was with [`GlState::Preserve`].
+/// Compiles the pipeline: [`Gather`] for hard edges, [`Layers`] for the others. Changes the same state as
+/// [`Synthesis::prepare`], or none with [`GlState::Preserve`].
 ///
 /// # Errors
-/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1; [`GlError::Shader`] when the driver refuses
-/// a shader.
+/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1; [`GlError::Shader`] if the driver refuses a
+/// shader.
 pub fn create(
     gl: &Rc<Context>,
     options: &SynthesisOptions,
@@ -166,13 +165,14 @@ pub fn create(
     }
 }
 
-/// Sets the uniforms and textures that `include/warp.glsl` declares, for a pass of a pipeline. Texture units 0 and 1.
+/// Sets the uniforms and textures that `include/warp.glsl` declares, for a pass of a pipeline. Uses texture units 0 and 1.
+/// The program must be current.
 pub fn set_source(program: &Program, source: Source, uniforms: &Uniforms) {
     program.texture("depth_map", 0, source.depth).texture("color_map", 1, source.color);
     uniforms.set(program);
 }
 
-/// Binds the target and draws the pass that writes it: the last of a pipeline.
+/// Binds the target and draws the last pass of a pipeline into it.
 pub fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
     gl.bind_framebuffer(target.framebuffer, target.origin, target.size);
     gl.set_depth_write(outputs.depth);

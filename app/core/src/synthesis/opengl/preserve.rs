@@ -1,4 +1,4 @@
-//! A pipeline that leaves the host's GL state as it found it.
+//! A pipeline that preserves the host's GL state.
 
 use std::rc::Rc;
 
@@ -6,16 +6,16 @@ use super::{Source, Synthesis};
 use crate::eyes::Warp;
 use yoro_gl::{Context, Destination, GlError};
 
-/// Saves the state before each call of a pipeline and sets it back afterwards, also when the call fails.
+/// Saves the state before each call of a pipeline and restores it afterwards, also if the call fails.
 pub(super) struct Preserving {
     gl: Rc<Context>,
     pipeline: Box<dyn Synthesis>,
-    /// Colour attachments of the target.
+    /// Number of the target's colour attachments.
     draw_buffers: u32,
 }
 
 impl Preserving {
-    /// Compiles the pipeline, for which the state is preserved, too.
+    /// Compiles the pipeline and preserves the state.
     pub fn new(
         gl: &Rc<Context>,
         draw_buffers: u32,
