@@ -3,15 +3,15 @@
 
 TEXTURE(2) uniform highp usampler2D tile_map;
 
-// What a target pixel shows: the fractional source column, its depth, and whether nothing of the source is seen
-// and this is the column it is filled from.
+// The surface that a target pixel shows: fractional source column and depth. For a hole they are those of the column from
+// which it is filled.
 struct Surface {
     float source;
     float depth;
     bool hole;
 };
 
-// Tiles that are walked whatever they hold: to skip some pays only where there are many.
+// Tiles that are always walked: skipping pays only where there are many.
 const float FIRST_TILES = 4.0;
 
 // From column `x` on, where a tile begins, the first one whose tile lands within a pixel of this one, or that of the
@@ -29,10 +29,11 @@ float next_candidate(float x, float end, float origin, int row) {
     return x;
 }
 
-// How far the search is. Whole columns are those of the image here, not forward ones.
+// State of the search. Whole columns are those of the image here, not forward ones.
 struct Search {
     int column;
-    // Place of the column, and then where the one before and its own surface land, relative to the pixel.
+    // Place of the column, and the places where the surfaces of the column before and of this one land, all relative to
+    // the pixel.
     float shift;
     float a;
     float b;
@@ -48,7 +49,7 @@ struct Search {
     float rim_depth;
 };
 
-// Goes to forward column x, where a tile begins.
+// Moves the search to forward column x, where a tile begins.
 void leap(inout Search at, float x, float origin, int row) {
     at.column = source_column(int(x));
     at.shift = x - origin;
@@ -56,7 +57,7 @@ void leap(inout Search at, float x, float origin, int row) {
     at.b = at.shift + law.y * at.next;
 }
 
-// Goes on column by column until the surface is found, or to forward column `end`.
+// Walks column by column until the surface is found, or to forward column `end`.
 void walk(inout Search at, float end, float origin, int row) {
     // Between two columns: places are rounded.
     float limit = end - origin - 0.5;
@@ -115,8 +116,8 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
         walk(at, min(x + float(TILE.x), end), origin, row);
     }
 #else
-    // CPU rasterizers pay for every fetch in the text, and without those of the tiles they are faster on all frames but
-    // those of near surfaces.
+    // CPU rasterizers execute every fetch in the text. Without those of the tiles they are faster, except in frames of near
+    // surfaces.
     walk(at, end, origin, row);
 #endif
     // Where nothing is found: the hole's edge, or the last column right of everything.

@@ -5,7 +5,7 @@
 
 // Alpha is 1 where the colour is valid and 0 in holes.
 uniform sampler2D color_map;
-// Disparity in pixels, larger for nearer surfaces; says nothing in holes.
+// Disparity in pixels, larger for nearer surfaces; undefined in holes.
 uniform sampler2D disparity_map;
 uniform ivec2 size;
 uniform bool mirrored;

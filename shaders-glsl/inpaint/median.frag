@@ -1,7 +1,7 @@
 #version 310 es
-// One pass of the median patcher (Noori et al.): a hole's pixel takes, in each channel, the median of the valid ones of
-// its 5x5 neighbours (the lower of the two in the middle). Pixels without any are left to the next pass, which takes
-// this one's for valid: holes close from their border inwards.
+// One pass of the median patcher (Noori et al.): each channel of a hole's pixel is the median of its valid 5x5 neighbours
+// (the lower of the two in the middle). Pixels without valid neighbours are left to the next pass, for which this pass's
+// pixels are valid: holes close from their border inwards.
 
 #include "inpaint/holes.glsl"
 
@@ -17,7 +17,7 @@ int pack(vec3 channels) {
     return levels.r | levels.g << 10 | levels.b << 20;
 }
 
-// A one for each channel of `a` that is no less than that of `b`.
+// 1 for each channel in which `a` is not less than `b`.
 int no_less(int a, int b) {
     return (a + GUARDS - b) >> 8 & ONES;
 }

@@ -1,6 +1,6 @@
 #version 310 es
-// Algorithm 3, as corrected, on a reprojected image: see stereo/paper/patch.frag. What the ImBuffer knows there is
-// found here by walking to the hole's two ends.
+// Algorithm 3, as corrected, on a reprojected image: see stereo/paper/patch.frag. There the ImBuffer has the hole's two
+// ends; here they are found by walking.
 
 #include "inpaint/holes.glsl"
 

@@ -1,8 +1,8 @@
 #version 310 es
-// One pass of the background filter of Xiao et al. 2022: of the valid pixels in a window of 29x29 around a hole's pixel,
-// those in the farther half of the window's range of inverse depth are averaged, with weights that fall with the
-// distance. Pixels without any are left to the next pass, which takes this one's for valid, with the disparity averaged
-// alike.
+// One pass of the background filter of Xiao et al. 2022. It averages the valid pixels in a window of 29x29 around a hole's
+// pixel that lie in the farther half of the window's range of inverse depth, with weights that fall with the distance.
+// Disparity is averaged alike. Pixels without such neighbours are left to the next pass, for which this pass's pixels are
+// valid.
 
 #include "inpaint/holes.glsl"
 

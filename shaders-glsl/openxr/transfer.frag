@@ -1,4 +1,4 @@
-// A finished image for a framebuffer whose driver or format takes linear colour.
+// Converts a finished image to linear colour, for a framebuffer whose driver or format encodes it.
 uniform sampler2D source;
 
 layout(location = 0) out vec4 out_color;

@@ -1,4 +1,4 @@
-// One step of the bloom pyramid: half the size. The first keeps only what is bright.
+// One step of the bloom pyramid, to half the size. The first step keeps only bright pixels.
 #include "include/color.glsl"
 #include "include/hdr.glsl"
 

@@ -1,5 +1,4 @@
-// What comes after the samples of a pixel are averaged: ink outlines and bloom. Writes display-referred sRGB with luma in
-// alpha.
+// Ink outlines and bloom, after the samples of a pixel are averaged. Writes display-referred sRGB with luma in alpha.
 #include "include/color.glsl"
 #include "include/view.glsl"
 
@@ -26,7 +25,7 @@ uniform sampler2D depth_map;
 #define INK_MATERIAL(p) INK_COLOR(p).a
 #include "include/ink.glsl"
 
-// A sample looks at the same one of its neighbours. The ink takes some of the surface's colour.
+// A sample is compared with the same sample of its neighbours. The ink takes some of the surface's colour.
 vec3 inked_sample(ivec2 p) {
     float depth = INK_DEPTH(p);
     vec4 color = INK_COLOR(p);

@@ -1,5 +1,5 @@
-// A lit surface, display-referred: tone mapping comes before the samples of a pixel are averaged, so that the edge of
-// something bright is as smooth as any other. Alpha is luma, or the material where outlines are drawn.
+// A lit surface, display-referred. Tone mapping comes before the samples of a pixel are averaged, so that edges of bright
+// surfaces are as smooth as others. Alpha is luma, or the material if outlines are drawn.
 #include "include/surface.glsl"
 
 uniform float exposure;
@@ -25,7 +25,7 @@ void main() {
         discard;
     }
 #endif
-    // Beyond the surface's edge, where only samples of the pixel are covered, its distance may be that of nothing.
+    // Beyond the surface's edge, where only some samples are covered, the extrapolated distance may be invalid.
     float distance = 1.0 / max(gl_FragCoord.w, 1e-6);
     vec3 c = aerial(shade(material_surface(color.rgb), v_position, 1.0), distance);
     c = tonemap(exposure * c);

@@ -1,5 +1,5 @@
-// Scene triangles; positions go on relative to the eye. With STEREO every triangle is drawn for both eyes: by two
-// views, or by two instances side by side.
+// Scene triangles, with positions relative to the eye. With STEREO each triangle is drawn for both eyes: by two views, or
+// by two instances side by side.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;

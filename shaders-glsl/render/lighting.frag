@@ -1,4 +1,4 @@
-// G-buffer, ambient occlusion and lights to scene-referred colour; the sky where there is nothing.
+// Lights the g-buffer, with ambient occlusion, to scene-referred colour; the sky where no surface is.
 #include "include/view.glsl"
 #include "include/g_buffer.glsl"
 #include "include/role.glsl"
@@ -29,7 +29,7 @@ float occlusion(ivec2 p, float z) {
     return texelFetch(occlusion_map, p, 0).x;
 }
 #else
-// The four half-resolution texels around the pixel, weighted by how much they are on its surface.
+// The four half-resolution texels around the pixel, weighted by their likeness to its surface.
 float occlusion(ivec2 p, float z) {
     ivec2 last = textureSize(occlusion_map, 0) - 1;
     // Texel i was computed at full-resolution pixel 2 i.

@@ -1,4 +1,4 @@
-// An image with its depth as the beginning of another one.
+// Copies an image and its depth, to draw more over it.
 uniform sampler2D color_map;
 uniform sampler2D depth_map;
 uniform ivec2 offset;  // from a pixel of the target to its pixel in the maps

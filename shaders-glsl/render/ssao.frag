@@ -44,7 +44,7 @@ float occlusion(ivec2 p, float z) {
     return max(1.0 - sum * (falloff.w * (100.0 * STRENGTH / float(SAMPLES))), 0.0);
 }
 
-// Whether any pixel is lit whose blur reads this texel.
+// True if a pixel is lit whose blur reads this texel.
 bool is_wanted(ivec2 p, float depth) {
 #ifdef REPROJECTED
     // Filtered where four texels meet, each tap sees all of them.

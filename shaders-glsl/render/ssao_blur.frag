@@ -5,7 +5,7 @@ uniform sampler2D occlusion_map;
 
 layout(location = 0) out vec4 out_occlusion;
 
-// Of the differences to both sides, the one that stays on the surface.
+// The smaller difference of the two sides: the one that stays on the surface.
 float slope(float before, float center, float after) {
     float a = center - before, b = after - center;
     return abs(a) < abs(b) ? a : b;

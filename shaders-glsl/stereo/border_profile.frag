@@ -1,5 +1,5 @@
 #version 310 es
-// How near the surfaces at the border of a rendered view are where its guard band lies: each of 64 x 16 texels takes the
+// The nearness of surfaces at the border of a rendered view, on the side of its guard band: each of 64 x 16 texels has the
 // nearest of a few columns, in every second row of its sixteenth of the rows. Columns are counted forward
 // (include/warp.glsl): those of the guard band are the first.
 
@@ -37,7 +37,7 @@ void main() {
             }
         }
     }
-    // One unit more, so that a buffer of zeros is none of this.
+    // One unit more: zero marks a buffer that was not written.
     ivec2 values = ivec2(min(ceil(vec2(nearest * UNIT + 1.0, undrawn)), 65535.0));
     profile = vec4(values & 255, values >> 8).xzyw / 255.0;
 }

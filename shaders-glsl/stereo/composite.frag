@@ -1,5 +1,5 @@
 #version 310 es
-// Puts a layer of near objects over a far one by depth; colour and depth of whatever is nearer.
+// Composites a layer of near objects with a far one: colour and depth of the nearer surface.
 
 uniform sampler2D far_color;
 uniform sampler2D far_depth;

@@ -1,4 +1,4 @@
-// The far field's depth, to be merged into an eye's by the depth test.
+// The far field's depth, merged into an eye's by the depth test.
 uniform sampler2D far_field_depth;
 uniform ivec2 crop;       // pixel of the far field that belongs to the eye's lower left pixel
 uniform float far_depth;  // the value that the depth buffers are cleared to

@@ -1,5 +1,5 @@
-// What a flat screen shows of two images of one size: the first of them, an anaglyph of both, or where they differ.
-// For a headset that takes depth: the first image with its depth.
+// Two images of one size on a flat screen: the first one, an anaglyph of both, or their difference. For a headset that takes
+// depth: the first image with its depth.
 
 uniform sampler2D first;   // display-referred sRGB; the left eye's for an anaglyph
 #if defined(ANAGLYPH) || defined(DIFFERENCE)

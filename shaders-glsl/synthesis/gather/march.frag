@@ -4,8 +4,8 @@
 //
 // The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
 // fetched with linear filtering. With SHORT_WAY nearly every pixel ends within a few cheap steps here, and only those
-// beside silhouettes go on in include/march.glsl. CPU rasterizers run both sides of an `if` and pay for every fetch in
-// the text: there all pixels take the long way.
+// beside silhouettes continue in include/march.glsl. CPU rasterizers execute both sides of an `if` and every fetch in the
+// text: there all pixels take the long path.
 
 #include "include/march.glsl"
 
@@ -15,7 +15,7 @@ layout(location = 1) out uint source_entry;
 #endif
 
 #ifdef SHORT_WAY
-// Steps of the short way: no more than a wave should wait for.
+// Steps of the short path: as many as a wave should wait for.
 const float SHORT_STEPS = 8.0;
 #endif
 

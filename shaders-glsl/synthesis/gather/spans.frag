@@ -1,5 +1,5 @@
 #version 310 es
-// Gather, pass 2: for each target tile, where to look for the source pixels that land in it.
+// Gather, pass 2: for each target tile, the range of source columns that may land in it.
 
 #include "include/tiles.glsl"
 

@@ -2,9 +2,9 @@
 // Gather over layers, pass 4: the target pixel is a box that is laid over the displaced source row.
 //
 // Surfaces of neighbouring pixels that are displaced alike are linked: between their middles they cover the box by the
-// stripes of their masks. Where a surface ends, its stripes fade out; a back layer is taken to go on behind its front.
-// From the nearest candidate on, each adds to what the ones before leave uncovered, and what remains is a
-// disocclusion, filled from its background side.
+// stripes of their masks. Where a surface ends, its stripes fade out; a back layer continues behind its front. From the
+// nearest candidate on, each surface covers a part of the rest of the pixel. What remains is a disocclusion, filled from its
+// background side.
 
 #include "include/layers.glsl"
 #include "include/span.glsl"
@@ -17,7 +17,7 @@ layout(location = 0) out vec4 color;
 layout(location = 1) out uint source_entry;
 #endif
 
-// The uncovered rest of a pixel below which nothing more is looked for.
+// The search ends when less than this share of the pixel is uncovered.
 const float REST = 0.01;
 
 uint layer_bits(int column, int row) {
@@ -66,18 +66,19 @@ struct Edge {
     int column;
     bool back;
     float reach;
-    // Share of the pixel that it stands for.
+    // Share of the pixel that it fills.
     float weight;
 };
 
-// What is seen: column and displacement.
+// The visible surface: column and displacement.
 struct Seen {
     float rest;
     float column;
     float reach;
 };
 
-// A surface covers a share of what is uncovered. What covers the middle of the pixel's coverage is what is seen there.
+// A surface covers a share of the uncovered rest. The visible surface is the one with which the coverage from the front
+// passes one half.
 float cover(inout Seen seen, float share, float column, float reach) {
     float taken = seen.rest * share;
     bool passes = seen.rest > 0.5 && seen.rest - taken <= 0.5;
@@ -90,7 +91,8 @@ float cover(inout Seen seen, float share, float column, float reach) {
 void main() {
     float last = float(source_size.x - 1);
     int row = int(clamp(gl_FragCoord.y - first_row, 0.0, float(source_size.y - 1)));
-    // Displacements count from the far plane's: so does the target column. A hundredth is in `farthest` for rounding.
+    // Displacements and target column are relative to the far plane's displacement. `farthest` contains a hundredth of a
+    // pixel for rounding.
     float t = origins.x * gl_FragCoord.x + origins.y - farthest + 0.01;
     uint span = pixel_span();
     float x = clamp(floor(t - uintBitsToFloat(span) - 1.01), 0.0, last);
@@ -100,7 +102,7 @@ void main() {
 
     Seen seen = Seen(1.0, 0.0, 0.0);
     color = vec4(0.0);
-    // Nearly every pixel shows a single surface, linked all the way from where the search begins.
+    // Nearly every pixel shows a single surface that is linked from the start of the search on.
     uint bits = layer_bits(column, row);
     float front = full_front(bits);
     float at = x + front - t;
@@ -125,7 +127,7 @@ void main() {
     Layer here = layer_at(column, row);
     Edge edge = Edge(-1, false, 1e9, 1.0);
     Edge second = edge;
-    // Left of everything it is the border of the image.
+    // Left of all surfaces: the border of the image.
     if (x == 0.0) {
         if (here.front > t) {
             edge = Edge(column, false, here.front, 1.0);
@@ -134,7 +136,7 @@ void main() {
             edge = Edge(column, true, here.back, 1.0);
         }
     }
-    // What the pixel's back is linked to at the left: a front, or a back.
+    // The surface to which the pixel's back is linked at the left: a front, or a back.
     bool on_front = false;
     bool on_back = false;
     if (x > 0.0 && here.split && seen.rest > REST) {
@@ -153,7 +155,7 @@ void main() {
         bool front_back = next.split && abs(next.back - here.front) < LINK;
         bool back_front = here.split && abs(next.front - here.back) < LINK;
         bool back_back = here.split && next.split && abs(next.back - here.back) < LINK;
-        // Of the fronts and the backs of this column and the next.
+        // Distances between the fronts and the backs of this column and the next.
         vec2 fronts = vec2(0.0);
         vec2 backs = vec2(0.0);
         if (front_front && a <= 0.0 && b > 0.0) {
@@ -171,7 +173,7 @@ void main() {
         if (!front_front && (next.front < here.front || here.split) && !front_back && a <= 0.0 && a > -1.0) {
             fronts.x += cover(seen, covered(here.mask, right_of(-a)), x, here.front);
         }
-        // What goes on behind a front covers all.
+        // A surface that continues behind a front covers all.
         if (front_back && a <= 0.0 && d > 0.0 && seen.rest > REST) {
             float g = -a / (d - a);
             float taken = cover(seen, 1.0, x + g, here.front);
@@ -190,13 +192,13 @@ void main() {
             backs += taken * vec2(1.0 - g, g);
         }
         bool ends = here.split && !back_front && !back_back;
-        // A back that no neighbour continues: its samples only.
+        // A back that no neighbour continues covers only its samples.
         if (ends && !on_front && !on_back && abs(c) < 1.0 && seen.rest > REST) {
             vec4 stripes = c <= 0.0 ? right_of(-c) : 1.0 - right_of(1.0 - c);
             backs.x += cover(seen, covered(1.0 - here.mask, stripes), x, here.back);
         }
-        // Disocclusion edges. A sliver of background that no neighbour continues stands for its share of the pixel
-        // only; the rest of the hole is the next farthest edge's.
+        // Disocclusion edges. A sliver of background that no neighbour continues fills only its share of the pixel; the
+        // next farthest edge fills the rest of the hole.
         bool at_back = ends && next.front > here.back && c <= 0.0;
         bool at_front = !here.split && !front_front && !front_back && next.front > here.front && a <= 0.0;
         if ((at_back || at_front) && seen.rest > REST) {
@@ -234,7 +236,7 @@ void main() {
     if (seen.rest > REST) {
         bool beyond = edge.column < 0;
         if (beyond) {
-            // Right of everything, or the last column itself.
+            // Right of all surfaces, or the last column itself.
             edge = Edge(column, here.split, here.split ? here.back : here.front, 1.0);
         }
         float edge_x = float(source_column(edge.column));
