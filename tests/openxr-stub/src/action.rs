@@ -64,8 +64,7 @@ fn check_name(name: &str, localized: &str) -> Result<(), Refusal> {
         localized.is_empty(),
         Code::ERROR_LOCALIZED_NAME_INVALID,
         format!("{name} has no localized name"),
-    )?;
-    Ok(())
+    )
 }
 
 pub fn create_action_set(

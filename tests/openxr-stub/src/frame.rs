@@ -89,8 +89,7 @@ pub fn begin_frame(world: &mut World, session: sys::Session, _: *const sys::Fram
 
 /// Refuses frames of a session that is not running.
 fn running(world: &mut World, session: sys::Session) -> Result<(), Refusal> {
-    forbid_if(world.session(session)?.views == 0, Code::ERROR_SESSION_NOT_RUNNING, "it is not running")?;
-    Ok(())
+    forbid_if(world.session(session)?.views == 0, Code::ERROR_SESSION_NOT_RUNNING, "it is not running")
 }
 
 pub fn locate_views(

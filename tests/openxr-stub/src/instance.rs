@@ -229,8 +229,7 @@ pub fn get_system_properties(
 
 /// Refuses all systems but one.
 pub fn check_system(system: sys::SystemId) -> Result<(), crate::world::Refusal> {
-    forbid_if(system.into_raw() != SYSTEM, Code::ERROR_SYSTEM_INVALID, "not a system")?;
-    Ok(())
+    forbid_if(system.into_raw() != SYSTEM, Code::ERROR_SYSTEM_INVALID, "not a system")
 }
 
 pub fn string_to_path(

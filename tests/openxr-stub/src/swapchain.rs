@@ -48,8 +48,7 @@ impl World {
             !self.its_session()?.graphics.is_current(),
             Code::ERROR_RUNTIME_FAILURE,
             "the session's context is not current on this thread",
-        )?;
-        Ok(())
+        )
     }
 
     fn leave_context(&mut self) {
@@ -147,11 +146,8 @@ pub fn enumerate_swapchain_images(
     };
     for i in 0..images.capacity.min(textures.len() as u32) as usize {
         // SAFETY: the array has that many structures, of this size if they are of this type.
-        forbid_if(
-            unsafe { (*images.items.byte_add(i * size)).ty } != wanted,
-            Code::ERROR_VALIDATION_FAILURE,
-            "the images' type is wrong",
-        )?;
+        let ty = unsafe { (*images.items.byte_add(i * size)).ty };
+        forbid_if(ty != wanted, Code::ERROR_VALIDATION_FAILURE, "the images' type is wrong")?;
     }
     // SAFETY: of the type that was checked.
     unsafe {

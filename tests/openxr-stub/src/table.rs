@@ -22,16 +22,16 @@ macro_rules! argument {
     (: $name:ident) => {
         $name
     };
-    // SAFETY: applications give strings that end in zero.
     (text $name:ident) => {
+        // SAFETY: applications give strings that end in zero.
         unsafe { CStr::from_ptr($name) }
     };
-    // SAFETY: applications give complete structures.
     (in $name:ident) => {
+        // SAFETY: applications give complete structures.
         unsafe { &*$name }
     };
-    // SAFETY: applications give structures and places that can be written.
     (out $name:ident) => {
+        // SAFETY: applications give structures and places that can be written.
         unsafe { &mut *$name }
     };
 }

@@ -215,18 +215,18 @@ impl Frames {
                 let work = AssertUnwindSafe(|| unsafe { self.synthesize(session, swapchains, view) });
                 catch_unwind(work).unwrap_or(Err(Reason::Panic))
             };
-            let eyes = eyes.map(|eyes| {
-                self.statistics.synthesized += 1;
-                done = true;
-                eyes
-            });
-            rewritten.push(
-                layer,
-                eyes.unwrap_or_else(|reason| {
+            let eyes = match eyes {
+                Ok(eyes) => {
+                    self.statistics.synthesized += 1;
+                    done = true;
+                    eyes
+                }
+                Err(reason) => {
                     self.fall_back(session, reason);
                     Eyes::same(view)
-                }),
-            );
+                }
+            };
+            rewritten.push(layer, eyes);
         }
         done
     }

@@ -331,8 +331,8 @@ fn an_image_that_is_shown_again_stays_stereo() {
                 assert!(pair[1].iter().all(|view| view.depth.is_some()), "{name}");
             }
             assert_eq!(frames[4], frames[5], "{name}");
-            for eye in 0..2 {
-                let moved = pose_of(&frames[7][eye]).position - pose_of(&frames[6][eye]).position;
+            for (from, to) in frames[6].iter().zip(frames[7]) {
+                let moved = pose_of(to).position - pose_of(from).position;
                 assert!((moved - glam::Vec3::new(0.5, 0.25, 1.0)).length() < 1e-5, "{name}: {moved}");
             }
         }
