@@ -22,7 +22,7 @@ pub enum State {
 }
 
 impl State {
-    /// From the second word of `adb devices`.
+    /// Reads the second word of a line of `adb devices`.
     pub fn from_adb(word: &str) -> State {
         match word {
             "device" => State::Ready,
@@ -33,7 +33,7 @@ impl State {
         }
     }
 
-    /// For tables.
+    /// Returns its name in tables.
     pub fn name(&self) -> &str {
         match self {
             State::Ready => "ready",
@@ -374,7 +374,7 @@ pub trait Adb {
     fn open(&self, serial: &str) -> Box<dyn Device>;
 }
 
-/// Which of the devices are meant: those of the serials, or all, or the only one. A device that is connected twice, by
+/// Returns the devices that are meant: those of the serials, or all, or the only one. A device that is connected twice, by
 /// cable and by Wi-Fi, is one device: the connection that adb lists first is used.
 ///
 /// # Errors
@@ -408,7 +408,7 @@ pub fn choose(adb: &dyn Adb, serials: &[String], all: bool) -> Result<Vec<Box<dy
     }
 }
 
-/// Each device once, whatever number of connections it has.
+/// Returns each device once, whatever number of connections it has.
 fn once_each(devices: Vec<Box<dyn Device>>) -> Result<Vec<Box<dyn Device>>, DeviceError> {
     if devices.len() < 2 {
         return Ok(devices);

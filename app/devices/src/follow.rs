@@ -66,7 +66,7 @@ impl<'a> Follower<'a> {
         Ok(Follower { device, stream, seen, overlaps: false, clock_s: None, boot, lost_at: None })
     }
 
-    /// For how many seconds the device has been gone; none while it is there.
+    /// Returns the seconds since the device was lost; `None` while it is there.
     pub fn lost_for(&self) -> Option<f64> {
         self.lost_at.map(|then| self.device.now() - then)
     }

@@ -129,7 +129,7 @@ impl<'a> Foreign<'a> {
     }
 }
 
-/// None where the device is gone, which its log tells, too.
+/// Returns `None` where the device is gone, which its log tells, too.
 fn unless_lost<T>(said: Result<T, DeviceError>) -> Result<Option<T>, DeviceError> {
     match said {
         Ok(value) => Ok(Some(value)),

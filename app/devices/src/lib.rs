@@ -1,13 +1,14 @@
-//! Measuring on phones and headsets: from a device to figures.
+//! Measuring on phones and headsets over adb, and user studies.
 //!
 //! ```text
-//! adb / replayed device ──> capture (a folder a run) ──> report (power, FPS, ... per method and scene)
+//! adb or a replay ──> capture (a folder for each run) ──> report (power, FPS, ... by method and scene)
+//! plan of a study ──> ratings (CSV, or lines of the log) ──> analysis
 //! ```
 //!
-//! [`adb`] says what is asked of a device; [`program`] asks the program adb, [`replay`] plays a script. [`follow`] reads a
-//! log over lost connections, [`reading`] makes samples of its lines ([`foreign`] says which are those of another
-//! application than this project's), [`run`] captures one run, [`experiment`] many, and [`report`] makes figures of them.
-//! [`study`] plans and evaluates user studies.
+//! It takes devices, plans of experiments and captures, and gives captures and reports. [`adb`] is the interface to
+//! devices: [`program`] implements it by the program adb, [`replay`] by a script. [`follow`] reads a log over lost
+//! connections, [`reading`] makes samples of its lines ([`foreign`] finds those of other applications), [`run`] captures
+//! one run, [`experiment`] many, and [`report`] makes figures of them. [`study`] plans and analyses user studies.
 //!
 //! This crate must never know OpenGL, how anything is rendered, or the command line.
 

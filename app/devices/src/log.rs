@@ -65,7 +65,7 @@ fn raw_tag(line: &str) -> Option<&'static str> {
     }
 }
 
-/// `I/YORO    ( 1234): ...`
+/// Reads `I/YORO    ( 1234): ...`.
 fn brief(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
     let (priority, rest) = text.split_once('/')?;
     let (head, message) = rest.split_once("): ").or_else(|| Some((rest.strip_suffix("):")?, "")))?;
@@ -73,7 +73,7 @@ fn brief(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
     is_priority(priority).then(|| Entry { time_s, pid: pid.trim().parse().ok(), tag: tag.trim(), message })
 }
 
-/// ` 1234  1250 I YORO    : ...`, after the time.
+/// Reads ` 1234  1250 I YORO    : ...`, after the time.
 fn thread_time(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
     time_s?;
     let (pid, rest) = word(text)?;

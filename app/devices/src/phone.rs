@@ -124,7 +124,7 @@ pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Ba
     Ok(battery)
 }
 
-/// Current and voltage as the kernel has them; nothing where the shell may not read it.
+/// Returns current and voltage as the kernel has them; nothing where the shell may not read it.
 pub fn kernel_battery(device: &dyn Device) -> Result<Battery, DeviceError> {
     Ok(read_kernel_battery(&unless_refused(device.shell(&["cat", KERNEL_BATTERY]))?))
 }
@@ -146,7 +146,7 @@ fn read_kernel_battery(text: &str) -> Battery {
     }
 }
 
-/// Nothing in place of a refusal.
+/// Returns an empty answer in place of a refusal.
 fn unless_refused(said: Result<String, DeviceError>) -> Result<String, DeviceError> {
     match said {
         Err(DeviceError::Refused { .. }) => Ok(String::new()),
@@ -197,7 +197,7 @@ pub fn clock(device: &dyn Device) -> Result<String, DeviceError> {
     seconds.map(|seconds| format!("{seconds:.6}")).ok_or_else(refused)
 }
 
-/// Version of an application on the device; none if it is not there.
+/// Returns the version of an application on the device; none if it is not there.
 pub fn version(device: &dyn Device, package: &str) -> Result<Option<String>, DeviceError> {
     let text = device.shell(&["dumpsys", "package", package])?;
     let version = text.lines().find_map(|line| line.trim().strip_prefix("versionName="));

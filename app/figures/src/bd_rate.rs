@@ -15,7 +15,7 @@ pub struct BdRate {
     pub overlap: f64,
 }
 
-/// Mean difference of the rate of `test` against `anchor`. Points are (rate, quality), rate above 0, in any order.
+/// Returns the mean difference of the rate of `test` against `anchor`. Points are (rate, quality), rate above 0, in any order.
 /// `None` with fewer than four points, or when the curves have no quality in common: then there is no rate at which
 /// they would be equal.
 pub fn bd_rate(anchor: &[(f64, f64)], test: &[(f64, f64)]) -> Option<BdRate> {
@@ -79,7 +79,7 @@ impl Curve {
     }
 }
 
-/// Gaussian elimination with partial pivoting; the last column is the right-hand side. `None` when singular.
+/// Solves by Gaussian elimination with partial pivoting; the last column is the right-hand side. `None` when singular.
 fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     for column in 0..4 {
         let pivot = (column..4).max_by(|a, b| m[*a][column].abs().total_cmp(&m[*b][column].abs()))?;
@@ -100,7 +100,7 @@ fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     Some(std::array::from_fn(|i| m[i][4] / m[i][i]))
 }
 
-/// Offset and slope of the straight line of least squares; `None` with fewer than two different x.
+/// Returns offset and slope of the straight line of least squares; `None` with fewer than two different x.
 pub fn line_through(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let n = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));

@@ -88,7 +88,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Without lines. Names of columns that start with `<` are those of text.
+    /// Returns a table without rows. Names of columns that start with `<` are those of text.
     pub fn new(title: impl Into<String>, columns: &[impl AsRef<str>]) -> Table {
         let column = |name: &str| match name.strip_prefix('<') {
             Some(name) => Column { name: name.into(), left: true },

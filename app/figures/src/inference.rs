@@ -103,7 +103,7 @@ impl Sample {
         Some(power_of_t_test(self.d_z()?, self.n, alpha))
     }
 
-    /// Two one-sided t-tests (Schuirmann 1987, Lakens 2017): whether the mean lies inside `bounds`. `None` as of
+    /// Tests whether the mean lies inside `bounds` by two one-sided t-tests (Schuirmann 1987, Lakens 2017). `None` as of
     /// [`Sample::t`].
     pub fn equivalence(&self, bounds: Interval, alpha: f64) -> Option<Equivalence> {
         let df = self.df()?;
@@ -214,7 +214,7 @@ impl Blocks {
     }
 }
 
-/// Power of the two-sided paired t-test at level `alpha` with `n` pairs, if the true effect is `d_z`; `alpha` of fewer
+/// Returns the power of the two-sided paired t-test at level `alpha` with `n` pairs, if the true effect is `d_z`; `alpha` of fewer
 /// than two pairs.
 fn power_of_t_test(d_z: f64, n: usize, alpha: f64) -> f64 {
     if n < 2 {

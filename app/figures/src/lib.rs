@@ -1,6 +1,6 @@
-//! Statistics, plots, tables and self-contained pages, for whoever measures something.
+//! Statistics, plots, tables and self-contained pages for measurements.
 //!
-//! Takes numbers, titles and captions; gives SVG, HTML and Markdown. [`inference`] has intervals and tests, [`bd_rate`]
+//! It takes numbers, titles and captions, and gives SVG, HTML and Markdown. [`inference`] has intervals and tests, [`bd_rate`]
 //! compares rate-distortion curves, [`plot`] draws, [`grid`] holds tables, [`page`] fills in templates, and [`paper`] has
 //! the figures of the paper that stand beside ours.
 //!

@@ -84,7 +84,7 @@ pub fn of(name: &str) -> Look {
     })
 }
 
-/// Every colour that a figure can have, on a light page and on a dark one.
+/// Returns every colour that a figure can have, on a light page and on a dark one.
 pub fn colors() -> Vec<(u32, u32)> {
     let looks = LOOKS.iter().map(|(_, look)| look).chain(&OTHERS).map(|look| (look.light, look.dark));
     let mut all: Vec<(u32, u32)> = [BACKGROUND, TEXT, GRID].into_iter().chain(looks).collect();

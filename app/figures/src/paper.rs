@@ -24,7 +24,7 @@ pub struct PaperScene {
 }
 
 impl PaperScene {
-    /// Frame time of YORO over frame time of conventional rendering.
+    /// Returns the frame time of YORO over frame time of conventional rendering.
     pub fn frame_time_ratio(&self) -> f64 {
         self.fps_conventional / self.fps_yoro
     }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, LN_2};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use statrs::function::{erf::erfc, gamma::ln_gamma};
 
-/// P(T <= t) of Student's t with `df` degrees of freedom (above 0).
+/// Returns P(T <= t) of Student's t with `df` degrees of freedom (above 0).
 pub fn t_cdf(t: f64, df: f64) -> f64 {
     StudentsT::new(0.0, 1.0, df).map_or(f64::NAN, |student| student.cdf(t))
 }
@@ -22,7 +22,7 @@ pub fn t_quantile(p: f64, df: f64) -> f64 {
     bisect(0.0, high, |t| t_cdf(t, df) < p)
 }
 
-/// P(T <= t) of the noncentral t with `df` degrees of freedom (at least 1) and noncentrality `delta`.
+/// Returns P(T <= t) of the noncentral t with `df` degrees of freedom (at least 1) and noncentrality `delta`.
 ///
 /// T is (Z + delta) / S with S the root of a chi-square over its degrees of freedom: the probability that
 /// Z <= t s - delta, averaged over the density of S.

@@ -1,12 +1,12 @@
 //! Names and numbers as text.
 
-/// Lower case, with dashes for what is neither letter nor digit: for anchors and file names.
+/// Returns the text in lower case, with dashes for what is neither letter nor digit: for anchors and file names.
 pub fn slug(text: &str) -> String {
     let plain = text.chars().map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
     plain.collect::<String>().split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
 
-/// `19.6 k`, `2.80 M`.
+/// Formats a count: `19.6 k`, `2.80 M`.
 pub fn short_count(count: u64) -> String {
     match count {
         0..1_000 => count.to_string(),

@@ -6,13 +6,12 @@ use std::rc::Rc;
 
 use image::{Luma, RgbImage};
 
+use crate::depth::DepthReader;
 use crate::inpaint::{InpaintError, Reprojected};
 use crate::picture::{self, DepthImage};
 use yoro::eyes::{DepthConvention, EyePair, EyesError, GuardBand, SynthesisViews, View};
 use yoro::synthesis::Edges;
-use yoro_gl::{
-    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
-};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_render::stereo::{Offline, PipelineOptions};
 use yoro_render::{Fxaa, GpuScene, Renderer, ViewTargets};
 
@@ -45,7 +44,7 @@ pub struct GroupOptions {
 }
 
 impl Default for GroupOptions {
-    /// Without guard band and anti-aliasing: every pixel is one surface's.
+    /// Returns options without guard band and anti-aliasing: every pixel is one surface's.
     fn default() -> GroupOptions {
         GroupOptions {
             synthesis: PipelineOptions::default(),
@@ -75,7 +74,7 @@ pub struct ImageGroup {
 }
 
 impl ImageGroup {
-    /// Depth of the reprojected image in the pair's convention, the far plane's value in holes.
+    /// Returns the depth of the reprojected image in the pair's convention, the far plane's value in holes.
     pub fn reprojected_depth(&self) -> DepthImage {
         let (disparity, law) = (self.reprojected.disparity(), self.views.warp.law);
         let scale = law.scale.abs().max(f64::MIN_POSITIVE) as f32;
@@ -95,10 +94,8 @@ pub struct GroupRenderer {
     targets: ViewTargets,
     fxaa: Option<Fxaa>,
     smooth: RenderTarget,
-    depth_copy: Program,
-    depth: RenderTarget,
+    depth: DepthReader,
     offline: Offline,
-    gl: Rc<Context>,
 }
 
 impl GroupRenderer {
@@ -107,16 +104,13 @@ impl GroupRenderer {
     /// # Errors
     /// [`GlError`] when the driver cannot run the pipeline.
     pub fn new(gl: &Rc<Context>, options: &GroupOptions) -> Result<GroupRenderer, GlError> {
-        let target = |format, filter| RenderTarget::new(gl, [1, 1], &[(format, filter)], None);
         Ok(GroupRenderer {
             options: *options,
             targets: ViewTargets::default(),
             fxaa: options.anti_aliasing.then(|| Fxaa::new(gl)).transpose()?,
-            smooth: target(Format::Rgba8, Filter::Linear)?,
-            depth_copy: Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?,
-            depth: target(Format::R32F, Filter::Nearest)?,
+            smooth: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None)?,
+            depth: DepthReader::new(gl)?,
             offline: Offline::new(gl, &options.synthesis, Edges::Hard)?,
-            gl: gl.clone(),
         })
     }
 
@@ -134,8 +128,7 @@ impl GroupRenderer {
         let views = pair.synthesis(self.options.guard_band)?;
         let truth = self.render_view(renderer, scene, &views.target)?;
         let source = self.render_view(renderer, scene, &views.source)?;
-        let depth: Vec<f32> =
-            self.depth.read_rgba32f(0, [0, 0], views.source.size).into_iter().map(|texel| texel[0]).collect();
+        let depth = self.depth.read();
         let result = self.offline.run(&source, &depth, &views.warp)?;
         let [width, height] = views.source.size;
         let flipped = depth.chunks_exact(width as usize).rev().flatten().copied().collect();
@@ -158,11 +151,7 @@ impl GroupRenderer {
         view: &View,
     ) -> Result<Vec<u8>, GlError> {
         let rendered = renderer.render_all(&mut self.targets, scene, view)?;
-        self.depth.resize(view.size)?;
-        self.depth.bind();
-        self.gl.set_raster_state(&RasterState::SCREEN);
-        self.depth_copy.bind().texture("source", 0, rendered.depth.raw());
-        self.gl.draw_screen();
+        self.depth.copy(rendered.depth, view.size)?;
         let mut color = rendered.color;
         if let Some(fxaa) = &self.fxaa {
             self.smooth.resize(view.size)?;

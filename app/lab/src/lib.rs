@@ -1,8 +1,9 @@
-//! Measuring: how good a synthesized eye is, and what it costs.
+//! Measuring how good a synthesized eye is, and what it costs.
 //!
-//! [`metrics`] compares images, [`compare`] files and folders of them, [`picture`] reads and writes them; [`inpaint`]
-//! has the patchers that fill holes after other papers; [`dataset`] renders image groups; [`run`] holds methods against
-//! rendering both eyes, [`mod@bench`] every method against every other, and [`report`] makes pages of both.
+//! It takes images, scenes and stereo methods, and gives figures, image groups and reports. [`metrics`] compares images,
+//! [`compare`] files and folders of them, [`picture`] reads and writes them; [`inpaint`] has patchers that fill holes after
+//! other papers; [`dataset`] renders image groups; [`run`] compares methods with rendering both eyes, [`mod@bench`] every
+//! method with every other, and [`report`] makes pages of both.
 //!
 //! The heavy parts are features: `neural` (weights of a network and a runtime for them) and `h264` (an encoder that
 //! compiles C).
@@ -12,6 +13,7 @@
 pub mod bench;
 pub mod compare;
 pub mod dataset;
+mod depth;
 pub mod inpaint;
 pub mod machine;
 pub mod metrics;

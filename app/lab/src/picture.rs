@@ -6,7 +6,7 @@ use yoro_render::stereo::StereoFrame;
 
 pub use yoro_pictures::*;
 
-/// One eye of a finished frame.
+/// Returns one eye of a finished frame.
 pub fn eye_image(frame: &StereoFrame, eye: Eye) -> RgbImage {
     let target = frame.eye(eye);
     rgb_image(&target.read_rgba8(0, [0, 0], target.size()), target.size())

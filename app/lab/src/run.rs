@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use anyhow::{Context as _, ensure};
+use anyhow::Context as _;
 use image::RgbImage;
 use indicatif::ProgressBar;
 
@@ -127,15 +127,8 @@ impl<'a> Field<'a> {
         let keys = spread(loaded.viewpoints.len(), plan.viewpoints);
         let pairs: Vec<EyePair> = keys.iter().map(|&k| plan.eyes.pair(loaded.viewpoints[k].pose())).collect();
         let mut prepared = PreparedScene::new(gl, loaded, settings)?;
-        let mut finder = BlankFinder::new(gl)?;
-        for (key, pair) in keys.iter().zip(&pairs) {
-            ensure!(
-                !finder.is_blank(&mut prepared, pair)?,
-                "viewpoint {key} of {0} shows nothing, so there is nothing to measure: write viewpoints that show the model into {0}.camera.json beside it",
-                prepared.scene.name
-            );
-        }
-        drop(finder);
+        let names = keys.iter().map(|key| format!("viewpoint {key}"));
+        BlankFinder::new(gl)?.refuse_blank(&mut prepared, names.zip(&pairs))?;
         let conventional = Candidate {
             name: Method::Conventional.name(),
             method: Method::Conventional,

@@ -304,7 +304,7 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Rounded: 60 degrees in radians are 60.000004 degrees in f32.
+/// Returns rounded degrees: 60 degrees in radians are 60.000004 degrees in f32.
 fn fov_y_degrees(args: &DatasetArgs) -> f64 {
     (f64::from(args.eyes.fov_y).to_degrees() * 1e4).round() / 1e4
 }

@@ -15,7 +15,7 @@ use yoro_files as files;
 use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME, xdg};
 
 const LIBRARY: &str = "libyoro_layer.so";
-/// Before it is looked whether there is more in the log.
+/// Interval at which the log is checked for more.
 const PAUSE: Duration = Duration::from_millis(200);
 
 /// Stereo in OpenXR applications that render one view: an API layer that synthesizes the other
@@ -88,7 +88,7 @@ impl LibraryArgs {
     }
 }
 
-/// Where this user's data are.
+/// Returns the folder of this user's data.
 fn data() -> anyhow::Result<PathBuf> {
     let data = xdg::folder("XDG_DATA_HOME", ".local/share");
     data.context("neither XDG_DATA_HOME nor HOME is an absolute path; set one of them")
@@ -159,9 +159,10 @@ fn install(implicit: bool, library: &Path) -> anyhow::Result<()> {
     // One of the two, or loaders would find it twice.
     remove(&manifest_path(&data, !implicit))?;
     println!("{}\n{}", own.display(), manifest.display());
-    match implicit {
-        true => println!("on in programs that run with {ENABLE}=1; off with {DISABLE}=1"),
-        false => println!("on in programs that run with XR_ENABLE_API_LAYERS={NAME}"),
+    if implicit {
+        println!("on in programs that run with {ENABLE}=1; off with {DISABLE}=1");
+    } else {
+        println!("on in programs that run with XR_ENABLE_API_LAYERS={NAME}");
     }
     Ok(())
 }

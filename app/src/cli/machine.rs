@@ -20,7 +20,7 @@ pub fn describe(capabilities: &Capabilities) -> Machine {
     }
 }
 
-/// Program, version, command line and date: what made a file.
+/// Returns what made a file: program, version, command line and date.
 pub fn made_by() -> String {
     format!("{} (yoro {}, {})", command(), env!("CARGO_PKG_VERSION"), date(SystemTime::now()))
 }

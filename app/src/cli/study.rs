@@ -136,10 +136,8 @@ pub fn run(args: &StudyArgs) -> anyhow::Result<()> {
 }
 
 fn plan(args: &PlanArgs) -> anyhow::Result<()> {
-    let scenes = match args.scenes.is_empty() {
-        true => BUILTINS.iter().map(|builtin| builtin.name.to_owned()).collect(),
-        false => args.scenes.clone(),
-    };
+    let builtin = || BUILTINS.iter().map(|builtin| builtin.name.to_owned()).collect();
+    let scenes = if args.scenes.is_empty() { builtin() } else { args.scenes.clone() };
     for scene in &scenes {
         let file = files::has_extension(Path::new(scene), &["obj", "gltf", "glb"]);
         let known = file || BUILTINS.iter().any(|builtin| builtin.name == *scene);
@@ -151,10 +149,8 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
     ensure!(methods.len() > 1, "one method cannot be compared: name two with --methods");
     let participants = usize::from(args.participants);
     let plan = Plan::new(participants, &scenes, &methods, &args.questions, args.seed);
-    let text = match files::has_extension(&args.out, &["json"]) {
-        true => serde_json::to_string_pretty(&plan)?,
-        false => plan.to_csv(),
-    };
+    let is_json = files::has_extension(&args.out, &["json"]);
+    let text = if is_json { serde_json::to_string_pretty(&plan)? } else { plan.to_csv() };
     files::write(&args.out, text.as_bytes())?;
     println!(
         "{}: {} participants, {} trials each",
@@ -218,14 +214,12 @@ fn collect(args: &CollectArgs) -> anyhow::Result<()> {
     let plan = args.plan.as_deref().map(read_trials).transpose()?;
     let mut collected = Collected::default();
     for path in &args.logs {
-        let bytes = match path.as_os_str() == "-" {
-            true => {
-                let mut bytes = Vec::new();
-                std::io::stdin().read_to_end(&mut bytes).context("cannot read standard input")?;
-                bytes
-            }
-            false => files::read(path)?,
-        };
+        let mut bytes = Vec::new();
+        if path.as_os_str() == "-" {
+            std::io::stdin().read_to_end(&mut bytes).context("cannot read standard input")?;
+        } else {
+            bytes = files::read(path)?;
+        }
         collected.add(&path.display().to_string(), &String::from_utf8_lossy(&bytes), plan.as_ref());
     }
     for (name, line, what) in collected.damaged.iter().take(DAMAGED_SHOWN) {

@@ -186,7 +186,7 @@ pub struct Planned {
     pub folder: String,
 }
 
-/// `1 h 5 min`, for people.
+/// Formats a length for people: `1 h 5 min`.
 pub fn length(seconds: f64) -> String {
     let minutes = (seconds / 60.0).round() as u64;
     match (minutes / 60, minutes % 60) {
@@ -277,7 +277,7 @@ impl Experiment {
         Settings::resolve(None, first.chain(pairs(&self.settings)).chain(pairs(&entrant.settings)))
     }
 
-    /// All runs on a device, in their order.
+    /// Returns all runs on a device, in their order.
     pub fn plan(&self, serial: &str) -> Vec<Planned> {
         let own = serial
             .bytes()
@@ -335,7 +335,7 @@ impl Experiment {
         Planned { plan, folder }
     }
 
-    /// Shortest and longest time for so many runs, in seconds.
+    /// Returns the shortest and longest time for so many runs, in seconds.
     pub fn length(&self, runs: usize) -> [f64; 2] {
         let run = self.warm_up_seconds + self.seconds + START_S;
         let cooling = self.cool_down.map_or(0.0, |cool_down| cool_down.max_seconds).max(self.rest_seconds);

@@ -106,12 +106,12 @@ impl Reading {
         Reading { run, ..Reading::default() }
     }
 
-    /// Time of the last sample in seconds since the run began.
+    /// Returns the time of the last sample in seconds since the run began.
     pub fn time_s(&self) -> f64 {
         self.time_s
     }
 
-    /// How many samples there were.
+    /// Returns the number of samples.
     pub fn samples(&self) -> u64 {
         self.seconds
     }
@@ -121,7 +121,7 @@ impl Reading {
         self.is_raw.is_some()
     }
 
-    /// How many damaged lines there were.
+    /// Returns the number of damaged lines.
     pub fn damaged(&self) -> u64 {
         self.damaged.times
     }

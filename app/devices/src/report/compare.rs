@@ -97,7 +97,7 @@ pub fn without_partner<'a>(runs: &'a [Run], device: &Device, baseline: &str) -> 
     of().filter(|run| run.method != baseline && !partners.contains(&key(run))).collect()
 }
 
-/// All methods against the baseline on a device: for each scene, then over the scenes.
+/// Returns all methods against the baseline on a device: for each scene, then over the scenes.
 pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Difference> {
     let mut differences = Vec::new();
     for method in device.methods.iter().filter(|method| *method != baseline) {
@@ -195,7 +195,7 @@ fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Optio
     Some((back(blocks.mean), interval))
 }
 
-/// From a change to what is averaged: ratios by their logarithms, so that half and double cancel out.
+/// Returns the value of a change that is averaged: of ratios the logarithm, so that half and double cancel out.
 fn scale(quantity: Quantity, change: f64) -> f64 {
     if quantity.is_ratio() { (change / 100.0).ln_1p() } else { change }
 }

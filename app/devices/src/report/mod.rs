@@ -170,17 +170,17 @@ impl DeviceReport {
         page::html(self)
     }
 
-    /// What matters, and all tables.
+    /// Returns the answers and all tables as Markdown.
     pub fn to_markdown(&self) -> String {
         page::markdown(self)
     }
 
-    /// All figures.
+    /// Returns all figures as JSON.
     pub fn to_json(&self) -> Result<String, ReportError> {
         Ok(serde_json::to_string_pretty(self)?)
     }
 
-    /// What matters, for a terminal.
+    /// Returns the answers for a terminal.
     pub fn to_text(&self) -> String {
         page::text(self)
     }
@@ -203,12 +203,12 @@ impl DeviceReport {
     }
 }
 
-/// What tells devices apart.
+/// Returns the key that tells devices apart.
 fn device_key(capture: &Capture) -> (String, bool) {
     (capture.info.device.serial.clone(), capture.info.device.simulated)
 }
 
-/// Manufacturer and model; with the serial number where two have the same.
+/// Returns manufacturer and model; with the serial number where two have the same.
 fn device_names<'a>(captures: impl Iterator<Item = &'a Capture>) -> BTreeMap<(String, bool), String> {
     let mut names: BTreeMap<(String, bool), String> = BTreeMap::new();
     for capture in captures {
@@ -273,7 +273,7 @@ fn devices<'a>(
     devices
 }
 
-/// Of a repetition that was measured again, the last one counts.
+/// Leaves out all but the last run of a repetition that was measured again.
 fn leave_out_repeated(runs: &mut [Run]) {
     let key = |run: &Run| {
         let place = (run.set, run.experiment.clone(), run.scene.clone(), run.method.clone(), run.repetition);
@@ -356,7 +356,7 @@ fn faults(runs: &[Run]) -> Vec<Note> {
     notes
 }
 
-/// In tables.
+/// Returns the name of a fault in tables.
 fn fault_name(kind: FaultKind) -> &'static str {
     match kind {
         FaultKind::Disconnected => "disconnected",

@@ -66,7 +66,7 @@ impl Quantity {
         Quantity::Memory,
     ];
 
-    /// Name and unit in tables, digits after the point, and whether two values are compared as a ratio.
+    /// Returns name and unit in tables, digits after the point, and whether two values are compared as a ratio.
     fn row(self) -> (&'static str, &'static str, usize, bool) {
         match self {
             Quantity::Power => ("power", "mW", 0, true),
@@ -129,7 +129,7 @@ pub struct Counted {
 }
 
 impl Counted {
-    /// By how much the counter says more than current x voltage; 0.1 is 10 %.
+    /// Returns the share by which the counter says more than current x voltage; 0.1 is 10 %.
     pub fn disagreement(&self) -> f64 {
         self.milliwatts / self.integrated_milliwatts - 1.0
     }
@@ -307,7 +307,7 @@ impl Run {
         format!("{}, {}, {}, repetition {}", self.device, self.scene, self.method, self.repetition)
     }
 
-    /// Another measure that says twice what current x voltage says, as where the current is that of one of two cells.
+    /// Returns another measure that says twice what current x voltage says, as where the current is that of one of two cells.
     pub(super) fn twice_by(&self) -> Option<&'static str> {
         let integrated = self.integrated?.milliwatts;
         let counted = self.counted.map(|c| c.milliwatts / c.integrated_milliwatts);
@@ -340,7 +340,7 @@ impl Run {
         self.faults.iter().find(|fault| fault.kind == kind)
     }
 
-    /// Why nothing of it counts: the first reason, from which others would follow.
+    /// Returns why nothing of the run counts: the first reason, from which others would follow.
     fn worthless(&self, capture: &Capture) -> Option<(&'static str, String)> {
         match &capture.info.outcome {
             Outcome::Complete => {}
@@ -360,7 +360,7 @@ impl Run {
             .then(|| ("too short", format!("{covered:.0} s of {planned:.0} s have frame rates")))
     }
 
-    /// Why its power does not count.
+    /// Returns why the run's power does not count.
     fn without_power(&self, capture: &Capture, samples: &[&Sample]) -> Option<(&'static str, String)> {
         let plugged =
             capture.samples.iter().filter(|s| s.plugged.is_some_and(|plugged| plugged != 0)).count();
@@ -390,17 +390,17 @@ impl Run {
     }
 }
 
-/// Power taken from the battery.
+/// Returns the power taken from the battery.
 fn milliwatts(sample: &Sample) -> Option<f64> {
     Some(-sample.current_ma? * voltage(sample)? / 1e3)
 }
 
-/// In millivolts; whole volts are too coarse.
+/// Returns the voltage in millivolts; whole volts are too coarse.
 fn voltage(sample: &Sample) -> Option<f64> {
     sample.voltage_mv.filter(|voltage| *voltage >= LEAST_MILLIVOLTS)
 }
 
-/// By what the charge counter is to be multiplied for microampere-hours of the whole battery. Divided by the level it says
+/// Returns the factor from the charge counter to microampere-hours of the whole battery. Divided by the level it says
 /// how much a full battery has, which tells milliampere-hours, and one cell of several.
 fn counter_scale(samples: &[&Sample], capacity_mah: Option<f64>, cells: u32) -> f64 {
     let full = |s: &&Sample| Some(s.charge_uah? / (s.level_percent.filter(|level| *level > 0.0)? / 100.0));
@@ -430,7 +430,7 @@ fn coverage(series: &[(f64, f64)], longest: f64) -> (f64, usize) {
     (covered, gaps)
 }
 
-/// By trapezoids over the times as they are.
+/// Integrates by trapezoids over the times as they are.
 fn integrate(power: &[(f64, f64)], longest: f64) -> Option<Integrated> {
     let steps = steps(power, longest);
     let seconds: f64 = steps.clone().map(|(a, b)| b.0 - a.0).sum();
@@ -438,7 +438,7 @@ fn integrate(power: &[(f64, f64)], longest: f64) -> Option<Integrated> {
     (seconds > 0.0).then(|| Integrated { milliwatts: millijoules / seconds, seconds })
 }
 
-/// Between the counter's first and last step, where its value is exact. Steps inside a gap have no known time.
+/// Measures power between the counter's first and last step, where its value is exact. Steps inside a gap have no known time.
 fn count(
     charge: &[(f64, f64)],
     voltage: &[(f64, f64)],

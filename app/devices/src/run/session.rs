@@ -349,7 +349,7 @@ impl Session<'_> {
         self.renew_faults()
     }
 
-    /// Nothing has come for a while.
+    /// Decides what to do when nothing has come for a while.
     fn quiet(&mut self) -> Result<Option<Outcome>, DeviceError> {
         if let Some(seconds) = self.follower.lost_for() {
             let reason =

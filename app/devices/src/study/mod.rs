@@ -45,7 +45,7 @@ impl Study {
         page::markdown(self)
     }
 
-    /// Verdicts, for a terminal.
+    /// Returns the verdicts, for a terminal.
     pub fn to_text(&self) -> String {
         page::text(self)
     }

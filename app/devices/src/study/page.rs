@@ -90,7 +90,7 @@ fn means_in_words(question: &Question) -> String {
     )
 }
 
-/// Small p-values as powers of ten.
+/// Formats a p-value, small ones as powers of ten.
 fn p_value(p: Option<f64>) -> Option<String> {
     p.map(|p| if p < 1e-3 { format!("{p:.2e}") } else { format!("{p:.4}") })
 }

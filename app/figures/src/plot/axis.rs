@@ -59,7 +59,7 @@ impl Range {
     }
 }
 
-/// 1, 2 or 5 times a power of ten: three to eight steps in `range`.
+/// Returns 1, 2 or 5 times a power of ten: three to eight steps in `range`.
 pub(super) fn tick_step(range: f64) -> f64 {
     let power = 10f64.powf((range / 3.0).log10().floor());
     [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|step| range / step >= 3.0).unwrap_or(power)

@@ -107,17 +107,17 @@ impl Axis {
         Axis { include: vec![0.0], ..self }
     }
 
-    /// Logarithmic.
+    /// Returns the axis with a logarithmic scale.
     pub fn logarithmic(self) -> Axis {
         Axis { scale: Scale::Logarithmic, ..self }
     }
 
-    /// With a line for a baseline, and from zero.
+    /// Returns the axis with a line for a baseline, and from zero.
     pub fn baseline(self, value: f64) -> Axis {
         self.from_zero().lines(&[value])
     }
 
-    /// With lines at these values, and reaching at least to them.
+    /// Returns the axis with lines at these values, and reaching at least to them.
     pub fn lines(mut self, values: &[f64]) -> Axis {
         self.lines_at.extend(values);
         self.include.extend(values);
@@ -191,7 +191,7 @@ impl Figure {
         self.legend().is_empty()
     }
 
-    /// Every method once: ours first, then the paper's. What is drawn last, on top, is named first.
+    /// Returns every method once: ours first, then the paper's. What is drawn last, on top, is named first.
     fn legend(&self) -> Vec<LegendEntry> {
         let all: Vec<LegendEntry> = match &self.panel {
             Panel::Curves { series, .. } | Panel::Traces { series, .. } => {

@@ -276,7 +276,7 @@ fn crop(image: &RgbImage, origin: [u32; 2], [width, height]: [u32; 2]) -> RgbIma
     image::imageops::crop_imm(image, origin[0], top, width, height).to_image()
 }
 
-/// 0 at the far plane, 1 at the near plane; affine in 1/z, and so in disparity.
+/// Returns nearness: 0 at the far plane, 1 at the near plane; affine in 1/z, and so in disparity.
 fn nearness(depth: &DepthImage, convention: DepthConvention) -> DepthImage {
     DepthImage::from_fn(depth.width(), depth.height(), |x, y| {
         let value = depth.get_pixel(x, y).0[0];

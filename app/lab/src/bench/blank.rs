@@ -2,8 +2,11 @@
 
 use std::rc::Rc;
 
+use anyhow::ensure;
+
+use crate::depth::DepthReader;
 use yoro::eyes::EyePair;
-use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro_gl::{Context, GlError};
 use yoro_render::{PreparedScene, Selection, ViewTargets};
 
 /// Longest edge in pixels of the image that is looked at: what is smaller on the screen is as good as not there.
@@ -11,10 +14,8 @@ const EDGE: u32 = 256;
 
 /// Finds views that show the sky alone: every method is perfect there.
 pub struct BlankFinder {
-    gl: Rc<Context>,
     targets: ViewTargets,
-    copy: Program,
-    depth: RenderTarget,
+    depth: DepthReader,
 }
 
 impl BlankFinder {
@@ -23,12 +24,26 @@ impl BlankFinder {
     /// # Errors
     /// [`GlError`] when the driver refuses a program or a target.
     pub fn new(gl: &Rc<Context>) -> Result<BlankFinder, GlError> {
-        Ok(BlankFinder {
-            gl: gl.clone(),
-            targets: ViewTargets::default(),
-            copy: Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?,
-            depth: RenderTarget::new(gl, [1, 1], &[(Format::R32F, Filter::Nearest)], None)?,
-        })
+        Ok(BlankFinder { targets: ViewTargets::default(), depth: DepthReader::new(gl)? })
+    }
+
+    /// Refuses a scene of which a view shows nothing. `views` are the views' names and eyes.
+    ///
+    /// # Errors
+    /// One sentence with the remedy; [`GlError`] when the driver has no memory for the targets.
+    pub fn refuse_blank<'v>(
+        &mut self,
+        prepared: &mut PreparedScene,
+        views: impl IntoIterator<Item = (String, &'v EyePair)>,
+    ) -> anyhow::Result<()> {
+        for (name, pair) in views {
+            ensure!(
+                !self.is_blank(prepared, pair)?,
+                "{name} of {0} shows nothing, so there is nothing to measure: write viewpoints that show the model into {0}.camera.json beside it",
+                prepared.scene.name
+            );
+        }
+        Ok(())
     }
 
     /// True if the dominant eye sees no surface. Transparent ones, which have no depth, do not count: synthesis does
@@ -44,12 +59,8 @@ impl BlankFinder {
         }
         let PreparedScene { renderer, scene } = prepared;
         let rendered = renderer.render(&mut self.targets, scene, &view, Selection::All)?;
-        self.depth.resize(view.size)?;
-        self.depth.bind();
-        self.gl.set_raster_state(&RasterState::SCREEN);
-        self.copy.bind().texture("source", 0, rendered.depth.raw());
-        self.gl.draw_screen();
+        self.depth.copy(rendered.depth, view.size)?;
         let far = view.depth.clear_value();
-        Ok(self.depth.read_rgba32f(0, [0, 0], view.size).iter().all(|texel| texel[0] == far))
+        Ok(self.depth.read().iter().all(|depth| *depth == far))
     }
 }

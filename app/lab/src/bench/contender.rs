@@ -69,7 +69,7 @@ impl Contender {
     /// The baseline of quality: the same image to both eyes.
     pub const MONO: Contender = Contender::Method(Method::Mono);
 
-    /// Every contender, in the order of tables.
+    /// Returns every contender, in the order of tables.
     pub fn all() -> Vec<Contender> {
         let variants = [Contender::PaperNearest, Contender::PaperStrict];
         let told = Contender::edges().into_iter().chain(Contender::bands());

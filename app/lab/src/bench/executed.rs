@@ -175,7 +175,7 @@ impl Counts<'_> {
     }
 }
 
-/// Mean over the columns of tiles of the target: trips of the loop of the second pass (`synthesis/gather/spans.frag`).
+/// Returns the mean over the columns of tiles of the target: trips of the loop of the second pass (`synthesis/gather/spans.frag`).
 fn span_trips(views: &SynthesisViews) -> f64 {
     let warp = &views.warp;
     let Uniforms { near_displacement, far_displacement, .. } = Uniforms::new(warp, [0, 0]);

@@ -1,14 +1,13 @@
 //! The metrics of a comparison, as a measurement records them.
 
-use super::contender::Contender;
 use super::record::{Measurement, Setting, metric};
 use crate::metrics::{Comparison, Flicker, PartQuality};
 
 impl Measurement {
-    pub(super) fn new(setting: &Setting, contender: Contender, round: u32) -> Measurement {
+    pub(super) fn new(setting: &Setting, contender: impl Into<String>, round: u32) -> Measurement {
         Measurement {
             setting: setting.clone(),
-            contender: contender.name(),
+            contender: contender.into(),
             round,
             values: Default::default(),
         }

@@ -5,18 +5,18 @@ use std::time::Duration;
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// CPU time that all threads of the process have used so far.
+/// Returns the CPU time that all threads of the process have used so far.
 pub fn cpu_time() -> Duration {
     let time = clock_gettime(ClockId::ProcessCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
-/// Resident memory in MiB now; `None` where `/proc` has no such figure.
+/// Returns the resident memory in MiB now; `None` where `/proc` has no such figure.
 pub fn resident_mib() -> Option<f64> {
     kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "VmRSS:")
 }
 
-/// Memory of the system in MiB that can be had without swapping.
+/// Returns the memory of the system in MiB that can be had without swapping.
 pub fn available_mib() -> Option<f64> {
     kilobytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }

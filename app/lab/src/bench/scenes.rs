@@ -101,7 +101,7 @@ impl Object {
         }
     }
 
-    /// `copies` of the object before a wall, all in view and equally large on the screen, near and far. `places`
+    /// Returns `copies` of the object before a wall, all in view and equally large on the screen, near and far. `places`
     /// is the number there will be at most: those of a smaller swarm stand where they do in a larger one.
     pub fn swarm(&self, copies: usize, places: usize) -> Scene {
         let mut b = SceneBuilder::new();
@@ -227,7 +227,7 @@ mod tests {
     use super::*;
     use yoro_scene::Bounds;
 
-    /// Largest angle, in radians, between the view's axis and a vertex of the object.
+    /// Returns the largest angle, in radians, between the view's axis and a vertex of the object.
     fn reach_on_screen(scene: &Scene, object: &Object) -> f32 {
         let view = scene.viewpoints[1];
         let axis = (view.target - view.position).normalize();

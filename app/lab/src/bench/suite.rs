@@ -351,7 +351,7 @@ impl Choices {
         self.scenes(if self.quick { &QUICK_SCENES } else { &VARIED_SCENES })
     }
 
-    /// Everything that has an influence on the figures, to be printed and compared.
+    /// Returns everything that has an influence on the figures, to be printed and compared.
     pub fn parameters(&self) -> Vec<Parameter> {
         let eyes = &self.eyes;
         let list = |names: Vec<String>| {
@@ -390,7 +390,7 @@ struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// One job for each scene and point of the sweep; `vary` makes it the point's.
+    /// Returns a job for each scene and point of the sweep; `vary` adapts it to the point.
     fn over<P: Clone>(
         self,
         scenes: Vec<String>,

@@ -36,7 +36,7 @@ fn mean(values: &[f64]) -> Option<f64> {
     stats::mean(values.iter().copied())
 }
 
-/// One block for each setting, one line for each contender; then who could not take part.
+/// Returns one block for each setting, one line for each contender; then who could not take part.
 pub fn text(results: &Results) -> String {
     let mut out = String::new();
     for facts in results.scenes() {

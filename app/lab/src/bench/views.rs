@@ -14,7 +14,7 @@ pub(super) const STEP: f32 = 0.045;
 /// The same at a headset's 72 frames a second.
 pub(super) const HEADSET_STEP: f32 = 0.01875;
 
-/// `wanted` of `count` indices, evenly spread from the first.
+/// Returns `wanted` of `count` indices, evenly spread from the first.
 pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
     let wanted = wanted.min(count);
     (0..wanted).map(|i| i * count / wanted).collect()

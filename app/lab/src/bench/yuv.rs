@@ -10,7 +10,7 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// BT.601, full range, as in JPEG; colour differences are the mean of 2x2 pixels. An odd last column or row is
+    /// Converts to BT.601, full range, as in JPEG; colour differences are the mean of 2x2 pixels. An odd last column or row is
     /// repeated.
     pub fn of_rgb(image: &RgbImage) -> Planes {
         let size = even(image.dimensions());
@@ -48,7 +48,7 @@ impl Planes {
         Planes { size: [w, h], planes: [luma, vec![128; w * h / 4], vec![128; w * h / 4]] }
     }
 
-    /// Both in one picture; of one size.
+    /// Returns both pictures, of one size, side by side in one.
     pub fn beside(&self, right: &Planes) -> Planes {
         let [w, h] = self.size;
         let planes = std::array::from_fn(|i| {
@@ -90,7 +90,7 @@ impl Planes {
         })
     }
 
-    /// Luma alone, likewise.
+    /// Returns luma alone, likewise.
     pub fn gray(&self, (width, height): (u32, u32)) -> GrayImage {
         GrayImage::from_fn(width, height, |x, y| {
             Luma([self.planes[0][y as usize * self.size[0] + x as usize]])

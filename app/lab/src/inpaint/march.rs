@@ -190,7 +190,7 @@ impl Window {
         }
     }
 
-    /// Index of an image's pixel.
+    /// Returns the index of an image's pixel.
     fn index(&self, x: i32, y: i32) -> usize {
         ((y - self.origin[1]) * self.width + x - self.origin[0]) as usize
     }
@@ -237,7 +237,7 @@ impl Window {
         }
     }
 
-    /// First-order upwind solution of |grad T| = 1 from the neighbours that the front has passed.
+    /// Returns the first-order upwind solution of |grad T| = 1 from the neighbours that the front has passed.
     fn eikonal(&self, i: usize) -> f64 {
         let nearest = |a: Option<usize>, b: Option<usize>| {
             let distance = |j: Option<usize>| j.map_or(f64::INFINITY, |j| self.distance[j]);

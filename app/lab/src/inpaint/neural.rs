@@ -109,7 +109,7 @@ impl Patcher for Neural {
     }
 }
 
-/// Forward column of an image's column, or the other way round.
+/// Returns the forward column of an image's column, or the other way round.
 fn forward(image: &Reprojected, x: u32, width: u32) -> u32 {
     match image.eye {
         Eye::Left => x,

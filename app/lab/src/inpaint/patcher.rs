@@ -115,7 +115,7 @@ pub struct Reprojected {
 }
 
 impl Reprojected {
-    /// Display-referred colour, a mask ([`HOLE`] and [`VALID`]; anything but 0 is valid), and disparity in pixels,
+    /// Makes an image of display-referred colour, a mask ([`HOLE`] and [`VALID`]; anything but 0 is valid), and disparity in pixels,
     /// larger for nearer surfaces, all as seen from `eye`. What colour and disparity say in holes is thrown away: both
     /// are 0 there afterwards.
     ///
@@ -146,7 +146,7 @@ impl Reprojected {
         Ok(Reprojected { color, mask, disparity, eye })
     }
 
-    /// What a synthesis pipeline has made, without what it has filled in. Disparity is 0 at the far plane.
+    /// Makes an image of the output of a synthesis pipeline, without what it has filled in. Disparity is 0 at the far plane.
     ///
     /// # Errors
     /// [`InpaintError::NothingValid`] when the source is not seen at all.
@@ -168,17 +168,17 @@ impl Reprojected {
         Reprojected::new(rgb_image(&result.rgba, warp.target_size), mask, disparity, warp.target_eye)
     }
 
-    /// Colour, black in holes.
+    /// Returns the colour, black in holes.
     pub fn color(&self) -> &RgbImage {
         &self.color
     }
 
-    /// [`HOLE`] or [`VALID`].
+    /// Returns the mask, [`HOLE`] or [`VALID`].
     pub fn mask(&self) -> &GrayImage {
         &self.mask
     }
 
-    /// Disparity in pixels, larger for nearer surfaces; affine in inverse depth. 0 in holes, where it means nothing.
+    /// Returns disparity in pixels, larger for nearer surfaces; affine in inverse depth. 0 in holes, where it means nothing.
     pub fn disparity(&self) -> &DepthImage {
         &self.disparity
     }
@@ -188,7 +188,7 @@ impl Reprojected {
         self.eye
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.color.dimensions().into()
     }
@@ -198,7 +198,7 @@ impl Reprojected {
         self.mask.get_pixel(x, y).0[0] == HOLE
     }
 
-    /// Share of the pixels that are holes.
+    /// Returns the share of the pixels that are holes.
     pub fn hole_share(&self) -> f64 {
         let holes = self.mask.pixels().filter(|m| m.0[0] == HOLE).count();
         holes as f64 / self.mask.len() as f64

@@ -37,7 +37,7 @@ pub fn error_color(error: f64) -> [u8; 3] {
     })
 }
 
-/// 1 - SSIM of `a` and `b` at each pixel (gaussian window, mean of red, green and blue) as colours, on the fixed
+/// Returns 1 - SSIM of `a` and `b` at each pixel (gaussian window, mean of red, green and blue) as colours, on the fixed
 /// scale from 0 (black) to 1 (pale yellow).
 pub fn error_map(a: &RgbImage, b: &RgbImage) -> Result<RgbImage, MetricsError> {
     let map = dissimilarity_map(a, b)?;

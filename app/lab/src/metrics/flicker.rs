@@ -64,7 +64,7 @@ impl FlickerMeter {
         self.over_regions(self.change.iter().copied())
     }
 
-    /// Flicker of a method's images of the same two frames.
+    /// Returns the flicker of a method's images of the same two frames.
     pub fn flicker(&self, eye: [&RgbImage; 2]) -> Result<Flicker, MetricsError> {
         let [before, after] = eye;
         check_sizes(before, after)?;
@@ -95,7 +95,7 @@ impl FlickerMeter {
     }
 }
 
-/// `after - before` of each sample.
+/// Returns `after - before` of each sample.
 fn difference<'a>(before: &'a RgbImage, after: &'a RgbImage) -> impl Iterator<Item = i16> + 'a {
     before.as_raw().iter().zip(after.as_raw()).map(|(before, after)| i16::from(*after) - i16::from(*before))
 }

@@ -7,7 +7,7 @@ use super::input::{MetricsError, check_sizes};
 /// from 0.7 m. FLIP's published figures are made with it.
 pub const FLIP_PIXELS_PER_DEGREE: f64 = 67.020_643_276_582_25;
 
-/// LDR-FLIP at each pixel, row by row from the top, from 0 (equal) to 1: how large the difference appears that is
+/// Returns LDR-FLIP at each pixel, row by row from the top, from 0 (equal) to 1: how large the difference appears that is
 /// seen when `test` and `reference` alternate.
 ///
 /// Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: "FLIP: A Difference Evaluator for
@@ -64,13 +64,13 @@ fn multiply(matrix: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
     matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// sRGB's decoding of an 8-bit value.
+/// Decodes an 8-bit value of sRGB.
 fn linear(value: u8) -> f32 {
     let v = f32::from(value) / 255.0;
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
-/// XYZ relative to white to CIELAB, with Hunt's adjustment: colours lose chroma in the dark.
+/// Converts XYZ relative to white to CIELAB, with Hunt's adjustment: colours lose chroma in the dark.
 fn hunt_lab(xyz: [f32; 3]) -> [f32; 3] {
     const DELTA: f32 = 6.0 / 29.0;
     let f = |v: f32| {
@@ -117,7 +117,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// Convolution with a kernel along x and one along y, both of odd length; the border is repeated.
+    /// Convolves with a kernel along x and one along y, both of odd length; the border is repeated.
     fn convolved(&self, along_x: &[f32], along_y: &[f32]) -> Vec<f32> {
         let (width, height) = (self.width, self.values.len() / self.width);
         let radius = along_x.len() / 2;
@@ -174,7 +174,7 @@ impl Opponent {
         opponent
     }
 
-    /// What is left of the colours at the viewing distance: filtered by the eye's contrast sensitivity (section
+    /// Returns the colours as seen at the viewing distance: filtered by the eye's contrast sensitivity (section
     /// 4.1.1), clamped to the gamut, in CIELAB after Hunt.
     fn as_seen(&self, pixels_per_degree: f64) -> Vec<[f32; 3]> {
         // The widest gaussian decides how far the kernels reach: three standard deviations.
@@ -208,7 +208,7 @@ impl Opponent {
         seen
     }
 
-    /// How much of an edge and how much of a point each pixel is (section 4.2): the magnitudes of the first and
+    /// Returns how much of an edge and how much of a point each pixel is (section 4.2): the magnitudes of the first and
     /// second derivatives of luminance.
     fn features(&self, pixels_per_degree: f64) -> [Vec<f32>; 2] {
         /// Width of the features in degrees.

@@ -44,7 +44,7 @@ pub enum Channels {
 }
 
 impl Channels {
-    /// Each plane as weights of red, green and blue.
+    /// Returns each plane as weights of red, green and blue.
     pub(super) fn planes(self) -> &'static [[f64; 3]] {
         match self {
             Channels::Rgb => &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],

@@ -47,7 +47,7 @@ impl<'de> Deserialize<'de> for Psnr {
     }
 }
 
-/// PSNR over the whole image.
+/// Returns the PSNR over the whole image.
 pub fn psnr(a: &RgbImage, b: &RgbImage, channels: Channels) -> Result<Psnr, MetricsError> {
     check_sizes(a, b)?;
     let planes = channels.planes();
@@ -60,7 +60,7 @@ pub fn psnr(a: &RgbImage, b: &RgbImage, channels: Channels) -> Result<Psnr, Metr
     Ok(Psnr::from_mean_square(sum / (a.as_raw().len() / 3 * planes.len()) as f64))
 }
 
-/// PSNR (RGB) over the pixels where `selected`, row by row from the top, is true; `None` without any.
+/// Returns the PSNR (RGB) over the pixels where `selected`, row by row from the top, is true; `None` without any.
 pub fn psnr_where(a: &RgbImage, b: &RgbImage, selected: &[bool]) -> Result<Option<Psnr>, MetricsError> {
     check_sizes(a, b)?;
     check_mask(a, selected)?;

@@ -14,7 +14,7 @@ pub enum SsimWindow {
 }
 
 impl SsimWindow {
-    /// Width of the window in pixels.
+    /// Returns the width of the window in pixels.
     pub fn size(self) -> u32 {
         2 * self.border() as u32 + 1
     }
@@ -36,13 +36,13 @@ impl SsimWindow {
     }
 }
 
-/// Mean structural similarity over the image without a border of half a window.
+/// Returns the mean structural similarity over the image without a border of half a window.
 pub fn ssim(a: &RgbImage, b: &RgbImage, window: SsimWindow, channels: Channels) -> Result<f64, MetricsError> {
     let map = ssim_map(a, b, window, channels)?;
     Ok(mean_inside(&map, a, window, |_| true).expect("an image as large as the window has a middle"))
 }
 
-/// Mean of the SSIM map (RGB) over the pixels where `selected`, row by row from the top, is true, without the
+/// Returns the mean of the SSIM map (RGB) over the pixels where `selected`, row by row from the top, is true, without the
 /// border; `None` without any. The window of a selected pixel also sees its neighbours.
 pub fn ssim_where(
     a: &RgbImage,
@@ -55,7 +55,7 @@ pub fn ssim_where(
     Ok(mean_inside(&map, a, window, |at| selected[at]))
 }
 
-/// 1 - SSIM at each pixel, row by row from the top: gaussian window, mean of red, green and blue, the image
+/// Returns 1 - SSIM at each pixel, row by row from the top: gaussian window, mean of red, green and blue, the image
 /// mirrored at its border. 0 is equal, 1 has nothing in common, above 1 is the opposite (up to 2).
 pub fn dissimilarity_map(a: &RgbImage, b: &RgbImage) -> Result<Vec<f64>, MetricsError> {
     let mut map = ssim_map(a, b, SsimWindow::Gaussian11, Channels::Rgb)?;
@@ -63,7 +63,7 @@ pub fn dissimilarity_map(a: &RgbImage, b: &RgbImage) -> Result<Vec<f64>, Metrics
     Ok(map)
 }
 
-/// Mean of an SSIM map over the pixels for which `take` says so, without the border; `None` without any.
+/// Returns the mean of an SSIM map over the pixels for which `take` says so, without the border; `None` without any.
 pub(super) fn mean_inside(
     map: &[f64],
     image: &RgbImage,
@@ -82,7 +82,7 @@ pub(super) fn mean_inside(
     (count > 0).then(|| sum / count as f64)
 }
 
-/// SSIM at each pixel, mean over the channels.
+/// Returns the SSIM at each pixel, mean over the channels.
 pub(super) fn ssim_map(
     a: &RgbImage,
     b: &RgbImage,

@@ -24,7 +24,7 @@ pub use run::{
 };
 
 impl RunReport {
-    /// All figures, without the pictures.
+    /// Returns all figures, without the pictures.
     pub fn to_json(&self) -> Result<String, ReportError> {
         #[derive(Serialize)]
         struct Json<'a> {

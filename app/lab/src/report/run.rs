@@ -179,7 +179,7 @@ pub struct MethodMean {
 }
 
 impl RunReport {
-    /// One row for each method on each scene, in the report's order. A method without any view of a scene has no
+    /// Returns one row for each method on each scene, in the report's order. A method without any view of a scene has no
     /// row there.
     pub fn rows(&self) -> Vec<Row> {
         self.scenes.iter().flat_map(SceneReport::rows).collect()
@@ -204,7 +204,7 @@ impl RunReport {
 }
 
 impl SceneReport {
-    /// One row for each method that made a view of this scene.
+    /// Returns one row for each method that made a view of this scene.
     pub(super) fn rows(&self) -> Vec<Row> {
         let row = |method: &MethodCost| {
             let of_method = |viewpoint| view_of(viewpoint, &method.method);

@@ -25,7 +25,7 @@ pub struct SourceArgs {
 }
 
 impl SourceArgs {
-    /// Whoever it is, ready to be asked.
+    /// Opens the source of devices.
     pub fn open(&self) -> Result<Box<dyn Adb>, DeviceError> {
         let Some(replay) = &self.replay else { return Ok(Box::new(AdbProgram::find(self.adb.as_deref())?)) };
         let adb = Replay::read(replay)?;

@@ -243,7 +243,7 @@ impl World {
         100.0 * self.charge_mah / self.script.capacity_mah.max(1.0)
     }
 
-    /// Voltage as the device gives it.
+    /// Returns the voltage as the device gives it.
     fn voltage(&self) -> f64 {
         match self.script.voltage {
             Voltage::Millivolts => self.volts() * 1e3,
@@ -251,7 +251,7 @@ impl World {
         }
     }
 
-    /// Current in milliamperes, negative while discharging.
+    /// Returns the current in milliamperes, negative while discharging.
     fn milliamperes(&self) -> f64 {
         if self.now < self.plugged_until {
             return 1500.0;

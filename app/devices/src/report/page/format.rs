@@ -6,7 +6,7 @@ use yoro_figures::inference::{Basis, BlockInterval, Interval};
 /// Behind an interval that rests on scenes or devices.
 pub const OVER_BLOCKS: &str = " †";
 
-/// `1 run`, `2 runs`.
+/// Formats a count: `1 run`, `2 runs`.
 pub fn count(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
@@ -24,20 +24,20 @@ pub fn change_format(difference: &Difference) -> (usize, &'static str) {
     }
 }
 
-/// `-26.9 %`.
+/// Formats a change: `-26.9 %`.
 pub fn change(difference: &Difference) -> String {
     let (decimals, unit) = change_format(difference);
     format!("{} {unit}", signed(difference.change, decimals))
 }
 
-/// With its sign, but for a zero.
+/// Formats a value with its sign, but for a zero.
 pub fn signed(value: f64, decimals: usize) -> String {
     let text = format!("{value:+.decimals$}");
     let is_zero = !text.bytes().any(|byte| matches!(byte, b'1'..=b'9'));
     if is_zero { text[1..].to_owned() } else { text }
 }
 
-/// `[-31.0, -22.5]`, marked where it does not rest on repetitions; nothing without an interval.
+/// Formats an interval: `[-31.0, -22.5]`, marked where it does not rest on repetitions; nothing without one.
 pub fn change_interval(difference: &Difference) -> String {
     let (decimals, _) = change_format(difference);
     match difference.interval {

@@ -112,7 +112,7 @@ fn title(report: &DeviceReport) -> String {
     }
 }
 
-/// Behind the title of what has replayed figures in it.
+/// Returns the mark behind titles of replayed figures.
 fn simulated_mark(report: &DeviceReport) -> &'static str {
     if !report.simulated {
         ""

@@ -140,7 +140,7 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
     table
 }
 
-/// Power and frame rate against conventional rendering, in percent, of the system in the paper that a method stands
+/// Returns the power and frame rate against conventional rendering, in percent, of the system in the paper that a method stands
 /// for, on the scene that a scene stands for, or on the mean of all.
 pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<(f64, f64)> {
     let column = match method {

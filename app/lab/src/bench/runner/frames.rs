@@ -28,7 +28,10 @@ pub(super) struct Field {
 
 impl Field {
     pub fn measurements(&self, job: &Job, round: u32) -> Vec<Measurement> {
-        self.entrants.iter().map(|(contender, _)| Measurement::new(&job.setting, *contender, round)).collect()
+        self.entrants
+            .iter()
+            .map(|(contender, _)| Measurement::new(&job.setting, contender.name(), round))
+            .collect()
     }
 }
 
@@ -78,7 +81,7 @@ impl Runner<'_> {
         Ok(())
     }
 
-    /// Every contender at every view, the order rotated so that each comes first, second, ... equally often.
+    /// Renders every contender at every view, the order rotated so that each comes first, second, ... equally often.
     /// Returns the other eye's images, by contender and view, if they are to be kept.
     pub(super) fn render_round(
         &self,
@@ -183,7 +186,7 @@ impl Runner<'_> {
             self.bar.inc(1);
             match ready {
                 Ok(entrant) => {
-                    let mut memory = Measurement::new(&job.setting, contender, 0);
+                    let mut memory = Measurement::new(&job.setting, contender.name(), 0);
                     if cost {
                         let own = (self.gl.texture_bytes() - before) as f64 / f64::from(1 << 20);
                         memory.push(metric::TEXTURE_MIB, own);

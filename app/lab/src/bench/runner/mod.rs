@@ -7,7 +7,6 @@ mod sequences;
 use std::rc::Rc;
 use std::time::Duration;
 
-use anyhow::ensure;
 use image::RgbImage;
 use indicatif::ProgressBar;
 
@@ -71,7 +70,7 @@ struct SceneKey {
 }
 
 impl<'a> Runner<'a> {
-    /// Ready to measure into a file as [`Writer::open`] gives it.
+    /// Makes a runner that measures into a file as [`Writer::open`] gives it.
     pub fn new(
         gl: &'a Rc<Context>,
         inputs: Inputs<'a>,
@@ -125,7 +124,6 @@ impl<'a> Runner<'a> {
         if !matches!(job.source, Source::Named(_)) {
             return Ok(());
         }
-        let mut finder = BlankFinder::new(self.gl)?;
         let views = match job.measure {
             Measure::Frames { .. } | Measure::Patchers | Measure::Executed(_) => {
                 Views::spread(job, prepared)?
@@ -135,14 +133,7 @@ impl<'a> Runner<'a> {
                 Views::along_path(job, prepared, views::STEP)?.first()
             }
         };
-        for (name, pair) in views.names.iter().zip(&views.pairs) {
-            ensure!(
-                !finder.is_blank(prepared, pair)?,
-                "{name} of {0} shows nothing, so there is nothing to measure: write viewpoints that show the model into {0}.camera.json beside it",
-                prepared.scene.name
-            );
-        }
-        Ok(())
+        BlankFinder::new(self.gl)?.refuse_blank(prepared, views.names.iter().cloned().zip(&views.pairs))
     }
 
     /// Writes for everyone that the setting was left out, and why.

@@ -44,8 +44,8 @@ impl Runner<'_> {
         for round in done..job.rounds {
             self.bar.set_message(format!("{}: round {} of {}", job.setting, round + 1, job.rounds));
             let mut measurements: Vec<Measurement> =
-                patchers.iter().map(|(c, _)| Measurement::new(&job.setting, *c, round)).collect();
-            let mut mono = Measurement::new(&job.setting, Contender::MONO, round);
+                patchers.iter().map(|(c, _)| Measurement::new(&job.setting, c.name(), round)).collect();
+            let mut mono = Measurement::new(&job.setting, Contender::MONO.name(), round);
             for (i, group) in groups.iter().enumerate() {
                 let holes: Vec<bool> = group.reprojected.mask().iter().map(|m| *m == inpaint::HOLE).collect();
                 for turn in 0..patchers.len() {

@@ -46,7 +46,7 @@ impl Runner<'_> {
         self.finish_round(job, 0, field.first, measurements)
     }
 
-    /// Every contender's frames in their order, each once, as a viewer renders them. A frame's use of the band is known
+    /// Renders every contender's frames in their order, each once, as a viewer does. A frame's use of the band is known
     /// two frames after it.
     pub(super) fn guard_band(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
         let views = Views::along_path(job, prepared, views::HEADSET_STEP)?;
@@ -92,10 +92,8 @@ impl Runner<'_> {
         // Each value is that of a whole sequence at one quantizer.
         facts.frames = job.bandwidth.quantizers.iter().map(|quantizer| format!("QP {quantizer}")).collect();
         let measurement = |(stream, values): (&str, bandwidth::Values)| Measurement {
-            setting: job.setting.clone(),
-            contender: stream.to_owned(),
-            round: 0,
             values,
+            ..Measurement::new(&job.setting, stream, 0)
         };
         let measurements = streams.into_iter().map(measurement).collect();
         self.finish_round(job, 0, vec![Record::Scene(facts)], measurements)
@@ -109,12 +107,7 @@ impl Runner<'_> {
     ) -> anyhow::Result<()> {
         let views = Views::spread(job, prepared)?;
         let mut meter = Meter::new(self.gl, *device)?;
-        let mut measurement = Measurement {
-            setting: job.setting.clone(),
-            contender: device.name.to_owned(),
-            round: 0,
-            values: Default::default(),
-        };
+        let mut measurement = Measurement::new(&job.setting, device.name, 0);
         self.bar.set_message(job.setting.to_string());
         for pair in &views.pairs {
             interrupt::check()?;

@@ -107,7 +107,7 @@ impl SettingData {
         self.contenders.iter().find(|measured| measured.name == contender)
     }
 
-    /// Two full renders.
+    /// Returns the measurements of two full renders.
     pub fn conventional(&self) -> Option<&Measured> {
         self.find(CONVENTIONAL)
     }
@@ -193,7 +193,7 @@ impl Suite {
         unique(self.settings.iter().filter_map(|setting| setting.setting.label.as_deref()))
     }
 
-    /// Scenes, in order.
+    /// Returns the scenes, in order.
     pub fn scenes(&self) -> Vec<&str> {
         unique(self.settings.iter().map(|setting| setting.setting.scene.as_str()))
     }

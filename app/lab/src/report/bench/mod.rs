@@ -144,7 +144,7 @@ impl BenchReport {
         Ok(page::fill(TEMPLATE, TITLE, page)?)
     }
 
-    /// All tables, with `figures` (if given) as the folder from which pictures are linked.
+    /// Returns all tables, with `figures` (if given) as the folder from which pictures are linked.
     pub fn to_markdown(&self, figures: Option<&str>) -> String {
         let mut out = format!("{PAPERS_MARK}\n");
         for (suite, section) in sections::sections(&self.suites) {
@@ -284,7 +284,7 @@ fn source(out: &mut String, suite: &Suite) {
     );
 }
 
-/// Renderer and version of GL that a suite was measured with.
+/// Returns the renderer and version of GL that a suite was measured with.
 fn gl(suite: &Suite) -> (&str, &str) {
     let machine = &suite.header.machine;
     (&machine.gl_renderer, &machine.gl_version)

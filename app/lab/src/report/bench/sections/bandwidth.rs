@@ -88,7 +88,7 @@ pub fn section(suite: &Suite) -> Section {
     section
 }
 
-/// Rate and both eyes' mean quality of a stream, by quantizer.
+/// Returns the rate and both eyes' mean quality of a stream, by quantizer.
 fn rate_points(setting: &SettingData, stream: &str, metrics: [&str; 2]) -> Vec<(f64, f64)> {
     let Some(measured) = setting.find(stream) else { return Vec::new() };
     let rates = measured.by_frame(bandwidth::metric::KBIT_S);
@@ -100,7 +100,7 @@ fn rate_points(setting: &SettingData, stream: &str, metrics: [&str; 2]) -> Vec<(
     points
 }
 
-/// Bit rates at one quantizer, as the paper compares them.
+/// Returns bit rates at one quantizer, as the paper compares them.
 fn rate_table(suite: &Suite) -> Table {
     use bandwidth::{RGB_DEPTH, STEREO_RGB, metric::*};
     let columns = [

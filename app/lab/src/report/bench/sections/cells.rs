@@ -13,7 +13,7 @@ pub const MONO: &str = "mono";
 /// The prefix of the labels of the paper's curves.
 pub const PAPERS: &str = "the paper's ";
 
-/// `530` or `12.3`: four digits say enough of a time.
+/// Formats a time in ms: `530` or `12.30`, since four digits are enough.
 pub fn milliseconds(value: f64) -> String {
     // No minus before a zero.
     let value = if value.abs() < 0.005 { 0.0 } else { value };
@@ -25,7 +25,7 @@ pub fn percent(share: f64) -> String {
     format!("{:+.1} %", 100.0 * share)
 }
 
-/// Both figures of a contender, as in the paper's tables; none where SSIM was not measured.
+/// Returns both figures of a contender, as in the paper's tables; none where SSIM was not measured.
 pub fn psnr_ssim(measured: &Measured) -> Option<String> {
     let ssim = measured.mean(metric::SSIM)?;
     // Identical images have no finite PSNR.

@@ -50,13 +50,13 @@ pub fn section(suite: &Suite) -> Section {
     section
 }
 
-/// Median frame times of a contender.
+/// Returns the median frame times of a contender.
 fn times(suite: &Suite, name: &str) -> Curve {
     let curve = suite.curve(|setting| setting.find(name)?.median(metric::FRAME_MS));
     curve.into_iter().map(|(triangles, ms)| (triangles / 1e6, ms)).collect()
 }
 
-/// Frame times of a contender over those of conventional rendering.
+/// Returns the frame times of a contender over those of conventional rendering.
 fn ratios(suite: &Suite, name: &str) -> Curve {
     let curve = suite.curve(|setting| setting.cost(name).map(|cost| cost.median));
     curve.into_iter().map(|(triangles, ratio)| (triangles / 1e6, ratio)).collect()
@@ -90,7 +90,7 @@ fn series(suite: &Suite, curve: fn(&Suite, &str) -> Curve) -> Vec<Series> {
     series.collect()
 }
 
-/// Cost of a million triangles more by each contender, and by the paper's systems.
+/// Returns the cost of a million triangles more by each contender, and by the paper's systems.
 fn slopes(suite: &Suite) -> Table {
     let columns = [
         "<method",

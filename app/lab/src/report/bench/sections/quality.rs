@@ -76,7 +76,7 @@ fn quality_figures(section: &mut Section, suite: &Suite) {
     }
 }
 
-/// Quality in holes and elsewhere, means over the scenes.
+/// Returns the quality in holes and elsewhere, means over the scenes.
 fn parts_table(suite: &Suite, contenders: &[&str]) -> Table {
     let columns = [
         ("PSNR, dB", metric::PSNR, 2),

@@ -58,7 +58,7 @@ pub fn push_refusals(table: &mut Table, suite: &Suite) {
     }
 }
 
-/// Frame times of each contender in each setting, in full.
+/// Returns the frame times of each contender in each setting, in full.
 pub fn time_details(suite: &Suite, title: &str, ratio: impl Fn(&SettingData, &str) -> Option<f64>) -> Table {
     let columns = [
         "<scene",
