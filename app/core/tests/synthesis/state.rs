@@ -553,11 +553,7 @@ fn the_hosts_state_is_preserved_with_multisample_textures() {
         };
         let [depth, samples] = [Format::Depth32F, Format::Rgba8].map(texture);
         clean(gl);
-        let options = SynthesisOptions {
-            edges: Edges::Multisample,
-            gl_state: GlState::Preserve,
-            ..SynthesisOptions::default()
-        };
+        let options = SynthesisOptions { edges: Edges::Multisample, gl_state: GlState::Preserve };
         let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
         let before = snapshot(gl);
         for samples in [None, Some(samples)] {
