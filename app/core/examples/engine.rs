@@ -1,5 +1,5 @@
 //! yoro in another engine: the engine draws one eye with its own code into its own textures, and yoro writes
-//! the other eye into the engine's framebuffer. Nothing of yoro's scenes, renderer or render targets is used.
+//! the other eye into the engine's framebuffer. It uses no scene, renderer or render target of yoro's.
 //!
 //! `cargo run -p yoro --example engine` writes `out/engine.png`, left and right eye side by side.
 
@@ -17,25 +17,25 @@ use yoro_context::{Backend, Headless};
 const SIZE: [u32; 2] = [768, 768];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // In place of the engine's window. An engine has a current context, of which it lends yoro the entry points:
+    // This stands for the engine's window. An engine has a current context and lends yoro its entry points:
     //     yoro::gl::Context::new(unsafe { glow::Context::from_loader_function(get_proc_address) })?
     let headless = Headless::open(Backend::Auto)?;
     let gl = headless.gl();
     let engine = Engine::new(gl.raw())?;
 
-    // Once: shaders are compiled here and not later. `depth: true` writes the other eye's depth, too, for
-    // transparent objects and compositors.
+    // Once: all shaders are compiled here. `depth: true` also writes the other eye's depth, for transparent objects and
+    // compositors.
     let outputs = Outputs { depth: true, ..Outputs::default() };
     let mut synthesis = synthesis::create(gl, &SynthesisOptions::default(), outputs)?;
 
-    // Each frame: the engine says where its eyes are and what its depth buffer means. With OpenXR, `poses` and
-    // `frusta` of the pair are filled from the two views that xrLocateViews gives.
+    // Each frame: the poses and frusta of the eyes, and the meaning of the depth buffer. With OpenXR, `poses` and
+    // `frusta` come from the two views of xrLocateViews.
     let head = Pose { position: Vec3::new(0.0, 1.6, 2.0), orientation: Quat::from_rotation_y(0.15) };
     let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
     let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
     let pair = EyePair::parallel(head, frustum, 0.063, depth, SIZE, Eye::Right);
 
-    // Refuses eyes that rows cannot serve (rotated against each other, for one) with a sentence.
+    // Returns an error, one sentence, for eyes that are not parallel, for instance.
     let views = pair.synthesis(GuardBand::Distance(0.7))?;
 
     // The view to render is wider than the eye, by the guard band: size and frustum come from `views.source`.
@@ -43,13 +43,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     engine.draw(&views.source, &source);
 
     let other = engine.create_image(views.target.size)?;
-    // A texture that is known by its GL name alone is `glow::NativeTexture(name)`.
+    // A texture with only a GL name is `glow::NativeTexture(name)`.
     let textures = Source::new(source.color, source.depth);
     let target =
         Destination { framebuffer: Some(other.framebuffer), origin: [0, 0], size: views.target.size };
     synthesis.synthesize(textures, &views.warp, &target)?;
-    // Program, vertex array, texture units 0 to 3, viewport, framebuffer and more are yoro's now: set your own, or ask
-    // for `GlState::Preserve` in `SynthesisOptions`. The table is in the documentation of `Synthesis`.
+    // The call has changed program, vertex array, texture units 0 to 3, viewport, framebuffer and more: set your own, or
+    // choose `GlState::Preserve` in `SynthesisOptions`. The documentation of `Synthesis` has the table.
 
     // The rendered eye's own image is the part of `source` that starts at `dominant_crop`.
     let right = engine.read(&source, views.dominant_crop);
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     both.save(path)?;
     println!("{}: left eye synthesized, right eye rendered", path.display());
 
-    // Worth doing once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
+    // Do this once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
     engine.draw(&views.target, &other);
     let truth = engine.read(&other, [0, 0]);
     println!(
@@ -73,13 +73,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Peak signal to noise ratio over red, green and blue in decibels.
+/// Returns the peak signal-to-noise ratio over red, green and blue, in decibels.
 fn psnr(image: &RgbImage, truth: &RgbImage) -> f64 {
     let squares = image.iter().zip(truth.iter()).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
     10.0 * (255f64.powi(2) * truth.len() as f64 / squares.sum::<f64>()).log10()
 }
 
-/// An engine as small as can be: it casts rays into a tiled room with balls.
+/// A minimal engine: it casts rays into a tiled room with balls.
 struct Engine<'a> {
     gl: &'a glow::Context,
     program: glow::Program,
@@ -115,7 +115,7 @@ impl Engine<'_> {
     }
 
     fn create_image(&self, size: [u32; 2]) -> Result<Image, String> {
-        // Linear for colour and nearest for depth, clamped to the edge: what `Source` asks for.
+        // Linear for colour and nearest for depth, clamped to the edge.
         let color = self.create_texture(size, glow::RGBA8, glow::LINEAR)?;
         let depth = self.create_texture(size, glow::DEPTH_COMPONENT32F, glow::NEAREST)?;
         let gl = self.gl;

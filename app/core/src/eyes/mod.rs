@@ -4,14 +4,16 @@
 //! centre at +0.5. The world is right-handed with Y up, and an eye looks along its own -Z with X to the right.
 
 mod depth;
+mod error;
 mod guard_band;
 mod pair;
 mod view;
 mod warp;
 
 pub use depth::{DepthConvention, DepthRange};
+pub use error::EyesError;
 pub use guard_band::{GuardBand, ParseGuardBandError};
-pub use pair::{EyeOptions, EyePair, EyesError, SynthesisViews};
+pub use pair::{EyeOptions, EyePair, SynthesisViews};
 pub use view::{Frustum, Pose, View};
 pub use warp::{DisparityLaw, Warp, full_overlap_distance, minimum_object_distance};
 

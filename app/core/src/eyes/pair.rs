@@ -2,89 +2,10 @@
 
 use glam::{Quat, Vec3};
 
-use super::{DepthRange, DisparityLaw, Eye, Frustum, GuardBand, Pose, View, Warp};
+use super::{DepthRange, DisparityLaw, Eye, EyesError, Frustum, GuardBand, Pose, View, Warp};
 
 /// The largest side of an image in pixels. No driver renders larger ones.
 const MAX_SIDE: f64 = 65536.0;
-
-/// The reason why one eye of a pair cannot be synthesized from the other.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum EyesError {
-    /// The eyes are rotated against each other.
-    #[error(
-        "the eyes are canted by {degrees:.2} degrees against each other; synthesis moves pixels along rows only: render both eyes, or give both the same orientation"
-    )]
-    Canted {
-        /// Angle between the two viewing directions.
-        degrees: f32,
-    },
-    /// The eyes are displaced along more than their X axis.
-    #[error(
-        "the eyes are displaced by {off_axis:.4} m off their common X axis; synthesis moves pixels along rows only: place both eyes on one horizontal line"
-    )]
-    OffAxis {
-        /// Displacement in metres perpendicular to the X axis.
-        off_axis: f32,
-    },
-    /// The left eye is right of the right eye.
-    #[error("the left eye is {distance:.4} m to the right of the right eye; swap the eyes")]
-    Swapped {
-        /// The distance in metres.
-        distance: f32,
-    },
-    /// Surfaces at the near plane move further than the shaders can store ([`Warp::MAX_DISPLACEMENT`]).
-    #[error(
-        "surfaces at the near plane move by {pixels:.0} pixels from eye to eye, and at most {max} can be synthesized; move the near plane away, bring the eyes together, or render fewer pixels",
-        max = Warp::MAX_DISPLACEMENT
-    )]
-    Displacement {
-        /// Displacement in pixels.
-        pixels: f64,
-    },
-    /// The two frusta have different tangents per pixel.
-    #[error(
-        "the eyes have different pixel densities ({left:.6} and {right:.6} tangents per pixel on one axis); give both the same size and frusta of the same width and height"
-    )]
-    Density {
-        /// Tangent per pixel of the left eye.
-        left: f32,
-        /// Tangent per pixel of the right eye.
-        right: f32,
-    },
-    /// The rows of one eye's image lie between those of the other's.
-    #[error(
-        "the rows of the eyes' images are {rows:.2} rows apart, and a row of one must lie on a row of the other; give both frusta the same bottom and top"
-    )]
-    Rows {
-        /// Rows from the left eye's lower edge up to the right eye's.
-        rows: f32,
-    },
-    /// A pose or a frustum with a value that is not finite, or an orientation that is not a rotation.
-    #[error("an eye's pose or frustum is invalid: need finite numbers and an orientation of length 1")]
-    Invalid,
-    /// A frustum or an image without area, or depth planes out of order.
-    #[error(
-        "the frustum is empty or the depth planes are out of order: need left < right, bottom < top and 0 < near < far"
-    )]
-    Empty,
-    /// A guard band outside [`GuardBand::MAX_PIXELS`] or [`GuardBand::DISTANCES`].
-    #[error(
-        "a guard band of {0} is out of range; give none, at most {max}px, or a distance from {near} to {far} m",
-        max = GuardBand::MAX_PIXELS, near = GuardBand::DISTANCES.start(), far = GuardBand::DISTANCES.end()
-    )]
-    GuardBand(GuardBand),
-    /// The union of both frusta and the guard band has more pixels on a side than drivers render.
-    #[error(
-        "the view to render would have {width:.0}x{height:.0} pixels; give the eyes fewer pixels, or frusta that overlap"
-    )]
-    TooLarge {
-        /// Width in pixels.
-        width: f64,
-        /// Height in pixels.
-        height: f64,
-    },
-}
 
 /// Two parallel eyes of equal size, as the paper sets them up: an [`EyePair`] for any pose of the head.
 #[derive(Clone, Copy, Debug, PartialEq)]

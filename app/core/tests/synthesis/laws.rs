@@ -13,11 +13,14 @@ use yoro::synthesis::{SOURCE_MAP_HOLE, Synthesis};
 use yoro_context::{Backend, Headless};
 use yoro_gl::Context;
 
+/// A function that makes a pipeline.
+type Make = Box<dyn Fn(&Rc<Context>) -> Box<dyn Synthesis>>;
+
 /// A pipeline under test, by name.
 pub struct Subject {
     pub name: String,
     /// Makes it with the outputs that [`InMemory`] wants.
-    pub make: Box<dyn Fn(&Rc<Context>) -> Box<dyn Synthesis>>,
+    pub make: Make,
 }
 
 impl Subject {
