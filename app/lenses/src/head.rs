@@ -19,7 +19,7 @@ pub enum MotionSample {
     Gyroscope(Vec3),
     /// Angular velocity in rad/s as measured, and the device's own estimate of its bias.
     GyroscopeUncalibrated {
-        /// The rotation as measured.
+        /// The angular velocity as measured.
         rate: Vec3,
         /// The bias to subtract until there is a better estimate.
         bias: Vec3,

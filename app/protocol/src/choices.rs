@@ -18,8 +18,7 @@ pub const MSAA: [u32; 3] = [1, 2, 4];
 pub struct Choice {
     /// The name in files and on the command line.
     pub name: &'static str,
-    /// One line without a full stop.
-    pub help: &'static str,
+    help: &'static str,
 }
 
 impl Choice {

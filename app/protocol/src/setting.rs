@@ -262,12 +262,10 @@ macro_rules! whole {
 
 whole!(u32, u64, usize);
 
-/// Types with a text of their own, which may look like a number; with the list of their choices, if they have one.
+/// Types with a text of their own, which may look like a number.
 macro_rules! texts {
-    ($($type:ty $(: $choices:expr)?),+ $(,)?) => { $(
+    ($($type:ty),+) => { $(
         impl SettingValue for $type {
-            $(const CHOICES: &'static [Choice] = $choices;)?
-
             fn read(value: &Value) -> Result<$type, String> {
                 plain(value).parse().map_err(|error| format!("{error}"))
             }
@@ -291,7 +289,7 @@ impl SettingValue for Ipd {
     }
 }
 
-/// Types of the core with names.
+/// Types whose values have names.
 macro_rules! named {
     ($($type:ty: $choices:expr, $find:expr;)+) => { $(
         impl SettingValue for $type {

@@ -10,7 +10,7 @@ use yoro_context::{Backend, ContextError, Headless};
 use yoro_gl::Context;
 use yoro_lab::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
 
-/// Where the GL context comes from.
+/// The source of the GL context.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct GlArgs {
     /// Where to take the GL context from

@@ -34,7 +34,7 @@ pub fn backend() -> impl TypedValueParser<Value = Backend> {
 pub fn stored_edges() -> impl TypedValueParser<Value = Edges> {
     let help = |edges: Edges| {
         let choices = Setting::find("edges").map_or(&[][..], |setting| setting.choices);
-        choices.iter().find(|choice| choice.name == edges.name()).map_or("", |choice| choice.help)
+        choices.iter().find(|choice| choice.name == edges.name()).map_or("", |choice| choice.help())
     };
     choice([Edges::Hard, Edges::Nearest, Edges::Sample], Edges::name, help)
 }

@@ -19,7 +19,7 @@ use yoro_lab::picture::{self, DepthImage, DepthSamples, Nearness, StoredDepth, S
 use yoro_protocol::Ipd;
 use yoro_render::stereo::{Offline, SynthesizedImage};
 
-/// What the values of a depth image mean.
+/// The meaning of a depth image's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum DepthEncoding {
     /// Depth buffer, 0 near to 1 far; needs --near and --far
@@ -32,7 +32,7 @@ pub enum DepthEncoding {
     Disparity,
 }
 
-/// Which eye the images show.
+/// The eye that the images show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum SourceEye {
     /// The left eye: the right one is synthesized
@@ -105,7 +105,7 @@ pub struct SynthesizeArgs {
     gl: GlArgs,
 }
 
-/// One image group: where it comes from and where it goes.
+/// The input and output files of one image group.
 struct Job {
     color: PathBuf,
     depth: PathBuf,
@@ -138,7 +138,7 @@ impl SourceEye {
 }
 
 impl Job {
-    /// All files that will be written, and what they are.
+    /// Returns all files that will be written, with a description of each.
     fn outputs(&self, dominant: SourceEye) -> Vec<(PathBuf, String)> {
         let kinds = [
             ("other eye", Some(&self.out)),

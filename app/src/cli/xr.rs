@@ -95,7 +95,7 @@ struct MethodSummary {
     /// Medians in milliseconds: this program's thread, and the GPU where it is measured.
     cpu_ms: Option<f64>,
     gpu_ms: Option<f64>,
-    /// By the times at which the runtime expects the frames to be seen.
+    /// Frames per second, by the times at which the runtime expects the frames to be seen.
     fps: Option<f64>,
     stale: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -289,7 +289,7 @@ fn show(
     Ok((summaries, empty_frames))
 }
 
-/// Waits for a runtime that wants no frame; not for ever, if frames are wanted.
+/// Waits for a runtime that wants no frame; up to [`TIMEOUT`] if frames are wanted.
 fn pause(last_frame: Instant, wanted: bool) -> anyhow::Result<()> {
     ensure!(
         !wanted || last_frame.elapsed() <= TIMEOUT,

@@ -14,7 +14,7 @@ pub struct FrameStatistics {
     stale: u32,
 }
 
-/// One second's, or any period's, frames.
+/// Statistics of one second's frames, or of any period's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondStatistics {
     /// Frames per second.

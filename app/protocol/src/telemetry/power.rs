@@ -1,4 +1,4 @@
-//! Battery current in milliamperes, from what devices make of it; energy over a session.
+//! Battery current in milliamperes, from devices' own units and signs; energy over a session.
 //!
 //! By Android's specification the current is in microamperes and negative while the battery discharges. Some
 //! devices report milliamperes, and some are positive on discharge.
@@ -17,7 +17,7 @@ pub enum BatteryStatus {
 }
 
 impl BatteryStatus {
-    /// From Android's number; `None` for unknown (1) and everything else.
+    /// Returns the state of Android's number; `None` for unknown (1) and everything else.
     pub fn from_android(number: i32) -> Option<BatteryStatus> {
         Some(match number {
             2 => BatteryStatus::Charging,
@@ -38,7 +38,7 @@ impl BatteryStatus {
         }
     }
 
-    /// From its name.
+    /// Returns the state of a name.
     pub fn from_name(name: &str) -> Option<BatteryStatus> {
         (2..=5).filter_map(BatteryStatus::from_android).find(|status| status.name() == name)
     }

@@ -5,7 +5,7 @@ use std::fs;
 /// Clock ticks per second in /proc: USER_HZ, 100 on every architecture that Linux and Android run on today.
 const TICKS_PER_SECOND: f64 = 100.0;
 
-/// A look at /proc/self.
+/// A sample of /proc/self.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProcessSample {
     /// Time on all cores since the process began, in seconds.
@@ -15,7 +15,7 @@ pub struct ProcessSample {
 }
 
 impl ProcessSample {
-    /// Asks now; nothing is known where there is no /proc.
+    /// Takes a sample; its values are `None` where there is no /proc.
     pub fn take() -> ProcessSample {
         ProcessSample {
             cpu_seconds: fs::read_to_string("/proc/self/stat").ok().and_then(|s| cpu_seconds(&s)),

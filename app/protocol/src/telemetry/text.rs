@@ -30,7 +30,7 @@ pub enum LineError {
     },
 }
 
-/// A value with so many decimals and its unit.
+/// Writes a value with a number of decimals and a unit, or `na`.
 pub(super) struct Na<T>(pub Option<T>, pub usize, pub &'static str);
 
 impl<T: Display> Display for Na<T> {
@@ -42,7 +42,7 @@ impl<T: Display> Display for Na<T> {
     }
 }
 
-/// Text that cannot end its field.
+/// Returns a text without characters that could end its field.
 pub(super) fn word(text: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "-._/".contains(c) { c } else { '-' };
     let word: String = text.chars().map(plain).collect();
