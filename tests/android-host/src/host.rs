@@ -16,10 +16,10 @@ use crate::android::sensors::Sensors;
 use crate::android::thermal::ThermalListeners;
 use crate::android::window::Window;
 use crate::clock::Clock;
-use crate::elf::Library;
 use crate::frames::Frames;
 use crate::graphics::Graphics;
 use crate::jni::Jni;
+use crate::library::Library;
 use crate::script::{Battery, Device, Script, Thermal};
 use crate::summary::{InputFacts, LABEL, LibraryFacts, Mark, Summary};
 

@@ -19,6 +19,7 @@ mod frames;
 mod graphics;
 mod host;
 mod jni;
+mod library;
 mod loader;
 mod openxr;
 mod player;
@@ -36,8 +37,8 @@ use anyhow::{Context, Result};
 use crate::android::activity::OnCreate;
 use crate::android::assets::Assets;
 use crate::apk::Apk;
-use crate::elf::Library;
 use crate::host::{ABI, Host, Report};
+use crate::library::Library;
 use crate::player::Player;
 use crate::script::Script;
 

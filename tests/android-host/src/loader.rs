@@ -13,7 +13,7 @@ use openxr_sys as sys;
 use serde::Deserialize;
 use sys::{Handle as _, pfn};
 
-use crate::elf::Library;
+use crate::library::Library;
 use crate::openxr;
 
 /// The name under which an application carries its loader.

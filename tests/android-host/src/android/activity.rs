@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use anyhow::{Context, Result};
+use jni_sys::{JNIEnv, JavaVM, jobject};
 use tempfile::TempDir;
 
 use crate::android::assets::Assets;
@@ -61,9 +62,9 @@ pub struct Callbacks {
 #[derive(Debug)]
 pub struct ANativeActivity {
     pub callbacks: *mut Callbacks,
-    pub vm: *const c_void,
-    pub env: *const c_void,
-    pub clazz: *const c_void,
+    pub vm: *mut JavaVM,
+    pub env: *mut JNIEnv,
+    pub clazz: jobject,
     pub internalDataPath: *const c_char,
     pub externalDataPath: *const c_char,
     pub sdkVersion: i32,

@@ -6,14 +6,14 @@ use std::sync::atomic::Ordering;
 
 use crate::android::thermal;
 use crate::host::{Host, host, lock};
-use crate::jni::{Argument, Data, Member, Object, Value};
+use crate::jni::{Data, Member, Object, Value};
 use crate::script::Battery;
 
 /// `Integer.MIN_VALUE` and `Long.MIN_VALUE` are BatteryManager's words for "unsupported".
 const UNSUPPORTED: i32 = i32::MIN;
 
 /// The answer to a call, `None` where nothing is known.
-pub fn call(receiver: &Object, member: &Member, arguments: &[Argument]) -> Option<Value> {
+pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<Value> {
     let host = host();
     let text = |index: usize| match arguments.get(index) {
         Some(Value::Object(Some(object))) => object.text().map(str::to_owned),

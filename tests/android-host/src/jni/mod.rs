@@ -6,7 +6,8 @@
 
 pub mod answers;
 mod objects;
+mod strings;
 mod table;
 
-pub use objects::{Argument, Cursor, Data, Jni, Member, Object, Value};
+pub use objects::{Cursor, Data, Jni, Member, Object, Value};
 pub use table::{activity_reference, attach_main_thread, environment, release_activity, virtual_machine};

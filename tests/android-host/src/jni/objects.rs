@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, Mutex};
 
+use jni_sys::jobject;
+
 use crate::host::{fatal, lock};
 
 /// A Java object.
@@ -94,9 +96,6 @@ impl Value {
     }
 }
 
-/// An argument of a call.
-pub type Argument = Value;
-
 /// A method or a field.
 #[derive(Debug, PartialEq, Eq, Hash, Clone)]
 pub struct Member {
@@ -156,20 +155,27 @@ impl Jni {
             .or_default() += 1;
     }
 
-    pub(super) fn add(&self, object: Arc<Object>, kind: Kind) -> usize {
+    /// Returns a new reference.
+    pub(super) fn add(&self, object: Arc<Object>, kind: Kind) -> jobject {
         let mut references = lock(&self.references);
         // Multiples of 8, as pointers are, and never used twice.
         references.last += 8;
         let handle = references.last;
         references.live.insert(handle, Reference { object, kind });
-        handle
+        handle as jobject
     }
 
-    pub(super) fn remove(&self, handle: usize, kind: Kind) {
-        if handle == 0 {
+    /// Returns a new reference to the same object; null for null.
+    pub(super) fn again(&self, handle: jobject, kind: Kind) -> jobject {
+        self.get(handle).map_or(std::ptr::null_mut(), |object| self.add(object, kind))
+    }
+
+    /// Deletes a reference, which must be of this kind; null is none.
+    pub(super) fn remove(&self, handle: jobject, kind: Kind) {
+        if handle.is_null() {
             return;
         }
-        match lock(&self.references).live.remove(&handle) {
+        match lock(&self.references).live.remove(&(handle as usize)) {
             Some(reference) if reference.kind == kind => {}
             Some(reference) => fatal(format!(
                 "JNI: a {:?} reference to a {} was deleted as a {kind:?} one",
@@ -179,19 +185,20 @@ impl Jni {
         }
     }
 
-    /// The object behind a reference; null is none.
-    pub(super) fn get(&self, handle: usize) -> Option<Arc<Object>> {
-        if handle == 0 {
+    /// Returns the object behind a reference; null is none.
+    pub(super) fn get(&self, handle: jobject) -> Option<Arc<Object>> {
+        if handle.is_null() {
             return None;
         }
-        match lock(&self.references).live.get(&handle) {
+        match lock(&self.references).live.get(&(handle as usize)) {
             Some(reference) => Some(reference.object.clone()),
             None => fatal("JNI: a reference was used that does not exist any more"),
         }
     }
 
-    pub(super) fn kind(&self, handle: usize) -> Option<Kind> {
-        lock(&self.references).live.get(&handle).map(|reference| reference.kind)
+    /// Returns the kind of a reference; none if there is no such reference.
+    pub(super) fn kind(&self, handle: jobject) -> Option<Kind> {
+        lock(&self.references).live.get(&(handle as usize)).map(|reference| reference.kind)
     }
 
     /// The one identifier of a member.

@@ -1,0 +1,238 @@
+//! Loads a package's library. The loader is our own and not glibc's `dlopen`, because imports must be bound to what
+//! Android's libraries export, and it is stricter than Android's about what it accepts.
+
+use std::collections::BTreeMap;
+use std::ffi::{CString, c_void};
+use std::ops::Range;
+
+use anyhow::{Context, Result, bail, ensure};
+use goblin::elf::dynamic::{DT_INIT, DT_INIT_ARRAY, DT_INIT_ARRAYSZ};
+use goblin::elf::program_header::{PF_R, PF_W, PF_X};
+
+use crate::elf::{Image, PAGE, machine, pages};
+use crate::exports::System;
+use crate::summary::LibraryFacts;
+use crate::thunk;
+
+/// A library in memory.
+pub struct Library {
+    /// Path as `dladdr` tells it.
+    pub path: CString,
+    base: usize,
+    span: usize,
+    program_headers: Vec<u8>,
+    symbols: BTreeMap<String, usize>,
+    code: Vec<Range<usize>>,
+    init: Vec<usize>,
+}
+
+/// The result of loading.
+pub struct Loaded {
+    /// The library.
+    pub library: Library,
+    /// For the summary.
+    pub facts: LibraryFacts,
+    /// The imports that nothing answers: a call of one ends the run with its name.
+    pub trapped: Vec<String>,
+}
+
+impl Library {
+    /// Maps and links a library. An import is looked for in the libraries that this one needs; `find` returns the address
+    /// of a symbol that a system library exports.
+    ///
+    /// # Errors
+    /// One sentence on what Android or the host would refuse.
+    pub fn load(name: &str, file: &[u8], find: impl Fn(System, &str) -> Option<usize>) -> Result<Loaded> {
+        let image = Image::parse(file).with_context(|| format!("{name} cannot be loaded"))?;
+        let needed = image.needed().iter().map(|library| {
+            System::named(library).with_context(|| {
+                format!("{name} needs {library}, which is no public library known to the host")
+            })
+        });
+        let needed = needed.collect::<Result<Vec<_>>>()?;
+        let span = image.loads().map(|segment| pages(segment).map_or(0, |pages| pages.1)).max().unwrap_or(0);
+        let base = map(&image, span)?;
+        let (values, trapped) =
+            bind(&image, base, &needed, find).with_context(|| format!("{name} cannot be linked"))?;
+        relocate(&image, base, &values).with_context(|| format!("{name} cannot be linked"))?;
+        let init = constructors(&image, base)?;
+        protect(&image, base)?;
+        let imports =
+            image.symbols.iter().filter(|symbol| symbol.defined.is_none() && !symbol.name.is_empty());
+        let facts = LibraryFacts {
+            name: name.to_owned(),
+            size: file.len() as u64,
+            needed: image.needed().iter().map(|library| (*library).to_owned()).collect(),
+            symbols: imports.count() - trapped.len(),
+            relocations: image.relocations.len(),
+            alignment: image.loads().map(|segment| segment.p_align).min().unwrap_or(0),
+        };
+        let exports = image.symbols.iter();
+        let exports = exports.filter_map(|it| Some((it.name.to_owned(), base + it.defined? as usize)));
+        let code = image.loads().filter(|segment| segment.p_flags & PF_X != 0).map(|segment| {
+            let start = base + segment.p_vaddr as usize;
+            start..start + segment.p_memsz as usize
+        });
+        let library = Self {
+            path: CString::new(format!("/data/app/base.apk!/{name}"))?,
+            base,
+            span: span as usize,
+            program_headers: image.program_headers().to_vec(),
+            symbols: exports.collect(),
+            code: code.collect(),
+            init,
+        };
+        Ok(Loaded { library, facts, trapped })
+    }
+
+    /// Runs the constructors.
+    ///
+    /// # Safety
+    /// Once, after everything that they may call is in place.
+    pub unsafe fn initialize(&self) {
+        for function in &self.init {
+            // SAFETY: DT_INIT and DT_INIT_ARRAY hold functions of this type; the caller vouches for the moment.
+            let function: extern "C" fn(i32, *const *const u8, *const *const u8) =
+                unsafe { std::mem::transmute(*function) };
+            function(0, std::ptr::null(), std::ptr::null());
+        }
+    }
+
+    /// Returns the address of an exported symbol.
+    pub fn symbol(&self, name: &str) -> Option<usize> {
+        self.symbols.get(name).copied()
+    }
+
+    /// Returns the start of the mapping.
+    pub fn base(&self) -> usize {
+        self.base
+    }
+
+    /// True if the address lies in the library.
+    pub fn contains(&self, address: usize) -> bool {
+        (self.base..self.base + self.span).contains(&address)
+    }
+
+    /// True if the address lies in the library's code.
+    pub fn is_code(&self, address: usize) -> bool {
+        self.code.iter().any(|range| range.contains(&address))
+    }
+
+    /// Returns the program headers, as in the file.
+    pub fn program_headers(&self) -> &[u8] {
+        &self.program_headers
+    }
+}
+
+/// Maps the segments as a kernel with 16 KiB pages would, writable for the moment, and returns where the library starts.
+fn map(image: &Image, span: u64) -> Result<usize> {
+    // SAFETY: a new anonymous mapping at an address of the kernel's choice.
+    let memory = unsafe {
+        libc::mmap(
+            std::ptr::null_mut(),
+            (span + PAGE) as usize,
+            libc::PROT_NONE,
+            libc::MAP_PRIVATE | libc::MAP_ANONYMOUS,
+            -1,
+            0,
+        )
+    };
+    ensure!(memory != libc::MAP_FAILED, "no memory for the library: {}", std::io::Error::last_os_error());
+    let base = (memory as usize).next_multiple_of(PAGE as usize);
+    for segment in image.loads() {
+        let (first, last) = pages(segment)?;
+        protect_range(base, first, last, libc::PROT_READ | libc::PROT_WRITE)?;
+        let start = segment.p_offset - (segment.p_vaddr - first);
+        let source = &image.file[start as usize..(segment.p_offset + segment.p_filesz) as usize];
+        // SAFETY: the pages were just made writable and hold at least the segment; what the file has before the segment
+        // on its first page is mapped along, as a kernel does.
+        unsafe {
+            std::ptr::copy_nonoverlapping(source.as_ptr(), (base as u64 + first) as *mut u8, source.len())
+        };
+    }
+    Ok(base)
+}
+
+/// Returns the value of every symbol, and the names of those that nothing answers.
+fn bind(
+    image: &Image,
+    base: usize,
+    needed: &[System],
+    find: impl Fn(System, &str) -> Option<usize>,
+) -> Result<(Vec<usize>, Vec<String>)> {
+    let mut values = vec![0; image.symbols.len()];
+    let mut missing = Vec::new();
+    for (index, symbol) in image.symbols.iter().enumerate().skip(1) {
+        let finds = |library: &System| find(*library, symbol.name);
+        if let Some(address) = symbol.defined {
+            values[index] = base + address as usize;
+        } else if let Some(address) = needed.iter().find_map(finds) {
+            values[index] = address;
+        } else if let Some(library) = System::ALL.into_iter().find(|library| finds(library).is_some()) {
+            bail!("{} comes from {}, which the library does not name as needed", symbol.name, library.name());
+        } else if !symbol.weak {
+            missing.push(index);
+        }
+    }
+    let names: Vec<_> = missing.iter().map(|index| image.symbols[*index].name.to_owned()).collect();
+    for (index, address) in missing.into_iter().zip(thunk::traps(&names)?) {
+        values[index] = address;
+    }
+    Ok((values, names))
+}
+
+/// Writes the relocations; `values` are those of the symbols.
+fn relocate(image: &Image, base: usize, values: &[usize]) -> Result<()> {
+    for relocation in &image.relocations {
+        let value = match relocation.kind {
+            machine::RELATIVE => base,
+            machine::ABSOLUTE | machine::GLOB_DAT | machine::JUMP_SLOT => {
+                *values.get(relocation.symbol).context("a relocation names a symbol that is not there")?
+            }
+            other => bail!("a relocation has the type {other}, which the host does not know"),
+        };
+        let end = relocation.at.checked_add(8).context("a relocation wraps around")?;
+        let is_writable = image.loads().any(|segment| {
+            let range = segment.p_vaddr..=segment.p_vaddr + segment.p_memsz;
+            segment.p_flags & PF_W != 0 && range.contains(&relocation.at) && range.contains(&end)
+        });
+        ensure!(is_writable, "a relocation lies outside of the writable segments");
+        let value = (value as u64).wrapping_add_signed(relocation.addend);
+        // SAFETY: the address was checked to lie in a segment that `map` made writable.
+        unsafe { ((base as u64 + relocation.at) as *mut u64).write_unaligned(value) };
+    }
+    Ok(())
+}
+
+/// Returns the addresses of the constructors. The relocations are in place.
+fn constructors(image: &Image, base: usize) -> Result<Vec<usize>> {
+    let mut init: Vec<_> = image.tag(DT_INIT).map(|init| base + init as usize).into_iter().collect();
+    let [start, length] = [DT_INIT_ARRAY, DT_INIT_ARRAYSZ].map(|tag| image.tag(tag).unwrap_or(0));
+    for at in (start..start.saturating_add(length)).step_by(8) {
+        image.offset(at)?;
+        // SAFETY: the address lies in a mapped segment; the relocations have filled the table in.
+        init.push(unsafe { ((base as u64 + at) as *const usize).read_unaligned() });
+    }
+    Ok(init)
+}
+
+fn protect(image: &Image, base: usize) -> Result<()> {
+    for segment in image.loads() {
+        let (first, last) = pages(segment)?;
+        let bits = [(PF_R, libc::PROT_READ), (PF_W, libc::PROT_WRITE), (PF_X, libc::PROT_EXEC)];
+        let bits = bits.into_iter().filter(|(flag, _)| segment.p_flags & flag != 0);
+        protect_range(base, first, last, bits.fold(0, |all, (_, bit)| all | bit))?;
+    }
+    if let Some(relro) = image.relro() {
+        protect_range(base, relro.p_vaddr & !(PAGE - 1), relro.p_vaddr + relro.p_memsz, libc::PROT_READ)?;
+    }
+    Ok(())
+}
+
+fn protect_range(base: usize, first: u64, last: u64, protection: i32) -> Result<()> {
+    // SAFETY: the range lies in the mapping made by `map`, which nothing else uses yet.
+    let result =
+        unsafe { libc::mprotect((base as u64 + first) as *mut c_void, (last - first) as usize, protection) };
+    ensure!(result == 0, "memory protection cannot be set: {}", std::io::Error::last_os_error());
+    Ok(())
+}
