@@ -1,14 +1,20 @@
-//! Everything that only Java can be asked for.
+//! Questions that only Java answers.
 
 use std::ffi::c_void;
 use std::sync::OnceLock;
 
 use android_activity::AndroidApp;
-use jni::objects::{JObject, JString};
+use jni::Env;
+use jni::errors::Result as JavaResult;
+use jni::objects::{JObject, JObjectArray, JString};
 use jni::refs::Global;
 use jni::vm::JavaVM;
-use jni::{Env, JValue, jni_sig, jni_str};
+use jni::{jni_sig, jni_str};
 use yoro_viewer::openxr::runtime::{Broker, Rows};
+
+use crate::bindings::{
+    Activity, BatteryManager, Cursor, DisplayMetrics as Metrics, IntentFilter, PowerManager, Toast, Uri,
+};
 
 /// `BatteryManager.BATTERY_PROPERTY_*`.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +30,7 @@ pub enum BatteryProperty {
     Status = 6,
 }
 
-/// What the sticky intent `ACTION_BATTERY_CHANGED` says, as it says it.
+/// The extras of the sticky intent `ACTION_BATTERY_CHANGED`, in its units.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BatteryIntent {
     /// Level in units of `scale`.
@@ -41,12 +47,12 @@ pub struct BatteryIntent {
     pub status: Option<i32>,
 }
 
-/// What Android says of the display that the activity is on.
+/// The display that the activity is on.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplayMetrics {
     /// Pixels per inch along both axes of the picture: of the display's mode.
     pub dpi: [f32; 2],
-    /// Width and height of the picture in pixels, which the user may have made others than the mode's.
+    /// Width and height of the picture in pixels; the user may have set others than the mode's.
     pub size: [i32; 2],
     /// Width and height of the display's mode in pixels, in the device's natural position.
     pub mode: [i32; 2],
@@ -71,100 +77,50 @@ impl Java {
     }
 
     /// Asks the activity; an exception is logged, cleared and means no answer.
-    fn ask<T>(
-        &self,
-        what: &str,
-        question: impl FnOnce(&mut Env, &JObject) -> jni::errors::Result<T>,
-    ) -> Option<T> {
+    fn ask<T>(&self, what: &str, question: impl FnOnce(&mut Env, &Activity) -> JavaResult<T>) -> Option<T> {
         self.try_ask(question).inspect_err(|error| log::debug!("{what}: {error}")).ok()
     }
 
     /// Asks the activity; an exception is cleared and returned.
-    fn try_ask<T>(
-        &self,
-        question: impl FnOnce(&mut Env, &JObject) -> jni::errors::Result<T>,
-    ) -> jni::errors::Result<T> {
-        self.vm.attach_current_thread(|env| -> jni::errors::Result<T> {
+    fn try_ask<T>(&self, question: impl FnOnce(&mut Env, &Activity) -> JavaResult<T>) -> JavaResult<T> {
+        self.vm.attach_current_thread(|env| {
             let raw = self.app.activity_as_ptr() as jni::sys::jobject;
             // SAFETY: a global reference that android-activity owns and keeps as long as `app` lives.
-            let activity = unsafe { env.as_cast_raw::<Global<JObject<'static>>>(&raw)? };
-            question(env, activity.as_ref())
+            let activity = unsafe { env.as_cast_raw::<Global<Activity<'static>>>(&raw)? };
+            question(env, &activity)
         })
     }
 
-    /// The display, if Java says anything of it.
+    /// Returns the display, if Java says anything of it.
     pub fn display_metrics(&self) -> Option<DisplayMetrics> {
         self.ask("the display", |env, activity| {
-            let manager = env
-                .call_method(
-                    activity,
-                    jni_str!("getWindowManager"),
-                    jni_sig!("()Landroid/view/WindowManager;"),
-                    &[],
-                )?
-                .l()?;
-            let display = env
-                .call_method(
-                    &manager,
-                    jni_str!("getDefaultDisplay"),
-                    jni_sig!("()Landroid/view/Display;"),
-                    &[],
-                )?
-                .l()?;
-            let refresh_hz =
-                env.call_method(&display, jni_str!("getRefreshRate"), jni_sig!("()F"), &[])?.f()?;
-            let rotation = env.call_method(&display, jni_str!("getRotation"), jni_sig!("()I"), &[])?.i()?;
+            let display = activity.get_window_manager(env)?.get_default_display(env)?;
+            let mode = display.get_mode(env)?;
             // Of the whole display; those of the resources leave out what the system keeps for itself.
-            let metrics = env.new_object(jni_str!("android/util/DisplayMetrics"), jni_sig!("()V"), &[])?;
-            env.call_method(
-                &display,
-                jni_str!("getRealMetrics"),
-                jni_sig!("(Landroid/util/DisplayMetrics;)V"),
-                &[JValue::Object(&metrics)],
-            )?
-            .v()?;
-            let x = env.get_field(&metrics, jni_str!("xdpi"), jni_sig!("F"))?.f()?;
-            let y = env.get_field(&metrics, jni_str!("ydpi"), jni_sig!("F"))?.f()?;
-            let width = env.get_field(&metrics, jni_str!("widthPixels"), jni_sig!("I"))?.i()?;
-            let height = env.get_field(&metrics, jni_str!("heightPixels"), jni_sig!("I"))?.i()?;
-            let mode = env
-                .call_method(&display, jni_str!("getMode"), jni_sig!("()Landroid/view/Display$Mode;"), &[])?
-                .l()?;
-            let mode_width =
-                env.call_method(&mode, jni_str!("getPhysicalWidth"), jni_sig!("()I"), &[])?.i()?;
-            let mode_height =
-                env.call_method(&mode, jni_str!("getPhysicalHeight"), jni_sig!("()I"), &[])?.i()?;
-            let plausible = (10.0..1000.0).contains(&refresh_hz);
-            let refresh_hz = if plausible { refresh_hz } else { 0.0 };
+            let metrics = Metrics::new(env)?;
+            display.get_real_metrics(env, &metrics)?;
+            let refresh_hz = display.get_refresh_rate(env)?;
+            let is_plausible = (10.0..1000.0).contains(&refresh_hz);
             Ok(DisplayMetrics {
-                dpi: [x, y],
-                size: [width, height],
-                mode: [mode_width, mode_height],
-                refresh_hz,
-                rotation,
+                dpi: [metrics.xdpi(env)?, metrics.ydpi(env)?],
+                size: [metrics.width_pixels(env)?, metrics.height_pixels(env)?],
+                mode: [mode.get_physical_width(env)?, mode.get_physical_height(env)?],
+                refresh_hz: if is_plausible { refresh_hz } else { 0.0 },
+                rotation: display.get_rotation(env)?,
             })
         })
     }
 
-    /// Whether this is a headset: there it is no use to show a window instead. Phones for Daydream have
+    /// True if this is a headset: there it is no use to show a window instead. Phones for Daydream have
     /// `android.hardware.vr.headtracking`, too, but in version 0, of three degrees of freedom.
     pub fn is_headset(&self) -> bool {
         const FEATURES: [(&str, i32); 2] =
             [("android.hardware.vr.headtracking", 1), ("android.software.xr.api.openxr", 0)];
         let answer = self.ask("the package manager", |env, activity| {
-            let manager = env
-                .call_method(
-                    activity,
-                    jni_str!("getPackageManager"),
-                    jni_sig!("()Landroid/content/pm/PackageManager;"),
-                    &[],
-                )?
-                .l()?;
+            let manager = activity.get_package_manager(env)?;
             for (name, version) in FEATURES {
                 let name = JString::new(env, name)?;
-                let arguments = [JValue::Object(name.as_ref()), JValue::Int(version)];
-                let signature = jni_sig!("(Ljava/lang/String;I)Z");
-                if env.call_method(&manager, jni_str!("hasSystemFeature"), signature, &arguments)?.z()? {
+                if manager.has_system_feature(env, &name, version)? {
                     return Ok(true);
                 }
             }
@@ -173,15 +129,13 @@ impl Java {
         answer.unwrap_or_default()
     }
 
-    /// A global JNI reference to the application's context, which lasts as long as the process: for libraries that keep it
-    /// after the activity is gone. None where Java gives none.
+    /// Returns a global JNI reference to the application's context, if Java has one. It lasts as long as the process: for
+    /// libraries that keep it after the activity is gone.
     pub fn application_context(&self) -> Option<*mut c_void> {
         static CONTEXT: OnceLock<Option<Global<JObject<'static>>>> = OnceLock::new();
         let context = CONTEXT.get_or_init(|| {
             self.ask("the application's context", |env, activity| {
-                let signature = jni_sig!("()Landroid/content/Context;");
-                let context =
-                    env.call_method(activity, jni_str!("getApplicationContext"), signature, &[])?.l()?;
+                let context = activity.get_application_context(env)?;
                 env.new_global_ref(context)
             })
         });
@@ -189,69 +143,41 @@ impl Java {
     }
 
     /// Turns sustained performance mode on or off, where the device has it: clock rates that can be held for long instead of
-    /// high ones that cannot. Whether the device has it.
+    /// high ones that cannot. True if the device has it.
     pub fn sustain_performance(&self, is_on: bool) -> bool {
         let is_offered = self.ask("the power manager", |env, activity| {
             let name = JString::new(env, "power")?;
-            let manager = env
-                .call_method(
-                    activity,
-                    jni_str!("getSystemService"),
-                    jni_sig!("(Ljava/lang/String;)Ljava/lang/Object;"),
-                    &[JValue::Object(name.as_ref())],
-                )?
-                .l()?;
-            let question = jni_str!("isSustainedPerformanceModeSupported");
-            env.call_method(&manager, question, jni_sig!("()Z"), &[])?.z()
+            let manager = activity.get_system_service(env, &name)?;
+            env.cast_local::<PowerManager>(manager)?.is_sustained_performance_mode_supported(env)
         });
         let is_offered = is_offered.unwrap_or_default();
         if is_offered {
             self.on_main_thread("sustained performance mode", move |env, activity| {
-                let window = env
-                    .call_method(activity, jni_str!("getWindow"), jni_sig!("()Landroid/view/Window;"), &[])?
-                    .l()?;
-                let arguments = [JValue::Bool(is_on)];
-                let name = jni_str!("setSustainedPerformanceMode");
-                env.call_method(&window, name, jni_sig!("(Z)V"), &arguments)?.v()
+                activity.get_window(env)?.set_sustained_performance_mode(env, is_on)
             });
         }
         is_offered
     }
 
-    /// The extras of the intent that started the activity, as texts.
+    /// Returns the extras of the intent that started the activity, as texts.
     pub fn extras(&self) -> Vec<(String, String)> {
         let extras = self.ask("the intent's extras", |env, activity| {
-            let intent = env
-                .call_method(activity, jni_str!("getIntent"), jni_sig!("()Landroid/content/Intent;"), &[])?
-                .l()?;
-            if intent.is_null() {
-                return Ok(Vec::new());
-            }
-            let bundle = env
-                .call_method(&intent, jni_str!("getExtras"), jni_sig!("()Landroid/os/Bundle;"), &[])?
-                .l()?;
-            if bundle.is_null() {
-                return Ok(Vec::new());
-            }
-            let keys =
-                env.call_method(&bundle, jni_str!("keySet"), jni_sig!("()Ljava/util/Set;"), &[])?.l()?;
-            let iterator =
-                env.call_method(&keys, jni_str!("iterator"), jni_sig!("()Ljava/util/Iterator;"), &[])?.l()?;
             let mut pairs = Vec::new();
-            while env.call_method(&iterator, jni_str!("hasNext"), jni_sig!("()Z"), &[])?.z()? {
-                let key = env
-                    .call_method(&iterator, jni_str!("next"), jni_sig!("()Ljava/lang/Object;"), &[])?
-                    .l()?;
-                let value = env
-                    .call_method(
-                        &bundle,
-                        jni_str!("get"),
-                        jni_sig!("(Ljava/lang/String;)Ljava/lang/Object;"),
-                        &[JValue::Object(&key)],
-                    )?
-                    .l()?;
+            let intent = activity.get_intent(env)?;
+            if intent.is_null() {
+                return Ok(pairs);
+            }
+            let bundle = intent.get_extras(env)?;
+            if bundle.is_null() {
+                return Ok(pairs);
+            }
+            let keys = bundle.key_set(env)?.iterator(env)?;
+            while keys.has_next(env)? {
+                let Some(key) = keys.next(env)? else { break };
+                let key = env.cast_local::<JString>(key)?;
+                let value = bundle.get(env, &key)?;
                 if !value.is_null() {
-                    pairs.push((text(env, &key)?, text(env, &value)?));
+                    pairs.push((key.try_to_string(env)?, text(env, &value)?));
                 }
             }
             Ok(pairs)
@@ -259,59 +185,30 @@ impl Java {
         extras.unwrap_or_default()
     }
 
-    /// One of the battery's properties; none where the device does not support it, for which Android says
+    /// Returns one of the battery's properties; none where the device does not support it, for which Android says
     /// `Integer.MIN_VALUE`.
     pub fn battery(&self, property: BatteryProperty) -> Option<i32> {
         let value = self.ask("the battery manager", |env, activity| {
             let name = JString::new(env, "batterymanager")?;
-            let manager = env
-                .call_method(
-                    activity,
-                    jni_str!("getSystemService"),
-                    jni_sig!("(Ljava/lang/String;)Ljava/lang/Object;"),
-                    &[JValue::Object(name.as_ref())],
-                )?
-                .l()?;
-            env.call_method(
-                &manager,
-                jni_str!("getIntProperty"),
-                jni_sig!("(I)I"),
-                &[JValue::Int(property as i32)],
-            )?
-            .i()
+            let manager = activity.get_system_service(env, &name)?;
+            env.cast_local::<BatteryManager>(manager)?.get_int_property(env, property as i32)
         });
         value.filter(|value| *value != i32::MIN)
     }
 
-    /// What the system last broadcast of the battery.
+    /// Returns what the system last broadcast of the battery.
     pub fn battery_intent(&self) -> BatteryIntent {
         let answer = self.ask("the battery's intent", |env, activity| {
             let action = JString::new(env, "android.intent.action.BATTERY_CHANGED")?;
-            let filter = env.new_object(
-                jni_str!("android/content/IntentFilter"),
-                jni_sig!("(Ljava/lang/String;)V"),
-                &[JValue::Object(action.as_ref())],
-            )?;
+            let filter = IntentFilter::new(env, &action)?;
             // Without a receiver nothing is registered: the call only returns the last broadcast.
-            let intent = env
-                .call_method(
-                    activity,
-                    jni_str!("registerReceiver"),
-                    jni_sig!(
-                        "(Landroid/content/BroadcastReceiver;Landroid/content/IntentFilter;)Landroid/content/Intent;"
-                    ),
-                    &[JValue::Object(&JObject::null()), JValue::Object(&filter)],
-                )?
-                .l()?;
+            let intent = activity.register_receiver(env, JObject::null(), &filter)?;
             if intent.is_null() {
                 return Ok(BatteryIntent::default());
             }
-            let mut number = |name: &str| -> jni::errors::Result<Option<i32>> {
+            let mut number = |name: &str| -> JavaResult<Option<i32>> {
                 let name = JString::new(env, name)?;
-                let arguments = [JValue::Object(name.as_ref()), JValue::Int(i32::MIN)];
-                let value = env
-                    .call_method(&intent, jni_str!("getIntExtra"), jni_sig!("(Ljava/lang/String;I)I"), &arguments)?
-                    .i()?;
+                let value = intent.get_int_extra(env, &name, i32::MIN)?;
                 Ok(Some(value).filter(|value| *value != i32::MIN))
             };
             Ok(BatteryIntent {
@@ -333,19 +230,7 @@ impl Java {
         // IMMERSIVE_STICKY: deprecated since API 30, and the one way that works from API 29 on.
         const FLAGS: i32 = 0x100 | 0x200 | 0x400 | 0x2 | 0x4 | 0x1000;
         self.on_main_thread("the system's bars", |env, activity| {
-            let window = env
-                .call_method(activity, jni_str!("getWindow"), jni_sig!("()Landroid/view/Window;"), &[])?
-                .l()?;
-            let view = env
-                .call_method(&window, jni_str!("getDecorView"), jni_sig!("()Landroid/view/View;"), &[])?
-                .l()?;
-            env.call_method(
-                &view,
-                jni_str!("setSystemUiVisibility"),
-                jni_sig!("(I)V"),
-                &[JValue::Int(FLAGS)],
-            )?
-            .v()
+            activity.get_window(env)?.get_decor_view(env)?.set_system_ui_visibility(env, FLAGS)
         });
     }
 
@@ -355,30 +240,20 @@ impl Java {
         let sentence = sentence.to_owned();
         self.on_main_thread("a toast", move |env, activity| {
             let text = JString::new(env, &sentence)?;
-            let toast = env
-                .call_static_method(
-                    jni_str!("android/widget/Toast"),
-                    jni_str!("makeText"),
-                    jni_sig!("(Landroid/content/Context;Ljava/lang/CharSequence;I)Landroid/widget/Toast;"),
-                    &[JValue::Object(activity), JValue::Object(text.as_ref()), JValue::Int(LENGTH_LONG)],
-                )?
-                .l()?;
-            env.call_method(&toast, jni_str!("show"), jni_sig!("()V"), &[])?.v()
+            Toast::make_text(env, activity, text.as_char_sequence(), LENGTH_LONG)?.show(env)
         });
     }
 
     /// Asks Android to end the activity. The events of its end follow, up to `Destroy`.
     pub fn finish(&self) {
-        self.on_main_thread("the activity's end", |env, activity| {
-            env.call_method(activity, jni_str!("finish"), jni_sig!("()V"), &[])?.v()
-        });
+        self.on_main_thread("the activity's end", |env, activity| activity.finish(env));
     }
 
-    /// Views belong to the thread that made them.
+    /// Does something on the activity's main thread, for views belong to the thread that made them.
     fn on_main_thread(
         &self,
         what: &'static str,
-        action: impl FnOnce(&mut Env, &JObject) -> jni::errors::Result<()> + Send + 'static,
+        action: impl FnOnce(&mut Env, &Activity) -> JavaResult<()> + Send + 'static,
     ) {
         let java = self.clone();
         self.app.run_on_java_main_thread(Box::new(move || {
@@ -390,102 +265,51 @@ impl Java {
 /// Content providers, through `ContentResolver.query`.
 impl Broker for Java {
     fn query(&self, uri: &str, columns: &[&str]) -> Result<Option<Rows>, String> {
-        self.try_ask(|env, activity| rows(env, activity, uri, columns)).map_err(|error| error.to_string())
+        self.try_ask(|env, activity| query(env, activity, uri, columns)).map_err(|error| error.to_string())
     }
 }
 
-/// All rows of a table.
-fn rows(env: &mut Env, activity: &JObject, uri: &str, columns: &[&str]) -> jni::errors::Result<Option<Rows>> {
-    let resolver = env
-        .call_method(
-            activity,
-            jni_str!("getContentResolver"),
-            jni_sig!("()Landroid/content/ContentResolver;"),
-            &[],
-        )?
-        .l()?;
-    let text = JString::new(env, uri)?;
-    let uri = env
-        .call_static_method(
-            jni_str!("android/net/Uri"),
-            jni_str!("parse"),
-            jni_sig!("(Ljava/lang/String;)Landroid/net/Uri;"),
-            &[JValue::Object(text.as_ref())],
-        )?
-        .l()?;
+/// Returns all rows of a provider's table; none where there is no provider.
+fn query(env: &mut Env, activity: &Activity, uri: &str, columns: &[&str]) -> JavaResult<Option<Rows>> {
+    let resolver = activity.get_content_resolver(env)?;
+    let uri = JString::new(env, uri)?;
+    let uri = Uri::parse(env, &uri)?;
     let names = env.new_object_type_array::<JString>(columns.len(), JString::null())?;
     for (i, column) in columns.iter().enumerate() {
         let name = JString::new(env, column)?;
         names.set_element(env, i, &name)?;
     }
-    let null = JObject::null();
-    let cursor = env
-        .call_method(
-            &resolver,
-            jni_str!("query"),
-            jni_sig!(
-                "(Landroid/net/Uri;[Ljava/lang/String;Ljava/lang/String;[Ljava/lang/String;Ljava/lang/String;)Landroid/database/Cursor;"
-            ),
-            &[
-                JValue::Object(&uri),
-                JValue::Object(names.as_ref()),
-                JValue::Object(&null),
-                JValue::Object(&null),
-                JValue::Object(&null),
-            ],
-        )?
-        .l()?;
+    let (none, nothing) = (JObjectArray::<JString>::null(), JString::null());
+    let cursor = resolver.query(env, &uri, &names, &nothing, &none, &nothing)?;
     if cursor.is_null() {
         return Ok(None);
     }
-    let read = read_rows(env, &cursor, columns);
-    env.call_method(&cursor, jni_str!("close"), jni_sig!("()V"), &[])?.v()?;
-    read.map(Some)
+    let rows = read_rows(env, &cursor, columns);
+    cursor.close(env)?;
+    rows.map(Some)
 }
 
-fn read_rows(env: &mut Env, cursor: &JObject, columns: &[&str]) -> jni::errors::Result<Rows> {
+fn read_rows(env: &mut Env, cursor: &Cursor, columns: &[&str]) -> JavaResult<Rows> {
     let mut indices = Vec::new();
     for column in columns {
         let name = JString::new(env, column)?;
-        let index = env
-            .call_method(
-                cursor,
-                jni_str!("getColumnIndex"),
-                jni_sig!("(Ljava/lang/String;)I"),
-                &[JValue::Object(name.as_ref())],
-            )?
-            .i()?;
-        indices.push(index);
+        indices.push(cursor.get_column_index(env, &name)?);
     }
     let mut rows = Rows::new();
-    while env.call_method(cursor, jni_str!("moveToNext"), jni_sig!("()Z"), &[])?.z()? {
+    while cursor.move_to_next(env)? {
         let mut row = Vec::new();
         for &index in &indices {
-            if index < 0 {
-                row.push(None);
-                continue;
-            }
-            let cell = env
-                .call_method(
-                    cursor,
-                    jni_str!("getString"),
-                    jni_sig!("(I)Ljava/lang/String;"),
-                    &[JValue::Int(index)],
-                )?
-                .l()?;
-            row.push(if cell.is_null() {
-                None
-            } else {
-                Some(env.cast_local::<JString>(cell)?.try_to_string(env)?)
-            });
+            // A column that is not there has the index -1.
+            let cell = if index < 0 { JString::null() } else { cursor.get_string(env, index)? };
+            row.push(if cell.is_null() { None } else { Some(cell.try_to_string(env)?) });
         }
         rows.push(row);
     }
     Ok(rows)
 }
 
-/// `toString()`.
-fn text(env: &mut Env, object: &JObject) -> jni::errors::Result<String> {
+/// Returns what `toString()` returns.
+fn text(env: &mut Env, object: &JObject) -> JavaResult<String> {
     let string = env.call_method(object, jni_str!("toString"), jni_sig!("()Ljava/lang/String;"), &[])?.l()?;
     env.cast_local::<JString>(string)?.try_to_string(env)
 }

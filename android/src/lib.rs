@@ -14,6 +14,8 @@ mod settings;
 #[cfg(target_os = "android")]
 mod activity;
 #[cfg(target_os = "android")]
+mod bindings;
+#[cfg(target_os = "android")]
 mod configuration;
 #[cfg(target_os = "android")]
 mod device;
