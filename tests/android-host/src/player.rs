@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::android::activity::{ANativeActivity, ARect, Callbacks, OnCreate};
+use crate::android::activity::{ANativeActivity, ARect, Callbacks, Event, OnCreate, WindowEvent};
 use crate::android::input::{AInputEvent, AInputQueue, MotionAction};
 use crate::android::looper::{self, ALooper};
 use crate::host::{Host, fatal, host, lock};
@@ -50,7 +50,17 @@ struct Activity {
     callbacks: Callbacks,
 }
 
-/// Finger's time on the screen, nanoseconds.
+/// Calls one of an activity's callbacks, if the application has it, on the main thread.
+macro_rules! call {
+    ($activity:ident, $function:expr $(, $argument:expr)*) => {
+        if let Some(function) = $function {
+            // SAFETY: the application's callback, on the main thread, with its own activity and what is alive meanwhile.
+            unsafe { function(&raw mut $activity.native $(, $argument)*) }
+        }
+    };
+}
+
+/// How long a finger stays on the screen, in nanoseconds.
 const TAP: u64 = 80_000_000;
 
 impl Player {
@@ -93,24 +103,20 @@ impl Player {
             Step::Quit => self.quit(),
             Step::Create => self.create(),
             Step::Start => {
-                self.expect("start", self.stage.created && !self.stage.started);
-                self.event("onStart", |callbacks| callbacks.onStart);
-                self.stage.started = true;
+                let possible = self.stage.created && !self.stage.started;
+                self.advance("start", possible, "onStart", |callbacks| callbacks.onStart).started = true;
             }
             Step::Resume => {
-                self.expect("resume", self.stage.started && !self.stage.resumed);
-                self.event("onResume", |callbacks| callbacks.onResume);
-                self.stage.resumed = true;
+                let possible = self.stage.started && !self.stage.resumed;
+                self.advance("resume", possible, "onResume", |callbacks| callbacks.onResume).resumed = true;
             }
             Step::Pause => {
-                self.expect("pause", self.stage.resumed);
-                self.event("onPause", |callbacks| callbacks.onPause);
-                self.stage.resumed = false;
+                let possible = self.stage.resumed;
+                self.advance("pause", possible, "onPause", |callbacks| callbacks.onPause).resumed = false;
             }
             Step::Stop => {
-                self.expect("stop", self.stage.started && !self.stage.resumed);
-                self.event("onStop", |callbacks| callbacks.onStop);
-                self.stage.started = false;
+                let possible = self.stage.started && !self.stage.resumed;
+                self.advance("stop", possible, "onStop", |callbacks| callbacks.onStop).started = false;
             }
             Step::Destroy => self.destroy(),
             Step::InputQueue => self.input_queue(),
@@ -213,34 +219,28 @@ impl Player {
         result
     }
 
-    fn event(
-        &mut self,
-        what: &str,
-        get: impl Fn(&Callbacks) -> Option<unsafe extern "C" fn(*mut ANativeActivity)>,
-    ) {
-        self.callback(what, |activity| {
-            if let Some(function) = get(&activity.callbacks) {
-                // SAFETY: the application's callback, with its own activity, on the main thread.
-                unsafe { function(&raw mut activity.native) };
-            }
-        });
+    /// Calls a callback that takes nothing but the activity.
+    fn event(&mut self, what: &str, get: impl Fn(&Callbacks) -> Event) {
+        self.callback(what, |activity| call!(activity, get(&activity.callbacks)));
     }
 
-    fn window_event(
-        &mut self,
-        what: &str,
-        get: impl Fn(
-            &Callbacks,
-        )
-            -> Option<unsafe extern "C" fn(*mut ANativeActivity, *const crate::android::window::Window)>,
-    ) {
+    /// Calls a callback that takes the window.
+    fn window_event(&mut self, what: &str, get: impl Fn(&Callbacks) -> WindowEvent) {
         let window = &raw const self.host.window;
-        self.callback(what, |activity| {
-            if let Some(function) = get(&activity.callbacks) {
-                // SAFETY: the application's callback, with its own activity and the window, on the main thread.
-                unsafe { function(&raw mut activity.native, window) };
-            }
-        });
+        self.callback(what, |activity| call!(activity, get(&activity.callbacks), window));
+    }
+
+    /// Calls a callback at a stage at which Android may, and says which stage follows.
+    fn advance(
+        &mut self,
+        step: &str,
+        is_possible: bool,
+        what: &str,
+        get: impl Fn(&Callbacks) -> Event,
+    ) -> &mut Stage {
+        self.expect(step, is_possible);
+        self.event(what, get);
+        &mut self.stage
     }
 
     fn create(&mut self) {
@@ -312,10 +312,7 @@ impl Player {
         let queue = AInputQueue::fresh();
         self.queue = Some(queue);
         self.callback("onInputQueueCreated", |activity| {
-            if let Some(function) = activity.callbacks.onInputQueueCreated {
-                // SAFETY: the application's callback, with its own activity and a queue, on the main thread.
-                unsafe { function(&raw mut activity.native, queue) };
-            }
+            call!(activity, activity.callbacks.onInputQueueCreated, queue)
         });
     }
 
@@ -324,10 +321,7 @@ impl Player {
             fatal("the script asks for input-queue-lost without a queue")
         };
         self.callback("onInputQueueDestroyed", |activity| {
-            if let Some(function) = activity.callbacks.onInputQueueDestroyed {
-                // SAFETY: the application's callback, with its own activity and its queue, on the main thread.
-                unsafe { function(&raw mut activity.native, queue) };
-            }
+            call!(activity, activity.callbacks.onInputQueueDestroyed, queue)
         });
         // After its own end android_main cannot take the queue off its looper, and android-activity does not.
         if queue.is_attached() && main_runs(self.host) {
@@ -358,10 +352,7 @@ impl Player {
         let (right, bottom) = self.host.window.size();
         let rect = ARect { left: 0, top: 0, right, bottom };
         self.callback("onContentRectChanged", |activity| {
-            if let Some(function) = activity.callbacks.onContentRectChanged {
-                // SAFETY: the application's callback, with its own activity and a live rectangle, on the main thread.
-                unsafe { function(&raw mut activity.native, &raw const rect) };
-            }
+            call!(activity, activity.callbacks.onContentRectChanged, &raw const rect)
         });
     }
 
@@ -369,10 +360,7 @@ impl Player {
         self.expect("focus", self.stage.created);
         self.stage.focus = focus;
         self.callback("onWindowFocusChanged", |activity| {
-            if let Some(function) = activity.callbacks.onWindowFocusChanged {
-                // SAFETY: the application's callback, with its own activity, on the main thread.
-                unsafe { function(&raw mut activity.native, i32::from(focus)) };
-            }
+            call!(activity, activity.callbacks.onWindowFocusChanged, i32::from(focus))
         });
     }
 

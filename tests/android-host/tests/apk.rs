@@ -19,7 +19,7 @@ use yoro_android_host::summary::Summary;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headset, What};
 
-use host::{Run, device, layer, play, play_arm64};
+use host::{READY, Run, device, layer, play, play_arm64, show};
 
 /// What each test's device has in its properties, as the desktop's settings: a scene and a quality that a CPU draws fast.
 const SETTINGS: [(&str, &str); 8] = [
@@ -34,8 +34,12 @@ const SETTINGS: [(&str, &str); 8] = [
 ];
 const SIZE: [u32; 2] = [320, 180];
 const DPI: f32 = 74.0;
-/// The scene is in view.
-const READY: &str = r#"{ wait-log = { text = "triangles", frames = 2000 } }, { frames = 3 }"#;
+
+/// A phone with the settings of all tests and `more`, and more keys of `[device]`.
+fn phone(more: &[(&str, &str)], keys: &str) -> String {
+    let settings: Vec<_> = SETTINGS.iter().chain(more).copied().collect();
+    device(&settings, keys)
+}
 
 fn lines(run: &Run) -> Vec<Line> {
     let lines: Vec<_> = run
@@ -91,14 +95,9 @@ fn decibels(one: &RgbImage, other: &RgbImage) -> f64 {
 
 #[test]
 fn boots_to_the_first_frame() {
-    let Some(run) = play(
-        "boot",
-        &device(&SETTINGS, ""),
-        &format!(r#""launch", {{ frames = 2 }}, {READY}, {{ capture = "boot.png" }}, "quit""#),
-    ) else {
+    let Some(run) = show("boot", &phone(&[], ""), r#"{ frames = 2 }, { capture = "boot.png" }"#) else {
         return;
     };
-    run.assert_clean();
     assert!(run.summary.frames >= 5);
     let picture = run.picture("boot.png");
     let colours: std::collections::HashSet<_> = picture.pixels().collect();
@@ -121,7 +120,7 @@ fn boots_to_the_first_frame() {
 #[test]
 fn a_lower_resolution_is_the_same_screen() {
     // 427 x 240 pixels of 74 dpi, of which the user has left 320 x 180.
-    let device = device(&SETTINGS, "mode = [427, 240]");
+    let device = phone(&[], "mode = [427, 240]");
     let Some(run) = play("resolution", &device, r#""launch", { frames = 2 }, "quit""#) else { return };
     run.assert_clean();
     let line = run.summary.log_of("YORO").find(|text| text.starts_with("viewer: ")).unwrap();
@@ -130,14 +129,9 @@ fn a_lower_resolution_is_the_same_screen() {
 
 #[test]
 fn the_picture_is_the_desktop_viewers() {
-    let Some(run) = play(
-        "picture",
-        &device(&SETTINGS, "sensors = []"),
-        &format!(r#""launch", {READY}, {{ capture = "phone.png" }}, "quit""#),
-    ) else {
+    let Some(run) = show("picture", &phone(&[], "sensors = []"), r#"{ capture = "phone.png" }"#) else {
         return;
     };
-    run.assert_clean();
     let (phone, desktop) = (run.picture("phone.png"), desktop(&[], None));
     let differing = phone
         .pixels()
@@ -156,11 +150,8 @@ fn the_picture_is_the_desktop_viewers() {
 
 #[test]
 fn turning_the_head_turns_the_picture() {
-    let steps = format!(
-        r#""launch", {READY}, {{ head = {{ yaw = 20, seconds = 0.5 }} }}, {{ seconds = 0.5 }}, {{ capture = "left.png" }}, "quit""#
-    );
-    let Some(run) = play("turn", &device(&SETTINGS, ""), &steps) else { return };
-    run.assert_clean();
+    let steps = r#"{ head = { yaw = 20, seconds = 0.5 } }, { seconds = 0.5 }, { capture = "left.png" }"#;
+    let Some(run) = show("turn", &phone(&[], ""), steps) else { return };
     let phone = run.picture("left.png");
     let at = |degrees| decibels(&phone, &desktop(&[], Some(degrees)));
     let (exact, less, more, other_way) = (at(20.0), at(18.0), at(22.0), at(-20.0));
@@ -173,16 +164,12 @@ fn turning_the_head_turns_the_picture() {
 /// The head turns at 45 degrees a second when the picture is taken.
 #[test]
 fn the_picture_is_of_the_time_at_which_it_is_seen() {
-    let steps = format!(
-        r#""launch", {READY}, {{ head = {{ yaw = 60, seconds = 2.0, go_on = true }} }}, {{ seconds = 1.0 }}, {{ capture = "turning.png" }}, "quit""#
-    );
-    // The GPU's time counts, too, and the simulated one's is not that of the simulated clock.
-    let settings: Vec<_> = SETTINGS.into_iter().chain([("profiling", "false")]).collect();
+    let steps = r#"{ head = { yaw = 60, seconds = 2.0, go_on = true } }, { seconds = 1.0 }, { capture = "turning.png" }"#;
     let picture = |refreshes: u32| {
+        // The GPU's time counts, too, and the simulated one's is not that of the simulated clock.
         let keys = format!("refreshes_ahead = {refreshes}\nslept_seconds = 3600");
-        let run = play(&format!("ahead-{refreshes}"), &device(&settings, &keys), &steps)?;
-        run.assert_clean();
-        Some(run.picture("turning.png"))
+        let device = phone(&[("profiling", "false")], &keys);
+        Some(show(&format!("ahead-{refreshes}"), &device, steps)?.picture("turning.png"))
     };
     let (Some(soon), Some(later)) = (picture(2), picture(5)) else { return };
     let yaws: Vec<f32> = (0..10).map(|i| 29.25 + 0.75 * i as f32).collect();
@@ -197,11 +184,9 @@ fn the_picture_is_of_the_time_at_which_it_is_seen() {
 
 #[test]
 fn recenter_makes_the_direction_straight_ahead() {
-    let steps = format!(
-        r#""launch", {READY}, {{ capture = "before.png" }}, {{ head = {{ yaw = 35, seconds = 0.5 }} }}, {{ long-press = {{}} }}, {{ seconds = 0.3 }}, {{ capture = "after.png" }}, "quit""#
-    );
-    let Some(run) = play("recenter", &device(&SETTINGS, ""), &steps) else { return };
-    run.assert_clean();
+    let steps = r#"{ capture = "before.png" }, { head = { yaw = 35, seconds = 0.5 } }, { long-press = {} },
+        { seconds = 0.3 }, { capture = "after.png" }"#;
+    let Some(run) = show("recenter", &phone(&[], ""), steps) else { return };
     assert!(run.summary.log_of("YORO").any(|text| text == "recentered"));
     let before = run.picture("before.png");
     let same = decibels(&before, &run.picture("after.png"));
@@ -214,14 +199,11 @@ fn recenter_makes_the_direction_straight_ahead() {
 
 #[test]
 fn taps_switch_methods_and_keys_the_ipd() {
-    let settings: Vec<_> =
-        SETTINGS.into_iter().chain([("methods", "yoro,conventional,mono"), ("method", "yoro")]).collect();
-    let steps = format!(
-        r#""launch", {READY}, {{ seconds = 1.2 }}, {{ tap = {{}} }}, {{ seconds = 1.2 }}, {{ key = "headset" }}, {{ seconds = 1.2 }}, {{ tap = {{}} }}, {{ seconds = 1.2 }},
-            {{ key = "volume-up" }}, {{ key = "volume-down" }}, {{ property = {{ name = "debug.yoro.method", value = "mono" }} }}, {{ seconds = 2.2 }}, "quit""#
-    );
-    let Some(run) = play("taps", &device(&settings, ""), &steps) else { return };
-    run.assert_clean();
+    let settings = [("methods", "yoro,conventional,mono"), ("method", "yoro")];
+    let steps = r#"{ seconds = 1.2 }, { tap = {} }, { seconds = 1.2 }, { key = "headset" }, { seconds = 1.2 }, { tap = {} },
+        { seconds = 1.2 }, { key = "volume-up" }, { key = "volume-down" },
+        { property = { name = "debug.yoro.method", value = "mono" } }, { seconds = 2.2 }"#;
+    let Some(run) = show("taps", &phone(&settings, ""), steps) else { return };
     let mut methods: Vec<_> = lines(&run).into_iter().map(|line| line.method).collect();
     methods.dedup();
     assert_eq!(methods, ["yoro", "conventional", "mono", "yoro", "mono"]);
@@ -245,9 +227,7 @@ fn telemetry_carries_the_batterys_values() {
         status = 1
         headroom = 0.61
     "#;
-    let steps = format!(r#""launch", {READY}, {{ seconds = 3.5 }}, "quit""#);
-    let Some(run) = play("telemetry", &(device(&SETTINGS, "") + battery), &steps) else { return };
-    run.assert_clean();
+    let Some(run) = show("telemetry", &(phone(&[], "") + battery), "{ seconds = 3.5 }") else { return };
     let lines = lines(&run);
     assert!((3..=4).contains(&lines.len()), "{} lines in 3.5 seconds", lines.len());
     let last = lines.last().unwrap();
@@ -267,7 +247,7 @@ fn telemetry_carries_the_batterys_values() {
 #[test]
 fn without_battery_and_sensors() {
     let steps = format!(r#""launch", "battery-missing", {READY}, {{ seconds = 2.5 }}, "quit""#);
-    let Some(run) = play("bare", &device(&SETTINGS, "sensors = []\nsdk = 29"), &steps) else { return };
+    let Some(run) = play("bare", &phone(&[], "sensors = []\nsdk = 29"), &steps) else { return };
     run.assert_clean();
     let lines = lines(&run);
     let last = lines.last().expect("a telemetry line");
@@ -285,10 +265,8 @@ fn without_battery_and_sensors() {
 
 #[test]
 fn opengl_es_3_0_is_enough() {
-    let settings: Vec<_> = SETTINGS.into_iter().chain([("pipeline", "paper")]).collect();
-    let steps = format!(r#""launch", {READY}, {{ seconds = 1.2 }}, {{ capture = "es30.png" }}, "quit""#);
-    let Some(run) = play("es30", &device(&settings, "gles = \"3.0\"\nsensors = []"), &steps) else { return };
-    run.assert_clean();
+    let device = phone(&[("pipeline", "paper")], "gles = \"3.0\"\nsensors = []");
+    let Some(run) = show("es30", &device, r#"{ seconds = 1.2 }, { capture = "es30.png" }"#) else { return };
     assert!(run.summary.gl.version.contains("ES 3.0"), "{}", run.summary.gl.version);
     assert_eq!(lines(&run).last().unwrap().pipeline.as_deref(), Some("gather"));
     let (phone, desktop) = (run.picture("es30.png"), desktop(&[], None));
@@ -297,8 +275,7 @@ fn opengl_es_3_0_is_enough() {
 
 #[test]
 fn below_3_0_there_is_one_clear_message() {
-    let Some(run) = play("es20", &device(&SETTINGS, "gles = \"2.0\""), r#""launch", { idle = 2.0 }, "quit""#)
-    else {
+    let Some(run) = play("es20", &phone(&[], "gles = \"2.0\""), r#""launch", { idle = 2.0 }, "quit""#) else {
         return;
     };
     assert_eq!(run.summary.failure, None);
@@ -312,14 +289,7 @@ fn below_3_0_there_is_one_clear_message() {
 #[test]
 fn without_a_choreographer_the_swap_sets_the_pace() {
     // Of before `AChoreographer_postFrameCallback64`.
-    let Some(run) = play(
-        "choreographer",
-        &device(&SETTINGS, "sdk = 28"),
-        &format!(r#""launch", {READY}, {{ frames = 20 }}, "quit""#),
-    ) else {
-        return;
-    };
-    run.assert_clean();
+    let Some(run) = show("choreographer", &phone(&[], "sdk = 28"), "{ frames = 20 }") else { return };
     assert!(
         run.summary.log_of("YORO").any(|line| line.contains("no choreographer")),
         "{:#?}",
@@ -330,7 +300,7 @@ fn without_a_choreographer_the_swap_sets_the_pace() {
 
 #[test]
 fn lifecycle_torture_leaks_nothing() {
-    let Some(run) = play("torture", &device(&SETTINGS, ""), &(host::script("torture.toml"))) else { return };
+    let Some(run) = play("torture", &phone(&[], ""), &(host::script("torture.toml"))) else { return };
     run.assert_clean();
     let mark = |name: &str| run.summary.mark(name).unwrap();
     assert_eq!(mark("warm").objects(), mark("pauses").objects());
@@ -352,8 +322,7 @@ fn lifecycle_torture_leaks_nothing() {
 
 #[test]
 fn a_lost_context_is_made_again() {
-    let Some(run) = play("loss", &device(&SETTINGS, "sensors = []"), &host::script("context-loss.toml"))
-    else {
+    let Some(run) = play("loss", &phone(&[], "sensors = []"), &host::script("context-loss.toml")) else {
         return;
     };
     assert!(run.summary.is_clean(), "{}", run.summary);
@@ -368,9 +337,8 @@ fn a_lost_context_is_made_again() {
 
 #[test]
 fn a_session_ends_by_itself() {
-    let settings: Vec<_> = SETTINGS.into_iter().chain([("duration", "2"), ("auto-exit", "true")]).collect();
-    let Some(run) =
-        play("session", &device(&settings, ""), r#""launch", { wait-finish = { frames = 3000 } }, "quit""#)
+    let device = phone(&[("duration", "2"), ("auto-exit", "true")], "");
+    let Some(run) = play("session", &device, r#""launch", { wait-finish = { frames = 3000 } }, "quit""#)
     else {
         return;
     };
@@ -394,14 +362,7 @@ fn settings_come_from_file_extras_and_properties() {
         "debug.yoro.performance" = "boost"
         "debug.yoro.performance-hints" = "false"
     "#;
-    let Some(run) = play(
-        "settings",
-        &format!("[device]\n{outside}"),
-        &format!(r#""launch", {READY}, {{ seconds = 1.2 }}, "quit""#),
-    ) else {
-        return;
-    };
-    run.assert_clean();
+    let Some(run) = show("settings", &format!("[device]\n{outside}"), "{ seconds = 1.2 }") else { return };
     let settings = run.summary.log_of("YORO").find(|text| text.starts_with("settings: ")).unwrap();
     assert!(
         settings.contains("method=\"conventional\"")
@@ -414,7 +375,7 @@ fn settings_come_from_file_extras_and_properties() {
 
 #[test]
 fn random_events_are_survived() {
-    let Some(run) = play("random", &device(&SETTINGS, ""), &host::script("random.toml")) else { return };
+    let Some(run) = play("random", &phone(&[], ""), &host::script("random.toml")) else { return };
     assert!(run.summary.is_clean(), "{}", run.summary);
     let losses = |text: &str| text.contains("lost the OpenGL ES context");
     let errors: Vec<_> =
@@ -525,7 +486,7 @@ fn a_headset_whose_runtime_fails_ends_the_application() {
             "[device.features]\n\"android.hardware.vr.headtracking\" = 1\n[device.openxr]\nscript = {:?}",
             path.display().to_string()
         );
-        let device = format!("{}\n{keys}", device(&SETTINGS, ""));
+        let device = format!("{}\n{keys}", phone(&[], ""));
         let steps = r#""launch", { wait-finish = { frames = 3000 } }, "quit""#;
         let Some(run) = play("headset-fails", &device, steps) else { return };
         assert!(run.summary.is_clean(), "{}", run.summary);
@@ -650,10 +611,7 @@ fn the_layer_goes_on_after_a_loss() {
 
 #[test]
 fn a_phone_says_why_it_is_none() {
-    let Some(run) = play("phone", &device(&SETTINGS, ""), &format!(r#""launch", {READY}, "quit""#)) else {
-        return;
-    };
-    run.assert_clean();
+    let Some(run) = show("phone", &phone(&[], ""), "{ frames = 1 }") else { return };
     let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
     assert!(
         matches!(display.as_slice(), [line] if line.contains("Cardboard") && line.contains("no broker at org.khronos.openxr.runtime_broker")),
@@ -677,9 +635,7 @@ fn the_arm64_library_runs_in_a_headset() {
 /// One run for all of it: under qemu, the driver's compiler takes most of the time.
 #[test]
 fn the_arm64_library_does_what_the_x86_64_library_does() {
-    let settings: Vec<_> =
-        SETTINGS.into_iter().chain([("methods", "yoro,conventional"), ("method", "yoro")]).collect();
-    let device = device(&settings, "sensors = []");
+    let device = phone(&[("methods", "yoro,conventional"), ("method", "yoro")], "sensors = []");
     let steps = format!(
         r#""launch", {READY}, {{ capture = "yoro.png" }}, {{ tap = {{}} }}, {{ wait-log = {{ text = "method: conventional", frames = 60 }} }},
             {{ frames = 3 }}, {{ capture = "conventional.png" }}, "quit""#

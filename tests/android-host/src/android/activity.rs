@@ -31,9 +31,12 @@ pub struct ARect {
     pub bottom: i32,
 }
 
-type Event = Option<unsafe extern "C" fn(*mut ANativeActivity)>;
-type WindowEvent = Option<unsafe extern "C" fn(*mut ANativeActivity, *const Window)>;
-type QueueEvent = Option<unsafe extern "C" fn(*mut ANativeActivity, *const AInputQueue)>;
+/// A callback that takes nothing but the activity.
+pub type Event = Option<unsafe extern "C" fn(*mut ANativeActivity)>;
+/// A callback that takes the window.
+pub type WindowEvent = Option<unsafe extern "C" fn(*mut ANativeActivity, *const Window)>;
+/// A callback that takes the input queue.
+pub type QueueEvent = Option<unsafe extern "C" fn(*mut ANativeActivity, *const AInputQueue)>;
 
 /// `ANativeActivityCallbacks`.
 #[repr(C)]

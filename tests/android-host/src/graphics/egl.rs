@@ -9,46 +9,34 @@ use std::ffi::{CStr, c_char, c_void};
 use std::sync::atomic::Ordering;
 
 use anyhow::{Context, Result};
+use khronos_egl::{
+    ALPHA_SIZE, BAD_ALLOC, BAD_ATTRIBUTE, BAD_MATCH, BAD_NATIVE_WINDOW, BAD_SURFACE, Boolean, CONTEXT_LOST,
+    CONTEXT_MAJOR_VERSION, CONTEXT_MINOR_VERSION, DRAW, GL_COLORSPACE, HEIGHT, NATIVE_VISUAL_ID, NONE,
+    OPENGL_ES3_BIT, PBUFFER_BIT, RENDERABLE_TYPE, SUCCESS, SURFACE_TYPE, TRUE, WIDTH, WINDOW_BIT,
+};
 
 use crate::android::window::{Window, is_window};
 use crate::exports::{Export, System, exports};
 use crate::graphics::gl;
 use crate::host::{host, lock};
 
-type Boolean = u32;
 type Handle = usize;
 
-const TRUE: Boolean = 1;
-const NONE: i32 = 0x3038;
-const SUCCESS: i32 = 0x3000;
-const BAD_ALLOC: i32 = 0x3003;
-const BAD_ATTRIBUTE: i32 = 0x3004;
-const BAD_MATCH: i32 = 0x3009;
-const BAD_NATIVE_WINDOW: i32 = 0x300b;
-const BAD_SURFACE: i32 = 0x300d;
-const CONTEXT_LOST: i32 = 0x300e;
-const ALPHA_SIZE: i32 = 0x3021;
-const NATIVE_VISUAL_ID: i32 = 0x302e;
-const SURFACE_TYPE: i32 = 0x3033;
-const RENDERABLE_TYPE: i32 = 0x3040;
-const HEIGHT: i32 = 0x3056;
-const WIDTH: i32 = 0x3057;
-const DRAW: i32 = 0x3059;
-const GL_COLORSPACE: i32 = 0x309d;
-const CONTEXT_MAJOR: i32 = 0x3098;
-const CONTEXT_MINOR: i32 = 0x30fb;
-const PBUFFER_BIT: i32 = 1;
-const WINDOW_BIT: i32 = 4;
-const ES3_BIT: i32 = 0x40;
+/// `EGL_PLATFORM_SURFACELESS_MESA`.
 const PLATFORM_SURFACELESS: u32 = 0x31dd;
 /// `EGL_RECORDABLE_ANDROID` and `EGL_FRAMEBUFFER_TARGET_ANDROID`, which only Android's drivers know.
 const ANDROID_ONLY: [i32; 2] = [0x3142, 0x3147];
 
-macro_rules! real {
-    ($($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {
+/// Declares Mesa's functions: those that the host calls, and those that the application gets as they are.
+macro_rules! mesa {
+    (
+        called { $($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)* }
+        passed_on { $($other:ident($($given:ident: $kind:ty),*) -> $answer:ty;)* }
+    ) => {
         /// Mesa's functions.
         pub struct Real {
             $($name: unsafe extern "C" fn($($type),*) -> $result,)*
+            $($other: unsafe extern "C" fn($($kind),*) -> $answer,)*
             _library: libloading::Library,
         }
 
@@ -60,44 +48,54 @@ macro_rules! real {
             pub fn load() -> Result<Self> {
                 // SAFETY: libEGL's constructors are harmless.
                 let library = unsafe { libloading::Library::new("libEGL.so.1") }?;
-                Ok(Self {
-                    $($name: {
+                macro_rules! get {
+                    ($symbol:ident) => {
                         // SAFETY: the types are those of egl.h.
-                        *unsafe { library.get(concat!(stringify!($name), "\0").as_bytes()) }.context(stringify!($name))?
-                    },)*
-                    _library: library,
-                })
+                        *unsafe { library.get(stringify!($symbol).as_bytes()) }.context(stringify!($symbol))?
+                    };
+                }
+                Ok(Self { $($name: get!($name),)* $($other: get!($other),)* _library: library })
             }
         }
+
+        $(unsafe extern "C" fn $other($($given: $kind),*) -> $answer {
+            ERROR.set(SUCCESS);
+            // SAFETY: Mesa gets what the application passes to EGL.
+            unsafe { (real().$other)($($given),*) }
+        })*
     };
 }
 
-real! {
-    eglBindAPI(api: u32) -> Boolean;
-    eglChooseConfig(display: Handle, attributes: *const i32, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
-    eglCreateContext(display: Handle, config: Handle, share: Handle, attributes: *const i32) -> Handle;
-    eglCreatePbufferSurface(display: Handle, config: Handle, attributes: *const i32) -> Handle;
-    eglDestroyContext(display: Handle, context: Handle) -> Boolean;
-    eglDestroySurface(display: Handle, surface: Handle) -> Boolean;
-    eglGetConfigAttrib(display: Handle, config: Handle, attribute: i32, value: *mut i32) -> Boolean;
-    eglGetConfigs(display: Handle, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
-    eglGetError() -> i32;
-    eglGetPlatformDisplay(platform: u32, native: *mut c_void, attributes: *const isize) -> Handle;
-    eglGetProcAddress(name: *const c_char) -> *const c_void;
-    eglInitialize(display: Handle, major: *mut i32, minor: *mut i32) -> Boolean;
-    eglMakeCurrent(display: Handle, draw: Handle, read: Handle, context: Handle) -> Boolean;
-    eglQueryAPI() -> u32;
-    eglQueryContext(display: Handle, context: Handle, attribute: i32, value: *mut i32) -> Boolean;
-    eglQueryString(display: Handle, name: i32) -> *const c_char;
-    eglQuerySurface(display: Handle, surface: Handle, attribute: i32, value: *mut i32) -> Boolean;
-    eglReleaseThread() -> Boolean;
-    eglSurfaceAttrib(display: Handle, surface: Handle, attribute: i32, value: i32) -> Boolean;
-    eglSwapBuffers(display: Handle, surface: Handle) -> Boolean;
-    eglSwapInterval(display: Handle, interval: i32) -> Boolean;
-    eglTerminate(display: Handle) -> Boolean;
-    eglWaitClient() -> Boolean;
-    eglWaitGL() -> Boolean;
-    eglWaitNative(engine: i32) -> Boolean;
+mesa! {
+    called {
+        eglChooseConfig(display: Handle, attributes: *const i32, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
+        eglCreateContext(display: Handle, config: Handle, share: Handle, attributes: *const i32) -> Handle;
+        eglCreatePbufferSurface(display: Handle, config: Handle, attributes: *const i32) -> Handle;
+        eglDestroyContext(display: Handle, context: Handle) -> Boolean;
+        eglDestroySurface(display: Handle, surface: Handle) -> Boolean;
+        eglGetConfigAttrib(display: Handle, config: Handle, attribute: i32, value: *mut i32) -> Boolean;
+        eglGetError() -> i32;
+        eglGetPlatformDisplay(platform: u32, native: *mut c_void, attributes: *const isize) -> Handle;
+        eglGetProcAddress(name: *const c_char) -> *const c_void;
+        eglMakeCurrent(display: Handle, draw: Handle, read: Handle, context: Handle) -> Boolean;
+        eglQuerySurface(display: Handle, surface: Handle, attribute: i32, value: *mut i32) -> Boolean;
+        eglReleaseThread() -> Boolean;
+        eglSurfaceAttrib(display: Handle, surface: Handle, attribute: i32, value: i32) -> Boolean;
+        eglSwapBuffers(display: Handle, surface: Handle) -> Boolean;
+        eglTerminate(display: Handle) -> Boolean;
+    }
+    passed_on {
+        eglBindAPI(api: u32) -> Boolean;
+        eglGetConfigs(display: Handle, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
+        eglInitialize(display: Handle, major: *mut i32, minor: *mut i32) -> Boolean;
+        eglQueryAPI() -> u32;
+        eglQueryContext(display: Handle, context: Handle, attribute: i32, value: *mut i32) -> Boolean;
+        eglQueryString(display: Handle, name: i32) -> *const c_char;
+        eglSwapInterval(display: Handle, interval: i32) -> Boolean;
+        eglWaitClient() -> Boolean;
+        eglWaitGL() -> Boolean;
+        eglWaitNative(engine: i32) -> Boolean;
+    }
 }
 
 /// A surface of the application.
@@ -183,30 +181,6 @@ pub fn exports() -> Vec<Export> {
     ]]
 }
 
-/// Functions that are Mesa's alone.
-macro_rules! passed_on {
-    ($($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {
-        $(unsafe extern "C" fn $name($($argument: $type),*) -> $result {
-            ERROR.set(SUCCESS);
-            // SAFETY: same contract as the caller's.
-            unsafe { (real().$name)($($argument),*) }
-        })*
-    };
-}
-
-passed_on! {
-    eglBindAPI(api: u32) -> Boolean;
-    eglGetConfigs(display: Handle, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
-    eglInitialize(display: Handle, major: *mut i32, minor: *mut i32) -> Boolean;
-    eglQueryAPI() -> u32;
-    eglQueryContext(display: Handle, context: Handle, attribute: i32, value: *mut i32) -> Boolean;
-    eglQueryString(display: Handle, name: i32) -> *const c_char;
-    eglSwapInterval(display: Handle, interval: i32) -> Boolean;
-    eglWaitClient() -> Boolean;
-    eglWaitGL() -> Boolean;
-    eglWaitNative(engine: i32) -> Boolean;
-}
-
 extern "C" fn eglGetError() -> i32 {
     match ERROR.replace(SUCCESS) {
         // SAFETY: takes nothing.
@@ -248,7 +222,7 @@ unsafe extern "C" fn eglTerminate(display: Handle) -> Boolean {
             graphics.group_gone(group);
         }
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     unsafe { (real().eglTerminate)(display) }
 }
 
@@ -260,14 +234,15 @@ unsafe extern "C" fn eglChooseConfig(
     count: *mut i32,
 ) -> Boolean {
     ERROR.set(SUCCESS);
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     let mut wanted = unsafe { pairs(attributes) };
     wanted.retain(|(name, _)| !ANDROID_ONLY.contains(name));
     for (name, value) in &mut wanted {
         if *name == SURFACE_TYPE && *value & WINDOW_BIT != 0 {
             *value = *value & !WINDOW_BIT | PBUFFER_BIT;
         }
-        if *name == RENDERABLE_TYPE && *value & ES3_BIT != 0 && host().graphics.newest.numbers().0 < 3 {
+        if *name == RENDERABLE_TYPE && *value & OPENGL_ES3_BIT != 0 && host().graphics.newest.numbers().0 < 3
+        {
             // SAFETY: the caller gives room for one int.
             unsafe { count.write(0) };
             return TRUE;
@@ -285,7 +260,7 @@ unsafe extern "C" fn eglGetConfigAttrib(
     value: *mut i32,
 ) -> Boolean {
     ERROR.set(SUCCESS);
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     let result = unsafe { (real().eglGetConfigAttrib)(display, config, attribute, value) };
     if result == TRUE {
         // SAFETY: the call has written the value.
@@ -313,13 +288,16 @@ unsafe extern "C" fn eglCreateContext(
 ) -> Handle {
     ERROR.set(SUCCESS);
     let graphics = &host().graphics;
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     let wanted = unsafe { pairs(attributes) };
-    let version = (value(&wanted, CONTEXT_MAJOR).unwrap_or(1), value(&wanted, CONTEXT_MINOR).unwrap_or(0));
+    let version = (
+        value(&wanted, CONTEXT_MAJOR_VERSION).unwrap_or(1),
+        value(&wanted, CONTEXT_MINOR_VERSION).unwrap_or(0),
+    );
     if version > graphics.newest.numbers() {
         return fail(BAD_MATCH);
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     let context = unsafe { (real().eglCreateContext)(display, config, share, attributes) };
     if context != 0 {
         let mut contexts = lock(&graphics.contexts);
@@ -341,7 +319,7 @@ unsafe extern "C" fn eglDestroyContext(display: Handle, context: Handle) -> Bool
     {
         graphics.group_gone(state.group);
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     unsafe { (real().eglDestroyContext)(display, context) }
 }
 
@@ -369,11 +347,11 @@ unsafe extern "C" fn eglCreatePbufferSurface(
     attributes: *const i32,
 ) -> Handle {
     ERROR.set(SUCCESS);
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     let wanted = unsafe { pairs(attributes) };
     let size = (value(&wanted, WIDTH).unwrap_or(0), value(&wanted, HEIGHT).unwrap_or(0));
     let colorspace = value(&wanted, GL_COLORSPACE);
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     let pbuffer = unsafe { (real().eglCreatePbufferSurface)(display, config, attributes) };
     add_surface(Surface { pbuffer, is_window: false, size, config, colorspace })
 }
@@ -394,7 +372,7 @@ unsafe extern "C" fn eglCreateWindowSurface(
         host.violation("eglCreateWindowSurface while another surface of the window exists");
         return fail(BAD_ALLOC);
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: EGL's caller passes what EGL asks for.
     let colorspace = value(&unsafe { pairs(attributes) }, GL_COLORSPACE);
     let size = host.window.size();
     let handle = add_surface(Surface {
@@ -600,7 +578,7 @@ unsafe extern "C" fn eglGetProcAddress(name: *const c_char) -> *const c_void {
         if let Some(address) = crate::exports::find(System::Egl, text, host().device.sdk) {
             return address as *const c_void;
         }
-        // SAFETY: same contract as the caller's.
+        // SAFETY: EGL's caller passes what EGL asks for.
         return unsafe { (real().eglGetProcAddress)(name) };
     }
     gl::function(text).map_or(std::ptr::null(), |address| address as *const c_void)

@@ -6,34 +6,17 @@ use std::cell::Cell;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Mutex, OnceLock};
 
+use glow::{
+    COLOR_BUFFER_BIT, COLOR_CLEAR_VALUE, COLOR_WRITEMASK, DEBUG_OUTPUT, DEBUG_OUTPUT_SYNCHRONOUS,
+    DEBUG_TYPE_ERROR, DRAW_FRAMEBUFFER, DRAW_FRAMEBUFFER_BINDING, PACK_ALIGNMENT, PACK_ROW_LENGTH,
+    PACK_SKIP_PIXELS, PACK_SKIP_ROWS, PIXEL_PACK_BUFFER, PIXEL_PACK_BUFFER_BINDING, RASTERIZER_DISCARD,
+    READ_FRAMEBUFFER, READ_FRAMEBUFFER_BINDING, RENDERER, RGBA, SCISSOR_TEST, UNSIGNED_BYTE, VERSION,
+};
 use image::RgbaImage;
 
 use crate::bionic::text;
 use crate::graphics::egl::{current_group, real_function};
 use crate::host::{fatal, host, lock};
-
-const READ_FRAMEBUFFER: u32 = 0x8ca8;
-const DRAW_FRAMEBUFFER: u32 = 0x8ca9;
-const READ_FRAMEBUFFER_BINDING: u32 = 0x8caa;
-const DRAW_FRAMEBUFFER_BINDING: u32 = 0x8ca6;
-const PIXEL_PACK_BUFFER: u32 = 0x88eb;
-const PIXEL_PACK_BUFFER_BINDING: u32 = 0x88ed;
-const PACK_ALIGNMENT: u32 = 0x0d05;
-const PACK_ROW_LENGTH: u32 = 0x0d02;
-const PACK_SKIP_ROWS: u32 = 0x0d03;
-const PACK_SKIP_PIXELS: u32 = 0x0d04;
-const RGBA: u32 = 0x1908;
-const UNSIGNED_BYTE: u32 = 0x1401;
-const COLOR_BUFFER_BIT: u32 = 0x4000;
-const COLOR_CLEAR_VALUE: u32 = 0x0c22;
-const COLOR_WRITEMASK: u32 = 0x0c23;
-const SCISSOR_TEST: u32 = 0x0c11;
-const RASTERIZER_DISCARD: u32 = 0x8c89;
-const DEBUG_OUTPUT: u32 = 0x92e0;
-const DEBUG_OUTPUT_SYNCHRONOUS: u32 = 0x8242;
-const DEBUG_TYPE_ERROR: u32 = 0x824c;
-const RENDERER: u32 = 0x1f01;
-const VERSION: u32 = 0x1f02;
 
 /// A function of Mesa, by name; a missing one that the host itself needs ends the run.
 fn real(name: &CStr) -> *const c_void {
@@ -215,7 +198,7 @@ macro_rules! names {
         $(
             unsafe extern "C" fn $generate(count: i32, names: *mut u32) {
                 mesa! { call as $generate_name(count: i32, names: *mut u32); }
-                // SAFETY: same contract as the caller's.
+                // SAFETY: Mesa gets what the application passes to GL.
                 unsafe { call(count, names) };
                 let group = current_group();
                 for index in 0..count.max(0) as usize {
@@ -234,7 +217,7 @@ macro_rules! names {
                         host().graphics.object_deleted(group, $kind, name);
                     }
                 }
-                // SAFETY: same contract as the caller's.
+                // SAFETY: Mesa gets what the application passes to GL.
                 unsafe { call(count, names) };
             }
         )*
@@ -253,52 +236,35 @@ names! {
     "vertex array": glGenVertexArrays c"glGenVertexArrays", glDeleteVertexArrays c"glDeleteVertexArrays";
 }
 
-unsafe extern "C" fn glGenQueriesEXT(count: i32, names: *mut u32) {
-    // SAFETY: same contract as the caller's; the two functions are one in Mesa.
-    unsafe { glGenQueries(count, names) };
+/// Defines functions that make and delete one object.
+macro_rules! objects {
+    ($($kind:literal: $create:ident $create_name:literal($($argument:ident: $type:ty),*), $delete:ident $delete_name:literal;)*) => {
+        $(
+            extern "C" fn $create($($argument: $type),*) -> u32 {
+                mesa! { call as $create_name($($argument: $type),*) -> u32; }
+                // SAFETY: a context is current, or Mesa gives zero.
+                let name = unsafe { call($($argument),*) };
+                if name != 0 {
+                    host().graphics.object_made(current_group(), $kind, name as usize);
+                }
+                name
+            }
+
+            extern "C" fn $delete(name: u32) {
+                mesa! { call as $delete_name(name: u32); }
+                if name != 0 {
+                    host().graphics.object_deleted(current_group(), $kind, name as usize);
+                }
+                // SAFETY: a context is current, or Mesa does nothing.
+                unsafe { call(name) };
+            }
+        )*
+    };
 }
 
-unsafe extern "C" fn glDeleteQueriesEXT(count: i32, names: *const u32) {
-    // SAFETY: same contract as the caller's; the two functions are one in Mesa.
-    unsafe { glDeleteQueries(count, names) };
-}
-
-extern "C" fn glCreateShader(kind: u32) -> u32 {
-    mesa! { call as c"glCreateShader"(kind: u32) -> u32; }
-    // SAFETY: a context is current, or Mesa gives zero.
-    let name = unsafe { call(kind) };
-    if name != 0 {
-        host().graphics.object_made(current_group(), "shader", name as usize);
-    }
-    name
-}
-
-extern "C" fn glDeleteShader(name: u32) {
-    mesa! { call as c"glDeleteShader"(name: u32); }
-    if name != 0 {
-        host().graphics.object_deleted(current_group(), "shader", name as usize);
-    }
-    // SAFETY: a context is current, or Mesa does nothing.
-    unsafe { call(name) };
-}
-
-extern "C" fn glCreateProgram() -> u32 {
-    mesa! { call as c"glCreateProgram"() -> u32; }
-    // SAFETY: a context is current, or Mesa gives zero.
-    let name = unsafe { call() };
-    if name != 0 {
-        host().graphics.object_made(current_group(), "program", name as usize);
-    }
-    name
-}
-
-extern "C" fn glDeleteProgram(name: u32) {
-    mesa! { call as c"glDeleteProgram"(name: u32); }
-    if name != 0 {
-        host().graphics.object_deleted(current_group(), "program", name as usize);
-    }
-    // SAFETY: a context is current, or Mesa does nothing.
-    unsafe { call(name) };
+objects! {
+    "shader": glCreateShader c"glCreateShader"(kind: u32), glDeleteShader c"glDeleteShader";
+    "program": glCreateProgram c"glCreateProgram"(), glDeleteProgram c"glDeleteProgram";
 }
 
 extern "C" fn glFenceSync(condition: u32, flags: u32) -> usize {
@@ -314,7 +280,7 @@ extern "C" fn glFenceSync(condition: u32, flags: u32) -> usize {
 unsafe extern "C" fn glClientWaitSync(sync: usize, flags: u32, timeout: u64) -> u32 {
     mesa! { call as c"glClientWaitSync"(sync: usize, flags: u32, timeout: u64) -> u32; }
     host().graphics.waited();
-    // SAFETY: same contract as the caller's.
+    // SAFETY: Mesa gets what the application passes to GL.
     unsafe { call(sync, flags, timeout) }
 }
 
@@ -323,17 +289,17 @@ unsafe extern "C" fn glDeleteSync(sync: usize) {
     if sync != 0 {
         host().graphics.object_deleted(current_group(), "sync", sync);
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: Mesa gets what the application passes to GL.
     unsafe { call(sync) };
 }
 
 /// The function that the application gets for a name.
 pub fn function(name: &str) -> Option<usize> {
     macro_rules! ours {
-        ($($function:ident),* $(,)?) => {
-            match name {
+        ($($function:ident)*) => {
+            // Of two names of one function in Mesa.
+            match name.trim_end_matches("EXT").trim_end_matches("KHR") {
                 $(stringify!($function) => Some($function as *const () as usize),)*
-                "glDebugMessageCallbackKHR" => Some(glDebugMessageCallback as *const () as usize),
                 _ => None,
             }
         };
@@ -341,36 +307,13 @@ pub fn function(name: &str) -> Option<usize> {
     if !name.starts_with("gl") {
         return None;
     }
-    let ours = ours![
-        glGenBuffers,
-        glDeleteBuffers,
-        glGenFramebuffers,
-        glDeleteFramebuffers,
-        glGenProgramPipelines,
-        glDeleteProgramPipelines,
-        glGenQueries,
-        glDeleteQueries,
-        glGenQueriesEXT,
-        glDeleteQueriesEXT,
-        glGenRenderbuffers,
-        glDeleteRenderbuffers,
-        glGenSamplers,
-        glDeleteSamplers,
-        glGenTextures,
-        glDeleteTextures,
-        glGenTransformFeedbacks,
-        glDeleteTransformFeedbacks,
-        glGenVertexArrays,
-        glDeleteVertexArrays,
-        glCreateShader,
-        glDeleteShader,
-        glCreateProgram,
-        glDeleteProgram,
-        glFenceSync,
-        glClientWaitSync,
-        glDeleteSync,
-        glDebugMessageCallback,
-    ];
+    let ours = ours! {
+        glGenBuffers glDeleteBuffers glGenFramebuffers glDeleteFramebuffers glGenProgramPipelines
+        glDeleteProgramPipelines glGenQueries glDeleteQueries glGenRenderbuffers glDeleteRenderbuffers glGenSamplers
+        glDeleteSamplers glGenTextures glDeleteTextures glGenTransformFeedbacks glDeleteTransformFeedbacks
+        glGenVertexArrays glDeleteVertexArrays glCreateShader glDeleteShader glCreateProgram glDeleteProgram glFenceSync
+        glClientWaitSync glDeleteSync glDebugMessageCallback
+    };
     let symbol = CString::new(name).ok()?;
     let real = real_function(&symbol) as usize;
     if real == 0 { None } else { ours.or(Some(real)) }

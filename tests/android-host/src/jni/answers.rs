@@ -34,22 +34,24 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Value::object(Object::string(&class.replace('/', ".")))
         }
         "toString" => Value::object(Object::string(receiver.text().unwrap_or(class))),
-        // Their objects are asked nothing: the application hands them back.
-        "getApplication" | "getApplicationContext" => {
-            Value::object(Object::new("android/app/Application", Data::None))
-        }
-        "getAssets" => Value::object(Object::new("android/content/res/AssetManager", Data::None)),
-        "getClassLoader" | "getContextClassLoader" => {
-            Value::object(Object::new("java/lang/ClassLoader", Data::None))
-        }
-        "getWindow" => Value::object(Object::new("android/view/Window", Data::None)),
-        "getDecorView" => Value::object(Object::new("android/view/View", Data::None)),
-        "getWindowManager" => Value::object(Object::new("android/view/WindowManager", Data::None)),
-        "getDefaultDisplay" | "getDisplay" => Value::object(Object::new("android/view/Display", Data::None)),
-        "getResources" => Value::object(Object::new("android/content/res/Resources", Data::None)),
-        "getDisplayMetrics" => Value::object(Object::new("android/util/DisplayMetrics", Data::None)),
+        // Objects without data, of the class that the signature promises.
+        "getApplication"
+        | "getAssets"
+        | "getClassLoader"
+        | "getContentResolver"
+        | "getContextClassLoader"
+        | "getWindow"
+        | "getDecorView"
+        | "getWindowManager"
+        | "getDefaultDisplay"
+        | "getDisplay"
+        | "getResources"
+        | "getDisplayMetrics"
+        | "getMode"
+        | "getPackageManager"
+        | "currentThread" => Value::object(Object::new(member.returned_class()?, Data::None)),
+        "getApplicationContext" => Value::object(Object::new("android/app/Application", Data::None)),
         "getPackageName" => Value::object(Object::string("org.yoro.simulated")),
-        "currentThread" => Value::object(Object::new("java/lang/Thread", Data::None)),
         "setContextClassLoader"
         | "setName"
         | "setSystemUiVisibility"
@@ -73,7 +75,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Value::Void
         }
         "isSustainedPerformanceModeSupported" => Value::Boolean(host.device.sustained_performance),
-        "getPackageManager" => Value::object(Object::new("android/content/pm/PackageManager", Data::None)),
         "hasSystemFeature" => {
             let version = host.device.features.get(&text(0)?);
             Value::Boolean(version.is_some_and(|version| *version >= int(1)))
@@ -82,7 +83,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             host.finish_asked.store(true, Ordering::Release);
             Value::Void
         }
-        "getContentResolver" => Value::object(Object::new("android/content/ContentResolver", Data::None)),
         "parse" if class == "android/net/Uri" => {
             Value::object(Object::new("android/net/Uri", Data::Text(text(0)?)))
         }
@@ -198,7 +198,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Value::object(Object::string(receiver.text()?))
         }
 
-        "getMode" => Value::object(Object::new("android/view/Display$Mode", Data::None)),
         // In the device's natural position, upright: the other way round than the window.
         "getPhysicalWidth" => Value::Int(host.device.mode.map_or(host.window.size().1, |mode| mode[1])),
         "getPhysicalHeight" => Value::Int(host.device.mode.map_or(host.window.size().0, |mode| mode[0])),

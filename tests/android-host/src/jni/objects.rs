@@ -107,6 +107,18 @@ pub struct Member {
     pub signature: String,
 }
 
+impl Member {
+    /// The type at the end of the signature, as JNI writes it.
+    pub fn returned(&self) -> &str {
+        self.signature.rsplit(')').next().unwrap_or("V")
+    }
+
+    /// The class of the object that a method returns, with slashes; none if it returns something else.
+    pub fn returned_class(&self) -> Option<&str> {
+        self.returned().strip_prefix('L')?.strip_suffix(';')
+    }
+}
+
 /// Kinds of references.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {

@@ -368,22 +368,18 @@ unsafe fn arguments(signature: &str, values: *const jvalue) -> Vec<Value> {
 /// Answers a call that nobody knows: a new object of the type at the end of the signature, or zero.
 fn invent(member: &Member) -> Value {
     host().jni.note_invented(member);
-    let returned = member.signature.rsplit(')').next().unwrap_or("V");
-    match returned.chars().next() {
+    match member.returned().chars().next() {
         Some('V') => Value::Void,
         Some('Z') => Value::Boolean(false),
         Some('J') => Value::Long(0),
         Some('F') => Value::Float(0.0),
         Some('D') => Value::Double(0.0),
-        Some('L') => {
-            let class = returned.trim_start_matches('L').trim_end_matches(';');
-            Value::object(match class {
-                "java/lang/String" => Object::string(""),
-                "java/lang/Class" => Object::class_of("java/lang/Object"),
-                _ => Object::new(class, Data::None),
-            })
-        }
-        Some('[') => Value::object(Object::new(returned, Data::Array(Mutex::default()))),
+        Some('L') => Value::object(match member.returned_class().unwrap_or_default() {
+            "java/lang/String" => Object::string(""),
+            "java/lang/Class" => Object::class_of("java/lang/Object"),
+            class => Object::new(class, Data::None),
+        }),
+        Some('[') => Value::object(Object::new(member.returned(), Data::Array(Mutex::default()))),
         _ => Value::Int(0),
     }
 }
@@ -404,7 +400,7 @@ unsafe fn call(receiver: jobject, method: jmethodID, values: *const jvalue) -> V
 
 /// Refuses answers of another type than the signature promises: a mistake in the host.
 fn checked(value: Value, member: &Member) -> Value {
-    let promised = member.signature.rsplit(')').next().and_then(|kind| kind.chars().next()).unwrap_or('V');
+    let promised = member.returned().chars().next().unwrap_or('V');
     let fits = match value {
         Value::Void => promised == 'V',
         Value::Boolean(_) => promised == 'Z',

@@ -14,6 +14,9 @@ const LAYER: &str = "YORO_TEST_ANDROID_LAYER";
 /// A program that runs the simulated host for arm64, of `cargo xtask test`, too.
 const ARM64_HOST: &str = "YORO_TEST_ARM64_HOST";
 
+/// Steps after which the scene is in view.
+pub const READY: &str = r#"{ wait-log = { text = "triangles", frames = 2000 } }, { frames = 3 }"#;
+
 /// A finished run.
 pub struct Run {
     /// What the host found.
@@ -41,6 +44,13 @@ pub fn script(name: &str) -> String {
 pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
     let apk = named(APK).or_else(|| left_out(name, "there is no APK", APK, "builds one"))?;
     Some(run(Path::new(env!("CARGO_BIN_EXE_yoro-android-host")), &apk, name, device, steps))
+}
+
+/// Plays steps after the application has started and its scene is in view; then the user leaves. Nothing may go wrong.
+pub fn show(name: &str, device: &str, steps: &str) -> Option<Run> {
+    let run = play(name, device, &format!(r#""launch", {READY}, {steps}, "quit""#))?;
+    run.assert_clean();
+    Some(run)
 }
 
 /// As [`play`], with the APK's arm64 library under qemu; none, with a loud line, where that cannot be.
