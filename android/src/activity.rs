@@ -1,4 +1,4 @@
-//! The activity's life, and its main loop.
+//! The activity's life cycle and its main loop.
 //!
 //! On a headset with an OpenXR runtime the application is immersive: the runtime says when to draw, and where the eyes
 //! are. Everywhere else it is a Cardboard-compatible viewer on Android's window. Which one is decided once, when the
@@ -29,11 +29,11 @@ use crate::pulse::Pulse;
 use crate::screen::ScreenState;
 use crate::system::now_ns;
 
-/// When the choreographer has been silent for so long, a frame is drawn all the same.
-const PATIENCE: Duration = Duration::from_millis(100);
+/// When no refresh has come for so long, a frame is drawn all the same.
+const REFRESH_TIMEOUT: Duration = Duration::from_millis(100);
 /// Time between attempts to get a lost context or a refused window again.
 const RETRY: Duration = Duration::from_millis(250);
-/// What is assumed of a display that does not say its rate, in Hz.
+/// The rate that is assumed of a display that does not report one, in Hz.
 const USUAL_HZ: f32 = 60.0;
 /// How often a headset's runtime is asked for events while it wants no frames: in front, and in the background.
 const HEADSET_POLL: Duration = Duration::from_millis(10);
@@ -59,9 +59,9 @@ pub fn run(app: &AndroidApp) {
     activity.end();
 }
 
-/// Everything that one run of `android_main` holds.
+/// The state of one run of `android_main`.
 struct Activity {
-    // What lives in the GL context goes before the context.
+    // What lives in the GL context is dropped before the context.
     display: Display,
     gl: Option<Rc<Context>>,
     window: Option<Window>,
@@ -79,7 +79,7 @@ struct Activity {
     /// Room for the samples of a frame.
     samples: Vec<(MotionSample, i64)>,
 
-    /// Whether it is decided on what the eyes are shown.
+    /// True once it is decided which display the eyes see.
     is_display_chosen: bool,
     is_resumed: bool,
     is_finishing: bool,
@@ -87,7 +87,7 @@ struct Activity {
     /// The scene in view, and whether its session has its summary in the log.
     scene: String,
     is_summarized: bool,
-    /// Why this device can show nothing.
+    /// The reason why this device can show nothing.
     failure: Option<String>,
     retry: Option<Instant>,
     last_frame: Instant,
@@ -143,11 +143,11 @@ impl Activity {
                 (false, false) => HEADSET_BACKGROUND_POLL,
             })
         } else if self.retry.is_some() {
-            Some(PATIENCE)
+            Some(REFRESH_TIMEOUT)
         } else if !self.is_drawing() {
             None
         } else if self.pulse.is_some_and(Pulse::has_refreshes) {
-            Some(PATIENCE)
+            Some(REFRESH_TIMEOUT)
         } else {
             Some(Duration::ZERO)
         };
@@ -232,7 +232,7 @@ impl Activity {
         }
     }
 
-    /// In the background everything on the GPU can go; it is made again with the next window.
+    /// Drops everything on the GPU while the activity is in the background; it is made again with the next window.
     fn free_memory(&mut self) {
         if self.display.is_headset() || self.window.as_ref().is_some_and(Window::is_attached) {
             log::warn!("Android is short of memory: a smaller render-scale or scene needs less");
@@ -242,7 +242,7 @@ impl Activity {
         }
     }
 
-    /// Decides on what the eyes are shown, and says why in one line.
+    /// Chooses the display, and logs the reason in one line.
     fn choose_display(&mut self) {
         if std::mem::replace(&mut self.is_display_chosen, true) {
             return;
@@ -266,7 +266,7 @@ impl Activity {
         }
     }
 
-    /// The runtime of this device, looked for once in the process.
+    /// Finds the runtime of this device; it is looked for once in the process.
     fn find_runtime(&self) -> Result<runtime::Runtime, runtime::NotFound> {
         if let Some(found) = RUNTIME.get() {
             return Ok(found.clone());
@@ -279,8 +279,9 @@ impl Activity {
         Ok(RUNTIME.get_or_init(|| found).clone())
     }
 
-    /// There is no headset to show anything on, or no longer: the phone's screen takes its place. Who wears a headset does
-    /// not see that screen but the sign of loading, without end: there the application ends. That a phone is none `is_usual`.
+    /// Shows everything on the device's own screen, for there is no headset, or no longer. On a headset the application ends
+    /// instead: who wears it does not see that screen, but the sign of loading without end. `is_usual` is true if nothing
+    /// is wrong: most phones are no headsets.
     fn do_without_headset(&mut self, reason: &str, is_usual: bool) {
         if self.java.is_headset() {
             log::error!("display: none, since {reason}; this is a headset, so the application ends");
@@ -321,6 +322,8 @@ impl Activity {
                 }
             }
             Ok(Step::Ended) => self.finish(),
+            // The headset is lost for this activity, for instance with its session. It has used neither the window nor the
+            // refreshes and sensors, so both are begun here as if the activity had come to the front just now.
             Err(error) => {
                 self.summarize();
                 self.is_summarized = false;
@@ -334,7 +337,7 @@ impl Activity {
         }
     }
 
-    /// What follows from a frame on whatever display.
+    /// Does what follows from a frame on any display.
     fn after_frame(&mut self, report: &FrameReport) {
         self.note_scene();
         if report.telemetry_due {
@@ -351,7 +354,7 @@ impl Activity {
         }
     }
 
-    /// Another scene begins another session, whose summary is still to come.
+    /// Begins another session, whose summary is still to come, if the scene is another one.
     fn note_scene(&mut self) {
         if let Some(viewer) = self.display.viewer()
             && viewer.scene_name() != self.scene
@@ -369,8 +372,8 @@ impl Activity {
         }
     }
 
-    /// Draws on Android's window, if there is one and the headset does not need the context, and makes what is needed
-    /// for it.
+    /// Attaches to Android's window and makes what drawing on it needs, if there is a window and no headset needs the
+    /// context.
     fn open_window(&mut self) {
         self.retry = None;
         if self.display.is_headset() || self.is_finishing {
@@ -416,7 +419,7 @@ impl Activity {
         self.ask_performance();
     }
 
-    /// Asks for the refresh rate and the performance of the settings. A headset's runtime is asked by its own means.
+    /// Asks for the refresh rate and the performance of the settings. A headset asks its runtime instead.
     fn ask_performance(&mut self) {
         if let Display::Cardboard(cardboard) = &self.display
             && let Some(window) = self.app.native_window()
@@ -426,7 +429,7 @@ impl Activity {
         }
     }
 
-    /// Says once, in the log and on the screen, why nothing else can be shown.
+    /// Says once, in the log and on the screen, why nothing can be shown.
     fn fail(&mut self, sentence: String) {
         if self.failure.as_ref() != Some(&sentence) {
             log::error!("{sentence}");
@@ -466,7 +469,7 @@ impl Activity {
         }
     }
 
-    /// The screen as it is now; none without window.
+    /// Returns the screen as it is now; none without a window.
     fn screen(&mut self) -> Option<Screen> {
         let size = self.window.as_ref()?.size()?;
         Some(self.screen.of_window(size, &self.java))
@@ -492,7 +495,7 @@ impl Activity {
         }
         self.input.hold(now_ns());
         let is_paced = self.pulse.is_some_and(Pulse::has_refreshes);
-        if refresh.is_none() && is_paced && self.last_frame.elapsed() < PATIENCE {
+        if refresh.is_none() && is_paced && self.last_frame.elapsed() < REFRESH_TIMEOUT {
             return;
         }
         self.last_frame = Instant::now();
@@ -503,7 +506,7 @@ impl Activity {
         }
     }
 
-    /// One frame, for the refresh that has just begun.
+    /// Draws one frame, for the refresh that has just begun.
     fn frame(&mut self, refresh: Option<Refresh>) -> Result<(), DisplayError> {
         let Some(screen) = self.screen() else { return Ok(()) };
         let (Display::Cardboard(cardboard), Some(window)) = (&mut self.display, &self.window) else {
@@ -585,7 +588,7 @@ impl Activity {
     }
 }
 
-/// The context of a window, which the first call makes.
+/// Returns the context of a window, which the first call makes.
 fn context<'a>(gl: &'a mut Option<Rc<Context>>, window: &Window) -> Result<&'a Rc<Context>, ViewerError> {
     match gl {
         Some(gl) => Ok(gl),

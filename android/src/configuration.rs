@@ -15,10 +15,10 @@ use crate::system;
 /// Settings from outside, and the folders in which scenes and viewers are looked for.
 pub struct Configuration {
     sources: Sources,
-    /// What came of the sources last.
+    /// The settings that the sources gave last.
     settings: Settings,
     folders: Vec<PathBuf>,
-    /// What was wrong with the settings when they were last read.
+    /// The mistakes in the settings when they were last read.
     mistakes: Vec<String>,
 }
 
@@ -45,12 +45,12 @@ impl Configuration {
         Configuration { sources, settings: Settings::default(), folders, mistakes: Vec::new() }
     }
 
-    /// Takes back what was saved when Android put the activity away.
+    /// Takes over what was saved when Android put the activity away.
     pub fn restore(&mut self, saved: &[u8]) {
         self.sources.saved = settings::restore(saved);
     }
 
-    /// What the user has changed since the settings were read, for Android to keep.
+    /// Returns what the user has changed since the settings were read, for Android to keep.
     pub fn save(&self, viewer: Option<&Viewer>) -> Vec<u8> {
         settings::save(&self.changes(viewer))
     }
@@ -64,7 +64,7 @@ impl Configuration {
         [method, ipd].into_iter().flatten().map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
-    /// The settings from outside; each mistake is logged once.
+    /// Returns the settings from outside; each mistake is logged once.
     pub fn resolve(&mut self) -> Settings {
         let (settings, mistakes) = self.sources.resolve();
         mistakes.iter().filter(|m| !self.mistakes.contains(m)).for_each(|mistake| log::warn!("{mistake}"));
@@ -72,11 +72,10 @@ impl Configuration {
         settings
     }
 
-    /// A viewer with the settings from outside; mistakes in them are logged, and the
-    /// defaults take their place.
+    /// Makes a viewer with the settings from outside. Mistakes in them are logged, and the defaults take their place.
     ///
     /// # Errors
-    /// What the defaults do not help against.
+    /// The viewer cannot be made with the defaults either.
     pub fn make_viewer<T>(
         &mut self,
         new: impl Fn(Settings, &[PathBuf]) -> Result<T, ViewerError>,
@@ -112,22 +111,22 @@ impl Configuration {
         files.iter().for_each(|file| log::info!("scene file: {}", file.display()));
     }
 
-    /// The settings, if the system properties have made others of them while the application runs.
+    /// Returns the settings if system properties have changed them while the application runs.
     pub fn poll_properties(&mut self) -> Option<Settings> {
         let have_changed = self.sources.set_properties(settings::properties(system::property));
         let settings = have_changed.then(|| self.resolve())?;
         (settings != self.settings).then_some(settings)
     }
 
-    /// Whether these settings are of another scene than those in use.
+    /// True if these settings show another scene than those in use.
     pub fn is_other_scene(&self, settings: &Settings) -> bool {
         (&settings.scene, settings.seed) != (&self.settings.scene, self.settings.seed)
     }
 
-    /// Lets a display take over other settings; where it cannot, those before stay.
+    /// Gives a display other settings; if it cannot take them, those before stay.
     pub fn apply(&mut self, settings: Settings, display: &mut Display) {
         let Some(viewer) = display.viewer() else { return };
-        // What was not to be found at the start is not looked for again with every change.
+        // A scene or viewer that was not found at the start is not looked for again with every change.
         let mut possible = settings.clone();
         if settings.scene == self.settings.scene {
             possible.scene.clone_from(&viewer.settings().scene);

@@ -1,5 +1,5 @@
-//! Battery and heat, asked for once a second on a thread of its own: some devices take milliseconds to answer,
-//! which would cost a frame.
+//! Reads battery and heat once a second, on a thread of its own: some devices take milliseconds to answer, which would
+//! cost a frame.
 
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,7 +13,7 @@ use crate::thermal::Thermal;
 
 const PERIOD: Duration = Duration::from_secs(1);
 
-/// What the device says of itself.
+/// The device's state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// Battery and heat.
@@ -22,7 +22,7 @@ pub struct Report {
     pub refresh_hz: Option<f32>,
 }
 
-/// Asks until it is dropped.
+/// The thread that asks, until this is dropped.
 pub struct Device {
     report: Arc<Mutex<Report>>,
     stop: Option<Sender<()>>,
@@ -30,7 +30,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// Starts to ask.
+    /// Starts the thread.
     pub fn watch(java: &Java) -> Device {
         let report = Arc::new(Mutex::new(Report::default()));
         let (stop, stopped) = mpsc::channel();
@@ -53,7 +53,7 @@ impl Device {
         Device { report, stop: Some(stop), thread }
     }
 
-    /// The newest answers.
+    /// Returns the newest answers.
     pub fn report(&self) -> Report {
         *self.report.lock().unwrap_or_else(PoisonError::into_inner)
     }

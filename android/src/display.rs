@@ -1,4 +1,4 @@
-//! On what the eyes look.
+//! The display that the eyes see.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use yoro_protocol::Settings;
 use yoro_viewer::openxr::{Headset, XrError};
 use yoro_viewer::{Cardboard, Viewer, ViewerError};
 
-/// On what the eyes look; it owns the application that draws there.
+/// The display that the eyes see; it owns the application that draws there.
 #[derive(Default)]
 pub enum Display {
     /// Nothing yet.
@@ -15,12 +15,12 @@ pub enum Display {
     None,
     /// The phone's screen, behind lenses.
     Cardboard(Box<Cardboard>),
-    /// What a runtime of OpenXR drives.
+    /// A headset, driven by an OpenXR runtime.
     Headset(Box<Headset>),
 }
 
 impl Display {
-    /// The application, on whatever it is shown.
+    /// Returns the application, on either display.
     pub fn viewer(&self) -> Option<&Viewer> {
         match self {
             Display::None => None,
@@ -29,7 +29,7 @@ impl Display {
         }
     }
 
-    /// The application, for telemetry.
+    /// Returns the application, on either display.
     pub fn viewer_mut(&mut self) -> Option<&mut Viewer> {
         match self {
             Display::None => None,
@@ -38,7 +38,7 @@ impl Display {
         }
     }
 
-    /// The phone behind lenses, if that is what it is.
+    /// Returns the phone behind lenses, if the display is one.
     pub fn cardboard(&self) -> Option<&Cardboard> {
         match self {
             Display::Cardboard(cardboard) => Some(cardboard),
@@ -46,7 +46,7 @@ impl Display {
         }
     }
 
-    /// As [`Display::cardboard`].
+    /// Returns the phone behind lenses, if the display is one.
     pub fn cardboard_mut(&mut self) -> Option<&mut Cardboard> {
         match self {
             Display::Cardboard(cardboard) => Some(cardboard),
@@ -54,7 +54,7 @@ impl Display {
         }
     }
 
-    /// Whether a runtime of OpenXR says when to draw, and where.
+    /// True if an OpenXR runtime decides when and where to draw.
     pub fn is_headset(&self) -> bool {
         matches!(self, Display::Headset(_))
     }
@@ -62,7 +62,7 @@ impl Display {
     /// Takes over other settings.
     ///
     /// # Errors
-    /// As [`Cardboard::configure`]; the settings before stay.
+    /// Those of [`Cardboard::configure`]; the settings before stay.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         match self {
             Display::None => Ok(()),
@@ -72,7 +72,7 @@ impl Display {
     }
 }
 
-/// Why there is nothing to see.
+/// A reason why nothing can be shown.
 #[derive(Debug, thiserror::Error)]
 pub enum DisplayError {
     /// The window.

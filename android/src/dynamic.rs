@@ -7,13 +7,13 @@ use std::mem;
 pub struct Library(*mut c_void);
 
 impl Library {
-    /// libandroid.
+    /// Opens libandroid.
     pub fn open() -> Library {
         // SAFETY: a name that ends in zero; the library is a part of every process with an activity.
         Library(unsafe { libc::dlopen(c"libandroid.so".as_ptr(), libc::RTLD_NOW) })
     }
 
-    /// A function by its name; none where this Android does not have it.
+    /// Returns a function by its name; none if this Android does not have it.
     ///
     /// # Safety
     /// `F` must be a function pointer of the type that the NDK declares for the name.
@@ -24,7 +24,7 @@ impl Library {
         }
         // SAFETY: the handle is live and the name ends in zero.
         let address = unsafe { libc::dlsym(self.0, name.as_ptr()) };
-        // SAFETY: not null, and of this type by the caller's promise.
+        // SAFETY: not null; the caller names the type that the NDK declares.
         (!address.is_null()).then(|| unsafe { mem::transmute_copy::<*mut c_void, F>(&address) })
     }
 }

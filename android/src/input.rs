@@ -1,4 +1,4 @@
-//! Touch and keys to the viewer's events.
+//! Turns touch and keys into the viewer's events.
 
 use android_activity::input::{InputEvent, KeyAction, KeyEvent, Keycode, MotionAction, MotionEvent};
 use android_activity::{AndroidApp, InputStatus};
@@ -6,20 +6,20 @@ use yoro_viewer::Event;
 
 use crate::press::Press;
 
-/// What the user does with screen, buttons and keys.
+/// The user's input by screen, buttons and keys.
 #[derive(Default)]
 pub struct Input {
     touch: Press,
     trigger: Press,
-    /// What nobody has taken yet.
+    /// Events that nobody has taken yet.
     pub events: Vec<Event>,
-    /// Whether Android has something to read.
+    /// True if Android has events to read.
     pub is_available: bool,
 }
 
 impl Input {
-    /// Reads what Android has, if it has anything, and appends what it means to the events. What is not ours, such as
-    /// the back key, stays Android's.
+    /// Reads Android's events, if there are any, and appends what they mean. Keys that the application does not use, such
+    /// as the back key, stay Android's.
     pub fn collect(&mut self, app: &AndroidApp, dpi: f32) {
         if !std::mem::take(&mut self.is_available) {
             return;
@@ -43,7 +43,7 @@ impl Input {
         self.events.extend(self.touch.held(now_ns).or_else(|| self.trigger.held(now_ns)));
     }
 
-    /// Forgets what was begun: the window is gone.
+    /// Forgets presses that have begun: the window is gone.
     pub fn cancel(&mut self) {
         (self.touch, self.trigger) = (Press::default(), Press::default());
     }

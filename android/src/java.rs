@@ -70,7 +70,7 @@ pub struct Java {
 }
 
 impl Java {
-    /// The activity of an application.
+    /// Returns the activity of an application.
     pub fn new(app: &AndroidApp) -> Java {
         // SAFETY: the process has one Java VM, which is there as long as the process is.
         Java { vm: unsafe { JavaVM::from_raw(app.vm_as_ptr().cast()) }, app: app.clone() }
@@ -249,7 +249,7 @@ impl Java {
         self.on_main_thread("the activity's end", |env, activity| activity.finish(env));
     }
 
-    /// Does something on the activity's main thread, for views belong to the thread that made them.
+    /// Runs something on the activity's main thread, for views belong to the thread that made them.
     fn on_main_thread(
         &self,
         what: &'static str,

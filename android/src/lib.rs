@@ -1,8 +1,8 @@
 //! yoro on Android: the library that `NativeActivity` loads.
 //!
-//! The application itself is [`yoro_viewer`]; here is what a phone adds to it: a window, the activity's life,
-//! sensors, touch, settings from outside, the state of battery and heat. On other systems only the parts without
-//! Android are built, and those for their tests.
+//! It takes Android's window, sensors, touch, settings and the state of battery and heat, and gives them to
+//! [`yoro_viewer`], which is the application itself. It must know neither how eyes are synthesized nor how they are
+//! measured. On other systems only the parts without Android are built, for their tests.
 
 #[cfg(any(target_os = "android", test))]
 mod pace;
@@ -40,8 +40,8 @@ mod system;
 #[cfg(target_os = "android")]
 mod thermal;
 
-/// Where the application begins; returning ends the activity. It may run more than once in one process, also while
-/// an earlier run is about to return.
+/// The application's entry point; returning ends the activity. It may run more than once in one process, even while an
+/// earlier run is about to return.
 #[cfg(target_os = "android")]
 #[unsafe(no_mangle)]
 fn android_main(app: android_activity::AndroidApp) {

@@ -1,9 +1,9 @@
-//! When things happen: samples of the sensors, and frames on the display. Nanoseconds of the monotonic clock.
+//! The times of sensor samples and of frames on the display, in nanoseconds of the monotonic clock.
 
-/// A refresh of the display, and what Android says of a frame that begins with it.
+/// A refresh of the display, and Android's plan for a frame that begins with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refresh {
-    /// When it begins.
+    /// The time at which it begins.
     pub begin_ns: i64,
     /// From Android 13 on.
     pub timeline: Option<Timeline>,
@@ -12,15 +12,16 @@ pub struct Refresh {
 /// A frame as Android plans it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timeline {
-    /// The GPU has to be ready by then.
+    /// The time by which the GPU must have finished.
     pub deadline_ns: i64,
-    /// And then it is seen.
+    /// The time at which the frame is seen.
     pub display_ns: i64,
 }
 
 impl Refresh {
-    /// When a frame is seen that begins with this refresh and is ready at `ready_ns`, with `period_ns` between refreshes.
-    /// Without a timeline it is the second refresh after this one, if it is ready by the first.
+    /// Returns when a frame is seen that begins with this refresh and is ready at `ready_ns`, with `period_ns` between
+    /// refreshes.
+    /// Without a timeline it is seen at the second refresh after this one, if it is ready by the first.
     pub fn display_ns(&self, ready_ns: i64, period_ns: i64) -> i64 {
         let usual =
             Timeline { deadline_ns: self.begin_ns + period_ns, display_ns: self.begin_ns + 2 * period_ns };
@@ -31,10 +32,10 @@ impl Refresh {
     }
 }
 
-/// The time of a sensor's sample, which has `sample_ns` on a clock that Android wants to be CLOCK_BOOTTIME; some drivers
-/// take CLOCK_MONOTONIC, which is behind by the time `slept_ns` that the device has slept. The sample has just come, so its
-/// clock is the one on which it is the younger.
-pub fn of_sample(sample_ns: i64, now_ns: i64, slept_ns: i64) -> i64 {
+/// Returns the time of a sensor's sample that has just come. Its own time `sample_ns` should be of CLOCK_BOOTTIME. Some
+/// drivers take CLOCK_MONOTONIC, which is behind by the time `slept_ns` that the device has slept. So the clock is the one
+/// on which the sample is younger.
+pub fn sample_time_ns(sample_ns: i64, now_ns: i64, slept_ns: i64) -> i64 {
     let by_boottime = sample_ns - slept_ns;
     if (now_ns - by_boottime).abs() <= (now_ns - sample_ns).abs() { by_boottime } else { sample_ns }
 }
@@ -68,12 +69,12 @@ mod tests {
     #[test]
     fn samples_are_put_on_the_clock_of_the_refreshes() {
         let slept = 3_600_000 * MS;
-        assert_eq!(of_sample(5_000 * MS + slept, 5_003 * MS, slept), 5_000 * MS);
+        assert_eq!(sample_time_ns(5_000 * MS + slept, 5_003 * MS, slept), 5_000 * MS);
         assert_eq!(
-            of_sample(5_000 * MS, 5_003 * MS, slept),
+            sample_time_ns(5_000 * MS, 5_003 * MS, slept),
             5_000 * MS,
             "a driver that takes the other clock"
         );
-        assert_eq!(of_sample(5_000 * MS, 5_003 * MS, 0), 5_000 * MS);
+        assert_eq!(sample_time_ns(5_000 * MS, 5_003 * MS, 0), 5_000 * MS);
     }
 }

@@ -1,5 +1,5 @@
-//! What a phone is asked for so that one second is like the other: a refresh rate that stays, clock rates that last, and
-//! hints of how long frames take. Each where Android and the device offer it.
+//! Asks a phone for steady performance: a refresh rate that stays, clock rates that last, and hints of how long frames
+//! take. Each is asked for where Android and the device offer it.
 
 use std::ffi::c_void;
 use std::fmt;
@@ -18,31 +18,31 @@ const ANY_RATE: i8 = 0;
 
 type SetFrameRate = unsafe extern "C" fn(*mut ndk_sys::ANativeWindow, f32, i8) -> i32;
 
-/// What was asked for.
+/// The requests made so far.
 pub struct Performance {
     android: Library,
     /// The display's rate in Hz when it was first known: it is to stay, unless the settings want another.
     first_hz: Option<f32>,
-    /// Asked for the window that there is.
+    /// The rate asked for with the present window, in Hz.
     rate_hz: Option<f32>,
-    /// Asked for, and whether the device has it.
+    /// Whether sustained performance mode was asked for, and whether the device has it.
     sustained: Option<(bool, bool)>,
     hints: Option<Hints>,
 }
 
 impl Performance {
-    /// Nothing is asked for yet.
+    /// Asks for nothing yet.
     pub fn new() -> Performance {
         Performance { android: Library::open(), first_hz: None, rate_hz: None, sustained: None, hints: None }
     }
 
-    /// The window is another one.
+    /// Forgets what was asked for with the window before.
     pub fn forget_window(&mut self) {
         self.rate_hz = None;
     }
 
-    /// Asks for what the settings want and was not asked for yet, and says in one line what there is. The display has
-    /// `refresh_hz` now, 0 where it does not say.
+    /// Asks for what the settings want, unless it was asked for before, and logs the outcome in one line. The display's
+    /// present rate is `refresh_hz`, 0 if unknown.
     pub fn ask(&mut self, settings: &Settings, window: &NativeWindow, refresh_hz: f32, java: &Java) {
         let known = Some(refresh_hz).filter(|hz| *hz > 0.0);
         self.first_hz = self.first_hz.or(known);
@@ -83,7 +83,7 @@ impl Performance {
         }
     }
 
-    /// What the device was asked for and has, for its [`DeviceState`](yoro_protocol::telemetry::DeviceState).
+    /// Returns what the device was asked for and has, for its [`DeviceState`](yoro_protocol::telemetry::DeviceState).
     pub fn name(&self) -> &'static str {
         match (self.sustained == Some((true, true)), self.hints.is_some()) {
             (true, true) => "sustained/hints",
@@ -93,7 +93,7 @@ impl Performance {
         }
     }
 
-    /// This thread has worked so long on a frame.
+    /// Notes how long this thread has worked on a frame.
     pub fn worked(&self, time: Duration) {
         if let Some(hints) = &self.hints {
             hints.worked(time);
@@ -101,7 +101,7 @@ impl Performance {
     }
 }
 
-/// For the log.
+/// A line for the log.
 impl fmt::Display for Performance {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.rate_hz {
@@ -139,7 +139,7 @@ impl Hints {
         unsafe { android.function::<GetManager>(c"APerformanceHint_getManager") }.is_some()
     }
 
-    /// For this thread, whose frames may take `period`; none where this device takes no hints.
+    /// Begins a session for this thread, whose frames may take `period`; none if this device takes no hints.
     fn new(android: &Library, period: Duration) -> Option<Hints> {
         // SAFETY: the types are those of <android/performance_hint.h>; a manager that is not null lives as long as the
         // process, and the list of threads through the call.

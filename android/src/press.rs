@@ -1,4 +1,4 @@
-//! Tap or long press: of a finger, or of a viewer's button that touches the screen.
+//! Taps and long presses of a finger, or of a viewer's button that touches the screen.
 
 use yoro_viewer::Event;
 
@@ -21,12 +21,12 @@ pub struct Press {
 }
 
 impl Press {
-    /// The first finger, or a button, goes down.
+    /// Notes that the first finger, or a button, goes down.
     pub fn down(&mut self, now_ns: i64, position: [f32; 2]) {
         self.down = Some(Down { since_ns: now_ns, position });
     }
 
-    /// It moves; a drag is not a press.
+    /// Notes that it moves; a drag is no press.
     pub fn moved(&mut self, position: [f32; 2], dpi: f32) {
         let slop = SLOP_INCHES * if dpi > 0.0 { dpi } else { 400.0 };
         let is_drag =
@@ -36,18 +36,18 @@ impl Press {
         }
     }
 
-    /// It goes up.
+    /// Notes that it goes up, and returns what it was.
     pub fn up(&mut self, now_ns: i64) -> Option<Event> {
         let down = self.down.take()?;
         Some(if now_ns - down.since_ns >= LONG_NS { Event::LongPress } else { Event::Tap })
     }
 
-    /// A second finger, or the system takes the touch away.
+    /// Forgets the press: a second finger came, or the system took the touch away.
     pub fn cancel(&mut self) {
         self.down = None;
     }
 
-    /// A long press counts as soon as it is long, not when it ends.
+    /// Returns a press that has become long: it counts as soon as it is long, not when it ends.
     pub fn held(&mut self, now_ns: i64) -> Option<Event> {
         let is_long = |down: &mut Down| now_ns - down.since_ns >= LONG_NS;
         self.down.take_if(is_long).map(|_| Event::LongPress)

@@ -1,7 +1,7 @@
-//! What comes at its own times: samples of the motion sensors, and the display's refreshes.
+//! Samples of the motion sensors and the display's refreshes, which come at their own times.
 //!
-//! Both speak through a looper. That of `android_main` is android-activity's, which takes other sources for mistakes;
-//! and a choreographer lives as long as its thread. So there is one thread for all activities of the process, which
+//! Both come through a looper. The looper of `android_main` is android-activity's, which takes other sources for
+//! mistakes, and a choreographer lives as long as its thread. So one thread serves all activities of the process; it
 //! sleeps while none is in front.
 
 use std::cell::Cell;
@@ -22,7 +22,8 @@ use crate::pace::{self, Refresh, Timeline};
 use crate::sensors::Sensors;
 use crate::system::{now_ns, slept_ns};
 
-/// Samples that are kept for a main loop that takes none: a tenth of a second and more. Older ones are dropped.
+/// The number of samples that are kept for a main loop that takes none: a tenth of a second and more. Older ones are
+/// dropped.
 const MAX_SAMPLES: usize = 256;
 
 static PULSE: OnceLock<Option<Pulse>> = OnceLock::new();
@@ -33,21 +34,21 @@ pub struct Pulse {
     looper: ForeignLooper,
 }
 
-/// What thread and main loop share.
+/// State that the thread and the main loop share.
 #[derive(Default)]
 struct Shared {
-    /// Whether sensors and refreshes are wanted.
+    /// True while sensors and refreshes are wanted.
     is_on: AtomicBool,
     /// The newest refresh that the main loop has not seen.
     refresh: Mutex<Option<Refresh>>,
-    /// Whether refreshes have ever come.
+    /// True once a refresh has come.
     has_refreshes: AtomicBool,
     samples: Mutex<Vec<(MotionSample, i64)>>,
     waker: Mutex<Option<AndroidAppWaker>>,
 }
 
 impl Pulse {
-    /// The process's one, started at the first call; none if there can be no thread.
+    /// Returns the process's one, which the first call starts; none if there can be no thread.
     pub fn get() -> Option<&'static Pulse> {
         PULSE.get_or_init(Pulse::start).as_ref()
     }
@@ -86,18 +87,18 @@ impl Pulse {
         self.looper.wake();
     }
 
-    /// Whether this device tells of its refreshes.
+    /// True if this device reports its refreshes.
     pub fn has_refreshes(&self) -> bool {
         self.shared.has_refreshes.load(Ordering::Acquire)
     }
 
-    /// The newest refresh since the last call.
+    /// Returns the newest refresh since the last call.
     pub fn take_refresh(&self) -> Option<Refresh> {
         lock(&self.shared.refresh).take()
     }
 
-    /// Hands on the samples that have come since the last call, oldest first, with times of the monotonic clock. `buffer` is only there to be used
-    /// again.
+    /// Calls `take` with the samples since the last call, oldest first, and their times on the monotonic clock in
+    /// nanoseconds. `buffer` is memory that is used again.
     pub fn drain(&self, buffer: &mut Vec<(MotionSample, i64)>, mut take: impl FnMut(MotionSample, i64)) {
         buffer.clear();
         std::mem::swap(&mut *lock(&self.shared.samples), buffer);
@@ -174,11 +175,11 @@ struct Choreographer {
     post: Post,
 }
 
-/// How refreshes are asked for.
+/// The function with which refreshes are asked for.
 enum Post {
-    /// With times alone.
+    /// It gives times alone.
     Frame(PostFrameCallback),
-    /// With the timeline of a frame, from API 33 on.
+    /// It gives the timeline of a frame, from API 33 on.
     Vsync(Vsync),
 }
 

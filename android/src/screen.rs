@@ -4,27 +4,27 @@ use yoro_lenses::{Rotation, Screen};
 
 use crate::java::{DisplayMetrics, Java};
 
-/// What was last heard of the screen.
+/// The screen as Android last described it.
 pub struct ScreenState {
     metrics: Option<DisplayMetrics>,
     /// Refresh rate in Hz; 0 if unknown.
     pub refresh_hz: f32,
-    /// Android has changed something.
+    /// True if Android has changed something since.
     pub is_stale: bool,
 }
 
 impl ScreenState {
-    /// Nothing is known yet.
+    /// Knows nothing yet.
     pub fn new() -> ScreenState {
         ScreenState { metrics: None, refresh_hz: 0.0, is_stale: true }
     }
 
-    /// Pixels per inch along the picture's width; 0 if unknown.
+    /// Returns the pixels per inch along the picture's width; 0 if unknown.
     pub fn dpi(&self) -> f32 {
         self.metrics.as_ref().map_or(0.0, |metrics| dpi(metrics)[0])
     }
 
-    /// The screen of a window of this size.
+    /// Returns the screen of a window of this size.
     pub fn of_window(&mut self, size: [u32; 2], java: &Java) -> Screen {
         if std::mem::take(&mut self.is_stale) {
             self.metrics = java.display_metrics().or(self.metrics);
@@ -40,8 +40,8 @@ impl ScreenState {
     }
 }
 
-/// Pixels of the picture per inch. Where the user has chosen a lower resolution, Android goes on to say those of the
-/// display's mode, on which the picture is scaled up.
+/// Returns the pixels of the picture per inch. Where the user has chosen a lower resolution, Android still reports those
+/// of the display's mode, to which the picture is scaled up.
 fn dpi(metrics: &DisplayMetrics) -> [f32; 2] {
     let longest = |size: [i32; 2]| size[0].max(size[1]) as f32;
     let scale = longest(metrics.size) / longest(metrics.mode);

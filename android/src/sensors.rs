@@ -25,7 +25,7 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Starts what sensors there are, for a thread with a looper; says in the log which.
+    /// Starts the sensors that there are, for a thread with a looper, and logs which.
     pub fn start(looper: NonNull<ffi::ALooper>) -> Option<Sensors> {
         // SAFETY: the name is that of our own package, or of none at all, and ends in zero.
         let manager =
@@ -75,7 +75,7 @@ impl Sensors {
         true
     }
 
-    /// Hands on the samples that have come, with their times in nanoseconds.
+    /// Calls `take` with the samples that have come and their times in nanoseconds.
     pub fn drain(&mut self, mut take: impl FnMut(MotionSample, i64)) {
         // SAFETY: all zeros is a valid event.
         let mut events: [ffi::ASensorEvent; BATCH] = unsafe { std::mem::zeroed() };

@@ -24,13 +24,13 @@ pub struct Sources {
     pub extras: Vec<Pair>,
     /// System properties, without their prefix.
     pub properties: Vec<Pair>,
-    /// What the user had changed when Android put the activity away.
+    /// Changes that the user had made when Android put the activity away.
     pub saved: Vec<Pair>,
 }
 
 impl Sources {
-    /// Takes over what the system properties are now. What the user had changed by hand does not hold against a
-    /// property that has another value since. True if anything differs.
+    /// Takes over the present system properties. A property that has changed since is stronger than what the user had
+    /// changed by hand. True if any property differs.
     pub fn set_properties(&mut self, properties: Vec<Pair>) -> bool {
         if properties == self.properties {
             return false;
@@ -40,7 +40,7 @@ impl Sources {
         true
     }
 
-    /// The settings, and one sentence for each mistake; a setting with a mistake stays what it was before.
+    /// Returns the settings, and one sentence for each mistake; a setting with a mistake keeps its value.
     pub fn resolve(&self) -> (Settings, Vec<String>) {
         let mut settings = Settings::default();
         let mut mistakes = Vec::new();
@@ -66,12 +66,12 @@ impl Sources {
     }
 }
 
-/// The value of a key, the last one if there are several.
+/// Returns the value of a key, the last one if there are several.
 fn value<'a>(pairs: &'a [Pair], key: &str) -> Option<&'a str> {
     pairs.iter().rev().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
 }
 
-/// The setting that an extra means; none for extras that are not for us.
+/// Returns the setting that an extra means; none for extras of others.
 fn extra_key(key: &str) -> Option<&str> {
     match key.strip_prefix(EXTRA_PREFIX) {
         Some(own) => Some(own),
@@ -79,8 +79,8 @@ fn extra_key(key: &str) -> Option<&str> {
     }
 }
 
-/// The system properties' settings by a function that reads one by its full name. Empty means unset: a property
-/// cannot be deleted.
+/// Returns the settings in system properties; `read` returns one by its full name. Empty means unset: a property cannot
+/// be deleted.
 pub fn properties(read: impl Fn(&str) -> Option<String>) -> Vec<Pair> {
     let pair = |setting: &Setting| {
         let value = read(&format!("{PROPERTY_PREFIX}{}", setting.key))?;
@@ -90,12 +90,12 @@ pub fn properties(read: impl Fn(&str) -> Option<String>) -> Vec<Pair> {
     SETTINGS.iter().filter_map(pair).collect()
 }
 
-/// Settings as bytes for Android to keep while the activity is away.
+/// Encodes settings for Android to keep while the activity is away.
 pub fn save(pairs: &[Pair]) -> Vec<u8> {
     pairs.iter().map(|(key, value)| format!("{key}={value}\n")).collect::<String>().into_bytes()
 }
 
-/// What [`save`] made; nothing of what another version may have left.
+/// Decodes the bytes of [`save`]; keys of other versions are left out.
 pub fn restore(bytes: &[u8]) -> Vec<Pair> {
     let text = String::from_utf8_lossy(bytes);
     let pair = |line: &str| {

@@ -1,13 +1,14 @@
-//! What the C library tells.
+//! Answers of the C library.
 
 use std::ffi::CString;
 
-/// The clock of Android's events and refreshes, in nanoseconds.
+/// Returns the time on the clock of Android's events and refreshes, in nanoseconds.
 pub fn now_ns() -> i64 {
     time_ns(libc::CLOCK_MONOTONIC)
 }
 
-/// How long the device has slept since its boot, in nanoseconds: how far the clock of the sensors is ahead of [`now_ns`].
+/// Returns how long the device has slept since its boot, in nanoseconds. The clock of the sensors is ahead of [`now_ns`]
+/// by it.
 pub fn slept_ns() -> i64 {
     time_ns(libc::CLOCK_BOOTTIME) - now_ns()
 }
@@ -19,13 +20,13 @@ fn time_ns(clock: libc::clockid_t) -> i64 {
     time.tv_sec * 1_000_000_000 + time.tv_nsec
 }
 
-/// The number of this thread.
+/// Returns the kernel's number of this thread.
 pub fn thread_id() -> i32 {
     // SAFETY: no arguments.
     unsafe { libc::gettid() }
 }
 
-/// A system property.
+/// Returns a system property; empty if it is not set.
 pub fn property(name: &str) -> Option<String> {
     let name = CString::new(name).ok()?;
     let mut value = [0u8; libc::PROP_VALUE_MAX as usize];

@@ -1,4 +1,4 @@
-//! How warm the device is: the NDK's thermal service, and the skin sensor where it may be read.
+//! The device's heat: the NDK's thermal service, and the skin sensor where it may be read.
 
 use std::ffi::c_int;
 use std::fs;
@@ -37,7 +37,7 @@ struct Service {
     headroom: Option<Headroom>,
 }
 
-/// What there is to ask for the device's heat.
+/// The sources of this device's heat.
 pub struct Thermal {
     service: Option<Service>,
     skin: Option<PathBuf>,
@@ -45,19 +45,19 @@ pub struct Thermal {
 }
 
 impl Thermal {
-    /// Looks for what this device has.
+    /// Looks for the sources that this device has.
     pub fn new() -> Thermal {
         Thermal { service: Service::acquire(), skin: skin_sensor(), headroom: None }
     }
 
-    /// `AThermalStatus`, 0 to 6.
+    /// Returns the `AThermalStatus`, 0 to 6.
     pub fn status(&self) -> Option<i32> {
         let service = self.service.as_ref()?;
         // SAFETY: the manager is live.
         Some(unsafe { (service.status)(service.manager.as_ptr()) }).filter(|status| *status >= 0)
     }
 
-    /// The forecast headroom; 1 is severe throttling. It is as old as ten seconds.
+    /// Returns the forecast headroom; 1 is severe throttling. It may be ten seconds old.
     pub fn headroom(&mut self) -> Option<f32> {
         let service = self.service.as_ref()?;
         let ask = service.headroom?;
@@ -75,7 +75,7 @@ impl Thermal {
         }
     }
 
-    /// Temperature of the skin in degrees Celsius.
+    /// Returns the temperature of the skin in degrees Celsius.
     pub fn skin_celsius(&self) -> Option<f32> {
         celsius(self.skin.as_ref()?)
     }
@@ -102,7 +102,7 @@ impl Drop for Service {
     }
 }
 
-/// The thermal zone of the skin, if applications may read it, which most devices do not allow.
+/// Returns the file of the skin's thermal zone, if applications may read it; most devices do not allow that.
 fn skin_sensor() -> Option<PathBuf> {
     let zones = fs::read_dir("/sys/class/thermal").ok()?.flatten().map(|entry| entry.path());
     let is_skin = |zone: &PathBuf| {
@@ -111,7 +111,7 @@ fn skin_sensor() -> Option<PathBuf> {
     zones.filter(is_skin).map(|zone| zone.join("temp")).find(|file| celsius(file).is_some())
 }
 
-/// Thermal zones say thousandths of a degree; some say degrees.
+/// Returns a thermal zone's degrees Celsius. Most zones report thousandths of a degree, some degrees.
 fn celsius(file: &Path) -> Option<f32> {
     let number: f32 = fs::read_to_string(file).ok()?.trim().parse().ok()?;
     let degrees = if number.abs() >= 1000.0 { number * 1e-3 } else { number };

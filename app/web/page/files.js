@@ -49,7 +49,7 @@ export function understand(files) {
     return { color, depth };
   }
   if (pictures.length) {
-    throw new Error(`${pictures.length === 1 ? 'One picture is' : `${pictures.length} pictures are`} not enough to go by: drop two, colour and depth, the one with “depth” in its name.`);
+    throw new Error(`${pictures.length === 1 ? 'One picture is' : `${pictures.length} pictures are`} not enough: drop two, colour and depth, the one with “depth” in its name.`);
   }
   const names = files.map(({ name }) => name).slice(0, 3).join(', ') || 'nothing';
   throw new Error(`There is neither a model (OBJ, glTF, GLB) nor a pair of pictures (PNG, JPEG, EXR) among the files: ${names}.`);

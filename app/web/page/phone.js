@@ -26,7 +26,7 @@ export function orientation(alpha, beta, gamma, screen) {
 
 /** Asks for the sensors as browsers want it; throws a sentence. */
 async function askForSensors() {
-  if (typeof DeviceOrientationEvent === 'undefined') throw new Error('This browser tells pages nothing of how it is held.');
+  if (typeof DeviceOrientationEvent === 'undefined') throw new Error('This browser does not report how it is held.');
   if (DeviceOrientationEvent.requestPermission) {
     const answer = await DeviceOrientationEvent.requestPermission().catch((error) => error.message);
     if (answer !== 'granted') throw new Error('The motion sensors are not allowed: allow them in the browser’s settings for this page, and try again.');

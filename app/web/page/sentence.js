@@ -7,7 +7,7 @@
  */
 export function sentence(error) {
   if (error instanceof WebAssembly.RuntimeError) {
-    return `The module has failed (${error.message}), perhaps for want of memory: reload the page, and choose a smaller scene.`;
+    return `The module has failed (${error.message}), perhaps for lack of memory: reload the page, and choose a smaller scene.`;
   }
   return error.message ?? String(error);
 }

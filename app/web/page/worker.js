@@ -12,6 +12,6 @@ onmessage = async ({ data }) => {
   } catch (error) {
     // The module ends itself where memory ends, and says nothing then.
     const full = error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
-    postMessage({ error: full ? 'The scene could not be made, probably for want of memory: choose a smaller one.' : error.message });
+    postMessage({ error: full ? 'The scene could not be made, probably for lack of memory: choose a smaller one.' : error.message });
   }
 };

@@ -1,10 +1,10 @@
 //! The page's module: every method in a browser's WebGL 2.
 //!
-//! Rust renders and measures; the page's own JavaScript (`app/web/page`) has the elements, the sensors and WebXR. Scenes
-//! are generated and files decoded in a worker, by the functions of `work`; `Page` draws on the canvas. Everything
-//! that JavaScript calls returns an error that is a sentence for the page.
+//! It takes a canvas's context, packed scenes, pictures and choices as JSON, and draws. The page's own JavaScript
+//! (`app/web/page`) has the elements, the sensors and WebXR. Scenes are generated and files decoded in a worker, by the
+//! functions of `work`; `Page` draws on the canvas. Every error that JavaScript gets is a sentence for the page.
 //!
-//! This crate must never know HTML, nor ask a server for anything.
+//! It must never know HTML, nor ask a server for anything.
 
 #[cfg(target_arch = "wasm32")]
 mod page;

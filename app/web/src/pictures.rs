@@ -1,4 +1,4 @@
-//! A colour and a depth picture of somebody's own: the other eye, with the depth settings of `yoro synthesize`.
+//! A colour and a depth picture of the user's own, with the depth settings of `yoro synthesize`.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye};
 use yoro::synthesis::Edges;
 use yoro_pictures::{DepthSamples, Nearness, StoredDepth, StoredDepthError, load_color, load_depth};
 
-/// What the values of the depth picture mean.
+/// The meaning of the values of a depth picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Encoding {
@@ -22,7 +22,7 @@ pub enum Encoding {
     Disparity,
 }
 
-/// Which eye the pictures show.
+/// The eye that the pictures show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SourceEye {
@@ -36,7 +36,7 @@ pub enum SourceEye {
 }
 
 impl SourceEye {
-    /// The eyes to synthesize, and the share of the IPD that each is away.
+    /// Returns the eyes to synthesize, and the share of the IPD by which each is away.
     pub fn targets(self) -> &'static [(Eye, f64)] {
         match self {
             SourceEye::Right => &[(Eye::Left, 1.0)],
@@ -50,11 +50,11 @@ impl SourceEye {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PictureOptions {
-    /// Which eye the pictures show.
+    /// The eye that the pictures show.
     pub source: SourceEye,
-    /// What the depth values mean.
+    /// The meaning of the depth values.
     pub encoding: Encoding,
-    /// The stored value is raised to this power first.
+    /// The power to which stored values are raised first.
     pub gamma: f32,
     /// Near plane in metres.
     pub near: f32,
@@ -68,7 +68,7 @@ pub struct PictureOptions {
     pub disparity_scale: f64,
     /// Vertical field of view in degrees.
     pub fov_y_degrees: f64,
-    /// What pixels on silhouettes show.
+    /// The colour of pixels on silhouettes.
     pub edges: Edges,
 }
 
@@ -89,19 +89,19 @@ impl Default for PictureOptions {
     }
 }
 
-/// Why two pictures are of no use, in a sentence.
+/// A reason why two pictures cannot be used, in a sentence.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// An option.
+    /// An option is out of range.
     #[error("{0}")]
     Option(String),
-    /// No picture, or none of the kind that is needed.
+    /// A file is no picture, or none of the kind that is needed.
     #[error(transparent)]
     File(#[from] yoro_pictures::PictureError),
-    /// They do not belong together.
+    /// The pictures do not have one size.
     #[error("the colour picture is {}x{} pixels and the depth picture {}x{}: both must have one size", .0[0], .0[1], .1[0], .1[1])]
     Sizes([u32; 2], [u32; 2]),
-    /// Values that mean nothing.
+    /// The depth values do not fit their encoding.
     #[error("the depth picture does not fit its encoding: {0}")]
     Values(#[from] StoredDepthError),
 }
@@ -137,14 +137,13 @@ impl PicturePair {
         })
     }
 
-    /// What the depth stands for, for eyes `ipd` metres apart.
+    /// Returns the pixels' nearness, for eyes `ipd` metres apart.
     ///
     /// # Errors
     /// [`PictureError`] for options that cannot be, and for values that they do not fit.
     pub fn nearness(&self, options: &PictureOptions, ipd: f32) -> Result<Nearness, PictureError> {
-        let refuse = |condition: bool, text: &str| match condition {
-            true => Err(PictureError::Option(text.into())),
-            false => Ok(()),
+        let refuse = |condition: bool, text: &str| {
+            if condition { Err(PictureError::Option(text.into())) } else { Ok(()) }
         };
         refuse(
             !(options.near > 0.0 && options.near < options.far),

@@ -1,4 +1,4 @@
-//! What the page lets people choose.
+//! The choices that the page offers.
 
 use std::rc::Rc;
 
@@ -18,15 +18,15 @@ pub enum Display {
     SideBySide,
     /// The left eye's image on the right.
     CrossEyed,
-    /// For glasses with a red filter on the left.
+    /// One image for glasses with a red filter on the left.
     Anaglyph,
-    /// One image.
+    /// The left eye's image.
     Left,
-    /// One image.
+    /// The right eye's image.
     Right,
-    /// Where the eye that is not dominant differs from a real render of it.
+    /// The difference between the eye that is not dominant and a real render of it.
     Difference,
-    /// That eye, in turn as the method makes it and really rendered.
+    /// That eye as the method makes it and really rendered, in turn.
     Flicker,
 }
 
@@ -51,19 +51,19 @@ impl Display {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Settings {
-    /// How both eyes are made.
+    /// The stereo method.
     pub method: Method,
-    /// How a view is rendered.
+    /// The renderer of a view.
     pub renderer: RendererKind,
     /// Samples in each pixel of the forward renderer.
     pub msaa: u32,
-    /// When anti-aliasing of images with one sample a pixel runs.
+    /// The anti-aliasing of images with one sample a pixel: before synthesis, after it, or none.
     pub anti_aliasing: AntiAliasing,
     /// Distance between the eyes in metres.
     pub ipd: Ipd,
     /// The eye that is rendered.
     pub dominant: Eye,
-    /// How both are shown.
+    /// The way both eyes are shown.
     pub display: Display,
 }
 
@@ -83,21 +83,21 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Of JSON.
+    /// Reads JSON.
     ///
     /// # Errors
-    /// What is wrong with it, in a sentence.
+    /// A sentence on what is wrong with it.
     pub fn parse(json: &str) -> Result<Settings, String> {
         serde_json::from_str(json).map_err(|error| format!("These settings cannot be used: {error}."))
     }
 
-    /// As the desktop's.
+    /// Returns the renderer's settings, the rest as on the desktop.
     pub fn render_settings(&self) -> RenderSettings {
         RenderSettings { renderer: self.renderer, msaa: self.msaa, ..RenderSettings::default() }
     }
 
-    /// As the desktop's, but that no frame is rendered twice because much of it is near: finding that out would have
-    /// the browser wait for the GPU.
+    /// Returns the methods' options. They differ from the desktop's in one: no frame is rendered twice because much of it
+    /// is near, for finding that out would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
         StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
     }
@@ -112,12 +112,12 @@ impl Settings {
     /// Compiles a method for these choices.
     ///
     /// # Errors
-    /// As [`stereo::create`].
+    /// Those of [`stereo::create`].
     pub fn create(&self, gl: &Rc<Context>, method: Method) -> Result<Box<dyn StereoMethod>, GlError> {
         stereo::create(gl, method, &self.render_settings(), &self.stereo_options())
     }
 
-    /// Both eyes of a head, with images of `size` pixels.
+    /// Returns both eyes of a head, with images of `size` pixels.
     pub fn pair(&self, head: Pose, size: [u32; 2]) -> EyePair {
         let options = EyeOptions {
             size,

@@ -3,10 +3,10 @@
 use glam::{Quat, Vec3};
 use yoro::eyes::{Frustum, Pose};
 
-/// Floats of a view: position, orientation (x, y, z, w), projection matrix by columns.
+/// The number of floats of a view: position, orientation (x, y, z, w), projection matrix by columns.
 pub const VIEW_FLOATS: usize = 3 + 4 + 16;
 
-/// Pose and frustum of a view.
+/// Returns pose and frustum of a view; none if floats are missing.
 pub fn view(floats: &[f32]) -> Option<(Pose, Frustum)> {
     let [x, y, z, qx, qy, qz, qw, m @ ..]: &[f32; VIEW_FLOATS] = floats.first_chunk()?;
     let orientation = Quat::from_xyzw(*qx, *qy, *qz, *qw);

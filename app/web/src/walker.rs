@@ -5,17 +5,17 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use glam::{EulerRot, Quat, Vec3};
 use yoro::eyes::Pose;
 
-/// Where the head is, and where it looks: level, but for looking up and down.
+/// The head's position and direction; it never tilts to the side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
     position: Vec3,
     /// Radians to the left of -Z, and above the horizon.
     heading: [f32; 2],
-    /// The pose to the bit, while it has not moved.
+    /// The pose it began with, bit for bit, while it has not moved.
     start: Option<Pose>,
 }
 
-/// A little less than straight up, where heading has no meaning.
+/// The steepest look up or down in radians: a little less than straight up, where a heading has no meaning.
 const STEEPEST: f32 = FRAC_PI_2 - 0.01;
 
 impl Walker {
@@ -26,7 +26,7 @@ impl Walker {
         Walker { position: pose.position, heading, start: Some(pose) }
     }
 
-    /// As [`Walker::place`] gives it.
+    /// Stands at what [`Walker::place`] returned; none for numbers that are no place.
     pub fn at(place: [f32; 5]) -> Option<Walker> {
         let [x, y, z, yaw, pitch] = place;
         place.iter().all(|n| n.is_finite() && n.abs() < 1e6).then(|| Walker {
@@ -36,7 +36,7 @@ impl Walker {
         })
     }
 
-    /// Position in metres, radians to the left and upwards: none while it stands where it began.
+    /// Returns the position in metres and the radians to the left and upwards; none while it stands where it began.
     pub fn place(&self) -> Option<[f32; 5]> {
         let ([x, y, z], [yaw, pitch]) = (self.position.to_array(), self.heading);
         self.start.is_none().then_some([x, y, z, yaw, pitch])
@@ -55,14 +55,14 @@ impl Walker {
         self.start = None;
     }
 
-    /// The head.
+    /// Returns the head's pose.
     pub fn pose(&self) -> Pose {
         let [yaw, pitch] = self.heading;
         let turned = || Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
         self.start.unwrap_or_else(|| Pose { position: self.position, orientation: turned() })
     }
 
-    /// Where something is that is `pose` as seen from the head's place with its heading: metres, Y up, -Z ahead.
+    /// Returns a pose in the world that is `pose` relative to the head's place and heading: metres, Y up, -Z ahead.
     pub fn locate(&self, pose: Pose) -> Pose {
         let heading = Quat::from_rotation_y(self.heading[0]);
         Pose {

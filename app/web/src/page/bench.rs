@@ -1,4 +1,4 @@
-//! The methods measured against each other.
+//! Measures the methods against each other.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -10,7 +10,7 @@ use yoro_render::stereo::{Method, Pipeline, StereoError, StereoFrame, StereoMeth
 
 use crate::settings::Settings;
 
-/// All methods that the browser can do, ready to take turns.
+/// All methods that the browser supports, ready to take turns.
 pub struct Bench {
     gl: Rc<Context>,
     entrants: Vec<Box<dyn StereoMethod>>,

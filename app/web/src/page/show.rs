@@ -1,4 +1,4 @@
-//! Finished images on a screen.
+//! Shows finished images.
 
 use std::rc::Rc;
 
@@ -60,17 +60,17 @@ impl Show {
         self.gl.draw_screen();
     }
 
-    /// One image.
+    /// Shows one image.
     pub fn image(&self, image: &Texture, to: &Destination) {
         self.run(&self.plain, image, None, to);
     }
 
-    /// Red of the left eye's image, the rest of the right eye's.
+    /// Shows red of the left eye's image, green and blue of the right eye's.
     pub fn anaglyph(&self, left: &Texture, right: &Texture, to: &Destination) {
         self.run(&self.anaglyph, left, Some(("second", right)), to);
     }
 
-    /// Where two images differ: black where they do not, white from a quarter of the range on.
+    /// Shows where two images differ: black where they do not, white from a quarter of the range on.
     pub fn difference(&self, a: &Texture, b: &Texture, to: &Destination) {
         self.run(&self.difference, a, Some(("second", b)), to);
     }
@@ -104,8 +104,7 @@ impl Show {
         }
     }
 
-    /// An image with its depth into the framebuffer that is bound, one that this library does not know, at its lower left
-    /// corner.
+    /// Draws an image with its depth into the framebuffer that is bound, one that this library did not make.
     pub fn with_depth(&self, image: &Texture, depth: &Texture, origin: [u32; 2], size: [u32; 2]) {
         let to = Destination { framebuffer: None, origin, size };
         self.gl.pass("show", || {

@@ -1,4 +1,4 @@
-//! What takes long, for a worker: scenes from a generator or from files, as bytes that [`crate::Page::set_scene`] takes.
+//! Slow work for a worker: scenes from a generator or from files, as bytes that [`crate::Page::set_scene`] takes.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -17,7 +17,7 @@ extern "C" {
     fn console_error(text: &str);
 }
 
-/// What loaders warn about.
+/// Warnings of loaders.
 struct Warnings(Mutex<Vec<String>>);
 
 static WARNINGS: Warnings = Warnings(Mutex::new(Vec::new()));
@@ -36,7 +36,7 @@ impl log::Log for Warnings {
     fn flush(&self) {}
 }
 
-/// Has what a panic says stand in the console: the browser itself only says that the module has ended.
+/// Has panics printed to the console: the browser itself only says that the module has ended.
 #[wasm_bindgen(start)]
 fn start() {
     std::panic::set_hook(Box::new(|panic| console_error(&panic.to_string())));
@@ -45,7 +45,7 @@ fn start() {
     }
 }
 
-/// What there was to warn about since the last call, a sentence each.
+/// Returns the warnings since the last call, a sentence each.
 #[wasm_bindgen(js_name = takeWarnings)]
 pub fn take_warnings() -> Vec<String> {
     std::mem::take(&mut *WARNINGS.0.lock().unwrap_or_else(PoisonError::into_inner))
@@ -55,7 +55,7 @@ fn pack(scene: &Scene) -> Result<Vec<u8>, JsError> {
     postcard::to_allocvec(scene).map_err(sentence)
 }
 
-/// The built-in scenes as JSON: `[{"name", "title", "kiloTriangles"}]`, the smallest first.
+/// Returns the built-in scenes as JSON: `[{"name", "title", "kiloTriangles"}]`, the smallest first.
 #[wasm_bindgen(js_name = builtinScenes)]
 pub fn builtin_scenes() -> String {
     let mut scenes: Vec<_> = BUILTINS.iter().collect();

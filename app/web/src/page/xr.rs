@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::{DepthRange, Eye, EyePair};
+use yoro::eyes::{DepthRange, Eye, EyePair, GuardBand};
 use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
 use yoro_lenses::{Content, Hud, Placement};
-use yoro_render::stereo::{DepthTarget, EyeTarget, StereoError, StereoFrame, StereoMethod, Substitute};
+use yoro_render::stereo::{DepthTarget, EyeTarget, Method, StereoError, StereoFrame, StereoMethod};
 use yoro_render::{DepthCopy, PreparedScene};
 
 use super::show::Show;
@@ -13,17 +13,17 @@ use crate::settings::Settings;
 use crate::views::{VIEW_FLOATS, view};
 use crate::walker::Walker;
 
-/// Near and far plane that WebXR is told.
+/// Near and far plane of a WebXR session.
 pub const DEPTH: DepthRange = DepthRange { near: 0.1, ..DepthRange::PAPER };
 
-/// What only a headset needs.
+/// The images of a headset, and what draws them.
 pub struct Headset {
     frame: StereoFrame,
     depth: [RenderTarget; 2],
     copy: DepthCopy,
     hud: Hud,
-    /// Renders both eyes where neither can be synthesized from the other.
-    substitute: Substitute,
+    /// The method that renders both eyes, once neither could be synthesized from the other.
+    substitute: Option<Box<dyn StereoMethod>>,
 }
 
 impl Headset {
@@ -38,7 +38,7 @@ impl Headset {
             depth: [depth()?, depth()?],
             copy: DepthCopy::new(gl)?,
             hud: Hud::new(gl)?,
-            substitute: Substitute::default(),
+            substitute: None,
         })
     }
 
@@ -71,8 +71,12 @@ impl Headset {
         text: &str,
     ) -> Result<bool, StereoError> {
         let Headset { frame, depth, copy, hud, substitute } = self;
-        let fits = Substitute::reason(settings.method, pair).is_none();
-        let method = if fits { method } else { substitute.get(|method| settings.create(gl, method))? };
+        let fits = !settings.method.needs_aligned_eyes() || pair.synthesis(GuardBand::None).is_ok();
+        let method = match substitute {
+            _ if fits => method,
+            Some(substitute) => substitute.as_mut(),
+            none => none.insert(settings.create(gl, Method::Conventional)?).as_mut(),
+        };
         let colors = frame.targets();
         let to = [0, 1].map(|i| EyeTarget {
             depth: Some(DepthTarget { to: Destination::whole(&depth[i]), copy }),
