@@ -7,7 +7,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
-/// What the host takes out of an APK.
+/// The parts of an APK that the host uses.
 pub struct Apk {
     /// Path in the APK and bytes of the one library of this ABI.
     pub library: (String, Vec<u8>),

@@ -39,7 +39,7 @@ const SAME_M: &str = "\
     nearbyint nearbyintf nextafter nextafterf pow powf remainder remainderf rint rintf round roundf scalbn scalbnf sin sincos sincosf sinf \
     sinh sinhf sqrt sqrtf tan tanf tanh tanhf tgamma tgammaf trunc truncf";
 
-/// What the three libraries export.
+/// Returns the functions that the three libraries export.
 pub fn exports() -> Vec<Export> {
     let mut all = exports![
         System::C, 1: [
@@ -80,13 +80,13 @@ unsafe extern "C" {
     fn __xpg_strerror_r(error: c_int, buffer: *mut c_char, length: usize) -> c_int;
 }
 
-/// bionic's is POSIX's, glibc's default is GNU's.
+/// POSIX's `strerror_r`, as in bionic; glibc's default is GNU's.
 unsafe extern "C" fn strerror_r(error: c_int, buffer: *mut c_char, length: usize) -> c_int {
-    // SAFETY: same contract as the caller's.
+    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
     unsafe { __xpg_strerror_r(error, buffer, length) }
 }
 
-/// bionic has its own numbers.
+/// `sysconf` with bionic's numbers.
 extern "C" fn sysconf(name: c_int) -> c_long {
     let name = match name {
         6 => libc::_SC_CLK_TCK,
@@ -120,7 +120,7 @@ unsafe extern "C" fn android_set_abort_message(message: *const c_char) {
     host().log.set_abort_message(unsafe { text(message) });
 }
 
-/// Name of the current thread.
+/// Returns the name of the current thread.
 pub fn thread_name() -> String {
     let mut name = [0 as c_char; 32];
     // SAFETY: the buffer is as long as said.
@@ -141,7 +141,7 @@ unsafe extern "C" fn pthread_setname_np(thread: libc::pthread_t, name: *const c_
     }
 }
 
-/// A C string as text; null is empty.
+/// Returns a C string as text; null is empty.
 ///
 /// # Safety
 /// Null, or a terminated string.
@@ -149,7 +149,7 @@ pub unsafe fn text(string: *const c_char) -> String {
     if string.is_null() {
         return String::new();
     }
-    // SAFETY: the caller's promise.
+    // SAFETY: it is not null, so it is a terminated string.
     unsafe { CStr::from_ptr(string) }.to_string_lossy().into_owned()
 }
 
@@ -164,7 +164,7 @@ type Attributes = *mut *mut libc::pthread_attr_t;
 unsafe fn new_attributes(attributes: Attributes) -> *mut libc::pthread_attr_t {
     // SAFETY: plain data for which zero is valid; all functions of glibc expect it to be filled in at first.
     let new = Box::into_raw(Box::new(unsafe { std::mem::zeroed::<libc::pthread_attr_t>() }));
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller gives room for one pointer.
     unsafe { attributes.write(new) };
     new
 }
@@ -242,7 +242,7 @@ unsafe extern "C" fn pthread_mutex_init(
 
 // Files
 
-/// What an application on a phone may not read: its answers would be this machine's.
+/// True if an application on a phone may not read the path: the answers would be this machine's.
 fn is_closed(path: *const c_char) -> bool {
     // SAFETY: open and its kin take a terminated path.
     let path = unsafe { text(path) };
@@ -262,12 +262,12 @@ unsafe extern "C" fn open(path: *const c_char, flags: c_int, mode: c_uint) -> c_
         set_errno(libc::EACCES);
         return -1;
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
     unsafe { libc::open(path, flags, mode) }
 }
 
 unsafe extern "C" fn open64(path: *const c_char, flags: c_int, mode: c_uint) -> c_int {
-    // SAFETY: same contract as the caller's.
+    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
     unsafe { open(path, flags, mode) }
 }
 
@@ -276,7 +276,7 @@ unsafe extern "C" fn openat(folder: c_int, path: *const c_char, flags: c_int, mo
         set_errno(libc::EACCES);
         return -1;
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
     unsafe { libc::openat(folder, path, flags, mode) }
 }
 
@@ -285,7 +285,7 @@ unsafe extern "C" fn opendir(path: *const c_char) -> *mut libc::DIR {
         set_errno(libc::EACCES);
         return std::ptr::null_mut();
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
     unsafe { libc::opendir(path) }
 }
 
@@ -318,7 +318,7 @@ unsafe extern "C" fn clock_gettime(clock: c_int, time: *mut libc::timespec) -> c
             unsafe { time.write(timespec(now)) };
             0
         }
-        // SAFETY: same contract as the caller's.
+        // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
         None => unsafe { libc::clock_gettime(clock, time) },
     }
 }
@@ -606,7 +606,7 @@ unsafe extern "C" fn dladdr(address: *const c_void, info: *mut libc::Dl_info) ->
             }
             1
         }
-        // SAFETY: same contract as the caller's.
+        // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
         None => unsafe { libc::dladdr(address, info) },
     }
 }
@@ -627,6 +627,6 @@ unsafe extern "C" fn dl_iterate_phdr(visit: VisitLibrary, data: *mut c_void) -> 
             return result;
         }
     }
-    // SAFETY: same contract as the caller's.
+    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
     unsafe { libc::dl_iterate_phdr(Some(visit), data) }
 }

@@ -18,7 +18,7 @@ pub struct Clock {
     last_wait: AtomicU64,
 }
 
-/// A thread waits for an instant, until this is dropped.
+/// A thread's wait for an instant, until this is dropped.
 pub struct Wait<'a> {
     clock: &'a Clock,
     number: u64,
@@ -32,7 +32,7 @@ impl Drop for Wait<'_> {
 }
 
 impl Wait<'_> {
-    /// Whether the instant has come.
+    /// True if the instant has come.
     pub fn is_over(&self) -> bool {
         self.clock.now() >= self.instant
     }
@@ -48,7 +48,7 @@ impl Wait<'_> {
     }
 }
 
-/// Whether every other thread of the process sleeps. A thread that is ready but gets no processor counts as running, so
+/// True if every other thread of the process sleeps. A thread that is ready but gets no processor counts as running, so
 /// a loaded machine does not make time pass.
 fn nobody_runs() -> bool {
     // SAFETY: takes nothing and cannot fail.

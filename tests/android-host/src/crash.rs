@@ -5,7 +5,7 @@ use std::ffi::{c_int, c_void};
 use crate::bionic::thread_name;
 use crate::host::{fatal, host};
 
-/// How far up the stack callers are looked for, bytes.
+/// The part of the stack in which callers are looked for, in bytes.
 const STACK: usize = 64 * 1024;
 
 /// Catches the signals of crashes, and the host's own panics, from now on.
@@ -55,12 +55,12 @@ fn in_library(address: usize) -> Option<String> {
     Some(format!("{file}+{:#x}", address - library.base()))
 }
 
-/// Program counter and stack pointer.
+/// Returns program counter and stack pointer.
 ///
 /// # Safety
 /// `context` is the third argument of a signal handler.
 unsafe fn registers(context: *mut c_void) -> (usize, usize) {
-    // SAFETY: the caller's promise.
+    // SAFETY: the kernel passes a context of this type to signal handlers.
     let context = unsafe { &(*context.cast::<libc::ucontext_t>()).uc_mcontext };
     #[cfg(target_arch = "x86_64")]
     return (context.gregs[libc::REG_RIP as usize] as usize, context.gregs[libc::REG_RSP as usize] as usize);
@@ -68,7 +68,7 @@ unsafe fn registers(context: *mut c_void) -> (usize, usize) {
     return (context.pc as usize, context.sp as usize);
 }
 
-/// The stack from `start` on, as far as it can be read.
+/// Returns the words of the stack from `start` on, as far as they can be read.
 fn words(start: usize) -> Vec<usize> {
     let mut words = vec![0_usize; STACK / 8];
     let local = libc::iovec { iov_base: words.as_mut_ptr().cast(), iov_len: STACK };

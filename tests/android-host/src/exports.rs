@@ -1,4 +1,4 @@
-//! What each system library of the simulated device exports.
+//! The functions that each system library of the simulated device exports.
 
 use std::collections::HashMap;
 use std::sync::OnceLock;
@@ -29,7 +29,7 @@ impl System {
     pub const ALL: [Self; 8] =
         [Self::C, Self::M, Self::Dl, Self::Log, Self::Android, Self::Egl, Self::GlesV2, Self::GlesV3];
 
-    /// File name, as in DT_NEEDED and `dlopen`.
+    /// Returns the file name, as in DT_NEEDED and `dlopen`.
     pub fn name(self) -> &'static str {
         match self {
             Self::C => "libc.so",
@@ -43,7 +43,7 @@ impl System {
         }
     }
 
-    /// The library of this file name.
+    /// Returns the library of this file name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|library| library.name() == name)
     }
@@ -52,11 +52,11 @@ impl System {
 /// One function.
 #[derive(Clone, Copy)]
 pub struct Export {
-    /// Where from.
+    /// Its library.
     pub library: System,
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
-    /// Where it is.
+    /// Its address.
     pub address: usize,
     /// First API level that has it; 1 for all that are older than any supported level.
     pub since: i32,
@@ -100,7 +100,7 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
     })
 }
 
-/// The function that `library` exports to a device of API level `sdk`.
+/// Returns the address of a function that `library` exports to a device of API level `sdk`.
 pub fn find(library: System, name: &str, sdk: i32) -> Option<usize> {
     if matches!(library, System::GlesV2 | System::GlesV3) {
         return crate::graphics::gl::function(name);

@@ -6,10 +6,10 @@ use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
 pub struct EventFd(OwnedFd);
 
 impl EventFd {
-    /// A clear one.
+    /// Makes one that is not readable.
     ///
     /// # Panics
-    /// When the process has no file descriptor left.
+    /// The process has no file descriptor left.
     pub fn new() -> Self {
         // SAFETY: eventfd takes no pointers.
         let fd = unsafe { libc::eventfd(0, libc::EFD_NONBLOCK | libc::EFD_CLOEXEC) };
@@ -18,7 +18,7 @@ impl EventFd {
         Self(unsafe { OwnedFd::from_raw_fd(fd) })
     }
 
-    /// For `poll`.
+    /// Returns the descriptor, for `poll`.
     pub fn raw(&self) -> RawFd {
         self.0.as_raw_fd()
     }

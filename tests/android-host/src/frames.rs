@@ -10,7 +10,7 @@ use crate::android::looper;
 use crate::fd::EventFd;
 use crate::host::host;
 
-/// How long a frame waits at the open gate, real time.
+/// The real time that a frame waits at the open gate.
 const OPEN_FRAME: Duration = Duration::from_millis(3);
 
 /// State of the gate.
@@ -28,14 +28,14 @@ struct State {
     granted: u64,
     waiting: bool,
     shown: u64,
-    /// When the frame before will be on the display.
+    /// The time at which the frame before is on the display.
     displayed: u64,
     capture: bool,
     captured: Option<Result<RgbaImage, String>>,
 }
 
 impl Frames {
-    /// A closed gate.
+    /// Makes a closed gate.
     pub fn new() -> Self {
         Self { state: Mutex::new(State::default()), changed: Condvar::new(), event: EventFd::new() }
     }
@@ -102,19 +102,19 @@ impl Frames {
         self.notify();
     }
 
-    /// Whether everything granted was used and a frame waits at the gate.
+    /// True if everything granted was used and a frame waits at the gate.
     pub fn is_waiting(&self) -> bool {
         let state = self.state();
         state.waiting && state.granted == 0
     }
 
-    /// Whether virtual time may pass without a frame: while the script waits for something.
+    /// True if virtual time may pass without a frame: while the script waits for something.
     pub fn time_may_pass(&self) -> bool {
         let state = self.state();
         state.open || state.granted > 0 || state.wanted && !state.waiting
     }
 
-    /// Frames shown since the start.
+    /// Returns the number of frames shown since the start.
     pub fn shown(&self) -> u64 {
         self.state().shown
     }
@@ -128,7 +128,7 @@ impl Frames {
         self.notify();
     }
 
-    /// The picture, once it is there.
+    /// Returns the picture, once it is there.
     pub fn captured(&self) -> Option<Result<RgbaImage, String>> {
         self.state().captured.take()
     }

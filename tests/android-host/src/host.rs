@@ -23,13 +23,13 @@ use crate::library::Library;
 use crate::script::{Battery, Device, Script, Thermal};
 use crate::summary::{InputFacts, LABEL, LibraryFacts, Mark, Summary};
 
-/// Everything that the application can ask.
+/// The simulated device: everything that the application can ask.
 pub struct Host {
-    /// As the script describes it at power-on.
+    /// The device at power-on, as the script describes it.
     pub device: Device,
-    /// What steps change.
+    /// The battery, which steps change.
     pub battery: Mutex<Option<Battery>>,
-    /// What steps change.
+    /// The thermal state, which steps change.
     pub thermal: Mutex<Thermal>,
     /// System properties.
     pub properties: Mutex<BTreeMap<String, String>>,
@@ -57,9 +57,9 @@ pub struct Host {
     pub directories: Directories,
     /// The application's library.
     pub library: OnceLock<Library>,
-    /// That of an API layer, where the application carries one.
+    /// The library of an API layer, if the application carries one.
     pub layer: OnceLock<Library>,
-    /// Whether the application asked for its end by `ANativeActivity_finish`.
+    /// True if the application asked for its end by `ANativeActivity_finish`.
     pub finish_asked: AtomicBool,
     /// Kernel's number of the thread that runs `android_main`; 0 before the first.
     pub main_thread: AtomicI32,
@@ -71,11 +71,11 @@ pub struct Host {
     watch: Watch,
 }
 
-/// What the summary needs beside the live state.
+/// Facts for the summary beside the live state.
 pub struct Report {
     /// The APK.
     pub apk: PathBuf,
-    /// Of the script.
+    /// The script's name.
     pub script: String,
     /// Where the summary goes.
     pub out: PathBuf,
@@ -94,14 +94,14 @@ pub struct Report {
 }
 
 struct Watch {
-    patience: Duration,
+    timeout: Duration,
     doing: Mutex<Option<(String, Instant)>>,
     longest_callback_us: AtomicU64,
 }
 
 static HOST: OnceLock<Host> = OnceLock::new();
 
-/// The device.
+/// Returns the device.
 ///
 /// # Panics
 /// Before [`Host::install`].
@@ -154,7 +154,7 @@ impl Host {
             report: Mutex::new(report),
             context: Mutex::default(),
             watch: Watch {
-                patience: Duration::from_secs_f64(script.patience_seconds),
+                timeout: Duration::from_secs_f64(script.patience_seconds),
                 doing: Mutex::new(None),
                 longest_callback_us: AtomicU64::new(0),
             },
@@ -169,17 +169,17 @@ impl Host {
         host()
     }
 
-    /// What is loaded like Android's linker does it.
+    /// Returns the libraries that Android's linker would have loaded.
     pub fn libraries(&self) -> impl Iterator<Item = &Library> {
         self.library.get().into_iter().chain(self.layer.get())
     }
 
-    /// One line on the real standard error.
+    /// Writes one line to the real standard error.
     pub fn say(&self, text: &str) {
         say_to(lock(&self.report).stderr.as_raw_fd(), &format!("{text}\n"));
     }
 
-    /// Notes something that Android forbids or punishes; each text once.
+    /// Notes something that Android forbids or punishes, each text once.
     pub fn violation(&self, text: impl Into<String>) {
         let text = text.into();
         let mut violations = lock(&self.violations);
@@ -193,7 +193,7 @@ impl Host {
         *lock(&self.ndk_objects).entry(kind).or_default() += change;
     }
 
-    /// What the script is doing, for a failure's text; empty is nothing special.
+    /// Sets what the script is doing, for the text of a failure; empty for nothing special.
     pub fn set_context(&self, context: String) {
         *lock(&self.context) = context;
     }
@@ -203,17 +203,17 @@ impl Host {
         *lock(&self.requests).entry(what.into()).or_default() += 1;
     }
 
-    /// What goes into the summary.
+    /// Returns the facts for the summary.
     pub fn report(&self) -> MutexGuard<'_, Report> {
         lock(&self.report)
     }
 
-    /// How long a step may take.
-    pub fn patience(&self) -> Duration {
-        self.watch.patience
+    /// Returns how long a step may take.
+    pub fn timeout(&self) -> Duration {
+        self.watch.timeout
     }
 
-    /// Runs something that must end within the script's patience, or the run fails with its name.
+    /// Runs something that must end in time, or the run fails with its name.
     pub fn watched<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
         *lock(&self.watch.doing) = Some((what.to_owned(), Instant::now()));
         let result = run();
@@ -221,7 +221,7 @@ impl Host {
         result
     }
 
-    /// As [`Host::watched`], for a callback on the activity's main thread.
+    /// Runs a callback on the activity's main thread, watched like [`Host::watched`].
     pub fn callback<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
         let started = Instant::now();
         let result = self.watched(what, run);
@@ -229,7 +229,7 @@ impl Host {
         result
     }
 
-    /// What is in use now.
+    /// Returns the resources that are in use now.
     pub fn mark(&self, name: &str) -> Mark {
         Mark {
             name: name.to_owned(),
@@ -251,7 +251,7 @@ impl Host {
         }
     }
 
-    /// The summary as things stand.
+    /// Returns the summary as things stand.
     pub fn summary(&self, failure: Option<String>) -> Summary {
         let end = self.mark("end");
         let log = self.log.collected();
@@ -349,14 +349,14 @@ fn watch() {
         std::thread::sleep(Duration::from_millis(200));
         let host = host();
         let late =
-            lock(&host.watch.doing).as_ref().filter(|(_, since)| since.elapsed() > host.patience()).cloned();
+            lock(&host.watch.doing).as_ref().filter(|(_, since)| since.elapsed() > host.timeout()).cloned();
         if let Some((what, since)) = late {
             fatal(format!("{what} takes longer than {:.0} s; {}", since.elapsed().as_secs_f64(), threads()));
         }
     }
 }
 
-/// What each thread waits in, as the kernel names it: the first clue to a deadlock.
+/// Returns the kernel function that each thread waits in: the first clue to a deadlock.
 fn threads() -> String {
     let mut states: BTreeMap<String, u32> = BTreeMap::new();
     for task in std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
@@ -372,10 +372,11 @@ fn threads() -> String {
     format!("threads: {}", list.join(", "))
 }
 
-/// How often what is held is counted, at most: the least of them is held.
+/// The number of times that entries are counted; the smallest count is taken.
 const LOOKS: usize = 8;
 
-/// Entries of a folder that stay: a file that another thread, of the host or of Mesa, has open for a moment is not held.
+/// Returns the number of entries of a folder that stay: a file that another thread, of the host or of Mesa, has open for
+/// a moment does not count.
 fn held(folder: &str) -> u64 {
     let count = || std::fs::read_dir(folder).map_or(0, |entries| entries.count() as u64);
     let later = || {

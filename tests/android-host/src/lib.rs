@@ -1,11 +1,12 @@
 //! A simulated Android host: runs the libraries of the built APK on Linux, without a device and without Google's tools.
 //!
-//! It takes the library and the assets out of the APK, loads the library by an ELF loader of its own, and answers what
+//! It takes the library and the assets out of the APK, loads the library with an ELF loader of its own, and provides what
 //! the library imports: bionic, ALooper, ANativeActivity, input, sensors, JNI, and EGL on Mesa. A script
-//! ([`script::Script`]) says what the device is and what happens; the result is a [`summary::Summary`].
+//! ([`script::Script`]) describes the device and what happens to it; the result is a [`summary::Summary`].
 //!
-//! What it shows is that the APK's own code starts, draws what it should, and survives what Android does to it. It says
-//! nothing about speed, power, drivers or manufacturers' peculiarities.
+//! A clean run shows that the APK's own code starts, draws what it should, and survives what Android does to it. It says
+//! nothing about speed, power, drivers or manufacturers' peculiarities. It must know nothing of the application but its
+//! entry point.
 
 mod android;
 mod apk;
@@ -55,7 +56,7 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
     let headset = script.device.openxr.as_ref();
     let layer = headset.and_then(|headset| headset.layer.as_deref());
     let layer = layer.map(|path| Apk::read_aar(path, ABI)).transpose()?;
-    // Of what a package depends on, the package has the assets, too.
+    // A package also has the assets of what it depends on.
     apk.assets.extend(layer.iter().flat_map(|layer| layer.assets.clone()));
     let report = Report {
         apk: apk_path.to_owned(),

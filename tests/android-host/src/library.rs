@@ -30,7 +30,7 @@ pub struct Library {
 pub struct Loaded {
     /// The library.
     pub library: Library,
-    /// For the summary.
+    /// Facts for the summary.
     pub facts: LibraryFacts,
     /// The imports that nothing answers: a call of one ends the run with its name.
     pub trapped: Vec<String>,

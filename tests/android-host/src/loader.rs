@@ -1,4 +1,4 @@
-//! The OpenXR loader of an application that carries an API layer: Khronos's part, as far as this application asks for it.
+//! The OpenXR loader of an application that carries an API layer: as much of Khronos's loader as this application uses.
 //!
 //! The layer's library and its manifest come out of its AAR, and are in the application's package as Gradle would put them
 //! there; the library is loaded like the application's own. The loader finds the manifest among the assets, negotiates with
@@ -18,7 +18,7 @@ use crate::openxr;
 
 /// The name under which an application carries its loader.
 const FILE: &str = "libopenxr_loader.so";
-/// What `dlopen` of it gives.
+/// The handle that `dlopen` returns for it.
 const HANDLE: usize = 0x10ad;
 /// Where implicit layers are among an application's assets.
 const MANIFESTS: &str = "openxr/1/api_layers/implicit.d/";
@@ -28,7 +28,7 @@ struct Manifest {
     api_layer: ApiLayer,
 }
 
-/// What a manifest says of a layer.
+/// A layer as its manifest describes it.
 #[derive(Deserialize)]
 struct ApiLayer {
     name: String,
@@ -48,13 +48,13 @@ struct Extension {
 struct Layer {
     manifest: ApiLayer,
     negotiate: pfn::NegotiateLoaderApiLayerInterface,
-    /// Of the instance that was made last: all of them have the same.
+    /// The function of the instance that was made last: all instances have the same.
     get_instance_proc_addr: OnceLock<pfn::GetInstanceProcAddr>,
 }
 
 static LAYER: OnceLock<Layer> = OnceLock::new();
 
-/// Has the loader find the layer of these assets, whose library is loaded already.
+/// Makes the layer of these assets known to the loader; its library is loaded already.
 ///
 /// # Errors
 /// There is no manifest of an implicit layer, or it is of another library.
@@ -80,24 +80,24 @@ pub fn install(assets: &BTreeMap<String, Vec<u8>>, library: &Library) -> Result<
     Ok(())
 }
 
-/// The loader by its name; none for any other, and where the application carries none.
+/// Returns the loader by its name; none for any other name, and if the application carries no layer.
 pub fn open(name: &str) -> Option<*mut c_void> {
     (name == FILE && LAYER.get().is_some()).then_some(HANDLE as *mut c_void)
 }
 
-/// A symbol of the loader, null for those that it does not have; none if the handle is another library's.
+/// Returns a symbol of the loader, null for those that it does not have; none if the handle is another library's.
 pub fn symbol(handle: *mut c_void, name: &CStr) -> Option<*mut c_void> {
     let get: pfn::GetInstanceProcAddr = get_instance_proc_addr;
     let has = name == c"xrGetInstanceProcAddr";
     (handle as usize == HANDLE).then_some(if has { get as *mut c_void } else { std::ptr::null_mut() })
 }
 
-/// What is called through the loader, which is there with a layer only.
+/// Returns the layer. The loader is only opened if there is one.
 fn layer() -> &'static Layer {
     LAYER.get().expect("the loader is opened where there is a layer")
 }
 
-/// A function of the runtime that needs no instance.
+/// Returns a function of the runtime that needs no instance.
 ///
 /// # Safety
 /// It is of this type.
@@ -107,7 +107,7 @@ unsafe fn of_runtime<T: Copy>(name: &CStr) -> Result<T, sys::Result> {
     let result = unsafe { runtime()?(sys::Instance::NULL, name.as_ptr(), &mut function) };
     match (result, function) {
         (sys::Result::SUCCESS, Some(function)) => {
-            // SAFETY: promised by the caller; both are pointers.
+            // SAFETY: both are pointers to functions, and the caller names the type that the name has in OpenXR.
             Ok(unsafe { std::mem::transmute_copy::<pfn::VoidFunction, T>(&function) })
         }
         (sys::Result::SUCCESS, None) => Err(sys::Result::ERROR_FUNCTION_UNSUPPORTED),
@@ -127,7 +127,7 @@ fn loader_info() -> sys::NegotiateLoaderInfo {
     }
 }
 
-/// The runtime's function that gives all others. The broker's answer, which Khronos's loader asks for, is known here.
+/// Returns the runtime's function that gives all others. Khronos's loader asks the broker for it; here it is known.
 fn runtime() -> Result<pfn::GetInstanceProcAddr, sys::Result> {
     let mut request = sys::NegotiateRuntimeRequest {
         struct_type: sys::NegotiateRuntimeRequest::TYPE,
@@ -160,7 +160,7 @@ unsafe extern "system" fn get_instance_proc_addr(
 ) -> sys::Result {
     // SAFETY: the application's name.
     let wanted = unsafe { CStr::from_ptr(name) };
-    // With an instance its uppermost layer answers.
+    // If there is an instance, its uppermost layer answers.
     let next = if instance == sys::Instance::NULL { None } else { layer().get_instance_proc_addr.get() };
     if let Some(next) = next {
         // SAFETY: the application's call.
@@ -196,7 +196,7 @@ unsafe extern "system" fn get_instance_proc_addr(
     result
 }
 
-/// A text in an array of characters, cut off where it is too long.
+/// Returns a text as an array of characters, cut off if it is too long.
 fn characters<const N: usize>(text: &str) -> [c_char; N] {
     let mut characters = [0; N];
     for (to, from) in characters[..N - 1].iter_mut().zip(text.bytes()) {
@@ -205,12 +205,12 @@ fn characters<const N: usize>(text: &str) -> [c_char; N] {
     characters
 }
 
-/// The two calls with which an array is asked for: its length, then its elements.
+/// Answers the two calls with which OpenXR's callers ask for an array: for its length, then for its elements.
 ///
 /// # Safety
 /// Room for a number, and for as many elements as is said.
 unsafe fn answer<T: Copy>(all: &[T], capacity: u32, count: *mut u32, place: *mut T) -> sys::Result {
-    // SAFETY: promised by the caller.
+    // SAFETY: OpenXR's callers give room for the count, and for as many elements as they say.
     unsafe {
         count.write(all.len() as u32);
         if capacity != 0 && (capacity as usize) < all.len() {
@@ -241,7 +241,7 @@ unsafe extern "system" fn enumerate_api_layer_properties(
     unsafe { answer(&[one], capacity, count, properties) }
 }
 
-/// The runtime's, and those that the layer offers besides. The application asks for no layer's own.
+/// Lists the runtime's extensions and those that the layer adds. The application asks for no layer's own.
 unsafe extern "system" fn enumerate_instance_extension_properties(
     of_layer: *const c_char,
     capacity: u32,

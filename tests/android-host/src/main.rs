@@ -12,7 +12,7 @@ use yoro_android_host::script::Script;
 struct Arguments {
     /// The APK.
     apk: PathBuf,
-    /// What the device is and what happens (TOML); see the folder `scripts`.
+    /// The device and what happens to it (TOML); see the folder `scripts`.
     script: PathBuf,
     /// Folder for `summary.json` and the pictures.
     #[arg(long, default_value = "out/android-host")]

@@ -1,4 +1,4 @@
-//! Plays a script: the part of Android's system that starts activities, and of the user.
+//! Plays a script, in the place of the user and of the part of Android that starts activities.
 
 use std::ffi::c_void;
 use std::path::PathBuf;
@@ -64,7 +64,7 @@ macro_rules! call {
 const TAP: u64 = 80_000_000;
 
 impl Player {
-    /// On the main thread, whose looper it runs.
+    /// Makes a player on the main thread, whose looper it runs.
     pub fn new(create: OnCreate, out: PathBuf) -> Self {
         jni::attach_main_thread();
         Self {
@@ -383,7 +383,7 @@ impl Player {
         });
     }
 
-    /// Whether frames can be expected.
+    /// True if frames can be expected.
     fn renders(&self) -> bool {
         self.stage.resumed && self.stage.window
     }
@@ -398,7 +398,7 @@ impl Player {
         self.wait_for_gate();
     }
 
-    /// Until a frame is drawn that waits to be shown.
+    /// Waits until a frame is drawn that waits to be shown.
     fn wait_for_gate(&mut self) {
         self.host.frames.set_wanted(true);
         self.wait(&format!("frame {}", self.host.frames.shown() + 1), |host| host.frames.is_waiting());
@@ -529,7 +529,7 @@ fn nanoseconds(seconds: f64) -> u64 {
     (seconds.max(0.0) * 1e9).round() as u64
 }
 
-/// Whether the thread of `android_main` exists.
+/// True if the thread of `android_main` exists.
 fn main_runs(host: &Host) -> bool {
     std::path::Path::new(&format!("/proc/self/task/{}", host.main_thread.load(Ordering::Acquire))).exists()
 }

@@ -5,7 +5,7 @@ use rand::Rng;
 use crate::player::Stage;
 use crate::script::{Battery, Key, Step, Thermal};
 
-/// The next event.
+/// Returns the next event.
 pub fn step(generator: &mut impl Rng, stage: Stage, width: i32, height: i32) -> Step {
     if !stage.created {
         return Step::Launch;
@@ -84,7 +84,7 @@ pub fn step(generator: &mut impl Rng, stage: Stage, width: i32, height: i32) -> 
     }
 }
 
-/// What brings the activity from any stage to where it shows frames.
+/// Returns the steps from a stage to the one in which the activity shows frames.
 pub fn back_to_running(stage: Stage) -> Vec<Step> {
     if !stage.created {
         return vec![Step::Launch];

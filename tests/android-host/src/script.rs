@@ -1,4 +1,4 @@
-//! What a run plays: the device, and the steps that happen to the application, as TOML.
+//! The script of a run as TOML: the device, and the steps that happen to the application.
 //!
 //! ```toml
 //! name = "boot"
@@ -26,16 +26,16 @@ pub struct Script {
     /// Shown in the summary.
     pub name: String,
     /// Real seconds that one step, or one callback of the activity, may take before the run fails.
-    #[serde(default = "default_patience")]
+    #[serde(default = "default_timeout")]
     pub patience_seconds: f64,
     /// The device at power-on.
     #[serde(default)]
     pub device: Device,
-    /// What happens, in order.
+    /// The steps, in order.
     pub steps: Vec<Step>,
 }
 
-fn default_patience() -> f64 {
+fn default_timeout() -> f64 {
     60.0
 }
 
@@ -50,10 +50,10 @@ impl Script {
         Self::parse(&text).with_context(|| format!("the script {} cannot be played", path.display()))
     }
 
-    /// As [`Script::read`], of text.
+    /// Reads a script from text.
     ///
     /// # Errors
-    /// As [`Script::read`].
+    /// Those of [`Script::read`].
     pub fn parse(text: &str) -> Result<Self> {
         let script: Self = toml::from_str(text)?;
         let device = &script.device;
@@ -76,7 +76,7 @@ impl Script {
     }
 }
 
-/// What the simulated device is and answers.
+/// The simulated device and its answers.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Device {
@@ -90,17 +90,18 @@ pub struct Device {
     pub xdpi: f32,
     /// Physical pixels per inch (`DisplayMetrics.ydpi`).
     pub ydpi: f32,
-    /// Of the display, Hz; virtual time advances by one period per frame.
+    /// The display's refresh rate, Hz; virtual time advances by one period per frame.
     pub refresh_hz: f64,
     /// Pixels of the display's mode, where the user has made the window's another; absent: those of the window.
     pub mode: Option<[i32; 2]>,
     /// Refreshes after which the choreographer's timeline says that a frame is seen.
     pub refreshes_ahead: u32,
-    /// How long the device has slept since its boot: CLOCK_BOOTTIME, of sensors, is ahead of CLOCK_MONOTONIC by it.
+    /// Seconds that the device has slept since its boot: CLOCK_BOOTTIME, the sensors' clock, is ahead of CLOCK_MONOTONIC by
+    /// them.
     pub slept_seconds: f64,
     /// Features that the package manager says are there, with their versions.
     pub features: BTreeMap<String, i32>,
-    /// Whether sustained performance mode is offered.
+    /// True if sustained performance mode is offered.
     pub sustained_performance: bool,
     /// API level. Newer functions are not found by `dlsym`.
     pub sdk: i32,
@@ -128,7 +129,7 @@ pub struct Device {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenXr {
-    /// What the runtime does: a script of its own, in JSON.
+    /// The runtime's own script, in JSON.
     pub script: PathBuf,
     /// The broker that names it is the system's, not one that a user has installed.
     #[serde(default)]
@@ -274,7 +275,7 @@ impl Default for Thermal {
 pub enum Step {
     /// `create`, `start`, `resume`, `input-queue`, `window` and `focus`, as the system starts an activity.
     Launch,
-    /// What the system does when the user leaves for good: `unfocus`, `pause`, `window-lost`, `stop`, `destroy`.
+    /// The steps of the system when the user leaves for good: `unfocus`, `pause`, `window-lost`, `stop`, `destroy`.
     Quit,
     /// `ANativeActivity_onCreate`, with the state that the last `save-state` gave.
     Create,
@@ -319,7 +320,7 @@ pub enum Step {
     Seconds(f64),
     /// Frames are shown until a log line contains the text, one after the line that such a step waited for before.
     WaitLog {
-        /// What the line contains.
+        /// A part of the line.
         text: String,
         /// Frames after which the run fails.
         frames: u64,
@@ -348,7 +349,7 @@ pub enum Step {
         /// From the top, 0 to 1.
         #[serde(default = "half")]
         y: f32,
-        /// How long, virtual seconds.
+        /// Virtual seconds.
         #[serde(default = "long_press_seconds")]
         seconds: f64,
     },
@@ -379,9 +380,9 @@ pub enum Step {
     Thermal(Thermal),
     /// A system property has a new value.
     Property {
-        /// Of the property.
+        /// Its name.
         name: String,
-        /// New one; empty removes it.
+        /// Its new value; empty removes it.
         value: String,
     },
     /// The current EGL context is lost at the next swap.
@@ -392,16 +393,16 @@ pub enum Step {
     Mark(String),
     /// Steps several times.
     Repeat {
-        /// How often.
+        /// The number of times.
         times: u32,
-        /// What.
+        /// The steps.
         steps: Vec<Step>,
     },
     /// Random sequences of valid events, each from where the one before ended.
     Random {
         /// Same seed, same events.
         seed: u64,
-        /// How many sequences.
+        /// The number of sequences.
         sequences: u32,
         /// Events in each, at most.
         events: u32,

@@ -1,4 +1,4 @@
-//! What a run found, as JSON for tests and as text for people.
+//! The result of a run, as JSON for tests and as text for people.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-/// Said in every output, so that no figure is taken for a device's.
+/// A part of every output, so that no figure is taken for a device's.
 pub const LABEL: &str = "simulated Android host";
 
 /// Result of a run.
@@ -14,7 +14,7 @@ pub const LABEL: &str = "simulated Android host";
 pub struct Summary {
     /// Always [`LABEL`].
     pub host: String,
-    /// Of the script.
+    /// The script's name.
     pub script: String,
     /// The APK.
     pub apk: PathBuf,
@@ -22,7 +22,7 @@ pub struct Summary {
     pub abi: String,
     /// The application's library, as loaded, and after it an API layer's.
     pub libraries: Vec<LibraryFacts>,
-    /// Why the run ended early, absent when the script was played to its end.
+    /// The reason why the run ended early; absent if the script was played to its end.
     pub failure: Option<String>,
     /// Frames shown.
     pub frames: u64,
@@ -38,17 +38,17 @@ pub struct Summary {
     pub marks: Vec<Mark>,
     /// Input events.
     pub input: InputFacts,
-    /// What the application did that Android forbids or punishes.
+    /// Things that Android forbids or punishes and that the application did.
     pub violations: Vec<String>,
     /// JNI calls that nothing here knows: answered by a new object of the type, zero or false.
     pub jni_invented: BTreeMap<String, u64>,
-    /// What it asked of the device's performance, and how often.
+    /// Requests for the device's performance, and how often each was made.
     pub requests: BTreeMap<String, u64>,
     /// Symbols that the libraries import and that are answered by a trap.
     pub trapped_symbols: Vec<String>,
     /// Files written by `capture`.
     pub captures: Vec<PathBuf>,
-    /// How often each tag logged, errors apart.
+    /// The number of lines that each tag logged, errors apart.
     pub log_counts: BTreeMap<String, u64>,
     /// Lines of the tags `YORO`, the application's, and `yoro`, the API layer's, and every line of priority error and above.
     pub log: Vec<LogLine>,
@@ -95,14 +95,14 @@ pub struct InputFacts {
     pub sent: u64,
     /// Finished by the application.
     pub finished: u64,
-    /// Of these, said to be handled.
+    /// Finished as handled.
     pub handled: u64,
 }
 
 /// Resources in use.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 pub struct Mark {
-    /// Of the mark.
+    /// The mark's name.
     pub name: String,
     /// Frames shown so far.
     pub frames: u64,
@@ -129,7 +129,7 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// Everything that must not grow from cycle to cycle, memory apart, as one line of text.
+    /// Returns everything that must not grow from cycle to cycle, memory apart, as one line of text.
     pub fn objects(&self) -> String {
         format!(
             "GL {:?}, EGL contexts {} surfaces {}, windows {}, NDK {:?}, JNI {}, fds {}, threads {}",
@@ -161,17 +161,17 @@ pub struct LogLine {
 }
 
 impl Summary {
-    /// Whether the script was played to its end without a GL error or a violation.
+    /// True if the script was played to its end without a GL error or a violation.
     pub fn is_clean(&self) -> bool {
         self.failure.is_none() && self.gl.error_count == 0 && self.violations.is_empty()
     }
 
-    /// The mark of this name.
+    /// Returns the mark of this name.
     pub fn mark(&self, name: &str) -> Option<&Mark> {
         self.marks.iter().find(|mark| mark.name == name)
     }
 
-    /// Texts of one tag's lines.
+    /// Returns the texts of one tag's lines.
     pub fn log_of<'a>(&'a self, tag: &'a str) -> impl Iterator<Item = &'a str> {
         self.log.iter().filter(move |line| line.tag == tag).map(|line| line.text.as_str())
     }

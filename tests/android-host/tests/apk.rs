@@ -21,7 +21,8 @@ use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headse
 
 use host::{READY, Run, device, layer, play, play_arm64, show};
 
-/// What each test's device has in its properties, as the desktop's settings: a scene and a quality that a CPU draws fast.
+/// The settings of each test's device, and of the desktop it is compared with: a scene and a quality that a CPU draws
+/// fast.
 const SETTINGS: [(&str, &str); 8] = [
     ("scene", "prototype"),
     ("hud", "false"),
@@ -50,12 +51,12 @@ fn lines(run: &Run) -> Vec<Line> {
     lines.iter().map(|line| line.parse().unwrap_or_else(|error| panic!("{line}: {error}"))).collect()
 }
 
-/// What the desktop draws with the same settings; `yaw_degrees` holds the head.
+/// Returns what the desktop draws with the same settings; `yaw_degrees` holds the head.
 fn desktop(extra: &[(&str, &str)], yaw_degrees: Option<f32>) -> RgbImage {
     desktops(extra, &[yaw_degrees]).remove(0)
 }
 
-/// As [`desktop`], of several positions of the head.
+/// Returns what the desktop draws at several positions of the head.
 fn desktops(extra: &[(&str, &str)], yaws_degrees: &[Option<f32>]) -> Vec<RgbImage> {
     let pairs = SETTINGS.iter().chain(extra).map(|(key, value)| format!("{key}={value}"));
     let screen = Screen { size: SIZE, dpi: [DPI; 2], rotation: Rotation::LandscapeLeft };
@@ -128,7 +129,7 @@ fn a_lower_resolution_is_the_same_screen() {
 }
 
 #[test]
-fn the_picture_is_the_desktop_viewers() {
+fn the_phone_draws_the_same_picture_as_the_desktop() {
     let Some(run) = show("picture", &phone(&[], "sensors = []"), r#"{ capture = "phone.png" }"#) else {
         return;
     };
@@ -163,7 +164,7 @@ fn turning_the_head_turns_the_picture() {
 
 /// The head turns at 45 degrees a second when the picture is taken.
 #[test]
-fn the_picture_is_of_the_time_at_which_it_is_seen() {
+fn the_picture_shows_the_head_at_the_time_it_is_seen() {
     let steps = r#"{ head = { yaw = 60, seconds = 2.0, go_on = true } }, { seconds = 1.0 }, { capture = "turning.png" }"#;
     let picture = |refreshes: u32| {
         // The GPU's time counts, too, and the simulated one's is not that of the simulated clock.
@@ -183,7 +184,7 @@ fn the_picture_is_of_the_time_at_which_it_is_seen() {
 }
 
 #[test]
-fn recenter_makes_the_direction_straight_ahead() {
+fn a_long_press_recenters() {
     let steps = r#"{ capture = "before.png" }, { head = { yaw = 35, seconds = 0.5 } }, { long-press = {} },
         { seconds = 0.3 }, { capture = "after.png" }"#;
     let Some(run) = show("recenter", &phone(&[], ""), steps) else { return };
@@ -213,7 +214,7 @@ fn taps_switch_methods_and_keys_the_ipd() {
 }
 
 #[test]
-fn telemetry_carries_the_batterys_values() {
+fn telemetry_reports_battery_and_heat() {
     let battery = r#"
         [device.battery]
         level = 57
@@ -245,7 +246,7 @@ fn telemetry_carries_the_batterys_values() {
 }
 
 #[test]
-fn without_battery_and_sensors() {
+fn runs_without_battery_and_sensors() {
     let steps = format!(r#""launch", "battery-missing", {READY}, {{ seconds = 2.5 }}, "quit""#);
     let Some(run) = play("bare", &phone(&[], "sensors = []\nsdk = 29"), &steps) else { return };
     run.assert_clean();
@@ -274,7 +275,7 @@ fn opengl_es_3_0_is_enough() {
 }
 
 #[test]
-fn below_3_0_there_is_one_clear_message() {
+fn opengl_es_2_0_ends_in_one_clear_message() {
     let Some(run) = play("es20", &phone(&[], "gles = \"2.0\""), r#""launch", { idle = 2.0 }, "quit""#) else {
         return;
     };
@@ -288,7 +289,7 @@ fn below_3_0_there_is_one_clear_message() {
 
 #[test]
 fn without_a_choreographer_the_swap_sets_the_pace() {
-    // Of before `AChoreographer_postFrameCallback64`.
+    // An API level before `AChoreographer_postFrameCallback64`.
     let Some(run) = show("choreographer", &phone(&[], "sdk = 28"), "{ frames = 20 }") else { return };
     assert!(
         run.summary.log_of("YORO").any(|line| line.contains("no choreographer")),
@@ -374,7 +375,7 @@ fn settings_come_from_file_extras_and_properties() {
 }
 
 #[test]
-fn random_events_are_survived() {
+fn survives_random_events() {
     let Some(run) = play("random", &phone(&[], ""), &host::script("random.toml")) else { return };
     assert!(run.summary.is_clean(), "{}", run.summary);
     let losses = |text: &str| text.contains("lost the OpenGL ES context");
@@ -398,7 +399,7 @@ fn headset(folder: &Path, system: bool) -> String {
     headset_with(folder, Headset::default().asymmetric(), &[], &format!("system = {system}"))
 }
 
-/// As [`headset`], of a script that says more, with more settings, and with keys of `[device.openxr]`.
+/// Returns a `[device]` with a headset of this script, with more settings and keys of `[device.openxr]`.
 fn headset_with(folder: &Path, script: Headset, settings: &[(&str, &str)], keys: &str) -> String {
     let script = Headset {
         log: Some(folder.join("log.jsonl")),
@@ -429,7 +430,7 @@ fn is_violation(entry: &Entry) -> bool {
     matches!(entry, Entry::Violation { .. })
 }
 
-/// On what the application has shown all of its frames.
+/// Checks on which display the application has shown all of its frames.
 fn assert_display(run: &Run, which: &str) {
     let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
     assert!(!display.is_empty() && display.iter().all(|line| line.contains(which)), "{display:?}");
@@ -461,7 +462,7 @@ fn a_headset_is_found_through_the_broker() {
 }
 
 #[test]
-fn a_second_activity_uses_the_runtime_that_is_there() {
+fn a_second_activity_uses_the_loaded_runtime() {
     let folder = tempfile::tempdir().unwrap();
     let again = r#""launch", { wait-log = { text = "triangles", frames = 2000 } }, { frames = 4 }, "quit""#;
     let steps = format!("{IMMERSIVE}, {again}");
@@ -509,7 +510,7 @@ fn layered(folder: &Path, script: Headset, aar: &Path, layer: &[(&str, &str)]) -
     headset_with(folder, script, &settings, &format!("layer = {:?}", aar.display().to_string()))
 }
 
-/// What the layer has said in logcat, without its own name and the application's.
+/// Returns the layer's lines in logcat, without its own name and the application's.
 fn said(run: &Run) -> Vec<&str> {
     run.summary.log_of("yoro").filter_map(|line| line.strip_prefix("yoro layer: yoro: ")).collect()
 }
@@ -588,7 +589,7 @@ fn one_view_through_the_layer_is_what_the_application_synthesizes() {
 }
 
 #[test]
-fn the_layer_goes_on_after_a_loss() {
+fn the_layer_works_again_after_a_loss() {
     let Some(aar) = layer("layer-loss") else { return };
     for what in [What::LoseSession, What::LoseInstance] {
         let folder = tempfile::tempdir().unwrap();
@@ -610,7 +611,7 @@ fn the_layer_goes_on_after_a_loss() {
 }
 
 #[test]
-fn a_phone_says_why_it_is_none() {
+fn a_phone_logs_why_it_is_no_headset() {
     let Some(run) = show("phone", &phone(&[], ""), "{ frames = 1 }") else { return };
     let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
     assert!(

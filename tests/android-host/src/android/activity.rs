@@ -129,7 +129,7 @@ impl Directories {
     }
 }
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![System::Android, 1: [
         ANativeActivity_finish, ANativeActivity_hideSoftInput, ANativeActivity_setWindowFlags, ANativeActivity_setWindowFormat,

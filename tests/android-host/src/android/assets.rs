@@ -31,7 +31,7 @@ pub struct AAssetDir {
     next: usize,
 }
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![System::Android, 1: [
         AAssetDir_close, AAssetDir_getNextFileName, AAssetDir_rewind, AAssetManager_fromJava, AAssetManager_open, AAssetManager_openDir,

@@ -58,7 +58,7 @@ pub fn run(looper: &ALooper, now: u64) -> bool {
     !due.is_empty()
 }
 
-/// When the next callback is due.
+/// Returns when the next callback is due.
 pub fn next(looper: &ALooper) -> Option<u64> {
     lock(&looper.choreographer).iter().map(|callback| callback.due).min()
 }
@@ -73,7 +73,7 @@ fn post(choreographer: *mut ALooper, callback: Kind, data: *mut c_void, delay_mi
     lock(&unsafe { &*choreographer }.choreographer).push(Pending { due, callback, data });
 }
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 24: [AChoreographer_getInstance, AChoreographer_postFrameCallback, AChoreographer_postFrameCallbackDelayed];

@@ -17,7 +17,7 @@ pub struct AConfiguration {
     landscape: bool,
 }
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [

@@ -19,14 +19,14 @@ pub struct InputCounts {
     pub sent: AtomicU64,
     /// Finished by the application.
     pub finished: AtomicU64,
-    /// Of these, said to be handled.
+    /// Finished as handled.
     pub handled: AtomicU64,
 }
 
 /// A touch or a key. `repr(C)` is not needed: the application only hands it back.
 #[derive(Clone, Debug)]
 pub enum AInputEvent {
-    /// Of the touch screen, one finger.
+    /// One finger on the touch screen.
     Motion {
         /// `AMOTION_EVENT_ACTION_*`.
         action: MotionAction,
@@ -39,9 +39,9 @@ pub enum AInputEvent {
         /// Nanoseconds.
         time: u64,
     },
-    /// Of a button.
+    /// A button.
     Key {
-        /// Whether it goes down.
+        /// True if it goes down.
         down: bool,
         /// `AKEYCODE_*`.
         code: c_int,
@@ -52,7 +52,7 @@ pub enum AInputEvent {
     },
 }
 
-/// What a finger does.
+/// An action of a finger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionAction {
     /// `AMOTION_EVENT_ACTION_DOWN`.
@@ -91,13 +91,13 @@ impl AInputQueue {
         self.event.signal();
     }
 
-    /// Whether the application still listens: it must not when the queue is destroyed.
+    /// True if the application still listens: it must not when the queue is destroyed.
     pub fn is_attached(&self) -> bool {
         lock(&self.state).looper.is_some()
     }
 }
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [
@@ -190,7 +190,7 @@ extern "C" fn AInputEvent_getDeviceId(_event: &AInputEvent) -> i32 {
     1
 }
 
-/// Getters of one kind of event; of the other kind they are a violation and give zero.
+/// Defines getters of one kind of event; calling one for the other kind is a violation and gives zero.
 macro_rules! getters {
     ($($name:ident: $pattern:pat => $value:expr, $type:ty;)*) => {
         $(extern "C" fn $name(event: &AInputEvent) -> $type {
@@ -232,7 +232,7 @@ getters! {
     AMotionEvent_getYPrecision: AInputEvent::Motion { .. } => 1.0, f32;
 }
 
-/// Getters of the one finger; an index beyond it is a violation and gives zero.
+/// Defines getters of the one finger; an index beyond it is a violation and gives zero.
 macro_rules! pointer_getters {
     ($($name:ident: $pattern:pat => $value:expr, $type:ty;)*) => {
         $(extern "C" fn $name(event: &AInputEvent, index: usize) -> $type {

@@ -19,7 +19,7 @@ pub struct Log {
     abort_message: Mutex<String>,
 }
 
-/// What the summary takes.
+/// The part of the log that the summary takes.
 #[derive(Clone, Default)]
 pub struct Collected {
     /// Lines of [`TAGS`] and errors.
@@ -39,7 +39,7 @@ impl Log {
         Self { verbose, state: Mutex::default(), abort_message: Mutex::default() }
     }
 
-    /// Whether everything is shown.
+    /// True if everything is shown.
     pub fn is_verbose(&self) -> bool {
         self.verbose
     }
@@ -72,7 +72,7 @@ impl Log {
         }
     }
 
-    /// For the summary.
+    /// Returns the part for the summary.
     pub fn collected(&self) -> Collected {
         lock(&self.state).clone()
     }
@@ -109,7 +109,7 @@ impl Log {
     }
 }
 
-/// What liblog.so exports.
+/// Returns the functions that liblog.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Log, 1: [__android_log_assert, __android_log_buf_write, __android_log_write];

@@ -48,7 +48,7 @@ static LOOPERS: Mutex<Vec<usize>> = Mutex::new(Vec::new());
 pub fn settle() {
     let now = host().clock.now();
     let own = current().map(|looper| std::ptr::from_ref(looper) as usize);
-    let patience = Instant::now() + Duration::from_millis(50);
+    let deadline = Instant::now() + Duration::from_millis(50);
     let busy = || {
         // SAFETY: a looper leaves the list before it goes, and the list is locked meanwhile.
         lock(&LOOPERS)
@@ -64,7 +64,7 @@ pub fn settle() {
                 busy
             })
     };
-    while busy() && Instant::now() < patience {
+    while busy() && Instant::now() < deadline {
         std::thread::sleep(Duration::from_micros(200));
     }
 }
@@ -81,7 +81,7 @@ struct Entry {
 // SAFETY: `data` is the application's and only handed back to it, on the looper's own thread.
 unsafe impl Send for Entry {}
 
-/// What a poll found.
+/// A descriptor that is ready.
 struct Ready {
     fd: c_int,
     events: c_int,
@@ -103,14 +103,14 @@ impl ALooper {
         looper
     }
 
-    /// When the next sample or refresh is due on this looper.
+    /// Returns when the next sample or refresh is due on this looper.
     fn next_event(&self) -> Option<u64> {
         let samples =
             lock(&self.entries).iter().filter_map(|entry| host().sensors.next_event(entry.fd)).min();
         samples.into_iter().chain(choreographer::next(self)).min()
     }
 
-    /// What to poll: the entries, in their order, and then the wake-up.
+    /// Returns what to poll: the entries in their order, and then the wake-up.
     fn descriptors(&self, entries: &[Entry]) -> Vec<libc::pollfd> {
         let mut fds: Vec<_> = entries
             .iter()
@@ -217,13 +217,13 @@ thread_local! {
     static CURRENT: RefCell<Option<Own>> = const { RefCell::new(None) };
 }
 
-/// The calling thread's looper.
+/// Returns the calling thread's looper.
 pub fn current() -> Option<&'static ALooper> {
     // SAFETY: a thread's own reference keeps its looper alive for as long as the thread runs.
     CURRENT.try_with(|own| own.borrow().as_ref().map(|own| unsafe { &*own.0 })).ok().flatten()
 }
 
-/// The calling thread's looper, made if there is none.
+/// Returns the calling thread's looper, made if there is none.
 pub fn prepare() -> &'static ALooper {
     CURRENT.with_borrow_mut(|own| {
         let own = own.get_or_insert_with(|| Own(ALooper::new()));
@@ -232,7 +232,7 @@ pub fn prepare() -> &'static ALooper {
     })
 }
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![System::Android, 1: [
         ALooper_acquire, ALooper_addFd, ALooper_forThread, ALooper_pollAll, ALooper_pollOnce, ALooper_prepare, ALooper_release,
@@ -361,7 +361,7 @@ unsafe extern "C" fn ALooper_pollAll(
     out_data: *mut *mut c_void,
 ) -> c_int {
     loop {
-        // SAFETY: same contract as the caller's.
+        // SAFETY: the out pointers are passed on as they came.
         let result = unsafe { ALooper_pollOnce(timeout, out_fd, out_events, out_data) };
         if result != POLL_CALLBACK {
             return result;

@@ -1,4 +1,4 @@
-//! ASensorManager: a gyroscope and an accelerometer on a head whose motion the script tells. Samples lie on the virtual
+//! ASensorManager: a gyroscope and an accelerometer on a head that moves as the script says. Samples come on the virtual
 //! clock, at the rate that the application asked for.
 //!
 //! The phone is held in landscape, its left side down (`ROTATION_90`): the device's x axis points up, its y axis to the
@@ -20,7 +20,7 @@ use crate::script::{Device, SensorKind};
 
 /// m/s².
 const GRAVITY: f32 = 9.81;
-/// What a queue holds before it drops the oldest, as hardware does.
+/// The number of events that a queue holds before it drops the oldest, as hardware does.
 const FIFO: usize = 4096;
 /// `SENSOR_DELAY_NORMAL`, what a sensor has until a rate is set; nanoseconds.
 const DEFAULT_PERIOD: u64 = 200_000_000;
@@ -94,7 +94,7 @@ struct Motion {
 }
 
 impl Motion {
-    /// Head to world.
+    /// Returns the rotation from head to world.
     fn orientation(&self, at: u64) -> Quat {
         if self.duration == 0 {
             return self.to;
@@ -144,7 +144,7 @@ impl Sensors {
         *motion = Motion { from: motion.orientation(now), to, start: now, duration };
     }
 
-    /// Head axes to device axes.
+    /// Converts head axes to device axes.
     fn to_device(vector: Vec3) -> Vec3 {
         Vec3::new(vector.y, -vector.x, vector.z)
     }
@@ -211,7 +211,7 @@ impl Sensors {
         }
     }
 
-    /// When the queue with this descriptor gets its next sample.
+    /// Returns when the queue with this descriptor gets its next sample.
     pub fn next_event(&self, fd: c_int) -> Option<u64> {
         let queues = lock(&self.queues);
         let queue = queues.iter().find(|queue| queue.event.raw() == fd)?;
@@ -219,7 +219,7 @@ impl Sensors {
     }
 }
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [

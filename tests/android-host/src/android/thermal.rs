@@ -25,10 +25,11 @@ impl ThermalListeners {
     }
 }
 
-/// When the headroom was last asked, nanoseconds; Android gives no answer before a second has passed.
+/// The time at which the headroom was last asked for, in nanoseconds; Android gives no answer before a second has
+/// passed.
 static LAST_HEADROOM: AtomicU64 = AtomicU64::new(0);
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 30: [
@@ -61,7 +62,7 @@ extern "C" fn AThermal_getThermalHeadroom(_manager: *mut c_void, _forecast_secon
     headroom()
 }
 
-/// As Android answers it: NaN when asked again within a second.
+/// Returns the headroom as Android does: NaN if it is asked for again within a second.
 pub fn headroom() -> f32 {
     let now = host().clock.now();
     let last = LAST_HEADROOM.load(Ordering::Relaxed);

@@ -65,7 +65,7 @@ impl Window {
     }
 }
 
-/// What libandroid.so exports of it.
+/// Returns the functions that libandroid.so exports of it.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [
@@ -78,7 +78,7 @@ pub fn exports() -> Vec<Export> {
     ]
 }
 
-/// Whether the pointer is the window's.
+/// True if the pointer is the window's.
 pub fn is_window(window: *const c_void) -> bool {
     std::ptr::eq(window, (&raw const host().window).cast())
 }

@@ -101,7 +101,7 @@ mesa! {
 /// A surface of the application.
 pub struct Surface {
     pbuffer: Handle,
-    /// Whether it stands for the window's.
+    /// True if it stands for the window's.
     pub is_window: bool,
     size: (i32, i32),
     config: Handle,
@@ -130,7 +130,7 @@ thread_local! {
     static ERROR: Cell<i32> = const { Cell::new(SUCCESS) };
 }
 
-/// The share group of the current context, 0 without one.
+/// Returns the share group of the current context; 0 without a context.
 pub fn current_group() -> usize {
     let context = CURRENT.get().context;
     lock(&host().graphics.contexts).get(&context).map_or(0, |context| context.group)
@@ -145,13 +145,13 @@ fn fail<T: Default>(error: i32) -> T {
     T::default()
 }
 
-/// Attribute pairs before `EGL_NONE`.
+/// Returns the attribute pairs before `EGL_NONE`.
 ///
 /// # Safety
 /// Null, or pairs that end in `EGL_NONE`.
 unsafe fn pairs(mut attributes: *const i32) -> Vec<(i32, i32)> {
     let mut pairs = Vec::new();
-    // SAFETY: the caller's promise.
+    // SAFETY: it is not null, and the list has not ended.
     while !attributes.is_null() && unsafe { *attributes } != NONE {
         // SAFETY: a name is followed by its value.
         unsafe {
@@ -170,7 +170,7 @@ fn value(pairs: &[(i32, i32)], name: i32) -> Option<i32> {
     pairs.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
 }
 
-/// What libEGL.so exports.
+/// Returns the functions that libEGL.so exports.
 pub fn exports() -> Vec<Export> {
     exports![System::Egl, 1: [
         eglBindAPI, eglChooseConfig, eglCreateContext, eglCreatePbufferSurface, eglCreatePlatformWindowSurface, eglCreateWindowSurface,
@@ -584,7 +584,7 @@ unsafe extern "C" fn eglGetProcAddress(name: *const c_char) -> *const c_void {
     gl::function(text).map_or(std::ptr::null(), |address| address as *const c_void)
 }
 
-/// Mesa's function of this name, null if there is none.
+/// Returns Mesa's function of this name; null if there is none.
 pub fn real_function(name: &CStr) -> *const c_void {
     // SAFETY: a terminated name.
     unsafe { (real().eglGetProcAddress)(name.as_ptr()) }

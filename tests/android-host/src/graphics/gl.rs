@@ -35,7 +35,7 @@ macro_rules! mesa {
             let address = *ADDRESS.get_or_init(|| real($symbol) as usize);
             // SAFETY: the type is that of gl3.h.
             let function: unsafe extern "C" fn($($type),*) $(-> $result)? = unsafe { std::mem::transmute(address) };
-            // SAFETY: the caller's promise: a context is current and the pointers fit.
+            // SAFETY: the caller has a current context, and pointers as GL wants them.
             unsafe { function($($argument),*) }
         })*
     };
@@ -73,7 +73,7 @@ type DebugCallback = extern "C" fn(
 static APPLICATION_CALLBACK: Mutex<Option<(usize, DebugCallback, usize)>> = Mutex::new(None);
 
 thread_local! {
-    /// Whether the driver has described an error since the last look.
+    /// True if the driver has described an error since the last look.
     static DESCRIBED: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -297,7 +297,7 @@ unsafe extern "C" fn glDeleteSync(sync: usize) {
 pub fn function(name: &str) -> Option<usize> {
     macro_rules! ours {
         ($($function:ident)*) => {
-            // Of two names of one function in Mesa.
+            // Extensions' names of these functions are the same functions in Mesa.
             match name.trim_end_matches("EXT").trim_end_matches("KHR") {
                 $(stringify!($function) => Some($function as *const () as usize),)*
                 _ => None,

@@ -48,12 +48,12 @@ impl Graphics {
         })
     }
 
-    /// The context that swaps next is lost.
+    /// Loses the context that swaps next.
     pub fn lose_context(&self) {
         self.loss_asked.store(true, Ordering::Release);
     }
 
-    /// Live objects of all contexts, by kind.
+    /// Returns the number of live objects of all contexts, by kind.
     pub fn live_objects(&self) -> BTreeMap<String, u64> {
         let mut sums = BTreeMap::new();
         for (kind, names) in lock(&self.objects).values().flatten() {
@@ -64,22 +64,22 @@ impl Graphics {
         sums
     }
 
-    /// Contexts not destroyed.
+    /// Returns the number of contexts that are not destroyed.
     pub fn live_contexts(&self) -> u64 {
         lock(&self.contexts).len() as u64
     }
 
-    /// Surfaces not destroyed.
+    /// Returns the number of surfaces that are not destroyed.
     pub fn live_surfaces(&self) -> u64 {
         lock(&self.surfaces).len() as u64
     }
 
-    /// Surfaces of the window that are not destroyed.
+    /// Returns the number of the window's surfaces that are not destroyed.
     pub fn live_window_surfaces(&self) -> usize {
         lock(&self.surfaces).values().filter(|surface| surface.is_window).count()
     }
 
-    /// For the summary.
+    /// Returns the facts for the summary.
     pub fn facts(&self) -> GlFacts {
         lock(&self.facts).clone()
     }

@@ -1,4 +1,4 @@
-//! What Java methods and fields answer.
+//! Answers of Java methods and fields.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::script::Battery;
 /// `Integer.MIN_VALUE` and `Long.MIN_VALUE` are BatteryManager's words for "unsupported".
 const UNSUPPORTED: i32 = i32::MIN;
 
-/// The answer to a call, `None` where nothing is known.
+/// Returns the answer to a call; none if the method is not known.
 pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<Value> {
     let host = host();
     let text = |index: usize| match arguments.get(index) {
@@ -212,7 +212,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
     })
 }
 
-/// The value of a field, `None` where nothing is known.
+/// Returns the value of a field; none if the field is not known.
 pub fn field(member: &Member) -> Option<Value> {
     let host = host();
     let (width, height) = host.window.size();
@@ -245,7 +245,7 @@ fn file(path: &str) -> Value {
     Value::object(Object::new("java/io/File", Data::Text(path.to_owned())))
 }
 
-/// A collection of strings, last first, for an iterator takes from the end.
+/// Returns a collection of strings, last first, for an iterator takes from the end.
 fn list<'a>(class: &str, items: impl DoubleEndedIterator<Item = &'a String>) -> Value {
     let items: Vec<_> = items.rev().map(|item| Some(Object::string(item))).collect();
     Value::object(Object::new(class, Data::Array(items.into())))

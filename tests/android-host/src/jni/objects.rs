@@ -11,13 +11,13 @@ use crate::host::{fatal, lock};
 /// A Java object.
 #[derive(Debug)]
 pub struct Object {
-    /// With slashes: `android/content/Intent`.
+    /// The class's name with slashes: `android/content/Intent`.
     pub class: String,
-    /// What the object knows.
+    /// Its data.
     pub data: Data,
 }
 
-/// What an object knows.
+/// The data of an object.
 #[derive(Debug)]
 pub enum Data {
     /// Nothing: only its class.
@@ -70,7 +70,7 @@ impl Object {
     }
 }
 
-/// What a method returns or a field holds.
+/// A value that a method returns or a field holds.
 #[derive(Clone, Debug)]
 pub enum Value {
     /// `void`.
@@ -108,12 +108,12 @@ pub struct Member {
 }
 
 impl Member {
-    /// The type at the end of the signature, as JNI writes it.
+    /// Returns the type at the end of the signature, as JNI writes it.
     pub fn returned(&self) -> &str {
         self.signature.rsplit(')').next().unwrap_or("V")
     }
 
-    /// The class of the object that a method returns, with slashes; none if it returns something else.
+    /// Returns the class of the object that a method returns, with slashes; none if it returns something else.
     pub fn returned_class(&self) -> Option<&str> {
         self.returned().strip_prefix('L')?.strip_suffix(';')
     }
@@ -146,17 +146,17 @@ struct References {
 }
 
 impl Jni {
-    /// A machine without objects.
+    /// Makes a machine without objects.
     pub fn new() -> Self {
         Self { references: Mutex::default(), members: Mutex::default(), invented: Mutex::default() }
     }
 
-    /// References of all kinds and threads.
+    /// Returns the number of references of all kinds and threads.
     pub fn live_references(&self) -> u64 {
         lock(&self.references).live.len() as u64
     }
 
-    /// Calls that were answered without knowing them.
+    /// Returns the calls that were answered without knowing them.
     pub fn invented(&self) -> BTreeMap<String, u64> {
         lock(&self.invented).clone()
     }
@@ -213,7 +213,7 @@ impl Jni {
         lock(&self.references).live.get(&(handle as usize)).map(|reference| reference.kind)
     }
 
-    /// The one identifier of a member.
+    /// Returns the one identifier of a member.
     pub(super) fn member(&self, member: Member) -> &'static Member {
         lock(&self.members).entry(member).or_insert_with_key(|member| Box::leak(Box::new(member.clone())))
     }

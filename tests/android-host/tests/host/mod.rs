@@ -7,11 +7,11 @@ use std::process::Command;
 use image::RgbImage;
 use yoro_android_host::summary::Summary;
 
-/// Of `cargo xtask test`.
+/// The variable by which `cargo xtask test` names the APK.
 const APK: &str = "YORO_TEST_APK";
-/// The OpenXR API layer for Android, an AAR, of `cargo xtask test`, too.
+/// The variable that names the OpenXR API layer for Android, an AAR.
 const LAYER: &str = "YORO_TEST_ANDROID_LAYER";
-/// A program that runs the simulated host for arm64, of `cargo xtask test`, too.
+/// The variable that names a program that runs the simulated host for arm64.
 const ARM64_HOST: &str = "YORO_TEST_ARM64_HOST";
 
 /// Steps after which the scene is in view.
@@ -19,19 +19,19 @@ pub const READY: &str = r#"{ wait-log = { text = "triangles", frames = 2000 } },
 
 /// A finished run.
 pub struct Run {
-    /// What the host found.
+    /// The host's findings.
     pub summary: Summary,
     folder: PathBuf,
 }
 
-/// A `[device]` with settings as system properties, and more of its keys.
+/// Returns a `[device]` with settings as system properties, and more of its keys.
 pub fn device(settings: &[(&str, &str)], keys: &str) -> String {
     let properties: String =
         settings.iter().map(|(key, value)| format!("\"debug.yoro.{key}\" = \"{value}\"\n")).collect();
     format!("[device]\n{keys}\n[device.properties]\n{properties}")
 }
 
-/// The steps of one of the scripts that come with the host.
+/// Returns the steps of one of the scripts that come with the host.
 pub fn script(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name);
     let text = std::fs::read_to_string(&path).unwrap();
@@ -53,7 +53,7 @@ pub fn show(name: &str, device: &str, steps: &str) -> Option<Run> {
     Some(run)
 }
 
-/// As [`play`], with the APK's arm64 library under qemu; none, with a loud line, where that cannot be.
+/// Plays steps with the APK's arm64 library under qemu; none, with a loud line, where that cannot be.
 pub fn play_arm64(name: &str, device: &str, steps: &str) -> Option<Run> {
     let apk = named(APK).or_else(|| left_out(name, "there is no APK", APK, "builds one"))?;
     let remedy = "sets one up where Debian's packages are";
@@ -67,7 +67,7 @@ pub fn layer(name: &str) -> Option<PathBuf> {
     named(LAYER).or_else(|| left_out(name, "there is no API layer", LAYER, "builds one"))
 }
 
-/// A file that the environment names.
+/// Returns a file that the environment names.
 fn named(variable: &str) -> Option<PathBuf> {
     let path = std::env::var_os(variable)?;
     // Cargo runs tests in the package's folder.
