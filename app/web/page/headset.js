@@ -1,5 +1,6 @@
 // A headset, by WebXR: views, projections and framebuffer as the browser gives them.
 
+import { Headset } from './yoro_web.js';
 import { element } from './app.js';
 import { sentence } from './sentence.js';
 
@@ -32,16 +33,18 @@ async function enter(app, button) {
   const run = { name: 'headset', stop: () => session.end().catch(() => {}) };
   app.busy = run;
   button.textContent = 'Leave VR';
+  let headset = null;
   session.addEventListener('end', () => {
-    app.page?.xrEnd();
+    headset?.free();
     if (app.busy === run) app.busy = null;
     button.textContent = 'Enter VR';
     app.startLoop();
   });
   try {
     await gl.makeXRCompatible();
+    headset = new Headset(app.page);
     const layer = new XRWebGLLayer(session, gl, { antialias: false, alpha: false, depth: true, stencil: false });
-    const [depthNear, depthFar] = app.page.constructor.xrPlanes();
+    const [depthNear, depthFar] = Headset.planes();
     await session.updateRenderState({ baseLayer: layer, depthNear, depthFar });
     const space = await session.requestReferenceSpace('local').catch(() => session.requestReferenceSpace('viewer'));
     const pressed = new Map();
@@ -84,7 +87,7 @@ async function enter(app, button) {
           text = app.settings.method;
           times.length = 0;
         }
-        const fits = app.page.xrFrame(floats, ...size, shown ? text : '');
+        const fits = headset.draw(app.page, floats, ...size, shown ? text : '');
         if (!fits && !run.told) {
           run.told = true;
           app.say('This headset’s eyes are canted or shifted: both are rendered.');
@@ -92,7 +95,7 @@ async function enter(app, button) {
         ports.forEach(({ x, y, width, height }, eye) => {
           gl.bindFramebuffer(gl.FRAMEBUFFER, layer.framebuffer);
           gl.viewport(x, y, width, height);
-          app.page.xrShow(eye, x, y, width, height);
+          headset.show(app.page, eye, x, y, width, height);
         });
         Object.assign(run, { frames: (run.frames ?? 0) + 1, views: floats, size });
       } catch (error) {

@@ -1,5 +1,6 @@
 // The methods against each other, and a file that `yoro report` reads.
 
+import { Bench } from './yoro_web.js';
 import { element } from './app.js';
 import { sentence } from './sentence.js';
 
@@ -42,10 +43,14 @@ function clockStep() {
   return Number.isFinite(smallest) ? smallest : 1;
 }
 
-async function measure(app, size, seconds, run) {
+/**
+ * Measures the methods; null if the run is stopped.
+ * @param {Bench} bench the methods, with images of the wanted size
+ */
+async function measure(app, bench, seconds, run) {
   const { page } = app;
   const rate = await refreshRate();
-  const facts = JSON.parse(page.benchBegin(...size));
+  const facts = JSON.parse(bench.facts);
   const { contenders } = facts;
   const count = Math.min(VIEWPOINTS, app.facts.viewpoints);
   const viewpoints = Array.from({ length: count }, (_, i) => Math.floor((i * app.facts.viewpoints) / count));
@@ -54,10 +59,10 @@ async function measure(app, size, seconds, run) {
     let frames = 1;
     let best = [];
     const end = performance.now() + milliseconds;
-    page.benchFrames(contender, viewpoint, 1);
+    bench.frames(page, contender, viewpoint, 1);
     do {
       const start = performance.now();
-      page.benchFrames(contender, viewpoint, frames);
+      bench.frames(page, contender, viewpoint, frames);
       const taken = performance.now() - start;
       if (taken < BATCH && performance.now() < end) {
         frames = Math.min(1000, Math.max(frames + 1, Math.ceil((frames * BATCH * 1.2) / Math.max(taken, 0.5))));
@@ -72,13 +77,13 @@ async function measure(app, size, seconds, run) {
   };
   const timed = async (contender, viewpoint) => {
     if (!facts.timerQueries) return {};
-    page.benchStartPasses();
+    bench.startPasses();
     for (let i = 0; i < TIMED_FRAMES; i++) {
-      page.benchTimedFrame(contender, viewpoint);
+      bench.timedFrame(page, contender, viewpoint);
       await nextFrame();
       if (run.stopped) return {};
     }
-    return JSON.parse(page.benchTakePasses());
+    return JSON.parse(bench.takePasses());
   };
   const turns = contenders.length * viewpoints.length;
   const rounds = Math.max(2, Math.min(10, Math.round((seconds * 1000) / (turns * 300))));
@@ -227,8 +232,10 @@ export function offerMeasure(app) {
     button.textContent = 'Stop';
     save.hidden = true;
     await nextFrame();
+    let bench = null;
     try {
-      const result = await measure(app, size, seconds, run);
+      bench = new Bench(app.page, ...size);
+      const result = await measure(app, bench, seconds, run);
       if (result) {
         show(app, size, result, run);
         file = lines(app, size, seconds, result);
@@ -238,7 +245,7 @@ export function offerMeasure(app) {
     } catch (error) {
       app.say(sentence(error));
     }
-    app.page?.benchEnd();
+    bench?.free();
     bar.hidden = true;
     button.textContent = 'Measure';
     if (app.busy === run) app.busy = null;

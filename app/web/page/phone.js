@@ -1,5 +1,6 @@
 // A phone in a Cardboard-compatible viewer.
 
+import { Phone } from './yoro_web.js';
 import { element } from './app.js';
 import { sentence } from './sentence.js';
 
@@ -58,10 +59,12 @@ export function offerPhone(app) {
     let awake = await navigator.wakeLock?.request('screen').catch(() => null);
     let head = [0, 0, 0, 1];
     let size = '';
+    /** The phone in the viewer, once the size of the screen is known. */
+    let phone;
     const turned = ({ alpha, beta, gamma }) => {
       if (alpha !== null) head = orientation(alpha, beta, gamma, screen.orientation?.angle ?? globalThis.orientation ?? 0);
     };
-    const tapped = () => app.page?.phoneRecenter();
+    const tapped = () => phone?.recenter();
     const seen = async () => {
       if (document.visibilityState === 'visible') awake = await navigator.wakeLock?.request('screen').catch(() => null);
     };
@@ -78,7 +81,8 @@ export function offerPhone(app) {
         leave.hidden = true;
         document.body.classList.remove('filling');
         awake?.release();
-        app.page?.phoneEnd();
+        phone?.free();
+        phone = undefined;
         if (document.fullscreenElement) document.exitFullscreen();
         app.startLoop();
       },
@@ -106,9 +110,12 @@ export function offerPhone(app) {
           size = `${width}x${height}`;
           const long = element('phone-width').valueAsNumber / 1000;
           const metres = [width, height].map((n) => (long * n) / Math.max(width, height));
-          app.page.phoneBegin(element('phone-viewer').value, ...metres);
+          // It takes over what is straight ahead, and the phone before is used up by that.
+          const before = phone;
+          phone = undefined;
+          phone = new Phone(app.page, element('phone-viewer').value, ...metres, before);
         }
-        app.page.phoneDraw(width, height, new Float32Array(head), app.settings.scale);
+        phone.draw(app.page, width, height, new Float32Array(head), app.settings.scale);
         requestAnimationFrame(frame);
       } catch (error) {
         run.stop();

@@ -3,17 +3,20 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use wasm_bindgen::prelude::*;
 use yoro::eyes::Eye;
-use yoro_gl::{Context, GlError, PassTime};
-use yoro_render::PreparedScene;
-use yoro_render::stereo::{Method, Pipeline, StereoError, StereoFrame, StereoMethod};
+use yoro_gl::{Context, PassTime, Profiling};
+use yoro_render::stereo::{Method, Pipeline, StereoFrame, StereoMethod};
 
-use crate::settings::Settings;
+use super::Page;
+use super::error::sentence;
 
-/// All methods that the browser supports, ready to take turns.
+/// All methods that the browser supports, ready to take turns. It goes with the page's scene.
+#[wasm_bindgen]
 pub struct Bench {
     gl: Rc<Context>,
     entrants: Vec<Box<dyn StereoMethod>>,
+    facts: String,
     frame: StereoFrame,
     size: [u32; 2],
     passes: Vec<PassTime>,
@@ -28,13 +31,15 @@ fn contender(method: Method) -> String {
     }
 }
 
+#[wasm_bindgen]
 impl Bench {
-    /// Prepares the methods for images of this size, and returns who takes part as JSON: `{"contenders": [...],
-    /// "unsupported": [[name, reason]], "timerQueries"}`.
+    /// Prepares the methods for images of this size.
     ///
     /// # Errors
-    /// The GPU cannot do it, for instance for want of memory.
-    pub fn new(gl: &Rc<Context>, settings: &Settings, size: [u32; 2]) -> Result<(Bench, String), GlError> {
+    /// A sentence, for instance without memory.
+    #[wasm_bindgen(constructor)]
+    pub fn new(page: &Page, width: u32, height: u32) -> Result<Bench, JsError> {
+        let Page { gl, settings, .. } = page;
         let render = settings.render_settings();
         let (mut names, mut entrants, mut unsupported) = (Vec::new(), Vec::new(), Vec::new());
         for method in Method::ALL {
@@ -42,7 +47,7 @@ impl Bench {
                 Err(reason) => unsupported.push((contender(method), reason.to_string())),
                 Ok(()) => {
                     names.push(contender(method));
-                    entrants.push(settings.create(gl, method)?);
+                    entrants.push(settings.create(gl, method).map_err(sentence)?);
                 }
             }
         }
@@ -51,46 +56,91 @@ impl Bench {
             "unsupported": unsupported,
             "timerQueries": gl.capabilities().timer_queries,
         });
-        let frame = StereoFrame::new(gl, size)?;
-        let bench = Bench { gl: gl.clone(), entrants, frame, size, passes: Vec::new(), timed_frames: 0 };
-        Ok((bench, facts.to_string()))
+        Ok(Bench {
+            gl: gl.clone(),
+            entrants,
+            facts: facts.to_string(),
+            frame: StereoFrame::new(gl, [width, height]).map_err(sentence)?,
+            size: [width, height],
+            passes: Vec::new(),
+            timed_frames: 0,
+        })
     }
 
-    /// Renders one stereo frame; nothing for a contender or a viewpoint that there is not.
+    /// Returns who takes part as JSON: `{"contenders": [...], "unsupported": [[name, reason]], "timerQueries"}`.
+    #[wasm_bindgen(getter)]
+    pub fn facts(&self) -> String {
+        self.facts.clone()
+    }
+
+    /// Renders stereo frames, and waits until the GPU has done the last one.
     ///
     /// # Errors
-    /// The method's.
-    pub fn frame(
+    /// A sentence.
+    pub fn frames(
         &mut self,
-        settings: &Settings,
-        prepared: &mut PreparedScene,
+        page: &mut Page,
         contender: usize,
         viewpoint: usize,
-    ) -> Result<(), StereoError> {
-        let Some(viewpoint) = prepared.scene.viewpoints.get(viewpoint) else { return Ok(()) };
-        let pair = settings.pair(viewpoint.pose(), self.size);
-        let Some(method) = self.entrants.get_mut(contender) else { return Ok(()) };
-        method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame)
-    }
-
-    /// Waits until the GPU has done the last frame.
-    pub fn wait(&self) {
+        count: u32,
+    ) -> Result<(), JsError> {
+        for _ in 0..count {
+            self.frame(page, contender, viewpoint)?;
+        }
         // Browsers make little of glFinish; for a pixel they have to wait.
         self.frame.eye(Eye::Left).read_rgba8(0, [0, 0], [1, 1]);
+        Ok(())
     }
 
-    /// Ends a frame with a timer query around each pass, and collects the results that have come.
-    pub fn end_timed_frame(&mut self) {
+    /// Begins timed frames.
+    #[wasm_bindgen(js_name = startPasses)]
+    pub fn start_passes(&self) {
+        self.gl.set_profiling(Profiling::Queries);
+    }
+
+    /// Renders one stereo frame with a timer query around each pass; results come with later calls.
+    ///
+    /// # Errors
+    /// A sentence.
+    #[wasm_bindgen(js_name = timedFrame)]
+    pub fn timed_frame(
+        &mut self,
+        page: &mut Page,
+        contender: usize,
+        viewpoint: usize,
+    ) -> Result<(), JsError> {
+        self.frame(page, contender, viewpoint)?;
         self.timed_frames += self.gl.end_timed_frame(&mut self.passes);
+        Ok(())
     }
 
-    /// Returns the GPU time of each pass in ms, the mean of the frames whose results have come, and begins anew.
-    pub fn take_passes(&mut self) -> BTreeMap<&'static str, f64> {
-        let mut sums = BTreeMap::new();
+    /// Ends timed frames. Returns the GPU time of each pass in ms, the mean of the frames whose results have come, as JSON;
+    /// `{}` for none.
+    #[wasm_bindgen(js_name = takePasses)]
+    pub fn take_passes(&mut self) -> String {
+        self.gl.set_profiling(Profiling::Off);
+        let mut sums: BTreeMap<&str, f64> = BTreeMap::new();
         let frames = f64::from(std::mem::take(&mut self.timed_frames).max(1));
         for pass in self.passes.drain(..) {
             *sums.entry(pass.name).or_default() += pass.time.as_secs_f64() * 1e3 / frames;
         }
-        sums
+        serde_json::json!(sums).to_string()
+    }
+
+    /// Renders one stereo frame; nothing for a contender or a viewpoint that there is not.
+    fn frame(&mut self, page: &mut Page, contender: usize, viewpoint: usize) -> Result<(), JsError> {
+        let settings = page.settings;
+        let Some(scene) = page.scene() else { return Err(JsError::new("There is no scene to measure.")) };
+        let prepared = &mut scene.prepared;
+        let Some(viewpoint) = prepared.scene.viewpoints.get(viewpoint) else { return Ok(()) };
+        let pair = settings.pair(viewpoint.pose(), self.size);
+        let Some(method) = self.entrants.get_mut(contender) else { return Ok(()) };
+        method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame).map_err(sentence)
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        self.gl.set_profiling(Profiling::Off);
     }
 }

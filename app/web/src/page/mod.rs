@@ -14,18 +14,15 @@ use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 use web_sys::WebGl2RenderingContext;
 use yoro::eyes::{Eye, Pose};
-use yoro_gl::{Context, Profiling};
+use yoro_gl::Context;
 use yoro_render::stereo::Method;
 use yoro_scene::Scene;
 use yoro_scenes::BUILTINS;
 
-use self::bench::Bench;
 use self::error::sentence;
-use self::phone::Phone;
 use self::picture_show::PictureShow;
 use self::scene_show::SceneShow;
 use self::show::{Layout, Show};
-use self::xr::Headset;
 use crate::pictures::{PictureOptions, PicturePair};
 use crate::settings::{Display, Settings};
 use crate::walker::Walker;
@@ -45,8 +42,6 @@ pub struct Page {
     settings: Settings,
     walker: Walker,
     content: Content,
-    /// The lenses, while a phone is in a viewer.
-    phone: Option<Phone>,
 }
 
 #[wasm_bindgen]
@@ -63,7 +58,6 @@ impl Page {
             settings: Settings::default(),
             walker: Walker::new(Pose::IDENTITY),
             content: Content::Empty,
-            phone: None,
             gl,
         })
     }
@@ -253,13 +247,13 @@ impl Page {
         Ok(())
     }
 
-    /// Returns an eye's image of the last frame, 0 left and 1 right, of the headset's while there is one: RGBA, rows from
-    /// the bottom; empty where nothing is shown. Waits for the GPU.
+    /// Returns an eye's image of the last frame on the canvas, 0 left and 1 right: RGBA, rows from the bottom; empty if
+    /// nothing is shown. Waits for the GPU.
     #[wasm_bindgen(js_name = readEye)]
     pub fn read_eye(&self, eye: usize) -> Vec<u8> {
         let frame = match &self.content {
             Content::Empty => return Vec::new(),
-            Content::Scene(scene) => scene.last_frame(),
+            Content::Scene(scene) => &scene.frame,
             Content::Pictures(pictures) => &pictures.frame,
         };
         let target = frame.eye(Eye::BOTH[eye.min(1)]);
@@ -273,187 +267,14 @@ impl Page {
     }
 }
 
-/// A phone behind the lenses of a Cardboard-compatible viewer.
-#[wasm_bindgen]
 impl Page {
-    /// Puts a screen of this size in metres into a viewer: `v1`, `v2`, or the URI of a viewer's QR code.
-    ///
-    /// # Errors
-    /// A sentence.
-    #[wasm_bindgen(js_name = phoneBegin)]
-    pub fn phone_begin(&mut self, viewer: &str, width: f32, height: f32) -> Result<(), JsError> {
-        self.phone = Some(Phone::new(&self.gl, viewer, [width, height], self.phone.as_ref())?);
-        Ok(())
-    }
-
-    /// Makes what is straight ahead of the head now the middle of the scene.
-    #[wasm_bindgen(js_name = phoneRecenter)]
-    pub fn phone_recenter(&mut self) {
-        if let Some(phone) = &mut self.phone {
-            phone.recenter();
-        }
-    }
-
-    /// Draws both eyes of a head through the lenses, on a canvas of this size; `head` is its orientation in the world (Y
-    /// up): x, y, z, w. `scale` is a share of the full resolution.
-    ///
-    /// # Errors
-    /// A sentence.
-    #[wasm_bindgen(js_name = phoneDraw)]
-    pub fn phone_draw(&mut self, width: u32, height: u32, head: &[f32], scale: f32) -> Result<(), JsError> {
-        let (Some(phone), Content::Scene(scene)) = (&mut self.phone, &mut self.content) else {
-            return Ok(());
-        };
-        phone.draw(&self.settings, &self.walker, scene, [width, height], head, scale).map_err(sentence)
-    }
-
-    /// Takes the phone out of the viewer.
-    #[wasm_bindgen(js_name = phoneEnd)]
-    pub fn phone_end(&mut self) {
-        self.phone = None;
-    }
-}
-
-/// A headset, by WebXR.
-#[wasm_bindgen]
-impl Page {
-    /// Returns near and far plane in metres, for the session.
-    #[wasm_bindgen(js_name = xrPlanes)]
-    pub fn xr_planes() -> Vec<f32> {
-        vec![xr::DEPTH.near, xr::DEPTH.far]
-    }
-
-    /// Renders both eyes into images of this size: `views` has 23 floats for each, the left one first: position,
-    /// orientation (x, y, z, w) and projection matrix. `text` hangs before the eyes, four lines at most. False when both
-    /// were rendered because neither can be synthesized from the other.
-    ///
-    /// # Errors
-    /// A sentence.
-    #[wasm_bindgen(js_name = xrFrame)]
-    pub fn xr_frame(&mut self, views: &[f32], width: u32, height: u32, text: &str) -> Result<bool, JsError> {
-        let size = [width, height];
-        let Some(pair) = xr::eyes(views, &self.settings, &self.walker, size) else {
-            return Err(JsError::new("The headset's views cannot be understood."));
-        };
-        let Content::Scene(scene) = &mut self.content else { return Ok(true) };
-        let SceneShow { prepared, method, headset, .. } = &mut **scene;
-        let headset = match headset {
-            Some(headset) => {
-                headset.resize(size).map_err(sentence)?;
-                headset
-            }
-            none => none.insert(Headset::new(&self.gl, size).map_err(sentence)?),
-        };
-        headset.draw(&self.gl, &self.settings, prepared, method.as_mut(), &pair, text).map_err(sentence)
-    }
-
-    /// Draws an eye's image and depth, 0 left and 1 right, into the framebuffer that is bound, whose viewport is set to
-    /// this.
-    #[wasm_bindgen(js_name = xrShow)]
-    pub fn xr_show(&self, eye: usize, x: u32, y: u32, width: u32, height: u32) {
-        if let Content::Scene(scene) = &self.content
-            && let Some(headset) = &scene.headset
-        {
-            headset.show(&self.show, Eye::BOTH[eye.min(1)], [x, y], [width, height]);
-        }
-    }
-
-    /// Drops the images of a session that has ended.
-    #[wasm_bindgen(js_name = xrEnd)]
-    pub fn xr_end(&mut self) {
-        if let Content::Scene(scene) = &mut self.content {
-            scene.headset = None;
-        }
-    }
-}
-
-/// The methods, measured against each other.
-#[wasm_bindgen]
-impl Page {
-    /// Prepares the scene's methods for images of this size, and returns who takes part as JSON: `{"contenders": [...],
-    /// "unsupported": [[name, reason]], "timerQueries"}`.
-    ///
-    /// # Errors
-    /// A sentence, for instance without memory.
-    #[wasm_bindgen(js_name = benchBegin)]
-    pub fn bench_begin(&mut self, width: u32, height: u32) -> Result<String, JsError> {
-        let Content::Scene(scene) = &mut self.content else { return Err(nothing_to_measure()) };
-        scene.bench = None;
-        let (bench, facts) = Bench::new(&self.gl, &self.settings, [width, height]).map_err(sentence)?;
-        scene.bench = Some(bench);
-        Ok(facts)
-    }
-
-    /// Renders stereo frames, and waits until the GPU has done the last one.
-    ///
-    /// # Errors
-    /// A sentence.
-    #[wasm_bindgen(js_name = benchFrames)]
-    pub fn bench_frames(&mut self, contender: usize, viewpoint: usize, count: u32) -> Result<(), JsError> {
-        for _ in 0..count {
-            self.bench_frame(contender, viewpoint)?;
-        }
-        if let Some(bench) = self.bench() {
-            bench.wait();
-        }
-        Ok(())
-    }
-
-    /// Begins timed frames.
-    #[wasm_bindgen(js_name = benchStartPasses)]
-    pub fn bench_start_passes(&mut self) {
-        self.gl.set_profiling(Profiling::Queries);
-    }
-
-    /// Renders one stereo frame with a timer query around each pass; results come with later calls.
-    ///
-    /// # Errors
-    /// A sentence.
-    #[wasm_bindgen(js_name = benchTimedFrame)]
-    pub fn bench_timed_frame(&mut self, contender: usize, viewpoint: usize) -> Result<(), JsError> {
-        self.bench_frame(contender, viewpoint)?.end_timed_frame();
-        Ok(())
-    }
-
-    /// Ends timed frames. Returns the GPU time of each pass in ms, the mean of the frames whose results have come, as JSON;
-    /// `{}` for none.
-    #[wasm_bindgen(js_name = benchTakePasses)]
-    pub fn bench_take_passes(&mut self) -> String {
-        self.gl.set_profiling(Profiling::Off);
-        let passes = self.bench().map(Bench::take_passes).unwrap_or_default();
-        serde_json::json!(passes).to_string()
-    }
-
-    /// Drops what was prepared.
-    #[wasm_bindgen(js_name = benchEnd)]
-    pub fn bench_end(&mut self) {
-        self.gl.set_profiling(Profiling::Off);
-        if let Content::Scene(scene) = &mut self.content {
-            scene.bench = None;
-        }
-    }
-}
-
-impl Page {
-    fn bench(&mut self) -> Option<&mut Bench> {
+    /// Returns the scene, if one is shown.
+    fn scene(&mut self) -> Option<&mut SceneShow> {
         match &mut self.content {
-            Content::Scene(scene) => scene.bench.as_mut(),
-            _ => None,
+            Content::Scene(scene) => Some(scene),
+            Content::Empty | Content::Pictures(_) => None,
         }
     }
-
-    fn bench_frame(&mut self, contender: usize, viewpoint: usize) -> Result<&mut Bench, JsError> {
-        let Content::Scene(scene) = &mut self.content else { return Err(nothing_to_measure()) };
-        let SceneShow { prepared, bench: Some(bench), .. } = &mut **scene else {
-            return Err(nothing_to_measure());
-        };
-        bench.frame(&self.settings, prepared, contender, viewpoint).map_err(sentence)?;
-        Ok(bench)
-    }
-}
-
-fn nothing_to_measure() -> JsError {
-    JsError::new("There is no scene to measure.")
 }
 
 fn parse_options(json: &str) -> Result<PictureOptions, JsError> {

@@ -8,8 +8,6 @@ use yoro_render::stereo::{Method, StereoError, StereoFrame, StereoMethod};
 use yoro_render::{PreparedScene, Renderer};
 use yoro_scene::Scene;
 
-use super::bench::Bench;
-use super::xr::Headset;
 use crate::settings::Settings;
 
 /// Everything that is needed to show a scene.
@@ -19,10 +17,6 @@ pub struct SceneShow {
     /// The images of the last frame on the canvas.
     pub frame: StereoFrame,
     truth: Option<Truth>,
-    /// The methods, while they are measured.
-    pub bench: Option<Bench>,
-    /// The images of a headset, while there is a session.
-    pub headset: Option<Headset>,
 }
 
 /// A real render of both eyes, to compare the method's with.
@@ -42,8 +36,6 @@ impl SceneShow {
             method: settings.create(gl, settings.method)?,
             frame: StereoFrame::new(gl, [1, 1])?,
             truth: None,
-            bench: None,
-            headset: None,
         })
     }
 
@@ -57,7 +49,7 @@ impl SceneShow {
         settings: &Settings,
         before: &Settings,
     ) -> Result<(), GlError> {
-        (self.truth, self.headset) = (None, None);
+        self.truth = None;
         let render = settings.render_settings();
         let renderer = if before.render_settings() == render {
             None
@@ -102,10 +94,5 @@ impl SceneShow {
     /// Returns the real image of the eye that is not dominant, where the display needs it.
     pub fn real_image(&self, settings: &Settings) -> Option<&Texture> {
         Some(self.truth.as_ref()?.frame.eye(settings.dominant.other()).color(0))
-    }
-
-    /// Returns the images of the last frame: the headset's while there is one.
-    pub fn last_frame(&self) -> &StereoFrame {
-        self.headset.as_ref().map_or(&self.frame, Headset::frame)
     }
 }

@@ -1,105 +1,116 @@
 //! Both eyes of a headset, as WebXR has them.
 
-use std::rc::Rc;
-
-use yoro::eyes::{DepthRange, Eye, EyePair, GuardBand};
-use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
+use wasm_bindgen::prelude::*;
+use yoro::eyes::{DepthRange, Eye, EyePair};
+use yoro_gl::{Destination, Format, RenderTarget};
 use yoro_lenses::{Content, Hud, Placement};
-use yoro_render::stereo::{DepthTarget, EyeTarget, Method, StereoError, StereoFrame, StereoMethod};
-use yoro_render::{DepthCopy, PreparedScene};
+use yoro_render::DepthCopy;
+use yoro_render::stereo::{DepthTarget, EyeTarget, StereoFrame, Substitute};
 
-use super::show::Show;
+use super::Page;
+use super::error::sentence;
+use super::scene_show::SceneShow;
 use crate::settings::Settings;
 use crate::views::{VIEW_FLOATS, view};
 use crate::walker::Walker;
 
 /// Near and far plane of a WebXR session.
-pub const DEPTH: DepthRange = DepthRange { near: 0.1, ..DepthRange::PAPER };
+const DEPTH: DepthRange = DepthRange { near: 0.1, ..DepthRange::PAPER };
 
 /// The images of a headset, and what draws them.
+#[wasm_bindgen]
 pub struct Headset {
     frame: StereoFrame,
     depth: [RenderTarget; 2],
     copy: DepthCopy,
     hud: Hud,
-    /// The method that renders both eyes, once neither could be synthesized from the other.
-    substitute: Option<Box<dyn StereoMethod>>,
+    /// Renders both eyes where neither can be synthesized from the other.
+    substitute: Substitute,
+    /// The choices that the substitute is made for.
+    settings: Settings,
 }
 
+#[wasm_bindgen]
 impl Headset {
-    /// Makes images of this size.
+    /// Returns near and far plane in metres, for the session.
+    pub fn planes() -> Vec<f32> {
+        vec![DEPTH.near, DEPTH.far]
+    }
+
+    /// Makes the images of a session.
     ///
     /// # Errors
-    /// The GPU cannot do it.
-    pub fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<Headset, GlError> {
-        let depth = || RenderTarget::new(gl, size, &[], Some(Format::Depth24));
+    /// A sentence.
+    #[wasm_bindgen(constructor)]
+    pub fn new(page: &Page) -> Result<Headset, JsError> {
+        let depth = || RenderTarget::new(&page.gl, [1, 1], &[], Some(Format::Depth24)).map_err(sentence);
         Ok(Headset {
-            frame: StereoFrame::new(gl, size)?,
+            frame: StereoFrame::new(&page.gl, [1, 1]).map_err(sentence)?,
             depth: [depth()?, depth()?],
-            copy: DepthCopy::new(gl)?,
-            hud: Hud::new(gl)?,
-            substitute: None,
+            copy: DepthCopy::new(&page.gl).map_err(sentence)?,
+            hud: Hud::new(&page.gl).map_err(sentence)?,
+            substitute: Substitute::default(),
+            settings: page.settings,
         })
     }
 
-    /// Gives the images another size.
+    /// Renders both eyes into images of this size: `views` has 23 floats for each, the left one first: position,
+    /// orientation (x, y, z, w) and projection matrix. `text` hangs before the eyes, four lines at most. False when both
+    /// were rendered because neither can be synthesized from the other.
     ///
     /// # Errors
-    /// The GPU cannot do it.
-    pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
-        self.frame.resize(size)?;
-        self.depth.iter_mut().try_for_each(|depth| depth.resize(size))
-    }
-
-    /// Returns the images of the last frame.
-    pub fn frame(&self) -> &StereoFrame {
-        &self.frame
-    }
-
-    /// Renders both eyes; `text` hangs before them. False when both were rendered because neither can be synthesized from
-    /// the other.
-    ///
-    /// # Errors
-    /// The method's.
+    /// A sentence.
     pub fn draw(
         &mut self,
-        gl: &Rc<Context>,
-        settings: &Settings,
-        prepared: &mut PreparedScene,
-        method: &mut dyn StereoMethod,
-        pair: &EyePair,
+        page: &mut Page,
+        views: &[f32],
+        width: u32,
+        height: u32,
         text: &str,
-    ) -> Result<bool, StereoError> {
-        let Headset { frame, depth, copy, hud, substitute } = self;
-        let fits = !settings.method.needs_aligned_eyes() || pair.synthesis(GuardBand::None).is_ok();
-        let method = match substitute {
-            _ if fits => method,
-            Some(substitute) => substitute.as_mut(),
-            none => none.insert(settings.create(gl, Method::Conventional)?).as_mut(),
+    ) -> Result<bool, JsError> {
+        let size = [width, height];
+        let Some(pair) = eyes(views, &page.settings, &page.walker, size) else {
+            return Err(JsError::new("The headset's views cannot be understood."));
+        };
+        let (gl, settings) = (page.gl.clone(), page.settings);
+        let Some(SceneShow { prepared, method, .. }) = page.scene() else { return Ok(true) };
+        if !settings.makes_same(&self.settings) {
+            (self.substitute, self.settings) = (Substitute::default(), settings);
+        }
+        let Headset { frame, depth, copy, hud, substitute, .. } = self;
+        frame.resize(size).map_err(sentence)?;
+        depth.iter_mut().try_for_each(|depth| depth.resize(size)).map_err(sentence)?;
+        let fits = Substitute::reason(settings.method, &pair).is_none();
+        let method = if fits {
+            method.as_mut()
+        } else {
+            substitute.get(|method| settings.create(&gl, method)).map_err(sentence)?
         };
         let colors = frame.targets();
         let to = [0, 1].map(|i| EyeTarget {
             depth: Some(DepthTarget { to: Destination::whole(&depth[i]), copy }),
             ..colors[i]
         });
-        method.render_to(&mut prepared.renderer, &prepared.scene, pair, &to)?;
+        method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).map_err(sentence)?;
         if !text.is_empty() {
             let panel = hud.set(Content { text, progress: None }, Placement::Below);
-            panel.draw_into_eyes(pair, &colors.map(|target| target.color));
+            panel.draw_into_eyes(&pair, &colors.map(|target| target.color));
         }
         Ok(fits)
     }
 
-    /// Draws an eye's image and depth into the framebuffer that is bound.
-    pub fn show(&self, show: &Show, eye: Eye, origin: [u32; 2], size: [u32; 2]) {
-        let depth = &self.depth[eye.index()];
+    /// Draws an eye's image and depth, 0 left and 1 right, into the framebuffer that is bound, whose viewport is set to
+    /// this.
+    pub fn show(&self, page: &Page, eye: usize, x: u32, y: u32, width: u32, height: u32) {
+        let eye = Eye::BOTH[eye.min(1)];
+        let (image, depth) = (self.frame.eye(eye).color(0), &self.depth[eye.index()]);
         debug_assert_eq!(self.frame.eye(eye).size(), depth.size());
-        show.with_depth(self.frame.eye(eye).color(0), depth.depth(), origin, size);
+        page.show.with_depth(image, depth.depth(), [x, y], [width, height]);
     }
 }
 
 /// Reads both eyes as WebXR describes them, the left one first; none for anything else.
-pub fn eyes(views: &[f32], settings: &Settings, walker: &Walker, size: [u32; 2]) -> Option<EyePair> {
+fn eyes(views: &[f32], settings: &Settings, walker: &Walker, size: [u32; 2]) -> Option<EyePair> {
     let (left, right) = views.split_at_checked(VIEW_FLOATS)?;
     let (left, right) = (view(left)?, view(right)?);
     Some(EyePair {
