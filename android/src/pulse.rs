@@ -144,7 +144,7 @@ fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
             let mut samples = lock(&shared.samples);
             let now = now_ns();
             sensors.drain(|sample, time| {
-                let time = pace::of_sample(time, now, slept);
+                let time = pace::sample_time_ns(time, now, slept);
                 if samples.len() == MAX_SAMPLES {
                     samples.remove(0);
                 }
