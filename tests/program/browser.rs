@@ -26,9 +26,9 @@ pub struct Browser {
     loads: usize,
     /// The address, beside files, from which pages may load.
     server: Option<String>,
-    /// What scripts wrote to the console, and warnings.
+    /// The warnings, and everything that scripts wrote to the console.
     console: Vec<String>,
-    /// What scripts threw, and what the page could not load.
+    /// The exceptions of scripts, and the files that the page could not load.
     errors: Vec<String>,
     _profile: tempfile::TempDir,
 }
@@ -40,7 +40,7 @@ impl Browser {
         Browser::start_with(&["--disable-gpu"])
     }
 
-    /// As [`Browser::start`], with these options instead of those for pages without graphics.
+    /// Starts as [`Browser::start`] does, with these options instead of those for pages without graphics.
     pub fn start_with(options: &[&str]) -> Option<Browser> {
         let Some(program) = find() else {
             eprintln!(
@@ -254,7 +254,7 @@ fn find() -> Option<PathBuf> {
         .find_map(|name| folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file()))
 }
 
-/// What every page of ours must do in a browser: no script error, nothing from elsewhere, all figures there, other
+/// Checks what every page of ours must do in a browser: no script error, nothing from elsewhere, all figures there, other
 /// colours in the dark, and no part wider than a narrow window.
 pub fn check_figures(browser: &mut Browser, page: &Path) {
     browser.show(1400, "light");
@@ -276,7 +276,7 @@ pub fn check_figures(browser: &mut Browser, page: &Path) {
     browser.expect_no_error();
 }
 
-/// As [`check_figures`]; besides, all pictures load, and the switch between them works by mouse and key.
+/// Checks as [`check_figures`] does, and that all pictures load and the switch between them works by mouse and key.
 pub fn check_page(browser: &mut Browser, page: &Path) {
     check_figures(browser, page);
     browser.show(1400, "light");

@@ -7,7 +7,7 @@ use crate::pair;
 use crate::program::{run, succeed};
 
 #[test]
-fn files_and_folders() {
+fn files_and_folders_are_compared() {
     let dir = tempfile::tempdir().unwrap();
     let color = pair::color(0.5);
     let mut other = color.clone();

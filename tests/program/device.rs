@@ -258,7 +258,7 @@ fn devices_are_listed_and_installed_on() {
 
 const SMALL: &str = "name = \"small\"\nseconds = 20\nwarm-up-seconds = 5\nrepetitions = 2\nscenes = [\"talk\", \"stage\"]\nbrightness = 100\nrefresh-hz = 60\n[cool-down]\ncelsius = 30\n[[method]]\nname = \"conventional\"\n[[method]]\nname = \"paper\"\nsettings = { method = \"yoro\", pipeline = \"paper\" }\n";
 
-/// What a device keeps: settings, properties, files.
+/// The state that a device keeps: settings, properties, files.
 fn kept(folder: &Path, serial: &str) -> serde_json::Value {
     serde_json::from_slice(&fs::read(folder.join(format!("state/{serial}.json"))).unwrap()).unwrap()
 }
@@ -780,7 +780,7 @@ fn fake_adb(at: &Path, script: &str) {
 
 #[cfg(unix)]
 #[test]
-fn a_server_that_is_down_is_not_a_device_that_is_missing() {
+fn a_missing_adb_server_is_not_reported_as_a_missing_device() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     // As flutter issue 125971 quotes it.

@@ -140,7 +140,7 @@ fn known_differences_come_out_and_faults_are_named() {
 }
 
 #[test]
-fn folders_without_captures() {
+fn folders_without_captures_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     write(&at.join("good"), "yoro", "street", 1, 400.0, 60.0, &[]);

@@ -11,7 +11,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn ends_soon_and_leaves_whole_files_only() {
+fn ctrl_c_ends_soon_and_leaves_whole_files() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out");
     let line = "render prototype --frames 5000 --size 64x64";

@@ -15,7 +15,7 @@ fn layer(folder: &Path, arguments: &[&str]) -> Run {
 }
 
 #[test]
-fn it_is_installed_told_of_and_removed() {
+fn the_layer_is_installed_listed_and_removed() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("layer.so"), "the library").unwrap();
@@ -50,7 +50,7 @@ fn the_log_of_the_last_program_is_shown() {
 }
 
 #[test]
-fn what_cannot_be_run_or_installed_is_named() {
+fn impossible_runs_and_installations_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let library = folder.path().join("layer.so");
     fs::write(&library, "the library").unwrap();

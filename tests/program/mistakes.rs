@@ -16,7 +16,7 @@ fn color_and_depth(dir: &Path) {
 }
 
 #[test]
-fn pictures_that_are_none() {
+fn files_that_are_no_pictures_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     color_and_depth(at);
@@ -44,7 +44,7 @@ fn pictures_that_are_none() {
 }
 
 #[test]
-fn scenes_that_are_none() {
+fn files_that_are_no_scenes_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     fs::write(at.join("damaged.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 zero\nf 1 2 3\n").unwrap();
@@ -139,7 +139,7 @@ fn options_out_of_range() {
 }
 
 #[test]
-fn no_gl_at_all() {
+fn a_machine_without_gl_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     fs::create_dir(dir.path().join("out")).unwrap();
     let picture = dir.path().join("out/prototype.left.png");
@@ -163,7 +163,7 @@ fn no_gl_at_all() {
 }
 
 #[test]
-fn a_reader_that_has_seen_enough_is_no_mistake() {
+fn a_closed_pipe_is_no_error() {
     let mut command = yoro(["scenes"]);
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());

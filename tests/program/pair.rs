@@ -36,7 +36,7 @@ fn look(x: u32, y: u32, eye: f32) -> (usize, [f32; 2]) {
     seen.expect("the last layer is everywhere")
 }
 
-/// What an eye sees. Smooth on each layer, so that a shift by part of a pixel is well defined.
+/// The picture of an eye. It is smooth on each layer, so that a shift by part of a pixel is well defined.
 pub fn color(eye: f32) -> RgbImage {
     RgbImage::from_fn(WIDTH, HEIGHT, |x, y| {
         let (layer, [u, v]) = look(x, y, eye);

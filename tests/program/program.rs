@@ -6,7 +6,7 @@ use std::process::{Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// What a finished run said.
+/// The exit code and output of a finished run.
 pub struct Run {
     pub code: Option<i32>,
     pub stdout: String,
@@ -14,7 +14,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// What a finished process said.
+    /// Reads the output of a finished process.
     pub fn new(output: Output) -> Run {
         let text = |bytes| String::from_utf8(bytes).expect("the program prints UTF-8");
         Run { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
@@ -60,7 +60,7 @@ pub fn run(folder: &Path, line: &str) -> Run {
     finish(yoro(line.split_whitespace()).current_dir(folder))
 }
 
-/// As [`run`]; the exit code must be 0.
+/// Runs as [`run`] does; the exit code must be 0.
 #[track_caller]
 pub fn succeed(folder: &Path, line: &str) -> Run {
     let run = run(folder, line);

@@ -53,7 +53,7 @@ fn materials_and_textures_of_an_obj_file() {
 }
 
 #[test]
-fn missing_materials_and_textures_are_warned_of() {
+fn missing_materials_and_textures_give_warnings() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("room.obj"), OBJ).unwrap();
     let run = succeed(dir.path(), &format!("render room.obj {LOOK}"));
@@ -85,9 +85,9 @@ fn every_output_and_measure() {
     assert_eq!(ssim(&json[0]["quality"]), 1.0, "{json:#}");
 }
 
-/// What a glTF file says and the renderer does not draw is told once for each material.
+/// Features of a glTF file that the renderer does not draw are reported once for each material.
 #[test]
-fn what_is_left_out_of_a_gltf_file_is_told() {
+fn features_left_out_of_a_gltf_file_are_reported() {
     let dir = tempfile::tempdir().unwrap();
     picture::save_color(&dir.path().join("pic.png"), &RgbImage::new(4, 4)).unwrap();
     let corners = [[0f32, 0., 0.], [1., 0., 0.], [0., 1., 0.]];

@@ -22,7 +22,7 @@ fn write(dir: &Path, name: &str, text: &str) {
 }
 
 #[test]
-fn a_page_that_a_browser_shows() {
+fn the_page_is_shown_in_a_browser() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     write(at, "run.jsonl", &format!("{HEADER}\n{ROUND}\n"));
@@ -44,7 +44,7 @@ fn a_page_that_a_browser_shows() {
 }
 
 #[test]
-fn what_bench_measured_is_reported() {
+fn measurements_of_bench_are_reported() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     succeed(at, "bench bandwidth --quick --scene prototype --size 64x64 --frames 2 --out b.jsonl");
@@ -64,7 +64,7 @@ fn what_bench_measured_is_reported() {
 }
 
 #[test]
-fn files_that_are_no_results() {
+fn files_without_results_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     write(at, "good.jsonl", &format!("{HEADER}\n{ROUND}\n"));

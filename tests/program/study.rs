@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::browser::{Browser, check_figures};
 use crate::program::{run, succeed};
 
-/// What a participant answers who likes both the same, give or take.
+/// The answer of a participant who likes both methods about the same.
 fn rating(participant: usize, method: &str, scene: usize) -> f64 {
     let taste = 3.0 + 0.1 * (participant % 5) as f64;
     let whim = if method == "yoro" { 0.1 * ((participant * 7 + scene * 3) % 5) as f64 - 0.2 } else { 0.0 };

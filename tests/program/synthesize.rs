@@ -186,7 +186,7 @@ fn folders() {
     run(dir.path(), &line).refuses(&["c.png has no depth image of that name in depth"]);
 }
 
-/// What would silently replace something is refused before anything is written.
+/// An output that would silently replace something is refused before anything is written.
 #[test]
 fn every_output_has_its_place() {
     let dir = tempfile::tempdir().unwrap();
@@ -219,7 +219,7 @@ fn every_output_has_its_place() {
 }
 
 #[test]
-fn depth_that_means_nothing() {
+fn depth_without_meaning_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     picture::save_color(&at.join("color.png"), &pair::color(0.5)).unwrap();

@@ -84,7 +84,7 @@ fn opengl_es_3_0_shows_the_same_by_gather() {
 }
 
 #[test]
-fn what_is_older_than_es_3_0_is_refused() {
+fn contexts_older_than_es_3_0_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     on_es("2.0", dir.path(), "").refuses(&["OpenGL ES 3"]);
 }

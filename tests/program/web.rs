@@ -80,7 +80,7 @@ impl Page {
         Page::open_with(&GL, fragment, before)
     }
 
-    /// As [`Page::open`], in a browser with these options.
+    /// Opens as [`Page::open`] does, in a browser with these options.
     fn open_with(gl: &[&str], fragment: &str, before: Option<&str>) -> Option<Page> {
         let server = Server::start()?;
         let mut browser = Browser::start_with(gl)?;
@@ -114,7 +114,7 @@ impl Page {
         }
     }
 
-    /// What the page says, if it does.
+    /// The page's message, if it shows one.
     fn message(&mut self) -> Option<String> {
         let said = "(() => { const m = document.getElementById('message'); return m.hidden ? null : m.textContent; })()";
         self.evaluate(said).as_str().map(str::to_owned)
@@ -408,7 +408,7 @@ fn glb() -> Vec<u8> {
 }
 
 #[test]
-fn files_of_ones_own() {
+fn dropped_files_are_shown_or_refused() {
     let Some(mut page) = Page::open("", None) else { return };
     let texture = png(RgbImage::from_fn(8, 8, |x, y| Rgb([(x * 30) as u8, (y * 30) as u8, 90])));
     let mtl = b"newmtl wall\nKd 1 1 1\nmap_Kd bricks.png\n".to_vec();
@@ -622,7 +622,7 @@ fn a_headset_shows_both_eyes() {
     page.browser.expect_silence();
 }
 
-/// What the desktop renders for a headset's views at the scene's first viewpoint.
+/// The desktop's pictures for a headset's views at the scene's first viewpoint.
 fn headset_pictures(views: &[f32], size: [u32; 2]) -> [RgbImage; 2] {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();

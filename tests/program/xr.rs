@@ -93,7 +93,7 @@ impl Simulated {
         in_time(&mut command, limit)
     }
 
-    /// As [`Simulated::run`]; it must end well, without anything that the specification forbids.
+    /// Runs as [`Simulated::run`] does. It must succeed, without anything that the specification forbids.
     #[track_caller]
     fn succeed(&self, line: &str) -> Run {
         let run = self.run(line);
@@ -223,7 +223,7 @@ fn a_session_from_beginning_to_end() {
 }
 
 #[test]
-fn what_the_runtime_gets_is_what_is_captured() {
+fn captured_pictures_equal_those_of_the_runtime() {
     let pictures = Some(Pictures { folder: PathBuf::new(), from: 1 });
     let simulated = Simulated::new(&Script { pictures, ..Script::default() }.asymmetric());
     simulated.succeed("--frames 2 --capture captured");
@@ -297,7 +297,7 @@ fn a_session_is_lost_in_every_state() {
 }
 
 #[test]
-fn a_long_evening() {
+fn changes_of_state_pose_refresh_rate_and_ipd_are_followed() {
     let events = vec![
         event(At::Frame(6), What::Level(State::Visible)),
         event(At::Frame(8), What::Level(State::Synchronized)),
@@ -406,7 +406,7 @@ fn depth_is_submitted_unless_the_settings_say_otherwise() {
 }
 
 #[test]
-fn what_the_runtime_lacks_is_done_without() {
+fn missing_extensions_are_worked_around() {
     let optional = [
         "XR_KHR_composition_layer_depth",
         "XR_KHR_visibility_mask",
@@ -431,7 +431,7 @@ fn what_the_runtime_lacks_is_done_without() {
 }
 
 #[test]
-fn what_cannot_be_done_without_is_named() {
+fn missing_requirements_are_named() {
     let refuse = |script: Script, naming: &[&str]| {
         let simulated = Simulated::new(&script);
         let arguments = ["xr", "--runtime", "runtime.json", "--frames", "1"];
@@ -483,7 +483,7 @@ fn a_runtime_may_leave_another_context_current() {
 }
 
 #[test]
-fn eyes_of_other_kinds() {
+fn canted_and_unequal_eyes_are_drawn_completely() {
     let asymmetric = Script::default().asymmetric();
     let [left, right] = asymmetric.eyes;
     let cases = [

@@ -44,7 +44,7 @@ pub fn compare(image: &RgbImage, reference: &RgbImage) -> anyhow::Result<()> {
 /// one.
 ///
 /// # Errors
-/// As [`compare`], with the path of the difference image.
+/// Those of [`compare`], with the path of the difference image.
 pub fn check(name: &str, image: &RgbImage) -> anyhow::Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let workspace = root.parent().unwrap_or(root);

@@ -1,4 +1,5 @@
-//! What the tests in `tests/tests` share: contexts, a small scene, golden images, all shader programs, multisample textures.
+//! Code that the tests in `tests/tests` share: contexts, a small scene, golden images, all shader programs, multisample
+//! textures. It takes a context and gives pictures and programs; no crate of the product may depend on it.
 
 pub mod golden;
 pub mod programs;

@@ -193,14 +193,14 @@ pub struct ProgramText {
 /// One stage of it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct StageText {
-    /// As [`yoro_shaders::files`] names it.
+    /// Its name in [`yoro_shaders::files`].
     pub file: String,
     /// GLSL ES 3.10 with includes and macros.
     pub text: String,
 }
 
-/// What drivers with other extensions get instead: views in layers of an array where these have multiview, `discard` where
-/// they have no clip distances.
+/// The macros that drivers with other extensions get instead: views in layers of an array where these have multiview,
+/// `discard` where they have no clip distances.
 const COUNTERPARTS: [(&str, &str); 3] =
     [("CLIP_DISTANCE", "MULTIVIEW"), ("CLIP_DISTANCE", "SEAM_DISCARD"), ("HALF", "LAYER")];
 

@@ -103,7 +103,7 @@ impl Multisampled {
         }
     }
 
-    /// As a source of [`yoro::synthesis::Edges::Multisample`].
+    /// The source for [`yoro::synthesis::Edges::Multisample`].
     pub fn source(&self, with_colors: bool) -> Source {
         Source { color: self.resolved.raw(), depth: self.depth, samples: with_colors.then_some(self.color) }
     }
