@@ -416,7 +416,7 @@ fn files_are_written_and_linked() {
     }
     assert!(written.page.is_file() && written.summary.is_file());
     // A file for each suite, those of one with all its sections, with machine and method at the head.
-    assert_eq!(written.suites.len(), 12);
+    assert_eq!(written.suites.len(), 13);
     let scenes = read(&results.join("scenes.md"));
     assert!(scenes.starts_with("# Scenes: frame time, image quality, overhead\n"), "{scenes}");
     assert!(scenes.contains("## Image quality\n") && scenes.contains(&format!("(../{link}")));
