@@ -5,7 +5,7 @@ use yoro::eyes::{DepthRange, Eye, EyePair};
 use yoro_gl::{Destination, Format, RenderTarget};
 use yoro_lenses::{Content, Hud, Placement};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{DepthTarget, EyeTarget, StereoFrame, Substitute};
+use yoro_render::stereo::{DepthTarget, EyeTarget, StereoFrame, StereoMethod, Substitute};
 
 use super::Page;
 use super::error::sentence;
@@ -81,7 +81,7 @@ impl Headset {
         frame.resize(size).map_err(sentence)?;
         depth.iter_mut().try_for_each(|depth| depth.resize(size)).map_err(sentence)?;
         let fits = Substitute::reason(settings.method, &pair).is_none();
-        let method = if fits {
+        let method: &mut dyn StereoMethod = if fits {
             method.as_mut()
         } else {
             substitute.get(|method| settings.create(&gl, method)).map_err(sentence)?
