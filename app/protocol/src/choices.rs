@@ -10,6 +10,9 @@ use crate::setting::{SettingValue, find, named};
 /// The most point lights that light one view.
 pub const MAX_POINT_LIGHTS: usize = 24;
 
+/// The most rows of the kernel that fills holes in the paper's pipeline.
+pub const MAX_KERNEL_HEIGHT: u32 = 15;
+
 /// Numbers of samples that a pixel of the forward renderer may have.
 pub const MSAA: [u32; 3] = [1, 2, 4];
 

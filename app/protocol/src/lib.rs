@@ -12,8 +12,8 @@ mod settings;
 pub mod telemetry;
 
 pub use choices::{
-    AntiAliasing, Choice, ChoiceError, DisplayKind, MAX_POINT_LIGHTS, MSAA, Method, Performance, Pipeline,
-    RendererKind, Ssao,
+    AntiAliasing, Choice, ChoiceError, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method,
+    Performance, Pipeline, RendererKind, Ssao,
 };
 pub use quantities::{ImBufferSize, Ipd, IpdError, ParseImBufferSizeError, ScreenSize, ScreenSizeError};
 pub use setting::Setting;

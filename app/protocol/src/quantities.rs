@@ -19,12 +19,12 @@ pub struct IpdError;
 impl Ipd {
     /// The largest distance, a little more than people's.
     pub const MAX: Ipd = Ipd(0.08);
-    /// The distance where nobody says otherwise: the paper's.
+    /// The default, which is the paper's.
     pub const DEFAULT: Ipd = Ipd(0.063);
 
-    /// Returns the distance nearest to some metres; 0 for NaN.
+    /// Returns the distance nearest to some metres; [`Ipd::MAX`] for NaN.
     pub fn nearest(metres: f32) -> Ipd {
-        Ipd(metres.min(Ipd::MAX.0).max(0.0))
+        Ipd(if metres.is_nan() { Ipd::MAX.0 } else { metres.clamp(0.0, Ipd::MAX.0) })
     }
 
     /// The distance in metres.

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DisplayKind, MAX_POINT_LIGHTS, MSAA, Method, Performance, Pipeline, RendererKind, Ssao,
+    AntiAliasing, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, Performance, Pipeline,
+    RendererKind, Ssao,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::{Setting, SettingValue};
@@ -123,7 +124,7 @@ settings! {
     /// paper: rows of the patcher's kernel, 1 to 15.
     "kernel-height" kernel_height: u32 = 3;
         value_name("ROWS");
-        range(|s| (1..=15).contains(&s.kernel_height), "give 1 to 15 rows"),
+        range(|s| (1..=MAX_KERNEL_HEIGHT).contains(&s.kernel_height), "give 1 to 15 rows"),
     /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says.
     "strict" strict: bool = false,
     /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), `auto:METRES`, or complete from a distance in

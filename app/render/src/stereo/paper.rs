@@ -8,6 +8,7 @@ use glow::HasContext;
 use yoro::eyes::Warp;
 use yoro::synthesis::{Outputs, Source, Synthesis, Uniforms, draw_target, set_source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
+use yoro_protocol::MAX_KERNEL_HEIGHT;
 pub use yoro_protocol::{ImBufferSize, ParseImBufferSizeError};
 
 /// Rows per workgroup of Algorithm 2, one invocation each.
@@ -134,7 +135,7 @@ impl Synthesis for Paper {
         gl.pass("paper patch", || {
             set_source(self.patch.bind(), source, &uniforms);
             self.set_imbuffer(&self.patch);
-            self.patch.set("kernel_height", self.options.kernel_height.clamp(1, 15) as i32);
+            self.patch.set("kernel_height", self.options.kernel_height.clamp(1, MAX_KERNEL_HEIGHT) as i32);
             self.patch.texture("imbuffer", 2, self.imbuffer.color(0).raw());
             draw_target(gl, target, self.outputs);
         });
