@@ -29,20 +29,19 @@ use crate::pulse::Pulse;
 use crate::screen::ScreenState;
 use crate::system::now_ns;
 
-/// When no refresh has come for so long, a frame is drawn all the same.
+/// The longest wait for a refresh; after it a frame is drawn without one.
 const REFRESH_TIMEOUT: Duration = Duration::from_millis(100);
 /// Time between attempts to get a lost context or a refused window again.
 const RETRY: Duration = Duration::from_millis(250);
 /// The rate that is assumed of a display that does not report one, in Hz.
 const USUAL_HZ: f32 = 60.0;
-/// How often a headset's runtime is asked for events while it wants no frames: in front, and in the background.
+/// Time between polls of a headset's runtime for events while it wants no frames: in front, and in the background.
 const HEADSET_POLL: Duration = Duration::from_millis(10);
 const HEADSET_BACKGROUND_POLL: Duration = Duration::from_millis(100);
 /// The screen of a device that cannot show anything else, display-referred.
 const FAILURE_COLOR: [f32; 3] = [0.45, 0.05, 0.05];
 
-/// The runtime of OpenXR that was found: its library stays in the process and is initialised once, whatever activities come
-/// and go.
+/// The OpenXR runtime. Its library stays in the process and is initialised once, however many activities come and go.
 static RUNTIME: OnceLock<runtime::Runtime> = OnceLock::new();
 
 /// Runs the application until Android destroys the activity or the session is over.
@@ -61,7 +60,7 @@ pub fn run(app: &AndroidApp) {
 
 /// The state of one run of `android_main`.
 struct Activity {
-    // What lives in the GL context is dropped before the context.
+    // Objects in the GL context are dropped before the context.
     display: Display,
     gl: Option<Rc<Context>>,
     window: Option<Window>,
@@ -84,7 +83,7 @@ struct Activity {
     is_resumed: bool,
     is_finishing: bool,
     is_over: bool,
-    /// The scene in view, and whether its session has its summary in the log.
+    /// The scene in view, and true if the summary of its session is in the log.
     scene: String,
     is_summarized: bool,
     /// The reason why this device can show nothing.
@@ -337,7 +336,7 @@ impl Activity {
         }
     }
 
-    /// Does what follows from a frame on any display.
+    /// Finishes a frame, on any display.
     fn after_frame(&mut self, report: &FrameReport) {
         self.note_scene();
         if report.telemetry_due {
@@ -366,14 +365,14 @@ impl Activity {
 
     /// Asks Android to end the activity.
     fn finish(&mut self) {
-        // Not by returning: only a loop that still runs gives window and input queue back.
+        // Does not return from the loop: only a running loop gives window and input queue back.
         if !std::mem::replace(&mut self.is_finishing, true) {
             self.java.finish();
         }
     }
 
-    /// Attaches to Android's window and makes what drawing on it needs, if there is a window and no headset needs the
-    /// context.
+    /// Attaches to Android's window and makes the objects for drawing on it, if there is a window and no headset needs
+    /// the context.
     fn open_window(&mut self) {
         self.retry = None;
         if self.display.is_headset() || self.is_finishing {
@@ -469,7 +468,7 @@ impl Activity {
         }
     }
 
-    /// Returns the screen as it is now; none without a window.
+    /// Returns the present screen; none without a window.
     fn screen(&mut self) -> Option<Screen> {
         let size = self.window.as_ref()?.size()?;
         Some(self.screen.of_window(size, &self.java))
@@ -540,7 +539,7 @@ impl Activity {
         let rendered = now_ns();
         cardboard.wait();
         let waited = now_ns();
-        // The image is turned to where the head is by now.
+        // Turns the image to the head's present direction.
         feed(cardboard);
         let destination = Destination { framebuffer: None, origin: [0, 0], size: screen.size };
         let report = cardboard.present(&destination, &timing(waited))?;

@@ -1,4 +1,4 @@
-//! The settings that are in use, and where they come from.
+//! The settings in use, and their sources.
 
 use std::path::PathBuf;
 
@@ -45,12 +45,12 @@ impl Configuration {
         Configuration { sources, settings: Settings::default(), folders, mistakes: Vec::new() }
     }
 
-    /// Takes over what was saved when Android put the activity away.
+    /// Takes over the changes saved when Android put the activity away.
     pub fn restore(&mut self, saved: &[u8]) {
         self.sources.saved = settings::restore(saved);
     }
 
-    /// Returns what the user has changed since the settings were read, for Android to keep.
+    /// Returns the user's changes since the settings were read, for Android to keep.
     pub fn save(&self, viewer: Option<&Viewer>) -> Vec<u8> {
         settings::save(&self.changes(viewer))
     }

@@ -18,8 +18,8 @@ pub struct Input {
 }
 
 impl Input {
-    /// Reads Android's events, if there are any, and appends what they mean. Keys that the application does not use, such
-    /// as the back key, stay Android's.
+    /// Reads Android's events, if there are any, and appends their meanings. Keys that the application does not use,
+    /// such as the back key, stay Android's.
     pub fn collect(&mut self, app: &AndroidApp, dpi: f32) {
         if !std::mem::take(&mut self.is_available) {
             return;

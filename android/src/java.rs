@@ -58,7 +58,7 @@ pub struct DisplayMetrics {
     pub mode: [i32; 2],
     /// Refreshes per second; 0 where the answer is implausible.
     pub refresh_hz: f32,
-    /// `Surface.ROTATION_*`: how often the picture is turned by 90 degrees.
+    /// `Surface.ROTATION_*`: the picture's rotation in steps of 90 degrees.
     pub rotation: i32,
 }
 
@@ -91,12 +91,12 @@ impl Java {
         })
     }
 
-    /// Returns the display, if Java says anything of it.
+    /// Returns the display's metrics; none if Java does not provide them.
     pub fn display_metrics(&self) -> Option<DisplayMetrics> {
         self.ask("the display", |env, activity| {
             let display = activity.get_window_manager(env)?.get_default_display(env)?;
             let mode = display.get_mode(env)?;
-            // Of the whole display; those of the resources leave out what the system keeps for itself.
+            // The metrics of the whole display; the resources' metrics leave out the parts reserved for the system.
             let metrics = Metrics::new(env)?;
             display.get_real_metrics(env, &metrics)?;
             let refresh_hz = display.get_refresh_rate(env)?;
@@ -196,7 +196,7 @@ impl Java {
         value.filter(|value| *value != i32::MIN)
     }
 
-    /// Returns what the system last broadcast of the battery.
+    /// Returns the system's last broadcast about the battery.
     pub fn battery_intent(&self) -> BatteryIntent {
         let answer = self.ask("the battery's intent", |env, activity| {
             let action = JString::new(env, "android.intent.action.BATTERY_CHANGED")?;
@@ -234,7 +234,7 @@ impl Java {
         });
     }
 
-    /// Shows a sentence over whatever is on the screen.
+    /// Shows a sentence over the screen's content.
     pub fn toast(&self, sentence: &str) {
         const LENGTH_LONG: i32 = 1;
         let sentence = sentence.to_owned();
@@ -308,7 +308,7 @@ fn read_rows(env: &mut Env, cursor: &Cursor, columns: &[&str]) -> JavaResult<Row
     Ok(rows)
 }
 
-/// Returns what `toString()` returns.
+/// Returns the result of `toString()`.
 fn text(env: &mut Env, object: &JObject) -> JavaResult<String> {
     let string = env.call_method(object, jni_str!("toString"), jni_sig!("()Ljava/lang/String;"), &[])?.l()?;
     env.cast_local::<JString>(string)?.try_to_string(env)

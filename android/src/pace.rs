@@ -5,7 +5,7 @@
 pub struct Refresh {
     /// The time at which it begins.
     pub begin_ns: i64,
-    /// From Android 13 on.
+    /// Android's plan; present from Android 13 on.
     pub timeline: Option<Timeline>,
 }
 
@@ -27,7 +27,7 @@ impl Refresh {
             Timeline { deadline_ns: self.begin_ns + period_ns, display_ns: self.begin_ns + 2 * period_ns };
         let Timeline { deadline_ns, display_ns } = self.timeline.unwrap_or(usual);
         let late = (ready_ns - deadline_ns).max(0);
-        // One that is late waits for a later refresh.
+        // A late frame waits for a later refresh.
         display_ns + (late + period_ns - 1) / period_ns * period_ns
     }
 }

@@ -13,7 +13,7 @@ use crate::dynamic::Library;
 use crate::java::Java;
 use crate::system::thread_id;
 
-/// `ANATIVEWINDOW_FRAME_RATE_COMPATIBILITY_DEFAULT`: frames are made for whatever rate there is.
+/// `ANATIVEWINDOW_FRAME_RATE_COMPATIBILITY_DEFAULT`: frames are made for any rate.
 const ANY_RATE: i8 = 0;
 
 type SetFrameRate = unsafe extern "C" fn(*mut ndk_sys::ANativeWindow, f32, i8) -> i32;
@@ -25,7 +25,7 @@ pub struct Performance {
     first_hz: Option<f32>,
     /// The rate asked for with the present window, in Hz.
     rate_hz: Option<f32>,
-    /// Whether sustained performance mode was asked for, and whether the device has it.
+    /// The request for sustained performance mode: true if on, and true if the device has the mode.
     sustained: Option<(bool, bool)>,
     hints: Option<Hints>,
 }
@@ -36,13 +36,13 @@ impl Performance {
         Performance { android: Library::open(), first_hz: None, rate_hz: None, sustained: None, hints: None }
     }
 
-    /// Forgets what was asked for with the window before.
+    /// Forgets the request made with the window before.
     pub fn forget_window(&mut self) {
         self.rate_hz = None;
     }
 
-    /// Asks for what the settings want, unless it was asked for before, and logs the outcome in one line. The display's
-    /// present rate is `refresh_hz`, 0 if unknown.
+    /// Asks for the performance that the settings want, unless already asked for, and logs the outcome in one line. The
+    /// display's present rate is `refresh_hz`, 0 if unknown.
     pub fn ask(&mut self, settings: &Settings, window: &NativeWindow, refresh_hz: f32, java: &Java) {
         let known = Some(refresh_hz).filter(|hz| *hz > 0.0);
         self.first_hz = self.first_hz.or(known);
@@ -83,7 +83,7 @@ impl Performance {
         }
     }
 
-    /// Returns what the device was asked for and has, for its [`DeviceState`](yoro_protocol::telemetry::DeviceState).
+    /// Returns the modes in effect by name, for the [`DeviceState`](yoro_protocol::telemetry::DeviceState).
     pub fn name(&self) -> &'static str {
         match (self.sustained == Some((true, true)), self.hints.is_some()) {
             (true, true) => "sustained/hints",
@@ -93,7 +93,7 @@ impl Performance {
         }
     }
 
-    /// Notes how long this thread has worked on a frame.
+    /// Notes this thread's working time on a frame.
     pub fn worked(&self, time: Duration) {
         if let Some(hints) = &self.hints {
             hints.worked(time);
@@ -125,7 +125,7 @@ type CreateSession = unsafe extern "C" fn(*mut Manager, *const i32, usize, i64) 
 type Report = unsafe extern "C" fn(*mut Session, i64) -> i32;
 type Close = unsafe extern "C" fn(*mut Session);
 
-/// Tells the scheduler how long this thread works on frames and how long it may, from API 33 on
+/// Reports this thread's working time per frame and its target to the scheduler, from API 33 on
 /// (<https://developer.android.com/games/optimize/adpf>).
 struct Hints {
     session: NonNull<Session>,

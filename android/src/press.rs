@@ -14,7 +14,7 @@ struct Down {
     position: [f32; 2],
 }
 
-/// Recognises presses. Times are of one clock, in nanoseconds; positions in pixels.
+/// Recognises presses. All times are from the same clock, in nanoseconds; positions are in pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Press {
     down: Option<Down>,
@@ -36,7 +36,7 @@ impl Press {
         }
     }
 
-    /// Notes that it goes up, and returns what it was.
+    /// Notes that the finger goes up, and returns the kind of press.
     pub fn up(&mut self, now_ns: i64) -> Option<Event> {
         let down = self.down.take()?;
         Some(if now_ns - down.since_ns >= LONG_NS { Event::LongPress } else { Event::Tap })

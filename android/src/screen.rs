@@ -1,4 +1,4 @@
-//! The phone's screen as Android has it now.
+//! The phone's screen in its present state on Android.
 
 use yoro_lenses::{Rotation, Screen};
 
@@ -40,7 +40,7 @@ impl ScreenState {
     }
 }
 
-/// Returns the pixels of the picture per inch. Where the user has chosen a lower resolution, Android still reports those
+/// Returns the pixels of the picture per inch. If the user has chosen a lower resolution, Android still reports those
 /// of the display's mode, to which the picture is scaled up.
 fn dpi(metrics: &DisplayMetrics) -> [f32; 2] {
     let longest = |size: [i32; 2]| size[0].max(size[1]) as f32;
@@ -48,8 +48,8 @@ fn dpi(metrics: &DisplayMetrics) -> [f32; 2] {
     if scale.is_finite() && scale > 0.0 { metrics.dpi.map(|dpi| dpi * scale) } else { metrics.dpi }
 }
 
-/// `Surface.ROTATION_*` says how far the picture is turned against the device's natural position, that of the sensors'
-/// axes: upright for phones, on the side for many tablets and for headsets.
+/// Converts `Surface.ROTATION_*`, the picture's rotation against the device's natural position, which the sensors'
+/// axes use: upright for phones, on the side for many tablets and for headsets.
 fn rotation(surface_rotation: i32) -> Rotation {
     match surface_rotation {
         1 => Rotation::LandscapeLeft,

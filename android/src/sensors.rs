@@ -80,7 +80,7 @@ impl Sensors {
         // SAFETY: all zeros is a valid event.
         let mut events: [ffi::ASensorEvent; BATCH] = unsafe { std::mem::zeroed() };
         loop {
-            // SAFETY: the queue is live and the buffer as long as it is said to be.
+            // SAFETY: the queue is live, and the buffer has the length that is passed.
             let count =
                 unsafe { ffi::ASensorEventQueue_getEvents(self.queue.as_ptr(), events.as_mut_ptr(), BATCH) };
             let Ok(count @ 1..) = usize::try_from(count) else { return };

@@ -1,5 +1,5 @@
-//! Settings from outside: defaults < file < intent extras < system properties < what the user
-//! had changed when the activity was put away.
+//! Settings from outside: defaults < file < intent extras < system properties < the user's changes
+//! from before the activity was put away.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub const FILE_NAME: &str = "yoro.toml";
 /// A setting as text: key and value.
 pub type Pair = (String, String);
 
-/// Where settings come from, each stronger than the one before.
+/// The sources of settings, each stronger than the one before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sources {
     /// A TOML file, which need not exist.
@@ -29,8 +29,8 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Takes over the present system properties. A property that has changed since is stronger than what the user had
-    /// changed by hand. True if any property differs.
+    /// Takes over the present system properties. A property that has changed since is stronger than the user's own
+    /// changes. True if any property differs.
     pub fn set_properties(&mut self, properties: Vec<Pair>) -> bool {
         if properties == self.properties {
             return false;

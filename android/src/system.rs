@@ -7,8 +7,8 @@ pub fn now_ns() -> i64 {
     time_ns(libc::CLOCK_MONOTONIC)
 }
 
-/// Returns how long the device has slept since its boot, in nanoseconds. The clock of the sensors is ahead of [`now_ns`]
-/// by it.
+/// Returns the time the device has slept since its boot, in nanoseconds. The sensors' clock is ahead of [`now_ns`] by
+/// this time.
 pub fn slept_ns() -> i64 {
     time_ns(libc::CLOCK_BOOTTIME) - now_ns()
 }

@@ -1,4 +1,4 @@
-//! The device's heat: the NDK's thermal service, and the skin sensor where it may be read.
+//! The device's heat: the NDK's thermal service, and the skin sensor if it may be read.
 
 use std::ffi::c_int;
 use std::fs;
@@ -10,11 +10,11 @@ use crate::dynamic::Library;
 
 /// Headroom is a forecast that changes slowly, and Android answers NaN to those who ask often.
 const HEADROOM_PERIOD: Duration = Duration::from_secs(10);
-/// After such an answer it may be asked again this much later.
+/// Time until the next query after an answer of NaN.
 const HEADROOM_RETRY: Duration = Duration::from_secs(2);
-/// How far ahead the headroom is forecast, in seconds.
+/// The headroom's forecast horizon, in seconds.
 const FORECAST_SECONDS: c_int = 10;
-/// No skin is colder or warmer, in degrees Celsius: beyond it is another unit, or a broken sensor.
+/// The plausible skin temperatures, in degrees Celsius. Values beyond are in another unit or from a broken sensor.
 const PLAUSIBLE: std::ops::Range<f32> = -40.0..150.0;
 
 /// `AThermalManager`, which only the NDK knows.
@@ -33,7 +33,7 @@ struct Service {
     manager: NonNull<Manager>,
     release: Release,
     status: Status,
-    /// From API 31 on.
+    /// Present from API 31 on.
     headroom: Option<Headroom>,
 }
 

@@ -17,13 +17,13 @@ export function keepNow() {
   history.replaceState(null, '', format(app.settings));
 }
 
-/** Writes the settings and where the head is into the address, soon. */
+/** Writes the settings and the head's place into the address after a short delay. */
 export function keepPlace() {
   app.settings.at = app.page.place ? Array.from(app.page.place) : null;
   keep();
 }
 
-/** Takes the settings from the address, and says what is wrong with it. */
+/** Takes the settings from the address, and shows a message about its faults. */
 export function readAddress() {
   const here = (list) => list.filter(({ reason }) => !reason).map(({ name }) => name);
   const { settings, faults } = parse(location.hash, {

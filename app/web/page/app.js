@@ -1,4 +1,4 @@
-// What the parts of the page share.
+// The state that the parts of the page share.
 
 import { defaults } from './link.js';
 
@@ -20,9 +20,9 @@ export const app = {
   /** @type {WebAssembly.Module | null} */
   module: null,
   settings: { ...defaults },
-  /** What is shown: `{builtin}`, `{main, files}` or `{color, depth, options}`. */
+  /** The source on display: `{builtin}`, `{main, files}` or `{color, depth, options}`. */
   source: null,
-  /** What the module says of the scene; null for pictures. */
+  /** The module's facts about the scene; null for pictures. */
   facts: null,
   /** The built-in scenes: `{name, title, kiloTriangles}`. */
   scenes: [],

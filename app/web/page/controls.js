@@ -32,7 +32,7 @@ export function listen(canvas, move, changed) {
     const [dx, dy] = [event.clientX - before[0], event.clientY - before[1]];
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
     if (pointers.size === 1) move.turn(dx * RADIANS_PER_PIXEL, dy * RADIANS_PER_PIXEL);
-    // Each of two fingers does its half.
+    // Each of two fingers contributes half.
     else move.walk((-dx * METRES_PER_PIXEL) / 2, 0, (dy * METRES_PER_PIXEL) / 2);
     changed();
   });

@@ -1,4 +1,4 @@
-// Files of one's own: dropped or chosen, shown, kept on this device.
+// The user's own files: dropped or chosen, shown, kept on this device.
 
 import { element } from './app.js';
 
@@ -9,7 +9,7 @@ const DEPTH = /depth|disp|z[-_. ]?(buffer|map)/i;
 /** More than a browser's module can hold, in bytes. */
 const MAX_BYTES = 1.5e9;
 
-/** All files of what was dropped, those in folders with their paths. */
+/** Returns all dropped files, those in folders with their paths. */
 async function dropped(transfer) {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
   if (!entries.length) return [...transfer.files].map((file) => ({ name: file.name, file }));
@@ -32,11 +32,11 @@ async function dropped(transfer) {
   return found;
 }
 
-/** What the files are, as [app.showSource] takes it; throws a sentence. */
+/** Returns the files as a source for [app.showSource]; throws a sentence. */
 export function understand(files) {
   const models = files.filter(({ name }) => MODEL.test(name));
   if (models.length) {
-    // Of several the one that lies outermost.
+    // The outermost one if there are several.
     const depth = ({ name }) => name.split('/').length;
     const main = models.reduce((a, b) => (depth(b) < depth(a) ? b : a));
     return { main: main.name, files };

@@ -1,4 +1,4 @@
-// Settings in the address's fragment: what is as by default is left out.
+// Settings in the address's fragment, without those that have their default.
 
 export const defaults = {
   scene: 'prototype', viewpoint: 0, method: 'yoro', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 63,
@@ -18,8 +18,8 @@ const allowed = {
   scale: ['1', '0.75', '0.5'],
 };
 
-/** The settings of a fragment, and a sentence for each part that is none. `known`: the names of scenes, and of the methods
- * of each renderer. */
+/** Returns the settings of a fragment, and a sentence for each invalid part. `known`: the names of scenes, and of the
+ * methods of each renderer. */
 export function parse(fragment, known) {
   const fields = new URLSearchParams(fragment.replace(/^#/, ''));
   const renderer = allowed.renderer.find((name) => name === fields.get('renderer')) ?? defaults.renderer;

@@ -55,7 +55,7 @@ async function measure(app, bench, seconds, run) {
   const count = Math.min(VIEWPOINTS, app.facts.viewpoints);
   const viewpoints = Array.from({ length: count }, (_, i) => Math.floor((i * app.facts.viewpoints) / count));
   const turn = async (contender, viewpoint, milliseconds) => {
-    // As many frames as make a batch long enough; the first one is not measured.
+    // Finds the number of frames that makes a batch long enough. The first frame is not measured.
     let frames = 1;
     let best = [];
     const end = performance.now() + milliseconds;

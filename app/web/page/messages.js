@@ -1,4 +1,4 @@
-// Messages to the user: errors, hints, and what is being waited for.
+// Messages to the user: errors, hints and progress.
 
 import { element } from './app.js';
 
@@ -15,9 +15,9 @@ export function clear() {
 }
 
 /**
- * Shows what is being waited for; nothing for null.
+ * Shows the work in progress; hides the display for null.
  * @param {string | null} text
- * @param {number | null} part from 0 to 1, where it is known how far that is
+ * @param {number | null} part the progress from 0 to 1, null if unknown
  * @param {string} count the same in words
  */
 export function loading(text, part = null, count = '') {

@@ -1,4 +1,4 @@
-// Keeps the page's files, so that it works without a network. What the network has is newer.
+// Keeps the page's files, so that it works without a network. Files from the network take precedence.
 
 const CACHE = 'yoro';
 const FILES = [

@@ -19,7 +19,7 @@ const about = (axis, angle) => {
 /** The head of a device that is turned so (degrees, as browsers say it), its screen turned by `screen` degrees: a quaternion
  * x, y, z, w in a world with Y up. */
 export function orientation(alpha, beta, gamma, screen) {
-  // About Z, X and Y of the Earth's axes, of which Z is up; then the screen against the device.
+  // Turns about the Earth's axes Z, X and Y, with Z up; then the screen against the device.
   const device = multiply(multiply(about(2, alpha * RADIANS), about(0, beta * RADIANS)), about(1, gamma * RADIANS));
   const upright = multiply(about(0, -Math.PI / 2), device);
   return multiply(upright, about(2, -screen * RADIANS));
@@ -110,7 +110,7 @@ export function offerPhone(app) {
           size = `${width}x${height}`;
           const long = element('phone-width').valueAsNumber / 1000;
           const metres = [width, height].map((n) => (long * n) / Math.max(width, height));
-          // It takes over what is straight ahead, and the phone before is used up by that.
+          // The new phone takes over the direction straight ahead, which consumes the phone before.
           const before = phone;
           phone = undefined;
           phone = new Phone(app.page, element('phone-viewer').value, ...metres, before);

@@ -1,4 +1,4 @@
-// What is shown: built-in scenes, models and pictures.
+// The sources that the page shows: built-in scenes, models and pictures.
 
 import { goThere } from './address.js';
 import { app, element } from './app.js';
@@ -59,7 +59,7 @@ async function showScene(source, keepPlace) {
     return;
   }
   loading('Compiling shaders');
-  // So that the line above is seen.
+  // Lets the browser show the line above first.
   await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
   try {
     app.facts = JSON.parse(app.page.setScene(answer.bytes));
@@ -82,7 +82,7 @@ async function showScene(source, keepPlace) {
   startLoop();
 }
 
-/** Shows how far a scene is: at first textures, then triangles, of which it is known how many there will be. */
+/** Shows a scene's progress: first the textures, then the triangles, whose final number is known. */
 function generating(doing, name, { textures, triangles }) {
   const { kiloTriangles } = app.scenes.find((scene) => scene.name === name);
   const kilo = Math.round(triangles / 1000);

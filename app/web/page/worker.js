@@ -10,7 +10,7 @@ onmessage = async ({ data }) => {
       : loadScene(data.main, data.files.map((file) => file.name), data.files.map((file) => new Uint8Array(file.bytes)));
     postMessage({ bytes, warnings: takeWarnings() }, [bytes.buffer]);
   } catch (error) {
-    // The module ends itself where memory ends, and says nothing then.
+    // The module aborts without a message when memory runs out.
     const full = error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
     postMessage({ error: full ? 'The scene could not be made, probably for lack of memory: choose a smaller one.' : error.message });
   }

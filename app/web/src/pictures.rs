@@ -31,7 +31,7 @@ pub enum SourceEye {
     /// The left one is synthesized.
     #[default]
     Right,
-    /// None: both are synthesized.
+    /// Neither eye: both are synthesized.
     Center,
 }
 

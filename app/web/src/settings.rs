@@ -9,7 +9,7 @@ use yoro_protocol::Ipd;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoMethod, StereoOptions};
 use yoro_render::{RenderSettings, RendererKind};
 
-/// How two images are shown on a flat screen.
+/// The way to show two images on a flat screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Display {
@@ -26,7 +26,7 @@ pub enum Display {
     Right,
     /// The difference between the eye that is not dominant and a real render of it.
     Difference,
-    /// That eye as the method makes it and really rendered, in turn.
+    /// The method's image of that eye and a real render of it, in turn.
     Flicker,
 }
 
@@ -36,7 +36,7 @@ impl Display {
         matches!(self, Display::SideBySide | Display::CrossEyed)
     }
 
-    /// Returns the width and height of what one image may fill of a canvas, in pixels.
+    /// Returns the width and height of the part of a canvas that one image may fill, in pixels.
     pub fn part(self, [width, height]: [u32; 2]) -> [u32; 2] {
         if self.is_split() { [(width / 2).max(1), height] } else { [width, height] }
     }
@@ -86,7 +86,7 @@ impl Settings {
     /// Reads JSON.
     ///
     /// # Errors
-    /// A sentence on what is wrong with it.
+    /// A sentence about the fault.
     pub fn parse(json: &str) -> Result<Settings, String> {
         serde_json::from_str(json).map_err(|error| format!("These settings cannot be used: {error}."))
     }
@@ -96,8 +96,8 @@ impl Settings {
         RenderSettings { renderer: self.renderer, msaa: self.msaa, ..RenderSettings::default() }
     }
 
-    /// Returns the methods' options. They differ from the desktop's in one: no frame is rendered twice because much of it
-    /// is near, for finding that out would make the browser wait for the GPU.
+    /// Returns the methods' options. They differ from the desktop's in one: no frame is rendered twice because much of
+    /// it is near, as finding that out would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
         StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
     }

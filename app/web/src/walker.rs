@@ -26,7 +26,7 @@ impl Walker {
         Walker { position: pose.position, heading, start: Some(pose) }
     }
 
-    /// Stands at what [`Walker::place`] returned; none for numbers that are no place.
+    /// Returns a walker at a place that [`Walker::place`] returned; none for numbers that are not a place.
     pub fn at(place: [f32; 5]) -> Option<Walker> {
         let [x, y, z, yaw, pitch] = place;
         place.iter().all(|n| n.is_finite() && n.abs() < 1e6).then(|| Walker {

@@ -1,4 +1,4 @@
-//! What JavaScript calls: the canvas and what is on it.
+//! The interface for JavaScript: the canvas and its content.
 
 mod bench;
 mod error;
@@ -27,7 +27,7 @@ use crate::pictures::{PictureOptions, PicturePair};
 use crate::settings::{Display, Settings};
 use crate::walker::Walker;
 
-/// What the canvas shows.
+/// The content of the canvas.
 enum Content {
     Empty,
     Scene(Box<SceneShow>),
@@ -74,7 +74,7 @@ impl Page {
         env!("CARGO_PKG_VERSION").into()
     }
 
-    /// Returns what the browser calls its WebGL.
+    /// Returns the browser's name for its WebGL version.
     #[wasm_bindgen(getter, js_name = glVersion)]
     pub fn gl_version(&self) -> String {
         self.gl.capabilities().version_string.clone()
@@ -132,7 +132,7 @@ impl Page {
     /// A sentence, when the GPU cannot take it; nothing is shown then.
     #[wasm_bindgen(js_name = setScene)]
     pub fn set_scene(&mut self, packed: &[u8]) -> Result<String, JsError> {
-        // Before the new scene takes memory.
+        // Frees the old content before the new scene takes memory.
         self.content = Content::Empty;
         let scene: Scene = postcard::from_bytes(packed).map_err(sentence)?;
         let facts = serde_json::json!({
@@ -200,7 +200,7 @@ impl Page {
         }
     }
 
-    /// Goes to what [`Page::place`] returned; false for what is no place.
+    /// Goes to a place that [`Page::place`] returned; false if the numbers are not a place.
     #[wasm_bindgen(js_name = putAt)]
     pub fn put_at(&mut self, place: &[f32]) -> bool {
         let walker = place.try_into().ok().and_then(Walker::at);

@@ -57,7 +57,7 @@ impl Phone {
         })
     }
 
-    /// Makes what is straight ahead of the head in the next frame the middle of the scene.
+    /// Makes the direction straight ahead of the head in the next frame the middle of the scene.
     pub fn recenter(&mut self) {
         self.recenter = true;
     }

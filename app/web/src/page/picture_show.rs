@@ -24,7 +24,7 @@ pub struct PictureShow {
     pub frame: StereoFrame,
 }
 
-/// Compiles the synthesis of eyes with such silhouettes.
+/// Compiles the synthesis of eyes for this kind of edges.
 fn pipeline(gl: &Rc<Context>, edges: Edges) -> Result<Box<dyn Synthesis>, GlError> {
     let options = SynthesisOptions { edges, ..SynthesisOptions::default() };
     synthesis::create(gl, &options, Outputs::default())
@@ -108,7 +108,7 @@ impl PictureShow {
 
     /// Shows the eyes whole on a cleared canvas, with black beside them.
     pub fn draw(&self, show: &Show, settings: &Settings, canvas: [u32; 2]) {
-        // There is no truth to compare them with.
+        // Pictures have no truth to compare with.
         let display = match settings.display {
             display if !display.needs_truth() => display,
             _ if self.options.source.targets()[0].0 == Eye::Left => Display::Left,

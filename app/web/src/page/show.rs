@@ -9,13 +9,13 @@ use yoro_render::stereo::StereoFrame;
 
 use crate::settings::Display;
 
-/// Where images are on the canvas, in pixels.
+/// The position of images on the canvas, in pixels.
 pub struct Layout {
     /// The lower left corner of the first image, or of the only one.
     pub origin: [u32; 2],
     /// Width and height of each image.
     pub size: [u32; 2],
-    /// How much further to the right the second image begins.
+    /// The distance from the first image's left edge to the second's.
     pub step: u32,
 }
 
@@ -70,7 +70,7 @@ impl Show {
         self.run(&self.anaglyph, left, Some(("second", right)), to);
     }
 
-    /// Shows where two images differ: black where they do not, white from a quarter of the range on.
+    /// Shows the difference of two images: black for none, white from a quarter of the range on.
     pub fn difference(&self, a: &Texture, b: &Texture, to: &Destination) {
         self.run(&self.difference, a, Some(("second", b)), to);
     }

@@ -72,7 +72,7 @@ pub fn builtin_scenes() -> String {
 pub fn build_scene(name: &str, progress: Function) -> Result<Vec<u8>, JsError> {
     let watch = move |done: Progress| {
         let [textures, triangles] = [done.textures, done.triangles].map(|n| JsValue::from(n as f64));
-        // What it throws would be the worker's own mistake.
+        // An exception from it would be the worker's own mistake.
         let _ = progress.call2(&JsValue::NULL, &textures, &triangles);
     };
     pack(&yoro_scenes::build_watched(name, DEFAULT_SEED, watch).map_err(sentence)?)

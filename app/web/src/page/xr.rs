@@ -1,4 +1,4 @@
-//! Both eyes of a headset, as WebXR has them.
+//! Both eyes of a headset, in WebXR's terms.
 
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, Eye, EyePair};
@@ -17,7 +17,7 @@ use crate::walker::Walker;
 /// Near and far plane of a WebXR session.
 const DEPTH: DepthRange = DepthRange { near: 0.1, ..DepthRange::PAPER };
 
-/// The images of a headset, and what draws them.
+/// The images of a headset, and the renderer for them.
 #[wasm_bindgen]
 pub struct Headset {
     frame: StereoFrame,
