@@ -27,10 +27,10 @@ impl Apk {
             .with_context(|| format!("{} is not an APK that the host can run", path.display()))
     }
 
-    /// As [`Apk::read`], of an AAR: what of it gets into the APK of an application that depends on it.
+    /// Reads an AAR like [`Apk::read`]: the parts that go into the APK of an application that depends on it.
     ///
     /// # Errors
-    /// As [`Apk::read`].
+    /// Those of [`Apk::read`].
     pub fn read_aar(path: &Path, abi: &str) -> Result<Self> {
         const REMEDY: &str = "build it by `cargo xtask package --target android-layer`";
         let file = File::open(path).with_context(|| format!("cannot open {}: {REMEDY}", path.display()))?;
@@ -40,7 +40,7 @@ impl Apk {
         Ok(aar)
     }
 
-    /// `folder` is where the libraries of the ABI are.
+    /// `folder` holds the libraries of the ABI.
     fn read_from(file: impl Read + Seek, folder: &str) -> Result<Self> {
         let mut archive = zip::ZipArchive::new(file)?;
         let mut libraries = Vec::new();

@@ -1,6 +1,6 @@
 //! libc.so, libm.so and libdl.so. Most functions have the same interface in bionic and in glibc on 64-bit Linux and are
-//! glibc's own; here are the lists of those, and the ones that differ or that must not see the real machine. What is in
-//! neither gets a trap: `sigaction`, `sem_t`, `addrinfo`, `termios`, `FILE` have other layouts in bionic.
+//! glibc's own; here are the lists of those, and the ones that differ or that must not see the real machine. Functions
+//! in neither get a trap: `sigaction`, `sem_t`, `addrinfo`, `termios`, `FILE` have other layouts in bionic.
 
 #![allow(non_snake_case)]
 
@@ -50,7 +50,7 @@ pub fn exports() -> Vec<Export> {
         ];
         System::Dl, 1: [dl_iterate_phdr, dladdr, dlclose, dlerror, dlopen, dlsym];
     ];
-    // Nothing else makes sure that it is loaded. It stays for the process's life.
+    // Loads libm, as nothing else ensures that. It stays for the process's life.
     // SAFETY: glibc's own library, whose constructors do nothing to others.
     let math = unsafe { libc::dlopen(c"libm.so.6".as_ptr(), libc::RTLD_NOW) };
     for (library, handle, names) in [(System::C, libc::RTLD_DEFAULT, SAME_C), (System::M, math, SAME_M)] {
@@ -82,7 +82,7 @@ unsafe extern "C" {
 
 /// POSIX's `strerror_r`, as in bionic; glibc's default is GNU's.
 unsafe extern "C" fn strerror_r(error: c_int, buffer: *mut c_char, length: usize) -> c_int {
-    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
+    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
     unsafe { __xpg_strerror_r(error, buffer, length) }
 }
 
@@ -155,8 +155,8 @@ pub unsafe fn text(string: *const c_char) -> String {
 
 // Threads
 
-/// The application's room for a `pthread_attr_t` has 56 bytes. glibc's has 64 on arm64, so that it lies elsewhere and the
-/// room holds its address.
+/// The application's room for a `pthread_attr_t` has 56 bytes. glibc's has 64 on arm64. It therefore lies elsewhere,
+/// and the room holds its address.
 type Attributes = *mut *mut libc::pthread_attr_t;
 
 /// # Safety
@@ -170,12 +170,12 @@ unsafe fn new_attributes(attributes: Attributes) -> *mut libc::pthread_attr_t {
 }
 
 unsafe extern "C" fn pthread_attr_init(attributes: Attributes) -> c_int {
-    // SAFETY: the caller gives room for what is new.
+    // SAFETY: the caller gives room for the new object.
     unsafe { libc::pthread_attr_init(new_attributes(attributes)) }
 }
 
 unsafe extern "C" fn pthread_getattr_np(thread: libc::pthread_t, attributes: Attributes) -> c_int {
-    // SAFETY: the caller gives room for what is new, and a thread that lives.
+    // SAFETY: the caller gives room for the new object, and a live thread.
     unsafe { libc::pthread_getattr_np(thread, new_attributes(attributes)) }
 }
 
@@ -218,7 +218,7 @@ unsafe extern "C" fn pthread_create(
     start: extern "C" fn(*mut c_void) -> *mut c_void,
     argument: *mut c_void,
 ) -> c_int {
-    // SAFETY: null, or attributes that were made; the rest as the caller has it.
+    // SAFETY: the attributes are null or initialised; the other arguments are the caller's.
     unsafe {
         let attributes = if attributes.is_null() { std::ptr::null() } else { (*attributes).cast_const() };
         libc::pthread_create(thread, attributes, start, argument)
@@ -262,12 +262,12 @@ unsafe extern "C" fn open(path: *const c_char, flags: c_int, mode: c_uint) -> c_
         set_errno(libc::EACCES);
         return -1;
     }
-    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
+    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
     unsafe { libc::open(path, flags, mode) }
 }
 
 unsafe extern "C" fn open64(path: *const c_char, flags: c_int, mode: c_uint) -> c_int {
-    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
+    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
     unsafe { open(path, flags, mode) }
 }
 
@@ -276,7 +276,7 @@ unsafe extern "C" fn openat(folder: c_int, path: *const c_char, flags: c_int, mo
         set_errno(libc::EACCES);
         return -1;
     }
-    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
+    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
     unsafe { libc::openat(folder, path, flags, mode) }
 }
 
@@ -285,7 +285,7 @@ unsafe extern "C" fn opendir(path: *const c_char) -> *mut libc::DIR {
         set_errno(libc::EACCES);
         return std::ptr::null_mut();
     }
-    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
+    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
     unsafe { libc::opendir(path) }
 }
 
@@ -318,7 +318,7 @@ unsafe extern "C" fn clock_gettime(clock: c_int, time: *mut libc::timespec) -> c
             unsafe { time.write(timespec(now)) };
             0
         }
-        // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
+        // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
         None => unsafe { libc::clock_gettime(clock, time) },
     }
 }
@@ -467,7 +467,7 @@ unsafe extern "C" fn syscall(
             -1
         });
     }
-    // SAFETY: passed on as it came.
+    // SAFETY: the application's arguments are passed on unchanged.
     unsafe { libc::syscall(number, a, b, c, d, e, f) }
 }
 
@@ -571,7 +571,7 @@ unsafe extern "C" fn dlsym(handle: *mut c_void, name: *const c_char) -> *mut c_v
     let found = match handle as usize {
         SELF => host.library.get().and_then(|library| library.symbol(&name)),
         index @ 1..=8 => exports::find(System::ALL[index - 1], &name, host.device.sdk),
-        // RTLD_DEFAULT of 64-bit Android: what the library needs, here all of it.
+        // RTLD_DEFAULT of 64-bit Android: the libraries that the application's needs, here all of them.
         0 => [System::C, System::M, System::Dl, System::Log, System::Android, System::Egl]
             .into_iter()
             .find_map(|library| exports::find(library, &name, host.device.sdk)),
@@ -606,7 +606,7 @@ unsafe extern "C" fn dladdr(address: *const c_void, info: *mut libc::Dl_info) ->
             }
             1
         }
-        // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
+        // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
         None => unsafe { libc::dladdr(address, info) },
     }
 }
@@ -627,6 +627,6 @@ unsafe extern "C" fn dl_iterate_phdr(visit: VisitLibrary, data: *mut c_void) -> 
             return result;
         }
     }
-    // SAFETY: glibc gets what the application passes to bionic, and the two agree here.
+    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
     unsafe { libc::dl_iterate_phdr(Some(visit), data) }
 }

@@ -22,8 +22,8 @@ pub fn install() {
     }
 }
 
-/// Not everything here is allowed in a signal handler. The process is lost anyway, and what matters is the address; if
-/// the summary cannot be written any more, the alarm ends the process.
+/// Reports a crash. Not everything here is allowed in a signal handler. The process is lost anyway, and only the
+/// address matters; if the summary cannot be written any more, the alarm ends the process.
 extern "C" fn crashed(signal: c_int, information: *mut libc::siginfo_t, context: *mut c_void) {
     // SAFETY: takes a number; the default action of SIGALRM ends the process.
     unsafe { libc::alarm(10) };
@@ -73,7 +73,7 @@ fn words(start: usize) -> Vec<usize> {
     let mut words = vec![0_usize; STACK / 8];
     let local = libc::iovec { iov_base: words.as_mut_ptr().cast(), iov_len: STACK };
     let remote = libc::iovec { iov_base: start as *mut c_void, iov_len: STACK };
-    // SAFETY: reads this process's own memory into a live vector; what is not mapped is left out.
+    // SAFETY: reads this process's own memory into a live vector; unmapped pages are left out.
     let read =
         unsafe { libc::process_vm_readv(libc::getpid(), &raw const local, 1, &raw const remote, 1, 0) };
     words.truncate(usize::try_from(read).unwrap_or(0) / 8);

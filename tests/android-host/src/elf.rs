@@ -1,5 +1,5 @@
-//! Reads a package's library as its file describes it, and refuses what Android or the host cannot load. goblin parses the
-//! ELF file; the two packed forms of relocations, which it does not know, are unpacked here.
+//! Reads a package's library from its file, and refuses libraries that Android or the host cannot load. goblin parses
+//! the ELF file; the two packed forms of relocations, which it does not know, are unpacked here.
 
 use anyhow::{Context, Result, bail, ensure};
 use goblin::elf::Elf;
@@ -54,7 +54,7 @@ pub struct Symbol<'a> {
     pub name: &'a str,
     /// True if nothing is wrong when nobody defines it.
     pub weak: bool,
-    /// Address in the library, for what the library defines.
+    /// The address in the library, for symbols that the library defines.
     pub defined: Option<u64>,
 }
 

@@ -58,7 +58,7 @@ pub struct Export {
     pub name: &'static str,
     /// Its address.
     pub address: usize,
-    /// First API level that has it; 1 for all that are older than any supported level.
+    /// The first API level that has it; 1 for functions older than any supported level.
     pub since: i32,
 }
 

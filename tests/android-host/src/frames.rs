@@ -1,5 +1,5 @@
-//! The gate in `eglSwapBuffers`: the script decides how many frames are shown, so that what happens between two frames
-//! happens there in every run.
+//! The gate in `eglSwapBuffers`: the script decides how many frames are shown, so that events between two frames happen
+//! there in every run.
 
 use std::sync::{Condvar, Mutex, MutexGuard};
 use std::time::{Duration, Instant};

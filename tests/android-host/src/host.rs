@@ -77,7 +77,7 @@ pub struct Report {
     pub apk: PathBuf,
     /// The script's name.
     pub script: String,
-    /// Where the summary goes.
+    /// The path of the summary.
     pub out: PathBuf,
     /// Facts of the libraries.
     pub libraries: Vec<LibraryFacts>,
@@ -193,12 +193,12 @@ impl Host {
         *lock(&self.ndk_objects).entry(kind).or_default() += change;
     }
 
-    /// Sets what the script is doing, for the text of a failure; empty for nothing special.
+    /// Sets the script's present activity, for the text of a failure; empty for nothing special.
     pub fn set_context(&self, context: String) {
         *lock(&self.context) = context;
     }
 
-    /// Notes what the application asks of the device's performance.
+    /// Notes a request of the application for the device's performance.
     pub fn request(&self, what: impl Into<String>) {
         *lock(&self.requests).entry(what.into()).or_default() += 1;
     }
@@ -208,7 +208,7 @@ impl Host {
         lock(&self.report)
     }
 
-    /// Returns how long a step may take.
+    /// Returns the time limit of a step.
     pub fn timeout(&self) -> Duration {
         self.watch.timeout
     }
@@ -335,7 +335,7 @@ pub fn fatal(text: impl Into<String>) -> ! {
 pub fn say_to(fd: i32, text: &str) {
     let mut rest = text.as_bytes();
     while !rest.is_empty() {
-        // SAFETY: the pointer and the length are of one live slice.
+        // SAFETY: pointer and length belong to one live slice.
         let written = unsafe { libc::write(fd, rest.as_ptr().cast(), rest.len()) };
         match usize::try_from(written) {
             Ok(written) if written > 0 => rest = &rest[written..],

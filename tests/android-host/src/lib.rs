@@ -1,11 +1,11 @@
 //! A simulated Android host: runs the libraries of the built APK on Linux, without a device and without Google's tools.
 //!
-//! It takes the library and the assets out of the APK, loads the library with an ELF loader of its own, and provides what
-//! the library imports: bionic, ALooper, ANativeActivity, input, sensors, JNI, and EGL on Mesa. A script
-//! ([`script::Script`]) describes the device and what happens to it; the result is a [`summary::Summary`].
+//! It takes the library and the assets out of the APK, loads the library with an ELF loader of its own, and provides
+//! the library's imports: bionic, ALooper, ANativeActivity, input, sensors, JNI, and EGL on Mesa. A script
+//! ([`script::Script`]) describes the device and the events; the result is a [`summary::Summary`].
 //!
-//! A clean run shows that the APK's own code starts, draws what it should, and survives what Android does to it. It says
-//! nothing about speed, power, drivers or manufacturers' peculiarities. It must know nothing of the application but its
+//! A clean run shows that the APK's own code starts, draws correctly, and survives Android's events. It says nothing
+//! about speed, power, drivers or manufacturers' peculiarities. The host must know nothing of the application but its
 //! entry point.
 
 mod android;
@@ -56,7 +56,7 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
     let headset = script.device.openxr.as_ref();
     let layer = headset.and_then(|headset| headset.layer.as_deref());
     let layer = layer.map(|path| Apk::read_aar(path, ABI)).transpose()?;
-    // A package also has the assets of what it depends on.
+    // A package also has the assets of its dependencies.
     apk.assets.extend(layer.iter().flat_map(|layer| layer.assets.clone()));
     let report = Report {
         apk: apk_path.to_owned(),

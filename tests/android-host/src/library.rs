@@ -1,5 +1,5 @@
-//! Loads a package's library. The loader is our own and not glibc's `dlopen`, because imports must be bound to what
-//! Android's libraries export, and it is stricter than Android's about what it accepts.
+//! Loads a package's library. The loader is our own and not glibc's `dlopen`, because imports must be bound to the
+//! exports of Android's libraries. It is stricter than Android's.
 
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_void};
@@ -32,7 +32,7 @@ pub struct Loaded {
     pub library: Library,
     /// Facts for the summary.
     pub facts: LibraryFacts,
-    /// The imports that nothing answers: a call of one ends the run with its name.
+    /// The imports without a definition: a call of one ends the run with its name.
     pub trapped: Vec<String>,
 }
 
@@ -41,7 +41,7 @@ impl Library {
     /// of a symbol that a system library exports.
     ///
     /// # Errors
-    /// One sentence on what Android or the host would refuse.
+    /// One sentence on the part that Android or the host would refuse.
     pub fn load(name: &str, file: &[u8], find: impl Fn(System, &str) -> Option<usize>) -> Result<Loaded> {
         let image = Image::parse(file).with_context(|| format!("{name} cannot be loaded"))?;
         let needed = image.needed().iter().map(|library| {
@@ -124,7 +124,7 @@ impl Library {
     }
 }
 
-/// Maps the segments as a kernel with 16 KiB pages would, writable for the moment, and returns where the library starts.
+/// Maps the segments like a kernel with 16 KiB pages, writable for the moment, and returns the library's start.
 fn map(image: &Image, span: u64) -> Result<usize> {
     // SAFETY: a new anonymous mapping at an address of the kernel's choice.
     let memory = unsafe {
@@ -144,8 +144,8 @@ fn map(image: &Image, span: u64) -> Result<usize> {
         protect_range(base, first, last, libc::PROT_READ | libc::PROT_WRITE)?;
         let start = segment.p_offset - (segment.p_vaddr - first);
         let source = &image.file[start as usize..(segment.p_offset + segment.p_filesz) as usize];
-        // SAFETY: the pages were just made writable and hold at least the segment; what the file has before the segment
-        // on its first page is mapped along, as a kernel does.
+        // SAFETY: the pages were just made writable and hold at least the segment; the file's bytes before the segment
+        // on its first page are mapped along, like a kernel does.
         unsafe {
             std::ptr::copy_nonoverlapping(source.as_ptr(), (base as u64 + first) as *mut u8, source.len())
         };
@@ -153,7 +153,7 @@ fn map(image: &Image, span: u64) -> Result<usize> {
     Ok(base)
 }
 
-/// Returns the value of every symbol, and the names of those that nothing answers.
+/// Returns the value of every symbol, and the names of those without a definition.
 fn bind(
     image: &Image,
     base: usize,

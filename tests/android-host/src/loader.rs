@@ -20,7 +20,7 @@ use crate::openxr;
 const FILE: &str = "libopenxr_loader.so";
 /// The handle that `dlopen` returns for it.
 const HANDLE: usize = 0x10ad;
-/// Where implicit layers are among an application's assets.
+/// The folder of implicit layers' manifests among an application's assets.
 const MANIFESTS: &str = "openxr/1/api_layers/implicit.d/";
 
 #[derive(Deserialize)]
@@ -174,8 +174,8 @@ unsafe extern "system" fn get_instance_proc_addr(
                     // SAFETY: whoever asks for this name calls it as this type.
                     Ok(unsafe { std::mem::transmute::<pfn::$kind, pfn::VoidFunction>(own) })
                 })*
-                // The runtime's own, as the loader has no Java to speak with.
-                // SAFETY: asked for and given on as it is.
+                // The runtime's own function, as the loader does not use Java.
+                // SAFETY: the function is returned unchanged under the name that was asked for.
                 b"xrInitializeLoaderKHR" => unsafe { of_runtime(wanted) },
                 _ => Err(sys::Result::ERROR_HANDLE_INVALID),
             }

@@ -20,7 +20,7 @@ const FILE: &str = "libyoro_openxr_stub.so";
 const PACKAGE: &str = "org.yoro.simulated.runtime";
 const USER_BROKER: &str = "org.khronos.openxr.runtime_broker";
 const SYSTEM_BROKER: &str = "org.khronos.openxr.system_runtime_broker";
-/// Where the library reads the path of its script.
+/// The environment variable with the path of the library's script.
 const SCRIPT: &str = "YORO_OPENXR_STUB";
 
 /// The folder of the library, once it was looked for.
@@ -50,7 +50,7 @@ pub unsafe fn install(openxr: &OpenXr) -> Result<()> {
     Ok(())
 }
 
-/// The answer of a content provider; none where there is no provider.
+/// Returns the answer of a content provider; none if there is no provider.
 pub fn query(uri: &str, columns: Vec<String>) -> Option<Arc<Object>> {
     let openxr = host().device.openxr.as_ref()?;
     let (broker, path) = uri.strip_prefix("content://")?.split_once('/')?;
@@ -110,7 +110,7 @@ pub fn symbol(handle: *mut c_void, name: &CStr) -> Option<*mut c_void> {
     Some(address)
 }
 
-/// Before each frame of the headset.
+/// The runtime's callback before each frame of the headset.
 extern "C" fn frame() {
     host().frames.present(|| Err("a headset shows no window: its script has `pictures`".into()));
 }

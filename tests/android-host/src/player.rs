@@ -54,13 +54,14 @@ struct Activity {
 macro_rules! call {
     ($activity:ident, $function:expr $(, $argument:expr)*) => {
         if let Some(function) = $function {
-            // SAFETY: the application's callback, on the main thread, with its own activity and what is alive meanwhile.
+            // SAFETY: the application's callback, on the main thread, with its own activity and arguments that outlive
+            // the call.
             unsafe { function(&raw mut $activity.native $(, $argument)*) }
         }
     };
 }
 
-/// How long a finger stays on the screen, in nanoseconds.
+/// The time a finger stays on the screen, in nanoseconds.
 const TAP: u64 = 80_000_000;
 
 impl Player {
@@ -196,7 +197,7 @@ impl Player {
         }
     }
 
-    /// Runs the main looper until something is true; `what` is said when that takes too long.
+    /// Runs the main looper until `done` is true. The message of a timeout contains `what`.
     fn wait(&self, what: &str, done: impl Fn(&Host) -> bool) {
         self.host.watched(what, || {
             while !done(self.host) {
@@ -323,7 +324,7 @@ impl Player {
         self.callback("onInputQueueDestroyed", |activity| {
             call!(activity, activity.callbacks.onInputQueueDestroyed, queue)
         });
-        // After its own end android_main cannot take the queue off its looper, and android-activity does not.
+        // Once android_main has ended, it cannot take the queue off its looper, and android-activity does not.
         if queue.is_attached() && main_runs(self.host) {
             self.host.violation("the input queue is still attached after onInputQueueDestroyed");
         }

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
-/// A device and what happens to it.
+/// A device and its events.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Script {
@@ -92,7 +92,7 @@ pub struct Device {
     pub ydpi: f32,
     /// The display's refresh rate, Hz; virtual time advances by one period per frame.
     pub refresh_hz: f64,
-    /// Pixels of the display's mode, where the user has made the window's another; absent: those of the window.
+    /// Pixels of the display's mode if the user has chosen another size for the window; absent: those of the window.
     pub mode: Option<[i32; 2]>,
     /// Refreshes after which the choreographer's timeline says that a frame is seen.
     pub refreshes_ahead: u32,
@@ -109,9 +109,9 @@ pub struct Device {
     pub gles: GlesVersion,
     /// Sensors that the device has.
     pub sensors: Vec<SensorKind>,
-    /// Added to what the gyroscope measures, rad/s, device axes.
+    /// Added to the gyroscope's samples, rad/s, device axes.
     pub gyroscope_bias: [f32; 3],
-    /// Battery; without it the device answers as one that has none.
+    /// Battery; absent for a device without one.
     pub battery: Option<Battery>,
     /// Thermal state.
     pub thermal: Thermal,
@@ -184,7 +184,7 @@ pub enum GlesVersion {
     /// 3.1.
     #[serde(rename = "3.1")]
     Es31,
-    /// 3.2: as Mesa has it.
+    /// 3.2, Mesa's own version.
     #[serde(rename = "3.2")]
     Es32,
 }
@@ -269,7 +269,7 @@ impl Default for Thermal {
     }
 }
 
-/// One thing that happens.
+/// One step of the script.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Step {
@@ -314,9 +314,9 @@ pub enum Step {
     LowMemory,
     /// `onConfigurationChanged`.
     ConfigurationChanged,
-    /// That many frames are shown.
+    /// Shows that many frames.
     Frames(u64),
-    /// Frames are shown for that long (virtual seconds).
+    /// Shows frames for that many virtual seconds.
     Seconds(f64),
     /// Frames are shown until a log line contains the text, one after the line that such a step waited for before.
     WaitLog {
@@ -334,19 +334,19 @@ pub enum Step {
     Idle(f64),
     /// A finger touches and leaves after 80 ms.
     Tap {
-        /// From the left, 0 to 1.
+        /// The position from the left, 0 to 1.
         #[serde(default = "half")]
         x: f32,
-        /// From the top, 0 to 1.
+        /// The position from the top, 0 to 1.
         #[serde(default = "half")]
         y: f32,
     },
     /// A finger stays for a time.
     LongPress {
-        /// From the left, 0 to 1.
+        /// The position from the left, 0 to 1.
         #[serde(default = "half")]
         x: f32,
-        /// From the top, 0 to 1.
+        /// The position from the top, 0 to 1.
         #[serde(default = "half")]
         y: f32,
         /// Virtual seconds.
@@ -398,7 +398,7 @@ pub enum Step {
         /// The steps.
         steps: Vec<Step>,
     },
-    /// Random sequences of valid events, each from where the one before ended.
+    /// Random sequences of valid events. Each begins in the state in which the one before ended.
     Random {
         /// Same seed, same events.
         seed: u64,

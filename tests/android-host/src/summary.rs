@@ -42,7 +42,7 @@ pub struct Summary {
     pub violations: Vec<String>,
     /// JNI calls that nothing here knows: answered by a new object of the type, zero or false.
     pub jni_invented: BTreeMap<String, u64>,
-    /// Requests for the device's performance, and how often each was made.
+    /// Requests for the device's performance, with the number of times each was made.
     pub requests: BTreeMap<String, u64>,
     /// Symbols that the libraries import and that are answered by a trap.
     pub trapped_symbols: Vec<String>,

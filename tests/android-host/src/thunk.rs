@@ -1,5 +1,4 @@
-//! Traps: small functions made at run time, one per name, so that a call to something that is not answered says which
-//! it was.
+//! Traps: small functions made at run time, one per name, so that a call to an undefined function reports its name.
 
 use std::sync::Mutex;
 

@@ -51,12 +51,12 @@ fn lines(run: &Run) -> Vec<Line> {
     lines.iter().map(|line| line.parse().unwrap_or_else(|error| panic!("{line}: {error}"))).collect()
 }
 
-/// Returns what the desktop draws with the same settings; `yaw_degrees` holds the head.
+/// Returns the desktop's picture with the same settings; `yaw_degrees` fixes the head's direction.
 fn desktop(extra: &[(&str, &str)], yaw_degrees: Option<f32>) -> RgbImage {
     desktops(extra, &[yaw_degrees]).remove(0)
 }
 
-/// Returns what the desktop draws at several positions of the head.
+/// Returns the desktop's pictures in several directions of the head.
 fn desktops(extra: &[(&str, &str)], yaws_degrees: &[Option<f32>]) -> Vec<RgbImage> {
     let pairs = SETTINGS.iter().chain(extra).map(|(key, value)| format!("{key}={value}"));
     let screen = Screen { size: SIZE, dpi: [DPI; 2], rotation: Rotation::LandscapeLeft };
@@ -103,11 +103,11 @@ fn boots_to_the_first_frame() {
     let picture = run.picture("boot.png");
     let colours: std::collections::HashSet<_> = picture.pixels().collect();
     assert!(colours.len() > 100, "the picture has {} colours", colours.len());
-    // A window is magenta again after each swap: what is not drawn shows.
+    // The window is magenta again after each swap: pixels that are not drawn show.
     assert!(!colours.contains(&image::Rgb([255, 0, 255])), "parts of the window are not drawn");
     assert_eq!(run.summary.trapped_symbols, Vec::<String>::new());
 
-    // The GPU is never more than a frame behind, and the device is asked to stay as it is.
+    // The GPU is never more than a frame behind, and the device is asked for steady performance.
     let Summary { frames, gl, requests, .. } = &run.summary;
     assert!(gl.waits + 2 >= *frames, "{} waits for the GPU in {frames} frames", gl.waits);
     let asked = |what: &str| requests.get(what).copied().unwrap_or(0);
@@ -120,7 +120,7 @@ fn boots_to_the_first_frame() {
 
 #[test]
 fn a_lower_resolution_is_the_same_screen() {
-    // 427 x 240 pixels of 74 dpi, of which the user has left 320 x 180.
+    // The display has 427 x 240 pixels at 74 dpi; the user has lowered it to 320 x 180.
     let device = phone(&[], "mode = [427, 240]");
     let Some(run) = play("resolution", &device, r#""launch", { frames = 2 }, "quit""#) else { return };
     run.assert_clean();
@@ -525,7 +525,7 @@ fn assert_layered(run: &Run, folder: &Path) -> [RgbImage; 2] {
         "{libraries:?}"
     );
     let log = log::read(&folder.join("log.jsonl"));
-    // A layer may ask for functions of extensions that are not enabled: how else would it know.
+    // A layer may ask for functions of extensions that are not enabled, as it has no other way to find out.
     let asks =
         |entry: &&Entry| matches!(entry, Entry::Violation { call, .. } if call == "xrGetInstanceProcAddr");
     let violations: Vec<_> = log.iter().filter(|entry| is_violation(entry) && !asks(entry)).collect();
@@ -556,7 +556,7 @@ fn one_view_through_the_layer_is_what_the_application_synthesizes() {
     // The application renders multiples of 16 pixels. With these the layer's eyes are some, too: the one view is 192 wide.
     let mut script = Headset::default().asymmetric();
     script.eyes.iter_mut().for_each(|eye| eye.size = [154, 128]);
-    // By default, and by a property.
+    // The dominant eye by default, and set by a property.
     for (dominant, settings) in [(1, &[][..]), (0, &[("layer.dominant", "left")][..])] {
         let folder = tempfile::tempdir().unwrap();
         let device = layered(folder.path(), script.clone(), &aar, settings);
@@ -633,7 +633,7 @@ fn the_arm64_library_runs_in_a_headset() {
     }
 }
 
-/// One run for all of it: under qemu, the driver's compiler takes most of the time.
+/// Uses one run for all checks: under qemu, the driver's compiler takes most of the time.
 #[test]
 fn the_arm64_library_does_what_the_x86_64_library_does() {
     let device = phone(&[("methods", "yoro,conventional"), ("method", "yoro")], "sensors = []");

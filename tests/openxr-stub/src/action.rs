@@ -48,7 +48,7 @@ impl Actions {
         found(known, "not an action")
     }
 
-    /// Forgets what belongs to the session.
+    /// Forgets the session's state.
     pub fn detach(&mut self) {
         self.attached.clear();
         self.active.clear();
@@ -307,7 +307,7 @@ fn state(
         return Ok(None);
     }
     let prefix = instance.path(info.subaction_path).unwrap_or_default();
-    // Of several parts, the one that is pressed most counts.
+    // Among several parts, the one that is pressed most counts.
     let mut best: Option<[[f32; 2]; 2]> = None;
     let strength = |value: [f32; 2]| value[0].hypot(value[1]);
     for ((handle, path), history) in &instance.actions.values {

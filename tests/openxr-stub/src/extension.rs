@@ -98,7 +98,7 @@ pub fn get_visibility_mask(
         ),
         _ => (outline.into(), (0..5).collect()),
     };
-    // SAFETY: the mask says how much room it has.
+    // SAFETY: the mask states its own capacity.
     let (to_vertices, to_indices) = unsafe {
         (
             Array::new(mask.vertex_capacity_input, &raw mut mask.vertex_count_output, mask.vertices),

@@ -355,7 +355,7 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
             let size = [image.rect[2] as u32, image.rect[3] as u32];
             let picture = image::RgbaImage::from_raw(size[0], size[1], pixels).expect("four bytes a pixel");
             let picture = image::imageops::flip_vertical(&picture);
-            // Views are opaque, whatever their alpha.
+            // Views are opaque for any alpha.
             let written = match layer {
                 Layer::Quad { .. } => picture.save(&path),
                 _ => image::DynamicImage::from(picture).into_rgb8().save(&path),
@@ -364,7 +364,7 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
         }
         let Layer::Projection { views } = layer else { continue };
         for (i, depth) in views.iter().enumerate().filter_map(|(i, view)| Some((i, view.depth.as_ref()?))) {
-            // Not every format can be read.
+            // Some formats cannot be read.
             if let Some(depth) = read(world, &depth.image) {
                 let path = pictures.folder.join(format!("depth-{i}"));
                 std::fs::write(&path, depth).unwrap_or_else(|e| panic!("{}: {e}", path.display()));

@@ -386,7 +386,7 @@ pub fn initialize_loader(world: &mut World, info: &sys::LoaderInitInfoBaseHeader
     if ty != sys::StructureType::LOADER_INIT_INFO_ANDROID_KHR {
         return refuse("not Android's structure");
     }
-    // The specification does not say what a second call means: some loaders keep the first context, others fail.
+    // The specification leaves a second call open: some loaders keep the first context, others fail.
     if std::mem::replace(&mut world.is_initialized, true) {
         return refuse("it is initialised already");
     }

@@ -1,9 +1,9 @@
 //! A simulated OpenXR runtime for tests.
 //!
-//! A loader loads the library like any runtime. A script ([`script`]) says what the headset does: frusta, canted views,
-//! a changing IPD, states, losses, controllers, and calls that fail. The runtime checks every call against the
+//! A loader loads the library like any runtime. A script ([`script`]) describes the headset: frusta, canted views, a
+//! changing IPD, states, losses, controllers, and calls that fail. The runtime checks every call against the
 //! specification and writes a log ([`log`]); a forbidden call is a [`log::Entry::Violation`]. It composes and shows
-//! nothing, and must not know what is tested with it.
+//! nothing, and must not depend on the application under test.
 //!
 //! Time is virtual: `xrWaitFrame` does not wait for a display, and each frame is one period later than the last. Images
 //! of swapchains are real ones, in the application's GL context or on its Vulkan device. The functions are those that

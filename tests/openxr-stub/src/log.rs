@@ -1,4 +1,4 @@
-//! The log of what the runtime has seen: JSON lines.
+//! The log of the runtime's observations: JSON lines.
 
 use std::collections::BTreeMap;
 use std::fs::File;

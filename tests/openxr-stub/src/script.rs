@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// The environment variable that names the script's file. Without it the headset is that of [`Script::default`].
 pub const VARIABLE: &str = "YORO_OPENXR_STUB";
 
-/// A headset, and what happens to it. `xrWaitFrame` counts frames over all sessions of the process. The count stays 0
-/// until the first frame whose left view has more than one colour, however long a scene takes to load.
+/// A headset and its events. `xrWaitFrame` counts frames over all sessions of the process. The count stays 0 until the
+/// first frame whose left view has more than one colour, however long a scene takes to load.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Script {
@@ -16,7 +16,7 @@ pub struct Script {
     pub log: Option<PathBuf>,
     /// Known extensions that are not offered.
     pub missing_extensions: Vec<String>,
-    /// How often `xrGetSystem` answers that no headset is connected.
+    /// The number of times `xrGetSystem` answers that no headset is connected.
     pub unavailable: u32,
     /// Formats of swapchains in numbers of GL or Vulkan, the preferred one first.
     pub formats: Vec<i64>,
@@ -62,7 +62,7 @@ pub struct Script {
     /// True if images are filled with [`POISON`] when they are acquired, so that pixels that were not drawn can be
     /// seen.
     pub poison: bool,
-    /// Where pictures of the submitted views are written.
+    /// The files for pictures of the submitted views.
     pub pictures: Option<Pictures>,
 }
 
@@ -87,7 +87,7 @@ pub struct Eye {
 pub struct Event {
     /// The moment.
     pub at: At,
-    /// What happens.
+    /// The kind of event.
     pub what: What,
 }
 
@@ -118,7 +118,7 @@ pub enum State {
     Exiting,
 }
 
-/// What happens.
+/// The kind of event.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum What {
@@ -173,8 +173,8 @@ pub struct Input {
     pub value: [f32; 2],
 }
 
-/// Where pictures are written. `view-0.png` is the left eye's last image; `quad-0.png` is that of the first quad layer,
-/// with alpha.
+/// The destination of pictures. `view-0.png` is the left eye's last image; `quad-0.png` is that of the first quad
+/// layer, with alpha.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Pictures {

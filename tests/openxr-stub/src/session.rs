@@ -22,7 +22,7 @@ pub struct Session {
     pub told: State,
     /// The highest state that it may reach.
     pub level: State,
-    /// After the end it becomes `READY` at this number of polls, or else `EXITING`.
+    /// The number of polls at which the session becomes `READY` again after its end; none if it becomes `EXITING`.
     put_on_again_at: Option<u32>,
     exiting: bool,
     pub frames: FrameCalls,

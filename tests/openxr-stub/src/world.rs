@@ -113,7 +113,7 @@ pub struct World {
     before_picture: Option<u32>,
     /// The number of polls without an event.
     pub idle_polls: u32,
-    /// How often `xrGetSystem` found no headset.
+    /// The number of times `xrGetSystem` found no headset.
     pub unavailable: u32,
     pub profile: Option<String>,
     pub refresh_rate: f32,

@@ -129,7 +129,7 @@ impl Directories {
     }
 }
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![System::Android, 1: [
         ANativeActivity_finish, ANativeActivity_hideSoftInput, ANativeActivity_setWindowFlags, ANativeActivity_setWindowFormat,

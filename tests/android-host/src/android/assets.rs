@@ -13,7 +13,7 @@ use crate::host::host;
 pub struct Assets(BTreeMap<String, Vec<u8>>);
 
 impl Assets {
-    /// By path below `assets/`.
+    /// Returns the assets with these contents, by path below `assets/`.
     pub fn new(files: BTreeMap<String, Vec<u8>>) -> Self {
         Self(files)
     }
@@ -31,7 +31,7 @@ pub struct AAssetDir {
     next: usize,
 }
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![System::Android, 1: [
         AAssetDir_close, AAssetDir_getNextFileName, AAssetDir_rewind, AAssetManager_fromJava, AAssetManager_open, AAssetManager_openDir,
@@ -56,7 +56,7 @@ unsafe extern "C" fn AAssetManager_open(
     Box::into_raw(Box::new(AAsset { bytes, at: 0 }))
 }
 
-/// As on Android only files are listed, not folders.
+/// Opens a folder. Like Android's, it lists only files, not folders.
 unsafe extern "C" fn AAssetManager_openDir(_manager: *const Assets, name: *const c_char) -> *mut AAssetDir {
     let host = host();
     // SAFETY: a terminated name by contract.
@@ -136,7 +136,7 @@ extern "C" fn AAsset_isAllocated(_asset: &AAsset) -> c_int {
     1
 }
 
-/// What compressed assets answer on Android, too.
+/// Fails like compressed assets on Android.
 extern "C" fn AAsset_openFileDescriptor(_asset: &AAsset, _start: *mut c_long, _length: *mut c_long) -> c_int {
     -1
 }

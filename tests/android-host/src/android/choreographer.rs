@@ -36,7 +36,7 @@ pub struct FrameData {
     period: u64,
 }
 
-/// Calls what is due at `now`; says whether there was anything.
+/// Calls the callbacks due at `now`; true if there were any.
 pub fn run(looper: &ALooper, now: u64) -> bool {
     let due: Vec<_> = {
         let mut pending = lock(&looper.choreographer);
@@ -73,7 +73,7 @@ fn post(choreographer: *mut ALooper, callback: Kind, data: *mut c_void, delay_mi
     lock(&unsafe { &*choreographer }.choreographer).push(Pending { due, callback, data });
 }
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 24: [AChoreographer_getInstance, AChoreographer_postFrameCallback, AChoreographer_postFrameCallbackDelayed];

@@ -7,7 +7,7 @@ use std::ffi::{c_char, c_void};
 use crate::exports::{Export, System, exports};
 use crate::host::host;
 
-/// One configuration; what differs by script.
+/// One configuration: the values that depend on the script.
 #[derive(Clone, Copy, Default)]
 pub struct AConfiguration {
     density: i32,
@@ -17,7 +17,7 @@ pub struct AConfiguration {
     landscape: bool,
 }
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [

@@ -97,7 +97,7 @@ impl AInputQueue {
     }
 }
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [

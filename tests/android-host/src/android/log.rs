@@ -1,4 +1,4 @@
-//! liblog: what the application logs goes into the summary, and to standard error when asked for.
+//! liblog: the application's log goes into the summary, and to standard error on request.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::ffi::{c_char, c_int};

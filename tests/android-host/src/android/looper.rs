@@ -42,9 +42,9 @@ pub struct ALooper {
 /// Loopers that exist.
 static LOOPERS: Mutex<Vec<usize>> = Mutex::new(Vec::new());
 
-/// Waits until the loopers of other threads have taken what was due up to now: a display refresh or samples of sensors.
-/// Real phones deliver them while the frame is being drawn; here they are there when the next one begins. A looper that
-/// is busy with something else is not waited for long.
+/// Waits until the loopers of other threads have taken everything due up to now: a display refresh or samples of
+/// sensors. Real phones deliver them while the frame is being drawn; here they are there when the next one begins. A
+/// looper that is busy with something else is not waited for long.
 pub fn settle() {
     let now = host().clock.now();
     let own = current().map(|looper| std::ptr::from_ref(looper) as usize);
@@ -110,7 +110,7 @@ impl ALooper {
         samples.into_iter().chain(choreographer::next(self)).min()
     }
 
-    /// Returns what to poll: the entries in their order, and then the wake-up.
+    /// Returns the descriptors to poll: the entries in their order, and then the wake-up.
     fn descriptors(&self, entries: &[Entry]) -> Vec<libc::pollfd> {
         let mut fds: Vec<_> = entries
             .iter()
@@ -127,12 +127,12 @@ impl ALooper {
         fds
     }
 
-    /// Polls for real; `also` is one more descriptor to wait for. Gives what is ready, or an error.
+    /// Polls in real time; `also` is one more descriptor to wait for. Returns the ready descriptors, or an error.
     fn poll(&self, milliseconds: c_int, also: c_int) -> Result<Vec<Ready>, ()> {
         let entries = lock(&self.entries).clone();
         let mut fds = self.descriptors(&entries);
         fds.push(libc::pollfd { fd: also, events: libc::POLLIN, revents: 0 });
-        // SAFETY: the pointer and the length are of one live vector.
+        // SAFETY: pointer and length belong to one live vector.
         let result = unsafe { libc::poll(fds.as_mut_ptr(), fds.len() as _, milliseconds) };
         if result < 0 && std::io::Error::last_os_error().kind() != std::io::ErrorKind::Interrupted {
             return Err(());
@@ -155,7 +155,7 @@ impl ALooper {
             .collect())
     }
 
-    /// Calls the callbacks among `ready`; says whether there were any, and gives the first that has an identifier.
+    /// Calls the callbacks among `ready`. Returns true if there were any, and the first entry that has an identifier.
     fn dispatch(&self, ready: Vec<Ready>) -> (bool, Option<Ready>) {
         let mut called = false;
         let mut identified = None;
@@ -173,15 +173,15 @@ impl ALooper {
         (called, identified)
     }
 
-    /// Runs what is due on this looper, waiting at most `milliseconds` of real time for it: for the host's own main
-    /// thread, for which virtual time does not pass.
+    /// Runs the work due on this looper, waiting at most `milliseconds` of real time for it. Used by the host's own
+    /// main thread, for which virtual time does not pass.
     pub fn pump(&self, milliseconds: c_int, also: c_int) {
         if let Ok(ready) = self.poll(milliseconds, also) {
             self.dispatch(ready);
         }
     }
 
-    /// Removes a descriptor; says whether it was there.
+    /// Removes a descriptor; true if it was there.
     pub fn remove(&self, fd: c_int) -> bool {
         let mut entries = lock(&self.entries);
         let before = entries.len();
@@ -232,7 +232,7 @@ pub fn prepare() -> &'static ALooper {
     })
 }
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![System::Android, 1: [
         ALooper_acquire, ALooper_addFd, ALooper_forThread, ALooper_pollAll, ALooper_pollOnce, ALooper_prepare, ALooper_release,
@@ -348,7 +348,7 @@ impl ALooper {
     /// Waits until something is ready, without taking it.
     fn poll_only(&self, milliseconds: c_int) -> bool {
         let mut fds = self.descriptors(&lock(&self.entries));
-        // SAFETY: the pointer and the length are of one live vector.
+        // SAFETY: pointer and length belong to one live vector.
         unsafe { libc::poll(fds.as_mut_ptr(), fds.len() as _, milliseconds) > 0 }
     }
 }

@@ -22,7 +22,7 @@ use crate::script::{Device, SensorKind};
 const GRAVITY: f32 = 9.81;
 /// The number of events that a queue holds before it drops the oldest, as hardware does.
 const FIFO: usize = 4096;
-/// `SENSOR_DELAY_NORMAL`, what a sensor has until a rate is set; nanoseconds.
+/// `SENSOR_DELAY_NORMAL`, a sensor's period until a rate is set; nanoseconds.
 const DEFAULT_PERIOD: u64 = 200_000_000;
 /// Fastest rate, nanoseconds.
 const MIN_PERIOD: u64 = 5_000_000;
@@ -189,7 +189,7 @@ impl Sensors {
             let mut new = Vec::new();
             for sensor in &self.list {
                 if let Some(schedule) = state.enabled.get_mut(&sensor.type_number()) {
-                    // After a long sleep only what the FIFO would hold.
+                    // After a long sleep, delivers only as many samples as the FIFO would hold.
                     let backlog =
                         (now.saturating_sub(schedule.next) / schedule.period).saturating_sub(FIFO as u64);
                     schedule.next += backlog * schedule.period;
@@ -219,7 +219,7 @@ impl Sensors {
     }
 }
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [
@@ -434,7 +434,7 @@ mod tests {
         let sensors = sensors(vec![SensorKind::Accelerometer, SensorKind::GyroscopeUncalibrated]);
         let (accelerometer, gyroscope) = (sensors.list[0], sensors.list[1]);
         assert_eq!(sensors.sample(accelerometer, 1_000_000_000, MIN_PERIOD).data[..3], [GRAVITY, -0.0, 0.0]);
-        // To the left is around the vertical, which is the device's x axis.
+        // A turn to the left is about the vertical, which is the device's x axis.
         sensors.turn(90.0, 0.0, 0.0, 1_000_000_000, 1_000_000_000);
         let rate = sensors.sample(gyroscope, 1_500_000_000, MIN_PERIOD).data;
         assert!(rate[0] > 2.0 && rate[1].abs() < 1e-3 && rate[2].abs() < 1e-3, "{rate:?}");

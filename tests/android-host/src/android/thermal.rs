@@ -29,7 +29,7 @@ impl ThermalListeners {
 /// passed.
 static LAST_HEADROOM: AtomicU64 = AtomicU64::new(0);
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 30: [

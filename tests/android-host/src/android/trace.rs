@@ -6,7 +6,7 @@ use std::ffi::c_char;
 
 use crate::exports::{Export, System, exports};
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 23: [ATrace_beginSection, ATrace_endSection, ATrace_isEnabled];

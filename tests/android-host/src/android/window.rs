@@ -57,7 +57,7 @@ impl Window {
         self.references.load(Ordering::Acquire)
     }
 
-    /// One reference more or less.
+    /// Adds `change` references, or removes them if it is negative.
     pub fn reference(&self, change: i64) {
         if self.references.fetch_add(change, Ordering::AcqRel) + change < 0 {
             host().violation("ANativeWindow_release without a reference");
@@ -65,7 +65,7 @@ impl Window {
     }
 }
 
-/// Returns the functions that libandroid.so exports of it.
+/// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [

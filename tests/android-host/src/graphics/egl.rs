@@ -60,7 +60,7 @@ macro_rules! mesa {
 
         $(unsafe extern "C" fn $other($($given: $kind),*) -> $answer {
             ERROR.set(SUCCESS);
-            // SAFETY: Mesa gets what the application passes to EGL.
+            // SAFETY: Mesa gets the application's arguments to EGL.
             unsafe { (real().$other)($($given),*) }
         })*
     };
@@ -222,7 +222,7 @@ unsafe extern "C" fn eglTerminate(display: Handle) -> Boolean {
             graphics.group_gone(group);
         }
     }
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     unsafe { (real().eglTerminate)(display) }
 }
 
@@ -234,7 +234,7 @@ unsafe extern "C" fn eglChooseConfig(
     count: *mut i32,
 ) -> Boolean {
     ERROR.set(SUCCESS);
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     let mut wanted = unsafe { pairs(attributes) };
     wanted.retain(|(name, _)| !ANDROID_ONLY.contains(name));
     for (name, value) in &mut wanted {
@@ -260,7 +260,7 @@ unsafe extern "C" fn eglGetConfigAttrib(
     value: *mut i32,
 ) -> Boolean {
     ERROR.set(SUCCESS);
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     let result = unsafe { (real().eglGetConfigAttrib)(display, config, attribute, value) };
     if result == TRUE {
         // SAFETY: the call has written the value.
@@ -288,7 +288,7 @@ unsafe extern "C" fn eglCreateContext(
 ) -> Handle {
     ERROR.set(SUCCESS);
     let graphics = &host().graphics;
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     let wanted = unsafe { pairs(attributes) };
     let version = (
         value(&wanted, CONTEXT_MAJOR_VERSION).unwrap_or(1),
@@ -297,7 +297,7 @@ unsafe extern "C" fn eglCreateContext(
     if version > graphics.newest.numbers() {
         return fail(BAD_MATCH);
     }
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     let context = unsafe { (real().eglCreateContext)(display, config, share, attributes) };
     if context != 0 {
         let mut contexts = lock(&graphics.contexts);
@@ -319,7 +319,7 @@ unsafe extern "C" fn eglDestroyContext(display: Handle, context: Handle) -> Bool
     {
         graphics.group_gone(state.group);
     }
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     unsafe { (real().eglDestroyContext)(display, context) }
 }
 
@@ -347,11 +347,11 @@ unsafe extern "C" fn eglCreatePbufferSurface(
     attributes: *const i32,
 ) -> Handle {
     ERROR.set(SUCCESS);
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     let wanted = unsafe { pairs(attributes) };
     let size = (value(&wanted, WIDTH).unwrap_or(0), value(&wanted, HEIGHT).unwrap_or(0));
     let colorspace = value(&wanted, GL_COLORSPACE);
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     let pbuffer = unsafe { (real().eglCreatePbufferSurface)(display, config, attributes) };
     add_surface(Surface { pbuffer, is_window: false, size, config, colorspace })
 }
@@ -372,7 +372,7 @@ unsafe extern "C" fn eglCreateWindowSurface(
         host.violation("eglCreateWindowSurface while another surface of the window exists");
         return fail(BAD_ALLOC);
     }
-    // SAFETY: EGL's caller passes what EGL asks for.
+    // SAFETY: the caller fulfils EGL's contract.
     let colorspace = value(&unsafe { pairs(attributes) }, GL_COLORSPACE);
     let size = host.window.size();
     let handle = add_surface(Surface {
@@ -578,7 +578,7 @@ unsafe extern "C" fn eglGetProcAddress(name: *const c_char) -> *const c_void {
         if let Some(address) = crate::exports::find(System::Egl, text, host().device.sdk) {
             return address as *const c_void;
         }
-        // SAFETY: EGL's caller passes what EGL asks for.
+        // SAFETY: the caller fulfils EGL's contract.
         return unsafe { (real().eglGetProcAddress)(name) };
     }
     gl::function(text).map_or(std::ptr::null(), |address| address as *const c_void)

@@ -1,4 +1,4 @@
-//! OpenGL ES: Mesa's functions, with those in between that make and delete objects, and what the host itself needs of it.
+//! OpenGL ES: Mesa's functions, wrappers of those that make and delete objects, and functions for the host's own use.
 
 #![allow(non_snake_case)]
 
@@ -129,7 +129,7 @@ fn integer(name: u32) -> i32 {
     value
 }
 
-/// The picture that is about to be shown, row 0 at the top. The application's state stays as it is.
+/// Returns the picture that is about to be shown, row 0 at the top. The application's state stays unchanged.
 ///
 /// # Errors
 /// The driver refuses.
@@ -163,8 +163,8 @@ pub fn read_default_framebuffer(width: i32, height: i32) -> Result<RgbaImage, St
     Ok(image::imageops::flip_vertical(&image))
 }
 
-/// Fills the window with magenta after a swap: what it holds then is undefined on a device, and an application that
-/// relies on it shows.
+/// Fills the window with magenta after a swap. On a device its content is undefined then; magenta shows if an
+/// application relies on it.
 pub fn spoil_default_framebuffer() {
     let framebuffer = integer(DRAW_FRAMEBUFFER_BINDING) as u32;
     let (mut color, mut mask) = ([0.0_f32; 4], [0_i32; 4]);
@@ -198,7 +198,7 @@ macro_rules! names {
         $(
             unsafe extern "C" fn $generate(count: i32, names: *mut u32) {
                 mesa! { call as $generate_name(count: i32, names: *mut u32); }
-                // SAFETY: Mesa gets what the application passes to GL.
+                // SAFETY: Mesa gets the application's arguments to GL.
                 unsafe { call(count, names) };
                 let group = current_group();
                 for index in 0..count.max(0) as usize {
@@ -217,7 +217,7 @@ macro_rules! names {
                         host().graphics.object_deleted(group, $kind, name);
                     }
                 }
-                // SAFETY: Mesa gets what the application passes to GL.
+                // SAFETY: Mesa gets the application's arguments to GL.
                 unsafe { call(count, names) };
             }
         )*
@@ -280,7 +280,7 @@ extern "C" fn glFenceSync(condition: u32, flags: u32) -> usize {
 unsafe extern "C" fn glClientWaitSync(sync: usize, flags: u32, timeout: u64) -> u32 {
     mesa! { call as c"glClientWaitSync"(sync: usize, flags: u32, timeout: u64) -> u32; }
     host().graphics.waited();
-    // SAFETY: Mesa gets what the application passes to GL.
+    // SAFETY: Mesa gets the application's arguments to GL.
     unsafe { call(sync, flags, timeout) }
 }
 
@@ -289,7 +289,7 @@ unsafe extern "C" fn glDeleteSync(sync: usize) {
     if sync != 0 {
         host().graphics.object_deleted(current_group(), "sync", sync);
     }
-    // SAFETY: Mesa gets what the application passes to GL.
+    // SAFETY: Mesa gets the application's arguments to GL.
     unsafe { call(sync) };
 }
 

@@ -13,7 +13,7 @@ use crate::host::{host, lock};
 use crate::script::GlesVersion;
 use crate::summary::GlFacts;
 
-/// State of EGL and of what it makes.
+/// The state of EGL and of its objects.
 pub struct Graphics {
     pub(crate) real: egl::Real,
     pub(crate) newest: GlesVersion,

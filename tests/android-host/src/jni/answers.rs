@@ -198,7 +198,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Value::object(Object::string(receiver.text()?))
         }
 
-        // In the device's natural position, upright: the other way round than the window.
+        // Sizes in the device's natural position, upright: width and height are swapped against the window's.
         "getPhysicalWidth" => Value::Int(host.device.mode.map_or(host.window.size().1, |mode| mode[1])),
         "getPhysicalHeight" => Value::Int(host.device.mode.map_or(host.window.size().0, |mode| mode[0])),
         "getRefreshRate" => Value::Float(host.device.refresh_hz as f32),

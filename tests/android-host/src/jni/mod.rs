@@ -2,7 +2,7 @@
 //! real answers ([`answers`]); any other call is answered by a new object of the type that the signature promises, by
 //! zero or by false, and listed in the summary as invented.
 //!
-//! References are counted as a real virtual machine does: local ones by thread and frame, global ones until deleted.
+//! References are counted like in a real virtual machine: local ones by thread and frame, global ones until deleted.
 
 pub mod answers;
 mod objects;

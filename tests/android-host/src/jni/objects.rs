@@ -20,7 +20,7 @@ pub struct Object {
 /// The data of an object.
 #[derive(Debug)]
 pub enum Data {
-    /// Nothing: only its class.
+    /// No data, only a class.
     None,
     /// A string's text, or a file's path.
     Text(String),
@@ -34,14 +34,14 @@ pub enum Data {
     Cursor(Cursor),
 }
 
-/// Rows of texts, and how many of them were moved to.
+/// Rows of texts, and the number of rows moved to.
 #[derive(Debug)]
 pub struct Cursor {
-    /// Their names.
+    /// The columns' names.
     pub columns: Vec<String>,
-    /// In the columns' order.
+    /// The rows' texts, in the columns' order.
     pub rows: Vec<Vec<String>>,
-    /// The next is this one's number.
+    /// The number of rows moved to so far, which is the next row's index.
     pub moves: AtomicUsize,
 }
 

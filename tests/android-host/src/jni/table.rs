@@ -49,7 +49,7 @@ pub fn activity_reference() -> jobject {
     host().jni.add(Object::new("android/app/NativeActivity", Data::None), Kind::Global)
 }
 
-/// Deletes what [`activity_reference`] returned.
+/// Deletes a reference that [`activity_reference`] returned.
 pub fn release_activity(activity: jobject) {
     host().jni.remove(activity, Kind::Global);
 }
@@ -183,7 +183,8 @@ extern "system" fn GetSuperclass(_env: Env, class: jobject) -> jobject {
     }
 }
 
-/// Class relations are not known here: android-activity and jni only check what is true on a device.
+/// Returns true. Class relations are not known here: android-activity and jni only check relations that hold on a
+/// device.
 extern "system" fn IsAssignableFrom(_env: Env, one: jobject, other: jobject) -> jboolean {
     get(one, "IsAssignableFrom");
     get(other, "IsAssignableFrom");
@@ -195,7 +196,7 @@ extern "system" fn IsInstanceOf(_env: Env, _object: jobject, class: jobject) -> 
     true
 }
 
-/// No call throws here.
+/// Returns null, as no call throws here.
 extern "system" fn ExceptionOccurred(_env: Env) -> jobject {
     std::ptr::null_mut()
 }
@@ -291,7 +292,7 @@ extern "system" fn GetObjectClass(_env: Env, handle: jobject) -> jobject {
     local(Some(Object::class_of(&get(handle, "GetObjectClass").class)))
 }
 
-/// Returns the identifier of a method or a field: a member is a class, a name and a signature, whatever kind it is.
+/// Returns the identifier of a method or a field. A member of either kind is a class, a name and a signature.
 ///
 /// # Safety
 /// Name and signature are terminated strings.

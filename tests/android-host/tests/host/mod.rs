@@ -1,4 +1,4 @@
-//! Runs the simulated Android host and reads what it found.
+//! Runs the simulated Android host and reads its findings.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ pub fn show(name: &str, device: &str, steps: &str) -> Option<Run> {
     Some(run)
 }
 
-/// Plays steps with the APK's arm64 library under qemu; none, with a loud line, where that cannot be.
+/// Plays steps with the APK's arm64 library under qemu; none, with a loud line, where that is impossible.
 pub fn play_arm64(name: &str, device: &str, steps: &str) -> Option<Run> {
     let apk = named(APK).or_else(|| left_out(name, "there is no APK", APK, "builds one"))?;
     let remedy = "sets one up where Debian's packages are";
@@ -75,7 +75,7 @@ fn named(variable: &str) -> Option<PathBuf> {
 }
 
 fn left_out<T>(name: &str, reason: &str, variable: &str, remedy: &str) -> Option<T> {
-    // Not eprintln!, which the test harness keeps to itself.
+    // Not eprintln!, which the test harness captures.
     let line = format!("LEFT OUT: {name}: {reason} ({variable} is not set); `cargo xtask test` {remedy}\n");
     _ = std::io::stderr().write_all(line.as_bytes());
     None
@@ -112,7 +112,7 @@ impl Run {
         picture.save(self.folder.join(name)).unwrap();
     }
 
-    /// Where the pictures are.
+    /// Returns the folder of the pictures.
     pub fn folder(&self) -> String {
         self.folder.display().to_string()
     }

@@ -41,7 +41,7 @@ pub trait Graphics: Send {
     /// Fills every layer with [`POISON`](crate::script::POISON).
     fn poison(&mut self, texture: Texture);
 
-    /// Reads a rectangle of colour as it is stored: RGBA, the lowest row first.
+    /// Reads a rectangle of stored colour values: RGBA, the lowest row first.
     fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>>;
 }
 

@@ -111,7 +111,7 @@ impl Vulkan {
 
     fn destroy(&mut self, raw: u64) {
         if let Some(image) = self.images.remove(&raw) {
-            // SAFETY: made in `texture`; what used it has ended.
+            // SAFETY: made in `texture`; the work that used it has ended.
             unsafe {
                 self.device.queue_wait_idle(self.queue).ok();
                 self.device.destroy_image(vk::Image::from_raw(raw), None);
@@ -177,7 +177,7 @@ fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
     }
 }
 
-/// Returns the usage that the application asks for, with what the runtime needs to fill and read images.
+/// Returns the application's usage, plus the flags that the runtime needs to fill and read images.
 fn usage(asked: sys::SwapchainUsageFlags) -> vk::ImageUsageFlags {
     use sys::SwapchainUsageFlags as Asked;
     use vk::ImageUsageFlags as Usage;
