@@ -80,7 +80,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
     let again = fs::read_to_string(&file).unwrap();
     assert!(again.starts_with(&kept), "the finished round was touched");
     assert_eq!(records(&file).len(), whole.len());
-    // Nothing is left to do.
+    // A repeated run has nothing left to do.
     assert!(succeed(at, line).stderr.contains("1 of 1 settings are measured already"));
     assert_eq!(fs::read_to_string(&file).unwrap(), again);
 
@@ -193,9 +193,9 @@ fn guard_bands_and_estimates_are_measured_and_reported() {
         assert!(slots.iter().all(|n| *n > 1.0) && slots[2] > slots[0] + slots[1], "{device}: {slots:?}");
         let sum = slots.iter().sum::<f64>();
         assert!((sum - one("slots")).abs() < 1e-6 * sum && sum < 1000.0, "{device}: {slots:?}");
-        // At the least the march reads depth and colour of each pixel.
+        // The march reads at least depth and colour of each pixel.
         assert!(one("fetches") > 2.0 && one("fetches") < one("slots"), "{device}");
-        // A wave does what the slowest of its pixels does.
+        // A wave takes as long as the slowest of its pixels.
         for [pixel, wave] in [["trips_pixel", "trips_wave"], ["goes_on_pixel", "goes_on_wave"]] {
             let [pixel, wave] = [one(pixel), one(wave)];
             assert!(pixel > 0.0 && pixel < wave, "{device}: {pixel} and {wave}");

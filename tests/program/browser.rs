@@ -40,7 +40,7 @@ impl Browser {
         Browser::start_with(&["--disable-gpu"])
     }
 
-    /// Starts as [`Browser::start`] does, with these options instead of those for pages without graphics.
+    /// Starts like [`Browser::start`], with these options instead of those for pages without graphics.
     pub fn start_with(options: &[&str]) -> Option<Browser> {
         let Some(program) = find() else {
             eprintln!(
@@ -117,7 +117,7 @@ impl Browser {
         }
     }
 
-    /// The next message; keeps what events say about errors and loading.
+    /// Returns the next message; keeps events about errors and loading.
     fn receive(&mut self) -> Value {
         let message = self.messages.recv_timeout(PATIENCE).expect("the browser answers");
         let parameters = &message["params"];
@@ -173,7 +173,7 @@ impl Browser {
             "expression": expression,
             "returnByValue": true,
             "awaitPromise": true,
-            // As from a click: some things are only allowed then.
+            // Counts as a click, as browsers allow some calls only then.
             "userGesture": true,
         });
         let result = self.call("Runtime.evaluate", parameters);

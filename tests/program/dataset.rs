@@ -35,7 +35,7 @@ fn only_what_is_missing_is_made() {
 
     let pixels = fs::read(scene.join("patched/000001.png")).unwrap();
     let json = fs::read(scene.join("group/000001.json")).unwrap();
-    // As an interruption leaves it: some pictures, no JSON.
+    // The state after an interruption: some pictures, no JSON.
     fs::remove_file(scene.join("patched/000001.png")).unwrap();
     fs::remove_file(scene.join("group/000001.json")).unwrap();
     assert_eq!(succeed(dir.path(), line).stdout, "3 groups in data (1 new)\n");
@@ -62,7 +62,7 @@ fn only_what_is_missing_is_made() {
     assert_eq!(times(&scene), second, "a mistake changes nothing");
 }
 
-/// A patcher on image files does what it does on a group in memory.
+/// A patcher on image files has the same result as on a group in memory.
 #[test]
 fn synthesize_with_a_patcher() {
     let dir = tempfile::tempdir().unwrap();

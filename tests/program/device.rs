@@ -26,7 +26,7 @@ fn kinds(capture: &Capture) -> Vec<FaultKind> {
     kinds.into_iter().collect()
 }
 
-/// A device with this, a run of a minute on it, and what was captured.
+/// Returns the capture of a run of one minute on a device with this script.
 fn minute(script: &str) -> Capture {
     let dir = tempfile::tempdir().unwrap();
     write(dir.path(), "s.toml", &format!("[[device]]\nserial = \"SIM1\"\n{script}"));
@@ -51,7 +51,7 @@ fn minute(script: &str) -> Capture {
     capture
 }
 
-/// How many of the seconds from 1 to 61 the capture has not.
+/// Returns the number of seconds from 1 to 61 that the capture lacks.
 fn missing(capture: &Capture) -> usize {
     61 - capture.samples.iter().filter(|sample| (0.5..61.5).contains(&sample.time_s)).count()
 }
@@ -121,7 +121,7 @@ fn the_figures_of_odd_devices_are_corrected() {
     let [normal, odd] = ["", "current = \"milliamperes\"\npositive = true\n"].map(minute);
     assert!((current(&normal) - current(&odd)).abs() < 2.0, "{} {}", current(&normal), current(&odd));
     assert_eq!(odd.samples[40].current_raw, Some(-current(&odd) as i64));
-    // In whole volts; the kernel has it exactly, or power is left out.
+    // Voltage in whole volts: the exact value comes from the kernel, or power is left out.
     let exact = minute("voltage = \"volts\"\nkernel-battery = true\n");
     let volts = |capture: &Capture| capture.samples[40].voltage_mv;
     assert!((volts(&exact).unwrap() - volts(&normal).unwrap()).abs() < 20.0, "{:?}", volts(&exact));
@@ -338,7 +338,7 @@ fn from_an_experiment_to_its_report() {
     let at = dir.path();
     write(at, "e.toml", &SMALL.replace("seconds = 20", "seconds = 40"));
     let load = "[device.load]\nconventional = { frame-ms = 20.0, milliwatts = 4000.0 }\nyoro = { frame-ms = 10.0, milliwatts = 3000.0 }\n";
-    // Of each run one; what starts the application anew counts its starts on.
+    // One fault for each run. A fault that restarts the application advances the count of its starts.
     let faults = [
         fault("disconnect", "start = 1\nat = 20.5\nseconds = 10.0"),
         fault("plug", "start = 2\nat = 20.5\nseconds = 5.0"),
@@ -382,7 +382,7 @@ fn from_an_experiment_to_its_report() {
         assert!(named("faults").contains(name), "{name}: {:?}", named("faults"));
     }
     assert!(named("left_out").contains("plugged in") && named("left_out").contains("rebooted"));
-    // What a device does wrong with each value is put right.
+    // Systematic errors of a device's values are corrected.
     let power = report["differences"].as_array().unwrap().iter().find(|entry| {
         entry["quantity"] == "power"
             && entry["scene"].is_null()
@@ -472,7 +472,7 @@ fn refused_settings_and_refresh_rates_are_reported() {
         assert!(said.stderr.contains(words) && said.stdout.contains(words), "{words}: {}", said.stderr);
     }
     assert_eq!(kinds(&read(&at.join("run"))), [FaultKind::NotPinned]);
-    // What is taken need not do anything.
+    // A device may accept a setting without effect.
     write(at, "s.toml", "[[device]]\nserial = \"SIM1\"\nrefresh-hz = 60\n");
     let said = succeed(at, "device run talk --seconds 5 --refresh-hz 90 --replay s.toml --out other");
     assert!(said.stdout.contains("the display runs at 60 Hz, 90 Hz were asked for"), "{}", said.stdout);
@@ -665,7 +665,7 @@ fn a_log_is_followed() {
     assert_eq!(kinds(&live), [Disconnected, ClockJump, DamagedLines, Rebooted]);
 }
 
-/// The program adb itself is not here: a shell script that answers as it does.
+/// A shell script that answers like the program adb, which is not here.
 #[cfg(unix)]
 const FAKE_ADB: &str = r#"#!/bin/sh
 # A fake adb: one device, on which everything works.
@@ -727,7 +727,7 @@ fn adb_is_called_with_the_right_arguments() {
     run(at, "device run --adb adb --serial FAKE2").refuses(&["FAKE2 does not trust"]);
     write(at, "a.apk", "");
     succeed(at, "device install --adb adb --apk a.apk");
-    // What adb printed for other applications: sndcpy issue 64, HyperSploit 54, InstallWithOptions 22, APK-Installer 25.
+    // Output of adb for other applications: sndcpy issue 64, HyperSploit 54, InstallWithOptions 22, APK-Installer 25.
     for (said, words) in [
         ("Failure [INSTALL_FAILED_USER_RESTRICTED: Install canceled by user]", "Install via USB"),
         ("Failure [INSTALL_FAILED_VERSION_DOWNGRADE: Downgrade detected]", "a newer yoro is on FAKE1"),
@@ -783,7 +783,7 @@ fn fake_adb(at: &Path, script: &str) {
 fn a_missing_adb_server_is_not_reported_as_a_missing_device() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    // As flutter issue 125971 quotes it.
+    // The text that flutter issue 125971 quotes.
     fake_adb(
         at,
         "echo 'List of devices attached'; echo '* daemon still not running' >&2; echo 'error: cannot connect to daemon at tcp:5037: Connection refused' >&2; exit 1\n",
@@ -820,7 +820,7 @@ fn a_phone_by_cable_and_by_wifi_is_one_phone() {
     let said = succeed(at, "device install --apk a.apk --all --adb adb");
     assert_eq!(installed(), 1, "{}", said.stdout);
     assert!(said.stderr.contains("are the same device: 5C061JEA327610 is used"), "{}", said.stderr);
-    // Nobody has to say which of them.
+    // The command needs no choice among them.
     succeed(at, "device install --apk a.apk --adb adb");
     // marathon issue 223: all emulators of an image have one serial number.
     fake(&["emulator-5554", "emulator-5556"], "EMULATOR28X0X23X0");

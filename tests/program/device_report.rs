@@ -103,7 +103,7 @@ fn known_differences_come_out_and_faults_are_named() {
         assert!((value - expected).abs() < 1e-3, "{value} is not {expected}");
     };
     let street = find(&report, "differences", &[("scene", "street"), ("quantity", "power")]);
-    // Of three pairs one was plugged in.
+    // One of three pairs was plugged in.
     assert_eq!(street["pairs"], 2);
     near(&street["change"], -20.0);
     let all = report["differences"].as_array().unwrap().iter();
@@ -160,7 +160,7 @@ fn folders_without_captures_are_refused() {
         run(at, line).refuses(naming);
     }
     assert_eq!(fs::read(at.join("out/report.html")).unwrap(), b"made earlier");
-    // Without the baseline the means are there, and what is missing is said.
+    // Without the baseline the report has the means, and names the missing part.
     let run = succeed(at, "device report good --out out");
     assert!(run.stdout.contains("no run of conventional"), "{}", run.stdout);
     let again = succeed(at, "device report good --baseline yoro --out out");

@@ -31,7 +31,7 @@ impl Run {
     pub fn refuses(&self, naming: &[&str]) {
         let text = &self.stderr;
         assert_eq!(self.code, Some(2), "{text}");
-        // The parser of the command line adds what is possible and how to get help, in lines of their own.
+        // The parser of the command line adds the possible values and a hint for help, in lines of their own.
         let hints = ["Usage:", "For more information", "  "];
         let hint = |line: &&str| hints.iter().any(|hint| line.starts_with(hint));
         let mut lines = text.lines().filter(|line| !line.is_empty() && !hint(line));

@@ -29,7 +29,7 @@ fn right_eye(dir: &Path) -> RgbImage {
     picture::load_color(&dir.join("out/room.right.png")).unwrap()
 }
 
-/// Which channel is the largest.
+/// Returns the index of the largest channel.
 fn hue(image: &RgbImage, x: u32, y: u32) -> usize {
     let pixel = image.get_pixel(x, y).0;
     (0..3).max_by_key(|&c| pixel[c]).unwrap()

@@ -89,7 +89,7 @@ fn files_without_results_are_refused() {
         ("report", &["<FILE.jsonl>"]),
     ] {
         let mut run = run(at, line);
-        // What is left out of a half-written file is told on a line of its own.
+        // The parts left out of a half-written file are reported on a line of their own.
         run.stderr = run.stderr.lines().filter(|l| !l.contains("WARN")).collect::<Vec<_>>().join("\n");
         run.refuses(naming);
     }

@@ -28,7 +28,7 @@ fn from_a_plan_to_a_verdict() {
     let trials = plan["trials"].as_array().unwrap();
     assert_eq!((trials.len(), csv.lines().count()), (36, 37));
 
-    // The log that a viewer would write, with what else is in logs.
+    // The log that a viewer would write, with other lines that logs contain.
     let mut log =
         String::from("--------- beginning of main\n11-21 10:00:00.000  1  1 I YORO    : v=1,t=1.0s\n");
     let scenes: BTreeMap<&str, usize> = [("street", 0), ("atrium", 1), ("talk", 2)].into();
@@ -80,7 +80,7 @@ fn from_a_plan_to_a_verdict() {
     if let Some(mut browser) = Browser::start() {
         check_figures(&mut browser, &at.join("out/study.html"));
     }
-    // A scale from the command line decides what a rating may be.
+    // A scale from the command line limits the ratings.
     run(at, "study analyse ratings.csv --scale 1..3 --out out")
         .refuses(&["ratings.csv, line 2", "from 1 to 3"]);
 }

@@ -15,7 +15,7 @@ fn eyes() -> String {
     format!("--fov-y-degrees {FOV_Y_DEGREES} --ipd {IPD}")
 }
 
-/// Likeness in dB to what an eye really sees. Disocclusions, a few percent here, are guessed by nature.
+/// Returns the PSNR in dB against an eye's true image. Disocclusions, a few percent here, are guessed by nature.
 fn quality(image: &RgbImage, eye: f32) -> f64 {
     let Psnr(db) = psnr(image, &pair::color(eye), Channels::Rgb).unwrap();
     db
@@ -97,7 +97,7 @@ fn every_pipeline_and_either_eye() {
     }
 }
 
-/// Pictures made smaller are anti-aliased: told so, the other eye is closer to what it really sees.
+/// Pictures made smaller are anti-aliased. If the options say so, the other eye is closer to its true image.
 #[test]
 fn anti_aliased_pictures_by_what_their_depth_is() {
     const N: u32 = 4;

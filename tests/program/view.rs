@@ -45,7 +45,7 @@ fn both_eyes_behind_their_lenses() {
     let real = view(dir.path(), "prototype --no-hud --method conventional");
     let mono = view(dir.path(), "prototype --no-hud --method mono");
     let (synthesized, same) = (difference(&image, &real), difference(&mono, &real));
-    // About 5.5 and 9.0 grey levels: most of what is in view is far away.
+    // About 5.5 and 9.0 grey levels: most of the view is far away.
     assert!(synthesized < 0.7 * same, "{synthesized} synthesized, {same} without stereo");
 }
 

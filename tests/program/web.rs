@@ -35,7 +35,7 @@ struct Server {
 }
 
 impl Server {
-    /// Serves what `cargo xtask test` has built; without that the test is to end.
+    /// Serves the page that `cargo xtask test` has built; none without it, and the test is to end.
     fn start() -> Option<Server> {
         let Some(xtask) = env::var_os("YORO_TEST_WEB") else {
             let without = env::var_os("YORO_TEST_WITHOUT_WEB").is_some();
@@ -127,7 +127,7 @@ impl Page {
         ));
     }
 
-    /// Both eyes, drawn with this size each: at once, before the page draws for its canvas.
+    /// Returns both eyes, drawn with this size each: at once, before the page draws for its canvas.
     fn eyes(&mut self, size: [u32; 2]) -> [RgbImage; 2] {
         let read = format!(
             "(() => {{ {}; return [0, 1].map((eye) => {{ let s = ''; \
@@ -157,7 +157,7 @@ fn draw(size: [u32; 2]) -> String {
     format!("yoro.page.draw({}, {}, false)", 2 * size[0], size[1])
 }
 
-/// Chooses a display, draws, and adds up what is on the canvas.
+/// Chooses a display, draws, and adds up the canvas's values.
 fn sum(display: &str) -> String {
     format!(
         "(() => {{ const e = document.getElementById('display'); e.value = '{display}'; \
@@ -260,7 +260,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     let fragment = page.evaluate("location.hash");
     assert!(fragment.as_str().unwrap().contains("method=hybrid"), "{fragment}");
 
-    // Each renderer comes with its own anti-aliasing; what it cannot do is refused, and what was chosen before stays.
+    // Each renderer comes with its own anti-aliasing. Unsupported choices are refused, and the choice before stays.
     for (renderer, smoothing) in [("deferred", "after"), ("forward", "msaa")] {
         page.choose("renderer", renderer);
         assert_eq!(page.evaluate("yoro.settings['anti-aliasing']"), smoothing);
@@ -286,7 +286,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
         assert!(wide.as_u64().unwrap() <= u64::from(width), "{wide} pixels wide in a window of {width}");
     }
 
-    // While a scene is generated it is told how far that is.
+    // The page shows the progress while a scene is generated.
     let told = page.evaluate(
         "(async () => { const bar = document.getElementById('progress'), seen = []; \
          const watch = new MutationObserver(() => seen.push(bar.position)); watch.observe(bar, { attributes: true }); \
@@ -300,7 +300,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     );
     page.evaluate("yoro.showSource({ builtin: 'prototype' })");
 
-    // A thousand frames hold what ten held.
+    // A thousand frames hold the same objects as ten.
     let frames = |count: u32| {
         format!(
             "(() => {{ for (let i = 0; i < {count}; i++) {{ yoro.page.turn(0.01, 0); yoro.page.draw(32, 24, false); }} \
@@ -353,7 +353,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     }
     page.browser.expect_silence();
 
-    // What a link says wrongly is told, and the rest is done.
+    // A link's invalid parts are reported, and the rest is applied.
     page.go("?again#viewpoint=1&ipd=900&method=none&size=3&anti-aliasing=msaa");
     let told = page.message().unwrap();
     for part in ["ipd is “900”", "method is “none”", "“size”", "anti-aliasing is “msaa”"] {
@@ -460,12 +460,12 @@ fn dropped_files_are_shown_or_refused() {
         close(depth, &page.eyes(size)[0], &desktop);
     }
 
-    // Nothing can be said of how wrong they are: the eye itself is shown.
+    // Pictures have no truth for a difference: the eye itself is shown.
     let synthesized = page.evaluate(&sum("left"));
     assert!(synthesized.as_u64().unwrap() > 0);
     assert_eq!(page.evaluate(&sum("difference")), synthesized);
 
-    // Ten that are none: a sentence each, and what was there stays.
+    // Ten invalid inputs: a sentence each, and the content before stays.
     type Files<'a> = &'a [(&'a str, Vec<u8>)];
     let gray = |w, h| png(GrayImage::new(w, h));
     let broken: [(Files, &str); 10] = [

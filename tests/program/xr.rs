@@ -28,7 +28,7 @@ use crate::program::{Run, finish, yoro};
 
 /// Rendering that costs little.
 const CHEAP: [&str; 4] = ["shadow-map=0", "ssao=off", "bloom=false", "hud=false"];
-/// No run takes this long, but for those with large pictures of large scenes.
+/// The time limit of a run; those with large pictures of large scenes have the second one.
 const LIMIT: Duration = Duration::from_secs(60);
 const LARGE_LIMIT: Duration = Duration::from_secs(600);
 
@@ -53,7 +53,7 @@ fn in_time(command: &mut Command, limit: Duration) -> Run {
     Run::new(child.wait_with_output().unwrap())
 }
 
-/// The simulated runtime with a script, and what it has seen.
+/// The simulated runtime with a script, and its log.
 struct Simulated {
     folder: TempDir,
 }
@@ -106,7 +106,7 @@ impl Simulated {
         log::read(&self.path("log.jsonl"))
     }
 
-    /// Nothing was done that the specification forbids.
+    /// Checks that there was no violation of the specification.
     #[track_caller]
     fn check(&self) {
         let violations: Vec<Entry> =
@@ -240,7 +240,7 @@ fn any_call_may_fail_once() {
     let Some(Entry::Calls { counts }) = clean.log().pop() else { panic!("the log ends with the calls") };
     assert!(counts.len() > 40, "{counts:?}");
     for call in counts.keys() {
-        // Of xrGetInstanceProcAddr's calls those before the instance are the ones that matter.
+        // Only the calls of xrGetInstanceProcAddr before the instance matter.
         let fault = Fault { call: call.clone(), nth: 1, and_later: false, result: -2 };
         let simulated = Simulated::new(&Script { faults: vec![fault], ..Script::default() });
         let run = simulated.run("--frames 2");
@@ -248,7 +248,7 @@ fn any_call_may_fail_once() {
         simulated.check();
         assert_eq!(simulated.count(|entry| matches!(entry, Entry::Fault { .. })), 1, "{call}");
         let told = failures(&run).into_iter().filter(|line| line.contains("failed with")).collect::<Vec<_>>();
-        // Nothing is lost when something cannot be destroyed.
+        // A failure to destroy an object has no consequence.
         let expected = if call.starts_with("xrDestroy") { 0 } else { 1 };
         assert_eq!(told.len(), expected, "{call}: {}", run.stderr);
         assert!(told.iter().all(|line| line.contains(call)), "{call}: {told:?}");
@@ -594,8 +594,8 @@ fn asymmetric_eyes_are_synthesized_well() {
     assert!(border.ssim_gaussian > 0.97, "at the outer border: {border:?}");
 }
 
-/// `cargo test -p yoro --test program -- --ignored asymmetric --nocapture`. The symmetric eyes are as wide: what they show
-/// worse or better is not due to the frusta.
+/// `cargo test -p yoro --test program -- --ignored asymmetric --nocapture`. Symmetric eyes of the same width show which
+/// differences in quality are not due to the frusta.
 #[test]
 #[ignore = "takes minutes"]
 fn asymmetric_eyes_in_every_scene() {
@@ -627,7 +627,7 @@ struct Monado {
 }
 
 impl Monado {
-    /// None where the tests are told to do without.
+    /// Starts the service; none if the tests are set to do without it.
     fn start() -> Option<Monado> {
         let Some(programs) = std::env::var_os("YORO_TEST_MONADO").map(PathBuf::from) else {
             let without = std::env::var_os("YORO_TEST_WITHOUT_MONADO").is_some();
@@ -668,8 +668,8 @@ impl Drop for Monado {
     }
 }
 
-/// The program as an application of one view, in an array of two: what the layer makes of that is what the program
-/// synthesizes itself; of whole images, and of a part of larger ones.
+/// Runs the program as an application of one view, in an array of two. The layer's result equals the program's own
+/// synthesis, for whole images and for a part of larger ones.
 #[test]
 fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
     let Some(programs) = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from) else {
@@ -718,14 +718,14 @@ fn assert_synthesized_through_the_layer(programs: &Path, scale: &'static str) {
     let log = fs::read_to_string(folder.join("yoro/layer.log")).unwrap();
     assert!(log.contains(end), "{log}");
 
-    // A layer may ask for functions of extensions that are not enabled: how else would it know.
+    // A layer may ask for functions of extensions that are not enabled, as it has no other way to find out.
     let violations = simulated
         .count(|entry| matches!(entry, Entry::Violation { call, .. } if call != "xrGetInstanceProcAddr"));
     assert_eq!(violations, 0, "{:#?}", simulated.log());
     let views = simulated.views();
     let (_, views) = views.last().unwrap();
     assert!(views.iter().all(|view| view.depth.is_some()), "{views:?}");
-    // Where the program had its one view in the scene; the other eye is as far from it there as in the room.
+    // The pose of the program's one view in the scene. The other eye is as far from it there as in the room.
     let (_, own, _) = captured(folder, &run.json()).remove(0);
     let at = |view: &View| Vec3::from(view.position);
     let apart = Quat::from_array(views[1].orientation).inverse() * (at(&views[0]) - at(&views[1]));
@@ -780,7 +780,7 @@ fn monado_shows_what_the_desktop_renders() {
     assert!(frames.iter().all(|(_, frames)| *frames >= 100), "{frames:?}");
     let settings = Settings::resolve(None, CHEAP.map(str::to_owned)).unwrap();
     for (method, pair, eyes) in captured(monado.folder.path(), &summary) {
-        // This machine's Mesa may not have what Monado's has.
+        // This machine's Mesa may lack features of Monado's.
         let reference = if method == Method::Multiview { Method::Conventional } else { method };
         let expected = desktop("prototype", reference, &pair, &settings);
         for (eye, mut expected) in eyes.iter().zip(expected) {

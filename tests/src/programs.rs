@@ -17,20 +17,20 @@ use yoro_shaders::{Assembled, MissingFile};
 
 use crate::scene;
 
-/// Which variants of the renderer's programs; of all others it is always every one.
+/// The variants of the renderer's programs to make. Other programs are always made in every variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variants {
     /// All combinations of maps, opacity, style, light and settings.
     Every,
-    /// Under default settings, materials without maps and with all maps: between these lies what the others cost. By every
-    /// method in the realistic style only.
+    /// Under default settings, materials without maps and with all maps: the cost of the others lies between these. By
+    /// every method in the realistic style only.
     Extreme,
 }
 
-/// Makes all programs in a context, which remembers what they were made of ([`Context::program_recipes`]).
+/// Makes all programs in a context, which keeps their recipes ([`Context::program_recipes`]).
 ///
 /// # Errors
-/// When the driver refuses one.
+/// The driver refuses a program.
 pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     synthesis(gl)?;
     rendering(gl, variants)?;
@@ -71,13 +71,13 @@ fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
             Gather::with_variant(gl, Outputs { depth, ..Outputs::default() }, variant)?;
         }
     }
-    // What of the march every pixel runs, for the executed cost.
+    // The part of the march that every pixel runs, for the executed cost.
     let alone = ["TEXTURE_GATHER", "SHORT_WAY", "SHORT_WAY_ALONE"].map(|name| (name, String::new()));
     Program::new(gl, ShaderSource::Screen("synthesis/gather/march.frag"), &alone)?;
     Ok(())
 }
 
-/// Compiles what a scene needs by every method that the driver has.
+/// Compiles the programs for a scene by every method that the driver supports.
 fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> anyhow::Result<()> {
     let mut renderer = Renderer::new(gl, settings, scene)?;
     for method in Method::ALL {
@@ -95,7 +95,7 @@ fn settings() -> RenderSettings {
     RenderSettings { shadow_map_size: 64, ..RenderSettings::default() }
 }
 
-/// Compiles what a scene needs under all settings that change a shader.
+/// Compiles the programs for a scene under all settings that change a shader.
 fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Result<()> {
     let scene = GpuScene::upload(gl, scene)?;
     let settings = settings();
@@ -235,7 +235,7 @@ pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
 /// The files of all programs that are made in `gl`, the includes among them.
 ///
 /// # Errors
-/// When one does not exist.
+/// A file does not exist.
 pub fn files(gl: &Context) -> anyhow::Result<BTreeSet<String>> {
     let mut files = BTreeSet::new();
     for recipe in gl.program_recipes() {

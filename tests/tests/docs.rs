@@ -25,7 +25,7 @@ fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Where `](here)` leads, without anchors and without other sites.
+/// Returns the targets of links, `](target)`, without anchors and without other sites.
 fn links(text: &str) -> impl Iterator<Item = &str> {
     let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target);
     targets.filter(|target| !target.contains("://")).filter_map(|target| target.split('#').next())
@@ -62,7 +62,7 @@ fn every_link_and_path_leads_somewhere() {
     for file in &files {
         let text = fs::read_to_string(file).unwrap();
         let folder = file.parent().unwrap();
-        // What has changed names what was there before.
+        // The change log also names paths that no longer exist.
         let history = file.ends_with("CHANGELOG.md");
         let linked = links(&text).filter(|link| !link.is_empty() && !folder.join(link).exists());
         let named = paths(&text).filter(|path| !history && !root().join(path).exists());

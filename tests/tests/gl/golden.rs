@@ -1,4 +1,4 @@
-//! Built-in scenes look as they did.
+//! Built-in scenes look unchanged.
 
 use std::rc::Rc;
 
@@ -43,7 +43,7 @@ fn read(frame: &StereoFrame, eye: Eye) -> RgbImage {
     })
 }
 
-/// Compares everything before it fails, so that one run shows all that has changed.
+/// Compares everything before it fails, so that one run shows all changes.
 fn check(images: &[(String, &RgbImage)]) {
     let failures: Vec<String> = images
         .iter()

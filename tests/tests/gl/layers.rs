@@ -21,7 +21,7 @@ fn distance_squared(a: Color, b: Color) -> f64 {
     (0..3).map(|c| (a[c] - b[c]).powi(2)).sum()
 }
 
-/// A picture in forward columns; reads beyond its borders give what is there.
+/// A picture in forward columns; reads beyond its borders are clamped to them.
 pub struct Image<T> {
     size: [usize; 2],
     values: Vec<T>,
@@ -143,7 +143,7 @@ fn shared_back(resolved: Color, front: Color, back: Color, share: f64) -> Color 
     })
 }
 
-/// The front's colour is what the back leaves of the resolved one.
+/// Returns a layer with a back. The front's colour is the resolved colour without the back's share.
 fn with_back(front: f64, resolved: Color, mask: [f64; 4], back: Back) -> Layer {
     let share = mask.iter().sum::<f64>() / 4.0;
     let color =
@@ -181,7 +181,7 @@ fn resolved_layers(reach: &Image<f64>, resolved: &Image<Color>, first_sample: bo
         let here = resolved.at(x, y);
         let single = Layer { front: reach.at(x, y), color: here, mask: [1.0; 4], back: None };
         let Some((front, back, shows_back)) = split(reach, x, y, apart, first_sample) else { return single };
-        // For front and back: pure taps, and all taps.
+        // Taps of front and back: pure ones, and all.
         let mut taps: [[Vec<(f64, Color)>; 2]; 2] = Default::default();
         for (dx, dy) in RING.into_iter().chain(NEXT) {
             let tap = (4.0 / (dx * dx + dy * dy) as f64, resolved.at(x + dx, y + dy));
@@ -316,7 +316,7 @@ pub struct Fetches {
     pub colors: u32,
 }
 
-/// Front-to-back composition of what covers a target pixel.
+/// Front-to-back composition of the surfaces that cover a target pixel.
 struct Composition {
     color: Color,
     rest: f64,
@@ -380,7 +380,7 @@ pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) ->
             let share = of_here + of_next;
             if share > 0.0 {
                 out.add(share, mix(&[(of_here / share, here.color), (of_next / share, next.color)]));
-                // Both columns, or both at once.
+                // Fetches of both columns, or one fetch for both.
                 out.fetches.colors = if plain { 1 } else { out.fetches.colors + 2 };
             }
         }

@@ -101,7 +101,7 @@ fn mean_difference(a: &[u8], b: &[u8]) -> f64 {
 #[test]
 fn single_pass_stereo_equals_two_renders() {
     on_every_backend(|gl| {
-        // Anti-aliasing makes several pixels of one whose edge is rounded otherwise.
+        // Anti-aliasing turns one pixel with a differently rounded edge into several.
         let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
         let small = scenes().swap_remove(0);
         let deferred = scenes().into_iter().map(|scene| (scene, RendererKind::Deferred));

@@ -29,6 +29,6 @@ fn synthesis_programs_neither_spill_nor_starve_mobile_gpus() {
     for gpu in GPUS {
         assert!(text.contains(&format!("({gpu})\n")), "{text}");
     }
-    // As OpenGL ES 3.0, as a CPU rasterizer, as a GPU, and with a source map.
+    // Once each for OpenGL ES 3.0, a CPU rasterizer, a GPU, and with a source map.
     assert_eq!(text.matches("synthesis/gather/march.frag WRITE_DEPTH ").count(), 4 * GPUS.len());
 }

@@ -1,4 +1,4 @@
-//! How good synthesis from four samples a pixel is where the truth is known: samples cut out of views rendered at four
+//! The quality of synthesis from four samples a pixel with a known truth: samples cut out of views rendered at four
 //! times the width and height.
 
 use std::rc::Rc;
@@ -24,7 +24,7 @@ const GRID: u32 = 4;
 const BORDER: u32 = 64;
 const SCENES: [&str; 6] = ["atrium", "scifi-city", "stage", "street", "talk", "voxel"];
 
-/// Both eyes at four times the size, at the beginning of the scene's camera path.
+/// Renders both eyes at four times the size, at the beginning of the scene's camera path.
 fn large(gl: &Rc<Context>, name: &str) -> anyhow::Result<ImageGroup> {
     let scene = yoro_scenes::build(name, yoro_scenes::DEFAULT_SEED)?;
     let head = CameraPath::new(&scene.viewpoints).pose(0.0);
@@ -110,7 +110,7 @@ fn counted(samples: &Samples, warp: &Warp) -> [f64; 3] {
     sums.map(|sum| sum / (w * h) as f64)
 }
 
-/// PSNR and SSIM of each way to hand the samples over.
+/// Returns PSNR and SSIM of each way to pass the samples.
 fn measure(gl: &Rc<Context>, name: &str) -> anyhow::Result<Vec<(&'static str, [f64; 2])>> {
     let group = large(gl, name)?;
     let eyes = EyeOptions { size: [SIZE; 2], ..EyeOptions::default() };

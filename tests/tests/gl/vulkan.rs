@@ -45,7 +45,7 @@ fn vulkan_equals_opengl_on_scenes() {
     }
 }
 
-/// Returns by Vulkan what OpenGL has synthesized.
+/// Returns Vulkan's result for a group that OpenGL has synthesized.
 fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
     let warp = &group.views.warp;
     let (color_format, depth_format) = (vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT);
@@ -64,7 +64,7 @@ fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
         max_target_size: warp.target_size,
         ..Options::default()
     };
-    // SAFETY: images that live until everything is executed, in the states that are told.
+    // SAFETY: the images live until everything is executed, and are in the declared states.
     unsafe {
         let mut gather = Gather::new(&gpu.host(), &options).unwrap();
         let source = gather

@@ -271,7 +271,7 @@ fn on_vulkan(
         _ => single.layer(0, WRITTEN, ImageState::SAMPLED),
     };
     let drawn_color = sample_color.layer(0, ImageState::COLOR_ATTACHMENT, ImageState::COLOR_ATTACHMENT);
-    // SAFETY: images that live until everything is executed, in the states that are told.
+    // SAFETY: the images live until everything is executed, and are in the declared states.
     unsafe {
         let mut gather = Gather::new(host, &options).unwrap();
         let images = SourceImages {
