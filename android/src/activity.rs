@@ -73,9 +73,9 @@ struct Activity {
     device: Option<Device>,
     input: Input,
     performance: Performance,
-    /// GPU time of a frame some frames ago, where it is measured.
+    /// GPU time of a frame some frames ago, if measured.
     gpu_time: Duration,
-    /// Room for the samples of a frame.
+    /// A buffer for the samples of a frame.
     samples: Vec<(MotionSample, i64)>,
 
     /// True once it is decided which display the eyes see.
@@ -278,8 +278,8 @@ impl Activity {
         Ok(RUNTIME.get_or_init(|| found).clone())
     }
 
-    /// Shows everything on the device's own screen, for there is no headset, or no longer. On a headset the application ends
-    /// instead: who wears it does not see that screen, but the sign of loading without end. `is_usual` is true if nothing
+    /// Shows everything on the device's own screen, as there is no headset, or no longer. On a headset the application
+    /// ends instead: its wearer does not see that screen, but an endless sign of loading. `is_usual` is true if nothing
     /// is wrong: most phones are no headsets.
     fn do_without_headset(&mut self, reason: &str, is_usual: bool) {
         if self.java.is_headset() {
@@ -321,8 +321,8 @@ impl Activity {
                 }
             }
             Ok(Step::Ended) => self.finish(),
-            // The headset is lost for this activity, for instance with its session. It has used neither the window nor the
-            // refreshes and sensors, so both are begun here as if the activity had come to the front just now.
+            // The headset is lost for this activity, for instance with its session. It has used neither the window nor
+            // the refreshes and sensors, so both are begun here as if the activity had come to the front just now.
             Err(error) => {
                 self.summarize();
                 self.is_summarized = false;

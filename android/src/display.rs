@@ -10,7 +10,7 @@ use yoro_viewer::{Cardboard, Viewer, ViewerError};
 /// The display that the eyes see; it owns the application that draws there.
 #[derive(Default)]
 pub enum Display {
-    /// Nothing yet.
+    /// No display chosen yet.
     #[default]
     None,
     /// The phone's screen, behind lenses.

@@ -177,9 +177,9 @@ struct Choreographer {
 
 /// The function with which refreshes are asked for.
 enum Post {
-    /// It gives times alone.
+    /// Gives only times.
     Frame(PostFrameCallback),
-    /// It gives the timeline of a frame, from API 33 on.
+    /// Gives the timeline of a frame, from API 33 on.
     Vsync(Vsync),
 }
 

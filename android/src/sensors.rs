@@ -10,9 +10,9 @@ use yoro_lenses::MotionSample;
 const ACCELEROMETER: c_int = 1;
 const GYROSCOPE: c_int = 4;
 const GYROSCOPE_UNCALIBRATED: c_int = 16;
-/// Faster needs a permission from Android 12 on, without which a sensor gives nothing at all.
+/// The shortest period without a permission. From Android 12 on a faster sensor without it gives no samples at all.
 const SHORTEST_PERIOD_US: i32 = 5_000;
-/// Any number: it comes back from the looper when there are events.
+/// An arbitrary identifier, which the looper returns when there are events.
 const LOOPER_IDENT: c_int = 1;
 /// Events that are taken at once.
 const BATCH: usize = 32;

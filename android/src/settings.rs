@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use yoro_protocol::{SETTINGS, Setting, Settings};
 
-/// System properties that begin so are settings: `adb shell setprop debug.yoro.method mono`.
+/// The prefix of system properties that are settings: `adb shell setprop debug.yoro.method mono`.
 pub const PROPERTY_PREFIX: &str = "debug.yoro.";
-/// Intent extras may begin so; those of the system contain other dots.
+/// The optional prefix of intent extras; the system's extras contain other dots.
 const EXTRA_PREFIX: &str = "yoro.";
 /// The settings file in the application's external folder.
 pub const FILE_NAME: &str = "yoro.toml";

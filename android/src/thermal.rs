@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::dynamic::Library;
 
-/// Headroom is a forecast that changes slowly, and Android answers NaN to those who ask often.
+/// Time between queries of the headroom. The forecast changes slowly, and Android answers frequent queries with NaN.
 const HEADROOM_PERIOD: Duration = Duration::from_secs(10);
 /// Time until the next query after an answer of NaN.
 const HEADROOM_RETRY: Duration = Duration::from_secs(2);

@@ -45,7 +45,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
         "yoro-gather",
         "yoro-paper",
     ] {
-        // Nobody is missing without a reason.
+        // Each contender is measured, or left out with a reason.
         let rows = whole.iter().filter(|r| r["contender"] == contender);
         let (measured, left_out): (Vec<&Value>, Vec<&Value>) =
             rows.partition(|r| r["record"] == "measurement");

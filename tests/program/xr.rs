@@ -26,7 +26,7 @@ use yoro_render::{GpuScene, RenderSettings, Renderer};
 
 use crate::program::{Run, finish, yoro};
 
-/// Rendering that costs little.
+/// Settings for cheap rendering.
 const CHEAP: [&str; 4] = ["shadow-map=0", "ssao=off", "bloom=false", "hud=false"];
 /// The time limit of a run; those with large pictures of large scenes have the second one.
 const LIMIT: Duration = Duration::from_secs(60);

@@ -12,7 +12,7 @@ use anyhow::Context as _;
 use yoro_context::{Backend, Headless};
 use yoro_gl::Context;
 
-/// Set by `cargo xtask test` on systems that have no OSMesa any more (Mesa 25.1 dropped it).
+/// The variable that `cargo xtask test` sets on systems without OSMesa (Mesa 25.1 dropped it).
 const WITHOUT_OSMESA: &str = "YORO_TEST_WITHOUT_OSMESA";
 
 /// The backends that are tested here.

@@ -207,7 +207,7 @@ const COUNTERPARTS: [(&str, &str); 3] =
 /// The programs that are made in `gl`, and their counterparts for other drivers; sorted by name.
 ///
 /// # Errors
-/// When one has a file that does not exist.
+/// A program has a file that does not exist.
 pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
     let mut recipes: BTreeSet<ProgramRecipe> = BTreeSet::new();
     for recipe in gl.program_recipes() {

@@ -48,7 +48,7 @@ impl Multisampled {
     /// Draws the samples: a fragment for each.
     ///
     /// # Errors
-    /// When the driver has no shading by sample (OpenGL ES 3.2).
+    /// The driver has no shading by sample (OpenGL ES 3.2).
     pub fn new(gl: &Rc<Context>, samples: &Samples) -> anyhow::Result<Multisampled> {
         let [w, h] = samples.size;
         // The four images above each other.

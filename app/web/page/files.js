@@ -6,7 +6,7 @@ const MODEL = /\.(obj|gltf|glb)$/i;
 const PICTURE = /\.(png|jpe?g|bmp|tga|exr)$/i;
 const EXR = /\.exr$/i;
 const DEPTH = /depth|disp|z[-_. ]?(buffer|map)/i;
-/** More than a browser's module can hold, in bytes. */
+/** A size beyond the capacity of a browser's module, in bytes. */
 const MAX_BYTES = 1.5e9;
 
 /** Returns all dropped files, those in folders with their paths. */

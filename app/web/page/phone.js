@@ -16,8 +16,8 @@ const about = (axis, angle) => {
   return out;
 };
 
-/** The head of a device that is turned so (degrees, as browsers say it), its screen turned by `screen` degrees: a quaternion
- * x, y, z, w in a world with Y up. */
+/** Returns the head's orientation for a device's angles (degrees, in browsers' convention) and its screen's rotation
+ * `screen` in degrees: a quaternion x, y, z, w in a world with Y up. */
 export function orientation(alpha, beta, gamma, screen) {
   // Turns about the Earth's axes Z, X and Y, with Z up; then the screen against the device.
   const device = multiply(multiply(about(2, alpha * RADIANS), about(0, beta * RADIANS)), about(1, gamma * RADIANS));
@@ -25,7 +25,7 @@ export function orientation(alpha, beta, gamma, screen) {
   return multiply(upright, about(2, -screen * RADIANS));
 }
 
-/** Asks for the sensors as browsers want it; throws a sentence. */
+/** Asks for permission to use the sensors if the browser requires it; throws a sentence. */
 async function askForSensors() {
   if (typeof DeviceOrientationEvent === 'undefined') throw new Error('This browser does not report how it is held.');
   if (DeviceOrientationEvent.requestPermission) {

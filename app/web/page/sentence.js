@@ -1,7 +1,7 @@
 // Errors as sentences.
 
 /**
- * Returns a sentence for whatever was thrown.
+ * Returns a sentence for a thrown value.
  * @param {Error} error
  * @returns {string}
  */

@@ -11,9 +11,9 @@ import { sentence } from './sentence.js';
 let job = null;
 
 /**
- * Loads and shows a source, from its viewpoint of the settings; what was shown stays until then.
+ * Loads and shows a source, from its viewpoint of the settings. The content before stays until then.
  * @param {object} source `{builtin}`, `{main, files}` or `{color, depth, options}`
- * @param {{keepPlace?: boolean}} options whether the head goes to the settings' viewpoint and place, not to the first one
+ * @param {{keepPlace?: boolean}} options true to go to the settings' viewpoint and place, not to the first viewpoint
  */
 export async function showSource(source, { keepPlace = false } = {}) {
   clear();

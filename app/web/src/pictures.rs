@@ -213,7 +213,7 @@ mod tests {
             assert!(pair.nearness(&wrong, 0.063).is_err(), "{wrong:?}");
         }
 
-        // Metres are metres, whatever white is elsewhere.
+        // White's distance does not affect metres.
         save_depth(&metres, &DepthImage::from_pixel(4, 2, Luma([2.0]))).unwrap();
         let pair = PicturePair::load(&color, &metres).unwrap();
         let options = PictureOptions { encoding: Encoding::Metres, metres_at_white: 9.0, ..options };

@@ -105,7 +105,7 @@ impl Clock {
         (self.now() - BOOTED) as f64 * 1e-9
     }
 
-    /// Time never goes back: several threads that wait for the same instant move it once.
+    /// Moves the time forward, never back: several threads that wait for the same instant move it once.
     pub fn advance_to(&self, instant: u64) {
         self.now.fetch_max(instant, Ordering::AcqRel);
     }

@@ -25,7 +25,7 @@ pub enum System {
 }
 
 impl System {
-    /// All of them.
+    /// All libraries.
     pub const ALL: [Self; 8] =
         [Self::C, Self::M, Self::Dl, Self::Log, Self::Android, Self::Egl, Self::GlesV2, Self::GlesV3];
 

@@ -16,7 +16,7 @@ use crate::thunk;
 
 /// A library in memory.
 pub struct Library {
-    /// Path as `dladdr` tells it.
+    /// The path that `dladdr` reports.
     pub path: CString,
     base: usize,
     span: usize,

@@ -1,4 +1,4 @@
-//! Random events, each of which Android can send at the stage where the activity is.
+//! Random events, each of which Android can send in the activity's present state.
 
 use rand::Rng;
 

@@ -40,7 +40,7 @@ pub struct Summary {
     pub input: InputFacts,
     /// Things that Android forbids or punishes and that the application did.
     pub violations: Vec<String>,
-    /// JNI calls that nothing here knows: answered by a new object of the type, zero or false.
+    /// Unknown JNI calls, answered by a new object of the type, zero or false.
     pub jni_invented: BTreeMap<String, u64>,
     /// Requests for the device's performance, with the number of times each was made.
     pub requests: BTreeMap<String, u64>,

@@ -88,7 +88,7 @@ fn differences<'a>(a: &'a [u8], b: &'a [u8]) -> impl Iterator<Item = u8> + 'a {
     a.chunks(4).zip(b.chunks(4)).map(difference)
 }
 
-/// Share of the pixels that differ by at most `tolerance`.
+/// Returns the share of the pixels that differ by at most `tolerance`.
 fn within(tolerance: u8, a: &[u8], b: &[u8]) -> f64 {
     let within = differences(a, b).filter(|d| *d <= tolerance).count();
     within as f64 / (a.len() / 4) as f64

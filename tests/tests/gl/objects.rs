@@ -48,7 +48,7 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
     .collect()
 }
 
-/// Few pixels and few programs: it is the number of frames that counts here.
+/// Few pixels and few programs: only the number of frames matters here.
 fn tiny(gl: &Rc<Context>) -> GpuScene {
     let mut scene = scene::every_material(ShadingStyle::Realistic);
     scene::keep_plain_and_full(&mut scene);

@@ -1,4 +1,4 @@
-//! Built-in scenes on Vulkan look as on OpenGL.
+//! Built-in scenes look the same on Vulkan and on OpenGL.
 
 #[path = "../../../app/core/tests/vulkan/harness.rs"]
 #[expect(dead_code, reason = "shared with the core's tests, which use all of it")]

@@ -11,7 +11,7 @@ use yoro_render::stereo::{Method, Pipeline, StereoFrame, StereoMethod};
 use super::Page;
 use super::error::sentence;
 
-/// All methods that the browser supports, ready to take turns. It goes with the page's scene.
+/// All methods that the browser supports, ready to take turns. It is valid for the page's scene.
 #[wasm_bindgen]
 pub struct Bench {
     gl: Rc<Context>,

@@ -109,7 +109,7 @@ impl Page {
     /// Takes over the page's choices, as JSON.
     ///
     /// # Errors
-    /// A sentence; the choices stay as they are then.
+    /// A sentence; the choices stay unchanged then.
     pub fn configure(&mut self, json: &str) -> Result<(), JsError> {
         let settings = Settings::parse(json).map_err(sentence)?;
         match &mut self.content {
@@ -153,7 +153,7 @@ impl Page {
     /// JSON. Returns width and height in pixels.
     ///
     /// # Errors
-    /// A sentence; what was shown before stays.
+    /// A sentence; the content before stays.
     #[wasm_bindgen(js_name = setPictures)]
     pub fn set_pictures(
         &mut self,
@@ -178,7 +178,7 @@ impl Page {
     /// Shows the pictures with other options, as JSON.
     ///
     /// # Errors
-    /// A sentence; the options stay as they are then.
+    /// A sentence; the options stay unchanged then.
     #[wasm_bindgen(js_name = setPictureOptions)]
     pub fn set_picture_options(&mut self, options: &str) -> Result<(), JsError> {
         let options = parse_options(options)?;

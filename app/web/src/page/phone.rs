@@ -17,7 +17,7 @@ pub struct Phone {
     optics: Optics,
     lens: LensPass,
     frame: StereoFrame,
-    /// Heading that is straight ahead, in radians to the left.
+    /// The heading of the direction straight ahead, in radians to the left.
     ahead: f32,
     recenter: bool,
 }

@@ -1,4 +1,4 @@
-//! Somebody's own pictures on the canvas, and the eyes that are made of them.
+//! The user's own pictures on the canvas, and the eyes made from them.
 
 use std::rc::Rc;
 
@@ -60,7 +60,7 @@ impl PictureShow {
     /// Makes the eyes with other options.
     ///
     /// # Errors
-    /// A sentence; the options stay as they are then.
+    /// A sentence; the options stay unchanged then.
     pub fn set_options(
         &mut self,
         gl: &Rc<Context>,

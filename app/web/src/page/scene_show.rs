@@ -42,7 +42,7 @@ impl SceneShow {
     /// Compiles renderer and method for other choices than those `before`.
     ///
     /// # Errors
-    /// The GPU cannot do it; renderer and method stay as they are then.
+    /// The GPU cannot do it; renderer and method stay unchanged then.
     pub fn configure(
         &mut self,
         gl: &Rc<Context>,

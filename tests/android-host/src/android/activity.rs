@@ -124,7 +124,7 @@ impl Directories {
 
     /// Removes everything.
     pub fn remove(&self) {
-        // Nothing depends on it: a folder that stays is in the system's temporary folder.
+        // Ignores errors: a folder that stays is in the system's temporary folder.
         _ = std::fs::remove_dir_all(self.root.path());
     }
 }

@@ -138,7 +138,7 @@ unsafe extern "C" fn __android_log_buf_write(
     unsafe { __android_log_write(priority, tag, message) }
 }
 
-/// The format's arguments cannot be read here: the condition and the format are shown as they are.
+/// Shows the condition and the format unchanged, as the format's arguments cannot be read here.
 unsafe extern "C" fn __android_log_assert(
     condition: *const c_char,
     tag: *const c_char,

@@ -353,7 +353,8 @@ impl ALooper {
     }
 }
 
-/// Gone from newer Androids, and android-activity does not use it: as `pollOnce` until something has an identifier.
+/// Polls like `pollOnce` until an entry has an identifier. Newer Androids lack it, and android-activity does not use
+/// it.
 unsafe extern "C" fn ALooper_pollAll(
     timeout: c_int,
     out_fd: *mut c_int,

@@ -1,4 +1,4 @@
-//! ATrace: nobody listens.
+//! ATrace: tracing is always off.
 
 #![allow(non_snake_case)]
 

@@ -36,7 +36,7 @@ impl Window {
         (self.width.load(Ordering::Acquire), self.height.load(Ordering::Acquire))
     }
 
-    /// Another size; surfaces follow at their next swap.
+    /// Changes the size; surfaces follow at their next swap.
     pub fn resize(&self, width: i32, height: i32) {
         self.width.store(width, Ordering::Release);
         self.height.store(height, Ordering::Release);

@@ -27,7 +27,7 @@ const PLATFORM_SURFACELESS: u32 = 0x31dd;
 /// `EGL_RECORDABLE_ANDROID` and `EGL_FRAMEBUFFER_TARGET_ANDROID`, which only Android's drivers know.
 const ANDROID_ONLY: [i32; 2] = [0x3142, 0x3147];
 
-/// Declares Mesa's functions: those that the host calls, and those that the application gets as they are.
+/// Declares Mesa's functions: those that the host calls, and those that the application gets unchanged.
 macro_rules! mesa {
     (
         called { $($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)* }
