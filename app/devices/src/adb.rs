@@ -54,7 +54,8 @@ pub struct Listed {
     pub state: State,
 }
 
-/// Why a device cannot be measured on: one sentence with the remedy. A variant's only text is the device's serial number.
+/// The reason why a device cannot be measured on, as one sentence with the remedy.
+/// The only text of a variant is the device's serial number.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeviceError {
@@ -66,7 +67,7 @@ pub enum DeviceError {
         /// adb's words.
         reason: String,
     },
-    /// The program adb is nowhere.
+    /// The program adb was not found.
     #[error(
         "adb was not found in {looked}: install Android's platform tools (Debian and Ubuntu: apt install adb), or name its file"
     )]
@@ -74,7 +75,7 @@ pub enum DeviceError {
         /// The places where it was looked for.
         looked: String,
     },
-    /// It is there, but does not start.
+    /// The program adb exists, but does not start.
     #[error("{} does not start ({reason}): name another one", program.display())]
     Start {
         /// The program.
@@ -87,13 +88,13 @@ pub enum DeviceError {
         "no device is connected: turn on USB debugging in its developer options, use a data cable, and look with yoro device list"
     )]
     NoDevice,
-    /// Not clear which.
+    /// Several devices are connected and none was chosen.
     #[error("several devices are connected ({}): name one or some of them, or ask for all", serials.join(", "))]
     Several {
-        /// What adb calls them.
+        /// Their names in adb's list.
         serials: Vec<String>,
     },
-    /// A serial that is not connected.
+    /// No connected device has this serial number.
     #[error("{0} is not connected: yoro device list shows which devices are")]
     Unknown(String),
     /// See [`State::Unauthorized`].
@@ -118,13 +119,13 @@ pub enum DeviceError {
         /// adb's words.
         state: String,
     },
-    /// It was there, and is gone.
+    /// The device was connected and is gone.
     #[error("{0} was lost: connect it again and give the same command")]
     Lost(String),
-    /// The application is not there.
+    /// The application is not installed.
     #[error("yoro is not installed on {0}: yoro device install does it")]
     NotInstalled(String),
-    /// Another application is not there.
+    /// Another application is not installed.
     #[error(
         "{package} is not installed on {serial}: adb -s {} shell pm list packages prints what is",
         quoted(serial)
@@ -138,7 +139,7 @@ pub enum DeviceError {
     /// Installing failed for lack of storage.
     #[error("the storage of {0} is full: remove something from it, then install again")]
     StorageFull(String),
-    /// Another key signed what is installed.
+    /// The installed application is signed with another key.
     #[error(
         "the yoro on {} is signed with another key: adb -s {} uninstall io.github.yoro, then install again",
         .0, quoted(.0)
@@ -149,7 +150,7 @@ pub enum DeviceError {
         "{0} does not let this computer install anything: confirm the installation on its screen; on phones by Xiaomi turn on \"Install via USB\" in the developer options first"
     )]
     InstallRestricted(String),
-    /// A newer version is there.
+    /// A newer version is installed.
     #[error(
         "a newer yoro is on {}: adb -s {} uninstall io.github.yoro, then install again",
         .0, quoted(.0)
@@ -176,7 +177,7 @@ pub enum DeviceError {
         /// Android's word for it.
         reason: String,
     },
-    /// Power cannot be measured.
+    /// Power cannot be measured because the device is plugged in.
     #[error(
         "{serial} is plugged in, and a charging battery says nothing of the device's power: measure over Wi-Fi ({}), or allow a plugged-in device for everything but power",
         wifi(serial, address)
@@ -187,24 +188,24 @@ pub enum DeviceError {
         /// Its address in the wireless network, if it has one.
         address: Option<String>,
     },
-    /// The state of the battery is not the battery's.
+    /// The battery's values were set by hand.
     #[error(
         "what {} says of its battery was set by hand (dumpsys battery set or unplug): adb -s {} shell dumpsys battery reset",
         .0, quoted(.0)
     )]
     BatteryHeld(String),
-    /// Battery saver.
+    /// The battery saver is on.
     #[error(
         "the battery saver of {} is on, which slows it down: turn it off (adb -s {} shell settings put global low_power 0)",
         .0, quoted(.0)
     )]
     BatterySaver(String),
-    /// A screen lock that nobody opens while nobody is there.
+    /// The screen is locked by a PIN, a pattern or a password, which an unattended run cannot open.
     #[error(
         "{0} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its screen lock to none or swipe for the time of the measurement"
     )]
     Locked(String),
-    /// It does not cool down.
+    /// The device does not cool down.
     #[error(
         "{serial} has {celsius:.1} C and does not cool down to {wanted:.1} C: let it rest in a cooler place, then give the same command"
     )]
@@ -226,7 +227,7 @@ pub enum DeviceError {
         /// Its answer.
         reason: String,
     },
-    /// A command did not end.
+    /// A command on the device did not end in time.
     #[error("{serial} has not answered \"{command}\" for {seconds} s: plug it in again, or restart it")]
     Silent {
         /// The device's serial number, as adb lists it.
@@ -241,7 +242,7 @@ pub enum DeviceError {
     Replay {
         /// Script or folder.
         path: PathBuf,
-        /// What is wrong and what to do.
+        /// The mistake and the remedy.
         reason: String,
     },
     /// The user has asked to stop.
@@ -322,7 +323,7 @@ fn after_refusal(serial: &str, reason: &str) -> String {
 pub enum LogEvent {
     /// A line without its end.
     Line(String),
-    /// Nothing for as long as was waited.
+    /// No line came within the wait.
     Quiet,
     /// The log has ended: the device is gone, or its log service was restarted.
     Ended,
@@ -330,7 +331,7 @@ pub enum LogEvent {
 
 /// A log that is being followed.
 pub trait LogStream {
-    /// The next line, for which is waited so long.
+    /// Returns the next line, or [`LogEvent::Quiet`] after `wait`.
     fn next(&mut self, wait: Duration) -> LogEvent;
 }
 
@@ -339,7 +340,7 @@ pub trait Device: Send {
     /// The device's serial number, as adb lists it.
     fn serial(&self) -> &str;
 
-    /// True for a replay, which every result of it must say.
+    /// True for a replay; every result of it must be marked as simulated.
     fn is_simulated(&self) -> bool;
 
     /// Runs a command on the device, given as words, and returns what it prints.
@@ -355,7 +356,7 @@ pub trait Device: Send {
     /// that time on, or all that the device still has.
     fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError>;
 
-    /// Tries to get a lost device back; whether that has worked, the next command tells.
+    /// Tries to reconnect a lost device. The next command shows if that has worked.
     fn reconnect(&self);
 
     /// Seconds since 1970 by this computer's clock, without jumps.
@@ -370,11 +371,11 @@ pub trait Adb {
     /// Returns the devices that are connected, in adb's order.
     fn devices(&self) -> Result<Vec<Listed>, DeviceError>;
 
-    /// A device by the name that adb has for it. Whether it is there, its answers tell.
+    /// Returns the device of this name in adb's list. The device may be missing; then its commands fail.
     fn open(&self, serial: &str) -> Box<dyn Device>;
 }
 
-/// Returns the devices that are meant: those of the serials, or all, or the only one. A device that is connected twice, by
+/// Returns the chosen devices: those of the serials, or all, or the only one. A device that is connected twice, by
 /// cable and by Wi-Fi, is one device: the connection that adb lists first is used.
 ///
 /// # Errors
@@ -394,7 +395,7 @@ pub fn choose(adb: &dyn Adb, serials: &[String], all: bool) -> Result<Vec<Box<dy
         ([], [one]) => open(&[one]),
         ([], several) if all => open(&several.iter().collect::<Vec<_>>()),
         ([], several) => {
-            // What cannot be used leaves no doubt about who is meant.
+            // Devices that cannot be used do not make the choice ambiguous.
             let ready: Vec<&Listed> = several.iter().filter(|device| device.state == State::Ready).collect();
             match open(&ready)? {
                 one if one.len() == 1 => Ok(one),

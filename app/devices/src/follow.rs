@@ -8,8 +8,8 @@ use super::adb::{Device, DeviceError, LogEvent, LogStream};
 use super::capture::{Fault, FaultKind};
 use super::{log, phone};
 
-/// When a connection is back, the log is read from so much before its last line, in seconds: lines of one moment need
-/// not come in order.
+/// Seconds before its last line from which the log is read again after a lost connection: simultaneous lines need not
+/// come in order.
 const OVERLAP_S: f64 = 5.0;
 /// Lines remembered to be told from new ones in the overlap.
 const REMEMBERED: usize = 4096;
@@ -19,22 +19,22 @@ const RETRY: Duration = Duration::from_secs(1);
 /// An event while a log is followed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// A line that was not there before.
+    /// A new line.
     Line(String),
-    /// Nothing for as long as was waited.
+    /// No line came within the wait.
     Quiet,
     /// The device is gone.
     Lost,
     /// The device is back.
     Back {
-        /// Seconds for which it was gone.
+        /// Time in seconds for which it was gone.
         seconds: f64,
         /// True if it was started anew.
         rebooted: bool,
     },
 }
 
-/// Returns what a capture says of a device that was gone for `seconds`, after its line of the time `at_s`.
+/// Returns the faults of a device that was gone for `seconds` after its log line at `at_s`.
 pub fn faults_of_loss(at_s: f64, seconds: f64, rebooted: bool) -> Vec<Fault> {
     let fault = |kind, detail| Fault { kind, at_s: Some(at_s), detail };
     let mut faults = vec![fault(FaultKind::Disconnected, format!("lost for {seconds:.0} s"))];
@@ -49,7 +49,7 @@ pub struct Follower<'a> {
     device: &'a dyn Device,
     stream: Option<Box<dyn LogStream>>,
     seen: VecDeque<u64>,
-    /// True if lines may come that were seen: the connection was lost before.
+    /// True if lines may repeat, since the connection was lost before.
     overlaps: bool,
     clock_s: Option<f64>,
     boot: String,
@@ -71,10 +71,10 @@ impl<'a> Follower<'a> {
         self.lost_at.map(|then| self.device.now() - then)
     }
 
-    /// The next event, for which is waited so long, or somewhat longer while a device does not answer.
+    /// Returns the next event. Waits for `wait`, or somewhat longer while a device does not answer.
     ///
     /// # Errors
-    /// [`DeviceError`]: what does not pass by itself.
+    /// [`DeviceError`] if the cause is not a lost connection.
     pub fn next(&mut self, wait: Duration) -> Result<Event, DeviceError> {
         loop {
             let Some(stream) = &mut self.stream else { return self.come_back() };

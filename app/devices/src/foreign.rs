@@ -15,16 +15,16 @@ const BATTERY_PERIOD_S: f64 = 2.0;
 /// Interval in seconds at which the application's processes are looked up while others log.
 const PROCESSES_PERIOD_S: f64 = 2.0;
 
-/// Whose lines of the log are read.
+/// The application whose log lines are read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
     /// The application's package.
     pub package: String,
-    /// The process that logs for it: mostly of the same name.
+    /// The process that logs for it, usually of the same name.
     pub process: String,
 }
 
-/// Finds the lines about another application, and puts the battery to them.
+/// Finds the lines about another application, and adds the battery's values to them.
 pub struct Foreign<'a> {
     device: &'a dyn Device,
     subject: Subject,
@@ -56,7 +56,7 @@ impl<'a> Foreign<'a> {
         })
     }
 
-    /// True if a line is for [`Reading`]: the runtime's about this application, or one that is damaged.
+    /// True if a line is for [`Reading`]: a runtime line about this application, or a damaged one.
     pub fn is_its(&mut self, line: &str) -> Result<bool, DeviceError> {
         let entry = match log::parse(line) {
             Kind::Entry(entry) => entry,
@@ -66,7 +66,7 @@ impl<'a> Foreign<'a> {
         let now = self.device.now();
         if !self.processes.contains(&pid) && now - self.processes_s >= PROCESSES_PERIOD_S {
             self.processes_s = now;
-            // Of a device that is gone, lines may still come.
+            // Lines may still come from a device that is gone.
             self.processes = unless_lost(phone::processes(self.device, &self.subject.process))?
                 .unwrap_or(std::mem::take(&mut self.processes));
         }
@@ -77,7 +77,7 @@ impl<'a> Foreign<'a> {
         Ok(is_its)
     }
 
-    /// Puts the battery to a second, and what is wrong with it to the reading.
+    /// Adds the battery's values to a sample, and their faults to the reading.
     pub fn complete(&mut self, sample: &mut Sample, reading: &mut Reading) -> Result<(), DeviceError> {
         let battery = self.battery;
         let plugged = if battery.plugged() { battery.sources.max(1) } else { 0 };
@@ -129,7 +129,7 @@ impl<'a> Foreign<'a> {
     }
 }
 
-/// Returns `None` where the device is gone, which its log tells, too.
+/// Returns `None` if the device is gone; its log reports that, too.
 fn unless_lost<T>(said: Result<T, DeviceError>) -> Result<Option<T>, DeviceError> {
     match said {
         Ok(value) => Ok(Some(value)),

@@ -5,12 +5,13 @@
 //! plan of a study ──> ratings (CSV, or lines of the log) ──> analysis
 //! ```
 //!
-//! It takes devices, plans of experiments and captures, and gives captures and reports. [`adb`] is the interface to
-//! devices: [`program`] implements it by the program adb, [`replay`] by a script. [`follow`] reads a log over lost
-//! connections, [`reading`] makes samples of its lines ([`foreign`] finds those of other applications), [`run`] captures
-//! one run, [`experiment`] many, and [`report`] makes figures of them. [`study`] plans and analyses user studies.
+//! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] is the
+//! interface to devices: [`program`] implements it with the program adb, [`replay`] with a script. [`follow`] reads a
+//! log across lost connections, [`reading`] parses its lines into samples ([`foreign`] finds the lines of other
+//! applications), [`run`] captures one run, [`experiment`] many, and [`report`] computes figures from them. [`study`]
+//! plans and analyses user studies.
 //!
-//! This crate must never know OpenGL, how anything is rendered, or the command line.
+//! This crate must not depend on OpenGL, rendering or the command line.
 
 pub mod adb;
 pub mod capture;

@@ -1,4 +1,4 @@
-//! Lines of logcat: who says what, and when.
+//! Parser of logcat lines: time, process, tag and message.
 
 use yoro_protocol::telemetry::{LOG_TAG, Rating};
 
@@ -9,14 +9,14 @@ pub const VRAPI_TAG: &str = "VrApi";
 pub const FILTER: [&str; 6] =
     ["YORO:V", "VrApi:V", "XrPerformanceManager:V", "AndroidRuntime:E", "DEBUG:F", "*:S"];
 
-/// The first words of a log that no device has written.
+/// First words of a simulated log.
 pub const SIMULATED_MARK: &str = "--------- simulated";
 
 /// One line of logcat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry<'a> {
-    /// Time in seconds; since 1970 if the log was written so, and only good for differences otherwise. None if the log
-    /// has no times.
+    /// Time in seconds: since 1970 if the log has it so, otherwise good for differences only. `None` if the log has no
+    /// times.
     pub time_s: Option<f64>,
     /// The process.
     pub pid: Option<u32>,
@@ -29,11 +29,11 @@ pub struct Entry<'a> {
 /// The kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind<'a> {
-    /// Somebody says something.
+    /// A message.
     Entry(Entry<'a>),
-    /// Logcat's own mark, or nothing: `--------- beginning of main`.
+    /// A mark of logcat, such as `--------- beginning of main`, or an empty line.
     Mark,
-    /// No line of logcat.
+    /// Not a line of logcat.
     Damaged,
 }
 
@@ -54,7 +54,7 @@ pub fn parse(line: &str) -> Kind<'_> {
     brief(rest, time_s).or_else(|| thread_time(rest, time_s)).map_or(Kind::Damaged, Kind::Entry)
 }
 
-/// Returns the tag of a line that has nothing before its message.
+/// Returns the tag of a line that is only a message.
 fn raw_tag(line: &str) -> Option<&'static str> {
     if line.starts_with("v=") || Rating::is_line(line) {
         Some(LOG_TAG)
@@ -89,12 +89,12 @@ fn is_priority(text: &str) -> bool {
     matches!(text, "V" | "D" | "I" | "W" | "E" | "F" | "S")
 }
 
-/// The first word, and what comes after it.
+/// Returns the first word and the rest.
 fn word(text: &str) -> Option<(&str, &str)> {
     text.trim_start().split_once(' ').filter(|(word, _)| !word.is_empty())
 }
 
-/// The time at the begin of a line in seconds, and what comes after it.
+/// Returns the time at the beginning of a line in seconds, and the rest.
 fn time(line: &str) -> Option<(f64, &str)> {
     let (first, rest) = word(line)?;
     if let Ok(seconds) = first.parse::<f64>() {
@@ -108,7 +108,7 @@ fn time(line: &str) -> Option<(f64, &str)> {
         // Any leap year will do where only differences count.
         (month, day, None) => (2000, month, day),
     };
-    // Of the format `time`, older programs print a colon behind it.
+    // Older versions print a colon after the time in the format `time`.
     let (clock, fraction) = clock.trim_end_matches(':').split_once('.')?;
     if fraction.is_empty() || !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;

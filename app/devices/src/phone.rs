@@ -16,7 +16,7 @@ const LOG_BUFFER: &str = "8M";
 
 /// The kernel's file about the battery, which not every shell may read.
 pub(super) const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
-/// A smaller voltage is no number of millivolts: some phones give it in whole volts, which is too coarse for power.
+/// Least voltage that counts as millivolts. Some phones give whole volts, which are too coarse for power.
 pub const LEAST_MILLIVOLTS: f64 = 100.0;
 
 /// The battery as Android sees it (`dumpsys battery`).
@@ -30,7 +30,7 @@ pub struct Battery {
     pub sources: i32,
     /// Charging status.
     pub status: Option<BatteryStatus>,
-    /// True if these values were set by hand and the battery is not asked any more (`UPDATES STOPPED`).
+    /// True if these values were set by hand and no longer follow the battery (`UPDATES STOPPED`).
     pub held: bool,
     /// Voltage in millivolts.
     pub voltage_mv: Option<f64>,
@@ -41,7 +41,7 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// True if the current is not the device's alone: there is a charger, or the battery says that it does not discharge.
+    /// True if the current is not the device's alone: there is a charger, or the battery charges or does not discharge.
     /// Phones that have switched charging off name no source, but are "not charging".
     pub fn plugged(&self) -> bool {
         self.sources != 0 || matches!(self.status, Some(BatteryStatus::Charging | BatteryStatus::NotCharging))
@@ -57,13 +57,13 @@ pub fn info(device: &dyn Device) -> Result<DeviceInfo, DeviceError> {
         manufacturer: property("ro.product.manufacturer")?,
         model: property("ro.product.model")?,
         android: property("ro.build.version.release")?,
-        // Some devices refuse: the capacity is for a figure beside the others only.
+        // Some devices refuse: the capacity is only needed for an additional figure.
         capacity_mah: device.shell(&["dumpsys", "batterystats"]).ok().and_then(|text| capacity(&text)),
         simulated: device.is_simulated(),
     })
 }
 
-/// The capacity in what `dumpsys batterystats` prints, in mAh.
+/// Returns the capacity in mAh from the output of `dumpsys batterystats`.
 fn capacity(text: &str) -> Option<f64> {
     let of = |line: &str| {
         let line = line.trim();
@@ -78,7 +78,7 @@ fn capacity(text: &str) -> Option<f64> {
     text.lines().find_map(of)
 }
 
-/// The state of the battery.
+/// Returns the state of the battery.
 pub fn battery(device: &dyn Device) -> Result<Battery, DeviceError> {
     Ok(read_battery(&device.shell(&["dumpsys", "battery"])?))
 }
@@ -107,7 +107,7 @@ fn read_battery(text: &str) -> Battery {
     battery
 }
 
-/// The battery with what the kernel says more exactly: current and voltage. `Some` in `is_open` is whether it may be read.
+/// Returns the battery, with the kernel's more exact current and voltage. `is_open` remembers if they may be read.
 pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Battery, DeviceError> {
     let mut battery = battery(device)?;
     if *is_open != Some(false) {
@@ -117,7 +117,7 @@ pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Ba
         battery.current_raw = kernel.current_raw.or(battery.current_raw);
     }
     if battery.current_raw.is_none() {
-        // From Android 15 on.
+        // Android 15 and later.
         let said = unless_refused(device.shell(&["cmd", "battery", "get", "-f", "current_now"]))?;
         battery.current_raw = said.trim().parse().ok();
     }
@@ -162,13 +162,13 @@ pub fn saves_battery(device: &dyn Device) -> Result<bool, DeviceError> {
 /// The screen lock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Keyguard {
-    /// It asks for a PIN, a pattern or a password.
+    /// True if it asks for a PIN, a pattern or a password.
     pub secure: bool,
-    /// It is in front now.
+    /// True if it is shown now.
     pub showing: bool,
 }
 
-/// The screen lock; where Android says nothing of it, there is none.
+/// Returns the screen lock; none if Android does not report one.
 pub fn keyguard(device: &dyn Device) -> Result<Keyguard, DeviceError> {
     Ok(read_keyguard(&unless_refused(device.shell(&["dumpsys", "window", "policy"]))?))
 }
@@ -185,7 +185,7 @@ pub fn boot_id(device: &dyn Device) -> Result<String, DeviceError> {
     Ok(device.shell(&["cat", "/proc/sys/kernel/random/boot_id"])?.trim().to_owned())
 }
 
-/// The device's clock as logcat takes it: seconds since 1970 with decimals.
+/// Returns the device's clock in the format that logcat takes: seconds since 1970 with decimals.
 pub fn clock(device: &dyn Device) -> Result<String, DeviceError> {
     let text = device.shell(&["date", "+%s.%N"])?;
     let seconds = text.trim().parse::<f64>().ok().filter(|seconds| seconds.is_finite());
@@ -204,7 +204,7 @@ pub fn version(device: &dyn Device, package: &str) -> Result<Option<String>, Dev
     Ok(version.map(|version| version.trim().to_owned()))
 }
 
-/// The device's address in the wireless network.
+/// Returns the device's address in the wireless network.
 pub fn wifi_address(device: &dyn Device) -> Option<String> {
     let routes = device.shell(&["ip", "route"]).ok()?;
     routes.lines().filter(|line| line.contains("wlan")).find_map(|line| {
@@ -213,7 +213,7 @@ pub fn wifi_address(device: &dyn Device) -> Option<String> {
     })
 }
 
-/// Settings that the application's system properties hold, stronger than those that it is started with.
+/// Returns the settings in the application's system properties. They override those that it is started with.
 pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceError> {
     let property = |line: &str| {
         let (name, value) = line.trim().strip_prefix('[')?.strip_suffix(']')?.split_once("]: [")?;
@@ -222,12 +222,12 @@ pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceEr
     Ok(device.shell(&["getprop"])?.lines().filter_map(property).collect())
 }
 
-/// Sets a system property; empty is as good as none.
+/// Sets a system property; an empty one counts as none.
 pub fn set_property(device: &dyn Device, name: &str, value: &str) -> Result<(), DeviceError> {
     device.shell(&["setprop", name, value]).map(drop)
 }
 
-/// Wakes the device up and lets its log keep more. Both help, and neither is needed.
+/// Wakes the device up, dismisses the screen lock and enlarges the log buffer. Failures are ignored.
 pub fn wake(device: &dyn Device) {
     let commands: [&[&str]; 3] = [
         &["input", "keyevent", "KEYCODE_WAKEUP"],
@@ -241,7 +241,7 @@ pub fn wake(device: &dyn Device) {
     }
 }
 
-/// Starts the application anew with exactly these settings, whatever file lies on the device.
+/// Restarts the application with exactly these settings; a settings file on the device is ignored.
 pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError> {
     let pairs = settings.pairs();
     let mut words = vec!["am", "start", "-S", "-W", "-n", ACTIVITY];
@@ -251,7 +251,7 @@ pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError
     start_by(device, &words, ACTIVITY)
 }
 
-/// Starts another application anew; `activity` with or without its package.
+/// Restarts another application; `activity` with or without its package.
 pub fn start_other(device: &dyn Device, package: &str, activity: &str) -> Result<(), DeviceError> {
     let component = if activity.contains('/') { activity.into() } else { format!("{package}/{activity}") };
     start_by(device, &["am", "start", "-S", "-W", "-n", &component], &component)
@@ -277,9 +277,9 @@ pub fn stop(device: &dyn Device, package: &str) -> Result<(), DeviceError> {
     device.shell(&["am", "force-stop", package]).map(drop)
 }
 
-/// The processes of an application; none while it does not run.
+/// Returns the processes of an application; none while it does not run.
 pub fn processes(device: &dyn Device, package: &str) -> Result<Vec<u32>, DeviceError> {
-    // It ends with 1 where there is no process.
+    // `pidof` exits with 1 if there is no process.
     let pids = unless_refused(device.shell(&["pidof", package]))?;
     Ok(pids.split_whitespace().filter_map(|pid| pid.parse().ok()).collect())
 }
@@ -304,7 +304,7 @@ mod tests {
         assert_eq!(capacity("  Capacity: unknown\n"), None);
     }
 
-    /// As a phone prints it whose charging was switched off with the charger in (VR-25/acc issue 112), and after
+    /// Output of a phone with a charger whose charging is switched off (VR-25/acc issue 112), and after
     /// `dumpsys battery unplug`.
     #[test]
     fn a_battery_that_does_not_discharge_counts_as_plugged_in() {

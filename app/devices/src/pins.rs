@@ -1,7 +1,7 @@
 //! Settings of a device that are held fixed while it is measured, and restored afterwards.
 //!
-//! The earlier values are written into a file on the device first: after a crash, or when the cable was pulled,
-//! whoever measures on the device next gives it back.
+//! The earlier values are written into a file on the device first: after a crash, or when the cable was pulled, the
+//! next measurement on the device restores them.
 
 use super::adb::{Device, DeviceError};
 use super::capture::DeviceInfo;
@@ -9,16 +9,16 @@ use super::phone::{self, set_property};
 
 /// The file on the device with the values to be restored.
 const FILE: &str = "/data/local/tmp/yoro-restore.txt";
-/// Android's answer for a setting that was never made.
+/// Android's answer for a setting without a value.
 const UNSET: &str = "null";
 /// Refresh rate of Meta's headsets.
 const QUEST_RATE: &str = "debug.oculus.refreshRate";
-/// Lets applications on Meta's headsets go on outside of the boundary.
+/// Property that lets applications on Meta's headsets continue outside of the boundary.
 const QUEST_BOUNDARY: &str = "debug.oculus.guardian_pause";
 /// Time without a touch until the screen goes off, in milliseconds: a day. While a phone cools, no application holds the
 /// screen on, and with the screen some phones switch adb over Wi-Fi off.
 const SCREEN_TIMEOUT_MS: &str = "86400000";
-/// Do not disturb, but for alarms (`Global.ZEN_MODE_ALARMS`).
+/// Do not disturb, except for alarms (`Global.ZEN_MODE_ALARMS`).
 const ALARMS_ONLY: &str = "3";
 /// Displays above this many Hz have a mode of their own on phones by Samsung.
 const SAMSUNG_STANDARD_HZ: f64 = 60.0;
@@ -63,7 +63,7 @@ enum Place {
     Worn,
 }
 
-/// A value at its place; none where there was none.
+/// A value at its place; `None` if there was none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Pin {
     place: Place,
@@ -76,7 +76,7 @@ impl Pin {
         Pin { place, value: Some(value.to_owned()).filter(|value| !value.is_empty() && value != UNSET) }
     }
 
-    /// The value at the place now.
+    /// Returns the present value at the place.
     fn now(device: &dyn Device, place: &Place) -> Result<Pin, DeviceError> {
         let value = match place {
             Place::Setting(table, key) => device.shell(&["settings", "get", table.name(), key])?,
@@ -124,7 +124,7 @@ impl Pin {
     }
 }
 
-/// Holds values fixed. [`Pins::give_back`] must be called; if that cannot be, the next [`Pins::new`] does it.
+/// Holds values fixed. [`Pins::give_back`] must be called; otherwise the next [`Pins::new`] restores them.
 #[must_use]
 #[derive(Debug)]
 pub struct Pins {
@@ -136,12 +136,12 @@ pub struct Pins {
 }
 
 impl Pins {
-    /// Gives back what an earlier run has left, then fixes what is wanted, keeps the screen on and others silent, and takes
-    /// the application's own properties away: they would be stronger than the settings of a run. A headset by Meta is told
-    /// that it is worn. What the device does not let anybody change is told, and stays.
+    /// Restores the values that an earlier run has left, then sets the wanted ones, keeps the screen on, silences
+    /// notifications, and clears the application's own properties, which would override the settings of a run. A
+    /// headset by Meta is told that it is worn. Values that the device refuses to change are reported and kept.
     ///
     /// # Errors
-    /// [`DeviceError`]; nothing is changed then that the next call does not give back.
+    /// [`DeviceError`]; the next call restores all that was changed.
     pub fn new(device: &dyn Device, info: &DeviceInfo, wanted: &Wanted) -> Result<Pins, DeviceError> {
         give_back_leftovers(device)?;
         let mut pins = pins(info, wanted);
@@ -163,8 +163,8 @@ impl Pins {
         Ok(held)
     }
 
-    /// Fixes everything again if the device was started anew: system properties do not outlast that, nor what a headset
-    /// was told.
+    /// Sets all values again if the device was restarted: neither system properties nor the wear state of a headset
+    /// outlast that.
     pub fn renew(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
         let boot = phone::boot_id(device)?;
         if boot == self.boot {
@@ -174,7 +174,7 @@ impl Pins {
         self.hold(device)
     }
 
-    /// Returns a sentence for each value that the device did not let anybody change.
+    /// Returns a sentence for each value that the device refused to change.
     pub fn refused(&self) -> &[String] {
         &self.refused
     }
@@ -191,7 +191,7 @@ impl Pins {
         Ok(())
     }
 
-    /// Gives everything back. A device that is gone gets it from the next measurement.
+    /// Restores all values. On a device that is gone, the next measurement does it.
     pub fn give_back(self, device: &dyn Device) -> Result<(), DeviceError> {
         give_back(device, &self.before)
     }
@@ -227,7 +227,7 @@ fn pins(info: &DeviceInfo, wanted: &Wanted) -> Vec<Pin> {
     pins
 }
 
-/// Sets a value and looks whether it has stayed.
+/// Sets a value and checks that it has stayed.
 fn hold(device: &dyn Device, pin: &Pin) -> Result<(), DeviceError> {
     pin.set(device)?;
     if pin.place == Place::Worn {
@@ -254,7 +254,7 @@ fn give_back(device: &dyn Device, before: &[Pin]) -> Result<(), DeviceError> {
     if before.is_empty() { Ok(()) } else { device.shell(&["rm", "-f", FILE]).map(drop) }
 }
 
-/// Gives back what a measurement that was killed has left on the device.
+/// Restores the values that a killed measurement has left on the device.
 pub fn give_back_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
     let text = match device.shell(&["cat", FILE]) {
         Ok(text) => text,

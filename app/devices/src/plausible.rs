@@ -4,11 +4,10 @@ use std::ops::RangeInclusive;
 
 use super::capture::{Fault, FaultKind, Sample};
 
-/// A phone or headset that renders takes so much from its battery, in milliwatts. Outside of it a factor is wrong, mostly a
-/// unit.
+/// Plausible power of a phone or headset that renders, in milliwatts. Outside of it a factor is wrong, mostly a unit.
 const PLAUSIBLE_MILLIWATTS: RangeInclusive<f64> = 100.0..=30_000.0;
 
-/// Returns a sentence if a mean power in milliwatts is implausible. While charging it says nothing.
+/// Returns a sentence if a mean power in milliwatts is implausible; `None` while charging.
 pub fn implausible(milliwatts: f64) -> Option<String> {
     let is_wrong = milliwatts > 0.0 && !PLAUSIBLE_MILLIWATTS.contains(&milliwatts);
     let (least, most) = (PLAUSIBLE_MILLIWATTS.start(), PLAUSIBLE_MILLIWATTS.end() / 1e3);
@@ -28,7 +27,7 @@ pub struct MeanPower {
 }
 
 impl MeanPower {
-    /// Adds a second; one without current or voltage, or with a charger, says nothing.
+    /// Adds a second; one without current or voltage, or with a charger, is ignored.
     pub fn add(&mut self, sample: &Sample) {
         if let (Some(current), Some(voltage), None | Some(0)) =
             (sample.current_ma, sample.voltage_mv, sample.plugged)
@@ -38,7 +37,7 @@ impl MeanPower {
         }
     }
 
-    /// The mistake in it.
+    /// Returns the fault if the mean is implausible.
     pub fn fault(&self) -> Option<Fault> {
         let detail = implausible(self.sum_milliwatts / self.seconds.max(1) as f64)?;
         Some(Fault { kind: FaultKind::ImplausiblePower, at_s: None, detail })

@@ -20,13 +20,13 @@ const COMMAND_TIMEOUT: Duration = Duration::from_secs(60);
 const INSTALL_TIMEOUT: Duration = Duration::from_secs(600);
 /// Interval at which a wait checks for an interrupt by the user.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
-/// Lines that wait to be taken; more than that, and adb waits.
+/// Length of the queue of log lines; adb waits while it is full.
 const QUEUE: usize = 4096;
 
-/// Timeout of adb's server, which has nothing to ask of a device.
+/// Timeout of adb's server, which does not wait for a device.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(20);
 
-/// Devices by the program adb.
+/// Devices through the program adb.
 #[derive(Clone, Debug)]
 pub struct AdbProgram {
     program: PathBuf,
@@ -63,7 +63,7 @@ impl AdbProgram {
         self.run(start, None, self.server_timeout)?.map(drop).ok_or_else(|| self.silent("start-server"))
     }
 
-    /// Runs adb to its end; none if it does not come in time. What it says is there where its pipes are.
+    /// Runs adb to its end; `None` if it does not end in time. Its output comes through its pipes.
     fn run(
         &self,
         mut command: Command,
@@ -146,7 +146,7 @@ impl Adb for AdbProgram {
     }
 }
 
-/// The devices in what `adb devices` prints.
+/// Returns the devices in the output of `adb devices`.
 fn listed(text: &str) -> Vec<Listed> {
     let device = |line: &str| {
         let (serial, state) = line.split_once('\t')?;
@@ -314,7 +314,7 @@ impl Device for ProgramDevice {
             thread::spawn(move || {
                 let mut reader = BufReader::new(stdout);
                 let mut line = Vec::new();
-                // What a driver logs need not be text.
+                // Messages of drivers need not be valid text.
                 while reader.read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
                     let text = String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']).to_owned();
                     if sender.send(text).is_err() {
@@ -328,7 +328,7 @@ impl Device for ProgramDevice {
     }
 
     fn reconnect(&self) {
-        // Whatever is wrong with the server, the next command says.
+        // The next command reports an error of the server.
         let _ = self.adb.start_server();
         let mut command = if is_wireless(&self.serial) {
             let mut command = Command::new(&self.adb.program);

@@ -1,4 +1,4 @@
-//! Captures: what one run on a device leaves behind, a folder with `run.json`, `log.txt` and `samples.csv`.
+//! Captures: the record of one run on a device, a folder with `run.json`, `log.txt` and `samples.csv`.
 //!
 //! `run.json` is a [`RunInfo`]; `log.txt` holds the raw lines of logcat as they came; `samples.csv` one [`Sample`] a
 //! row, under the column names of the OVR Metrics Tool where that has the quantity in a documented unit. An empty cell
@@ -23,7 +23,7 @@ pub use writer::Writer;
 
 /// Version of the folder's format.
 pub const VERSION: u32 = 1;
-/// File about what the run was and how it went.
+/// File with the description of the run and its outcome.
 pub const RUN_FILE: &str = "run.json";
 /// The raw lines of logcat.
 pub const LOG_FILE: &str = "log.txt";
@@ -43,13 +43,13 @@ pub enum CaptureError {
         /// The folder.
         folder: PathBuf,
     },
-    /// There is no run in any of the folders.
+    /// None of the folders holds a run.
     #[error("there is no capture in {folders}: name folders that yoro device has written")]
     None {
         /// The folders, with commas.
         folders: String,
     },
-    /// A run is there already.
+    /// The folder holds a run already.
     #[error("{} holds a run already: name another folder", folder.display())]
     Exists {
         /// The folder.
@@ -93,7 +93,7 @@ pub enum CaptureError {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviceInfo {
-    /// Serial number; what adb calls the device where it does not tell one.
+    /// Serial number; adb's name of the device if it has none.
     pub serial: String,
     /// Manufacturer.
     pub manufacturer: String,
@@ -103,7 +103,7 @@ pub struct DeviceInfo {
     pub android: String,
     /// Nominal capacity of the battery in milliampere-hours, if the device tells.
     pub capacity_mah: Option<f64>,
-    /// Not a device but the replay of logs: said wherever results of it appear.
+    /// True if this is a replay of logs and not a device. All results of it are marked.
     pub simulated: bool,
 }
 
@@ -111,14 +111,14 @@ pub struct DeviceInfo {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "state")]
 pub enum Outcome {
-    /// It lasted as long as it should.
+    /// The run lasted for its planned time.
     Complete,
-    /// It is not over, or was cut off: by Ctrl-C, or by a device that did not come back.
+    /// The run is not over, or was cut off: by Ctrl-C, or by a device that did not come back.
     Interrupted {
         /// One sentence.
         reason: String,
     },
-    /// It could not be made, or is worth nothing.
+    /// The run could not be made, or is worthless.
     Failed {
         /// One sentence.
         reason: String,
@@ -153,11 +153,11 @@ pub enum FaultKind {
     TooWarm,
     /// The device gives the voltage in whole volts.
     VoltageInVolts,
-    /// The power is such that no device has it: one of its factors is wrong.
+    /// No device has such a power: one of its factors is wrong.
     ImplausiblePower,
     /// The device did not let a value be held fixed.
     NotPinned,
-    /// The display did not have the refresh rate that it was to be held at.
+    /// The display did not keep the requested refresh rate.
     RefreshRate,
 }
 
@@ -167,7 +167,7 @@ pub enum FaultKind {
 pub struct Fault {
     /// Kind.
     pub kind: FaultKind,
-    /// Time in seconds since the run began; `None` for what concerns all of it.
+    /// Time in seconds since the run began; `None` for a fault of the whole run.
     pub at_s: Option<f64>,
     /// One sentence with the figures.
     pub detail: String,
@@ -197,7 +197,7 @@ pub struct RunInfo {
     pub started_unix_s: f64,
     /// Planned length without warm-up, in seconds.
     pub duration_s: f64,
-    /// Seconds at its begin that count for nothing.
+    /// Warm-up in seconds, which is discarded.
     pub warm_up_s: f64,
     /// Temperature of the battery at the start in degrees Celsius.
     pub start_celsius: Option<f64>,

@@ -18,7 +18,7 @@ pub struct Sample {
     pub stale: Option<f64>,
     /// Mean time between frames in milliseconds.
     pub frame_ms: Option<f64>,
-    /// 99 % of the times between frames are below, in milliseconds.
+    /// 99th percentile of the times between frames in milliseconds.
     pub p99_ms: Option<f64>,
     /// GPU time per frame in milliseconds.
     pub gpu_ms: Option<f64>,
@@ -44,13 +44,12 @@ pub struct Sample {
     pub skin_celsius: Option<f64>,
     /// Thermal status, 0 to 6.
     pub thermal_status: Option<i32>,
-    /// Everything else that the log says, by key; keys of `VrApi` begin with `VrApi.`.
+    /// All other values of the log, by key; keys of `VrApi` begin with `VrApi.`.
     pub other: BTreeMap<String, String>,
 }
 
-/// A number of a [`Sample`]: what `samples.csv` calls it and what it is to be multiplied by for the unit there, and the
-/// key of the log line that it comes from. The OVR Metrics Tool has voltage and wattage, too, but does not say in what
-/// units.
+/// A number of a [`Sample`]: its column in `samples.csv`, the factor to the unit of that column, and its key in the log
+/// line. The OVR Metrics Tool has voltage and wattage, too, but does not document their units.
 pub(super) struct Column {
     name: &'static str,
     /// A key of [`LINE_KEYS`].
@@ -107,7 +106,7 @@ pub(super) const COLUMNS: &[Column] = &[
 ];
 
 impl Sample {
-    /// The numbers of a line; what else it says is not in [`Sample::other`] yet.
+    /// Returns the numbers of a line, without [`Sample::other`].
     pub fn of(line: &Line) -> Sample {
         let mut sample = Sample::default();
         for column in COLUMNS {

@@ -59,7 +59,7 @@ fn a_run_is_readable_at_any_time() {
     assert_eq!(read(&folder).unwrap().info, done);
     assert_eq!(fs::read_to_string(folder.join(LOG_FILE)).unwrap(), "one\n");
     assert!(matches!(Writer::create(&folder, info()), Err(CaptureError::Exists { .. })));
-    // What was cut off in writing does not count.
+    // A row that was cut off while it was written does not count.
     let path = folder.join(SAMPLES_FILE);
     let mut text = fs::read_to_string(&path).unwrap();
     assert!(text.starts_with("Time Stamp,average_frame_rate,display_refresh_rate,stale_frame_count,"));
@@ -67,7 +67,7 @@ fn a_run_is_readable_at_any_time() {
     fs::write(&path, &text).unwrap();
     assert_eq!(read(&folder).unwrap().samples, [first, second, third]);
     assert_eq!(find(&[dir.path().into(), folder.clone()]).unwrap(), [folder]);
-    // What is no number is none for the reader.
+    // A cell that is not a number is read as `None`.
     let odd = dir.path().join("odd");
     let mut writer = Writer::create(&odd, info()).unwrap();
     writer.sample(&Sample { fps: Some(f64::NAN), stale: Some(f64::INFINITY), ..Sample::default() }).unwrap();

@@ -19,7 +19,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Begins a run in a folder, which is made. Until [`Writer::finish`], the run counts as cut off.
+    /// Creates the folder and begins a run in it. Until [`Writer::finish`], the run counts as cut off.
     ///
     /// # Errors
     /// [`CaptureError`]: also where the folder holds a run already.
@@ -74,7 +74,7 @@ impl Writer {
         self.append(&self.samples, SAMPLES_FILE, &sample.row(&self.others))
     }
 
-    /// Notes that something went wrong.
+    /// Adds a fault.
     pub fn fault(&mut self, fault: Fault) -> Result<(), CaptureError> {
         self.info.faults.push(fault);
         self.renew()
@@ -87,7 +87,7 @@ impl Writer {
         Ok(self.info)
     }
 
-    /// Changes what the run says of itself.
+    /// Changes the description of the run.
     pub fn change(&mut self, change: impl FnOnce(&mut RunInfo)) -> Result<(), CaptureError> {
         change(&mut self.info);
         self.renew()
@@ -100,7 +100,7 @@ impl Writer {
         })?)
     }
 
-    /// A row in one piece: a reader never sees half a line.
+    /// Appends a row in one write: a reader never sees half a line.
     fn append(&self, mut file: &File, name: &str, text: &str) -> Result<(), CaptureError> {
         let failed = |source| FileError::Write { path: self.folder.join(name), source };
         Ok(file.write_all(text.as_bytes()).map_err(failed)?)

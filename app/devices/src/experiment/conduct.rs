@@ -17,7 +17,7 @@ use yoro_files::{FileError, interrupt};
 
 /// Interval at which a cooling device is asked for its temperature.
 const COOLING: Duration = Duration::from_secs(5);
-/// Seconds that a device may be gone between runs.
+/// Longest time in seconds for which a device may be gone between runs.
 const LOST_TIMEOUT_S: f64 = 300.0;
 
 /// Progress of an experiment on a device.
@@ -25,11 +25,11 @@ const LOST_TIMEOUT_S: f64 = 300.0;
 pub struct Progress {
     /// Runs in the plan.
     pub planned: usize,
-    /// Complete before.
+    /// Runs that were complete before.
     pub before: usize,
-    /// Complete now.
+    /// Runs made by this call.
     pub made: usize,
-    /// Failed or left out: folder and reason.
+    /// Runs that failed or were left out: folder and reason.
     pub failed: Vec<(PathBuf, String)>,
 }
 
@@ -46,9 +46,9 @@ impl fmt::Display for Progress {
     }
 }
 
-/// Makes the runs that a device still lacks, each into a folder of its own below `out`; what it finds changed on the
-/// device, it leaves as it was, also after Ctrl-C. Runs that were cut off or failed are made again, and the earlier
-/// captures kept beside them.
+/// Makes the missing runs of a device, each into a folder of its own below `out`. Settings that it changes on the
+/// device are restored, also after Ctrl-C. Runs that were cut off or failed are made again; the earlier captures are
+/// kept beside them.
 ///
 /// # Errors
 /// [`DeviceError`]; the same call goes on later.
@@ -59,7 +59,7 @@ pub fn conduct(
     bar: &ProgressBar,
 ) -> Result<Progress, DeviceError> {
     let found = run::look(device, phone::PACKAGE)?;
-    // It is unlocked now, but nobody is there when it is locked again, by a restart at the latest.
+    // The device may be unlocked now, but a restart locks it again and nobody is there to unlock it.
     if phone::keyguard(device)?.secure {
         return Err(DeviceError::Locked(device.serial().into()));
     }
@@ -70,7 +70,7 @@ pub fn conduct(
     let mut pins = Pins::new(device, &found.info, &wanted)?;
     let folder = out.join(file_name(&found.info.serial));
     let made = Conductor { device, experiment, found: &found, pins: &mut pins, folder: &folder, bar }.all();
-    // Also after Ctrl-C and after errors. One on top of another says nothing new.
+    // Restored also after Ctrl-C and errors. A second error after the first adds no information.
     match (made, pins.give_back(device)) {
         (Ok(_), Err(error)) => Err(error),
         (Err(first), Err(error)) => {
@@ -149,7 +149,7 @@ impl Conductor<'_> {
         }
         let mut made = run::capture(self.device, self.found, plan, self.pins, folder, self.bar);
         if made.as_ref().is_err_and(DeviceError::is_lost) && !interrupt::requested() {
-            // Gone before there was anything to follow: waited for as between runs, once.
+            // The device was lost before its log could be followed: waits once, as between runs.
             set_aside(folder)?;
             self.cool_down(plan)?;
             made = run::capture(self.device, self.found, plan, self.pins, folder, self.bar);
@@ -163,7 +163,7 @@ impl Conductor<'_> {
         }
     }
 
-    /// Waits for rest, charge and temperature. The temperature where it was too high to the end.
+    /// Waits for rest, charge and temperature. Returns the temperature if it stayed too high.
     fn cool_down(&self, plan: &Plan) -> Result<Option<f64>, DeviceError> {
         let mut begin = self.device.now();
         let mut lost_at = None;
@@ -191,7 +191,7 @@ impl Conductor<'_> {
             };
             lost_at = None;
             if self.experiment.power && self.must_charge(&battery, &mut charging) {
-                // Charging warms the battery: the time to cool down begins when it is over.
+                // Charging warms the battery: the time to cool down begins when charging ends.
                 begin = self.device.now();
                 self.device.sleep(COOLING);
                 continue;
@@ -213,8 +213,8 @@ impl Conductor<'_> {
         }
     }
 
-    /// True if to wait for somebody who charges the battery or takes the charger off. `charging` is none outside of such a
-    /// pause, and inside of it whether there has been a charger: who takes it off early wants to go on.
+    /// True while the experiment waits for the charger to be plugged in or taken off. `charging` is `None` outside of
+    /// such a pause; inside, it is true once a charger was seen: taking it off early means to go on.
     fn must_charge(&self, battery: &Battery, charging: &mut Option<bool>) -> bool {
         let Experiment { min_level, charge_level, .. } = *self.experiment;
         let Some(level) = battery.level_percent else { return false };
@@ -243,7 +243,7 @@ impl Conductor<'_> {
         true
     }
 
-    /// A capture of a run that was not made.
+    /// Writes a capture for a run that was not made.
     fn leave_out(
         &self,
         plan: &Plan,
@@ -259,14 +259,14 @@ impl Conductor<'_> {
     }
 }
 
-/// True if the folder holds this run, complete.
+/// True if the folder holds this run and it is complete.
 fn is_complete(folder: &Path, plan: &Plan) -> Result<bool, DeviceError> {
     if !folder.join(RUN_FILE).exists() {
         return Ok(false);
     }
     let info = match capture::read_info(folder) {
         Ok(info) => info,
-        // It was damaged while it was written: as good as cut off.
+        // Damaged while it was written: treated as cut off.
         Err(CaptureError::Damaged { .. }) => return Ok(false),
         Err(error) => return Err(error.into()),
     };

@@ -43,15 +43,15 @@ pub use conduct::{Progress, conduct};
 pub const FILE: &str = "experiment.toml";
 /// Seconds that a start takes, for the estimate of a plan's length.
 const START_S: f64 = 5.0;
-/// Settings that are not the file's to give.
+/// Settings that the file may not set.
 const RESERVED: &[&str] = &["scene", "duration", "auto-exit", "run"];
 
-/// In what order methods take turns.
+/// The order of the runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Order {
-    /// By the rows of a balanced Latin square (Williams 1949): each method comes in each place, and after each other one,
-    /// equally often over its rows. Scenes are shuffled.
+    /// The rows of a balanced Latin square (Williams 1949): over its rows, each method comes equally often in each
+    /// place, and equally often after each other one. Scenes are shuffled.
     #[default]
     Balanced,
     /// Methods and scenes are shuffled.
@@ -64,10 +64,10 @@ pub enum Order {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WhenTooWarm {
-    /// It is made, and says that it began too warm.
+    /// The run is made, with a fault that it began too warm.
     #[default]
     Start,
-    /// It is left out, and says why.
+    /// The run is left out, with the reason.
     Skip,
     /// The experiment ends here; the same command goes on later.
     Stop,
@@ -77,12 +77,12 @@ pub enum WhenTooWarm {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CoolDown {
-    /// Warmest that the battery may be at the start of a run, in degrees Celsius.
+    /// Highest temperature of the battery at the start of a run in degrees Celsius.
     pub celsius: f64,
     /// Longest wait for it in seconds.
     #[serde(default = "CoolDown::default_max")]
     pub max_seconds: f64,
-    /// What is done then.
+    /// The treatment of a run whose device is still too warm after that wait.
     #[serde(default)]
     pub otherwise: WhenTooWarm,
 }
@@ -112,13 +112,13 @@ pub struct Experiment {
     pub name: String,
     /// Length of a run without warm-up.
     pub seconds: f64,
-    /// Seconds that are cut off at the beginning of a run.
+    /// Warm-up at the beginning of a run, which is discarded.
     #[serde(default = "Experiment::default_warm_up")]
     pub warm_up_seconds: f64,
     /// Number of runs of each method in each scene.
     #[serde(default = "Experiment::once")]
     pub repetitions: u32,
-    /// In what order.
+    /// The order of the runs.
     #[serde(default)]
     pub order: Order,
     /// Seed of the order; each device has its own order from it.
@@ -136,11 +136,11 @@ pub struct Experiment {
     /// True if power is measured: a device that is plugged in is refused.
     #[serde(default = "Experiment::about_power")]
     pub power: bool,
-    /// Lowest level of the battery in percent that a run about power begins with; below, the experiment waits for somebody
-    /// to charge the device.
+    /// Lowest battery level in percent at which a power measurement begins; below it, the experiment waits until the
+    /// device is charged.
     #[serde(default = "Experiment::default_min_level")]
     pub min_level: f64,
-    /// Level in percent up to which it is charged then.
+    /// Battery level in percent at which such charging ends.
     #[serde(default = "Experiment::default_charge_level")]
     pub charge_level: f64,
     /// Waiting for a temperature before each run.
@@ -159,7 +159,7 @@ pub enum ExperimentError {
     /// The file cannot be read, or the folder not written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The file is not as it should be.
+    /// The file is not a valid experiment.
     #[error("{}: {what}", path.display())]
     Format {
         /// The file.
@@ -177,7 +177,7 @@ pub enum ExperimentError {
     },
 }
 
-/// A run in its place.
+/// A run in the plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
     /// The run's plan.
@@ -267,7 +267,7 @@ impl Experiment {
         Ok(())
     }
 
-    /// The settings of a method in a scene.
+    /// Returns the settings of a method in a scene.
     fn viewer_settings(&self, entrant: &Entrant, scene: &str) -> Result<Settings, SettingsError> {
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         let pairs = |table: &Table| table.iter().map(|(k, v)| format!("{k}={}", text(v))).collect::<Vec<_>>();
@@ -342,7 +342,7 @@ impl Experiment {
         [run + self.rest_seconds, run + cooling].map(|seconds| seconds * runs as f64)
     }
 
-    /// Makes a folder this experiment's, or sees that it is.
+    /// Writes the experiment into its folder, or checks that the folder already belongs to it.
     pub fn claim(&self, folder: &Path, path: &Path) -> Result<(), ExperimentError> {
         let file = folder.join(FILE);
         if file.exists() {
@@ -356,7 +356,7 @@ impl Experiment {
     }
 }
 
-/// A name as part of the name of a file.
+/// Returns a name as part of a file name.
 pub fn file_name(text: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-._".contains(c) { c } else { '-' };
     let name: String = text.chars().map(plain).collect();
@@ -364,7 +364,7 @@ pub fn file_name(text: &str) -> String {
     if name.is_empty() { "unnamed".into() } else { name.into() }
 }
 
-/// The stereo methods that settings name, for a table of the plan.
+/// Returns the stereo method that the settings name, for a table of the plan.
 pub fn method_name(plan: &Plan) -> String {
     match plan.settings.method {
         Method::Yoro => format!("yoro, {}", plan.settings.pipeline.name()),

@@ -10,32 +10,32 @@ use crate::log::{self, Entry, Kind, VRAPI_TAG};
 use crate::phone::LEAST_MILLIVOLTS;
 use yoro_protocol::telemetry::{BatteryStatus, LOG_TAG, Line, fields};
 
-/// Of two lines in one session, the device's clock may differ by this from the session's before that is a jump, in
-/// seconds: a line is logged some frames after its second has ended.
+/// Clock difference in seconds beyond which a line counts as a clock jump: the device's clock against the session's,
+/// between two lines of a session. Lines are logged some frames after their second ends.
 const JUMP_S: f64 = 2.0;
-/// Lines of a session further apart than this, in seconds, have had others between them.
+/// Distance in seconds between two lines of a session beyond which lines are missing between them.
 const GAP_S: f64 = 1.8;
-/// From here on Android's thermal status means that the device throttles (`THERMAL_STATUS_MODERATE`).
+/// Lowest thermal status of Android at which the device throttles (`THERMAL_STATUS_MODERATE`).
 const THROTTLED: i32 = 2;
-/// Between the last line of a session and the first of the next there is not more than this, in seconds.
+/// Longest time in seconds between the last line of a session and the first of the next.
 const LONGEST_PAUSE_S: f64 = 3600.0;
-/// Values of the battery's current that stand for none: of Meta's tools, and the ends of an integer's range.
+/// Values of the battery's current that mean no value: those of Meta's tools, and the ends of an integer's range.
 const PLACEHOLDERS: [i64; 5] = [9_999, 9_999_000, i32::MIN as i64, i32::MAX as i64, i64::MIN];
 
 /// The content of a line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LineContent {
-    /// A second.
+    /// The sample of a second.
     Sample(Box<Sample>),
     /// The summary at the end of a session.
     Summary,
-    /// A line that cannot be read; why.
+    /// A line that cannot be read, and the reason.
     Damaged(String),
-    /// Nothing that is measured: other messages, other tags, another run.
+    /// A line without measurements: another message, another tag, another run.
     Other,
 }
 
-/// Something that is counted, and when it was first seen.
+/// A counter, with the time of the first occurrence.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     times: u64,
@@ -55,7 +55,7 @@ impl Count {
 #[derive(Clone, Copy, Debug)]
 struct Session {
     pid: Option<u32>,
-    /// Added to the session's time for that of the run.
+    /// Offset in seconds from the session's time to that of the run.
     offset_s: f64,
     /// The session's own time at its last line.
     last_s: f64,
@@ -66,19 +66,19 @@ struct Session {
 /// Reads a log, line by line. Time starts with the first frame of the first session.
 #[derive(Clone, Debug, Default)]
 pub struct Reading {
-    /// The run whose lines count; all if none.
+    /// The run whose lines count; `None` for all lines.
     run: Option<String>,
     session: Option<Session>,
-    /// What the runtime has said since the last sample: its own sample, should nobody else say anything.
+    /// Values of the runtime since the last sample. They become a sample of their own if the application logs nothing.
     runtime: Option<Sample>,
     /// The clock at the first line of a log that has only the runtime's lines.
     runtime_begin: Option<f64>,
     /// Time of the last sample.
     time_s: f64,
     methods: Vec<(String, String)>,
-    /// True if the lines have nothing before the message; none until one was recognised.
+    /// True if the lines are bare messages; `None` until one was recognised.
     is_raw: Option<bool>,
-    /// Lines before that, which are damaged, or words in a raw log.
+    /// Lines before that: damaged lines, or other words in a raw log.
     unknown: u64,
 
     seconds: u64,
@@ -87,7 +87,7 @@ pub struct Reading {
     damaged_now: u64,
     missing: Count,
     plugged: Count,
-    /// Seconds that say something of the battery, those with a current, and those whose current is a number but means none.
+    /// Seconds with values of the battery, those with a current, and those whose current is a placeholder.
     judged: u64,
     with_current: u64,
     zero: u64,
@@ -101,7 +101,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Reads the lines that carry the name of this run, or all.
+    /// Creates a reader of the lines with the name of this run, or of all lines.
     pub fn new(run: Option<String>) -> Reading {
         Reading { run, ..Reading::default() }
     }
@@ -131,13 +131,13 @@ impl Reading {
         self.volts.times > 0
     }
 
-    /// The methods and scenes that the lines name, in the order of their first lines.
+    /// Returns the methods and scenes that the lines name, in the order of their first lines.
     pub fn methods(&self) -> &[(String, String)] {
         &self.methods
     }
 
-    /// Reads a line of logcat. `passed_s` is how long by this computer's clock there was no line before it, where that is
-    /// known: it stands in for the device's clock where that makes no sense.
+    /// Reads a line of logcat. `passed_s` is the time since the line before it by this computer's clock, if known. It
+    /// replaces the device's clock where that makes no sense.
     pub fn line(&mut self, line: &str, passed_s: Option<f64>) -> LineContent {
         let kind = log::parse(line);
         if let (None, Kind::Entry(entry)) = (self.is_raw, &kind) {
@@ -200,12 +200,12 @@ impl Reading {
         LineContent::Sample(Box::new(self.sample(line, message, time_s)))
     }
 
-    /// The time of a line in the run. Notes restarts, gaps, and jumps of the clock.
+    /// Returns the time of a line in the run. Records restarts, gaps, and jumps of the clock.
     fn place(&mut self, line: &Line, entry: &Entry, passed_s: Option<f64>) -> f64 {
         let clock_s = entry.time_s;
         let damaged = std::mem::take(&mut self.damaged_now);
         let Some(session) = &mut self.session else {
-            // What came before the first line is not missing: a log may begin anywhere.
+            // Nothing is missing before the first line: a log may begin anywhere.
             self.session = Some(Session { pid: entry.pid, offset_s: 0.0, last_s: line.time_s, clock_s });
             return line.time_s;
         };
@@ -241,7 +241,7 @@ impl Reading {
         time_s
     }
 
-    /// Counts what is odd about a second; of a line, its battery matters.
+    /// Counts the oddities of a second; only the battery of a line is judged.
     pub(crate) fn judge(&mut self, line: &Line, at_s: f64) {
         self.judged += 1;
         let is_idle = matches!(line.status, Some(BatteryStatus::NotCharging));
@@ -266,7 +266,7 @@ impl Reading {
     fn sample(&mut self, line: Line, message: &str, time_s: f64) -> Sample {
         let numbers = Sample::of(&line);
         let mut other = self.runtime.take().map(|runtime| runtime.other).unwrap_or_default();
-        // What the run says already needs no column.
+        // Values in the run's description need no column.
         let is_known = |key: &str| Sample::has_field(key) || ["v", "run", "method", "scene"].contains(&key);
         for field in fields(message).filter(|field| !is_known(field.key)) {
             if let Some(value) = field.value.filter(|value| *value != "na" && !value.is_empty()) {
@@ -289,9 +289,9 @@ impl Reading {
         }
     }
 
-    /// A line of Meta's runtime. Only those that begin with a frame rate are statistics; a second one with App SpaceWarp
-    /// begins with `ASW=`. It goes with the application's next line; alone it is a sample only in a log without such
-    /// lines, that of another application.
+    /// Reads a line of Meta's runtime. Only those that begin with a frame rate are statistics; a second one with App
+    /// SpaceWarp begins with `ASW=`. It is merged into the application's next line; alone it is a sample only in a log
+    /// without such lines, that of another application.
     fn runtime(&mut self, entry: &Entry) -> LineContent {
         if !entry.message.starts_with("FPS=") {
             return LineContent::Other;
@@ -350,7 +350,7 @@ impl Reading {
         sample
     }
 
-    /// The last sample of a log that has only the runtime's lines: each waits for a line of the application.
+    /// Returns the last sample of a log that has only the runtime's lines: each waits for a line of the application.
     pub fn end(&mut self) -> Option<Sample> {
         let last = self.runtime.take()?;
         (self.session.is_none() && self.run.is_none()).then(|| self.alone(last))

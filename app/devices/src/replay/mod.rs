@@ -1,5 +1,5 @@
 //! Simulated devices, for tests and for people without a phone: scripted, in virtual time, so that ten minutes
-//! go by in a moment. What comes from them is simulated, and says so.
+//! pass in a moment. All results of them are marked as simulated.
 //!
 //! A device plays recorded logs, or generates its own from a seed and made-up figures; its script says what can go wrong.
 

@@ -26,7 +26,7 @@ use crate::capture;
 use crate::table::toml_mistake;
 use yoro_files as files;
 
-/// Devices, and what happens to them.
+/// The devices of a replay and their faults.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Script {
@@ -99,7 +99,7 @@ pub struct Phone {
     pub foreground: Option<String>,
     /// Android's settings, by name; those of other tables than `system` as `global/low_power`.
     pub settings: BTreeMap<String, String>,
-    /// Those of them that nobody can change.
+    /// Those of them that cannot be changed.
     pub fixed_settings: Vec<String>,
     /// System properties.
     pub properties: BTreeMap<String, String>,
@@ -165,7 +165,7 @@ pub enum Current {
     Milliamperes,
     /// Always 0.
     Zero,
-    /// Not at all.
+    /// No value.
     Missing,
 }
 
@@ -175,7 +175,7 @@ pub enum Current {
 pub enum Voltage {
     /// The unit that Android specifies.
     Millivolts,
-    /// In whole volts, as some do.
+    /// The unit of some devices.
     Volts,
 }
 

@@ -1,4 +1,4 @@
-//! Means of methods, and what they are against the baseline.
+//! Means of methods, and their comparison with the baseline.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,7 +22,7 @@ pub struct Mean {
     /// Mean of the runs, their number and standard deviation.
     #[serde(flatten)]
     pub sample: Sample,
-    /// Of the mean, by Student's t over the repetitions; none of one.
+    /// Interval of the mean, by Student's t over the repetitions; `None` for a single run.
     pub interval: Option<Interval>,
 }
 
@@ -39,14 +39,14 @@ pub struct Difference {
     pub quantity: Quantity,
     /// Pairs of runs.
     pub pairs: usize,
-    /// Mean of the method, over the pairs in each scene, then over the scenes.
+    /// Mean of the method over the pairs of each scene, then over the scenes.
     pub ours: f64,
-    /// The baseline's, likewise.
+    /// Mean of the baseline, likewise.
     pub baseline: f64,
-    /// In percent of the baseline, by the geometric mean of the ratios; for quantities that have no ratio the mean
+    /// Change in percent of the baseline, by the geometric mean of the ratios; for quantities without a ratio, the mean
     /// difference in their unit.
     pub change: f64,
-    /// Of the change; none where nothing was repeated.
+    /// Interval of the change; `None` if nothing was repeated.
     pub interval: Option<BlockInterval>,
 }
 
@@ -57,7 +57,7 @@ impl Difference {
     }
 }
 
-/// The means of all methods and scenes of a device.
+/// Returns the means of all methods and scenes of a device.
 pub fn means(runs: &[Run], device: &Device) -> Vec<Mean> {
     let mut means = Vec::new();
     for scene in &device.scenes {
@@ -82,14 +82,14 @@ pub fn means(runs: &[Run], device: &Device) -> Vec<Mean> {
     means
 }
 
-/// What makes two runs a pair.
+/// The key that two runs of a pair share.
 type Key<'a> = (usize, Option<&'a str>, &'a str, u32);
 
 fn key(run: &Run) -> Key<'_> {
     (run.set, run.experiment.as_deref(), &run.scene, run.repetition)
 }
 
-/// The runs of a method that have nothing to be held against.
+/// Returns the runs without a partner of the baseline.
 pub fn without_partner<'a>(runs: &'a [Run], device: &Device, baseline: &str) -> Vec<&'a Run> {
     let of =
         || runs.iter().filter(|run| run.device == device.name && run.exclusions.iter().all(|e| e.power_only));
@@ -143,7 +143,7 @@ pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Differe
     differences
 }
 
-/// The mean of the devices, each by its own mean over the scenes; the interval rests on the devices.
+/// Returns the mean of the devices, each by its own mean over the scenes; the interval rests on the devices.
 pub fn over_devices(differences: &[Difference], devices: &[&Device]) -> Vec<Difference> {
     let mut found = Vec::new();
     let of_devices = differences.iter().filter(|difference| {
@@ -177,7 +177,7 @@ pub fn over_devices(differences: &[Difference], devices: &[&Device]) -> Vec<Diff
     found
 }
 
-/// The change over blocks of pairs and its interval.
+/// Returns the change over blocks of pairs and its interval.
 fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Option<BlockInterval>)> {
     let value = |(ours, baseline): &(f64, f64)| {
         if !quantity.is_ratio() {

@@ -1,4 +1,4 @@
-//! From captures to figures: power, frame rate, temperature and the rest, per method and scene, against the baseline.
+//! Reports of captures: power, frame rate, temperature and the rest, per method and scene, against the baseline.
 //!
 //! The seconds of a run depend on each other, so intervals rest on repetitions: a run is one value. Two methods are
 //! compared by pairs of runs of the same device, scene and repetition; a change in percent is the geometric mean of
@@ -31,7 +31,7 @@ pub const CONFIDENCE: f64 = 0.95;
 /// A device that was measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Device {
-    /// In tables; ends in `(simulated)` where it is one.
+    /// Name in tables; ends in `(simulated)` for a simulated device.
     pub name: String,
     /// Version of Android.
     pub android: String,
@@ -39,13 +39,13 @@ pub struct Device {
     pub capacity_mah: Option<f64>,
     /// Cells of the battery of which it gives the current of one.
     pub cells: u32,
-    /// Replayed, not measured.
+    /// True if replayed, not measured.
     pub simulated: bool,
     /// Versions of the application that ran.
     pub applications: BTreeSet<String>,
     /// Scenes, in the order of tables.
     pub scenes: Vec<String>,
-    /// Methods, in the order of tables: the baseline first, then what this project is about.
+    /// Methods, in the order of tables: the baseline first, then this project's.
     pub methods: Vec<String>,
 }
 
@@ -54,7 +54,7 @@ pub struct Device {
 pub struct Note {
     /// A short name.
     pub name: &'static str,
-    /// The run, or what it concerns.
+    /// The run or other subject.
     pub of: String,
     /// One sentence.
     pub detail: String,
@@ -63,13 +63,13 @@ pub struct Note {
 /// The figures of a number of captures.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceReport {
-    /// Some of it was replayed, not measured.
+    /// True if some of it was replayed, not measured.
     pub simulated: bool,
-    /// The method that the others are held against.
+    /// The method that the others are compared with.
     pub baseline: String,
-    /// Of the intervals.
+    /// Confidence level of the intervals.
     pub confidence: f64,
-    /// How it was made: program, version, command.
+    /// Program, version and command that made the report.
     pub made_by: String,
     /// All devices.
     pub devices: Vec<Device>,
@@ -77,9 +77,9 @@ pub struct DeviceReport {
     pub differences: Vec<Difference>,
     /// Each method on each scene.
     pub means: Vec<Mean>,
-    /// What of the runs does not count, and why.
+    /// Excluded runs, and the reasons.
     pub left_out: Vec<Note>,
-    /// What went wrong without making a run worthless.
+    /// Faults that did not make a run worthless.
     pub faults: Vec<Note>,
     /// Run by run.
     pub runs: Vec<Run>,
@@ -134,7 +134,7 @@ impl DeviceReport {
         let means = devices.iter().flat_map(|device| compare::means(&runs, device)).collect();
         let mut differences: Vec<Difference> =
             devices.iter().flat_map(|device| compare::differences(&runs, device, baseline)).collect();
-        // What was replayed is never averaged with what was measured.
+        // Replayed and measured runs are never averaged.
         for simulated in [false, true] {
             let alike: Vec<&Device> = devices.iter().filter(|d| d.simulated == simulated).collect();
             differences.extend(compare::over_devices(&differences, &alike));
@@ -162,7 +162,7 @@ impl DeviceReport {
         report
     }
 
-    /// The self-contained page.
+    /// Returns the self-contained page.
     ///
     /// # Errors
     /// [`ReportError`] when a figure cannot be drawn.

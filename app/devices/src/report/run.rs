@@ -1,4 +1,4 @@
-//! The figures of one run, and what speaks against them.
+//! The figures of one run, and the reasons to exclude them.
 
 use std::collections::BTreeMap;
 
@@ -10,11 +10,11 @@ use yoro_figures::stats::median;
 
 /// Voltage by which the paper turns battery percent into energy.
 pub const PAPER_VOLTS: f64 = 3.7;
-/// Of its planned time a run must have been measured for this share.
+/// Least share of its planned time for which a run must have frame rates.
 pub const LEAST_COVERED: f64 = 0.8;
-/// Current x voltage and charge counter may differ by this share before it is named.
+/// Largest relative difference of current x voltage and charge counter that is not reported.
 pub const COUNTER_TOLERANCE: f64 = 0.1;
-/// From milliampere-hours to microampere-hours.
+/// Factor from milliampere-hours to microampere-hours.
 pub(super) const MILLI: f64 = 1e3;
 /// A full battery has more than this many microampere-hours: where the counter says less, it counts milliampere-hours.
 const LEAST_FULL_UAH: f64 = 100_000.0;
@@ -22,10 +22,10 @@ const LEAST_FULL_UAH: f64 = 100_000.0;
 const CELL_TOLERANCE: f64 = 0.25;
 /// Another measure of the power is this many times as large where the current is that of one of two cells.
 const TWICE: std::ops::Range<f64> = 1.6..2.6;
-/// Between two samples there may be this many times the usual distance; else there is a gap, which is not bridged.
+/// Distance of two samples, as a multiple of the usual one, beyond which they enclose a gap, which is not bridged.
 const GAP: f64 = 2.5;
 
-/// What is measured.
+/// A measured quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
@@ -35,7 +35,7 @@ pub enum Quantity {
     Fps,
     /// Mean time between frames.
     FrameTime,
-    /// 99 % of the times between frames are below, mean over the seconds.
+    /// 99th percentile of the times between frames, mean over the seconds.
     FrameTimeP99,
     /// GPU time per frame.
     GpuTime,
@@ -43,7 +43,7 @@ pub enum Quantity {
     Stale,
     /// Battery temperature.
     Temperature,
-    /// By how much the battery's temperature rose.
+    /// Rise of the battery's temperature.
     Rise,
     /// CPU load of the process.
     Cpu,
@@ -120,11 +120,11 @@ pub struct Counted {
     pub milliwatts: f64,
     /// Current x voltage over the same time, in milliwatts.
     pub integrated_milliwatts: f64,
-    /// Between the counter's first and last step, in seconds.
+    /// Time between the counter's first and last step in seconds.
     pub seconds: f64,
-    /// How often it changed.
+    /// Number of its changes.
     pub steps: usize,
-    /// What its values were multiplied by for microampere-hours of the whole battery.
+    /// Factor from its values to microampere-hours of the whole battery.
     pub scale: f64,
 }
 
@@ -138,16 +138,16 @@ impl Counted {
 /// Power by the paper's method: battery percent x capacity x 3.7 V.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ByLevel {
-    /// In milliwatts.
+    /// Mean power in milliwatts.
     pub milliwatts: f64,
-    /// What one percent makes in this time, in milliwatts: the method cannot tell less apart.
+    /// Power of one percent of the battery over this time in milliwatts: the resolution of the method.
     pub step_milliwatts: f64,
 }
 
-/// What does not count, and why.
+/// An exclusion and its reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Exclusion {
-    /// Only its power; all of it otherwise.
+    /// True if only the power is excluded; else the whole run is.
     pub power_only: bool,
     /// A short name.
     pub name: &'static str,
@@ -169,13 +169,13 @@ pub struct Traces {
 /// One run in figures.
 #[derive(Clone, Debug, Serialize)]
 pub struct Run {
-    /// Returns the folder of the run.
+    /// Folder of the run.
     pub folder: String,
-    /// Which of the folders given it was found in, from 0: the same repetition in another is another one.
+    /// Index of the given folder in which it was found. The same repetition in another folder counts as another one.
     pub set: usize,
     /// The device's name in tables.
     pub device: String,
-    /// Replayed, not measured.
+    /// True if replayed, not measured.
     pub simulated: bool,
     /// Experiment.
     pub experiment: Option<String>,
@@ -202,13 +202,13 @@ pub struct Run {
     pub std_over_seconds: BTreeMap<Quantity, f64>,
     /// Current x voltage.
     pub integrated: Option<Integrated>,
-    /// By the charge counter.
+    /// Power by the charge counter.
     pub counted: Option<Counted>,
-    /// As the paper did.
+    /// Power by the paper's method.
     pub by_level: Option<ByLevel>,
     /// Faults on the way.
     pub faults: Vec<Fault>,
-    /// What of it does not count.
+    /// Reasons for which the run, or its power, does not count.
     pub exclusions: Vec<Exclusion>,
     #[serde(skip)]
     pub(super) traces: Traces,
@@ -231,7 +231,7 @@ impl Run {
         charge.iter_mut().for_each(|(_, charge)| *charge *= scale);
         let fps = series(|s| s.fps);
         let temperature = series(|s| s.battery_celsius);
-        // Where the application drew nothing for a while, other values may have gone on.
+        // Other values may have continued while the application drew nothing.
         let (covered_s, gaps) = coverage(&fps, longest_step);
         let integrated = integrate(&power, longest_step);
 
@@ -350,7 +350,7 @@ impl Run {
         if let Some(fault) = self.find(FaultKind::Rebooted) {
             return Some(("rebooted", fault.detail.clone()));
         }
-        // What happens in the warm-up is over when it counts.
+        // Faults in the warm-up are over when the measurement begins.
         let late = |fault: &&Fault| fault.at_s.is_none_or(|at| at >= capture.info.warm_up_s);
         if let Some(fault) = self.find(FaultKind::Restarted).filter(late) {
             return Some(("application restarted", fault.detail.clone()));
@@ -486,7 +486,7 @@ fn mean_over_frames(samples: &[&Sample], value: fn(&Sample) -> Option<f64>) -> O
     (frames > 0.0).then(|| sum / frames)
 }
 
-/// At most this many points a curve: more than a figure can show.
+/// Most points of a curve; a figure cannot show more.
 const TRACE_POINTS: usize = 240;
 
 /// Means of neighbours, with a point that is not finite at each gap.

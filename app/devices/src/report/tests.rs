@@ -204,7 +204,7 @@ fn the_current_of_one_of_two_cells_doubles_power() {
 
 #[test]
 fn implausible_power_is_named() {
-    // What a voltage of 4 made of 3 W, and a current 1000 times too large.
+    // A power of 3 W with a voltage of 4, and with a current 1000 times too large.
     let mut volts = made_up("yoro", "street", 1, |_| 3000.0);
     volts.samples.iter_mut().for_each(|s| s.voltage_mv = Some(4.0));
     volts.info.faults.push(Fault {

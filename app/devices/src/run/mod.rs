@@ -32,7 +32,7 @@ pub struct Plan {
     pub method: String,
     /// Settings of the viewer, method and scene included.
     pub settings: Settings,
-    /// From 1.
+    /// Number of the repetition, from 1.
     pub repetition: u32,
     /// Place in the experiment, from 1.
     pub order: u32,

@@ -117,7 +117,7 @@ pub fn capture(
                 }
                 _ => Outcome::Interrupted { reason: error.to_string() },
             };
-            // Where the disk is full, that is what counts, not that it still is.
+            // The first error of a full disk is reported, not the errors that follow it.
             let noted = session.renew_faults().and_then(|()| Ok(session.writer.finish(outcome)?));
             if let Err(again) = noted {
                 log::debug!("{again}");
@@ -207,7 +207,7 @@ impl Session<'_> {
                     if let Some(outcome) = self.line(&line)? {
                         return Ok(outcome);
                     }
-                    // Where others go on to log, it never is quiet.
+                    // The log is never quiet while other applications write to it.
                     let alone =
                         self.others_since_s.is_some_and(|since| self.device.now() - since >= SILENCE_S);
                     if alone && let Some(outcome) = self.quiet()? {

@@ -15,7 +15,7 @@ pub type Scale = [f64; 2];
 /// Options of the analysis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Options {
-    /// The method that the others are held against.
+    /// The method that the others are compared with.
     pub baseline: String,
     /// Lowest and highest rating.
     pub scale: Scale,
@@ -40,7 +40,7 @@ pub struct Excluded {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Not shown to differ, and shown to differ by less than the bound.
+    /// No difference was shown, and any difference was shown to be smaller than the bound.
     Equivalent,
     /// Shown to differ, and shown to differ by less than the bound.
     SmallDifference,
@@ -87,9 +87,9 @@ pub struct Question {
     pub needed: Option<usize>,
     /// Two one-sided tests.
     pub equivalence: Option<Equivalence>,
-    /// In a word.
+    /// The verdict in a word.
     pub verdict: Verdict,
-    /// In a sentence.
+    /// The verdict in a sentence.
     pub words: String,
 }
 
@@ -102,7 +102,7 @@ pub struct Study {
     pub made_by: String,
     /// All participants.
     pub participants: usize,
-    /// By question, then method.
+    /// Results by question, then method.
     pub questions: Vec<Question>,
     /// Comparisons that nobody has answered in full: question, method.
     pub unanswered: Vec<(String, String)>,

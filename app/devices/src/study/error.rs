@@ -34,7 +34,7 @@ pub enum StudyError {
     Nothing {
         /// The file.
         path: PathBuf,
-        /// What is missing, and the remedy.
+        /// The missing part and the remedy.
         what: String,
     },
     /// No line of the logs is a rating.

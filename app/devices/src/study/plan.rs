@@ -42,7 +42,7 @@ pub struct Trial {
 pub struct Plan {
     /// Seed: the same one gives the same plan.
     pub seed: u64,
-    /// By participant, then in order.
+    /// Trials by participant, then in order.
     pub trials: Vec<Trial>,
     /// Every scene follows every other equally often, and every method is equally often at each place, when the number
     /// of participants is a multiple of this.
@@ -205,7 +205,7 @@ mod tests {
                 assert_eq!(trial.settings["method"], trial.method);
             }
         }
-        // On every scene, each method is first for half of the participants.
+        // Each method is first for half of the participants on every scene.
         let first = counts(plan.trials.iter().step_by(2).map(|t| (&t.scene, &t.method)));
         assert!(all_equal(&first, 16), "{first:?}");
         assert_eq!(plan.trials.last().unwrap().participant, "P14");

@@ -44,7 +44,7 @@ impl Ratings {
     /// [`StudyError`]: also for a rating that is not a number or lies outside `scale`, and for one that is there twice.
     pub fn read(path: &Path, scale: [f64; 2]) -> Result<Ratings, StudyError> {
         let bytes = files::read(path)?;
-        // What Excel writes first.
+        // Byte order mark that Excel writes first.
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
         let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
         let row_error = |line: u64, what: String| StudyError::Row { path: path.into(), line, what };

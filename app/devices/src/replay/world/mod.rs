@@ -27,7 +27,7 @@ const COMMAND_S: f64 = 0.02;
 const LOADING_S: f64 = 1.5;
 /// Power in milliwatts while no application runs.
 const IDLE_MILLIWATTS: f64 = 300.0;
-/// Degrees that a watt warms the device by, in the end.
+/// Final rise of temperature in degrees Celsius per watt.
 const CELSIUS_PER_WATT: f64 = 5.0;
 /// Seconds after which a difference of temperature has fallen to a third.
 const WARMING_S: f64 = 400.0;
@@ -40,7 +40,7 @@ const BOOT_S: f64 = 10.0;
 const CHARGED_PERCENT: f64 = 95.0;
 /// The process of Meta's runtime that is no application.
 const RUNTIME_PID: u32 = 2072;
-/// Property under which a simulated headset records that it was told that it is worn.
+/// Property in which a simulated headset records that it was set to be worn.
 const WORN: &str = "simulated.worn";
 
 /// One line in the log.
@@ -213,7 +213,7 @@ impl World {
     /// Lets time pass until something happens, at most until `limit`.
     fn step(&mut self, limit: f64) {
         let next = |a: &Application| a.next_line().min(a.next_fault());
-        // With a pace, small steps: somebody may want to stop.
+        // Small steps at a limited speed, so that the user can stop.
         let glance = self.speed.map_or(f64::INFINITY, |speed| self.now + 0.05 * speed);
         let to = self.application.as_ref().map_or(f64::INFINITY, next).min(limit).min(glance).max(self.now);
         let passed = to - self.now;
@@ -334,7 +334,7 @@ impl World {
         self.log.push(Logged { clock, text: text.trim_start().into() });
     }
 
-    /// The application's line of this second, and its end when its time has come.
+    /// Logs the application's line of this second, and ends the application when its time is over.
     fn log_second(&mut self) {
         let Some(mut application) = self.application.take() else { return };
         application.lines += 1;
@@ -382,7 +382,7 @@ impl World {
         }
     }
 
-    /// A second of made-up figures.
+    /// Generates the line of a second from made-up figures.
     fn generate(&mut self, application: &mut Application) -> Line {
         let load = self.load(application);
         let volts = self.volts();
@@ -444,8 +444,8 @@ impl World {
         }
     }
 
-    /// Returns the place at which a new reader of the log begins: the end, the last so many lines, or the first line of a
-    /// time.
+    /// Returns the position at which a new reader of the log begins: the end, a number of lines before it, or the first
+    /// line of a time.
     pub fn reader(&self, since: Option<&str>) -> (usize, u32) {
         let end = self.forgotten + self.log.len();
         let begin = match since {
@@ -462,7 +462,7 @@ impl World {
         (begin, self.generation)
     }
 
-    /// The line that a reader comes to, for which time passes, at most so many seconds; an error where the reader is
+    /// Returns the next line of a reader; time passes until it comes, at most `wait` seconds. An error if the reader is
     /// cut off.
     pub fn read_log(&mut self, at: &mut usize, generation: u32, wait: f64) -> Result<Option<String>, ()> {
         let limit = self.now + wait;

@@ -42,7 +42,7 @@ impl World {
         DeviceError::Refused { serial, command: words.join(" "), reason: reason.into() }
     }
 
-    /// Answers a command as Android's shell does. Only what the program asks is known.
+    /// Answers a command as Android's shell does. Only the commands that the program uses are known.
     pub fn shell(&mut self, words: &[&str]) -> Result<String, DeviceError> {
         self.reach()?;
         match words {
@@ -167,7 +167,7 @@ impl World {
         ))
     }
 
-    /// Starts the application, as its settings say: extras, and properties over them.
+    /// Starts the application with the settings of the extras, overridden by properties.
     pub(super) fn start(&mut self, activity: &str, extras: &[&str]) -> Result<String, DeviceError> {
         let package = activity.split('/').next().unwrap_or_default();
         let other = self.script.others.iter().find(|other| *other == package).cloned();
@@ -207,7 +207,7 @@ impl World {
             .into())
     }
 
-    /// The lines of the recorded log of a method, pipeline and scene.
+    /// Returns the lines of the recorded log of a method, pipeline and scene.
     fn recorded(&self, settings: &Settings) -> Result<Vec<Line>, DeviceError> {
         let is_wanted = |line: &Line| {
             let pipeline =
@@ -227,7 +227,7 @@ impl World {
     }
 }
 
-/// The telemetry in a log.
+/// Returns the telemetry in a log.
 fn read_recording(path: &Path) -> Result<Vec<Line>, DeviceError> {
     let bytes = files::read(path)?;
     let text = String::from_utf8_lossy(&bytes);

@@ -1,4 +1,4 @@
-//! What the report says of each method in a sentence.
+//! The report's result for each method, in a sentence.
 
 use serde::Serialize;
 

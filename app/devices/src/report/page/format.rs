@@ -3,7 +3,7 @@
 use crate::report::{Difference, Quantity};
 use yoro_figures::inference::{Basis, BlockInterval, Interval};
 
-/// Behind an interval that rests on scenes or devices.
+/// Mark after an interval that rests on scenes or devices.
 pub const OVER_BLOCKS: &str = " †";
 
 /// Formats a count: `1 run`, `2 runs`.
@@ -15,7 +15,7 @@ pub fn number(quantity: Quantity, value: f64) -> String {
     format!("{value:.0$}", quantity.decimals())
 }
 
-/// Decimals and unit of a change.
+/// Returns decimals and unit of a change.
 pub fn change_format(difference: &Difference) -> (usize, &'static str) {
     match difference.quantity {
         _ if difference.in_percent() => (1, "%"),

@@ -19,7 +19,7 @@ use yoro_figures::page::{Template, figures, fill};
 
 pub(super) use format::count;
 
-/// Where the scenes of a device are taken together.
+/// Label of the mean over the scenes of a device.
 const ALL_SCENES: &str = "all scenes";
 const TEMPLATE: Template =
     Template { name: "device.html.j2", text: include_str!("../../templates/device.html.j2") };
