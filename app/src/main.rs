@@ -1,4 +1,4 @@
-//! The program `yoro`: its command line, one file a subcommand. What a subcommand does is the libraries' work.
+//! The program `yoro`: its command line, one file per subcommand. The libraries do the work of the subcommands.
 
 mod cli;
 
@@ -13,7 +13,7 @@ use yoro_files::interrupt;
 struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// Say more (-v: what is in use, -vv: everything)
+    /// Log more (-v: what is in use, -vv: everything)
     #[arg(short, long, action = clap::ArgAction::Count, global = true)]
     verbose: u8,
 }

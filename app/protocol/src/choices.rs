@@ -137,11 +137,11 @@ choices! {
         After = "after",
         /// Before synthesis, on the rendered eye only, as in the paper
         Before = "before",
-        /// Not at all
+        /// Never
         Off = "off",
     }
 
-    /// How a view is rendered.
+    /// The renderer of a view.
     RendererKind {
         /// G-buffer, ambient occlusion, lighting of each pixel; edges are smoothed afterwards, by FXAA
         #[default]
@@ -154,9 +154,9 @@ choices! {
     Ssao {
         /// None
         Off = "off",
-        /// At half the resolution
+        /// Half resolution
         Half = "half",
-        /// At full resolution
+        /// Full resolution
         Full = "full",
     }
 
@@ -171,17 +171,17 @@ choices! {
         Cardboard = "cardboard",
     }
 
-    /// How fast the processors should run, where applications may say so: on headsets by XR_EXT_performance_settings; on
-    /// phones the two sustained levels are Android's sustained performance mode.
+    /// Clock level of the processors, where applications can request one: on headsets by XR_EXT_performance_settings;
+    /// on phones the two sustained levels are Android's sustained performance mode.
     Performance {
-        /// As slowly as can be
+        /// Lowest clocks
         PowerSaving = "power-saving",
-        /// Slowly; the rate may be missed
+        /// Low clocks; the refresh rate may be missed
         SustainedLow = "sustained-low",
-        /// As fast as can be held for any time
+        /// Highest sustainable clocks
         #[default]
         SustainedHigh = "sustained-high",
-        /// As fast as can be, for a short time
+        /// Highest clocks, for short bursts
         Boost = "boost",
     }
 }

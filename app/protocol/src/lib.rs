@@ -1,4 +1,4 @@
-//! What a phone and the lab say to each other: [`Settings`] one way, [`telemetry`] the other.
+//! The protocol between a phone and the lab: [`Settings`] one way, [`telemetry`] the other.
 //!
 //! Settings come in as a file, as `key=value` texts or as options, and go out as typed values; frames and device states
 //! come in and go out as lines of text, which are read back into the same values.

@@ -114,9 +114,9 @@ settings! {
     /// The methods that a tap goes through.
     "methods" methods: Vec<Method> = vec![Method::Yoro, Method::Conventional, Method::Mono];
         range(|s| !s.methods.is_empty(), "name at least one method, such as yoro,mono"),
-    /// How the other eye is synthesized.
+    /// The pipeline that synthesizes the other eye.
     "pipeline" pipeline: Pipeline = Pipeline::default(),
-    /// paper: ImBuffer resolution, as a divisor (1, 2, 4, 8, 16) or a fixed size (512x512).
+    /// paper: ImBuffer resolution, as a divisor from 1 to 64 (the paper: 1, 2, 4, 8, 16) or a fixed size (512x512).
     "imbuffer" imbuffer: ImBufferSize = ImBufferSize::Divisor(1); value_name("N|WxH"),
     /// paper: interpolate between ImBuffer entries.
     "linear-interpolation" linear_interpolation: bool = true;
@@ -162,13 +162,13 @@ settings! {
         range(|s| (0.25..=2.0).contains(&s.render_scale), "give a factor from 0.25 to 2"),
     /// Lower render scale and ImBuffer to hold the display's refresh rate and to spare a hot device.
     "adaptive" adaptive: bool = false,
-    /// Turn the finished image to the newest head pose.
+    /// Timewarp: turn the finished image to the latest head pose.
     "timewarp" timewarp: bool = true,
     /// Correct the lenses' chromatic aberration.
     "chromatic" chromatic: bool = false,
     /// Show the HUD.
-    "hud" hud: bool = true; off_help("Leave out the HUD"),
-    /// How a view is rendered.
+    "hud" hud: bool = true; off_help("Hide the HUD"),
+    /// The renderer of a view.
     "renderer" renderer: RendererKind = RendererKind::Deferred,
     /// forward: samples in each pixel, 1, 2 or 4, as far as the driver has them.
     "msaa" msaa: u32 = 4; value_name("N"); range(|s| MSAA.contains(&s.msaa), "give 1, 2 or 4"),
@@ -196,21 +196,21 @@ settings! {
     "trial" trial: Option<u32> = None,
     /// End the program after `duration` and the questions.
     "auto-exit" auto_exit: bool = false,
-    /// The display that shows the eyes; counts at the start.
+    /// The display that shows the eyes; read at start-up only.
     "display" display: DisplayKind = DisplayKind::Auto,
     /// Refreshes per second. Headsets: the nearest of the rates that the runtime offers. Phones: the rate that Android is
     /// asked for (Android 11).
     "refresh-rate" refresh_rate: Option<f32> = None;
         range(|s| s.refresh_rate.is_none_or(|hz| (1.0..=1000.0).contains(&hz)), "give refreshes per second, such as 90, or auto");
         auto("headsets: the runtime's own; phones: the rate at the start"),
-    /// How fast the processors should run. Phones: the two sustained levels are Android's sustained performance mode.
+    /// Clock level of the processors. Phones: the two sustained levels are Android's sustained performance mode.
     "performance" performance: Performance = Performance::SustainedHigh,
     /// Phones: tell Android's scheduler how long each frame takes (Android 13, some devices).
     "performance-hints" performance_hints: bool = true,
-    /// Headsets: hand the depth of both eyes to the compositor, which costs energy; counts when a session begins.
+    /// Headsets: submit the depth of both eyes to the compositor, which costs energy; read when a session begins.
     "submit-depth" submit_depth: bool = true,
     /// Headsets: one view in place of two, where the runtime, or an API layer such as yoro's, offers that. Meant for
-    /// `method=mono`, with which one view is all that is rendered; counts when a session begins.
+    /// `method=mono`, with which one view is all that is rendered; read when a session begins.
     "one-view" one_view: bool = false,
     /// Measure the GPU time of each stage, where the driver has timer queries.
     "profiling" profiling: bool = true,

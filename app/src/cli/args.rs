@@ -13,7 +13,7 @@ use yoro_lab::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions
 /// The source of the GL context.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct GlArgs {
-    /// Where to take the GL context from
+    /// Source of the GL context
     #[arg(long = "gl", value_parser = choices::backend(), default_value = Backend::default().name(), value_name = "BACKEND")]
     pub backend: Backend,
 }

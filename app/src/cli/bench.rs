@@ -25,7 +25,7 @@ use yoro_scene::load::sidecar_file;
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
 #[derive(clap::Args, Clone, Debug)]
 pub struct BenchArgs {
-    /// Which experiments
+    /// The experiments to run
     #[arg(value_parser = choices::suite(), required = true, value_name = "SUITE")]
     suites: Vec<Suite>,
     /// The short form: smaller images, fewer scenes, points, viewpoints and rounds
@@ -43,7 +43,7 @@ pub struct BenchArgs {
     /// Size of each eye's image in pixels [default: 1024x1024; quick: 512x512]
     #[arg(long, value_name = "WxH", value_parser = eyes::parse_size)]
     size: Option<[u32; 2]>,
-    /// Instead of the suite's scenes: a built-in one, or an OBJ, glTF or GLB file; more than once for several
+    /// Scenes instead of the suite's: a built-in one, or an OBJ, glTF or GLB file; more than once for several
     #[arg(long = "scene", value_name = "NAME|FILE")]
     scenes: Vec<String>,
     /// Another camera path than the scenes' own: a JSON array of {position, target}
@@ -76,10 +76,10 @@ pub struct BenchArgs {
     /// complexity: triangles of the largest scene [default: 13104000, the paper's; quick: 1500000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=200_000_000))]
     max_triangles: Option<u64>,
-    /// complexity: leave out scenes that need more memory [default: half of what is available]
+    /// complexity: skip scenes that need more memory than this [default: half of what is available]
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(1..))]
     max_memory_mib: Option<u64>,
-    /// complexity: leave out scenes of which a conventional frame takes longer
+    /// complexity: skip scenes whose conventional frame takes longer than this
     #[arg(long, default_value_t = 10_000, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..))]
     max_frame_ms: u64,
     /// patchers: another ONNX file than the built-in model of the neural one
@@ -175,7 +175,7 @@ impl BenchArgs {
     }
 }
 
-/// Tells of an OBJ file whose viewpoints will be made up: figures say little of a walk that nobody chose.
+/// Warns of an OBJ file without a camera path, whose viewpoints are generated and thus of little significance.
 fn warn_without_camera(scene: &Path) {
     let is_obj = scene.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
     if is_obj && sidecar_file(scene, "camera.json").is_none() {

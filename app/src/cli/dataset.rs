@@ -68,7 +68,7 @@ pub struct DatasetArgs {
     gl: GlArgs,
 }
 
-/// Everything that decides what the groups of a scene are: the content of `dataset.json`.
+/// All settings that determine the groups of a scene: the content of `dataset.json`.
 #[derive(Serialize)]
 struct Settings<'a> {
     scene: &'a str,
@@ -109,7 +109,7 @@ struct Group<'a> {
     depth: Depth,
     /// Share of the reprojected image.
     holes: f64,
-    /// By kind, relative to the scene's folder.
+    /// Paths of the pictures by kind, relative to the scene's folder.
     pictures: BTreeMap<&'static str, String>,
     /// The command that makes the other eye from `rgb` and `depth`, in the scene's folder.
     synthesize: String,
@@ -132,7 +132,7 @@ struct Depth {
     law: DisparityLaw,
 }
 
-/// Makes the groups that are not there yet.
+/// Makes the missing groups.
 pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
     ensure!(
@@ -145,7 +145,7 @@ pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
         [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
         given => given.to_vec(),
     };
-    // Hours of work do not end at a name or a folder that could have been told at once.
+    // Names and folders are checked before hours of work.
     let mut jobs: Vec<Job> = Vec::new();
     for name in &names {
         let job = Job::new(args, name, path.as_deref())?;

@@ -35,24 +35,24 @@ enum Task {
         #[arg(required = true, trailing_var_arg = true, allow_hyphen_values = true, value_name = "PROGRAM")]
         program: Vec<OsString>,
     },
-    /// Put the layer where this user's OpenXR loaders look
+    /// Install the layer for this user's OpenXR loaders
     Install {
-        /// For every program that runs with YORO_LAYER_ENABLE=1, in place of those with the layer's name in
+        /// Enable it for every program that runs with YORO_LAYER_ENABLE=1, instead of those with the layer's name in
         /// XR_ENABLE_API_LAYERS
         #[arg(long)]
         implicit: bool,
         #[command(flatten)]
         library: LibraryArgs,
     },
-    /// Say whether it is there, and what its settings are
+    /// Show whether the layer is installed, and its settings
     Status,
-    /// Show what the layer says in the program that has begun last
+    /// Show the layer's log of the program that was started last
     Log {
-        /// Go on as long as more is said, until Ctrl-C
+        /// Follow the log until Ctrl-C
         #[arg(long, short)]
         follow: bool,
     },
-    /// Take it away again
+    /// Uninstall the layer
     Remove,
 }
 

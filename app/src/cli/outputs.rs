@@ -1,4 +1,4 @@
-//! Before anything is written: whether every output has a place of its own.
+//! Checks that every output has a path of its own, before anything is written.
 
 use std::collections::HashMap;
 use std::ffi::OsStr;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-/// Refuses outputs of which two would be one file, or one an input. Each output comes with what it is, for the message.
+/// Refuses two outputs with the same file, and outputs that are inputs. Each has a description for the message.
 pub fn check<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
     outputs: impl IntoIterator<Item = (PathBuf, String)>,
@@ -33,7 +33,7 @@ pub fn check<'a>(
     Ok(())
 }
 
-/// A path that only one file has, whether the file exists or not.
+/// Returns a path that identifies a file, which need not exist.
 fn identity(path: &Path) -> PathBuf {
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let mut rest: Vec<&OsStr> = Vec::new();

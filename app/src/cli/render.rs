@@ -35,11 +35,11 @@ pub enum Output {
     SideBySide,
     /// Side by side with the eyes swapped, to be viewed with crossed eyes
     CrossEyed,
-    /// For red and cyan glasses
+    /// Anaglyph for red and cyan glasses
     Anaglyph,
-    /// Four times the difference between the second eye and the really rendered one
+    /// Difference between the second eye and its rendered reference, times four
     Difference,
-    /// The error map 1 - SSIM of the second eye against the really rendered one
+    /// Error map 1 - SSIM of the second eye against its rendered reference
     ErrorMap,
 }
 
@@ -66,16 +66,16 @@ impl Output {
 pub struct RenderArgs {
     /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file
     scene: String,
-    /// How the two eyes are made
+    /// The stereo method
     #[arg(long, value_parser = settings::value_of::<Method>("method"), default_value = Method::Yoro.name())]
     method: Method,
-    /// Which of the scene's viewpoints, from 0
+    /// Number of the scene's viewpoint, from 0
     #[arg(long, default_value_t = 0, conflicts_with_all = ["frames", "position"], value_name = "N")]
     pose: usize,
-    /// Instead: this many frames along the scene's camera path
+    /// Render N frames along the scene's camera path instead of one viewpoint
     #[arg(long, value_name = "N", conflicts_with = "position", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: Option<u32>,
-    /// Instead: the head's position in metres
+    /// Head position in metres, instead of a viewpoint of the scene
     #[arg(long, value_parser = eyes::parse_point, value_name = "X,Y,Z", allow_hyphen_values = true)]
     position: Option<Vec3>,
     /// The point that the head looks at
@@ -90,10 +90,10 @@ pub struct RenderArgs {
     /// Folder for the pictures
     #[arg(long, default_value = "out", value_name = "FOLDER")]
     out: PathBuf,
-    /// Which pictures
+    /// The pictures to write
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Output::Left, Output::Right, Output::SideBySide])]
     outputs: Vec<Output>,
-    /// Measure the second eye against the really rendered one
+    /// Print PSNR and SSIM of the synthesized eye
     #[arg(long)]
     measure: bool,
     /// Print JSON

@@ -31,7 +31,7 @@ struct ExportArgs {
     name: String,
     /// The folder to write into; made if it is not there
     folder: PathBuf,
-    /// Another scene of the same kind
+    /// Random seed of the scene
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
 }
@@ -74,7 +74,7 @@ fn list_json() -> anyhow::Result<()> {
 }
 
 fn run_export(args: &ExportArgs) -> anyhow::Result<()> {
-    // A folder that cannot be made is told before the work.
+    // The folder is created before the work, so that errors come early.
     files::create_folder(&args.folder)?;
     let scene: Scene = yoro_scenes::build(&args.name, args.seed)?;
     let license = format!(

@@ -186,7 +186,7 @@ impl TypedValueParser for ValueOf {
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<String, clap::Error> {
         let setting = self.0;
         let check = move |text: String| {
-            // On the command line the guard band `auto` is the one that sets its own width.
+            // The guard band `auto` on the command line is the one that sets its own width.
             let text = if setting.key == "guard-band" && text == "auto" { "auto:1".into() } else { text };
             match setting.parse_into(&mut Settings::default(), &text) {
                 Ok(()) => Ok(text),
@@ -215,13 +215,13 @@ where
 /// Settings of the viewer on the command line
 #[derive(clap::Args, Clone, Debug)]
 pub struct SettingsArgs {
-    /// Leave out the HUD
+    /// Hide the HUD
     #[arg(long)]
     no_hud: bool,
     /// Settings of the viewer in a TOML file
     #[arg(long, value_name = "FILE")]
     settings: Option<PathBuf>,
-    /// One setting of the viewer; as often as needed
+    /// One setting of the viewer; more than once for several
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
 }

@@ -33,17 +33,17 @@ struct PlanArgs {
     /// Number of participants
     #[arg(long, default_value_t = 14, value_parser = clap::value_parser!(u16).range(1..=1000))]
     participants: u16,
-    /// Methods to be compared, with commas between
+    /// Methods to be compared, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "conventional,yoro", value_name = "METHOD,...")]
     methods: Vec<String>,
     /// A setting of the viewer for one of the methods, such as paper:pipeline=paper; a name that is not a stereo method
     /// needs one of method=
     #[arg(long = "set", value_name = "METHOD:KEY=VALUE")]
     settings: Vec<String>,
-    /// Scenes, with commas between; all built-in scenes by default
+    /// Scenes, separated by commas; all built-in scenes by default
     #[arg(long, value_delimiter = ',', value_name = "SCENE,...")]
     scenes: Vec<String>,
-    /// What the viewer asks after each trial, with commas between
+    /// Questions that the viewer asks after each trial, separated by commas
     #[arg(
         long,
         value_delimiter = ',',
@@ -51,7 +51,7 @@ struct PlanArgs {
         value_name = "QUESTION,..."
     )]
     questions: Vec<String>,
-    /// Another seed gives other orders
+    /// Random seed of the orders
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
     /// The plan, as CSV or, if the name ends in .json, as JSON
@@ -79,19 +79,19 @@ struct AnalyseArgs {
     /// Table with the columns participant, method, scene, question and rating
     #[arg(value_name = "RATINGS.csv")]
     ratings: PathBuf,
-    /// The method that the others are held against
+    /// The method that the others are compared with
     #[arg(long, default_value = "conventional", value_name = "METHOD")]
     baseline: String,
     /// Lowest and highest rating
     #[arg(long, default_value = "1..5", value_parser = parse_scale, value_name = "LOW..HIGH")]
     scale: Scale,
-    /// Differences of the mean up to this do not matter
+    /// Equivalence margin of the mean
     #[arg(long, default_value_t = 0.5, value_parser = parse_above_zero, value_name = "DIFFERENCE")]
     bound: f64,
     /// Level of the tests
     #[arg(long, default_value_t = 0.05, value_parser = parse_alpha)]
     alpha: f64,
-    /// Power that the number of participants needed is given for
+    /// Power for which the required number of participants is computed
     #[arg(long, default_value_t = 0.8, value_parser = parse_share)]
     power: f64,
     /// Folder for study.html, study.md and study.json
@@ -190,7 +190,7 @@ fn conditions(names: &[String], settings: &[String]) -> anyhow::Result<Vec<Condi
         if Method::ALL.iter().any(|method| method.name() == name) {
             settings.insert("method".to_owned(), name.clone());
         }
-        // What the viewer would refuse is told now.
+        // Settings that the viewer would refuse are reported now.
         let mut check = Settings::default();
         for pair in given.get(name.as_str()).into_iter().flatten() {
             check.apply(pair)?;

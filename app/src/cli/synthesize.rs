@@ -52,13 +52,13 @@ pub struct SynthesizeArgs {
     /// Depth image of the same size: 8 or 16-bit PNG, or EXR; or a folder with files of the same names
     #[arg(long, value_name = "FILE|FOLDER")]
     depth: PathBuf,
-    /// Where to write the synthesized eye (.png), or a folder
+    /// File for the synthesized eye (.png), or a folder
     #[arg(long, value_name = "FILE|FOLDER")]
     out: PathBuf,
-    /// Which eye the images show
+    /// The eye that the images show
     #[arg(long, value_enum, default_value_t = SourceEye::Right)]
     dominant: SourceEye,
-    /// What the depth values mean
+    /// Meaning of the depth values
     #[arg(long, value_enum, default_value_t = DepthEncoding::StandardZ)]
     depth_encoding: DepthEncoding,
     /// The stored value is raised to this power first
@@ -94,7 +94,7 @@ pub struct SynthesizeArgs {
     /// Also write the column in the colour image that each pixel comes from, as EXR
     #[arg(long, value_name = "FILE|FOLDER")]
     source_out: Option<PathBuf>,
-    /// What pixels on silhouettes show: one surface, or a mixture of two
+    /// Content of pixels on silhouettes: one surface, or a mixture of two
     #[arg(long, value_parser = choices::stored_edges(), default_value = Edges::Hard.name())]
     edges: Edges,
     #[command(flatten)]

@@ -27,7 +27,7 @@ const FRAMES: u32 = 2;
 pub struct ViewArgs {
     /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file [default: prototype]
     scene: Option<String>,
-    /// Where to write the picture
+    /// File for the picture
     #[arg(long, value_name = "FILE")]
     png: PathBuf,
     #[command(flatten)]
@@ -47,14 +47,14 @@ pub struct ViewArgs {
     /// The head's tilt to the left in degrees
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
     roll_degrees: f32,
-    /// Turn to the left, in degrees, between rendering and showing: what timewarp makes up for
+    /// Turn to the left, in degrees, between rendering and display, which timewarp corrects
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
     late_yaw_degrees: f32,
     #[command(flatten)]
     renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     settings: SettingsArgs,
-    /// Draw what is in view while the scene is being loaded
+    /// Draw the loading screen
     #[arg(long)]
     loading: bool,
     #[command(flatten)]

@@ -26,7 +26,7 @@ use yoro_viewer::{SceneState, Viewer};
 
 /// The pause before asking a runtime again that wants no frame.
 const PAUSE: Duration = Duration::from_millis(5);
-/// With --frames, the longest time without a frame.
+/// The longest time without a frame, with --frames.
 const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Show a scene in a headset, by any OpenXR runtime with XR_MNDX_egl_enable
@@ -37,7 +37,7 @@ pub struct XrArgs {
     /// The runtime: its manifest (.json), or a loader library; otherwise XR_RUNTIME_JSON or the system's own
     #[arg(long, value_name = "FILE")]
     runtime: Option<PathBuf>,
-    /// End after so many frames of the scene with each method [default: go on until Ctrl-C]
+    /// Stop after this many frames of the scene with each method [default: run until Ctrl-C]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "N")]
     frames: Option<u32>,
     /// The stereo methods, one after the other with --frames [default: yoro]
@@ -49,7 +49,7 @@ pub struct XrArgs {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// One view in place of two, where the runtime or an API layer offers that (setting `one-view`)
+    /// Render one view instead of two, if the runtime or an API layer offers that (setting `one-view`)
     #[arg(long)]
     mono: bool,
     #[command(flatten)]
@@ -191,7 +191,7 @@ pub fn run(args: &XrArgs) -> anyhow::Result<()> {
         empty_frames,
         methods,
     });
-    // What has framebuffers goes while the context is current.
+    // Framebuffers are deleted while the context is current.
     drop(headset);
     let summary = summary?;
     if let Some(errors) = gl.take_errors() {

@@ -1,4 +1,4 @@
-//! Both eyes before a person's: a phone behind the lenses of a Cardboard-compatible viewer, or an OpenXR headset.
+//! The VR viewer: Cardboard phones and OpenXR headsets.
 //!
 //! [`Viewer`] is the whole application without a platform: scene, renderer, stereo method, HUD, settings, statistics.
 //! [`Cardboard`] and [`openxr::Headset`] are the displays; each owns the viewer that draws for it. A platform gives a GL

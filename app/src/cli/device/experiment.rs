@@ -17,10 +17,10 @@ pub struct ExperimentArgs {
     /// [default: out/device/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Print the plan and how long it takes, and leave devices alone
+    /// Print the plan and its duration, without using devices
     #[arg(long)]
     dry_run: bool,
-    /// Go on although devices are plugged in: everything but power
+    /// Measure devices that are plugged in: everything except power
     #[arg(long)]
     plugged: bool,
     #[command(flatten)]

@@ -21,7 +21,7 @@ use yoro_devices::reading::{LineContent, Reading};
 use yoro_files::FileError;
 use yoro_files::interrupt;
 
-/// On a terminal, the head of the table comes again after so many rows.
+/// Rows after which the head of the table is repeated on a terminal.
 const ROWS: u64 = 24;
 /// Names of method and scene in a capture if the log has several, or does not say.
 const SEVERAL: &str = "several";
@@ -37,13 +37,13 @@ pub struct LogcatArgs {
     /// none]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Stop after so many seconds [default: with Ctrl-C]
+    /// Stop after this many seconds [default: on Ctrl-C]
     #[arg(long, value_parser = parse_positive, value_name = "S", conflicts_with = "file")]
     seconds: Option<f32>,
-    /// Begin with what the device has kept of its log
+    /// Begin with the oldest line that the device still has
     #[arg(long, conflicts_with = "file")]
     from_oldest: bool,
-    /// Only the lines about this application, on a headset by Meta, with the battery as this computer asks for it
+    /// Read only the lines of this application, on a Meta headset; this computer reads the battery
     #[arg(long, value_name = "PACKAGE", conflicts_with = "file")]
     package: Option<String>,
     /// The process that logs its frame rates [default: the package]
@@ -62,7 +62,7 @@ pub struct LogcatArgs {
     which: WhichArgs,
 }
 
-/// Follows or reads, and says what was wrong.
+/// Follows or reads, and prints the faults.
 pub fn run(args: &LogcatArgs) -> anyhow::Result<()> {
     match &args.file {
         Some(file) => saved(args, file),
@@ -132,7 +132,7 @@ fn live(args: &LogcatArgs) -> anyhow::Result<()> {
         table.foreign = Some(Foreign::new(device, subject)?);
     }
     let done = follow(args, device, &mut follower, &mut table, began);
-    // Whatever has ended it: the capture says what it was.
+    // The capture records the reason of the end.
     table.finish()?;
     done
 }

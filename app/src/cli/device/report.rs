@@ -16,11 +16,11 @@ pub struct ReportArgs {
     /// Folders with captures, at any depth; the same repetition in another folder counts as another one
     #[arg(required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
-    /// The method that the others are held against
+    /// The method that the others are compared with
     #[arg(long, default_value = "conventional", value_name = "METHOD")]
     baseline: String,
-    /// Number of cells of a device's battery where its current is that of one of them; power is multiplied by it. As often as
-    /// needed
+    /// Number of battery cells of a device that reports the current of one cell; its power is multiplied by this.
+    /// More than once for several devices
     #[arg(long = "cells", value_name = "SERIAL=N", value_parser = parse_cells)]
     cells: Vec<(String, u32)>,
     /// Folder for report.html, report.md and report.json

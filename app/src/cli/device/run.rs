@@ -22,8 +22,8 @@ pub struct RunArgs {
     /// The stereo method [default: yoro]; with --package any name
     #[arg(long)]
     method: Option<String>,
-    /// Another application on a headset by Meta in place of yoro, started with its own settings: the runtime's frame rates
-    /// and the battery, asked from this computer
+    /// Another application on a Meta headset in place of yoro, started with its own settings: measures the runtime's
+    /// frame rates, and the battery, which this computer reads
     #[arg(long, value_name = "PACKAGE", requires = "activity", requires = "method", requires = "scene",
         conflicts_with_all = ["settings", "overrides"])]
     package: Option<String>,
@@ -39,7 +39,7 @@ pub struct RunArgs {
     /// Settings of the viewer in a TOML file
     #[arg(long, value_name = "FILE")]
     settings: Option<PathBuf>,
-    /// One setting of the viewer; as often as needed
+    /// One setting of the viewer; more than once for several
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
     /// Name of the method in tables [default: the method]
@@ -48,7 +48,7 @@ pub struct RunArgs {
     /// Length without warm-up
     #[arg(long, default_value_t = 60.0, value_parser = parse_positive, value_name = "S")]
     seconds: f32,
-    /// What is cut off at the begin
+    /// Warm-up time to discard
     #[arg(long, default_value_t = 5, value_name = "S")]
     warm_up_seconds: u32,
     /// Brightness to pin the screen to, 0 to 255
@@ -57,10 +57,10 @@ pub struct RunArgs {
     /// Refresh rate to pin the display to, in Hz
     #[arg(long, value_parser = parse_positive, value_name = "HZ")]
     refresh_hz: Option<f32>,
-    /// Go on although the device is plugged in: everything but power
+    /// Measure a device that is plugged in: everything except power
     #[arg(long)]
     plugged: bool,
-    /// Where the capture goes: a new folder; with several devices, one below it for each
+    /// New folder for the capture; with several devices, one folder below it for each
     #[arg(long, default_value = "out/run", value_name = "FOLDER")]
     out: PathBuf,
     #[command(flatten)]

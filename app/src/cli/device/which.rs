@@ -13,13 +13,13 @@ use yoro_files::interrupt;
 
 use crate::cli::message;
 
-/// Who answers for devices.
+/// The source of devices.
 #[derive(clap::Args, Clone, Debug)]
 pub struct SourceArgs {
     /// The program adb [default: the one in PATH or below ANDROID_HOME]
     #[arg(long, value_name = "FILE")]
     pub adb: Option<PathBuf>,
-    /// Devices that do not exist: a script, or a folder of captures to play again. What comes from them is simulated
+    /// Simulated devices: a script, or a folder of captures to replay. Their results are marked as simulated
     #[arg(long, value_name = "SCRIPT.toml|FOLDER", conflicts_with = "adb")]
     pub replay: Option<PathBuf>,
 }
@@ -34,7 +34,7 @@ impl SourceArgs {
     }
 }
 
-/// Which devices.
+/// The choice of devices.
 #[derive(clap::Args, Clone, Debug)]
 pub struct WhichArgs {
     /// The device, as `yoro device list` names it; more than once for several [default: the only one]
@@ -57,8 +57,8 @@ impl WhichArgs {
     }
 }
 
-/// Does something with all devices at the same time, each with a bar of its own, and prints what it returns. What went
-/// wrong with any of them is the error.
+/// Runs `work` on all devices at the same time, each with its own progress bar, and prints the results. The failures of
+/// all devices are the error.
 pub fn each<F>(devices: Vec<Box<dyn Device>>, work: F) -> anyhow::Result<()>
 where
     F: Fn(&dyn Device, &ProgressBar) -> anyhow::Result<String> + Sync,
