@@ -319,7 +319,7 @@ mod tests {
         assert!(off < 1e-6, "{what:?}: {ours} is not {reference}");
     }
 
-    /// For p-values far below 1e-6.
+    /// Compares by the relative error, for p-values far below 1e-6.
     #[track_caller]
     fn near_relatively(ours: f64, reference: f64, what: impl std::fmt::Debug) {
         assert!((ours / reference - 1.0).abs() < 1e-6, "{what:?}: {ours} is not {reference}");
@@ -385,7 +385,7 @@ mod tests {
         }
     }
 
-    /// As printed in R's manual for its data set `sleep`, and by G*Power's manual for its first example.
+    /// Values from R's manual for its data set `sleep`, and from G*Power's manual for its first example.
     #[test]
     fn published_examples() {
         let sleep = &vectors().paired[0];

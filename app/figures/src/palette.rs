@@ -23,9 +23,9 @@ pub enum Shape {
 /// Colour and mark of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// On a light page and in files.
+    /// Colour on a light page and in files.
     pub light: u32,
-    /// On a dark page.
+    /// Colour on a dark page.
     pub dark: u32,
     /// Its mark.
     pub shape: Shape,

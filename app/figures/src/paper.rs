@@ -53,7 +53,7 @@ const fn scene(name: &'static str, psnr: f64, ssim: f64, fps: [f64; 3]) -> Paper
 pub struct Complexity {
     /// Triangles in millions.
     pub triangles: [f64; 9],
-    /// By system: the method here that stands for it, and ms.
+    /// Systems: the method here that stands for each, and times in ms.
     pub systems: [(&'static str, [f64; 9]); 4],
 }
 
@@ -167,8 +167,8 @@ pub struct PaperQuestion {
     pub d_z: f64,
     /// Post hoc.
     pub power: f64,
-    /// Of the difference. It is the interval of 95 %: with that t and n it follows from no other confidence, though
-    /// two one-sided tests at 5 % go with 90 %.
+    /// Interval of the difference. Its confidence is 95 %: no other one agrees with that t and n, though two one-sided
+    /// tests at 5 % go with 90 %.
     pub interval: [f64; 2],
     /// Lower p of the two one-sided tests, bounds -0.5 and 0.5.
     pub p_lower: f64,
@@ -239,7 +239,7 @@ pub const DISTANCE: (f64, f64) = (0.95, 38.73);
 pub struct PaperPatcher {
     /// Its name here.
     pub name: &'static str,
-    /// In dB.
+    /// PSNR in dB.
     pub psnr: f64,
     /// The paper does not name the window.
     pub ssim: f64,

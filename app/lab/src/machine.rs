@@ -1,4 +1,4 @@
-//! Where a measurement was made: machine, program, settings.
+//! The origin of a measurement: machine, program, settings.
 
 use serde::{Deserialize, Serialize};
 

@@ -19,11 +19,11 @@ pub struct Options {
     pub baseline: String,
     /// Lowest and highest rating.
     pub scale: Scale,
-    /// Differences of the mean up to this do not matter, in units of the scale.
+    /// Equivalence margin of the mean, in units of the scale.
     pub bound: f64,
     /// Level of all tests.
     pub alpha: f64,
-    /// Power that the sample size is given for.
+    /// Power for which the sample size is computed.
     pub power: f64,
 }
 

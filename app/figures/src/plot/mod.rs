@@ -39,25 +39,25 @@ pub struct Figure {
 pub enum Panel {
     /// A value over another.
     Curves {
-        /// To the right.
+        /// Horizontal axis.
         x: Axis,
-        /// Upwards.
+        /// Vertical axis.
         y: Axis,
         /// One after the other, the last on top.
         series: Vec<Series>,
     },
     /// Values over time, close together: thin lines without marks, broken where a point is not finite.
     Traces {
-        /// To the right.
+        /// Horizontal axis.
         x: Axis,
-        /// Upwards.
+        /// Vertical axis.
         y: Axis,
         /// One after the other, the last on top; of equal labels one is in the legend.
         series: Vec<Series>,
     },
     /// Values of the same persons under several methods: a box for each method, and a thin line for each person.
     Paired {
-        /// Upwards.
+        /// Vertical axis.
         value: Axis,
         /// Methods, from left to right.
         methods: Vec<String>,
@@ -66,7 +66,7 @@ pub enum Panel {
     },
     /// A line for each category with a mark for each method.
     Dots {
-        /// To the right.
+        /// Horizontal axis.
         value: Axis,
         /// Rows, from top to bottom.
         rows: Vec<DotRow>,
@@ -132,9 +132,9 @@ pub struct Series {
     pub method: String,
     /// The paper's figures: dashed, marks hollow.
     pub papers: bool,
-    /// In the legend.
+    /// Label in the legend.
     pub label: String,
-    /// In the order of x.
+    /// Points in the order of x.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -143,7 +143,7 @@ pub struct Series {
 pub struct DotRow {
     /// The category.
     pub label: String,
-    /// In the order of drawing.
+    /// Marks in the order of drawing.
     pub marks: Vec<Mark>,
 }
 
@@ -154,9 +154,9 @@ pub struct Mark {
     pub method: String,
     /// The paper's figure: hollow.
     pub papers: bool,
-    /// In the legend.
+    /// Label in the legend.
     pub label: String,
-    /// On the axis; what is not finite is not drawn.
+    /// Value on the axis; not drawn if it is not finite.
     pub value: f64,
     /// Drawn as a bar, and makes room for itself on its line.
     pub interval: Option<Interval>,

@@ -22,7 +22,7 @@ pub struct Entrant {
 /// The time that one frame took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTime {
-    /// By the wall clock, up to glFinish.
+    /// Wall-clock time up to glFinish.
     pub wall: Duration,
     /// CPU time of all threads of the process.
     pub cpu: Duration,
@@ -36,7 +36,7 @@ impl Entrant {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<Entrant, GlError> {
-        // What it sees in the first frame, how wide its guard band has to be or that all is near, it knows in the third.
+        // The third frame is the first to use the findings of the first: the width of the guard band, or that all is near.
         let looks = matches!(options.guard_band, GuardBand::Auto(_)) || options.policy.is_some();
         let unsettled = if method == Method::Yoro && looks { 2 } else { 0 };
         Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)?, unsettled })

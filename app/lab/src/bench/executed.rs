@@ -1,4 +1,4 @@
-//! What the synthesis executes on GPUs that are not here: an estimate.
+//! Estimate of the instructions that the synthesis executes on GPUs that are not here.
 //!
 //! The loops of `gather` are counted where they run, in its own shaders on real frames. Each GPU runs a loop as often as
 //! the slowest pixel of a wave; the sizes of loops and of what stands around them are those that Mesa's compilers
@@ -27,7 +27,7 @@ const BYTES: f64 = 16.0;
 /// for each lane and clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Device {
-    /// What it is called in results.
+    /// Name in results.
     pub name: &'static str,
     /// [`COSTS`]'s name of the GPU.
     gpu: &'static str,

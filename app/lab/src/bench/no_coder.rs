@@ -1,4 +1,4 @@
-//! In place of the H.264 coder where the feature `h264` is off.
+//! Replacement for the H.264 coder if the feature `h264` is off.
 
 use anyhow::bail;
 

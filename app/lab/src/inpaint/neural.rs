@@ -66,7 +66,7 @@ impl Neural {
             )));
         }
         let neural = Neural { model, name };
-        // What an output is like shows in running it alone.
+        // The shape of the output is known only after a run.
         neural.run(NdTensor::zeros([1, CHANNELS[0], MULTIPLE, 2 * MULTIPLE]))?;
         Ok(neural)
     }

@@ -33,7 +33,7 @@ fn scattered(eye: Eye, seed: u64) -> Reprojected {
     let [w, h] = SIZE;
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
     let color = RgbImage::from_fn(w, h, |_, _| Rgb(std::array::from_fn(|_| rng.random_range(30..=220))));
-    // On a plane, pixels would lie exactly halfway between the nearest and the farthest.
+    // Not a plane: its pixels would lie exactly halfway between the nearest and the farthest.
     let mut disparity = DepthImage::from_fn(w, h, |x, y| {
         Luma([2.0 + x as f32 * 0.03 + y as f32 * 0.01 + rng.random_range(0.0..0.3)])
     });

@@ -5,7 +5,7 @@ use super::input::{MetricsError, check_mask, check_sizes};
 /// Step of luma (of 255) between neighbours of the ground truth that counts as an edge.
 const EDGE: f32 = 24.0;
 
-/// How much of one eye's image changes from a frame to the next that should not: the root of the mean square,
+/// Unwanted change of one eye's image from a frame to the next: the root of the mean square,
 /// over pixels and red, green and blue, of `(S1 - S0) - (T1 - T0)` for the images S of a method and T of the
 /// ground truth at the same two moments, in steps of 255.
 ///

@@ -17,9 +17,9 @@ pub enum MetricsError {
     /// There is less image than the window of SSIM needs.
     #[error("an image of {width}x{height} pixels is too small: SSIM needs at least {window}x{window}")]
     TooSmall {
-        /// In pixels.
+        /// Width in pixels.
         width: u32,
-        /// In pixels.
+        /// Height in pixels.
         height: u32,
         /// Width of the window in pixels.
         window: u32,

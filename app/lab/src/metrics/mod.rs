@@ -83,10 +83,10 @@ pub struct Comparison {
     pub luma: Quality,
     /// LDR-FLIP, mean over the image, from 0 (equal) to 1; see [`flip_map`].
     pub flip: f64,
-    /// In the disoccluded pixels, when a mask was given.
+    /// Quality in the disoccluded pixels, if a mask was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub holes: Option<PartQuality>,
-    /// In all other pixels, when a mask was given.
+    /// Quality in all other pixels, if a mask was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elsewhere: Option<PartQuality>,
 }

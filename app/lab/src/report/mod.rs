@@ -1,5 +1,5 @@
-//! What `yoro run` and `yoro bench` found, as self-contained pages, as JSON, as Markdown tables and as a table for
-//! the terminal. This file has the report of `run`; [`mod@bench`] has that of `bench`.
+//! The reports of `yoro run` and `yoro bench`: self-contained pages, JSON, Markdown tables and a table for the
+//! terminal. This file has the report of `run`; [`mod@bench`] has that of `bench`.
 //!
 //! Every figure stands beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost
 //! beside two full renders. The paper's figures are marked as the paper's.

@@ -327,7 +327,7 @@ fn dot_row(scene: &SceneReport, quantity: &Quantity) -> DotRow {
         marks.extend(paper.map(|value| Mark::papers("paper", "the paper's", value)));
         marks.extend((quantity.baseline)(row).map(|value| Mark::new("same image", "same image", value)));
     }
-    // Of methods with equal figures the first stays on top.
+    // The first method stays on top of others with equal figures.
     let ours = rows.iter().rev();
     marks.extend(ours.map(|row| Mark::new(&row.method, &row.method, (quantity.ours)(row))));
     DotRow { label: scene.name.clone(), marks }

@@ -1,4 +1,4 @@
-//! What `yoro run` found, as data.
+//! The results of `yoro run`, as data.
 
 use image::RgbImage;
 use serde::Serialize;
@@ -26,7 +26,7 @@ pub struct RunReport {
     pub parameters: Vec<Parameter>,
     /// The method behind the frame times: rounds, warm-up, interleaving, what a frame includes.
     pub timing_method: String,
-    /// In the order to be printed.
+    /// Scenes in the order of printing.
     pub scenes: Vec<SceneReport>,
 }
 
@@ -43,7 +43,7 @@ pub struct SceneReport {
     pub conventional: Cost,
     /// The methods that synthesize an eye.
     pub methods: Vec<MethodCost>,
-    /// At least one; each with one view for each method.
+    /// Viewpoints, at least one; each with one view for each method.
     pub viewpoints: Vec<Viewpoint>,
 }
 

@@ -75,7 +75,7 @@ pub struct Setting {
     /// The point of a sweep over what has no number: the name of a shading style.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
-    /// Where something is swept: its value, in the unit of the suite (triangles, mm, m, ImBuffer divisor,
+    /// Value of the swept variable, if there is one, in the unit of the suite (triangles, mm, m, ImBuffer divisor,
     /// pixels).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<f64>,
@@ -118,7 +118,7 @@ pub struct Measurement {
     pub contender: String,
     /// Counted from 0.
     pub round: u32,
-    /// By metric: a number for each frame, none where there is no finite one.
+    /// Values by metric: a number for each frame, `None` if it is not finite.
     pub values: BTreeMap<String, Vec<Option<f64>>>,
 }
 

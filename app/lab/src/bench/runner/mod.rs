@@ -128,7 +128,7 @@ impl<'a> Runner<'a> {
             Measure::Frames { .. } | Measure::Patchers | Measure::Executed(_) => {
                 Views::spread(job, prepared)?
             }
-            // Of a path that shows something at its start, a frame may look past it.
+            // Only the start of the path has to show something; a later frame may look past the scene.
             Measure::Flicker | Measure::GuardBand | Measure::Bandwidth => {
                 Views::along_path(job, prepared, views::STEP)?.first()
             }

@@ -12,7 +12,7 @@ pub struct Suite {
     pub name: String,
     /// Machine, command, parameters; of the first file where several go together.
     pub header: Header,
-    /// In the order of measurement.
+    /// Settings in the order of measurement.
     pub settings: Vec<SettingData>,
 }
 
@@ -22,13 +22,13 @@ pub struct SettingData {
     pub setting: Setting,
     /// Triangles, style, frames; none if the file does not say.
     pub facts: Option<SceneFacts>,
-    /// In the order of measurement.
+    /// Contenders in the order of measurement.
     pub contenders: Vec<Measured>,
     /// Contenders that could not take part, with the reason.
     pub unsupported: Vec<(String, String)>,
 }
 
-/// By metric: a number for each frame.
+/// Values by metric: a number for each frame.
 type Values = BTreeMap<String, Vec<Option<f64>>>;
 
 /// All rounds of a contender in a setting.
@@ -151,7 +151,7 @@ impl Suite {
         self.contenders().into_iter().filter(has).collect()
     }
 
-    /// The same without two full renders, which the others are held against.
+    /// The same without two full renders, which the others are compared with.
     pub fn compared(&self, metric: &str) -> Vec<&str> {
         self.measured(metric).into_iter().filter(|name| *name != CONVENTIONAL).collect()
     }

@@ -20,7 +20,7 @@ pub fn scene_dots(
 ) -> Panel {
     let rows = suite.settings.iter().map(|setting| {
         let paper = papers(setting).into_iter().map(|(method, value)| papers_mark(method, value));
-        // Of equal figures the first contender stays on top.
+        // The first contender stays on top of others with equal figures.
         let ours = contenders.iter().rev().filter_map(|name| {
             let value = value(setting, name)?;
             Some(Mark::new(*name, *name, value))

@@ -12,7 +12,7 @@ use yoro_figures::paper;
 use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
 use yoro_figures::stats::mean;
 
-/// In what the sections of this kind differ.
+/// The differences between sections of this kind.
 struct Labels {
     /// Heading of the labels' column.
     column: &'static str,

@@ -1,4 +1,4 @@
-//! What is shown of each suite, a file for each experiment: figures with the paper's curves beside ours, and tables.
+//! The report's sections of each suite, a file per experiment: figures with the paper's curves beside ours, and tables.
 
 mod bandwidth;
 mod cells;

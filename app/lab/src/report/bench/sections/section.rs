@@ -10,11 +10,11 @@ pub struct Section {
     pub id: String,
     /// Heading.
     pub title: String,
-    /// What was measured, and how the paper did it.
+    /// Description of the measurement, and of the paper's.
     pub intro: String,
-    /// In the order to be shown.
+    /// Figures in their order on the page.
     pub figures: Vec<Figure>,
-    /// In the order to be shown.
+    /// Tables in their order on the page.
     pub tables: Vec<Table>,
 }
 
