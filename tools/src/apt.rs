@@ -60,7 +60,7 @@ impl Need {
 /// # Errors
 /// When something is still missing: what, and the remedy.
 pub fn provide(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
-    /// What one thread installs is not missing for the next.
+    /// Lock: packages that one thread installs are not missing for the next.
     static PROVIDING: Mutex<()> = Mutex::new(());
     let _providing = PROVIDING.lock().unwrap_or_else(PoisonError::into_inner);
     let missing = || needs().into_iter().filter(|need| need.found.is_err()).collect::<Vec<_>>();
@@ -155,7 +155,7 @@ fn apt_get(sudo: bool, arguments: &[&str]) -> anyhow::Result<()> {
     let mut command = Command::new(words[0]);
     command.args(&words[1..]).args(["DEBIAN_FRONTEND=noninteractive", "apt-get", "--quiet"]).args(arguments);
     eprintln!("$ {}apt-get {}", if sudo { "sudo " } else { "" }, arguments.join(" "));
-    // What the caller prints stays clean.
+    // Keeps the caller's standard output clean.
     let status = command.stdin(Stdio::null()).stdout(io::stderr()).status();
     let status = status.with_context(|| format!("{} cannot be started", words[0]))?;
     if !status.success() {

@@ -54,7 +54,7 @@ pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
 /// # Errors
 /// When it does not compile.
 pub fn program(name: &str) -> anyhow::Result<Command> {
-    // With the features that the whole workspace gives its dependencies: those that the tests need are not compiled twice.
+    // Uses the dependencies' features of the whole workspace: those that the tests need are not compiled twice.
     if !succeeds(&["build", "--quiet", "--workspace", "--bin", name], &[]) {
         bail!("{name} does not compile: see above");
     }

@@ -12,7 +12,7 @@ use yoro_tools::apt;
 
 /// Something that the system must have, and the packages that bring it.
 struct Need {
-    /// For people.
+    /// Name in messages.
     what: &'static str,
     /// Any of these files is enough; a trailing `*` stands for any ending.
     any_of: &'static [&'static str],

@@ -178,7 +178,7 @@ pub struct Split {
     pub frusta: [Frustum; 2],
     /// The part that is read, relative to the submitted rectangle.
     pub source: Rectangle,
-    /// How it becomes the other eye, whose image has the size of `crop`.
+    /// The warp to the other eye, whose image has the size of `crop`.
     pub warp: Warp,
 }
 

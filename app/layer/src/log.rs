@@ -75,7 +75,7 @@ pub fn say(text: fmt::Arguments) {
     let mut line = [b'\n'; LONGEST];
     let (place, _) = line.split_at_mut(LONGEST - 1);
     let mut rest = &mut *place;
-    // What does not fit is cut off.
+    // Text that does not fit is cut off.
     write!(rest, "yoro layer: {text}").ok();
     let length = LONGEST - 1 - rest.len();
     line[length] = b'\n';

@@ -78,7 +78,7 @@ impl Session {
             ty: sys::ViewLocateInfo::TYPE,
             next: ptr::null(),
             view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
-            // In the space of the views any time will do; asking for the present time needs an extension.
+            // Any time is valid in the space of the views; the present time would need an extension.
             display_time: self.instance.settings.time(sys::Time::from_nanos(1)),
             space,
         };

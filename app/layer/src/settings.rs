@@ -1,5 +1,5 @@
-//! What a user can choose: for one run by environment variables (on Android system properties), in a file for one
-//! application or for all.
+//! User settings: for one run by environment variables (on Android system properties), for one application or for all
+//! by a file.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -198,7 +198,7 @@ pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_CONFIG_HOME", ".config")?.join("yoro/layer.toml"))
 }
 
-/// Where settings for one run are.
+/// The source of settings for one run.
 const VARIABLES: &str = if cfg!(target_os = "android") { "the system properties" } else { "the environment" };
 
 #[cfg(not(target_os = "android"))]
@@ -206,8 +206,8 @@ fn variable(name: &str) -> Option<OsString> {
     std::env::var_os(name)
 }
 
-/// On Android YORO_LAYER_OFFER is the system property `debug.yoro.layer.offer`. A property cannot be deleted, so an
-/// empty one counts as unset.
+/// Returns a setting's system property; that of YORO_LAYER_OFFER is `debug.yoro.layer.offer`. A property cannot be
+/// deleted, so an empty one counts as unset.
 #[cfg(target_os = "android")]
 fn variable(name: &str) -> Option<OsString> {
     let key = name.strip_prefix("YORO_LAYER_")?.to_ascii_lowercase();

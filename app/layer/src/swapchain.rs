@@ -29,7 +29,7 @@ pub struct Swapchain {
 pub struct Content {
     /// VkImages, or names of textures.
     pub images: Vec<u64>,
-    /// As in XrSwapchainCreateInfo.
+    /// Format as in XrSwapchainCreateInfo.
     pub format: i64,
     /// Width and height in pixels.
     pub size: [u32; 2],
@@ -71,7 +71,7 @@ struct State {
     waited: bool,
     /// Released by the application, but not yet by the layer.
     held: Option<u32>,
-    /// How often the application has released an image.
+    /// Number of images that the application has released.
     releases: u64,
 }
 

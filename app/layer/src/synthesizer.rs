@@ -31,7 +31,7 @@ pub struct Job<'a> {
     pub depth: Image,
     /// The part of both images that is read.
     pub source: Rectangle,
-    /// How it becomes the other eye.
+    /// The warp to the other eye.
     pub warp: &'a Warp,
     /// The image of the other eye, which begins at its first column and row.
     pub target: Image,

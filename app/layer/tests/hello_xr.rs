@@ -346,7 +346,7 @@ fn hello_xr_measured() {
     for (name, picture) in all {
         picture.save(place.join(format!("{name}.png"))).unwrap();
     }
-    // In a row: the rendered view, both eyes, and the error.
+    // The rendered view, both eyes and the error, in a row.
     const HEIGHT: u32 = 440;
     let small = [&rendered, &left, &right, &error].map(|picture| {
         let width = picture.width() * HEIGHT / picture.height();

@@ -30,9 +30,9 @@ const PLATFORMS: &str = "NDK_MIN_PLATFORM_LEVEL := 21\nNDK_MAX_PLATFORM_LEVEL :=
 /// The folders of the two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StandIn {
-    /// For ANDROID_HOME.
+    /// Value of ANDROID_HOME.
     pub sdk: PathBuf,
-    /// For ANDROID_NDK_ROOT.
+    /// Value of ANDROID_NDK_ROOT.
     pub ndk: PathBuf,
 }
 

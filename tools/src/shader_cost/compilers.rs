@@ -49,7 +49,7 @@ const CLAIMED: &str = "+GL_OVR_multiview +GL_OVR_multiview2 +GL_EXT_clip_cull_di
 pub struct Run {
     /// Mesa's own version: `26.1.6-1~bpo13+1`.
     pub mesa: String,
-    /// In the order of the programs; fewer than programs when the compiler crashed.
+    /// Results in the order of the programs; fewer if the compiler crashed.
     pub programs: Vec<Said>,
 }
 
@@ -140,7 +140,7 @@ impl Compilers {
         preload.push(self.stand_in(gpu)?);
         let mut command = Command::new(root.join(QEMU));
         command.arg("-L").arg(&root);
-        // By way of qemu: nothing of this machine is to load it.
+        // Set through qemu, so that no native process of this machine loads it.
         command.arg("-E").arg(preload);
         command.arg(root.join(PYTHON)).args([&guest, programs]).stdin(Stdio::null());
         command

@@ -8,9 +8,9 @@ use super::gpus::Compiler;
 /// The kind of a compiled shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// On Mali, the part of it that runs after triangles are culled.
+    /// Vertex shader; on Mali, the part of it that runs after triangles are culled.
     Vertex,
-    /// On Mali, the part of a vertex shader that runs before that.
+    /// Part of a vertex shader on Mali that runs before that.
     Position,
     Fragment,
     Compute,
@@ -70,7 +70,7 @@ impl Statistics {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Code {
     instructions: Vec<Instruction>,
-    /// From an instruction to an earlier one.
+    /// Jumps from an instruction to an earlier one.
     back_edges: Vec<(usize, usize)>,
     /// Adreno: instructions that run once per draw call come first; the number of them.
     preamble: usize,
@@ -207,7 +207,7 @@ impl Code {
         self.prefetches + fetches.sum::<u32>()
     }
 
-    /// In the order of their first instructions.
+    /// Returns the loops in the order of their first instructions.
     pub fn loops(&self) -> Vec<Loop> {
         let mut spans: BTreeMap<usize, usize> = BTreeMap::new();
         for &(tail, head) in &self.back_edges {

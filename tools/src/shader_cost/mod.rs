@@ -82,7 +82,7 @@ const BOTH_OUTPUTS: &str =
 pub struct Options {
     /// Only programs whose names contain this.
     pub filter: Option<String>,
-    /// Instead of those of the table.
+    /// GPUs instead of those of the table.
     pub gpus: Vec<Gpu>,
     /// Renew the table.
     pub bless: bool,
@@ -175,7 +175,7 @@ fn text_of(value: &Value, name: &str) -> String {
     value[name].as_str().unwrap_or_default().to_owned()
 }
 
-/// On as many processors as there are; in the order of the GPUs.
+/// Compiles on all processors; returns the runs in the order of the GPUs.
 fn compile(compilers: &Compilers, gpus: &[Gpu], programs: &Path) -> anyhow::Result<Vec<Run>> {
     let waiting: Mutex<VecDeque<(usize, &Gpu)>> = Mutex::new(gpus.iter().enumerate().collect());
     let done = Mutex::new(Vec::new());

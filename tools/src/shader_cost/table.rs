@@ -27,7 +27,7 @@ pub struct Row {
     pub slots: Option<u32>,
     /// Full registers (four times 32 bits on Adreno, 32 bits on Mali).
     pub registers: u32,
-    /// In flight at the same time, of [`Compiler::most_waves`].
+    /// Waves in flight at the same time, of [`Compiler::most_waves`].
     pub waves: u32,
     /// Adreno's choice between two; Mali has one.
     pub lanes_per_wave: Option<u32>,
@@ -59,7 +59,7 @@ impl Row {
         let mut rows: Vec<Self> = Vec::new();
         for (stage, statistics) in said.messages.iter().filter_map(|message| Statistics::parse(message)) {
             let row = Self::new(gpu, program, stage, &statistics, &said.listing);
-            // Of several variants the last one is that of the listing.
+            // The last of several variants is that of the listing.
             rows.retain(|other| other.stage != row.stage);
             if row.instructions > 0 {
                 rows.push(row);

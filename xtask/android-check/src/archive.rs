@@ -25,7 +25,7 @@ pub struct Archive {
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// From the beginning of the file to the content, in bytes.
+    /// Offset of the content from the beginning of the file in bytes.
     offset: u64,
     stored: bool,
 }
@@ -219,7 +219,7 @@ pub mod tests {
         assert!(Archive::read(b"no archive at all").is_err());
         assert!(Archive::read(&bytes[..bytes.len() / 2]).is_err());
         let mut damaged = bytes;
-        // In the first file's compressed content, behind its header of 30 bytes and its name.
+        // A byte in the first file's compressed content, after its header of 30 bytes and its name.
         damaged[30 + LIBRARIES[0].len() + 10] ^= 0x55;
         assert!(Archive::read(&damaged).is_err());
     }

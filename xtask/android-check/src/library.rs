@@ -369,7 +369,7 @@ mod tests {
         Made { undefined, ..good() }.fails("arm64-v8a symbols", "no_such_function not public");
         // Public, but nobody said in which library.
         Made { needed: vec!["libc.so"], ..good() }.fails("arm64-v8a symbols", "eglSwapBuffers not public");
-        // Of a later Android.
+        // A symbol of a later Android.
         let undefined = vec!["malloc", "_Unwind_Resume"];
         Made { undefined, ..good() }.fails("arm64-v8a symbols", "_Unwind_Resume not public");
     }

@@ -31,7 +31,7 @@ const ANY: &str = "*";
 struct Rule<'a> {
     element: &'a str,
     attributes: &'a [(&'a str, &'a str)],
-    /// What happens without it.
+    /// Consequence of its absence.
     consequence: &'a str,
 }
 
@@ -48,7 +48,7 @@ const LAUNCHER: [Rule<'_>; 3] = [
     rule("action", &[(NAME, "android.intent.action.MAIN")], NO_LAUNCHER),
     rule("category", &[(NAME, "android.intent.category.LAUNCHER")], NO_LAUNCHER),
 ];
-/// What makes it an immersive application that finds its OpenXR runtime.
+/// Rules of an immersive application that finds its OpenXR runtime.
 const HEADSETS: [Rule<'_>; 9] = [
     rule("category", &[(NAME, "com.oculus.intent.category.VR")], FLAT),
     rule("category", &[(NAME, "com.htc.intent.category.VRAPP")], FLAT),

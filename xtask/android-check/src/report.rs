@@ -16,7 +16,7 @@ pub struct Row {
 /// The result of a check.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Report {
-    /// In the order in which they were looked at.
+    /// Rows in the order of the checks.
     pub rows: Vec<Row>,
 }
 

@@ -49,7 +49,7 @@ pub fn pack(
     run(tool("zipalign")?.args(["-f", "4"]).arg(&unaligned).arg(&finished))?;
     let mut sign = tool("apksigner")?;
     sign.arg("sign").arg("--ks").arg(&keystore.path);
-    // By the environment: arguments can be read by everybody on this machine.
+    // Passed through the environment: every user of this machine can read arguments.
     sign.args(["--ks-pass", "env:YORO_KEYSTORE_PASSWORD"]).env("YORO_KEYSTORE_PASSWORD", &keystore.password);
     run(sign.arg(&finished))?;
     Ok(finished)

@@ -13,13 +13,13 @@ use yoro_tools::folders::{copy, remove, root, target_folder, write};
 use super::texts::{cmake, cmake_version, pkg_config, soname, with_links};
 use super::{Built, VERSION, build};
 
-/// For this machine.
+/// Makes the package for this machine.
 pub fn native(folder: &Path) -> anyhow::Result<PathBuf> {
     let built = build(cargo(), None, &soname(), &target_folder()?)?;
     archive(&built, std::env::consts::ARCH, "strip", folder)
 }
 
-/// For arm64, by this machine's clang and Debian's libraries for arm64.
+/// Makes the package for arm64, with this machine's clang and Debian's libraries for arm64.
 pub fn aarch64(folder: &Path) -> anyhow::Result<PathBuf> {
     let cargo = arm64::cargo()?;
     let built = build(cargo, Some(arm64::TRIPLE), &soname(), &target_folder()?.join("android/arm64/capi"))?;

@@ -20,7 +20,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// A stripped library is not larger, in bytes.
 const LARGEST: u64 = 1_000_000;
 
-/// For what a package is made.
+/// The target of a package.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// Linux on this machine's processor, an archive

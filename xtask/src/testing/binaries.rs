@@ -11,7 +11,7 @@ use yoro_tools::cargo;
 /// A test program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binary {
-    /// For people: the package, and the target unless that is the package's library.
+    /// Name in messages: the package, and the target unless that is the package's library.
     pub label: String,
     /// Its package.
     pub package: String,

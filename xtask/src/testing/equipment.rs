@@ -14,7 +14,7 @@ use crate::{android, package, setup, web};
 
 /// A program or package that some tests need.
 struct Item {
-    /// For people.
+    /// Name in messages.
     what: &'static str,
     /// `YORO_TEST_variable` tells tests where it is; with `YORO_TEST_WITHOUT_variable` they are left out.
     variable: &'static str,
@@ -136,7 +136,7 @@ struct Libraries {
 #[derive(Debug, Default)]
 pub struct Equipment {
     libraries: Libraries,
-    /// By variable; `None` for what cannot be had.
+    /// Paths by variable; `None` if the item is not available.
     items: Vec<(&'static str, Option<PathBuf>)>,
     /// A sentence for each thing that cannot be had.
     pub absent: Vec<String>,

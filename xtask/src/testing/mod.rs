@@ -30,9 +30,9 @@ use summary::Summary;
 ///
 /// Almost none have to: each has folders of its own, ports are pipes, and time is measured in processor time or is simulated.
 const ALONE: [&str; 2] = [
-    // With a second large scene a small machine would have no room for both.
+    // A small machine has no memory for two large scenes.
     "yoro-app::program memory::",
-    // In qemu beside others, the first frames take longer than a minute.
+    // The first frames take longer than a minute in qemu beside other tests.
     "yoro-android-host::apk the_arm64_library",
 ];
 /// Tests from outside take seconds: a process runs so many of them.
@@ -184,7 +184,7 @@ struct Run<'a> {
     programs: &'a [Program],
     options: &'a Options,
     equipment: Equipment,
-    /// For what processes print.
+    /// Folder for the output of processes.
     folder: PathBuf,
 }
 
@@ -200,7 +200,7 @@ impl<'a> Run<'a> {
         let (mut command, names) = match job {
             Job::Tests(program, names) => {
                 let mut command = self.programs[*program].0.command();
-                // What is printed before a crash is not lost.
+                // Output before a crash is not lost.
                 command.args(["--exact", "--test-threads=1", "--nocapture"]).args(names);
                 (command, Some(names.as_slice()))
             }

@@ -67,7 +67,7 @@ pub fn run(command: Command, names: Option<&[String]>, folder: &Path) -> Finishe
     let start = Instant::now();
     let (lines, status, timed_out) = output(command, folder, start).unwrap_or_else(|error| {
         let line = Line { text: format!("it cannot be started: {error}"), at: 0.0 };
-        // As a shell does that finds no program.
+        // The exit status of a shell that does not find the program.
         (vec![line], ExitStatus::from_raw(127 << 8), false)
     });
     let mut finished = read(names, lines, status, start.elapsed().as_secs_f64());
@@ -91,7 +91,7 @@ fn output(mut command: Command, folder: &Path, start: Instant) -> io::Result<(Ve
     let (mut lines, mut bytes) = (Vec::new(), Vec::new());
     let (mut last, mut mention, mut timed_out) = (Instant::now(), SLOW, false);
     loop {
-        // In this order: what is printed before the end is read after it.
+        // This order matters: output before the end is read after it.
         let status = child.try_wait()?;
         if reader.read_to_end(&mut bytes)? > 0 {
             (last, mention) = (Instant::now(), SLOW);
@@ -222,7 +222,7 @@ mod tests {
                 exited(101),
                 "a Passed, b Passed, c Ignored, d Failed",
             ),
-            // What others print in between changes nothing, whatever it says.
+            // Output of others in between has no effect.
             ("a b", "test a ... LEFT OUT: a\nFAILED\nok\ntest b ... x\nok", exited(0), "a Passed, b Passed"),
             (
                 "a b",

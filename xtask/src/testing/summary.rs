@@ -15,11 +15,11 @@ pub struct Summary {
     start: Instant,
     /// Names and seconds.
     phases: Vec<(String, f64)>,
-    /// By program: tests, and seconds in their processes.
+    /// Programs: number of tests, and seconds in their processes.
     programs: BTreeMap<String, (usize, f64)>,
     /// Seconds and names of tests.
     passed: Vec<(f64, String)>,
-    /// By `program test`.
+    /// Failed tests, as `program test`.
     pub failed: Vec<String>,
     /// Tests that failed beside others and passed alone.
     flaky: Vec<String>,
@@ -120,7 +120,7 @@ impl fmt::Display for Summary {
         for name in &self.failed {
             writeln!(f, "FAILED: {name}")?;
         }
-        // As libtest ends.
+        // The last line has the format of libtest.
         writeln!(
             f,
             "\ntest result: {}. {} passed; {} failed; {} ignored; finished in {:.2}s",

@@ -363,7 +363,7 @@ impl Frames {
         Ok(())
     }
 
-    /// From now on the runtime gets no depth. The layer still needs the application's.
+    /// Stops submitting depth to the runtime. The layer still needs the application's.
     fn give_up_depth(&mut self, session: &Session, reason: &Reason) {
         self.without_depth = true;
         self.drop_target(session, DEPTH);

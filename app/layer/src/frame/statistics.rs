@@ -1,4 +1,4 @@
-//! How the frames of a session went, for the log.
+//! Statistics of a session's frames, for the log.
 
 use std::fmt;
 use std::time::{Duration, Instant};

@@ -11,12 +11,12 @@ use super::target::Acquired;
 use crate::geometry::{Rectangle, Split, pose, xr_fov, xr_pose};
 use crate::swapchain::Swapchain;
 
-/// What the synthesized image depends on, but for the pose.
+/// The inputs of the synthesized image, except for the pose.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Key {
     /// Swapchain, layer and rectangle of colour and of depth.
     parts: [(sys::Swapchain, u32, [i32; 4]); 2],
-    /// How often their images were released: as long as that is the same, so are the images.
+    /// Number of releases of their images: the images are unchanged while it is.
     releases: [u64; 2],
     fov: [f32; 4],
     planes: [f32; 4],

@@ -95,7 +95,7 @@ impl Synthesizer {
                 .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER)
                 .queue_family_index(binding.queue_family);
             let pool = device.create_command_pool(&info, None).map_err(Reason::Vulkan)?;
-            // From here on its drop destroys what was created.
+            // From here on, dropping the synthesizer destroys what was created.
             let mut synthesizer = Synthesizer {
                 gather: None,
                 sources: Vec::new(),

@@ -132,7 +132,7 @@ pub fn assert_own_eyes(seen: &Seen, script: &Script, pixels: f32, what: &str) {
         let distance = (pose_of(view).position - glam::Vec3::X * side * 0.0315).length();
         assert!(distance < 1e-4, "{what}: eye {i} is at {:?}", view.position);
         for (got, want) in view.fov_degrees.iter().zip(script.eyes[i].fov_degrees) {
-            // As tangents; a pixel of the headset's is about 0.017 of them.
+            // Compared as tangents; a pixel of the headset is about 0.017.
             let error = got.to_radians().tan() - want.to_radians().tan();
             assert!(error.abs() < 1e-3 + 0.02 * pixels, "{what}: eye {i} sees {:?}", view.fov_degrees);
         }

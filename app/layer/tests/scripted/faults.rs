@@ -76,7 +76,7 @@ fn a_refused_or_late_runtime_costs_one_frame() {
         let cases = [
             ("xrEndFrame", 3, sys::Result::ERROR_LAYER_INVALID, "xrEndFrame fails with ERROR_LAYER_INVALID"),
             ("xrEndFrame", 3, sys::Result::ERROR_POSE_INVALID, "xrEndFrame fails with ERROR_POSE_INVALID"),
-            // In each frame the application waits for colour and depth, then the layer does.
+            // Each frame, the application waits for colour and depth, then the layer does.
             ("xrWaitSwapchainImage", 7, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
             ("xrWaitSwapchainImage", 8, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
         ];

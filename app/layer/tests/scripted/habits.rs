@@ -1,4 +1,4 @@
-//! How the application of a test renders its frames.
+//! The rendering habits of a test's application.
 
 use yoro::eyes::Eye;
 use yoro::vulkan::ash::vk;
@@ -10,7 +10,7 @@ use crate::world::uncounted;
 pub const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
 pub const D32: vk::Format = vk::Format::D32_SFLOAT;
 
-/// How an application renders its frames.
+/// The rendering habits of an application.
 #[derive(Clone, Copy, Debug)]
 pub struct Habits {
     /// The name that it gives itself.

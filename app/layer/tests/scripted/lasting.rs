@@ -1,4 +1,4 @@
-//! What stays after frames, sessions and instances.
+//! Tests of objects that stay after frames, sessions and instances.
 
 use yoro_openxr_stub::script::Script;
 
@@ -100,7 +100,7 @@ fn ten_thousand_frames_leave_nothing_behind() {
     with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 10_000));
 }
 
-/// On OpenGL ES whole images are read as they are; a part of an image in an array is copied first.
+/// OpenGL ES: whole images are read in place; a part of an image in an array is copied first.
 #[test]
 fn frames_on_opengl_es_leave_nothing_behind() {
     with_gles(|gles| {

@@ -7,7 +7,7 @@ use yoro::eyes::{Frustum, Pose};
 pub struct Picture {
     pub size: [u32; 2],
     pub rgba: Vec<u8>,
-    /// In metres along the viewing axis.
+    /// Distances in metres along the viewing axis.
     pub distance: Vec<f32>,
 }
 

@@ -137,7 +137,7 @@ fn other_layers_stay_as_they_are_and_in_order() {
     });
 }
 
-/// With `shrink`, an application that begins in stereo renders one tiny view.
+/// An application that begins in stereo renders one tiny view with `shrink`.
 #[test]
 fn shrink_replaces_the_tiny_view() {
     with_gpu(|gpu| {
@@ -313,7 +313,7 @@ fn an_image_that_is_shown_again_stays_stereo() {
                     let begun = client.begin_frame()?;
                     let moved = Submitted { view: view.at(glam::Vec3::new(0.5, 0.25, 1.0)), ..submitted };
                     client.end_frame(begun, &[Layer::Projection(vec![moved])])?;
-                    // With other planes it is another view.
+                    // Other planes make it another view.
                     let begun = client.begin_frame()?;
                     let planes = Planes { near: 0.2, ..Planes::PLAIN };
                     let depth = submitted.depth.map(|(part, _)| (part, planes));

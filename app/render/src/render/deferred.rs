@@ -121,9 +121,9 @@ struct LightPasses {
 pub struct DeferredRenderer {
     common: Common,
     ssao_radius: f32,
-    /// By [`Layout::index`].
+    /// Geometry passes by [`Layout::index`].
     geometry: [Option<GeometryPass>; Layout::COUNT],
-    /// By [`RoleKind::index`].
+    /// Light passes by [`RoleKind::index`].
     light: [Option<LightPasses>; RoleKind::COUNT],
     bloom: Option<BloomPass>,
     tonemap: TonemapPass,

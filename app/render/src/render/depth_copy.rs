@@ -12,7 +12,7 @@ use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource}
 pub struct DepthCopy {
     gl: Rc<Context>,
     program: Program,
-    /// For depth in layers of array textures, which only multiview has.
+    /// Copies depth in layers of array textures, which only multiview has.
     layered: Option<Program>,
 }
 

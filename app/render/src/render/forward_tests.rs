@@ -370,7 +370,7 @@ fn targets_follow_the_renderers_kind_and_settings() {
     }
 }
 
-/// As on OpenGL ES 3.0. There outlines read the resolved depth, even if it was not requested.
+/// The case of OpenGL ES 3.0, where outlines read the resolved depth, even if it was not requested.
 #[test]
 fn outlines_work_without_readable_samples() {
     let head = open();

@@ -29,7 +29,7 @@ pub struct GeometryPass {
     layout: Layout,
     /// True if cut-out materials cover samples by their alpha.
     alpha_to_coverage: bool,
-    /// By [`Features::index`]; those that the scene uses.
+    /// Programs by [`Features::index`]; only those that the scene uses.
     programs: [Option<Program>; Features::COMBINATIONS],
 }
 

@@ -25,7 +25,7 @@ impl LightTiles {
         [("LIGHT_TILES", COUNT.to_string()), ("LIGHT_TILE_COLUMNS", COLUMNS.to_string())]
     }
 
-    /// For an image of this layout, and the lights of its views; positions are relative to the first.
+    /// Creates the tiles for an image of this layout and the lights of its views; positions are relative to the first.
     pub fn new(lights: &Lights, layout: Layout, views: &[View]) -> LightTiles {
         let size = views.first().map_or([1, 1], |view| layout.texture_size(view.size)).map(|n| n as f32);
         let tile = [size[0] / COLUMNS as f32, size[1] / ROWS as f32];
@@ -58,7 +58,7 @@ impl LightTiles {
 
 /// A light's sphere as an eye sees it.
 struct Reach {
-    /// In the eye's axes.
+    /// Centre in the eye's axes.
     center: Vec3,
     range: f32,
     frustum: Frustum,

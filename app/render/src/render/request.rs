@@ -21,7 +21,7 @@ pub enum PixelDepth {
     /// The nearest of each pixel's samples.
     #[default]
     Nearest,
-    /// That of each pixel's first sample, as drivers resolve it: what there is without multisample textures.
+    /// The depth of each pixel's first sample, as drivers resolve it: the only one without multisample textures.
     FirstSample,
 }
 

@@ -73,7 +73,7 @@ pub struct Reprojection<'a> {
     pub color: &'a Texture,
     /// Output of `stereo/disocclusion.frag`.
     pub disocclusion: &'a Texture,
-    /// From a column of the dominant eye to that of the second.
+    /// Maps a column of the dominant eye to that of the second.
     pub law: DisparityLaw,
     /// Row of the second eye minus that of the dominant.
     pub row_offset: i32,

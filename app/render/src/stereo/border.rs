@@ -43,7 +43,7 @@ pub(super) struct Border {
     outwards: f32,
     down: f32,
     up: f32,
-    /// In pixels.
+    /// Focal length in pixels.
     focal_length: f32,
     /// Disparity of the far plane against infinity, in pixels.
     far: f32,

@@ -21,7 +21,7 @@ impl<R: ViewRenderer> Conventional<R> {
         Ok(Conventional { targets, keeps_depth: false, finish })
     }
 
-    /// With [`Conventional::depth`] after each frame.
+    /// Keeps depth, for [`Conventional::depth`] after each frame.
     pub(super) fn keeping_depth(self) -> Conventional<R> {
         Conventional { keeps_depth: true, ..self }
     }

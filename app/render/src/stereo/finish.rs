@@ -33,13 +33,13 @@ pub(super) struct Finish {
 }
 
 impl Finish {
-    /// With anti-aliasing unless the options say that there is none.
+    /// Creates it with anti-aliasing, unless the options turn that off.
     pub(super) fn new(setup: &Setup) -> Result<Finish, GlError> {
         Finish::smoothing(setup, setup.options.anti_aliasing != AntiAliasing::Off)
     }
 
-    /// With anti-aliasing or without. Images whose edges are smooth already, by several samples in each pixel, are always
-    /// copied.
+    /// Creates it with or without anti-aliasing. Images whose edges are smooth already, by several samples in each
+    /// pixel, are always copied.
     pub(super) fn smoothing(setup: &Setup, smooth: bool) -> Result<Finish, GlError> {
         let fxaa = smooth && setup.settings.samples() == 1;
         Ok(Finish { gl: setup.gl.clone(), fxaa: fxaa.then(|| Fxaa::new(setup.gl)).transpose()? })

@@ -49,7 +49,7 @@ pub(super) trait FrameMethod: Sized {
     /// Renders both eyes into their targets.
     fn render_frame(&mut self, frame: &Frame<Self::Renderer>) -> Result<(), StereoError>;
 
-    /// As [`StereoMethod::guard_band`].
+    /// See [`StereoMethod::guard_band`].
     fn guard_band_use(&self) -> Option<GuardBandUse> {
         None
     }

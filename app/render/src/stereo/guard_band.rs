@@ -66,7 +66,7 @@ impl AutoGuardBand {
         });
         let guard = views.guard_columns;
         let drawn = self.width.next(profile.as_ref(), &border, least(guard));
-        // As far into the picture as the band is wide: surfaces that turn out of it come from there.
+        // Reaches as far into the picture as the band is wide: surfaces that turn out of it come from there.
         self.frame = Some(Frame { border, drawn, step: (drawn + guard).div_ceil(CELLS as u32) });
         let without = |left_out: u32| match views.warp.target_eye {
             Eye::Left => [left_out, views.source.size[0]],

@@ -119,7 +119,7 @@ pub(super) trait FieldTargets: Sized {
 
     fn new(setup: &Setup) -> Result<Self, GlError>;
 
-    /// As [`FrameMethod::compile`].
+    /// See [`FrameMethod::compile`].
     fn compile(_renderer: &mut Self::Renderer, _scene: &GpuScene) -> Result<(), GlError> {
         Ok(())
     }
@@ -142,7 +142,7 @@ pub(super) trait FieldTargets: Sized {
 /// they are neither rasterized nor lit. Each eye's lighting skips the pixels that show the far field.
 pub(super) struct DeferredFields {
     gl: Rc<Context>,
-    /// By [`Eye::index`].
+    /// G-buffers by [`Eye::index`].
     near: [GBuffer; 2],
     far: GBuffer,
     far_light: LightTargets,

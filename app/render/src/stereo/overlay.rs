@@ -82,7 +82,7 @@ pub(super) struct DeferredOverlay {
 struct NearLayer {
     targets: <DeferredRenderer as ViewRenderer>::Targets,
     composite: Composite,
-    /// By [`yoro::eyes::Eye::index`].
+    /// Layers by [`yoro::eyes::Eye::index`].
     layers: [RenderTarget; 2],
 }
 

@@ -27,7 +27,7 @@ pub(super) trait PairTargets: Sized {
 
     fn new(setup: &Setup, layout: Layout) -> Result<Self, GlError>;
 
-    /// As [`FrameMethod::compile`].
+    /// See [`FrameMethod::compile`].
     fn compile(&self, renderer: &mut Self::Renderer, scene: &GpuScene) -> Result<(), GlError>;
 
     /// Draws the surfaces of both eyes.

@@ -241,7 +241,7 @@ fn auto_band() -> StereoOptions {
 fn an_automatic_band_gives_the_picture_of_a_whole_one() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
-    // With ambient occlusion and bloom, which reach far.
+    // Ambient occlusion and bloom are on, which reach far.
     let deferred = RenderSettings { shadow_map_size: 256, ..RenderSettings::default() };
     let forward = RenderSettings { renderer: RendererKind::Forward, ..deferred.clone() };
     for settings in [deferred, forward] {
@@ -341,7 +341,7 @@ fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// With several samples in each pixel.
+/// Settings with several samples in each pixel.
 fn forward() -> RenderSettings {
     RenderSettings { renderer: RendererKind::Forward, ..local() }
 }
