@@ -1,5 +1,5 @@
-//! Tools of maintainers, and the code that they share with `cargo xtask`: shader compilers for mobile GPUs, a stand-in for
-//! the Android NDK, and programs for tests that come from Debian's packages.
+//! Tools of maintainers, and the code that they share with `cargo xtask`: shader compilers for mobile GPUs, a stand-in
+//! for the Android NDK, and programs for tests that come from Debian's packages.
 //!
 //! The inputs are the workspace's sources and Debian's packages, the outputs are folders below `target`. It runs cargo
 //! and other programs, and must not depend on the project's other crates.

@@ -29,7 +29,7 @@ pub enum Event {
     Back {
         /// Time in seconds for which it was gone.
         seconds: f64,
-        /// True if it was started anew.
+        /// True if it was restarted.
         rebooted: bool,
     },
 }

@@ -1,5 +1,5 @@
-//! Other applications than this project's on headsets by Meta: the runtime logs their frame rates, and the battery is asked
-//! from this computer, since nobody on the device writes it down.
+//! Measurement of other applications than this project's on Meta headsets: the runtime logs their frame rates; this
+//! computer reads the battery, since nothing on the device logs it.
 
 use std::collections::BTreeSet;
 

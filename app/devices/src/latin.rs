@@ -1,8 +1,8 @@
 //! Balanced Latin squares (Williams 1949): orders in which no place and no predecessor is favoured.
 
-/// Returns the rows of a balanced Latin square of the numbers below `n`: over all rows each number comes equally often in
-/// each place, and equally often right after each other one. There are `n` rows, or twice as many where `n` is odd (but
-/// for 1).
+/// Returns the rows of a balanced Latin square of the numbers below `n`: over all rows each number comes equally often
+/// in each place, and equally often right after each other one. There are `n` rows, or twice as many if `n` is odd
+/// (except for 1).
 pub fn balanced_square(n: usize) -> Vec<Vec<usize>> {
     // 0, 1, n - 1, 2, n - 2, ...: the differences of neighbours are all different.
     let first: Vec<usize> =

@@ -112,7 +112,7 @@ impl AdbProgram {
         is_own.then_some(words)
     }
 
-    /// Returns the error if adb says that it does not reach a device. Its words come one sentence inside another
+    /// Returns the error if adb reports that it does not reach a device. Its messages are nested
     /// (`failed to get feature set: device offline`); file names in them mean nothing.
     fn unreached(&self, stderr: &str, serial: &str) -> Option<DeviceError> {
         stderr.lines().filter_map(|line| self.own_words(line)).find_map(|words| {

@@ -145,7 +145,7 @@ pub enum FaultKind {
     DamagedLines,
     /// Lines that should be there, one a second, are missing.
     MissingLines,
-    /// The device was started anew.
+    /// The device was restarted.
     Rebooted,
     /// The application ended, or crashed, and was started again.
     Restarted,

@@ -137,7 +137,7 @@ impl Sample {
         row_of(numbers.chain(others.iter().map(|key| self.other.get(key).cloned().unwrap_or_default())))
     }
 
-    /// Reads a row of `samples.csv`; the error says what is wrong with it.
+    /// Reads a row of `samples.csv`; the error names the mistake.
     pub(super) fn read(header: &csv::StringRecord, row: &csv::StringRecord) -> Result<Sample, String> {
         let mut sample = Sample::default();
         let mut has_time = false;

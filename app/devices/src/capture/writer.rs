@@ -106,7 +106,7 @@ impl Writer {
         Ok(file.write_all(text.as_bytes()).map_err(failed)?)
     }
 
-    /// Writes the table anew with empty cells in the columns that are new since there were `before` of the others.
+    /// Rewrites the table, with empty cells in the new columns; before, there were `before` columns of the others.
     fn widen(&mut self, before: usize) -> Result<(), CaptureError> {
         let path = self.folder.join(SAMPLES_FILE);
         let text = String::from_utf8_lossy(&files::read(&path)?).into_owned();

@@ -1,4 +1,4 @@
-//! Experiments: methods, scenes and repetitions as a TOML file says, one run after the other on each device.
+//! Experiments: methods, scenes and repetitions from a TOML file, one run after the other on each device.
 //!
 //! ```toml
 //! name = "five-minutes"
@@ -335,7 +335,7 @@ impl Experiment {
         Planned { plan, folder }
     }
 
-    /// Returns the shortest and longest time for so many runs, in seconds.
+    /// Returns the shortest and longest time for this number of runs in seconds.
     pub fn length(&self, runs: usize) -> [f64; 2] {
         let run = self.warm_up_seconds + self.seconds + START_S;
         let cooling = self.cool_down.map_or(0.0, |cool_down| cool_down.max_seconds).max(self.rest_seconds);

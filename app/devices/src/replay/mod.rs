@@ -1,7 +1,7 @@
 //! Simulated devices, for tests and for people without a phone: scripted, in virtual time, so that ten minutes
 //! pass in a moment. All results of them are marked as simulated.
 //!
-//! A device plays recorded logs, or generates its own from a seed and made-up figures; its script says what can go wrong.
+//! A device plays recorded logs, or generates its own from a seed and made-up figures; its script lists the faults.
 
 mod script;
 mod world;

@@ -203,7 +203,7 @@ pub enum FaultKind {
     Disconnect,
     /// The connection is lost, and when it is back the device must be told again to trust this computer.
     Unauthorized,
-    /// The device starts anew.
+    /// The device restarts.
     Reboot,
     /// The application crashes.
     Crash,
@@ -211,7 +211,7 @@ pub enum FaultKind {
     LogEnds,
     /// The charger is plugged in.
     Plug,
-    /// The clock jumps by so many seconds.
+    /// The clock jumps by [`Fault::by`] seconds.
     ClockJump,
     /// The next line of the log is cut.
     Truncate,

@@ -37,7 +37,7 @@ pub struct Device {
     pub android: String,
     /// Capacity of its battery in milliampere-hours.
     pub capacity_mah: Option<f64>,
-    /// Cells of the battery of which it gives the current of one.
+    /// Number of battery cells, if the device reports the current of one cell; otherwise 1.
     pub cells: u32,
     /// True if replayed, not measured.
     pub simulated: bool,

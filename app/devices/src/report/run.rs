@@ -16,11 +16,11 @@ pub const LEAST_COVERED: f64 = 0.8;
 pub const COUNTER_TOLERANCE: f64 = 0.1;
 /// Factor from milliampere-hours to microampere-hours.
 pub(super) const MILLI: f64 = 1e3;
-/// A full battery has more than this many microampere-hours: where the counter says less, it counts milliampere-hours.
+/// Least charge of a full battery in microampere-hours; a smaller counter is in milliampere-hours.
 const LEAST_FULL_UAH: f64 = 100_000.0;
-/// A counter of one cell of several says the battery's capacity divided by their number, within this share.
+/// Tolerance, as a share, for a counter of one cell: the battery's capacity divided by the number of cells.
 const CELL_TOLERANCE: f64 = 0.25;
-/// Another measure of the power is this many times as large where the current is that of one of two cells.
+/// Ratio of another measure of the power to current x voltage if the current is that of one of two cells.
 const TWICE: std::ops::Range<f64> = 1.6..2.6;
 /// Distance of two samples, as a multiple of the usual one, beyond which they enclose a gap, which is not bridged.
 const GAP: f64 = 2.5;
@@ -129,7 +129,7 @@ pub struct Counted {
 }
 
 impl Counted {
-    /// Returns the share by which the counter says more than current x voltage; 0.1 is 10 %.
+    /// Returns the share by which the counter exceeds current x voltage; 0.1 is 10 %.
     pub fn disagreement(&self) -> f64 {
         self.milliwatts / self.integrated_milliwatts - 1.0
     }
@@ -187,7 +187,7 @@ pub struct Run {
     pub repetition: u32,
     /// When it began, in seconds since 1970.
     pub started_unix_s: f64,
-    /// Cells of the battery of which the device gives the current of one: current x voltage is multiplied by them.
+    /// Number of battery cells, if the device reports the current of one cell: current x voltage is multiplied by it.
     pub cells: u32,
     /// Seconds that it should last, and that were measured.
     pub planned_s: f64,
@@ -307,7 +307,7 @@ impl Run {
         format!("{}, {}, {}, repetition {}", self.device, self.scene, self.method, self.repetition)
     }
 
-    /// Returns another measure that says twice what current x voltage says, as where the current is that of one of two cells.
+    /// Returns another measure that is twice current x voltage, as if the current were that of one of two cells.
     pub(super) fn twice_by(&self) -> Option<&'static str> {
         let integrated = self.integrated?.milliwatts;
         let counted = self.counted.map(|c| c.milliwatts / c.integrated_milliwatts);
@@ -400,8 +400,8 @@ fn voltage(sample: &Sample) -> Option<f64> {
     sample.voltage_mv.filter(|voltage| *voltage >= LEAST_MILLIVOLTS)
 }
 
-/// Returns the factor from the charge counter to microampere-hours of the whole battery. Divided by the level it says
-/// how much a full battery has, which tells milliampere-hours, and one cell of several.
+/// Returns the factor from the charge counter to microampere-hours of the whole battery. The counter divided by the
+/// level is the charge of a full battery, which reveals milliampere-hours, and one cell of several.
 fn counter_scale(samples: &[&Sample], capacity_mah: Option<f64>, cells: u32) -> f64 {
     let full = |s: &&Sample| Some(s.charge_uah? / (s.level_percent.filter(|level| *level > 0.0)? / 100.0));
     let full: Vec<f64> = samples.iter().filter_map(full).collect();

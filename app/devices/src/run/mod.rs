@@ -122,7 +122,7 @@ pub fn look(device: &dyn Device, package: &str) -> Result<Found, DeviceError> {
     Ok(Found { info: phone::info(device)?, application })
 }
 
-/// Refuses a device whose battery does not say what the device takes: it is plugged in, or its values were set by hand.
+/// Refuses a device whose battery does not show the device's power: it is plugged in, or its values were set by hand.
 ///
 /// # Errors
 /// [`DeviceError::PluggedIn`] and [`DeviceError::BatteryHeld`] with the way out.

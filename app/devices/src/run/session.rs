@@ -21,7 +21,7 @@ use yoro_scenes::BUILTINS;
 
 /// Seconds that the application may take to load a scene and show it.
 const START_TIMEOUT_S: f64 = 180.0;
-/// After so many seconds without a line, one looks whether the application still runs.
+/// Seconds without a line after which the session checks that the application still runs.
 const SILENCE_S: f64 = 15.0;
 /// Seconds that a lost device may stay away.
 const LOST_TIMEOUT_S: f64 = 300.0;
@@ -29,7 +29,7 @@ const LOST_TIMEOUT_S: f64 = 300.0;
 const BOOT_TIMEOUT_S: f64 = 180.0;
 /// Number of times that the application is started again in one run.
 const RESTARTS: u32 = 3;
-/// The application runs on for so many seconds, so that the last second has its line.
+/// Seconds for which the application continues, so that the last second has its line.
 const MARGIN_S: f64 = 1.5;
 /// Interval in seconds at which the kernel is asked for the voltage where the application has it in whole volts only.
 const VOLTAGE_PERIOD_S: f64 = 5.0;

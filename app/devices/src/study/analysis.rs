@@ -104,7 +104,7 @@ pub struct Study {
     pub participants: usize,
     /// Results by question, then method.
     pub questions: Vec<Question>,
-    /// Comparisons that nobody has answered in full: question, method.
+    /// Comparisons without a complete answer: question, method.
     pub unanswered: Vec<(String, String)>,
 }
 

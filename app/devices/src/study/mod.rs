@@ -1,4 +1,4 @@
-//! The user study: who sees what in which order, what they answered, and what that says.
+//! User studies: the plan of trials, the ratings and their analysis.
 //!
 //! ```text
 //! plan (orders from a seed) ──> the viewer, or paper ──> ratings (CSV, or lines of the log) ──> analysis

@@ -159,7 +159,7 @@ impl Collected {
     }
 }
 
-/// A rating under the plan's names; the error says why it is none of the study's.
+/// Returns a rating under the plan's names; the error is the reason why it is not part of the study.
 fn planned(rating: Rating, plan: Option<&Trials>) -> Result<Rating, String> {
     let Some(participant) = rating.participant.clone() else {
         return Err("the rating names no participant: set participant in the viewer".into());

@@ -36,7 +36,7 @@ impl Entrant {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<Entrant, GlError> {
-        // The third frame is the first to use the findings of the first: the width of the guard band, or that all is near.
+        // The third frame is the first to use the results of the first: the guard band's width, or that all is near.
         let looks = matches!(options.guard_band, GuardBand::Auto(_)) || options.policy.is_some();
         let unsettled = if method == Method::Yoro && looks { 2 } else { 0 };
         Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)?, unsettled })

@@ -1,4 +1,4 @@
-//! Estimate of the instructions that the synthesis executes on GPUs that are not here.
+//! Estimate of the synthesis's execution on GPUs that are not here.
 //!
 //! The loops of `gather` are counted where they run, in its own shaders on real frames. Each GPU runs a loop as often as
 //! the slowest pixel of a wave; the sizes of loops and of what stands around them are those that Mesa's compilers

@@ -259,7 +259,7 @@ impl Choices {
                 )
             }
             Suite::Flicker => {
-                // With samples at the edges, flicker depends on the edges that the synthesis is told; one pipeline is enough.
+                // With samples at the edges, flicker depends on what the synthesis is told of them: one pipeline only.
                 let told = || [vec![Contender::MONO], Contender::edges()].concat();
                 let contenders = if self.render.is_forward() { told() } else { synthesis() };
                 plan(Measure::Flicker, contenders).over(self.varied(), [()], |job, ()| {

@@ -52,7 +52,7 @@ struct Logged {
 /// The application while it runs.
 struct Application {
     pid: u32,
-    /// The package of another application than this project's: only Meta's runtime says something of it.
+    /// The package of another application than this project's: only Meta's runtime logs it.
     other: Option<String>,
     settings: Settings,
     method: String,

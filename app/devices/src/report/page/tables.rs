@@ -140,8 +140,8 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
     table
 }
 
-/// Returns the power and frame rate against conventional rendering, in percent, of the system in the paper that a method stands
-/// for, on the scene that a scene stands for, or on the mean of all.
+/// Returns the paper's power and frame rate against conventional rendering, in percent: for the system and the scene in
+/// the paper that correspond to a method and a scene, or for the mean of all scenes.
 pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<(f64, f64)> {
     let column = match method {
         "hybrid" => 2,
