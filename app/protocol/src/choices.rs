@@ -5,7 +5,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toml::Value;
 
-use crate::setting::{SettingValue, find, named};
+use crate::value::{Choice, SettingValue, find, named};
 
 /// The most point lights that light one view.
 pub const MAX_POINT_LIGHTS: usize = 24;
@@ -15,25 +15,6 @@ pub const MAX_KERNEL_HEIGHT: u32 = 15;
 
 /// Numbers of samples that a pixel of the forward renderer may have.
 pub const MSAA: [u32; 3] = [1, 2, 4];
-
-/// A name that a value can have, with a line of help.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Choice {
-    /// The name in files and on the command line.
-    pub name: &'static str,
-    help: &'static str,
-}
-
-impl Choice {
-    pub(crate) const fn new(name: &'static str, help: &'static str) -> Choice {
-        Choice { name, help }
-    }
-
-    /// The help as one line without a full stop.
-    pub fn help(&self) -> &'static str {
-        self.help.trim().trim_end_matches('.')
-    }
-}
 
 /// A text that is none of the names of a type.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

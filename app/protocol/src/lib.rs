@@ -10,11 +10,12 @@ mod quantities;
 mod setting;
 mod settings;
 pub mod telemetry;
+mod value;
 
 pub use choices::{
-    AntiAliasing, Choice, ChoiceError, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method,
-    Performance, Pipeline, RendererKind, Ssao,
+    AntiAliasing, ChoiceError, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, Performance,
+    Pipeline, RendererKind, Ssao,
 };
 pub use quantities::{ImBufferSize, Ipd, IpdError, ParseImBufferSizeError, ScreenSize, ScreenSizeError};
-pub use setting::Setting;
-pub use settings::{SETTINGS, Settings, SettingsError};
+pub use settings::{SETTINGS, Setting, Settings, SettingsError};
+pub use value::Choice;

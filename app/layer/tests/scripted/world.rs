@@ -6,6 +6,7 @@ use std::fs::{self, File};
 use std::io::{Read as _, Seek as _};
 use std::os::fd::{AsRawFd as _, FromRawFd as _, OwnedFd};
 use std::path::Path;
+use std::process;
 use std::sync::Once;
 
 use image::RgbaImage;
@@ -72,11 +73,11 @@ pub fn with_unwatched_gpu(body: impl FnOnce(&Gpu)) {
     harness::with_unwatched_gpu(Rendering::RenderPasses, body);
 }
 
-/// Puts settings and log into a folder of the tests.
+/// Puts settings and log into a folder of this process: each process begins the log anew.
 pub fn settle() {
     static SETTLED: Once = Once::new();
     SETTLED.call_once(|| {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("layer-settings");
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("layer-settings-{}", process::id()));
         fs::create_dir_all(folder.join("yoro")).unwrap();
         fs::write(folder.join("yoro/layer.toml"), SETTINGS).unwrap();
         // SAFETY: drivers, which start threads that may look at the environment, are not loaded yet.

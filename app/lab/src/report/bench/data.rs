@@ -3,8 +3,12 @@
 use std::collections::BTreeMap;
 
 use crate::bench::record::{Header, Results, SceneFacts, Setting, metric};
-use crate::report::bench::sections::CONVENTIONAL;
 use yoro_figures::stats::{Summary, geometric_mean, mean, median, percentile, unique};
+
+/// The name of the contender that costs are relative to: two full renders.
+pub const CONVENTIONAL: &str = "conventional";
+/// The name of the baseline of quality: the same image to both eyes.
+pub const MONO: &str = "mono";
 
 /// One suite as measured under one set of conditions.
 pub struct Suite {

@@ -1,15 +1,12 @@
 //! Figures as text, and cells of tables.
 
 use crate::bench::record::metric;
+pub use crate::report::bench::data::{CONVENTIONAL, MONO};
 use crate::report::bench::data::{Measured, SettingData};
 use yoro_figures::grid::Cell;
 use yoro_figures::paper;
 use yoro_figures::text::fixed;
 
-/// Name of the contender that everything costs in proportion to: two full renders.
-pub const CONVENTIONAL: &str = "conventional";
-/// Name of the baseline of quality: the same image to both eyes.
-pub const MONO: &str = "mono";
 /// The prefix of the labels of the paper's curves.
 pub const PAPERS: &str = "the paper's ";
 

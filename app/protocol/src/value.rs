@@ -1,0 +1,202 @@
+//! How values of each type of setting are read and written.
+
+use toml::Value;
+use yoro::eyes::{Eye, GuardBand};
+use yoro::synthesis::Edges;
+
+use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
+
+/// A name that a value can have, with a line of help.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// The name in files and on the command line.
+    pub name: &'static str,
+    help: &'static str,
+}
+
+impl Choice {
+    pub(crate) const fn new(name: &'static str, help: &'static str) -> Choice {
+        Choice { name, help }
+    }
+
+    /// The help as one line without a full stop.
+    pub fn help(&self) -> &'static str {
+        self.help.trim().trim_end_matches('.')
+    }
+}
+
+/// A value without the quotes of TOML. Numbers are shown as they were given, not as doubles.
+pub(crate) fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Float(number) => (*number as f32).to_string(),
+        other => other.to_string(),
+    }
+}
+
+/// A type that settings can have.
+pub(crate) trait SettingValue: Sized {
+    const CHOICES: &'static [Choice] = &[];
+    const IS_SWITCH: bool = false;
+    const IS_OPTIONAL: bool = false;
+
+    /// Reads a value; the error is the remedy.
+    fn read(value: &Value) -> Result<Self, String>;
+
+    /// Writes a value; `None` if it is left to the program.
+    fn write(&self) -> Option<Value>;
+}
+
+impl SettingValue for bool {
+    const IS_SWITCH: bool = true;
+
+    fn read(value: &Value) -> Result<bool, String> {
+        value.as_bool().ok_or_else(|| "give true or false".into())
+    }
+
+    fn write(&self) -> Option<Value> {
+        Some((*self).into())
+    }
+}
+
+impl SettingValue for f32 {
+    fn read(value: &Value) -> Result<f32, String> {
+        let number = value.as_float().or_else(|| value.as_integer().map(|n| n as f64));
+        number.map(|number| number as f32).ok_or_else(|| "give a number".into())
+    }
+
+    fn write(&self) -> Option<Value> {
+        Some(f64::from(*self).into())
+    }
+}
+
+impl SettingValue for String {
+    fn read(value: &Value) -> Result<String, String> {
+        value.as_str().map(str::to_owned).ok_or_else(|| "write it in quotes".into())
+    }
+
+    fn write(&self) -> Option<Value> {
+        Some(self.as_str().into())
+    }
+}
+
+impl<T: SettingValue> SettingValue for Vec<T> {
+    const CHOICES: &'static [Choice] = T::CHOICES;
+
+    fn read(value: &Value) -> Result<Vec<T>, String> {
+        match value {
+            Value::Array(list) => list.iter().map(T::read).collect(),
+            Value::String(words) => words.split(',').map(|word| T::read(&word.trim().into())).collect(),
+            _ => Err("give a list, such as a,b".into()),
+        }
+    }
+
+    fn write(&self) -> Option<Value> {
+        Some(self.iter().filter_map(T::write).collect::<Vec<_>>().into())
+    }
+}
+
+impl<T: SettingValue> SettingValue for Option<T> {
+    const CHOICES: &'static [Choice] = T::CHOICES;
+    const IS_OPTIONAL: bool = true;
+
+    fn read(value: &Value) -> Result<Option<T>, String> {
+        if value.as_str() == Some("auto") { Ok(None) } else { T::read(value).map(Some) }
+    }
+
+    fn write(&self) -> Option<Value> {
+        self.as_ref().and_then(T::write)
+    }
+}
+
+/// Reads whole numbers.
+macro_rules! whole {
+    ($($type:ty),+) => { $(
+        impl SettingValue for $type {
+            fn read(value: &Value) -> Result<$type, String> {
+                let number = value.as_integer().and_then(|number| number.try_into().ok());
+                number.ok_or_else(|| "give a whole number from 0".into())
+            }
+
+            fn write(&self) -> Option<Value> {
+                i64::try_from(*self).ok().map(Value::from)
+            }
+        }
+    )+ };
+}
+
+whole!(u32, u64, usize);
+
+/// Types with a text of their own, which may look like a number.
+macro_rules! texts {
+    ($($type:ty),+) => { $(
+        impl SettingValue for $type {
+            fn read(value: &Value) -> Result<$type, String> {
+                plain(value).parse().map_err(|error| format!("{error}"))
+            }
+
+            fn write(&self) -> Option<Value> {
+                Some(self.to_string().into())
+            }
+        }
+    )+ };
+}
+
+texts!(GuardBand, ImBufferSize, ScreenSize);
+
+impl SettingValue for Ipd {
+    fn read(value: &Value) -> Result<Ipd, String> {
+        plain(value).parse().map_err(|error: crate::IpdError| error.to_string())
+    }
+
+    fn write(&self) -> Option<Value> {
+        self.metres().write()
+    }
+}
+
+/// Types whose values have names.
+macro_rules! named {
+    ($($type:ty: $choices:expr, $find:expr;)+) => { $(
+        impl SettingValue for $type {
+            const CHOICES: &'static [Choice] = $choices;
+
+            fn read(value: &Value) -> Result<$type, String> {
+                $find(value.as_str().unwrap_or_default())
+            }
+
+            fn write(&self) -> Option<Value> {
+                Some(self.name().into())
+            }
+        }
+    )+ };
+}
+
+/// Names of earlier versions, and what to do about them.
+const FORMER: &[(&str, &str)] = &[(
+    "rowgroup",
+    "the pipeline rowgroup was taken out: choose gather, which is closer to the truth on every scene",
+)];
+
+/// Returns the value of a name; the error names all.
+pub(crate) fn find<T: Copy>(all: &[T], name: impl Fn(T) -> &'static str, text: &str) -> Result<T, String> {
+    all.iter().copied().find(|value| name(*value) == text).ok_or_else(|| {
+        if let Some((_, remedy)) = FORMER.iter().find(|(former, _)| *former == text) {
+            return (*remedy).to_owned();
+        }
+        let names: Vec<_> = all.iter().map(|value| name(*value)).collect();
+        format!("choose one of {}", names.join(", "))
+    })
+}
+
+named! {
+    Eye: &[Choice::new("left", "The left eye"), Choice::new("right", "The right eye")],
+        |text| find(&Eye::BOTH, Eye::name, text);
+    Edges: &[
+        Choice::new("hard", "One surface per pixel: colour that was not anti-aliased, or was filtered afterwards"),
+        Choice::new("nearest", "Anti-aliased colour, and the depth of each pixel's nearest sample: the better of the two"),
+        Choice::new("sample", "Anti-aliased colour, and the depth of each pixel's first or middle sample"),
+        Choice::new("multisample", "Anti-aliased colour, and the depth of every sample, of the forward renderer"),
+    ], |text| find(&Edges::ALL, Edges::name, text);
+}
+
+pub(crate) use named;
