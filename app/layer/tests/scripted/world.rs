@@ -78,6 +78,8 @@ pub fn settle() {
     static SETTLED: Once = Once::new();
     SETTLED.call_once(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("layer-settings-{}", process::id()));
+        // Of an earlier process of the same number.
+        fs::remove_dir_all(&folder).ok();
         fs::create_dir_all(folder.join("yoro")).unwrap();
         fs::write(folder.join("yoro/layer.toml"), SETTINGS).unwrap();
         // SAFETY: drivers, which start threads that may look at the environment, are not loaded yet.
