@@ -105,7 +105,7 @@ pub fn make_libraries(folder: &Path, architecture: Architecture, api: u32) -> an
     let source = level.join("source");
 
     for (library, list) in LISTS {
-        write(&source, &stub(list, api))?;
+        write(&source, stub(list, api))?;
         let soname = format!("-Wl,-soname,{library}.so");
         clang(&target, &["-fuse-ld=lld", "-nostdlib", "-shared", &soname], "assembler", &source)
             .arg(level.join(format!("{library}.so")))
