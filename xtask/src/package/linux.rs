@@ -41,9 +41,9 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     }
     copy(&built.archive, &library.join("libyoro.a"))?;
     run(Command::new(strip).arg("--strip-debug").arg(library.join("libyoro.a")))?;
-    write(&library.join("pkgconfig/yoro.pc"), &pkg_config(&built.needs))?;
-    write(&library.join("cmake/yoro/yoro-config.cmake"), &cmake(&built.needs))?;
-    write(&library.join("cmake/yoro/yoro-config-version.cmake"), &cmake_version())?;
+    write(&library.join("pkgconfig/yoro.pc"), pkg_config(&built.needs))?;
+    write(&library.join("cmake/yoro/yoro-config.cmake"), cmake(&built.needs))?;
+    write(&library.join("cmake/yoro/yoro-config-version.cmake"), cmake_version())?;
     let examples = package.join("examples");
     for entry in fs::read_dir(&examples).context("app/capi/examples cannot be read")? {
         let name = entry.context("app/capi/examples cannot be read")?.file_name();
@@ -56,7 +56,7 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     }
     let manual = root().join("docs/library.md");
     let text = fs::read_to_string(&manual).with_context(|| format!("{} cannot be read", manual.display()))?;
-    write(&documents.join("library.md"), &with_links(&text, packaged))?;
+    write(&documents.join("library.md"), with_links(&text, packaged))?;
     let packed = folder.join(format!("{name}.tar.xz"));
     let unfinished = folder.join(format!("{name}.tar.xz.tmp"));
     let mut tar = Command::new("tar");
