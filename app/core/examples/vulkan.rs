@@ -134,7 +134,7 @@ fn picture(rgba: &[u8], size: [u32; 2], [left, top]: [u32; 2]) -> RgbImage {
     })
 }
 
-/// What an engine would render: rays into a tiled room with balls. Row 0 is at the top, as in Vulkan.
+/// Stands for an engine's picture: rays into a tiled room with balls. Row 0 is at the top, as in Vulkan.
 struct Picture {
     rgba: Vec<u8>,
     depth: Vec<f32>,

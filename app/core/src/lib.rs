@@ -35,7 +35,7 @@
 //! `examples/engine.rs` is a complete host.
 
 pub mod eyes;
-/// What a host on OpenGL needs of `yoro-gl`: its context in a wrapper, and where to draw.
+/// The types of `yoro-gl` that a host on OpenGL needs: its context in a wrapper, and where to draw.
 #[cfg(feature = "gl")]
 pub mod gl {
     pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError};

@@ -1,4 +1,4 @@
-//! What goes in and out of a frame: its times, and a report.
+//! The input and output of a frame: its times, and a report.
 
 /// The times of a frame, all on the monotonic clock of the sensors' timestamps where the platform has one.
 #[derive(Clone, Copy, Debug, PartialEq)]

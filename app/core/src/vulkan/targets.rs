@@ -1,4 +1,4 @@
-//! What the passes draw into, by dynamic rendering or by render passes.
+//! The render targets of the passes, by dynamic rendering or by render passes.
 
 use ash::{khr, vk};
 

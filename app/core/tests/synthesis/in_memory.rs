@@ -6,7 +6,7 @@ use yoro::eyes::Warp;
 use yoro::synthesis::{Outputs, Source, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 
-/// What a pipeline writes to be run in memory.
+/// The outputs of a pipeline that is run in memory.
 pub const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
 
 /// A pipeline with textures of its own. Rows of all arrays run from the bottom, as in GL.

@@ -24,13 +24,13 @@ fn warp(size: [u32; 2]) -> Warp {
     eyes.synthesis(GuardBand::Pixels(9)).unwrap().warp
 }
 
-/// What an engine lends: textures without filters of their own use, one of them to be compared, and a target.
+/// The objects that an engine lends: textures without filters of their own use, one of them to be compared, and a target.
 struct Lent {
     color: Texture,
     depth: Texture,
     target: RenderTarget,
     warp: Warp,
-    /// What `color` holds.
+    /// The content of `color`.
     rgba: Vec<u8>,
 }
 
@@ -187,7 +187,7 @@ fn switches(gl: &Context) -> Vec<u32> {
     all
 }
 
-/// What a context begins with, as far as [`Hostile`] changes it, and sRGB encoding off.
+/// The initial state of a context, as far as [`Hostile`] changes it, and sRGB encoding off.
 fn clean(gl: &Context) {
     let raw = gl.raw();
     // SAFETY: state calls with valid enums.
@@ -535,7 +535,7 @@ fn the_hosts_state_is_preserved() {
     });
 }
 
-/// What the samples hold does not matter here.
+/// The samples' values do not matter here.
 #[test]
 fn the_hosts_state_is_preserved_with_multisample_textures() {
     on_every_backend(|gl| {
@@ -617,7 +617,7 @@ fn srgb_is_encoded_where_asked_for() {
     });
 }
 
-/// What `GlState::Preserve` costs; docs/library.md has the figures.
+/// The cost of `GlState::Preserve`; docs/library.md has the figures.
 #[test]
 #[ignore = "measures: cargo test -p yoro --test synthesis -- --ignored --nocapture cost"]
 fn cost_of_preserving_state() {

@@ -201,7 +201,7 @@ impl Gpu {
         properties.device_name_as_c_str().unwrap().to_string_lossy().into_owned()
     }
 
-    /// Whether images of this format can be used so.
+    /// True if images of this format allow this usage.
     pub fn has(&self, format: vk::Format, features: vk::FormatFeatureFlags) -> bool {
         // SAFETY: a valid device.
         let properties =
@@ -209,7 +209,7 @@ impl Gpu {
         properties.optimal_tiling_features.contains(features)
     }
 
-    /// What the validation layer has said so far.
+    /// The validation layer's messages so far.
     pub fn messages(&self) -> Vec<String> {
         std::mem::take(&mut *self.messages.lock().unwrap())
     }
@@ -359,7 +359,7 @@ impl Image<'_> {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// As the pipeline wants it.
+    /// In the state that the pipeline expects.
     pub fn layer(&self, layer: u32, before: ImageState, after: ImageState) -> LayerImage {
         LayerImage { image: self.raw, format: self.format, layer, before, after }
     }
@@ -374,7 +374,7 @@ impl Image<'_> {
         }
     }
 
-    /// What is copied of it: colour, or depth alone.
+    /// The copied aspect: colour, or depth alone.
     fn copied(&self, layer: u32) -> vk::ImageSubresourceLayers {
         let aspect_mask =
             if is_depth(self.format) { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR };

@@ -368,7 +368,7 @@ fn parts_and_layers_are_found() {
     });
 }
 
-/// What a target's depth must be, by the columns that OpenGL has written.
+/// The expected depth of a target, from the columns that OpenGL has written.
 fn expected_depth(picture: &Picture, source_map: &[u32]) -> Vec<f32> {
     let warp = &picture.warp;
     let [width, height] = warp.source_size.map(|n| n as i32);
