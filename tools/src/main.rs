@@ -2,11 +2,10 @@
 
 mod spirv;
 
-use std::io::{self, Write as _};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use yoro_tools::{hello_xr, monado, shader_cost};
+use yoro_tools::{console, hello_xr, monado, shader_cost};
 
 /// Commands for maintainers of yoro
 #[derive(Parser)]
@@ -38,14 +37,7 @@ enum Task {
 }
 
 fn main() -> ExitCode {
-    match perform(Arguments::parse().task) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(2)
-        }
-    }
+    console::exit_code(perform(Arguments::parse().task))
 }
 
 /// Returns false if a shader has a fault.
@@ -60,7 +52,6 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
     };
-    // A reader such as `head` may have gone before the end.
-    let _ = io::stdout().write_all(text.as_bytes());
+    console::print(&text);
     Ok(passed)
 }

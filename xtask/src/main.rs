@@ -9,13 +9,12 @@ mod setup;
 mod testing;
 mod web;
 
-use std::io::{self, Write as _};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use yoro_tools::cargo;
+use yoro_tools::{cargo, console};
 
 /// Set up, run and test yoro
 #[derive(Parser)]
@@ -93,14 +92,7 @@ enum Task {
 }
 
 fn main() -> ExitCode {
-    match perform(Arguments::parse().task) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(2)
-        }
-    }
+    console::exit_code(perform(Arguments::parse().task))
 }
 
 /// Returns false if what was checked is not as it should be.
@@ -126,7 +118,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         }
         Task::Doctor => {
             let (text, complete) = android::doctor()?;
-            show(&text);
+            console::print(&text);
             return Ok(complete);
         }
         Task::CheckApk { file } => {
@@ -147,9 +139,4 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Lint => lint::lint()?,
     }
     Ok(true)
-}
-
-/// Prints; a reader such as `head` may have gone before the end.
-fn show(text: &str) {
-    let _ = io::stdout().write_all(text.as_bytes());
 }

@@ -12,26 +12,19 @@ mod public;
 mod report;
 mod signature;
 
-use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::bail;
+use yoro_tools::console;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    match perform(&arguments) {
-        Ok((text, passed)) => {
-            // A reader such as `head` may have gone before the end.
-            let _ = io::stdout().write_all(text.as_bytes());
-            if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
-        }
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(2)
-        }
-    }
+    console::exit_code(perform(&arguments).map(|(text, passed)| {
+        console::print(&text);
+        passed
+    }))
 }
 
 /// Returns what to print, and false if the APK is not as it should be.

@@ -1,6 +1,6 @@
 //! The kinds of sources: without and with anti-aliased edges.
 
-/// The kind of source, by its edges: there a pixel of an anti-aliased source shows more than one surface.
+/// The anti-aliasing of the source. At an edge, a pixel of an anti-aliased source mixes two surfaces.
 ///
 /// | | source | synthesized eye |
 /// |---|---|---|

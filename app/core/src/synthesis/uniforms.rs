@@ -59,7 +59,7 @@ uniforms! {
     near_displacement: f32 = "float",
     /// Texture coordinate of the source at forward column x: `columns.x * x + columns.y`.
     columns: Vec2 = "vec2",
-    /// Source column that the law's offset moves to a fragment: `origins.x * gl_FragCoord.x + origins.y`.
+    /// Source column that lands at a fragment by the offset of the displacement alone: `origins.x * gl_FragCoord.x + origins.y`.
     origins: Vec2 = "vec2",
     /// Place of a fragment's span in the span map: `span_place.xy * gl_FragCoord.xy + span_place.zw`. A texture
     /// coordinate; in tiles if the source is a part of its image.

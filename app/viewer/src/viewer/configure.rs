@@ -1,4 +1,4 @@
-//! Takes over other settings while the viewer runs.
+//! New settings while the viewer runs.
 
 use std::path::PathBuf;
 
@@ -11,14 +11,14 @@ use yoro_render::stereo::StereoOptions;
 use yoro_render::{RenderSettings, Renderer};
 
 impl Viewer {
-    /// Takes over other settings; only what differs from the ones before is made again. What the user has changed by
-    /// hand stays, unless that very setting differs.
+    /// Applies new settings and recreates only the parts that changed. The user's own changes stay, unless that very
+    /// setting differs.
     ///
     /// # Errors
-    /// [`ViewerError::NoScene`], and [`ViewerError::Gl`] when the driver cannot do what is asked for; the settings
-    /// before stay.
+    /// [`ViewerError::NoScene`], and [`ViewerError::Gl`] when the driver refuses; the former settings
+    /// stay.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
-        // What may fail by a mistake in the settings comes first.
+        // First everything that a mistake in the settings can make fail.
         let source = self.other_scene(&settings, folders)?;
         let (render, method_differs) =
             (RenderSettings::of_settings(&settings), settings.method != self.settings.method);
@@ -74,7 +74,7 @@ impl Viewer {
         SceneSource::find(&settings.scene, settings.seed, folders).map(Some)
     }
 
-    /// Makes renderer and method again, if the settings before were others.
+    /// Recreates renderer and method if their settings changed.
     fn remake(&mut self, before: &Settings) -> Result<(), GlError> {
         let settings = &self.settings;
         let method_differs = settings.method != before.method;

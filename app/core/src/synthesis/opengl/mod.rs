@@ -86,7 +86,7 @@ pub enum GlState {
 /// with [`GlState::Preserve`] as before the call. State that is not in the table is neither read nor changed. State that a
 /// context lacks, by version or extension, is neither set nor queried.
 ///
-/// | state | set to | left |
+/// | state | set to | afterwards |
 /// |---|---|---|
 /// | program | the passes' | changed |
 /// | vertex array | one without attributes | changed |
@@ -97,12 +97,12 @@ pub enum GlState {
 /// | sampler object of units 0 to 4 | yoro's own | none |
 /// | active unit | 0 to 4 | changed |
 /// | scissor, stencil and depth test, face culling | off; depth test on for the target with [`Outputs::depth`] | off |
-/// | depth function, depth mask, depth range | `ALWAYS`, on, 0 to 1 | so |
-/// | blending and colour mask, of draw buffer 0 and, with [`Outputs::source_map`] or other than with [`Edges::Hard`], 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | so |
+/// | depth function, depth mask, depth range | `ALWAYS`, on, 0 to 1 | as set |
+/// | blending and colour mask, of draw buffer 0 and, with [`Outputs::source_map`] or other than with [`Edges::Hard`], 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | as set |
 /// | dithering, polygon offset for filling, rasterizer discard, primitive restart (fixed index) | off | off |
 /// | alpha to coverage, sample coverage; sample mask (ES 3.1) | off | off |
 /// | clip distances (`EXT_clip_cull_distance`, desktop), depth bounds test (`EXT_depth_bounds_test`) | off | off |
-/// | sRGB encoding of what is written (`EXT_sRGB_write_control`, desktop) | off, or on with [`Outputs::srgb`] | so |
+/// | sRGB encoding of what is written (`EXT_sRGB_write_control`, desktop) | off, or on with [`Outputs::srgb`] | as set |
 /// | primitive restart, logic operation, polygon smoothing, alpha to one (desktop) | off | off |
 /// | polygon mode (desktop) | fill | fill |
 ///
