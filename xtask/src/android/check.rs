@@ -2,16 +2,29 @@
 //! Android wait for its dependencies.
 
 use std::ffi::OsStr;
-use std::path::{Path, absolute};
-use std::process::{Command, Stdio};
+use std::path::{Path, PathBuf, absolute};
 
 use anyhow::{Context as _, bail};
-use yoro_tools::cargo;
+use yoro_tools::{cargo, console};
 
-fn command(arguments: &[&dyn AsRef<OsStr>]) -> anyhow::Result<Command> {
+/// Returns the text that the program printed, and true if it found no fault.
+///
+/// # Errors
+/// The program's own sentence.
+fn run(arguments: &[&dyn AsRef<OsStr>]) -> anyhow::Result<(String, bool)> {
     let mut command = cargo::program("yoro-android-check")?;
-    command.args(arguments);
-    Ok(command)
+    let output = command.args(arguments).output().context("yoro-android-check cannot be started")?;
+    match output.status.code() {
+        Some(code @ (0 | 1)) => Ok((String::from_utf8_lossy(&output.stdout).into_owned(), code == 0)),
+        _ => {
+            let said = String::from_utf8_lossy(&output.stderr);
+            bail!("{}", said.trim().trim_start_matches("error: "))
+        }
+    }
+}
+
+fn absolute_path(path: &Path) -> anyhow::Result<PathBuf> {
+    absolute(path).context("the current folder is gone: change to another")
 }
 
 /// Prints whether an APK is as Android wants it; true if it is.
@@ -19,12 +32,9 @@ fn command(arguments: &[&dyn AsRef<OsStr>]) -> anyhow::Result<Command> {
 /// # Errors
 /// When the file is missing or no APK, or a tool for looking at it is missing.
 pub fn check(apk: &Path) -> anyhow::Result<bool> {
-    let apk = absolute(apk).context("the current folder is gone: change to another")?;
-    match command(&[&"check", &apk])?.status().context("it cannot be started")?.code() {
-        Some(0) => Ok(true),
-        Some(1) => Ok(false),
-        _ => bail!("{} cannot be checked: see above", apk.display()),
-    }
+    let (report, passed) = run(&[&"check", &absolute_path(apk)?])?;
+    console::print(&report);
+    Ok(passed)
 }
 
 /// Returns the processor that an OpenXR loader is for, by its folder in an APK.
@@ -32,13 +42,7 @@ pub fn check(apk: &Path) -> anyhow::Result<bool> {
 /// # Errors
 /// When it is no loader for a processor that the APK has libraries for.
 pub fn loader_abi(file: &Path) -> anyhow::Result<String> {
-    let file = absolute(file).context("the current folder is gone: change to another")?;
-    let output = command(&[&"loader", &file])?.stderr(Stdio::inherit()).output();
-    let output = output.context("it cannot be started")?;
-    if !output.status.success() {
-        bail!("{} cannot be taken along: see above", file.display());
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    Ok(run(&[&"loader", &absolute_path(file)?])?.0)
 }
 
 /// Packs the files of a folder as an AAR.
@@ -46,9 +50,6 @@ pub fn loader_abi(file: &Path) -> anyhow::Result<String> {
 /// # Errors
 /// When it cannot be written.
 pub fn pack(packed: &Path, folder: &Path) -> anyhow::Result<()> {
-    let status = command(&[&"pack", &packed, &folder])?.status().context("it cannot be started")?;
-    if !status.success() {
-        bail!("{} cannot be packed: see above", packed.display());
-    }
+    run(&[&"pack", &packed, &folder])?;
     Ok(())
 }
