@@ -66,20 +66,20 @@ pub enum ContextError {
 }
 
 /// Keeps a context current on this thread until it is dropped.
-#[allow(dead_code, reason = "OSMesa is held for its Drop")]
 enum Holder {
     Egl(Box<egl::EglContext>),
     Osmesa(osmesa::OsmesaContext),
 }
 
-/// A GL context without a window, current on the calling thread.
+/// A GL context without a window, current on the calling thread. It lives as long as this value or any object in it:
+/// both own it.
 ///
 /// Several may exist on one thread. With Mesa's llvmpipe (seen with 22.3) contexts of two threads must not draw at the
 /// same time: a defect of the driver, which crashes now and then.
 pub struct Headless {
-    context: Option<Rc<Context>>,
+    context: Rc<Context>,
     backend: Backend,
-    holder: Holder,
+    holder: Rc<Holder>,
 }
 
 impl Headless {
@@ -94,7 +94,7 @@ impl Headless {
                 Headless::new(Backend::Egl, Holder::Egl(Box::new(holder)), raw)
             }
             Backend::Osmesa => {
-                let (holder, raw) = osmesa::OsmesaContext::open().map_err(ContextError::Osmesa)?;
+                let (holder, raw) = osmesa::OsmesaContext::open(false).map_err(ContextError::Osmesa)?;
                 Headless::new(Backend::Osmesa, Holder::Osmesa(holder), raw)
             }
             Backend::Auto => Headless::open(Backend::Egl).or_else(|egl| {
@@ -109,39 +109,52 @@ impl Headless {
         }
     }
 
+    /// Opens a context of the compatibility profile by OSMesa, as GLFW and SDL do by default: for tests.
+    ///
+    /// # Errors
+    /// Those of [`Headless::open`].
+    #[doc(hidden)]
+    pub fn compatibility() -> Result<Headless, ContextError> {
+        let (holder, raw) = osmesa::OsmesaContext::open(true).map_err(ContextError::Osmesa)?;
+        Headless::new(Backend::Osmesa, Holder::Osmesa(holder), raw)
+    }
+
     fn new(backend: Backend, holder: Holder, raw: glow::Context) -> Result<Headless, ContextError> {
-        let load = |name: &CStr| match &holder {
+        let holder = Rc::new(holder);
+        let load = |name: &CStr| match &*holder {
             Holder::Egl(egl) => egl.entry_point(name),
             Holder::Osmesa(osmesa) => osmesa.entry_point(name),
         };
         // SAFETY: both loaders give the entry points of the context that they have made current.
-        let context = unsafe { Context::with_loader(raw, load) }?;
-        Ok(Headless { context: Some(context), backend, holder })
+        let context = unsafe { Context::owned(raw, load, holder.clone()) }?;
+        Ok(Headless { context, backend, holder })
     }
 
     /// The GL context.
     pub fn gl(&self) -> &Rc<Context> {
-        self.context.as_ref().expect("present until dropped")
+        &self.context
     }
 
     /// The EGL context, if it is one.
     fn egl(&self) -> Option<&egl::EglContext> {
-        match &self.holder {
+        match &*self.holder {
             Holder::Egl(context) => Some(context),
             Holder::Osmesa(_) => None,
+        }
+    }
+
+    /// Returns a GL function by its name, or null: for tests of functions that glow does not wrap.
+    #[doc(hidden)]
+    pub fn entry_point(&self, name: &CStr) -> *const c_void {
+        match &*self.holder {
+            Holder::Egl(egl) => egl.entry_point(name),
+            Holder::Osmesa(osmesa) => osmesa.entry_point(name),
         }
     }
 
     /// The backend that was opened, never [`Backend::Auto`].
     pub fn backend(&self) -> Backend {
         self.backend
-    }
-}
-
-impl Drop for Headless {
-    fn drop(&mut self) {
-        // GL objects go before the context that holds them.
-        self.context = None;
     }
 }
 

@@ -1,6 +1,6 @@
 //! GL contexts: of EGL without a window, of OSMesa, or on the window of an Android activity.
 //!
-//! Opens a context, which is current on the opening thread until it is dropped. Platform differences end here. This crate
+//! Opens a context, which is current on the opening thread until it and all objects in it are dropped. Platform differences end here. This crate
 //! must never know what is drawn.
 
 #[cfg(target_os = "android")]

@@ -8,6 +8,7 @@ const OSMESA_FORMAT: c_int = 0x22;
 const OSMESA_DEPTH_BITS: c_int = 0x30;
 const OSMESA_PROFILE: c_int = 0x33;
 const OSMESA_CORE_PROFILE: c_int = 0x34;
+const OSMESA_COMPAT_PROFILE: c_int = 0x35;
 const OSMESA_CONTEXT_MAJOR_VERSION: c_int = 0x36;
 const OSMESA_CONTEXT_MINOR_VERSION: c_int = 0x37;
 const SIZE: usize = 16;
@@ -28,7 +29,8 @@ pub(super) struct OsmesaContext {
 }
 
 impl OsmesaContext {
-    pub(super) fn open() -> Result<(OsmesaContext, glow::Context), String> {
+    /// Opens a context of the core profile, or of the compatibility profile.
+    pub(super) fn open(compatibility: bool) -> Result<(OsmesaContext, glow::Context), String> {
         // SAFETY: the library's functions have the signatures of GL/osmesa.h; the attribute list ends with 0;
         // the pixels live as long as the context.
         unsafe {
@@ -49,7 +51,7 @@ impl OsmesaContext {
                 OSMESA_DEPTH_BITS,
                 24,
                 OSMESA_PROFILE,
-                OSMESA_CORE_PROFILE,
+                if compatibility { OSMESA_COMPAT_PROFILE } else { OSMESA_CORE_PROFILE },
                 OSMESA_CONTEXT_MAJOR_VERSION,
                 4,
                 OSMESA_CONTEXT_MINOR_VERSION,
@@ -58,7 +60,7 @@ impl OsmesaContext {
             ];
             let context = create(attributes.as_ptr(), std::ptr::null_mut());
             if context.is_null() {
-                return Err("it offers no OpenGL 4.5 core context".into());
+                return Err("it offers no OpenGL 4.5 context".into());
             }
             let mut pixels = vec![0u8; SIZE * SIZE * 4].into_boxed_slice();
             let size = SIZE as c_int;

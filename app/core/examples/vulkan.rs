@@ -255,6 +255,7 @@ impl Engine {
             device: &self.device,
             queue_family: self.family,
             dynamic_rendering: false,
+            debug_utils: false,
         }
     }
 

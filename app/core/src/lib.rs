@@ -3,6 +3,7 @@
 //! [`eyes`] takes poses and fields of view, and gives the view to render and how its pixels move to the other eye.
 //! [`synthesis`] takes the colour and depth of that view and draws the other eye: on OpenGL (feature `gl`, on by default)
 //! in a context that the caller lends, on Vulkan (feature `vulkan`) into the caller's command buffer.
+//! [`choice`] finds out whether that pays on this device, or two renders are cheaper.
 //! This crate must never know a scene, a renderer, a window, a file or a command line: an engine brings its own.
 //!
 //! An engine renders [`eyes::SynthesisViews::source`] with its own code, gives colour and depth to
@@ -34,11 +35,12 @@
 //! [`eyes::EyeOptions`]. What a call does to the context's state is in the table of [`synthesis::Synthesis`].
 //! `examples/engine.rs` is a complete host.
 
+pub mod choice;
 pub mod eyes;
 /// The types of `yoro-gl` that a host on OpenGL needs: its context in a wrapper, and where to draw.
 #[cfg(feature = "gl")]
 pub mod gl {
-    pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError};
+    pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError, PassTime, Profiling};
 }
 pub mod synthesis;
 #[cfg(feature = "vulkan")]

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use crate::{Context, Filter, Format, GlError, PixelBuffer, Texture};
+use crate::{Attachments, Context, Filter, Format, GlApi, GlError, PixelBuffer, Texture};
 
 /// A rectangle of a framebuffer to draw into.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,7 @@ impl Context {
     /// Copies a rectangle of colour to another one of the same size, or stretches it without filtering. Values are copied
     /// bit by bit, unless only one of the two is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
+        self.record_copy(from.framebuffer, to.framebuffer, to.size, false);
         let gl = self.raw();
         let [x, y] = from.origin.map(|n| n as i32);
         let [w, h] = from.size.map(|n| n as i32);
@@ -63,6 +64,7 @@ impl Framebuffer {
 
 impl Drop for Framebuffer {
     fn drop(&mut self) {
+        self.gl.forget_framebuffer(self.raw);
         // SAFETY: created in `new`, deleted once.
         unsafe { self.gl.raw().delete_framebuffer(self.raw) };
         self.gl.count(-1);
@@ -75,6 +77,8 @@ pub struct RenderTarget {
     framebuffer: Framebuffer,
     /// A framebuffer of the colour attachments alone, if there is depth, too.
     color_only: Option<Framebuffer>,
+    /// A framebuffer of depth alone, if there are colours, too.
+    depth_only: Option<Framebuffer>,
     color: Vec<Texture>,
     depth: Option<Texture>,
     formats: Vec<(Format, Filter)>,
@@ -136,6 +140,7 @@ impl RenderTarget {
             gl: gl.clone(),
             framebuffer: Framebuffer::new(gl)?,
             color_only: with_both.then(|| Framebuffer::new(gl)).transpose()?,
+            depth_only: with_both.then(|| Framebuffer::new(gl)).transpose()?,
             color: Vec::new(),
             depth: None,
             formats: formats.to_vec(),
@@ -168,9 +173,12 @@ impl RenderTarget {
         self.color = self.formats.iter().copied().map(texture).collect::<Result<_, _>>()?;
         self.depth = self.depth_format.map(texture).transpose()?;
         if let Some(color_only) = &self.color_only {
-            self.attach(color_only, false);
+            self.attach(color_only, &self.color, None);
         }
-        let status = self.attach(&self.framebuffer, true);
+        if let Some(depth_only) = &self.depth_only {
+            self.attach(depth_only, &[], self.depth.as_ref());
+        }
+        let status = self.attach(&self.framebuffer, &self.color, self.depth.as_ref());
         if status != glow::FRAMEBUFFER_COMPLETE {
             return Err(GlError::Unsupported(format!(
                 "the GL driver cannot render to {:?} with depth {:?} (status 0x{status:x}); EXT_color_buffer_float may be missing: update the driver",
@@ -182,21 +190,26 @@ impl RenderTarget {
         Ok(())
     }
 
-    /// Attaches the textures to a framebuffer, leaves it bound and returns its status.
-    fn attach(&self, framebuffer: &Framebuffer, with_depth: bool) -> u32 {
+    /// Attaches textures to a framebuffer, leaves it bound and returns its status.
+    fn attach(&self, framebuffer: &Framebuffer, color: &[Texture], depth: Option<&Texture>) -> u32 {
         let gl = self.gl.raw();
+        let images = Attachments {
+            color: color.iter().map(Texture::image).collect(),
+            depth: depth.map(Texture::image),
+        };
+        self.gl.note_framebuffer(framebuffer.raw, images);
         // SAFETY: the attachments are textures of this object.
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer.raw));
             let mut buffers = [glow::NONE; 8];
-            for (i, texture) in self.color.iter().enumerate() {
+            for (i, texture) in color.iter().enumerate() {
                 buffers[i] = glow::COLOR_ATTACHMENT0 + i as u32;
                 self.attach_texture(buffers[i], texture);
             }
-            if let Some(depth) = self.depth.as_ref().filter(|_| with_depth) {
+            if let Some(depth) = depth {
                 self.attach_texture(glow::DEPTH_ATTACHMENT, depth);
             }
-            gl.draw_buffers(if self.color.is_empty() { &buffers[..1] } else { &buffers[..self.color.len()] });
+            gl.draw_buffers(&buffers[..color.len().max(1)]);
             gl.check_framebuffer_status(glow::FRAMEBUFFER)
         }
     }
@@ -248,6 +261,24 @@ impl RenderTarget {
             self.gl.draws_both_eyes();
         }
         self.gl.bind_framebuffer(Some(self.raw()), [0, 0], self.size);
+    }
+
+    /// Binds the framebuffer and sets the viewport to its lower left part of this size.
+    pub fn bind_part(&self, size: [u32; 2]) {
+        self.gl.bind_framebuffer(Some(self.raw()), [0, 0], size);
+    }
+
+    /// Binds the framebuffer as [`RenderTarget::bind`] does, for draws that write all of its colour: see
+    /// [`Context::overwrite`].
+    pub fn overwrite(&self) {
+        self.gl.overwrite(&self.color_only(), self.color.len().min(2), false);
+    }
+
+    /// Does the same with depth alone.
+    pub fn overwrite_depth(&self) {
+        let framebuffer = self.depth_only.as_ref().unwrap_or(&self.framebuffer);
+        let to = Destination { framebuffer: Some(framebuffer.raw), origin: [0, 0], size: self.size };
+        self.gl.overwrite(&to, 0, true);
     }
 
     /// Returns colour texture `i`.
@@ -380,6 +411,25 @@ impl ForeignTarget {
 }
 
 impl Context {
+    /// Binds a framebuffer and sets the viewport to a rectangle, for draws that write all of it in the first `colors` (two at
+    /// most) colour attachments and, with `depth`, in depth. What the rectangle held is given up on OpenGL ES, so that a
+    /// tile-based GPU need not read it; desktop OpenGL has the call from 4.3 only.
+    pub fn overwrite(&self, to: &Destination, colors: usize, depth: bool) {
+        self.bind_framebuffer(to.framebuffer, to.origin, to.size);
+        if self.capabilities().api == GlApi::Desktop {
+            return;
+        }
+        let attachments = match to.framebuffer {
+            Some(_) => [glow::DEPTH_ATTACHMENT, glow::COLOR_ATTACHMENT0, glow::COLOR_ATTACHMENT1],
+            // The window has one colour.
+            None => [glow::DEPTH, glow::COLOR, glow::COLOR],
+        };
+        let ([x, y], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
+        let given_up = &attachments[usize::from(!depth)..=colors];
+        // SAFETY: attachments that every framebuffer may have, and a rectangle of no negative size.
+        unsafe { self.raw().invalidate_sub_framebuffer(glow::FRAMEBUFFER, given_up, x, y, w, h) }
+    }
+
     /// Reads a rectangle of colour as RGBA8, rows from the bottom. sRGB colour stays encoded. Waits for the GPU.
     pub fn read_rgba8(&self, from: &Destination) -> Vec<u8> {
         let gl = self.raw();

@@ -12,10 +12,15 @@ const UNITS: usize = 5;
 const COLOR_UNIT: u32 = 1;
 /// The units with multisample textures: the source's depth and colour.
 const MULTISAMPLE_UNITS: [u32; 2] = [0, 3];
+/// The units with array textures: the source's depth and colour.
+const ARRAY_UNITS: [u32; 2] = [0, 1];
 /// Number of draw buffers in use: colour and, if it is written, the source map.
 const DRAW_BUFFERS: usize = 2;
 /// EXT_depth_bounds_test.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
+/// Compatibility profile.
+const ALPHA_TEST: u32 = 0x0BC0;
+const POLYGON_STIPPLE: u32 = 0x0B42;
 
 /// glIsEnabledi: capability, index.
 pub(crate) type IsEnabledIndexed = unsafe extern "system" fn(u32, u32) -> u8;
@@ -39,6 +44,8 @@ pub(crate) struct Host {
     /// True if encoding for sRGB framebuffers can be switched.
     encoding: bool,
     polygon_mode: bool,
+    /// True if there are several viewports: the desktop. Shaders draw to the first one, and only its state is touched.
+    viewports: bool,
     nearest: glow::Sampler,
     linear: glow::Sampler,
 }
@@ -84,6 +91,11 @@ impl Host {
                 glow::SAMPLE_ALPHA_TO_ONE,
             ]);
         }
+        // SAFETY: every context of OpenGL 3.2 or later has the value.
+        let profile = || unsafe { gl.get_parameter_i32(glow::CONTEXT_PROFILE_MASK) as u32 };
+        if desktop && profile() & glow::CONTEXT_COMPATIBILITY_PROFILE_BIT != 0 {
+            switches.extend([ALPHA_TEST, POLYGON_STIPPLE]);
+        }
         if capabilities.clip_distances {
             // SAFETY: the enum exists if the context has clip distances.
             let count = unsafe { gl.get_parameter_i32(glow::MAX_CLIP_DISTANCES) }.clamp(0, 8) as u32;
@@ -114,9 +126,59 @@ impl Host {
             queries: queries.filter(|_| indexed),
             encoding,
             polygon_mode: desktop,
+            viewports: desktop,
             nearest: sampler(glow::NEAREST)?,
             linear: sampler(glow::LINEAR)?,
         })
+    }
+
+    /// Turns a switch on or off. The scissor test of a viewport array is the first viewport's.
+    ///
+    /// # Safety
+    /// The context is current and has the switch.
+    unsafe fn set_switch(&self, gl: &glow::Context, switch: u32, on: bool) {
+        // SAFETY: the caller's context has the switch, and one for each viewport if there are several.
+        unsafe {
+            match (self.viewports && switch == glow::SCISSOR_TEST, on) {
+                (true, true) => gl.enable_draw_buffer(switch, 0),
+                (true, false) => gl.disable_draw_buffer(switch, 0),
+                (false, true) => gl.enable(switch),
+                (false, false) => gl.disable(switch),
+            }
+        }
+    }
+
+    /// Sets the depth range, of the first viewport if there are several.
+    ///
+    /// # Safety
+    /// The context is current.
+    unsafe fn set_depth_range(&self, gl: &glow::Context, range: [f32; 2]) {
+        // SAFETY: desktop contexts have the function for several viewports.
+        unsafe {
+            if self.viewports {
+                gl.depth_range_f64_slice(0, 1, &[range.map(f64::from)]);
+            } else {
+                gl.depth_range_f32(range[0], range[1]);
+            }
+        }
+    }
+
+    /// Sets the viewport, the first one if there are several.
+    ///
+    /// # Safety
+    /// The context is current.
+    pub(crate) unsafe fn set_viewport(&self, gl: &glow::Context, viewport: [f32; 4]) {
+        // SAFETY: desktop contexts have the function for several viewports.
+        unsafe {
+            if self.viewports {
+                // Mesa clamps the numbers where they are, so they must not be constants.
+                let own = std::hint::black_box([viewport]);
+                gl.viewport_f32_slice(0, 1, &own);
+            } else {
+                let [x, y, width, height] = viewport.map(|n| n as i32);
+                gl.viewport(x, y, width, height);
+            }
+        }
     }
 
     pub(crate) fn delete(&self, gl: &glow::Context) {
@@ -126,6 +188,15 @@ impl Host {
             gl.delete_sampler(self.linear);
         }
     }
+}
+
+/// The state that a pipeline touches, beyond that of every pipeline.
+#[derive(Clone, Copy, Debug)]
+pub struct Touched {
+    /// The number of colour attachments that are drawn to, 1 or 2.
+    pub draw_buffers: u32,
+    /// True if the source's textures are arrays.
+    pub arrays: bool,
 }
 
 /// The state that synthesis changes, as [`Context::save_state`] found it.
@@ -141,7 +212,7 @@ pub struct HostState {
     depth_range: [f32; 2],
     /// Front and back.
     polygon_mode: [u32; 2],
-    viewport: [i32; 4],
+    viewport: [f32; 4],
     draw_framebuffer: Option<glow::Framebuffer>,
     read_framebuffer: Option<glow::Framebuffer>,
     program: Option<glow::Program>,
@@ -150,6 +221,8 @@ pub struct HostState {
     textures: [Option<glow::Texture>; UNITS],
     /// Of [`MULTISAMPLE_UNITS`], if the context has multisample textures.
     multisample_textures: [Option<glow::Texture>; MULTISAMPLE_UNITS.len()],
+    /// Of [`ARRAY_UNITS`], if the pipeline touches them.
+    arrays: Option<[Option<glow::Texture>; ARRAY_UNITS.len()]>,
     samplers: [Option<glow::Sampler>; UNITS],
 }
 
@@ -158,10 +231,11 @@ impl Context {
     /// `yoro::synthesis::Synthesis` except program, vertex array, framebuffer, viewport and textures. `draw_buffers` is the
     /// number of colour attachments of the target, 1 or 2. With `encode` writes to sRGB framebuffers are encoded.
     pub fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
+        self.recorded(|recorder| recorder.set_depth_write(false));
         let (gl, host) = (self.raw(), &self.host);
         // SAFETY: state calls with enums that exist in this context, as `Host::new` found out.
         unsafe {
-            host.switches.iter().for_each(|switch| gl.disable(*switch));
+            host.switches.iter().for_each(|switch| host.set_switch(gl, *switch, false));
             if encode && host.encoding {
                 gl.enable(glow::FRAMEBUFFER_SRGB);
             }
@@ -176,7 +250,7 @@ impl Context {
             }
             gl.depth_func(glow::ALWAYS);
             gl.depth_mask(true);
-            gl.depth_range_f32(0.0, 1.0);
+            host.set_depth_range(gl, [0.0, 1.0]);
             if host.polygon_mode {
                 gl.polygon_mode(glow::FRONT_AND_BACK, glow::FILL);
             }
@@ -196,6 +270,7 @@ impl Context {
 
     /// Turns depth writes, without a test, on or off for the next draws of a pipeline.
     pub fn set_depth_write(&self, on: bool) {
+        self.recorded(|recorder| recorder.set_depth_write(on));
         // SAFETY: a valid enum.
         unsafe { if on { self.raw().enable(glow::DEPTH_TEST) } else { self.raw().disable(glow::DEPTH_TEST) } }
     }
@@ -208,9 +283,8 @@ impl Context {
         }
     }
 
-    /// Returns all state that synthesis changes, for a target with this many colour attachments, 1 or 2. Makes about 50
-    /// queries and allocates nothing.
-    pub fn save_state(&self, draw_buffers: u32) -> HostState {
+    /// Returns all state that synthesis changes. Makes about 50 queries and allocates nothing.
+    pub fn save_state(&self, touched: Touched) -> HostState {
         let (gl, host) = (self.raw(), &self.host);
         // SAFETY: the queried state exists, as `Host::new` found out, and the arrays are as long as what GL writes.
         unsafe {
@@ -218,14 +292,14 @@ impl Context {
             let on = |(i, switch): (usize, &u32)| u32::from(gl.is_enabled(*switch)) << i;
             let mut state = HostState {
                 switches: host.switches.iter().enumerate().map(on).sum(),
-                draw_buffers: (draw_buffers as usize).min(DRAW_BUFFERS),
+                draw_buffers: (touched.draw_buffers as usize).min(DRAW_BUFFERS),
                 blend: [gl.is_enabled(glow::BLEND); DRAW_BUFFERS],
                 color_mask: [gl.get_parameter_bool_array(glow::COLOR_WRITEMASK); DRAW_BUFFERS],
                 depth_func: integer(glow::DEPTH_FUNC) as u32,
                 depth_mask: gl.get_parameter_bool(glow::DEPTH_WRITEMASK),
                 depth_range: [0.0; 2],
                 polygon_mode: [glow::FILL; 2],
-                viewport: [0; 4],
+                viewport: [0.0; 4],
                 draw_framebuffer: gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING),
                 read_framebuffer: gl.get_parameter_framebuffer(glow::READ_FRAMEBUFFER_BINDING),
                 program: gl.get_parameter_program(glow::CURRENT_PROGRAM),
@@ -233,6 +307,7 @@ impl Context {
                 active_unit: integer(glow::ACTIVE_TEXTURE) as u32,
                 textures: [None; UNITS],
                 multisample_textures: [None; MULTISAMPLE_UNITS.len()],
+                arrays: touched.arrays.then_some([None; ARRAY_UNITS.len()]),
                 samplers: [None; UNITS],
             };
             if let Some(queries) = &host.queries {
@@ -244,7 +319,7 @@ impl Context {
                 }
             }
             gl.get_parameter_f32_slice(glow::DEPTH_RANGE, &mut state.depth_range);
-            gl.get_parameter_i32_slice(glow::VIEWPORT, &mut state.viewport);
+            gl.get_parameter_f32_slice(glow::VIEWPORT, &mut state.viewport);
             if host.polygon_mode {
                 // Core contexts have one mode, and some drivers write no second one.
                 let mut modes = [0; 2];
@@ -263,6 +338,10 @@ impl Context {
                     *texture = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
                 }
             }
+            for (unit, texture) in ARRAY_UNITS.into_iter().zip(state.arrays.iter_mut().flatten()) {
+                gl.active_texture(glow::TEXTURE0 + unit);
+                *texture = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D_ARRAY);
+            }
             gl.active_texture(state.active_unit);
             state
         }
@@ -275,7 +354,7 @@ impl Context {
         // host in between.
         unsafe {
             for (i, switch) in host.switches.iter().enumerate() {
-                if state.switches >> i & 1 != 0 { gl.enable(*switch) } else { gl.disable(*switch) }
+                host.set_switch(gl, *switch, state.switches >> i & 1 != 0);
             }
             for i in 0..state.draw_buffers {
                 let (on, [r, g, b, a]) = (state.blend[i], state.color_mask[i]);
@@ -293,7 +372,7 @@ impl Context {
             }
             gl.depth_func(state.depth_func);
             gl.depth_mask(state.depth_mask);
-            gl.depth_range_f32(state.depth_range[0], state.depth_range[1]);
+            host.set_depth_range(gl, state.depth_range);
             if host.polygon_mode {
                 match state.polygon_mode {
                     [front, back] if front == back => gl.polygon_mode(glow::FRONT_AND_BACK, front),
@@ -314,13 +393,17 @@ impl Context {
                     gl.bind_texture(glow::TEXTURE_2D_MULTISAMPLE, texture);
                 }
             }
+            for (unit, texture) in ARRAY_UNITS.into_iter().zip(state.arrays.into_iter().flatten()) {
+                gl.active_texture(glow::TEXTURE0 + unit);
+                gl.bind_texture(glow::TEXTURE_2D_ARRAY, texture);
+            }
             gl.active_texture(state.active_unit);
-            gl.use_program(state.program);
+            // A program that was deleted while it was current went when synthesis made another one current.
+            gl.use_program(state.program.filter(|program| gl.is_program(*program)));
             gl.bind_vertex_array(state.vertex_array);
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, state.draw_framebuffer);
             gl.bind_framebuffer(glow::READ_FRAMEBUFFER, state.read_framebuffer);
-            let [x, y, width, height] = state.viewport;
-            gl.viewport(x, y, width, height);
+            host.set_viewport(gl, state.viewport);
         }
     }
 

@@ -13,11 +13,13 @@ mod multisample;
 mod pixel_buffer;
 mod profiler;
 mod program;
+mod record;
 mod state;
 mod texture;
 
+use std::any::Any;
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::ffi::{CStr, c_void};
 use std::rc::Rc;
 
@@ -25,12 +27,13 @@ use glow::HasContext;
 
 pub use capabilities::{Capabilities, GlApi};
 pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
-pub use host::HostState;
+pub use host::{HostState, Touched};
 pub use mesh::Mesh;
 pub use multisample::{MultisampleTarget, TileTarget};
 pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};
+pub use record::{Attachments, Command, Draw, Image, Shape};
 pub use state::{Blend, DepthTest, RasterState};
 pub use texture::{Filter, Format, Texture};
 
@@ -61,6 +64,16 @@ pub enum GlError {
         what: String,
         /// The driver's reason.
         reason: String,
+    },
+    /// The driver has no memory left.
+    #[error(
+        "the GL driver has no memory for a {width}x{height} texture; choose a smaller size, or free some"
+    )]
+    OutOfMemory {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
     },
     /// An image size beyond the driver's limits.
     #[error(
@@ -120,6 +133,12 @@ pub struct Context {
     /// The argument of [`Context::within_columns`].
     columns: Cell<Option<[u32; 2]>>,
     empty_vertex_array: glow::VertexArray,
+    /// Sizes and formats of textures and framebuffers, for records.
+    images: RefCell<HashMap<glow::Texture, Image>>,
+    framebuffers: RefCell<HashMap<glow::Framebuffer, Rc<Attachments>>>,
+    recorder: RefCell<Option<record::Recorder>>,
+    /// The last field, because fields are dropped in their order.
+    _owner: Option<Rc<dyn Any>>,
 }
 
 impl Context {
@@ -129,7 +148,7 @@ impl Context {
     /// [`GlError::Unsupported`] when the context is older than OpenGL ES 3.0, or desktop GL that does not
     /// compile GLSL ES 3.10.
     pub fn new(raw: glow::Context) -> Result<Rc<Context>, GlError> {
-        Context::with_entry_points(raw, EntryPoints::default())
+        Context::with_entry_points(raw, EntryPoints::default(), None)
     }
 
     /// Like [`Context::new`], with functions that glow does not wrap: multiview, the bits of timer queries, and the state
@@ -143,7 +162,35 @@ impl Context {
     /// `load` must return null or this context's entry point of that name.
     pub unsafe fn with_loader(
         raw: glow::Context,
+        load: impl FnMut(&CStr) -> *const c_void,
+    ) -> Result<Rc<Context>, GlError> {
+        // SAFETY: the caller's.
+        unsafe { Context::loaded(raw, load, None) }
+    }
+
+    /// Like [`Context::with_loader`], of a context and a library that `owner` destroys when it is dropped: it is kept
+    /// until the last object of the context is deleted.
+    ///
+    /// # Errors
+    /// Those of [`Context::new`].
+    ///
+    /// # Safety
+    /// As of [`Context::with_loader`].
+    pub unsafe fn owned(
+        raw: glow::Context,
+        load: impl FnMut(&CStr) -> *const c_void,
+        owner: Rc<dyn Any>,
+    ) -> Result<Rc<Context>, GlError> {
+        // SAFETY: the caller's.
+        unsafe { Context::loaded(raw, load, Some(owner)) }
+    }
+
+    /// # Safety
+    /// As of [`Context::with_loader`].
+    unsafe fn loaded(
+        raw: glow::Context,
         mut load: impl FnMut(&CStr) -> *const c_void,
+        owner: Option<Rc<dyn Any>>,
     ) -> Result<Rc<Context>, GlError> {
         // SAFETY: null becomes `None`; any other pointer is the entry point of that name, whose signature
         // GL_OVR_multiview, OpenGL 3.0 and OpenGL ES 3.0 and 3.2 define.
@@ -164,10 +211,14 @@ impl Context {
                     .map(|(is_enabled, get_boolean)| host::IndexedQueries { is_enabled, get_boolean }),
             }
         };
-        Context::with_entry_points(raw, entry_points)
+        Context::with_entry_points(raw, entry_points, owner)
     }
 
-    fn with_entry_points(raw: glow::Context, entry_points: EntryPoints) -> Result<Rc<Context>, GlError> {
+    fn with_entry_points(
+        raw: glow::Context,
+        entry_points: EntryPoints,
+        owner: Option<Rc<dyn Any>>,
+    ) -> Result<Rc<Context>, GlError> {
         let has_multiview =
             cfg!(target_arch = "wasm32") || entry_points.framebuffer_texture_multiview.is_some();
         let capabilities = Capabilities::query(&raw, has_multiview, || entry_points.counts_time())?;
@@ -189,6 +240,10 @@ impl Context {
             recipes,
             columns: Cell::new(None),
             empty_vertex_array,
+            images: RefCell::default(),
+            framebuffers: RefCell::default(),
+            recorder: RefCell::default(),
+            _owner: owner,
         }))
     }
 
@@ -237,7 +292,9 @@ impl Context {
             }
         }
         self.profiler.borrow_mut().begin(&self.raw, name);
+        self.recorded(|recorder| recorder.enter(name));
         let result = body();
+        self.recorded(record::Recorder::leave);
         self.profiler.borrow_mut().end(&self.raw);
         // SAFETY: pops the group pushed above.
         unsafe {
@@ -260,9 +317,9 @@ impl Context {
     }
 
     /// Ends a frame, to time every frame without waiting ([`Profiling::Queries`]). Adds the pass times of one frame,
-    /// some frames ago, to `times`, and returns the number of frames added, 1 or 0. A frame is left out if the clock was
-    /// disturbed or if timer queries are undefined for one of its passes.
-    pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> u32 {
+    /// some frames ago, to `times`, and returns how many calls ago that frame has ended; `None` if there are none. A frame is
+    /// left out if the clock was disturbed or if timer queries are undefined for one of its passes.
+    pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> Option<u32> {
         self.profiler.borrow_mut().end_frame(&self.raw, times)
     }
 
@@ -278,6 +335,11 @@ impl Context {
     pub fn finish(&self) {
         // SAFETY: touches no memory of ours.
         unsafe { self.raw.finish() }
+    }
+
+    /// True if passes are timed now, by timer queries or by waiting for the GPU.
+    pub fn times_passes(&self) -> bool {
+        self.profiler.borrow().is_on()
     }
 
     /// Attaches the first two layers of an array texture to the bound framebuffer, to draw to both at once.
@@ -306,10 +368,10 @@ impl Context {
     /// Draws one triangle that covers the viewport. The vertex shader `screen.vert` makes it from gl_VertexID.
     pub fn draw_screen(&self) {
         // SAFETY: the vertex array has no attributes, so nothing is read from buffers.
-        unsafe {
+        self.drawing(Shape::Screen, || unsafe {
             self.raw.bind_vertex_array(Some(self.empty_vertex_array));
             self.raw.draw_arrays(glow::TRIANGLES, 0, 3);
-        }
+        });
     }
 
     /// Returns the GL errors since the last call, separated by commas. For tests and debugging.

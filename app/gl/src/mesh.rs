@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use crate::{Context, GlError};
+use crate::{Context, GlError, Shape};
 
 /// A vertex array with one interleaved vertex buffer of floats and 32-bit indices.
 pub struct Mesh {
@@ -14,6 +14,8 @@ pub struct Mesh {
     vertices: glow::Buffer,
     indices: glow::Buffer,
     index_count: usize,
+    vertex_count: usize,
+    vertex_bytes: u32,
 }
 
 impl Mesh {
@@ -47,6 +49,8 @@ impl Mesh {
                 vertices: vertex_buffer,
                 indices: index_buffer,
                 index_count: indices.len(),
+                vertex_count: vertices.len(),
+                vertex_bytes: stride as u32,
             };
             raw.bind_vertex_array(Some(array));
             raw.bind_buffer(glow::ARRAY_BUFFER, Some(vertex_buffer));
@@ -86,7 +90,9 @@ impl Mesh {
     pub fn draw_strip(&self) {
         let gl = self.gl.raw();
         // SAFETY: the count is that of the index buffer, whose values the caller of `new` has checked.
-        unsafe { gl.draw_elements(glow::TRIANGLE_STRIP, self.index_count as i32, glow::UNSIGNED_INT, 0) }
+        self.gl.drawing(self.shape(self.index_count), || unsafe {
+            gl.draw_elements(glow::TRIANGLE_STRIP, self.index_count as i32, glow::UNSIGNED_INT, 0);
+        });
     }
 
     /// Draws a range of indices as triangles, `instances` times. The mesh must be bound.
@@ -94,7 +100,7 @@ impl Mesh {
         debug_assert!(range.end <= self.index_count);
         let (count, offset) = (range.len() as i32, (range.start * 4) as i32);
         // SAFETY: the range lies inside the index buffer, whose values the scene loader has checked.
-        unsafe {
+        self.gl.drawing(self.shape(range.len() * instances), || unsafe {
             if instances == 1 {
                 self.gl.raw().draw_elements(glow::TRIANGLES, count, glow::UNSIGNED_INT, offset);
             } else {
@@ -107,6 +113,15 @@ impl Mesh {
                     instances as i32,
                 );
             }
+        });
+    }
+
+    fn shape(&self, indices: usize) -> Shape {
+        let vertices = indices as f64 * self.vertex_count as f64 / self.index_count.max(1) as f64;
+        Shape::Mesh {
+            indices: indices as u64,
+            vertices: vertices.round() as u64,
+            vertex_bytes: self.vertex_bytes,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glow::HasContext;
 
 use crate::framebuffer::Framebuffer;
-use crate::{Context, Format, GlError, RenderTarget};
+use crate::{Attachments, Context, Format, GlError, RenderTarget};
 
 /// An attachment.
 enum Image {
@@ -79,6 +79,14 @@ impl MultisampleTarget {
         self.images = Some([self.image(size, color)?, self.image(size, depth)?]);
         self.size = size;
         self.gl.count_texture_bytes(self.bytes());
+        let [color, depth] = self.formats.map(|format| self.describe(format));
+        for (image, what) in self.images.iter().flatten().zip([color, depth]) {
+            if let Image::Texture(raw) = *image {
+                self.gl.note_texture(raw, what);
+            }
+        }
+        let images = Attachments { color: vec![color], depth: Some(depth) };
+        self.gl.note_framebuffer(self.framebuffer.raw, images);
         let gl = self.gl.raw();
         // SAFETY: the attachments were created for this target above.
         let (status, error) = unsafe {
@@ -135,6 +143,10 @@ impl MultisampleTarget {
         Ok(image)
     }
 
+    fn describe(&self, format: Format) -> crate::Image {
+        crate::Image { format, size: self.size, samples: self.samples }
+    }
+
     /// Returns the bytes of colour and depth.
     fn bytes(&self) -> isize {
         2 * 4 * self.samples as isize * self.size[0] as isize * self.size[1] as isize
@@ -144,6 +156,9 @@ impl MultisampleTarget {
         self.gl.count_texture_bytes(-self.bytes());
         self.size = [0, 0];
         for image in self.images.take().into_iter().flatten() {
+            if let Image::Texture(raw) = image {
+                self.gl.forget_texture(raw);
+            }
             // SAFETY: created in `image`, deleted once.
             unsafe {
                 match image {
@@ -173,6 +188,8 @@ impl MultisampleTarget {
     }
 
     fn blit(&self, to: &RenderTarget, mask: u32) {
+        let is_depth = mask == glow::DEPTH_BUFFER_BIT;
+        self.gl.record_copy(Some(self.framebuffer.raw), Some(to.raw()), to.size(), is_depth);
         let [w, h] = to.size().map(|n| n as i32);
         let gl = self.gl.raw();
         // SAFETY: both targets own their framebuffers; the rectangles are equal, as GL demands for multisampled ones.
@@ -194,6 +211,7 @@ impl MultisampleTarget {
             (false, true) => &attachments[1..],
             (false, false) => return,
         };
+        self.gl.record_discard(self.framebuffer.raw, [color, depth]);
         // SAFETY: this target's framebuffer has these attachments.
         unsafe {
             self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
@@ -298,6 +316,9 @@ impl TileTarget {
             )));
         }
         self.textures = Some(textures);
+        let images =
+            Attachments { color: vec![target.color(0).image()], depth: Some(target.depth().image()) };
+        self.gl.note_framebuffer(self.framebuffer.raw, images);
         Ok(())
     }
 
@@ -308,6 +329,7 @@ impl TileTarget {
 
     /// Gives up the depth. The framebuffer must be bound.
     pub fn discard_depth(&self) {
+        self.gl.record_discard(self.framebuffer.raw, [false, true]);
         // SAFETY: the bound framebuffer has the attachment.
         unsafe { self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]) }
     }

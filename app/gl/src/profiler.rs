@@ -54,8 +54,10 @@ pub(crate) struct Profiler {
     depth: usize,
     started: Option<Instant>,
     records: Vec<(&'static str, Record)>,
-    /// Records of frames whose results are not read yet, oldest first.
-    frames: VecDeque<Vec<(&'static str, Record)>>,
+    /// Records of frames whose results are not read yet, oldest first, each with the number of its frame.
+    frames: VecDeque<(u32, Vec<(&'static str, Record)>)>,
+    /// Number of frames that have ended.
+    ended: u32,
     /// Number of the oldest frames whose results are worthless, since the clock was disturbed.
     disturbed: usize,
     pool: Vec<glow::Query>,
@@ -71,6 +73,7 @@ impl Profiler {
             started: None,
             records: Vec::with_capacity(64),
             frames: VecDeque::with_capacity(FRAMES_LATE + 4),
+            ended: 0,
             disturbed: 0,
             pool: Vec::new(),
         }
@@ -81,7 +84,7 @@ impl Profiler {
         self.take(gl);
     }
 
-    fn is_on(&self) -> bool {
+    pub(crate) fn is_on(&self) -> bool {
         match self.mode {
             Profiling::Off => false,
             Profiling::Queries => self.queries,
@@ -148,29 +151,34 @@ impl Profiler {
 
     pub(crate) fn take(&mut self, gl: &glow::Context) -> Vec<PassTime> {
         let mut times = Vec::with_capacity(self.records.len());
-        while let Some(mut frame) = self.frames.pop_front() {
+        while let Some((_, mut frame)) = self.frames.pop_front() {
             read(gl, &mut frame, &mut self.pool, &mut times);
         }
         read(gl, &mut self.records, &mut self.pool, &mut times);
         times
     }
 
-    pub(crate) fn end_frame(&mut self, gl: &glow::Context, times: &mut Vec<PassTime>) -> u32 {
+    pub(crate) fn end_frame(&mut self, gl: &glow::Context, times: &mut Vec<PassTime>) -> Option<u32> {
+        let number = self.ended;
+        self.ended = number.wrapping_add(1);
         if self.records.is_empty() {
-            return 0;
+            return None;
         }
-        let ready = |frame: &Vec<(&'static str, Record)>| match frame.last() {
+        let ready = |(_, frame): &(u32, Vec<(&'static str, Record)>)| match frame.last() {
             // SAFETY: the query has ended; queries of one kind finish in order.
             Some((_, Record::Query(query))) => unsafe {
                 gl.get_query_parameter_u32(*query, glow::QUERY_RESULT_AVAILABLE) != 0
             },
             _ => true,
         };
-        let (before, mut count, mut taken) = (times.len(), 0, 0);
+        let (before, mut read_number, mut taken) = (times.len(), None, 0);
         let mut spare = Vec::new();
-        if self.frames.len() >= FRAMES_LATE && self.frames.front().is_some_and(ready) {
-            spare = self.frames.pop_front().unwrap_or_default();
-            count = u32::from(read(gl, &mut spare, &mut self.pool, times));
+        if self.frames.len() >= FRAMES_LATE
+            && self.frames.front().is_some_and(ready)
+            && let Some((then, frame)) = self.frames.pop_front()
+        {
+            spare = frame;
+            read_number = read(gl, &mut spare, &mut self.pool, times).then_some(then);
             taken = 1;
         }
         // SAFETY: the extension with timer queries in OpenGL ES defines this state.
@@ -180,10 +188,10 @@ impl Profiler {
         if taken > 0 && self.disturbed > 0 {
             self.disturbed -= 1;
             times.truncate(before);
-            count = 0;
+            read_number = None;
         }
-        self.frames.push_back(std::mem::replace(&mut self.records, spare));
-        count
+        self.frames.push_back((number, std::mem::replace(&mut self.records, spare)));
+        read_number.map(|then| number.wrapping_sub(then))
     }
 }
 
@@ -237,7 +245,7 @@ mod tests {
             }
             gl.finish();
             let read = profiler.end_frame(gl.raw(), &mut times);
-            assert_eq!(read, (frame >= FRAMES_LATE) as u32, "frame {frame}");
+            assert_eq!(read, (frame >= FRAMES_LATE).then_some(FRAMES_LATE as u32), "frame {frame}");
         }
         let names: Vec<_> = times.iter().map(|t| t.name).collect();
         assert_eq!(names, ["first", "second"].repeat(10 - FRAMES_LATE));
@@ -253,7 +261,7 @@ mod tests {
         let mut profiler = profiler(gl.raw(), true);
         profiler.set(gl.raw(), Profiling::Queries);
         let mut times = Vec::new();
-        let mut told = 0;
+        let mut told = Vec::new();
         for frame in 0..10 {
             for name in ["first", "second"] {
                 profiler.begin(gl.raw(), name);
@@ -265,9 +273,14 @@ mod tests {
             // Outside of a pass nothing is timed.
             profiler.make_undefined(gl.raw());
             gl.finish();
-            told += profiler.end_frame(gl.raw(), &mut times);
+            told.extend(profiler.end_frame(gl.raw(), &mut times));
+            if frame == 4 {
+                // A frame without passes is one, too.
+                assert_eq!(profiler.end_frame(gl.raw(), &mut times), None);
+            }
         }
-        assert_eq!((told, times.len()), (3, 6));
+        // Frames 1, 3 and 5, told at the ends of frames 5, 7 and 9.
+        assert_eq!((told.as_slice(), times.len()), (&[5, 5, 4][..], 6));
         profiler.take(gl.raw());
         assert!(profiler.pool.len() <= 2 * (FRAMES_LATE + 1), "queries are used again");
         profiler.delete(gl.raw());
@@ -283,6 +296,6 @@ mod tests {
         let mut times = Vec::new();
         profiler.begin(gl.raw(), "pass");
         profiler.end(gl.raw());
-        assert_eq!((profiler.end_frame(gl.raw(), &mut times), times.len()), (0, 0));
+        assert_eq!((profiler.end_frame(gl.raw(), &mut times), times.len()), (None, 0));
     }
 }

@@ -47,6 +47,7 @@ fn assemble(gl: &Context, path: &str, defines: &[(&str, String)]) -> Result<Asse
 pub struct Program {
     gl: Rc<Context>,
     raw: glow::Program,
+    recipe: Rc<ProgramRecipe>,
     uniforms: HashMap<String, glow::UniformLocation>,
 }
 
@@ -90,7 +91,9 @@ impl Program {
         unsafe {
             let raw = raw_gl.create_program().map_err(object)?;
             gl.count(1);
-            let mut program = Program { gl: gl.clone(), raw, uniforms: HashMap::new() };
+            let recipe = Rc::new(recipe);
+            let mut program =
+                Program { gl: gl.clone(), raw, recipe: recipe.clone(), uniforms: HashMap::new() };
             for (kind, stage, file) in stages {
                 last_file = file;
                 let assembled = assemble(gl, file, defines)?;
@@ -111,7 +114,7 @@ impl Program {
                 let log = raw_gl.get_program_info_log(raw);
                 return Err(GlError::Shader { stage: "program", file: last_file.to_owned(), log });
             }
-            gl.recipes.borrow_mut().insert(recipe);
+            gl.recipes.borrow_mut().insert(recipe.as_ref().clone());
             for i in 0..raw_gl.get_program_parameter_i32(raw, glow::ACTIVE_UNIFORMS) as u32 {
                 if let Some(uniform) = raw_gl.get_active_uniform(raw, i)
                     && let Some(location) = raw_gl.get_uniform_location(raw, &uniform.name)
@@ -128,6 +131,7 @@ impl Program {
     pub fn bind(&self) -> &Program {
         // SAFETY: the program is linked.
         unsafe { self.gl.raw().use_program(Some(self.raw)) };
+        self.gl.recorded(|recorder| recorder.bind(self.raw, &self.recipe));
         self
     }
 
@@ -144,18 +148,31 @@ impl Program {
     /// Binds a 2-D texture to a unit and points a sampler at the unit.
     pub fn texture(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
         super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D, texture);
+        self.set_sampler(name, unit, texture)
+    }
+
+    /// Binds an array texture to a unit and points a sampler at the unit.
+    pub fn texture_array(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
+        super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D_ARRAY, texture);
         self.set(name, unit as i32)
     }
 
     /// Binds a multisample texture to a unit and points a sampler at the unit.
     pub fn texture_multisample(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
         super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D_MULTISAMPLE, texture);
-        self.set(name, unit as i32)
+        self.set_sampler(name, unit, texture)
     }
 
     /// Binds a texture of this library, 2-D or an array, to a unit and points a sampler at the unit.
     pub fn texture_of(&self, name: &str, unit: u32, texture: &Texture) -> &Program {
         texture.bind(unit);
+        self.set_sampler(name, unit, texture.raw())
+    }
+
+    fn set_sampler(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
+        if self.uniforms.contains_key(name) {
+            self.gl.record_sampled(self.raw, name, texture);
+        }
         self.set(name, unit as i32)
     }
 }
@@ -163,7 +180,16 @@ impl Program {
 impl Drop for Program {
     fn drop(&mut self) {
         // SAFETY: created in `new`, deleted once.
-        unsafe { self.gl.raw().delete_program(self.raw) };
+        unsafe {
+            let gl = self.gl.raw();
+            // A current program would live on, and be a host's to stumble over. In browsers, which have no other host, glow
+            // panics if there is none.
+            let own = Some(self.raw);
+            if cfg!(not(target_arch = "wasm32")) && gl.get_parameter_program(glow::CURRENT_PROGRAM) == own {
+                gl.use_program(None);
+            }
+            gl.delete_program(self.raw);
+        }
         self.gl.count(-1);
     }
 }

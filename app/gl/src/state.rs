@@ -3,6 +3,7 @@
 use glow::HasContext;
 
 use crate::Context;
+use crate::record::Recorder;
 
 /// More rows than any framebuffer has.
 const TALLEST: i32 = 1 << 20;
@@ -55,6 +56,7 @@ impl Context {
     /// Sets depth test, blending and culling. Turns stencil test and dithering off and all writes on. The scissor test is
     /// off, except within [`Context::within_columns`].
     pub fn set_raster_state(&self, state: &RasterState) {
+        self.recorded(|recorder| recorder.set_state(state));
         let gl = self.raw();
         // SAFETY: state calls with valid enums.
         unsafe {
@@ -103,12 +105,14 @@ impl Context {
     /// Turns colour writes off until the state is set again, for programs that write only depth into a target with
     /// colour. Otherwise colour would be undefined, and WebGL refuses to draw.
     pub fn mask_color(&self) {
+        self.recorded(Recorder::mask_color);
         // SAFETY: a state call without objects.
         unsafe { self.raw().color_mask(false, false, false, false) }
     }
 
     /// Turns depth writes off until the state is set again, for surfaces that are tested and blended.
     pub fn mask_depth(&self) {
+        self.recorded(Recorder::mask_depth);
         // SAFETY: a state call without objects.
         unsafe { self.raw().depth_mask(false) }
     }
@@ -150,6 +154,7 @@ impl Context {
 
     /// Clears the bound framebuffer: all colour attachments to zero, and depth to a value if one is given.
     pub fn clear(&self, depth: Option<f32>) {
+        self.record_clear(depth.is_some());
         let gl = self.raw();
         let mut mask = glow::COLOR_BUFFER_BIT;
         // SAFETY: state calls with valid enums.
@@ -183,18 +188,17 @@ impl Context {
 
     /// Sets the viewport, in pixels from the lower left corner of the framebuffer that is bound.
     pub fn set_viewport(&self, origin: [u32; 2], size: [u32; 2]) {
-        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
-        // SAFETY: sizes are not negative.
-        unsafe { self.raw().viewport(x, y, w, h) }
+        self.recorded(|recorder| recorder.view(size));
+        let ([x, y], [w, h]) = (origin.map(|n| n as f32), size.map(|n| n as f32));
+        // SAFETY: the context is current, and sizes are not negative.
+        unsafe { self.host.set_viewport(self.raw(), [x, y, w, h]) }
     }
 
     /// Binds any framebuffer (`None` for the window's) and sets the viewport, in pixels from its lower left corner.
     pub fn bind_framebuffer(&self, framebuffer: Option<glow::Framebuffer>, origin: [u32; 2], size: [u32; 2]) {
-        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
+        self.recorded(|recorder| recorder.draw_into(framebuffer));
         // SAFETY: GL refuses a name that is not a framebuffer.
-        unsafe {
-            self.raw().bind_framebuffer(glow::FRAMEBUFFER, framebuffer);
-            self.raw().viewport(x, y, w, h);
-        }
+        unsafe { self.raw().bind_framebuffer(glow::FRAMEBUFFER, framebuffer) };
+        self.set_viewport(origin, size);
     }
 }

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use crate::{Context, GlError};
+use crate::{Context, GlError, Image};
 
 /// A pixel format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +33,8 @@ pub enum Format {
     Rgba32F,
     /// Unsigned 32-bit integer, one channel.
     R32Ui,
+    /// Unsigned 32-bit integers, four channels.
+    Rgba32Ui,
     /// 24-bit depth.
     Depth24,
     /// Float depth.
@@ -57,9 +59,22 @@ impl Format {
             Format::Rg32F => (glow::RG32F, glow::RG, glow::FLOAT),
             Format::Rgba32F => (glow::RGBA32F, glow::RGBA, glow::FLOAT),
             Format::R32Ui => (glow::R32UI, glow::RED_INTEGER, glow::UNSIGNED_INT),
+            Format::Rgba32Ui => (glow::RGBA32UI, glow::RGBA_INTEGER, glow::UNSIGNED_INT),
             Format::Depth24 => (glow::DEPTH_COMPONENT24, glow::DEPTH_COMPONENT, glow::UNSIGNED_INT),
             Format::Depth32F => (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT),
             Format::Depth16 => (glow::DEPTH_COMPONENT16, glow::DEPTH_COMPONENT, glow::UNSIGNED_SHORT),
+        }
+    }
+
+    /// Returns the bytes of a pixel, or of a sample.
+    pub fn bytes(self) -> usize {
+        match self {
+            Format::R8 => 1,
+            Format::Rg8 | Format::Depth16 => 2,
+            Format::Rgba8 | Format::Srgb8Alpha8 | Format::Rgb10A2 | Format::R11G11B10F | Format::Rg16F => 4,
+            Format::R32F | Format::R32Ui | Format::Depth24 | Format::Depth32F => 4,
+            Format::Rgba16F | Format::Rg32F => 8,
+            Format::Rgba32F | Format::Rgba32Ui => 16,
         }
     }
 
@@ -103,7 +118,7 @@ impl Texture {
     /// Creates a 2-D texture. With a material filter it has a full mip chain, otherwise one level.
     ///
     /// # Errors
-    /// [`GlError::TooLarge`] beyond the driver's limit, [`GlError::Object`] when it has no memory.
+    /// [`GlError::TooLarge`] beyond the driver's limit, [`GlError::OutOfMemory`].
     pub fn new(gl: &Rc<Context>, size: [u32; 2], format: Format, filter: Filter) -> Result<Texture, GlError> {
         Texture::with_layers(gl, size, None, format, filter)
     }
@@ -180,9 +195,12 @@ impl Texture {
         let level_0 = texture.byte_len() * layers.unwrap_or(1) as usize;
         texture.bytes = if mipmapped { level_0 / 3 * 4 } else { level_0 };
         gl.count_texture_bytes(texture.bytes as isize);
-        // SAFETY: reads and clears the error flag.
-        if unsafe { raw_gl.get_error() } == glow::OUT_OF_MEMORY {
-            let reason = "out of memory; choose a smaller size".into();
+        gl.note_texture(raw, texture.image());
+        if !gl.has_storage(target) {
+            let reason = gl.take_errors().unwrap_or_default();
+            if reason.is_empty() || reason.contains("OUT_OF_MEMORY") {
+                return Err(GlError::OutOfMemory { width, height });
+            }
             return Err(GlError::Object { what: format!("a {width}x{height} texture"), reason });
         }
         Ok(texture)
@@ -217,15 +235,11 @@ impl Texture {
 
     /// Returns the number of bytes of level 0.
     pub fn byte_len(&self) -> usize {
-        let texel = match self.format {
-            Format::R8 => 1,
-            Format::Rg8 | Format::Depth16 => 2,
-            Format::Rgba8 | Format::Srgb8Alpha8 | Format::Rgb10A2 | Format::R11G11B10F | Format::Rg16F => 4,
-            Format::R32F | Format::R32Ui | Format::Depth24 | Format::Depth32F => 4,
-            Format::Rgba16F | Format::Rg32F => 8,
-            Format::Rgba32F => 16,
-        };
-        self.size[0] as usize * self.size[1] as usize * texel
+        self.size[0] as usize * self.size[1] as usize * self.format.bytes()
+    }
+
+    pub(crate) fn image(&self) -> Image {
+        Image { format: self.format, size: self.size, samples: 1 }
     }
 
     /// Returns the GL name.
@@ -258,8 +272,25 @@ pub(crate) fn bind_texture(gl: &Context, unit: u32, target: u32, texture: glow::
     }
 }
 
+impl Context {
+    /// True if the bound texture has its storage. Asks the texture, so that a host's pending error stays. In browsers, where
+    /// glow cannot, the error flag tells.
+    fn has_storage(&self, target: u32) -> bool {
+        let gl = self.raw();
+        // SAFETY: a parameter of textures that every context has.
+        unsafe {
+            if cfg!(target_arch = "wasm32") {
+                gl.get_error() != glow::OUT_OF_MEMORY
+            } else {
+                gl.get_tex_parameter_i32(target, glow::TEXTURE_IMMUTABLE_FORMAT) != 0
+            }
+        }
+    }
+}
+
 impl Drop for Texture {
     fn drop(&mut self) {
+        self.gl.forget_texture(self.raw);
         // SAFETY: created in `new`, deleted once.
         unsafe { self.gl.raw().delete_texture(self.raw) };
         self.gl.count(-1);

@@ -3,20 +3,21 @@
 // past the tiles that do not land in the pixel.
 //
 // The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
-// fetched with linear filtering. With SHORT_WAY nearly every pixel ends within a few cheap steps here, and only those
-// beside silhouettes continue in include/march.glsl. CPU rasterizers execute both sides of an `if` and every fetch in the
-// text: there all pixels take the long path.
+// fetched with linear filtering. With SHORT_WAY, where the pass before has found a law, the column is affine in the pixel;
+// nearly every other pixel ends within a few cheap steps here, and only those beside silhouettes continue in
+// include/four_columns.glsl. CPU rasterizers execute both sides of an `if` and every fetch in the text: there all pixels take
+// the way of include/every_column.glsl.
 
 #include "include/march.glsl"
+#ifdef SHORT_WAY
+#include "include/four_columns.glsl"
+#else
+#include "include/every_column.glsl"
+#endif
 
 layout(location = 0) out vec4 color;
 #ifdef SOURCE_MAP
 layout(location = 1) out uint source_entry;
-#endif
-
-#ifdef SHORT_WAY
-// Steps of the short path: as many as a wave should wait for.
-const float SHORT_STEPS = 8.0;
 #endif
 
 int source_row() {
@@ -24,66 +25,71 @@ int source_row() {
 }
 
 #ifdef SHORT_WAY
-// Depth at the middle of a whole forward column, which may lie beyond the borders.
-float depth_beyond(float x, int row) {
-    return depth_at(int(clamp(x, 0.0, float(source_size.x - 1))), row);
+// Steps of the short way: as many as a wave should wait for.
+const float SHORT_STEPS = 4.0;
+
+// Colour and surface of a pixel whose tile has a law.
+vec4 lawful(vec3 affine, out Surface surface) {
+    float place = affine.x + affine.y * gl_FragCoord.x + affine.z * gl_FragCoord.y;
+#if defined(WRITE_DEPTH) || defined(SOURCE_MAP)
+    surface.source = clamp((place - columns.y) / columns.x - 0.5, 0.0, float(source_size.x - 1));
+    vec2 depths = depth_pair(floor(surface.source));
+    surface.depth = mix(depths.x, depths.y, fract(surface.source));
+    surface.hole = false;
+#endif
+    return color_sample(vec2(place, row_at(0.0)));
+}
+
+// Colour and surface of any other pixel.
+vec4 searched(uint span, out Surface surface) {
+    float origin = origins.x * gl_FragCoord.x + origins.y;
+    Search at = search_at(floor(origin - farthest - uintBitsToFloat(span)), origin);
+    float end = min(max(at.x, 0.0) + span_steps(span), float(source_size.x - 1));
+    float limit = min(at.x + SHORT_STEPS, end);
+    // On to the first pair that crosses the pixel, or has a silhouette within a pixel of it.
+    for (; at.x < limit && at.b <= 0.0 && max(at.b, -1.0) >= at.a; at.x += 1.0) {
+        COUNT_TRIP(0)
+        float next = depth_sample(vec2(column_at(at.x + 2.0), row_at(0.0)));
+        at.depths = vec2(at.depths.y, next);
+        at.a = at.b;
+        at.b = at.x + 2.0 - origin + law.y * next;
+    }
+    float stretch = at.b - at.a;
+    float t = -at.a / stretch;
+    surface = Surface(at.x + t, mix(at.depths.x, at.depths.y, t), false);
+    vec4 seen = color_sample(vec2(column_at(surface.source), row_at(0.0)));
+    float middle = 0.5 * float(source_size.x - 1);
+    bool done = at.a <= 0.0 && at.b > 0.0 && stretch < MAX_STRETCH && abs(surface.source - middle) <= middle;
+    if ((PARTS & LONG) != 0 && !done) {
+        COUNT_TRIP(6)
+        seen = march(at, end, origin, source_row(), surface);
+    }
+    return seen;
 }
 #endif
 
 void main() {
-    float origin = origins.x * gl_FragCoord.x + origins.y;
-    uint span = pixel_span();
-    float x = floor(origin - farthest - uintBitsToFloat(span));
+    uvec4 span = pixel_span();
     Surface surface;
 #ifdef SHORT_WAY
-    // Where columns x and x + 1 land, relative to the pixel. Columns beyond the borders repeat them. A quarter of a
-    // column past the middle of x, fetches of four texels take x and x + 1, and those of one x; a quarter of a row
-    // past the row's middle, they take its row and the one above.
-    // A part's borders are not those of the texture.
-    vec2 at = vec2(columns.x * (x + 1.25) + columns.y, rows.x * (gl_FragCoord.y + 0.25) + rows.y);
-    vec2 depths;
-    if (PART) {
-        depths = vec2(depth_beyond(x, source_row()), depth_beyond(x + 1.0, source_row()));
+    if ((PARTS & LAW) != 0 && span.y != 0u) {
+        COUNT_TRIP(7)
+        color = lawful(uintBitsToFloat(span.xyz), surface);
+    } else if ((PARTS & SHORT) != 0) {
+        color = searched(span.x, surface);
     } else {
-        vec4 quad = textureGather(depth_map, at);
-        depths = mirrored ? quad.zw : quad.wz;
-    }
-    float shift = x - origin;
-    float a = shift + law.y * depths.x;
-    shift += 1.0;
-    float b = shift + law.y * depths.y;
-    // On to the first pair that crosses the pixel, or has a silhouette within a pixel of it.
-    for (float limit = x + SHORT_STEPS; x < limit && b <= 0.0 && max(b, -1.0) >= a; x += 1.0) {
-        COUNT_TRIP(0)
-        shift += 1.0;
-        at.x += columns.x;
-        float next = PART ? depth_beyond(x + 2.0, source_row()) : textureLod(depth_map, at, 0.0).r;
-        depths = vec2(depths.y, next);
-        a = b;
-        b = shift + law.y * depths.y;
-    }
-    float stretch = b - a;
-    float t = -a / stretch;
-    surface = Surface(x + t, mix(depths.x, depths.y, t), false);
-    at = vec2(columns.x * (surface.source + 0.5) + columns.y, rows.x * gl_FragCoord.y + rows.y);
-    at.y = PART ? (float(source_origin.y + source_row()) + 0.5) * texel.y : at.y;
-    color = textureLod(color_map, at, 0.0);
-    float middle = 0.5 * float(source_size.x - 1);
-    bool done = a <= 0.0 && b > 0.0 && stretch < MAX_STRETCH && abs(surface.source - middle) <= middle;
-#ifdef SHORT_WAY_ALONE
-    // For measuring: what every pixel runs.
-    done = true;
-#endif
-    if (!done) {
-        color = march(origin, source_row(), span_steps(span), x, a, depths.x, surface);
+        discard;
     }
 #else
+    float origin = origins.x * gl_FragCoord.x + origins.y;
+    float x = floor(origin - farthest - uintBitsToFloat(span.x));
     int row = source_row();
     float depth = depth_at(int(clamp(x, 0.0, float(source_size.x - 1))), row);
-    color = march(origin, row, span_steps(span), x, x - origin + law.y * depth, depth, surface);
+    color = march(origin, row, span_steps(span.x), x, x - origin + law.y * depth, depth, surface);
 #endif
 #ifdef COUNT_TRIPS
-    color = vec4(trips[0] | trips[2] << 4 | (done ? 0 : 128), trips[1], trips[3], trips[4]) / 255.0;
+    int ways = trips[0] | min(trips[2], 1) << 3 | trips[6] << 4 | trips[7] << 5;
+    color = vec4(ways, trips[1], min(trips[3], 15) | min(trips[5], 15) << 4, trips[4]) / 255.0;
 #endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = surface.depth;

@@ -1,11 +1,17 @@
 #version 310 es
-// Gather, pass 2: for each target tile, the range of source columns that may land in it.
+// Gather, pass 2: for each target tile, the range of source columns that may land in it. With SHORT_WAY, where these are of
+// one continuous surface whose columns are affine in the target's, that law.
 
 #include "include/tiles.glsl"
 
 TEXTURE(2) uniform highp usampler2D tile_map;
 
-layout(location = 0) out uint span;
+#ifdef SHORT_WAY
+#include "include/laws.glsl"
+#endif
+
+// A span, and 0 in its second component; or a law, whose second component is never 0.
+layout(location = 0) out uvec4 span;
 
 void main() {
     ivec2 tile = ivec2(gl_FragCoord.xy);
@@ -21,6 +27,9 @@ void main() {
     int most = int(ceil((last + 1.0 - far_displacement - float(from * TILE.x)) * TILE_UNITS));
     int low = 0xffff;
     int high = 0;
+    // The first and the last tile that may land here.
+    int left = tiles;
+    int right = 0;
     for (int s = from; s <= to; ++s) {
         uint moved = texelFetch(tile_map, ivec2(s, tile.y), 0).r;
         int lowest = max(int(moved & 0xffffu), least);
@@ -28,6 +37,8 @@ void main() {
         if (lowest <= highest) {
             low = min(low, lowest);
             high = max(high, highest);
+            left = min(left, s);
+            right = s;
         }
         least -= PITCH;
         most -= PITCH;
@@ -37,5 +48,12 @@ void main() {
         low = high = 2 * tile.x * TILE.x < target_size.x ? 0xffff : 0;
     }
     // To the last candidate from the first, each rounded away, and one to close the last pair.
-    span = pack_span(float(high) / TILE_UNITS, ceil(float(high - low) / TILE_UNITS) + 2.0);
+    uint search = pack_span(float(high) / TILE_UNITS, ceil(float(high - low) / TILE_UNITS) + 2.0);
+    span = uvec4(search, 0u, 0u, 0u);
+#ifdef SHORT_WAY
+    vec3 affine = law_of(tile, left, right);
+    if (affine.y != 0.0) {
+        span.xyz = floatBitsToUint(affine);
+    }
+#endif
 }

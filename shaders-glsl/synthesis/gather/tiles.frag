@@ -1,14 +1,21 @@
 #version 310 es
 // Gather, pass 1: smallest and largest displacement of each source tile and of the column after it, so that every
-// pair of neighbours, and with it every disocclusion, lies within one tile.
+// pair of neighbours, and with it every disocclusion, lies within one tile. With SHORT_WAY also their plane, if they are on
+// one.
 
 #include "include/tiles.glsl"
+#ifdef SHORT_WAY
+#include "include/planes.glsl"
+#endif
 
-layout(location = 0) out uint tile;
+layout(location = 0) out uvec4 tile;
 
 void main() {
     // Forward column and row of the tile's corner.
     vec2 corner = (gl_FragCoord.xy - 0.5) * vec2(TILE);
+#ifdef SHORT_WAY
+    tile = plane_tile(corner);
+#else
     float least = 1e9;
     float most = -1e9;
 #ifdef TEXTURE_GATHER
@@ -39,5 +46,6 @@ void main() {
 #endif
     float a = displacement(least);
     float b = displacement(most);
-    tile = pack_interval(min(a, b), max(a, b));
+    tile = uvec4(pack_interval(min(a, b), max(a, b)), 0u, 0u, 0u);
+#endif
 }

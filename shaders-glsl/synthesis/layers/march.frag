@@ -8,6 +8,7 @@
 
 #include "include/layers.glsl"
 #include "include/span.glsl"
+#include "include/trips.glsl"
 
 TEXTURE(4) uniform highp usampler2D layer_map;
 TEXTURE(5) uniform sampler2D back_map;
@@ -52,7 +53,7 @@ float covered(vec4 mask, vec4 stripes) {
 
 // Colour of a layer's front and back, by their weights.
 vec4 weighted(int column, int row, float of_front, float of_back) {
-    vec4 mixture = texelFetch(color_map, in_image(ivec2(column, row)), 0);
+    vec4 mixture = texelFetch(color_map, TEXEL_PLACE(in_image(ivec2(column, row))), 0);
     vec4 behind = texelFetch(back_map, ivec2(column, row), 0);
     float share = behind.a;
     behind.a = mixture.a;
@@ -94,7 +95,7 @@ void main() {
     // Displacements and target column are relative to the far plane's displacement. `farthest` contains a hundredth of a
     // pixel for rounding.
     float t = origins.x * gl_FragCoord.x + origins.y - farthest + 0.01;
-    uint span = pixel_span();
+    uint span = pixel_span().x;
     float x = clamp(floor(t - uintBitsToFloat(span) - 1.01), 0.0, last);
     float limit = min(x + span_steps(span) + 2.0, last);
     int sense = mirrored ? -1 : 1;
@@ -108,6 +109,7 @@ void main() {
     float at = x + front - t;
     bool plain = is_full(bits) && at <= 0.0;
     while (plain && x < limit) {
+        COUNT_TRIP(0)
         bits = layer_bits(column + sense, row);
         float following = full_front(bits);
         plain = is_full(bits) && abs(following - front) < LINK;
@@ -145,6 +147,28 @@ void main() {
         on_back = before.split && abs(before.back - here.back) < LINK;
     }
     while (x < limit && seen.rest > REST) {
+        COUNT_TRIP(1)
+        // Past columns that change nothing: a single surface that is linked to the next column's and does not cross the pixel.
+        bool idle = !here.split;
+        float landed = x + here.front - t;
+        while (idle && x < limit) {
+            COUNT_TRIP(2)
+            uint ahead = layer_bits(column + sense, row);
+            float following = full_front(ahead);
+            float then = x + 1.0 + following - t;
+            idle = is_full(ahead) && abs(following - here.front) < LINK && (landed > 0.0 || then <= 0.0);
+            if (idle) {
+                x += 1.0;
+                column += sense;
+                here.front = following;
+                landed = then;
+                on_front = false;
+                on_back = false;
+            }
+        }
+        if (x >= limit) {
+            break;
+        }
         Layer next = layer_at(column + sense, row);
         // Where the four surfaces land, relative to the pixel.
         float a = x + here.front - t;
@@ -246,6 +270,7 @@ void main() {
         float weights = 0.0;
         int rows = beyond && away < 0.5 ? 0 : 2;
         for (int i = -rows; i <= rows; ++i) {
+            COUNT_TRIP(3)
             int at = clamp(row + int(roundEven(float(i) * spread)), 0, source_size.y - 1);
             Layer layer = layer_at(edge.column, at);
             bool front = i == 0 ? !edge.back : layer.front <= edge.reach + 1.0;
@@ -262,6 +287,11 @@ void main() {
         hole = hole && away >= 0.5;
         color += cover(seen, 1.0, edge_x, edge.reach) * fill;
     }
+#ifdef COUNT_TRIPS
+    // Columns of the three loops and rows of the fill; and whether the source's pixel at this place shows two surfaces.
+    bool split = !is_full(layer_bits(int(gl_FragCoord.x), row));
+    color = vec4(min(ivec4(trips[0], trips[1], trips[2], trips[3] | (split ? 128 : 0)), 255)) / 255.0;
+#endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = clamp((far_displacement + seen.reach - law.x) / law.y, 0.0, 1.0);
 #endif

@@ -16,7 +16,7 @@ pub enum EyesError {
     },
     /// The eyes are displaced along more than their X axis.
     #[error(
-        "the eyes are displaced by {off_axis:.4} m off their common X axis; synthesis moves pixels along rows only: place both eyes on one horizontal line"
+        "the eyes are displaced by {off_axis:.4} m off their common X axis; synthesis moves pixels along rows only: place both eyes on one horizontal line, or turn both at right angles to the line between them"
     )]
     OffAxis {
         /// Displacement in metres perpendicular to the X axis.
@@ -58,15 +58,19 @@ pub enum EyesError {
     /// A pose or a frustum with a value that is not finite, or an orientation that is not a rotation.
     #[error("an eye's pose or frustum is invalid: need finite numbers and an orientation of length 1")]
     Invalid,
-    /// A frustum or an image without area, or depth planes out of order.
-    #[error(
-        "the frustum is empty or the depth planes are out of order: need left < right, bottom < top and 0 < near < far"
-    )]
+    /// An image without pixels.
+    #[error("the eyes' images have a width or height of 0; give both in pixels")]
+    NoPixels,
+    /// A frustum without area.
+    #[error("an eye's frustum is empty: need left < right and bottom < top")]
     Empty,
-    /// A guard band outside [`GuardBand::MAX_PIXELS`] or [`GuardBand::DISTANCES`].
+    /// Depth planes out of order.
+    #[error("the depth planes are out of order: need 0 < near < far, and a near plane that is finite")]
+    Planes,
+    /// A guard band of more than [`GuardBand::MAX_PIXELS`], or a distance that is not positive and finite.
     #[error(
-        "a guard band of {0} is out of range; give none, at most {max}px, or a distance from {near} to {far} m",
-        max = GuardBand::MAX_PIXELS, near = GuardBand::DISTANCES.start(), far = GuardBand::DISTANCES.end()
+        "a guard band of {0} is impossible; give none, at most {max}px, or a finite distance of more than 0",
+        max = GuardBand::MAX_PIXELS
     )]
     GuardBand(GuardBand),
     /// The union of both frusta and the guard band has more pixels on a side than drivers render.

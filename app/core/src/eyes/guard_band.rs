@@ -12,7 +12,7 @@ use std::str::FromStr;
 pub enum GuardBand {
     /// No guard band, as in the paper: the outer border of the other eye is a hole.
     None,
-    /// Wide enough for all surfaces at this distance or farther: metres, in [`GuardBand::DISTANCES`].
+    /// Wide enough for all surfaces at this distance or farther: more than 0, in the unit of the eyes' positions.
     Distance(f32),
     /// A number of pixels, up to [`GuardBand::MAX_PIXELS`].
     Pixels(u32),
@@ -25,14 +25,23 @@ impl GuardBand {
     pub const AUTO: GuardBand = GuardBand::Auto(1.0);
     /// The widest band.
     pub const MAX_PIXELS: u32 = 1024;
-    /// The distances, in metres, from which a band can be complete.
+    /// The distances, in metres, that can be typed. In worlds of another scale others make sense.
     pub const DISTANCES: RangeInclusive<f32> = 0.05..=1000.0;
 
-    /// True if the value lies in its range.
+    /// True if the value is one that can be typed, for a world in metres.
     pub fn is_valid(&self) -> bool {
         match self {
             GuardBand::None => true,
             GuardBand::Distance(z) | GuardBand::Auto(z) => GuardBand::DISTANCES.contains(z),
+            GuardBand::Pixels(n) => *n <= GuardBand::MAX_PIXELS,
+        }
+    }
+
+    /// True if there can be such a band.
+    pub(super) fn is_possible(&self) -> bool {
+        match self {
+            GuardBand::None => true,
+            GuardBand::Distance(z) | GuardBand::Auto(z) => *z > 0.0 && z.is_finite(),
             GuardBand::Pixels(n) => *n <= GuardBand::MAX_PIXELS,
         }
     }

@@ -162,7 +162,7 @@ impl EyePair {
     /// [`EyesError`] if pixels do not move along rows only, or move too far.
     pub fn synthesis(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
         self.check_values()?;
-        if !guard.is_valid() {
+        if !guard.is_possible() {
             return Err(EyesError::GuardBand(guard));
         }
         self.check_alignment()?;
@@ -211,7 +211,7 @@ impl EyePair {
             target_eye,
             convention: self.depth.convention,
         };
-        warp.check_displacement()?;
+        warp.check()?;
         Ok(SynthesisViews { source, target: t, dominant_crop: [left, bottom], guard_columns: guard, warp })
     }
 
@@ -220,16 +220,19 @@ impl EyePair {
         if !self.poses.iter().all(Pose::is_valid) || !self.frusta.iter().all(Frustum::is_finite) {
             return Err(EyesError::Invalid);
         }
+        if self.size.contains(&0) {
+            return Err(EyesError::NoPixels);
+        }
         // In this form NaN fails, too.
         let ordered = |f: &Frustum| f.width() > 0.0 && f.height() > 0.0;
         let range = &self.depth;
         // Twice the planes' product stands in projections.
         let product = if range.far.is_finite() { range.near * range.far } else { range.near };
         let planes = range.near > 0.0 && range.near < range.far && (2.0 * product).is_finite();
-        if !self.frusta.iter().all(ordered) || !planes || self.size.contains(&0) {
+        if !self.frusta.iter().all(ordered) {
             return Err(EyesError::Empty);
         }
-        Ok(())
+        if planes { Ok(()) } else { Err(EyesError::Planes) }
     }
 
     /// Checks that pixels move along rows only: parallel eyes on one horizontal line, with rows on rows.
@@ -244,12 +247,14 @@ impl EyePair {
         }
         let ipd = self.ipd();
         let axis = self.poses[self.dominant.index()].right();
-        let off_axis = (right.position - left.position - axis * ipd).length();
-        // In worlds of other units than metres positions are rounded more coarsely.
-        if off_axis > f32::max(1e-4, 1e-3 * ipd.abs()) {
+        let between = right.position - left.position;
+        let off_axis = (between - axis * ipd).length();
+        // Far from the origin rounding displaces the eyes; a four hundredth of their distance moves what is three metres
+        // away by a tenth of a pixel at 2000 pixels and 90 degrees.
+        if off_axis > self.rounding() + between.length() / 400.0 {
             return Err(EyesError::OffAxis { off_axis });
         }
-        if ipd < -1e-6 {
+        if ipd < -self.rounding() {
             return Err(EyesError::Swapped { distance: -ipd });
         }
         let [left, right] = Eye::BOTH.map(|eye| self.tangents_per_pixel(eye));
@@ -265,6 +270,12 @@ impl EyePair {
             return Err(EyesError::Rows { rows });
         }
         Ok(())
+    }
+
+    /// Returns the largest difference between the eyes' positions that their rounding to f32 makes: half a unit in the last
+    /// place for each coordinate, and as much again for the computation of a position.
+    fn rounding(&self) -> f32 {
+        4.0 * f32::EPSILON * self.poses.iter().map(|pose| pose.position.length()).fold(0.0, f32::max)
     }
 
     /// Returns the tangents that a pixel of an eye covers, along X and Y.
@@ -401,7 +412,36 @@ mod tests {
         p.frusta[0] = Frustum::symmetric(1.0, 1.0);
         assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Density { .. })));
         p.depth.near = 0.0;
-        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Empty)));
+        assert_eq!(p.synthesis(GuardBand::None), Err(EyesError::Planes));
+        let p = EyePair { size: [512, 0], ..pair(Eye::Left) };
+        assert_eq!(p.synthesis(GuardBand::None), Err(EyesError::NoPixels));
+    }
+
+    #[test]
+    fn eyes_far_from_the_origin_are_displaced_by_rounding_alone() {
+        for distance in [100.0, 700.0, 1500.0, 4000.0, 8000.0] {
+            for turn in 0..200 {
+                let orientation = Quat::from_euler(glam::EulerRot::YXZ, turn as f32 * 0.7, 0.3, 0.1);
+                let position = Quat::from_rotation_y(turn as f32) * Vec3::new(distance, 1.6, 0.0);
+                let own = pair(Eye::Right);
+                let head = Pose { position, orientation };
+                let far = EyePair::parallel(head, own.frusta[0], 0.064, own.depth, own.size, Eye::Right);
+                let warp =
+                    far.synthesis(GuardBand::None).unwrap_or_else(|e| panic!("{distance} m: {e}")).warp;
+                let near =
+                    EyePair::parallel(Pose::IDENTITY, own.frusta[0], 0.064, own.depth, own.size, Eye::Right);
+                let expected = near.synthesis(GuardBand::None).unwrap().warp;
+                let rounding = f64::from(distance * f32::EPSILON / 0.064);
+                assert!((warp.law.scale / expected.law.scale - 1.0).abs() < rounding + 1e-5, "{distance} m");
+            }
+        }
+        // A displacement that is no rounding is refused at any distance.
+        for distance in [0.0, 1000.0] {
+            let mut off = pair(Eye::Right);
+            off.poses.iter_mut().for_each(|pose| pose.position.x += distance);
+            off.poses[0].position.y += 0.001;
+            assert!(matches!(off.synthesis(GuardBand::None), Err(EyesError::OffAxis { .. })), "{distance} m");
+        }
     }
 
     #[test]
@@ -421,7 +461,7 @@ mod tests {
 
     #[test]
     fn guard_bands_out_of_range_are_refused() {
-        let bands = [0.0, 1e-30, -1.0, 0.04, 1001.0, f32::NAN, f32::INFINITY].map(GuardBand::Distance);
+        let bands = [0.0, -1.0, f32::NAN, f32::INFINITY].map(GuardBand::Distance);
         for band in bands.into_iter().chain([GuardBand::Pixels(1025), GuardBand::Pixels(u32::MAX)]) {
             let error = pair(Eye::Left).synthesis(band).unwrap_err();
             assert!(matches!(error, EyesError::GuardBand(_)), "{band:?}: {error}");
@@ -429,16 +469,18 @@ mod tests {
         for band in [GuardBand::Distance(0.05), GuardBand::Distance(1000.0), GuardBand::Pixels(1024)] {
             pair(Eye::Left).synthesis(band).unwrap();
         }
+        let error = pair(Eye::Left).synthesis(GuardBand::Distance(1e-30)).unwrap_err();
+        assert!(matches!(error, EyesError::TooLarge { .. }), "{error}");
     }
 
     #[test]
     fn nan_and_infinite_values_are_refused() {
         type Spoil = fn(&mut EyePair);
         let spoilt: [(Spoil, EyesError); 9] = [
-            (|p| (p.depth.near, p.depth.far) = (f32::MAX, f32::INFINITY), EyesError::Empty),
-            (|p| p.depth.near = f32::NAN, EyesError::Empty),
-            (|p| p.depth.far = f32::NAN, EyesError::Empty),
-            (|p| p.depth.near = f32::INFINITY, EyesError::Empty),
+            (|p| (p.depth.near, p.depth.far) = (f32::MAX, f32::INFINITY), EyesError::Planes),
+            (|p| p.depth.near = f32::NAN, EyesError::Planes),
+            (|p| p.depth.far = f32::NAN, EyesError::Planes),
+            (|p| p.depth.near = f32::INFINITY, EyesError::Planes),
             (|p| p.frusta[0].left = f32::NAN, EyesError::Invalid),
             (|p| p.frusta[1].top = f32::INFINITY, EyesError::Invalid),
             (|p| p.poses[0].position.x = f32::NAN, EyesError::Invalid),
@@ -470,7 +512,7 @@ mod tests {
             depth: DepthRange { near: 0.3 * unit, far: 100.0 * unit, ..DepthRange::PAPER },
             ..EyeOptions::default()
         };
-        let warp = |unit| pair(unit).pair(Pose::IDENTITY).synthesis(GuardBand::None).unwrap().warp;
+        let warp = |unit| pair(unit).pair(Pose::IDENTITY).synthesis(GuardBand::Distance(unit)).unwrap().warp;
         let metres = warp(1.0);
         // Giants in metres, people in centimetres and in millimetres, mice.
         for unit in [0.01, 0.1, 30.0, 100.0, 1000.0] {
@@ -478,6 +520,10 @@ mod tests {
             assert_eq!(Warp { law: metres.law, ..other }, metres);
             let [a, b] = [other, metres].map(|warp| [warp.law.offset, warp.law.scale]);
             assert!(a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-5), "{unit}: {a:?}, {b:?}");
+            let mut off_axis = pair(unit).pair(Pose::IDENTITY);
+            off_axis.poses[0].position.y += 0.001 * unit;
+            let refused = off_axis.synthesis(GuardBand::None);
+            assert!(matches!(refused, Err(EyesError::OffAxis { .. })), "{unit}: {refused:?}");
         }
     }
 

@@ -63,8 +63,12 @@ impl Warp {
         })
     }
 
-    /// Checks that the shaders can store all displacements that land in the target.
-    pub(super) fn check_displacement(&self) -> Result<(), EyesError> {
+    /// Checks that the shaders can store all displacements that land in the target. Those of
+    /// [`EyePair::synthesis`](super::EyePair::synthesis) are checked.
+    ///
+    /// # Errors
+    /// [`EyesError::Displacement`], also for numbers that are not finite.
+    pub fn check(&self) -> Result<(), EyesError> {
         let [far, near] = self.forward_displacements();
         let landing = (near - far).min(f64::from(self.target_size[0]) - far);
         let fits = landing <= Warp::MAX_DISPLACEMENT && far.abs().max(near.abs()) <= MAX_OFFSET;

@@ -4,7 +4,7 @@
 ///
 /// | | source | synthesized eye |
 /// |---|---|---|
-/// | [`Edges::Hard`] | one sample per pixel | one surface per pixel; silhouettes blended by where they cross it |
+/// | [`Edges::Hard`] | one sample per pixel, or resolved colour and the nearest depth | one surface per pixel; silhouettes blended by where they cross it |
 /// | [`Edges::Nearest`], [`Edges::Sample`] | resolved colour, one depth per pixel | anti-aliased; the share of each surface is estimated from colour and depth around |
 /// | [`Edges::Multisample`] | resolved colour, depth of all samples | anti-aliased; with the samples' colours, too, nothing is estimated |
 ///
@@ -13,7 +13,8 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Edges {
-    /// One sample per pixel: every pixel shows one surface.
+    /// One sample per pixel: every pixel shows one surface. Resolved colour with each pixel's nearest depth is close to it,
+    /// at an eighth of the cost of the other kinds.
     #[default]
     Hard,
     /// Resolved (anti-aliased) colour; depth of each pixel's nearest sample.

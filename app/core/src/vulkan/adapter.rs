@@ -2,6 +2,7 @@
 
 use ash::vk;
 
+use super::formats::is_depth;
 use super::{Host, Options, VulkanError};
 use crate::synthesis::Edges;
 
@@ -47,7 +48,11 @@ impl Adapter {
         self.check_format(options.color_format, blended, "a target's colour")?;
         if let Some(format) = options.depth_format {
             let attachment = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
-            self.check_format(format, attachment, "a target's depth")?;
+            let role = "a target's depth";
+            if !is_depth(format) {
+                return Err(VulkanError::Format { format, role });
+            }
+            self.check_format(format, attachment, role)?;
         }
         if options.edges == Edges::Multisample {
             self.check_samples(options.samples)?;

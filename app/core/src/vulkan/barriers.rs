@@ -55,18 +55,14 @@ impl Barriers {
     pub(super) fn record(&self, commands: &Commands) {
         let (list, none) = (&self.list[..self.count], vk::DependencyFlags::empty());
         if !list.is_empty() {
+            // No stages are not allowed here; the first stage waits for nothing, and nothing waits for the last one.
+            let or = |stages: vk::PipelineStageFlags, none| if stages.is_empty() { none } else { stages };
+            let before = or(self.before, vk::PipelineStageFlags::TOP_OF_PIPE);
+            let after = or(self.after, vk::PipelineStageFlags::BOTTOM_OF_PIPE);
             // SAFETY: `Commands::new` asks for a recording buffer and live images. `Gather::record` asks that the
             // images are in their states `before` when the commands are executed.
             unsafe {
-                commands.device.cmd_pipeline_barrier(
-                    commands.buffer,
-                    self.before,
-                    self.after,
-                    none,
-                    &[],
-                    &[],
-                    list,
-                );
+                commands.device.cmd_pipeline_barrier(commands.buffer, before, after, none, &[], &[], list);
             }
         }
     }

@@ -5,6 +5,7 @@ use std::ffi::CStr;
 use ash::{ext, vk};
 
 use super::Host;
+use super::pipelines::UNIFORM_STAGES;
 use crate::synthesis::Uniforms;
 
 /// The caller's command buffer, in the recording state.
@@ -40,12 +41,12 @@ impl<'a> Commands<'a> {
 
     /// Gives the following draws their textures and uniforms.
     pub(super) fn bind(&self, layout: vk::PipelineLayout, textures: vk::DescriptorSet, uniforms: &Uniforms) {
-        let (point, stage) = (vk::PipelineBindPoint::GRAPHICS, vk::ShaderStageFlags::FRAGMENT);
+        let (point, stages) = (vk::PipelineBindPoint::GRAPHICS, UNIFORM_STAGES);
         // SAFETY: `Commands::new` asks for a recording buffer and live handles. The layout has one set, and as many
         // push constants as the uniforms have bytes.
         unsafe {
             self.device.cmd_bind_descriptor_sets(self.buffer, point, layout, 0, &[textures], &[]);
-            self.device.cmd_push_constants(self.buffer, layout, stage, 0, bytemuck::bytes_of(uniforms));
+            self.device.cmd_push_constants(self.buffer, layout, stages, 0, bytemuck::bytes_of(uniforms));
         }
     }
 
@@ -82,7 +83,8 @@ impl Labels {
         let needed = [c"vkCmdBeginDebugUtilsLabelEXT", c"vkCmdEndDebugUtilsLabelEXT"];
         // SAFETY: the caller's handles are valid.
         let has = |name| unsafe { has_command(host, name) };
-        needed.into_iter().all(has).then(|| Labels(ext::debug_utils::Device::new(host.instance, host.device)))
+        let is_there = host.debug_utils && needed.into_iter().all(has);
+        is_there.then(|| Labels(ext::debug_utils::Device::new(host.instance, host.device)))
     }
 }
 

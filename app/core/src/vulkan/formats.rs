@@ -4,8 +4,10 @@ use ash::vk;
 
 use super::{ImageState, LayerImage};
 
-/// Format of the tile map, the span map and the layers. Every device samples it and renders to it.
+/// Format of the layers, and of their tile map and span map. Every device samples it and renders to it.
 pub(super) const MAP: vk::Format = vk::Format::R32_UINT;
+/// Format of the tile map and the span map of sources with hard edges. Every device samples it and renders to it.
+pub(super) const LAW_MAP: vk::Format = vk::Format::R32G32B32A32_UINT;
 
 /// The format in which the colour behind a source's edges is stored.
 ///
@@ -23,9 +25,13 @@ pub(super) fn background(color: vk::Format) -> vk::Format {
     }
 }
 
-/// Bytes of a texel of [`MAP`] or a [`background`] format.
+/// Bytes of a texel of [`MAP`], [`LAW_MAP`] or a [`background`] format.
 pub(super) fn texel_bytes(format: vk::Format) -> u64 {
-    if format == vk::Format::R16G16B16A16_SFLOAT { 8 } else { 4 }
+    match format {
+        LAW_MAP => 16,
+        vk::Format::R16G16B16A16_SFLOAT => 8,
+        _ => 4,
+    }
 }
 
 /// All aspects of a format.
@@ -34,11 +40,16 @@ pub(super) fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
         vk::Format::D16_UNORM | vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D32_SFLOAT => {
             vk::ImageAspectFlags::DEPTH
         }
+        vk::Format::S8_UINT => vk::ImageAspectFlags::STENCIL,
         vk::Format::D16_UNORM_S8_UINT | vk::Format::D24_UNORM_S8_UINT | vk::Format::D32_SFLOAT_S8_UINT => {
             vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL
         }
         _ => vk::ImageAspectFlags::COLOR,
     }
+}
+
+pub(super) fn is_depth(format: vk::Format) -> bool {
+    aspects(format).contains(vk::ImageAspectFlags::DEPTH)
 }
 
 /// Mip level 0 of one layer.

@@ -15,7 +15,8 @@ use super::shaders::GatherVariant;
 use super::targets::Rendering;
 use super::timer::{Stamp, Timer};
 use super::{
-    Frame, Host, ImageState, Options, PassTimes, SourceId, SourceImages, TargetId, TargetImages, VulkanError,
+    Frame, Host, ImageState, Options, PassTimes, SourceId, SourceImages, TargetId, TargetImages, Uses,
+    VulkanError,
 };
 use crate::eyes::Warp;
 use crate::synthesis::{Places, Uniforms, tiles};
@@ -181,6 +182,38 @@ impl Gather {
         frame: &Frame,
         warp: &Warp,
     ) -> Result<(), VulkanError> {
+        // SAFETY: the contract is the same.
+        unsafe { self.record_passes(commands, frame, warp, None) }
+    }
+
+    /// Does what [`Gather::record`] does for images whose uses before and after differ from frame to frame. A source is
+    /// still sampled in the layout that its [`LayerImage::before`](super::LayerImage::before) asks for.
+    ///
+    /// # Errors
+    /// Those of [`Gather::record`].
+    ///
+    /// # Safety
+    /// Those of [`Gather::record`], with the states of `uses`.
+    pub unsafe fn record_with_uses(
+        &mut self,
+        commands: vk::CommandBuffer,
+        frame: &Frame,
+        warp: &Warp,
+        uses: &Uses,
+    ) -> Result<(), VulkanError> {
+        // SAFETY: the contract is the same.
+        unsafe { self.record_passes(commands, frame, warp, Some(uses)) }
+    }
+
+    /// # Safety
+    /// As [`Gather::record_with_uses`], or [`Gather::record`].
+    unsafe fn record_passes(
+        &mut self,
+        commands: vk::CommandBuffer,
+        frame: &Frame,
+        warp: &Warp,
+        uses: Option<&Uses>,
+    ) -> Result<(), VulkanError> {
         let (source, target) = self.registered(frame)?;
         self.check_frame(frame, warp, source, target)?;
 
@@ -205,7 +238,7 @@ impl Gather {
         if let Some(timer) = timer {
             timer.begin(&commands);
         }
-        self.acquire_images(&commands, source, target);
+        self.acquire_images(&commands, source, target, uses);
         commands.bind(self.layouts.pipeline, source.textures, &Uniforms::of_part(&warp, &places));
         if let Some(split) = &passes.split {
             split.record(&recorder, warp.source_size, source.images.sample_color.is_some());
@@ -217,7 +250,7 @@ impl Gather {
         recorder.stamp(Stamp::Spans);
         passes.march.record(&recorder, &target.attachments, frame.target_origin, warp.target_size);
         recorder.stamp(Stamp::March);
-        release_images(&commands, source, target);
+        release_images(&commands, source, target, uses);
 
         if let Some(timer) = &mut self.timer {
             timer.end();
@@ -245,10 +278,10 @@ impl Gather {
     }
 
     /// Brings all images to the states that the passes need.
-    fn acquire_images(&self, commands: &Commands, source: &Source, target: &Target) {
+    fn acquire_images(&self, commands: &Commands, source: &Source, target: &Target, uses: Option<&Uses>) {
         let mut barriers = Barriers::new();
-        for (image, state) in source.images().chain(target.images()) {
-            barriers.registered(image, image.before, state);
+        for (image, state) in source.images(uses).chain(target.images(uses)) {
+            barriers.registered(&image, image.before, state);
         }
         // The frame before has read the intermediate buffers; what they hold is not needed.
         let read = ImageState { layout: vk::ImageLayout::UNDEFINED, ..ImageState::SAMPLED };
@@ -281,10 +314,10 @@ impl Gather {
 }
 
 /// Brings the caller's images to the states that follow.
-fn release_images(commands: &Commands, source: &Source, target: &Target) {
+fn release_images(commands: &Commands, source: &Source, target: &Target, uses: Option<&Uses>) {
     let mut barriers = Barriers::new();
-    for (image, state) in source.images().chain(target.images()) {
-        barriers.registered(image, state, image.after);
+    for (image, state) in source.images(uses).chain(target.images(uses)) {
+        barriers.registered(&image, state, image.after);
     }
     barriers.record(commands);
 }

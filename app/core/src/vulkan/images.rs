@@ -3,12 +3,14 @@
 use ash::vk;
 
 use super::adapter::Adapter;
-use super::formats::{aspects, sampled_state};
+use super::formats::{aspects, is_depth, sampled_state};
 use super::objects::Objects;
 use super::passes::Passes;
 use super::pipelines::TEXTURES;
 use super::targets::{Attachments, PassKind};
-use super::{ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages, VulkanError};
+use super::{
+    ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages, Use, Uses, VulkanError,
+};
 use crate::synthesis::Edges;
 
 /// A registered source: views and descriptors of its images.
@@ -38,7 +40,7 @@ pub(super) fn check_source(
     let filtered = sampled | vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
     adapter.check_format(images.color.format, filtered, "a source's colour")?;
     let depth = images.depth.format;
-    if !is_depth(depth) && depth != vk::Format::R32_SFLOAT {
+    if !is_depth(depth) && !matches!(depth, vk::Format::R16_UNORM | vk::Format::R32_SFLOAT) {
         return Err(VulkanError::Format { format: depth, role: "a source's depth" });
     }
     adapter.check_format(depth, sampled, "a source's depth")?;
@@ -64,10 +66,6 @@ pub(super) fn check_target(
         }
     }
     adapter.check_image_size("a target's image", images.size)
-}
-
-fn is_depth(format: vk::Format) -> bool {
-    aspects(format).contains(vk::ImageAspectFlags::DEPTH)
 }
 
 impl Source {
@@ -113,13 +111,15 @@ impl Source {
         Ok(Source { id, images: *images, textures: set, _objects: objects })
     }
 
-    /// The images, with the states in which the passes read them.
-    pub(super) fn images(&self) -> impl Iterator<Item = (&LayerImage, ImageState)> {
-        let SourceImages { color, depth, sample_color, .. } = &self.images;
-        [Some(color), Some(depth), sample_color.as_ref()]
+    /// The images in a call with these uses, or those of their registration, and the states in which the passes read them.
+    pub(super) fn images(&self, uses: Option<&Uses>) -> impl Iterator<Item = (LayerImage, ImageState)> {
+        let SourceImages { color, depth, sample_color, .. } = self.images;
+        let uses =
+            uses.map(|uses| [uses.source_color, uses.source_depth, uses.source_sample_color].map(Some));
+        [Some(color), Some(depth), sample_color]
             .into_iter()
-            .flatten()
-            .map(|image| (image, sampled_state(image)))
+            .zip(uses.unwrap_or_default())
+            .filter_map(|(image, other)| image.map(|image| (used(image, other), sampled_state(&image))))
     }
 }
 
@@ -165,9 +165,20 @@ impl Target {
         Ok(Target { id, images: *images, attachments, _objects: objects })
     }
 
-    /// The images, with the states in which the last pass writes them.
-    pub(super) fn images(&self) -> impl Iterator<Item = (&LayerImage, ImageState)> {
-        let depth = self.images.depth.as_ref().map(|depth| (depth, ImageState::DEPTH_ATTACHMENT));
-        [Some((&self.images.color, ImageState::COLOR_ATTACHMENT)), depth].into_iter().flatten()
+    /// The images in a call with these uses, or those of their registration, and the states in which the last pass writes
+    /// them.
+    pub(super) fn images(&self, uses: Option<&Uses>) -> impl Iterator<Item = (LayerImage, ImageState)> {
+        let color = used(self.images.color, uses.map(|uses| uses.target_color));
+        let depth = self.images.depth.map(|depth| used(depth, uses.map(|uses| uses.target_depth)));
+        let depth = depth.map(|depth| (depth, ImageState::DEPTH_ATTACHMENT));
+        [Some((color, ImageState::COLOR_ATTACHMENT)), depth].into_iter().flatten()
+    }
+}
+
+/// An image with other uses, if there are any.
+fn used(image: LayerImage, other: Option<Use>) -> LayerImage {
+    match other {
+        Some(Use { before, after }) => LayerImage { before, after, ..image },
+        None => image,
     }
 }

@@ -109,7 +109,7 @@ pub enum VulkanError {
     },
     /// A registered image does not have the format of [`Options`].
     #[error(
-        "a target of {found:?} does not fit pipelines for {expected:?}; give the same formats in `Options` and `TargetImages`"
+        "a target of {found:?} does not fit pipelines that were made for {expected:?}; register images of that format, or make pipelines for the other"
     )]
     OtherFormat {
         /// The format of [`Options`], UNDEFINED for no depth.
@@ -122,12 +122,12 @@ pub enum VulkanError {
     QueueFamily(u32),
     /// [`Host::dynamic_rendering`] is set, but the device has no vkCmdBeginRendering.
     #[error(
-        "the device has no vkCmdBeginRendering; enable the feature dynamicRendering, or unset `dynamic_rendering`"
+        "the device has no vkCmdBeginRendering; enable the feature dynamicRendering, or leave dynamic_rendering off"
     )]
     DynamicRendering,
     /// A size is zero, or beyond the sizes of [`Options`] or of the device.
     #[error(
-        "{what} of {}x{} pixels is not between 1x1 and {}x{}; give a size in that range, or larger sizes in `Options`",
+        "{what} of {}x{} pixels is not between 1x1 and {}x{}; give a size in that range, or make pipelines for larger sizes",
         size[0], size[1], limit[0], limit[1]
     )]
     Size {
@@ -142,7 +142,7 @@ pub enum VulkanError {
     #[error("a source's depth of {0} samples cannot be used; give 2 or 4, whichever the device can sample")]
     Samples(u32),
     /// A source has the colour of its samples, which only [`Edges::Multisample`] uses.
-    #[error("colour of samples is for `Edges::Multisample` only; leave out `sample_color`")]
+    #[error("colour of samples is for edges of multisample textures only; leave out sample_color")]
     SampleColors,
     /// A rectangle reaches beyond its image.
     #[error(
@@ -198,6 +198,9 @@ pub struct Host<'a> {
     /// True if the feature `dynamicRendering` of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled. Without it render passes
     /// and framebuffers are used, with the same result.
     pub dynamic_rendering: bool,
+    /// True if VK_EXT_debug_utils is enabled in the instance: passes then have labels in debuggers. A device's entry points do
+    /// not tell, since validation layers return them without the extension.
+    pub debug_utils: bool,
 }
 
 /// The formats and sizes for which pipelines and buffers are made.
@@ -222,6 +225,14 @@ pub struct Options {
     pub pipeline_cache: vk::PipelineCache,
 }
 
+impl Options {
+    /// Returns the bytes of the intermediate buffers' texels, which [`Gather::buffer_bytes`] will return: to plan with before
+    /// there are pipelines. Drivers add padding.
+    pub fn buffer_bytes(&self) -> u64 {
+        passes::buffers(self).map(|(kind, size)| kind.bytes(self, size)).sum()
+    }
+}
+
 impl Default for Options {
     /// R8G8B8A8_UNORM without depth, 2048 x 2048 pixels, hard edges, no times, no cache.
     fn default() -> Options {
@@ -243,7 +254,7 @@ impl Default for Options {
 pub struct ImageState {
     /// Its layout.
     pub layout: vk::ImageLayout,
-    /// The stages that use it.
+    /// The stages that use it. None: nothing is waited for before, or nothing waits afterwards, as with a semaphore.
     pub stages: vk::PipelineStageFlags,
     /// Their kinds of access.
     pub access: vk::AccessFlags,
@@ -270,6 +281,12 @@ impl ImageState {
             vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ.as_raw()
                 | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
         ),
+    };
+    /// Depth that a render pass resolved from samples into this image. Vulkan does that among the colour attachments' writes,
+    /// in whatever layout.
+    pub const RESOLVED_DEPTH: ImageState = ImageState {
+        layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+        ..ImageState::COLOR_ATTACHMENT
     };
     /// Sampled by fragment shaders: SHADER_READ_ONLY_OPTIMAL.
     pub const SAMPLED: ImageState = ImageState {
@@ -311,8 +328,8 @@ pub struct SourceImages {
     /// others. All four channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the edges
     /// are [`Edges::Hard`] it is resolved, with values between 0 and 1.
     pub color: LayerImage,
-    /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, or R32_SFLOAT. The stencil aspect is not
-    /// read. For [`Edges::Multisample`] it has [`Options::samples`] samples.
+    /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or R32_SFLOAT. The stencil aspect is
+    /// not read. For [`Edges::Multisample`] it has [`Options::samples`] samples.
     pub depth: LayerImage,
     /// For [`Edges::Multisample`], the image with as many samples that the colour was resolved from, if it still exists.
     pub sample_color: Option<LayerImage>,
@@ -368,6 +385,30 @@ pub struct Frame {
     pub target: TargetId,
     /// Upper left corner of the rectangle to write in them, in pixels. Pixels outside of it stay as they are.
     pub target_origin: [u32; 2],
+}
+
+/// The uses of an image before and after one call, in place of those of its [`LayerImage`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// Its use before.
+    pub before: ImageState,
+    /// Its use afterwards.
+    pub after: ImageState,
+}
+
+/// The uses of all images in one call ([`Gather::record_with_uses`]). Those of images that are not registered do not matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Uses {
+    /// Of [`SourceImages::color`].
+    pub source_color: Use,
+    /// Of [`SourceImages::depth`].
+    pub source_depth: Use,
+    /// Of [`SourceImages::sample_color`].
+    pub source_sample_color: Use,
+    /// Of [`TargetImages::color`].
+    pub target_color: Use,
+    /// Of [`TargetImages::depth`].
+    pub target_depth: Use,
 }
 
 /// GPU times of one frame's passes ([`Gather::pass_times`]).

@@ -44,6 +44,24 @@ pub(super) struct SpansPass {
     pub(super) map: Intermediate,
 }
 
+/// The kinds and sizes of the intermediate buffers that [`Passes::new`] makes.
+pub(super) fn buffers(options: &Options) -> impl Iterator<Item = (PassKind, [u32; 2])> {
+    let layers = (options.edges != Edges::Hard).then_some((PassKind::Layers, options.max_source_size));
+    let map = map_kind(options.edges);
+    map_sizes(options).map(|size| (map, size)).into_iter().chain(layers)
+}
+
+/// The kind of the maps of tiles and of spans.
+fn map_kind(edges: Edges) -> PassKind {
+    if edges == Edges::Hard { PassKind::LawMap } else { PassKind::Map }
+}
+
+/// The sizes of the maps of tiles and of spans.
+fn map_sizes(options: &Options) -> [[u32; 2]; 2] {
+    let [source, target] = [options.max_source_size, options.max_target_size];
+    [source, [target[0], source[1]]].map(tiles)
+}
+
 /// Searches for each target pixel, and writes the target.
 pub(super) struct MarchPass {
     pipelines: Pipelines,
@@ -64,8 +82,9 @@ impl Passes {
         let mut factory = PipelineFactory { objects, shaders, rendering: &rendering, layout, options };
         let edges = options.edges;
         let depth = options.depth_format.is_some();
-        let tile_pipelines = factory.pipelines(shaders::tiles(edges), PassKind::Map)?;
-        let spans_pipeline = factory.pipeline(shaders::SPANS, PassKind::Map, false)?;
+        let map = map_kind(edges);
+        let tile_pipelines = factory.pipelines(shaders::tiles(edges, variant), map)?;
+        let spans_pipeline = factory.pipeline(shaders::spans(edges, variant), map, false)?;
         let march = factory.pipelines(shaders::march(edges, variant, depth), PassKind::Target)?;
         let resolved =
             shaders::split(edges).map(|shader| factory.pipelines(shader, PassKind::Layers)).transpose()?;
@@ -74,14 +93,15 @@ impl Passes {
             .transpose()?;
         drop(factory);
 
-        let [source, target] = [options.max_source_size, options.max_target_size];
         let mut intermediate =
             |kind, size| Intermediate::new(objects, &rendering, memory, kind, options, size);
-        let tile_map = intermediate(PassKind::Map, tiles(source))?;
-        let span_map = intermediate(PassKind::Map, tiles([target[0], source[1]]))?;
+        let [tile_size, span_size] = map_sizes(options);
+        let tile_map = intermediate(map, tile_size)?;
+        let span_map = intermediate(map, span_size)?;
         let split = match resolved {
             Some(resolved) => {
-                Some(SplitPass { resolved, samples, layers: intermediate(PassKind::Layers, source)? })
+                let layers = intermediate(PassKind::Layers, options.max_source_size)?;
+                Some(SplitPass { resolved, samples, layers })
             }
             None => None,
         };

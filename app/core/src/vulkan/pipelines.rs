@@ -13,6 +13,11 @@ pub(super) const TEXTURES: usize = 7;
 /// The binding of the source's colour, which is filtered. All others are fetched as they are.
 const COLOR: usize = 1;
 
+/// The stages that have the uniforms.
+pub(super) const UNIFORM_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+);
+
 /// The layouts that all pipelines have.
 #[derive(Clone, Copy)]
 pub(super) struct Layouts {
@@ -26,7 +31,7 @@ impl Layouts {
         let layouts = [textures];
         // Every device has 128 bytes of push constants.
         let constants = [vk::PushConstantRange {
-            stage_flags: vk::ShaderStageFlags::FRAGMENT,
+            stage_flags: UNIFORM_STAGES,
             offset: 0,
             size: size_of::<Uniforms>() as u32,
         }];
@@ -101,7 +106,11 @@ impl PipelineFactory<'_> {
         kind: PassKind,
         part: bool,
     ) -> Result<vk::Pipeline, VulkanError> {
-        let vertex = self.shaders.create_shader(shaders::SCREEN)?;
+        let vertex = match kind {
+            PassKind::Target => shaders::MARCH_VERTEX,
+            _ => shaders::SCREEN,
+        };
+        let vertex = self.shaders.create_shader(vertex)?;
         let fragment = self.shaders.create_shader(fragment)?;
         // `PART` and `TWO_SAMPLES` in the shaders.
         let values = [part, self.options.samples == 2].map(u32::from);

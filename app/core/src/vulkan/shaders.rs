@@ -13,7 +13,7 @@ pub enum GatherVariant {
 }
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
-pub(super) const SPANS: &[u8] = include_bytes!("spirv/spans.spv");
+pub(super) const MARCH_VERTEX: &[u8] = include_bytes!("spirv/march-vertex.spv");
 /// The first pass for depth and colour of all samples.
 pub(super) const SPLIT_SAMPLES: &[u8] = include_bytes!("spirv/split-samples.spv");
 
@@ -28,10 +28,19 @@ pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
 }
 
 /// Returns the pass that finds the bounds of tiles.
-pub(super) fn tiles(edges: Edges) -> &'static [u8] {
-    match edges {
-        Edges::Hard => include_bytes!("spirv/tiles.spv"),
+pub(super) fn tiles(edges: Edges, variant: GatherVariant) -> &'static [u8] {
+    match (edges, variant) {
+        (Edges::Hard, GatherVariant::Software) => include_bytes!("spirv/tiles.spv"),
+        (Edges::Hard, GatherVariant::ShortWay) => include_bytes!("spirv/tiles-short.spv"),
         _ => include_bytes!("spirv/layer-tiles.spv"),
+    }
+}
+
+/// Returns the pass that finds what each tile of the target has to search.
+pub(super) fn spans(edges: Edges, variant: GatherVariant) -> &'static [u8] {
+    match (edges, variant) {
+        (Edges::Hard, GatherVariant::ShortWay) => include_bytes!("spirv/spans-short.spv"),
+        _ => include_bytes!("spirv/spans.spv"),
     }
 }
 
@@ -60,8 +69,10 @@ mod tests {
 
     const MARCH: &str = "synthesis/gather/march.frag";
     const LAYER_MARCH: &str = "synthesis/layers/march.frag";
+    const SPANS: &str = "synthesis/gather/spans.frag";
     const SPLIT: &str = "synthesis/layers/split.frag";
-    const MODULES: [Module; 16] = [
+    const TILES: &str = "synthesis/gather/tiles.frag";
+    const MODULES: [Module; 19] = [
         ("layer-march", LAYER_MARCH, &[]),
         ("layer-march-depth", LAYER_MARCH, &["WRITE_DEPTH"]),
         ("layer-march-multisample", LAYER_MARCH, &["MULTISAMPLE"]),
@@ -71,13 +82,16 @@ mod tests {
         ("march-depth", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH"]),
         ("march-short", MARCH, &["TEXTURE_GATHER", "SHORT_WAY"]),
         ("march-short-depth", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH"]),
+        ("march-vertex", "synthesis/march.vert", &[]),
         ("screen", "screen.vert", &[]),
-        ("spans", "synthesis/gather/spans.frag", &[]),
+        ("spans", SPANS, &[]),
+        ("spans-short", SPANS, &["SHORT_WAY"]),
         ("split-multisample", SPLIT, &["MULTISAMPLE"]),
         ("split-nearest", SPLIT, &[]),
         ("split-sample", SPLIT, &["FIRST_SAMPLE"]),
         ("split-samples", SPLIT, &["MULTISAMPLE", "SAMPLE_COLORS"]),
-        ("tiles", "synthesis/gather/tiles.frag", &["TEXTURE_GATHER"]),
+        ("tiles", TILES, &["TEXTURE_GATHER"]),
+        ("tiles-short", TILES, &["TEXTURE_GATHER", "SHORT_WAY"]),
     ];
     const GLSLANG: &str = "glslangValidator";
     /// Vulkan 1.0's SPIR-V, optimized for size, without names and lines.

@@ -11,8 +11,10 @@ use crate::synthesis::Edges;
 /// The kinds of attachments that passes draw into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PassKind {
-    /// One 32-bit integer for each tile.
+    /// One 32-bit integer for each tile of layers.
     Map,
+    /// Four of them for each tile of a source with hard edges, whose tiles have laws.
+    LawMap,
     /// Two colour attachments: the surfaces that each source pixel shows, and the colour behind them.
     Layers,
     /// The caller's target.
@@ -24,9 +26,16 @@ impl PassKind {
     pub(super) fn formats(self, options: &Options) -> Vec<vk::Format> {
         match self {
             PassKind::Map => vec![formats::MAP],
+            PassKind::LawMap => vec![formats::LAW_MAP],
             PassKind::Layers => vec![formats::MAP, formats::background(options.color_format)],
             PassKind::Target => vec![options.color_format],
         }
+    }
+
+    /// Bytes of the colour attachments' texels.
+    pub(super) fn bytes(self, options: &Options, size: [u32; 2]) -> u64 {
+        let texels = u64::from(size[0]) * u64::from(size[1]);
+        texels * self.formats(options).into_iter().map(texel_bytes).sum::<u64>()
     }
 
     /// Format of the depth attachment.
@@ -44,6 +53,7 @@ pub(super) enum Rendering {
 /// A render pass for each [`PassKind`].
 pub(super) struct RenderPasses {
     map: vk::RenderPass,
+    law_map: vk::RenderPass,
     /// Null for hard edges, which have no layers.
     layers: vk::RenderPass,
     target: vk::RenderPass,
@@ -84,6 +94,7 @@ impl Rendering {
         let mut pass = |kind| render_pass(objects, kind, options);
         Ok(Rendering::Passes(RenderPasses {
             map: pass(PassKind::Map)?,
+            law_map: pass(PassKind::LawMap)?,
             layers: match options.edges {
                 Edges::Hard => vk::RenderPass::null(),
                 _ => pass(PassKind::Layers)?,
@@ -116,6 +127,7 @@ impl Rendering {
         let Rendering::Passes(passes) = self else { return vk::RenderPass::null() };
         match kind {
             PassKind::Map => passes.map,
+            PassKind::LawMap => passes.law_map,
             PassKind::Layers => passes.layers,
             PassKind::Target => passes.target,
         }
@@ -271,8 +283,6 @@ impl Intermediate {
             views.push(objects.create_view(image, format, vk::ImageAspectFlags::COLOR, 0)?);
         }
         let attachments = rendering.attachments(objects, kind, &views, None, size)?;
-        let texels = u64::from(size[0]) * u64::from(size[1]);
-        let bytes = texels * formats.into_iter().map(texel_bytes).sum::<u64>();
-        Ok(Intermediate { images, attachments, size, bytes })
+        Ok(Intermediate { images, attachments, size, bytes: kind.bytes(options, size) })
     }
 }

@@ -10,32 +10,32 @@ use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::synthesis::*;
 use yoro_gl::{Context, Destination, Filter, Format, GlApi, RenderTarget, Texture};
 
-const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: false };
+pub const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: false };
 /// GL_DEPTH_BOUNDS_TEST_EXT.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
 
 /// Both kinds of textures without samples.
-fn ways() -> [SynthesisOptions; 2] {
+pub fn ways() -> [SynthesisOptions; 2] {
     [Edges::Hard, Edges::Nearest].map(|edges| SynthesisOptions { edges, ..SynthesisOptions::default() })
 }
 
-fn warp(size: [u32; 2]) -> Warp {
+pub fn warp(size: [u32; 2]) -> Warp {
     let eyes = pair(size, Eye::Right, 0.063, DepthConvention::Standard);
     eyes.synthesis(GuardBand::Pixels(9)).unwrap().warp
 }
 
 /// The objects that an engine lends: textures without filters of their own use, one of them to be compared, and a target.
-struct Lent {
+pub struct Lent {
     color: Texture,
     depth: Texture,
     target: RenderTarget,
-    warp: Warp,
+    pub warp: Warp,
     /// The content of `color`.
     rgba: Vec<u8>,
 }
 
 impl Lent {
-    fn new(gl: &Rc<Context>, size: [u32; 2], color: Format) -> Lent {
+    pub fn new(gl: &Rc<Context>, size: [u32; 2], color: Format) -> Lent {
         let warp = warp(size);
         let (rgba, depth) =
             scene(warp.source_size, pair(size, Eye::Right, 0.063, DepthConvention::Standard).depth, 21);
@@ -61,16 +61,16 @@ impl Lent {
         Lent { color: color_texture, depth: depth_texture, target, warp, rgba }
     }
 
-    fn source(&self) -> Source {
+    pub fn source(&self) -> Source {
         Source::new(self.color.raw(), self.depth.raw())
     }
 
-    fn target(&self) -> Destination {
+    pub fn target(&self) -> Destination {
         Destination::whole(&self.target)
     }
 
     /// Colour, source map, and depth, of which the first two channels of a readback are compared.
-    fn picture(&self, gl: &Rc<Context>) -> (Vec<u8>, Vec<u32>, Vec<u32>) {
+    pub fn picture(&self, gl: &Rc<Context>) -> (Vec<u8>, Vec<u32>, Vec<u32>) {
         let size = self.warp.target_size;
         let reader = DepthReader::new(gl, size);
         (
@@ -125,7 +125,7 @@ impl DepthReader {
     }
 }
 
-fn program(gl: &Context, vertex: &str, fragment: &str) -> glow::Program {
+pub fn program(gl: &Context, vertex: &str, fragment: &str) -> glow::Program {
     let raw = gl.raw();
     // SAFETY: names are created here.
     unsafe {
@@ -188,7 +188,7 @@ fn switches(gl: &Context) -> Vec<u32> {
 }
 
 /// The initial state of a context, as far as [`Hostile`] changes it, and sRGB encoding off.
-fn clean(gl: &Context) {
+pub fn clean(gl: &Context) {
     let raw = gl.raw();
     // SAFETY: state calls with valid enums.
     unsafe {
@@ -206,7 +206,7 @@ fn clean(gl: &Context) {
 }
 
 /// The objects of a host that leaves everything as wrong as it can.
-struct Hostile {
+pub struct Hostile {
     sampler: glow::Sampler,
     buffer: glow::Buffer,
     vertex_array: glow::VertexArray,
@@ -216,7 +216,7 @@ struct Hostile {
 }
 
 impl Hostile {
-    fn new(gl: &Rc<Context>) -> Hostile {
+    pub fn new(gl: &Rc<Context>) -> Hostile {
         let raw = gl.raw();
         let formats = [(Format::Rgba8, Filter::Nearest); 2];
         let target = || RenderTarget::new(gl, [8, 8], &formats, Some(Format::Depth24)).unwrap();
@@ -252,7 +252,7 @@ impl Hostile {
     }
 
     /// Sets all state to wrong values.
-    fn set(&self, gl: &Context) {
+    pub fn set(&self, gl: &Context) {
         let raw = gl.raw();
         let capabilities = gl.capabilities();
         let desktop = capabilities.api == GlApi::Desktop;
@@ -322,7 +322,7 @@ impl Hostile {
         assert_eq!(gl.take_errors(), None, "the test's own mistake");
     }
 
-    fn delete(self, gl: &Context) {
+    pub fn delete(self, gl: &Context) {
         clean(gl);
         let raw = gl.raw();
         // SAFETY: created in `new`.
@@ -338,7 +338,7 @@ impl Hostile {
 }
 
 /// All state that can be asked for, as names and bits.
-fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
+pub fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
     let raw = gl.raw();
     let capabilities = gl.capabilities();
     let desktop = capabilities.api == GlApi::Desktop;
@@ -429,7 +429,10 @@ fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
             raw.active_texture(glow::TEXTURE0 + unit);
             let multisample =
                 capabilities.multisample_textures.then_some(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
-            for name in [glow::TEXTURE_BINDING_2D, glow::SAMPLER_BINDING].into_iter().chain(multisample) {
+            for name in [glow::TEXTURE_BINDING_2D, glow::TEXTURE_BINDING_2D_ARRAY, glow::SAMPLER_BINDING]
+                .into_iter()
+                .chain(multisample)
+            {
                 all.push((format!("unit {unit}: 0x{name:x}"), vec![raw.get_parameter_i32(name)]));
             }
         }
@@ -553,11 +556,15 @@ fn the_hosts_state_is_preserved_with_multisample_textures() {
         };
         let [depth, samples] = [Format::Depth32F, Format::Rgba8].map(texture);
         clean(gl);
-        let options = SynthesisOptions { edges: Edges::Multisample, gl_state: GlState::Preserve };
+        let options = SynthesisOptions {
+            edges: Edges::Multisample,
+            gl_state: GlState::Preserve,
+            ..SynthesisOptions::default()
+        };
         let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
         let before = snapshot(gl);
         for samples in [None, Some(samples)] {
-            let source = Source { color: lent.color.raw(), depth, samples };
+            let source = Source { samples, ..Source::new(lent.color.raw(), depth) };
             synthesis.synthesize(source, &lent.warp, &lent.target()).unwrap();
             assert_eq!(snapshot(gl), before);
         }

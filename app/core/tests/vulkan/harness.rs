@@ -180,6 +180,7 @@ impl Gpu {
             device: &self.device,
             queue_family: self.family,
             dynamic_rendering: self.rendering != Rendering::RenderPasses,
+            debug_utils: true,
         }
     }
 
@@ -207,6 +208,16 @@ impl Gpu {
         let properties =
             unsafe { self.instance.get_physical_device_format_properties(self.physical_device, format) };
         properties.optimal_tiling_features.contains(features)
+    }
+
+    /// True if a render pass can resolve depth in this way.
+    #[allow(dead_code, reason = "for the tests of anti-aliased sources, which share this")]
+    pub fn resolves_depth(&self, mode: vk::ResolveModeFlags) -> bool {
+        let mut resolve = vk::PhysicalDeviceDepthStencilResolveProperties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut resolve);
+        // SAFETY: a valid device, and structures of Vulkan 1.2.
+        unsafe { self.instance.get_physical_device_properties2(self.physical_device, &mut properties) };
+        resolve.supported_depth_resolve_modes.contains(mode)
     }
 
     /// The validation layer's messages so far.
@@ -292,7 +303,9 @@ impl Gpu {
     ) -> Image<'_> {
         let attachment = match is_depth(format) {
             true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
-            false if format == vk::Format::R32_SFLOAT => vk::ImageUsageFlags::empty(),
+            false if matches!(format, vk::Format::R16_UNORM | vk::Format::R32_SFLOAT) => {
+                vk::ImageUsageFlags::empty()
+            }
             false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
         };
         let usage = attachment | vk::ImageUsageFlags::SAMPLED | copied;
@@ -495,7 +508,9 @@ impl Image<'_> {
     pub fn upload_depth(&self, layer: u32, depth: &[f32], after: ImageState) {
         let texel = |depth: &f32| -> Vec<u8> {
             match self.format {
-                vk::Format::D16_UNORM => ((depth * 65535.0).round() as u16).to_ne_bytes().to_vec(),
+                vk::Format::D16_UNORM | vk::Format::R16_UNORM => {
+                    ((depth * 65535.0).round() as u16).to_ne_bytes().to_vec()
+                }
                 vk::Format::D24_UNORM_S8_UINT => {
                     ((f64::from(*depth) * 16_777_215.0).round() as u32).to_ne_bytes().to_vec()
                 }

@@ -2,14 +2,18 @@
 
 use std::rc::Rc;
 
-use super::{Outputs, Source, Synthesis, draw_target, set_source};
+use super::{
+    Outputs, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source, set_source,
+    set_source_layer,
+};
 use crate::eyes::Warp;
-use crate::synthesis::uniforms::{Uniforms, tiles};
+use crate::synthesis::uniforms::Uniforms;
 use yoro_gl::{
     Capabilities, Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource,
 };
 
-/// Variants of the shaders for kinds of drivers. All give the same picture, within the rounding of positions.
+/// Variants of the shaders for kinds of drivers. All give the same picture, within the rounding of positions; where a tile has
+/// a law, within an eighth of a pixel.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GatherVariant {
@@ -17,7 +21,7 @@ pub enum GatherVariant {
     Plain,
     /// For CPU rasterizers, which execute every fetch in the text, taken or not: textureGather for the tiles only.
     Software,
-    /// For GPUs: textureGather, and a short path on which nearly every pixel ends before the loop.
+    /// For GPUs: textureGather, laws of tiles, and a short path on which nearly every other pixel ends before the loop.
     ShortWay,
 }
 
@@ -44,11 +48,11 @@ impl GatherVariant {
     }
 }
 
-/// Tile bounds, tile spans, march. Reads depth about four times and colour once per target pixel. The two intermediate
-/// buffers have 4 bytes per tile of 16 x 8 pixels.
+/// Tile bounds, tile spans, march. The two intermediate buffers have 16 bytes per tile of 16 x 8 pixels.
 pub struct Gather {
     gl: Rc<Context>,
     outputs: Outputs,
+    options: SynthesisOptions,
     bounds: Program,
     spans: Program,
     march: Program,
@@ -62,7 +66,30 @@ impl Gather {
     /// # Errors
     /// [`GlError::Shader`] if the driver refuses a shader.
     pub fn new(gl: &Rc<Context>, outputs: Outputs) -> Result<Gather, GlError> {
-        Gather::with_variant(gl, outputs, GatherVariant::of(gl.capabilities()))
+        Gather::with_options(gl, outputs, &SynthesisOptions::default())
+    }
+
+    /// Compiles the passes for the kind of source that the options choose.
+    pub(super) fn with_options(
+        gl: &Rc<Context>,
+        outputs: Outputs,
+        options: &SynthesisOptions,
+    ) -> Result<Gather, GlError> {
+        Gather::with_variant_of(gl, outputs, GatherVariant::of(gl.capabilities()), options)
+    }
+
+    /// Compiles a variant that this driver would not choose, for any kind of source: for tests.
+    ///
+    /// # Errors
+    /// Those of [`Gather::with_variant`].
+    #[doc(hidden)]
+    pub fn with_variant_of(
+        gl: &Rc<Context>,
+        outputs: Outputs,
+        variant: GatherVariant,
+        options: &SynthesisOptions,
+    ) -> Result<Gather, GlError> {
+        Gather::with_defines(gl, outputs, variant.defines(), options)
     }
 
     /// Compiles a variant that this driver would not choose, for tests.
@@ -75,32 +102,39 @@ impl Gather {
         outputs: Outputs,
         variant: GatherVariant,
     ) -> Result<Gather, GlError> {
-        Gather::with_defines(gl, outputs, variant.defines())
+        Gather::with_variant_of(gl, outputs, variant, &SynthesisOptions::default())
     }
 
-    /// Compiles the variant for GPUs with counts in place of colours. Red: trips of the short path's loop (low four bits) and
-    /// of the fill's (the next two), and whether the pixel takes the long path (the highest bit). Green, blue and alpha:
-    /// columns walked on the long path, its rounds, and the tiles passed, at most 255 each.
+    /// Compiles the variant for GPUs with counts in place of colours. Red: steps of the short way (low three bits), then one
+    /// bit each for a hole, for the long way, and for a law. Green: steps of four columns. Blue: events and walks, at most 15
+    /// each, walks in the high bits. Alpha: tiles passed over.
     ///
     /// # Errors
     /// Those of [`Gather::with_variant`].
     #[doc(hidden)]
     pub fn counting(gl: &Rc<Context>) -> Result<Gather, GlError> {
         let defines = [GatherVariant::ShortWay.defines(), &["COUNT_TRIPS"]].concat();
-        Gather::with_defines(gl, Outputs::default(), &defines)
+        Gather::with_defines(gl, Outputs::default(), &defines, &SynthesisOptions::default())
     }
 
-    fn with_defines(gl: &Rc<Context>, outputs: Outputs, variant: &[&'static str]) -> Result<Gather, GlError> {
-        let variant: Vec<_> = variant.iter().map(|&name| (name, String::new())).collect();
+    fn with_defines(
+        gl: &Rc<Context>,
+        outputs: Outputs,
+        variant: &[&'static str],
+        options: &SynthesisOptions,
+    ) -> Result<Gather, GlError> {
+        let variant = variant.iter().map(|&name| (name, String::new())).chain(options.defines());
+        let variant: Vec<_> = variant.collect();
         let march: Vec<_> = outputs.defines().into_iter().chain(variant.clone()).collect();
         let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
-        let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);
+        let map = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba32Ui, Filter::Nearest)], None);
         Ok(Gather {
             gl: gl.clone(),
             outputs,
+            options: *options,
             bounds: program("synthesis/gather/tiles.frag", &variant)?,
-            spans: program("synthesis/gather/spans.frag", &[])?,
-            march: program("synthesis/gather/march.frag", &march)?,
+            spans: program("synthesis/gather/spans.frag", &variant)?,
+            march: Program::new(gl, march_source("synthesis/gather/march.frag"), &march)?,
             tile_map: map()?,
             span_map: map()?,
         })
@@ -109,8 +143,9 @@ impl Gather {
 
 impl Synthesis for Gather {
     fn prepare(&mut self, warp: &Warp) -> Result<(), GlError> {
-        self.tile_map.resize(tiles(warp.source_size))?;
-        self.span_map.resize(tiles([warp.target_size[0], warp.source_size[1]]))
+        let [tile_size, span_size] = map_sizes(warp);
+        self.tile_map.resize(self.options.buffer_size(self.tile_map.size(), tile_size))?;
+        self.span_map.resize(self.options.buffer_size(self.span_map.size(), span_size))
     }
 
     fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError> {
@@ -118,14 +153,16 @@ impl Synthesis for Gather {
         self.prepare(warp)?;
         self.gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
         let gl = &self.gl;
-        let uniforms = Uniforms::new(warp, target.origin);
+        let [tile_size, span_size] = map_sizes(warp);
+        let uniforms = Uniforms::of_part(warp, &source.places(warp, target, self.options.parts));
+        let set_source = if self.options.layers { set_source_layer } else { set_source };
         gl.pass("gather tiles", || {
-            self.tile_map.bind();
+            self.tile_map.bind_part(tile_size);
             set_source(self.bounds.bind(), source, &uniforms);
             gl.draw_screen();
         });
         gl.pass("gather spans", || {
-            self.span_map.bind();
+            self.span_map.bind_part(span_size);
             set_source(self.spans.bind(), source, &uniforms);
             self.spans.texture("tile_map", 2, self.tile_map.color(0).raw());
             gl.draw_screen();

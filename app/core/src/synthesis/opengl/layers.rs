@@ -5,10 +5,10 @@ use std::rc::Rc;
 use glam::IVec4;
 use glow::HasContext as _;
 
-use super::{Outputs, Source, Synthesis, draw_target};
+use super::{Outputs, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source};
 use crate::eyes::Warp;
 use crate::synthesis::edges::Edges;
-use crate::synthesis::uniforms::{Uniforms, tiles};
+use crate::synthesis::uniforms::Uniforms;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
 
 /// Number of draw buffers that the passes use: the split pass writes two.
@@ -27,7 +27,7 @@ const STANDARD_4: IVec4 = IVec4::new(2, 0, 3, 1);
 pub struct Layers {
     gl: Rc<Context>,
     outputs: Outputs,
-    edges: Edges,
+    options: SynthesisOptions,
     split: Split,
     bounds: Program,
     spans: Program,
@@ -52,6 +52,37 @@ impl Layers {
     /// [`GlError::Unsupported`] for [`Edges::Hard`], which needs [`super::Gather`], and for [`Edges::Multisample`] without
     /// OpenGL ES 3.1; [`GlError::Shader`] if the driver refuses a shader.
     pub fn new(gl: &Rc<Context>, outputs: Outputs, edges: Edges) -> Result<Layers, GlError> {
+        Layers::with_options(gl, outputs, &SynthesisOptions { edges, ..SynthesisOptions::default() })
+    }
+
+    /// Compiles the passes with counts in place of colours. Red, green and blue: columns of the march's three loops, in the order
+    /// of the text, at most 255 each. Alpha: rows of its fill, and in the highest bit whether the source's pixel at this place
+    /// shows two surfaces.
+    ///
+    /// # Errors
+    /// Those of [`Layers::new`].
+    #[doc(hidden)]
+    pub fn counting(gl: &Rc<Context>, edges: Edges) -> Result<Layers, GlError> {
+        let options = SynthesisOptions { edges, ..SynthesisOptions::default() };
+        Layers::with_defines(gl, Outputs::default(), &options, &[("COUNT_TRIPS", String::new())])
+    }
+
+    /// Compiles the passes for the kind of source that the options choose.
+    pub(super) fn with_options(
+        gl: &Rc<Context>,
+        outputs: Outputs,
+        options: &SynthesisOptions,
+    ) -> Result<Layers, GlError> {
+        Layers::with_defines(gl, outputs, options, &[])
+    }
+
+    fn with_defines(
+        gl: &Rc<Context>,
+        outputs: Outputs,
+        options: &SynthesisOptions,
+        counts: &[(&'static str, String)],
+    ) -> Result<Layers, GlError> {
+        let edges = options.edges;
         let define = match edges {
             Edges::Hard => {
                 return Err(GlError::Unsupported(
@@ -68,10 +99,17 @@ impl Layers {
                 gl.capabilities().renderer
             )));
         }
+        if edges == Edges::Multisample && options.layers {
+            return Err(GlError::Unsupported(
+                "layers of multisample arrays cannot be synthesized; hand over resolved colour and the nearest depth".into(),
+            ));
+        }
         let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
-        let edge_defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
+        let sources = options.defines();
+        let edge_defines = define.into_iter().map(|name| (name, String::new())).chain(sources.clone());
+        let edge_defines: Vec<_> = edge_defines.collect();
         let of_samples = [edge_defines.clone(), vec![("SAMPLE_COLORS", String::new())]].concat();
-        let march = [edge_defines.clone(), outputs.defines()].concat();
+        let march = [&edge_defines[..], &outputs.defines(), counts].concat();
         let split = "synthesis/layers/split.frag";
         let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);
         // Back surfaces are stored like the source's colour: unmixing is right in the colour space of the resolve.
@@ -80,14 +118,14 @@ impl Layers {
         Ok(Layers {
             gl: gl.clone(),
             outputs,
-            edges,
+            options: *options,
             split: Split {
                 resolved: program(split, &edge_defines)?,
                 samples: (edges == Edges::Multisample).then(|| program(split, &of_samples)).transpose()?,
             },
-            bounds: program("synthesis/layers/tiles.frag", &[])?,
-            spans: program("synthesis/gather/spans.frag", &[])?,
-            march: program("synthesis/layers/march.frag", &march)?,
+            bounds: program("synthesis/layers/tiles.frag", &sources)?,
+            spans: program("synthesis/gather/spans.frag", &sources)?,
+            march: Program::new(gl, march_source("synthesis/layers/march.frag"), &march)?,
             layers: RenderTarget::new(gl, [1, 1], &layers, None)?,
             tile_map: map()?,
             span_map: map()?,
@@ -100,14 +138,24 @@ impl Layers {
             (Some(program), Some(samples)) => program.bind().texture_multisample("sample_colors", 3, samples),
             _ => self.split.resolved.bind(),
         };
-        if self.edges == Edges::Multisample {
+        if self.options.edges == Edges::Multisample {
             program.texture_multisample("sample_depths", 0, source.depth);
             program.set("from_left", self.left_to_right());
         } else {
-            program.texture("depth_map", 0, source.depth);
+            self.bind(program, "depth_map", 0, source.depth);
         }
-        program.texture("color_map", 1, source.color);
+        self.bind(program, "color_map", 1, source.color);
+        program.set("source_layer", source.layer as i32);
         uniforms.set(program);
+    }
+
+    /// Binds a texture of the source, which is an array with [`SynthesisOptions::layers`].
+    fn bind<'a>(&self, program: &'a Program, name: &str, unit: u32, texture: glow::Texture) -> &'a Program {
+        if self.options.layers {
+            program.texture_array(name, unit, texture)
+        } else {
+            program.texture(name, unit, texture)
+        }
     }
 
     /// Returns the samples, from left to right, of the multisample texture that was bound last, to unit 0.
@@ -122,9 +170,10 @@ impl Layers {
 
 impl Synthesis for Layers {
     fn prepare(&mut self, warp: &Warp) -> Result<(), GlError> {
-        self.layers.resize(warp.source_size)?;
-        self.tile_map.resize(tiles(warp.source_size))?;
-        self.span_map.resize(tiles([warp.target_size[0], warp.source_size[1]]))
+        let [tile_size, span_size] = map_sizes(warp);
+        self.layers.resize(self.options.buffer_size(self.layers.size(), warp.source_size))?;
+        self.tile_map.resize(self.options.buffer_size(self.tile_map.size(), tile_size))?;
+        self.span_map.resize(self.options.buffer_size(self.span_map.size(), span_size))
     }
 
     fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError> {
@@ -132,25 +181,27 @@ impl Synthesis for Layers {
         self.prepare(warp)?;
         self.gl.begin_synthesis(DRAW_BUFFERS, self.outputs.srgb);
         let gl = &self.gl;
-        let uniforms = Uniforms::new(warp, target.origin);
+        let [tile_size, span_size] = map_sizes(warp);
+        let uniforms = Uniforms::of_part(warp, &source.places(warp, target, self.options.parts));
         gl.pass("layers split", || {
-            self.layers.bind();
+            self.layers.bind_part(warp.source_size);
             self.bind_split(source, &uniforms);
             gl.draw_screen();
         });
         let [layers, backs] = [0, 1].map(|i| self.layers.color(i).raw());
         gl.pass("layers tiles", || {
-            self.tile_map.bind();
+            self.tile_map.bind_part(tile_size);
             uniforms.set(self.bounds.bind().texture("layer_map", 2, layers));
             gl.draw_screen();
         });
         gl.pass("layers spans", || {
-            self.span_map.bind();
+            self.span_map.bind_part(span_size);
             uniforms.set(self.spans.bind().texture("tile_map", 2, self.tile_map.color(0).raw()));
             gl.draw_screen();
         });
         gl.pass("layers march", || {
-            let program = self.march.bind().texture("color_map", 1, source.color);
+            let program = self.bind(self.march.bind(), "color_map", 1, source.color);
+            program.set("source_layer", source.layer as i32);
             program.texture("span_map", 2, self.span_map.color(0).raw());
             program.texture("layer_map", 3, layers).texture("back_map", 4, backs);
             uniforms.set(program);

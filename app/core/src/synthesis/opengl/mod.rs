@@ -7,9 +7,9 @@ mod preserve;
 use std::rc::Rc;
 
 use super::edges::Edges;
-use super::uniforms::Uniforms;
+use super::uniforms::{Places, Uniforms, tiles};
 use crate::eyes::Warp;
-use yoro_gl::{Context, Destination, GlError, Program};
+use yoro_gl::{Context, Destination, GlError, Program, ShaderSource, Touched};
 
 pub use gather::Gather;
 #[doc(hidden)]
@@ -47,7 +47,8 @@ impl Outputs {
     }
 }
 
-/// The rendered eye: GL names of 2-D textures of the same size. Their filters, wrapping, compare mode and samplers do not
+/// The rendered eye: GL names of 2-D textures, or arrays of them, of the same size. Their filters, wrapping, compare mode and
+/// samplers do not
 /// matter.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
@@ -59,13 +60,33 @@ pub struct Source {
     pub depth: glow::Texture,
     /// For [`Edges::Multisample`], the multisample texture that the colour was resolved from, if it still exists.
     pub samples: Option<glow::Texture>,
+    /// The place of the source in its textures, for a pipeline with [`SynthesisOptions::parts`].
+    pub part: Option<Part>,
+    /// The layer of both textures, for a pipeline with [`SynthesisOptions::layers`]; 0 otherwise.
+    pub layer: u32,
 }
 
 impl Source {
-    /// Returns a source without the colours of samples.
+    /// Returns a source that is the whole of two textures, without the colours of samples.
     pub fn new(color: glow::Texture, depth: glow::Texture) -> Source {
-        Source { color, depth, samples: None }
+        Source { color, depth, samples: None, part: None, layer: 0 }
     }
+
+    /// Returns the place of the source of a warp in its textures.
+    fn places(&self, warp: &Warp, target: &Destination, part: bool) -> Places {
+        let whole = Part { origin: [0, 0], image_size: warp.source_size };
+        let Part { origin, image_size } = self.part.filter(|_| part).unwrap_or(whole);
+        Places { source_origin: origin, image_size, target_origin: target.origin, part }
+    }
+}
+
+/// A rectangle of the source's size in larger textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Lower left corner in pixels.
+    pub origin: [u32; 2],
+    /// Width and height of the textures in pixels.
+    pub image_size: [u32; 2],
 }
 
 /// The effect of a call on the context's state, which the table of [`Synthesis`] lists.
@@ -88,27 +109,30 @@ pub enum GlState {
 ///
 /// | state | set to | afterwards |
 /// |---|---|---|
-/// | program | the passes' | changed |
+/// | program | the passes' | changed; none once the pipeline is dropped |
 /// | vertex array | one without attributes | changed |
 /// | draw and read framebuffer | the target's | changed |
-/// | viewport (all of a viewport array, which `Preserve` gives back as the first) | the target's rectangle | changed |
-/// | 2-D texture of units 0 to 3, of 0 to 4 other than with [`Edges::Hard`] | depth, colour, intermediate | changed |
-/// | multisample texture of units 0 and 3, with [`Edges::Multisample`] | depth, colour | changed |
+/// | viewport (the first; with `OES_viewport_array` all) | the target's rectangle | changed |
+/// | 2-D texture of units 0 to 3, of 0 to 4 other than with hard edges | depth, colour, intermediate | changed |
+/// | multisample texture of units 0 and 3, with multisampled sources | depth, colour | changed |
+/// | array texture of units 0 and 1, for sources that are layers | depth, colour | changed |
 /// | sampler object of units 0 to 4 | yoro's own | none |
 /// | active unit | 0 to 4 | changed |
-/// | scissor, stencil and depth test, face culling | off; depth test on for the target with [`Outputs::depth`] | off |
-/// | depth function, depth mask, depth range | `ALWAYS`, on, 0 to 1 | as set |
-/// | blending and colour mask, of draw buffer 0 and, with [`Outputs::source_map`] or other than with [`Edges::Hard`], 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | as set |
+/// | scissor test (as the viewport), stencil and depth test, face culling | off; depth test on for the target if depth is written | off |
+/// | depth function, depth mask, depth range (as the viewport) | `ALWAYS`, on, 0 to 1 | as set |
+/// | blending and colour mask, of draw buffer 0 and, with a source map or other than with hard edges, 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | as set |
 /// | dithering, polygon offset for filling, rasterizer discard, primitive restart (fixed index) | off | off |
 /// | alpha to coverage, sample coverage; sample mask (ES 3.1) | off | off |
 /// | clip distances (`EXT_clip_cull_distance`, desktop), depth bounds test (`EXT_depth_bounds_test`) | off | off |
-/// | sRGB encoding of what is written (`EXT_sRGB_write_control`, desktop) | off, or on with [`Outputs::srgb`] | as set |
+/// | sRGB encoding of what is written (`EXT_sRGB_write_control`, desktop) | off, or on if asked for | as set |
 /// | primitive restart, logic operation, polygon smoothing, alpha to one (desktop) | off | off |
 /// | polygon mode (desktop) | fill | fill |
+/// | alpha test, polygon stipple (compatibility profile) | off | off |
 ///
 /// Not touched: buffers bound to any target (vertex, uniform, storage, pixel pack and unpack), pixel store, scissor box,
-/// blend function and equation, stencil function, clear values, other texture targets and units. GL's error flag is read
-/// where buffers are allocated.
+/// blend function and equation, stencil function, clear values, other texture targets and units. A pending error stays, except
+/// in browsers, where GL's error flag is read when buffers are allocated. A program that the host has deleted while it was
+/// current goes, as GL says, when another becomes current; `Preserve` then leaves none.
 ///
 /// The host ensures the rest: transform feedback and conditional rendering are not active, the shading rate is one fragment
 /// a pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the source is attached
@@ -136,14 +160,45 @@ pub struct SynthesisOptions {
     pub edges: Edges,
     /// The effect of calls on the host's GL state.
     pub gl_state: GlState,
+    /// True if sources may be parts of their textures ([`Source::part`]) and change their size from frame to frame, as with
+    /// dynamic resolution: buffers then only grow, so that no frame allocates after one of the largest size.
+    pub parts: bool,
+    /// True if colour and depth are layers of array textures, as those of multiview are ([`Source::layer`]). Not with
+    /// [`Edges::Multisample`].
+    pub layers: bool,
+}
+
+impl SynthesisOptions {
+    /// Returns the preprocessor's macros that select this kind of source.
+    fn defines(&self) -> Vec<(&'static str, String)> {
+        let defines = [("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.layers)];
+        defines.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| (name, String::new())).collect()
+    }
+
+    /// Returns the size of a buffer that holds what is needed, and with parts what it holds already.
+    fn buffer_size(&self, now: [u32; 2], needed: [u32; 2]) -> [u32; 2] {
+        if self.parts { [0, 1].map(|i| now[i].max(needed[i])) } else { needed }
+    }
+}
+
+/// Returns the bytes of the buffers that a pipeline has for these sizes, which [`Synthesis::prepare`] allocates: to plan with
+/// before there is one. Drivers add padding.
+pub fn buffer_bytes(edges: Edges, warp: &Warp) -> u64 {
+    let area = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
+    let maps: u64 = map_sizes(warp).map(area).iter().sum();
+    match edges {
+        Edges::Hard => 16 * maps,
+        // A source pixel's surfaces, and the colour of the back one.
+        _ => 4 * maps + 8 * area(warp.source_size),
+    }
 }
 
 /// Compiles the pipeline: [`Gather`] for hard edges, [`Layers`] for the others. Changes the same state as
 /// [`Synthesis::prepare`], or none with [`GlState::Preserve`].
 ///
 /// # Errors
-/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1; [`GlError::Shader`] if the driver refuses a
-/// shader.
+/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1 or with [`SynthesisOptions::layers`];
+/// [`GlError::Shader`] if the driver refuses a shader.
 pub fn create(
     gl: &Rc<Context>,
     options: &SynthesisOptions,
@@ -151,8 +206,8 @@ pub fn create(
 ) -> Result<Box<dyn Synthesis>, GlError> {
     let pipeline = || -> Result<Box<dyn Synthesis>, GlError> {
         Ok(match options.edges {
-            Edges::Hard => Box::new(Gather::new(gl, outputs)?),
-            edges => Box::new(Layers::new(gl, outputs, edges)?),
+            Edges::Hard => Box::new(Gather::with_options(gl, outputs, options)?),
+            _ => Box::new(Layers::with_options(gl, outputs, options)?),
         })
     };
     let draw_buffers = match options.edges {
@@ -161,8 +216,16 @@ pub fn create(
     };
     match options.gl_state {
         GlState::Leave => pipeline(),
-        GlState::Preserve => Ok(Box::new(Preserving::new(gl, draw_buffers, pipeline)?)),
+        GlState::Preserve => {
+            let touched = Touched { draw_buffers, arrays: options.layers };
+            Ok(Box::new(Preserving::new(gl, touched, pipeline)?))
+        }
     }
+}
+
+/// Returns the sizes of the maps of tiles and of spans.
+fn map_sizes(warp: &Warp) -> [[u32; 2]; 2] {
+    [warp.source_size, [warp.target_size[0], warp.source_size[1]]].map(tiles)
 }
 
 /// Sets the uniforms and textures that `include/warp.glsl` declares, for a pass of a pipeline. Uses texture units 0 and 1.
@@ -172,10 +235,38 @@ pub fn set_source(program: &Program, source: Source, uniforms: &Uniforms) {
     uniforms.set(program);
 }
 
+/// Does what [`set_source`] does for layers of array textures.
+fn set_source_layer(program: &Program, source: Source, uniforms: &Uniforms) {
+    program.texture_array("depth_map", 0, source.depth).texture_array("color_map", 1, source.color);
+    program.set("source_layer", source.layer as i32);
+    uniforms.set(program);
+}
+
+/// Returns the shaders of a pipeline's last pass.
+fn march_source(fragment: &str) -> ShaderSource<'_> {
+    ShaderSource::Raster { vertex: "synthesis/march.vert", fragment }
+}
+
 /// Binds the target and draws the last pass of a pipeline into it.
 pub fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
-    gl.bind_framebuffer(target.framebuffer, target.origin, target.size);
+    gl.overwrite(target, outputs.draw_buffers() as usize, outputs.depth);
     gl.set_depth_write(outputs.depth);
     gl.draw_screen();
     gl.set_depth_write(false);
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_guide_lists_the_state() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/library.md");
+        // Not in the published package.
+        let Ok(guide) = std::fs::read_to_string(path) else { return };
+        let rows = include_str!("mod.rs").lines().filter_map(|line| line.strip_prefix("/// | "));
+        let rows: Vec<_> = rows.filter(|row| !row.starts_with("state |")).collect();
+        assert!(rows.len() > 15, "the table of `Synthesis`");
+        for row in rows {
+            assert!(guide.contains(&format!("\n| {row}\n")), "docs/library.md has no row {row}");
+        }
+    }
 }

@@ -1,0 +1,455 @@
+//! Which is cheaper on this device: two renders, or one with synthesis.
+//!
+//! Synthesis costs the same for any scene, so where a view is cheap to render, two renders are cheaper. Nobody knows that
+//! beforehand: it depends on the GPU, the scene, the resolution and the heat. A [`Chooser`] renders both ways in turns for
+//! about a second, takes the cheaper one, and measures again when that may have changed. It has no GL and no clock: it is
+//! told when frames ended and what they cost, and says what to render next.
+//!
+//! ```
+//! use yoro::choice::{Chooser, Cost, FrameEnd, Way};
+//!
+//! let mut chooser = Chooser::new(Way::Synthesis);
+//! # let (mut now_ns, render, timer) = (0, |_: Way| (), |way| Some(if way == Way::Synthesis { 6.1 } else { 8.9 }));
+//! # for _ in 0..200 {
+//! // Each frame:
+//! let way = chooser.way();
+//! render(way);
+//! # now_ns += 11_111_111;
+//! chooser.end_frame(&FrameEnd {
+//!     now_ns,
+//!     refresh_hz: 90.0,
+//!     rendered: Some(way),
+//!     cost: timer(way).map(|ms| Cost { frames_ago: 0, ms }),
+//!     heat: None,
+//! });
+//! # }
+//! # assert_eq!((chooser.way(), chooser.is_measuring()), (Way::Synthesis, false));
+//! ```
+
+mod samples;
+#[cfg(test)]
+mod tests;
+
+use samples::Samples;
+
+/// A way to make both eyes of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Both eyes are rendered.
+    TwoViews,
+    /// One eye is rendered, the other synthesized.
+    Synthesis,
+}
+
+impl Way {
+    /// Both ways, by [`Way::index`].
+    pub const BOTH: [Way; 2] = [Way::TwoViews, Way::Synthesis];
+
+    /// The index in arrays of both ways: two views, synthesis.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Returns the other way.
+    pub fn other(self) -> Way {
+        Way::BOTH[1 - self.index()]
+    }
+}
+
+/// The measured cost of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// The frame, as the number of calls of [`Chooser::end_frame`] since its own: 0 for the frame that ends now. Costs of
+    /// frames more than 63 ago are ignored.
+    pub frames_ago: u32,
+    /// Milliseconds. The GPU's time for the frame if there is a timer; else the time from the beginning of the frame's work
+    /// to the end of the GPU's, if the host waits for that. One kind only, for both ways.
+    pub ms: f32,
+}
+
+/// A frame that was handed to the display.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameEnd {
+    /// The time now, in nanoseconds of a monotonic clock.
+    pub now_ns: i64,
+    /// Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when the
+    /// host waited for the GPU to measure it.
+    pub refresh_hz: f32,
+    /// The way in which it was rendered. `None` if that was neither, such as both eyes rendered because synthesis was
+    /// not possible: such a frame counts for no way.
+    pub rendered: Option<Way>,
+    /// The cost of this frame or of an earlier one, if known by now.
+    pub cost: Option<Cost>,
+    /// The device's heat, if known, on a scale on which 0.1 matters: Android's thermal headroom.
+    pub heat: Option<f32>,
+}
+
+/// The reason for a choice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// Nothing is measured yet in this scene: it is the way to begin with, or the one before.
+    Unmeasured,
+    /// It costs less.
+    Cheaper,
+    /// It costs more, but too little for a change: it is the way before.
+    Similar,
+    /// It holds the display's rate, and the other way does not.
+    HoldsRate,
+    /// Both ways hold the display's rate, and nothing more is known: the display's pace hides their costs. It is the way
+    /// before.
+    BothHoldRate,
+    /// One of the ways could not be measured: it is the way before.
+    Incomparable,
+}
+
+/// A choice and its reason.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// The chosen way.
+    pub way: Way,
+    /// Why.
+    pub reason: Reason,
+    /// The compared times in milliseconds, by [`Way::index`]; `None` if there was nothing to compare.
+    pub costs_ms: Option<[f32; 2]>,
+}
+
+/// Measures both ways in turns, and chooses the cheaper one.
+///
+/// A measurement takes a second, or six turns of 7 frames if that is longer, after a quarter of a second without. The
+/// ways take turns of an eighth of a second; the first three frames of a turn do not count. Times are means of the
+/// middle half, so that spikes do not count either.
+///
+/// 1. If one way holds the display's rate and the other does not, it is chosen. A way holds it if the time between its
+///    frames is at most 1.25 refreshes.
+/// 2. Else the lower cost is chosen; in a scene with a choice already, if it is lower by more than a tenth. Without
+///    costs, frames that miss the display's rate are compared by the time between them; those that hold it tell nothing
+///    ([`Reason::BothHoldRate`]).
+///
+/// It measures again when the scene has changed; when the frames' cost or pace has changed by 30 % or the heat by 0.1, but
+/// 30 s after the last measurement at the earliest; and after so long a time (1 to 10 min) that rendering the dearer way
+/// in turns costs 0.2 % of it.
+///
+/// GPU times depend on the clock that the device has chosen. Where it lowers the clock for light loads, both ways appear to
+/// cost nearly the same.
+#[derive(Clone, Debug)]
+pub struct Chooser {
+    choice: Choice,
+    phase: Phase,
+    /// The tags of the last frames, by their number.
+    tags: [Tag; REMEMBERED],
+    frames: usize,
+    last_ns: Option<i64>,
+    costs: [Samples; 2],
+    intervals: [Samples; 2],
+    /// The refresh rate during the measurement.
+    refresh_hz: f32,
+    /// Frames of the choice since it was made, some seconds at a time.
+    watch: Watch,
+    /// The heat at the last measurement.
+    heat: Option<f32>,
+}
+
+/// What is being done.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    /// Waiting a moment before measuring; the time of its first frame.
+    Settling(Option<i64>),
+    Measuring {
+        begin_ns: i64,
+        turn: u32,
+        turn_ns: i64,
+        turn_frames: u32,
+    },
+    /// Waiting for the costs of the last measured frames, in frames.
+    Collecting {
+        left: u32,
+        begin_ns: i64,
+    },
+    Resting {
+        since_ns: i64,
+        until_ns: i64,
+    },
+}
+
+/// What a frame's cost counts for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Tag {
+    Nothing,
+    Measured(Way),
+    Watched,
+}
+
+/// Watches the cost of the chosen way.
+#[derive(Clone, Debug, Default)]
+struct Watch {
+    begin_ns: Option<i64>,
+    costs: Samples,
+    intervals: Samples,
+    /// Cost and interval in the first window.
+    first: Option<[Option<f32>; 2]>,
+}
+
+const REMEMBERED: usize = 64;
+const MS: i64 = 1_000_000;
+const SETTLING_NS: i64 = 250 * MS;
+const TURN_NS: i64 = 125 * MS;
+const MEASURING_NS: i64 = 1000 * MS;
+const WATCH_NS: i64 = 2000 * MS;
+/// Longer times between frames are pauses.
+const PAUSE_NS: i64 = 1000 * MS;
+/// The first frames of a turn, which do not count: caches are cold, and the display still shows frames of the turn before.
+const UNCOUNTED_FRAMES: u32 = 3;
+const TURN_FRAMES: u32 = 7;
+const TURNS: u32 = 6;
+/// Late costs are waited for during so many frames.
+const LATE_FRAMES: u32 = 16;
+/// A way holds the display's rate if the time between its frames is at most so many refreshes.
+const IN_TIME: f32 = 1.25;
+/// A choice is changed if the other way costs less than this share.
+const WORTH_A_CHANGE: f32 = 0.9;
+/// The share of the time that measuring may cost.
+const OVERHEAD: f32 = 0.002;
+/// The shortest time from a measurement to the next, and the bounds of that time where nothing changes.
+const SHORTEST_REST_NS: i64 = 30_000 * MS;
+const REST_NS: [i64; 2] = [60_000 * MS, 600_000 * MS];
+/// Changes of cost, pace and heat that are worth another measurement.
+const DRIFT: f32 = 1.3;
+const WARMER: f32 = 0.1;
+
+impl Chooser {
+    /// Begins with a way, and measures as soon as frames come.
+    pub fn new(first: Way) -> Chooser {
+        Chooser {
+            choice: Choice { way: first, reason: Reason::Unmeasured, costs_ms: None },
+            phase: Phase::Settling(None),
+            tags: [Tag::Nothing; REMEMBERED],
+            frames: 0,
+            last_ns: None,
+            costs: Default::default(),
+            intervals: Default::default(),
+            refresh_hz: 0.0,
+            watch: Watch::default(),
+            heat: None,
+        }
+    }
+
+    /// Returns the way to render the next frame.
+    pub fn way(&self) -> Way {
+        match self.phase {
+            Phase::Measuring { turn, .. } if turn % 2 == 1 => self.choice.way.other(),
+            _ => self.choice.way,
+        }
+    }
+
+    /// Returns the last choice, which is rendered unless [`Chooser::is_measuring`].
+    pub fn choice(&self) -> Choice {
+        self.choice
+    }
+
+    /// True while a choice is being made. Keep resolution and quality meanwhile.
+    pub fn is_measuring(&self) -> bool {
+        !matches!(self.phase, Phase::Resting { .. })
+    }
+
+    /// Measures again: another scene, another place in it, another resolution.
+    pub fn scene_changed(&mut self) {
+        self.phase = Phase::Settling(None);
+        self.choice = Choice { reason: Reason::Unmeasured, costs_ms: None, ..self.choice };
+        self.last_ns = None;
+    }
+
+    /// Takes a frame that was handed to the display. Allocates nothing.
+    pub fn end_frame(&mut self, end: &FrameEnd) {
+        let interval = self.last_ns.replace(end.now_ns).map(|last| end.now_ns - last);
+        if interval.is_some_and(|ns| !(0..PAUSE_NS).contains(&ns)) {
+            return self.pause(end.now_ns);
+        }
+        let tag = self.tag(end.rendered);
+        self.tags[self.frames % REMEMBERED] = tag;
+        self.count(tag, end, interval);
+        self.frames += 1;
+        self.proceed(end);
+    }
+
+    /// Skips the time since the last frame; a measurement begins again.
+    fn pause(&mut self, now_ns: i64) {
+        self.tags[self.frames % REMEMBERED] = Tag::Nothing;
+        self.frames += 1;
+        match self.phase {
+            Phase::Resting { .. } => self.watch.restart(),
+            _ => self.phase = Phase::Settling(Some(now_ns)),
+        }
+    }
+
+    /// Returns what a frame counts for that ends now.
+    fn tag(&self, rendered: Option<Way>) -> Tag {
+        if rendered != Some(self.way()) {
+            return Tag::Nothing;
+        }
+        match self.phase {
+            Phase::Measuring { turn_frames, .. } if turn_frames >= UNCOUNTED_FRAMES => {
+                Tag::Measured(self.way())
+            }
+            Phase::Resting { .. } => Tag::Watched,
+            _ => Tag::Nothing,
+        }
+    }
+
+    /// Counts the time before a frame, and the cost that is known now.
+    fn count(&mut self, tag: Tag, end: &FrameEnd, interval: Option<i64>) {
+        if let Some(ns) = interval {
+            let ms = ns as f32 * 1e-6;
+            match tag {
+                Tag::Measured(way) => {
+                    self.intervals[way.index()].add(ms);
+                    self.refresh_hz = end.refresh_hz;
+                }
+                // Frames without a pace come when they are asked for.
+                Tag::Watched if end.refresh_hz > 0.0 => self.watch.intervals.add(ms),
+                Tag::Watched | Tag::Nothing => {}
+            }
+        }
+        let Some(Cost { frames_ago, ms }) = end.cost else { return };
+        let ago = frames_ago as usize;
+        if ago >= REMEMBERED || ago > self.frames || !(ms > 0.0 && ms.is_finite()) {
+            return;
+        }
+        match self.tags[(self.frames - ago) % REMEMBERED] {
+            Tag::Measured(way) => self.costs[way.index()].add(ms),
+            Tag::Watched => self.watch.costs.add(ms),
+            Tag::Nothing => {}
+        }
+    }
+
+    /// Goes on to the next turn or phase, if it is time.
+    fn proceed(&mut self, end: &FrameEnd) {
+        let now_ns = end.now_ns;
+        match &mut self.phase {
+            Phase::Settling(begin) => {
+                if now_ns - *begin.get_or_insert(now_ns) >= SETTLING_NS {
+                    self.measure(end);
+                }
+            }
+            Phase::Measuring { begin_ns, turn, turn_ns, turn_frames } => {
+                *turn_frames += 1;
+                if *turn_frames < TURN_FRAMES || now_ns - *turn_ns < TURN_NS {
+                    return;
+                }
+                let turns = *turn + 1;
+                if turns >= TURNS && turns.is_multiple_of(2) && now_ns - *begin_ns >= MEASURING_NS {
+                    self.phase = Phase::Collecting { left: LATE_FRAMES, begin_ns: *begin_ns };
+                    self.collect(now_ns);
+                } else {
+                    (*turn, *turn_ns, *turn_frames) = (turns, now_ns, 0);
+                }
+            }
+            Phase::Collecting { .. } => self.collect(now_ns),
+            Phase::Resting { since_ns, until_ns } => {
+                let (has_rested, is_due) = (now_ns - *since_ns >= SHORTEST_REST_NS, now_ns >= *until_ns);
+                let heat = end.heat.filter(|heat| heat.is_finite());
+                let is_warmer =
+                    self.heat.zip(heat).is_some_and(|(before, now)| (now - before).abs() >= WARMER);
+                self.heat = self.heat.or(heat);
+                let has_drifted = self.watch.has_drifted(now_ns);
+                if is_due || (has_rested && (has_drifted || is_warmer)) {
+                    self.measure(end);
+                }
+            }
+        }
+    }
+
+    /// Begins a measurement.
+    fn measure(&mut self, end: &FrameEnd) {
+        self.costs.iter_mut().chain(&mut self.intervals).for_each(Samples::clear);
+        self.tags.fill(Tag::Nothing);
+        self.heat = end.heat.filter(|heat| heat.is_finite());
+        let now_ns = end.now_ns;
+        self.phase = Phase::Measuring { begin_ns: now_ns, turn: 0, turn_ns: now_ns, turn_frames: 0 };
+    }
+
+    /// Chooses, once the costs of all frames are there or enough frames were waited for.
+    fn collect(&mut self, now_ns: i64) {
+        let Phase::Collecting { left, begin_ns } = &mut self.phase else { return };
+        let begin_ns = *begin_ns;
+        let is_missing = |way: Way| self.costs[way.index()].len() < self.intervals[way.index()].len();
+        if *left > 0 && Way::BOTH.into_iter().any(is_missing) {
+            *left -= 1;
+            return;
+        }
+        self.choice = self.choose();
+        let rest_ns = rest(&self.choice, now_ns - begin_ns);
+        self.watch = Watch::default();
+        self.phase = Phase::Resting { since_ns: now_ns, until_ns: now_ns + rest_ns };
+    }
+
+    fn choose(&self) -> Choice {
+        let of_both = |samples: &[Samples; 2]| {
+            let [two_views, synthesis] = samples.each_ref().map(Samples::middle);
+            Some([two_views?, synthesis?])
+        };
+        let (costs, intervals) = (of_both(&self.costs), of_both(&self.intervals));
+        let stay = |reason, costs_ms| Choice { way: self.choice.way, reason, costs_ms };
+        let Some(intervals) = intervals else { return stay(Reason::Incomparable, None) };
+        if self.refresh_hz > 0.0 {
+            let in_time = intervals.map(|ms| ms * self.refresh_hz <= 1e3 * IN_TIME);
+            if in_time[0] != in_time[1] {
+                let way = if in_time[0] { Way::TwoViews } else { Way::Synthesis };
+                return Choice { way, reason: Reason::HoldsRate, costs_ms: Some(intervals) };
+            }
+            if costs.is_none() && in_time[0] {
+                return stay(Reason::BothHoldRate, None);
+            }
+        }
+        let costs = costs.unwrap_or(intervals);
+        let [now, other] = [self.choice.way, self.choice.way.other()].map(|way| costs[way.index()]);
+        let share = if self.choice.reason == Reason::Unmeasured { 1.0 } else { WORTH_A_CHANGE };
+        if other < now * share {
+            Choice { way: self.choice.way.other(), reason: Reason::Cheaper, costs_ms: Some(costs) }
+        } else if now <= other {
+            stay(Reason::Cheaper, Some(costs))
+        } else {
+            stay(Reason::Similar, Some(costs))
+        }
+    }
+}
+
+/// Returns the time until the next measurement in nanoseconds. Measuring renders the dearer way half of the time.
+fn rest(choice: &Choice, measuring_ns: i64) -> i64 {
+    let [shortest, longest] = REST_NS;
+    match choice.costs_ms {
+        Some([a, b]) => {
+            let more = (a.max(b) / a.min(b) - 1.0) / 2.0;
+            ((measuring_ns as f32 * more / OVERHEAD) as i64).clamp(shortest, longest)
+        }
+        // It tells nothing as long as both hold the rate, and if one does not, that is seen.
+        None if choice.reason == Reason::BothHoldRate => longest,
+        None => shortest,
+    }
+}
+
+impl Watch {
+    /// Forgets the frames of this window.
+    fn restart(&mut self) {
+        self.begin_ns = None;
+        self.costs.clear();
+        self.intervals.clear();
+    }
+
+    /// True if a window ends now in which cost or frame time were others than in the first.
+    fn has_drifted(&mut self, now_ns: i64) -> bool {
+        if now_ns - *self.begin_ns.get_or_insert(now_ns) < WATCH_NS {
+            return false;
+        }
+        let now = [self.costs.middle(), self.intervals.middle()];
+        self.restart();
+        let Some(first) = self.first else {
+            self.first = Some(now);
+            return false;
+        };
+        let drifted = |(first, now): (Option<f32>, Option<f32>)| match (first, now) {
+            (Some(first), Some(now)) => now > first * DRIFT || now * DRIFT < first,
+            _ => false,
+        };
+        first.into_iter().zip(now).any(drifted)
+    }
+}

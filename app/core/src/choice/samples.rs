@@ -1,0 +1,50 @@
+//! Times of frames, and their middle.
+
+/// Most times that are kept; more say nothing new.
+const MOST: usize = 128;
+/// Fewer times have no middle.
+const FEWEST: usize = 4;
+
+/// Times in milliseconds.
+#[derive(Clone, Debug)]
+pub(super) struct Samples {
+    times: [f32; MOST],
+    len: usize,
+}
+
+impl Default for Samples {
+    fn default() -> Samples {
+        Samples { times: [0.0; MOST], len: 0 }
+    }
+}
+
+impl Samples {
+    pub fn add(&mut self, ms: f32) {
+        if let Some(free) = self.times.get_mut(self.len) {
+            *free = ms;
+            self.len += 1;
+        }
+    }
+
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Returns the mean of the middle half; `None` of fewer than four. Unlike a median it tells times apart that a coarse
+    /// clock has rounded.
+    pub fn middle(&self) -> Option<f32> {
+        let mut times = self.times;
+        let times = &mut times[..self.len];
+        if times.len() < FEWEST {
+            return None;
+        }
+        times.sort_unstable_by(f32::total_cmp);
+        let quarter = times.len() / 4;
+        let middle = &times[quarter..times.len() - quarter];
+        Some(middle.iter().sum::<f32>() / middle.len() as f32)
+    }
+}

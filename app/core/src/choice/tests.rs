@@ -1,0 +1,290 @@
+use std::collections::VecDeque;
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use super::*;
+
+/// A device in virtual time: the GPU's and the CPU's times of both ways, and a display.
+struct Device {
+    chooser: Chooser,
+    now_ns: i64,
+    gpu_ms: [f32; 2],
+    cpu_ms: [f32; 2],
+    refresh_hz: f32,
+    /// Frames after which the timer's results come; `None` without a timer.
+    timer: Option<u32>,
+    heat: Option<f32>,
+    /// Synthesis is not possible: both eyes are rendered in its place.
+    is_near: bool,
+    /// Largest deviation from the times, as a share; and the share of frames that take ten times as long.
+    noise: f32,
+    spikes: f32,
+    random: Pcg64Mcg,
+    late: VecDeque<f32>,
+    changes: u32,
+    frames: [u32; 2],
+}
+
+const SIMPLE: [f32; 2] = [8.9, 6.1];
+
+impl Device {
+    fn new(gpu_ms: [f32; 2], timer: Option<u32>) -> Device {
+        Device {
+            chooser: Chooser::new(Way::Synthesis),
+            now_ns: 5_000_000_000,
+            gpu_ms,
+            cpu_ms: [1.0; 2],
+            refresh_hz: 60.0,
+            timer,
+            heat: None,
+            is_near: false,
+            noise: 0.0,
+            spikes: 0.0,
+            random: Pcg64Mcg::seed_from_u64(7),
+            late: VecDeque::new(),
+            changes: 0,
+            frames: [0; 2],
+        }
+    }
+
+    fn noisy(mut self, noise: f32, spikes: f32, seed: u64) -> Device {
+        (self.noise, self.spikes, self.random) = (noise, spikes, Pcg64Mcg::seed_from_u64(seed));
+        self
+    }
+
+    fn frame(&mut self) {
+        let way = self.chooser.way();
+        self.frames[way.index()] += 1;
+        let rendered = if self.is_near { Way::TwoViews } else { way };
+        let spike = if self.random.random::<f32>() < self.spikes { 10.0 } else { 1.0 };
+        let factor = spike * (1.0 + self.noise * self.random.random_range(-1.0..=1.0));
+        let gpu_ms = self.gpu_ms[rendered.index()] * factor;
+        let busy_ms = gpu_ms.max(self.cpu_ms[rendered.index()]);
+        let refresh_ms = if self.refresh_hz > 0.0 { 1e3 / self.refresh_hz } else { 0.0 };
+        let frame_ms = if refresh_ms > 0.0 { (busy_ms / refresh_ms).ceil() * refresh_ms } else { busy_ms };
+        self.now_ns += (f64::from(frame_ms) * 1e6) as i64;
+        self.late.push_back(gpu_ms);
+        let cost = self.timer.and_then(|frames_ago| {
+            let is_there = self.late.len() > frames_ago as usize;
+            is_there.then(|| Cost { frames_ago, ms: self.late.pop_front().unwrap_or_default() })
+        });
+        let before = self.chooser.choice().way;
+        self.chooser.end_frame(&FrameEnd {
+            now_ns: self.now_ns,
+            refresh_hz: self.refresh_hz,
+            rendered: (!self.is_near).then_some(way),
+            cost,
+            heat: self.heat,
+        });
+        self.changes += u32::from(self.chooser.choice().way != before);
+    }
+
+    fn run(&mut self, seconds: f64) -> Choice {
+        let end = self.now_ns + (seconds * 1e9) as i64;
+        while self.now_ns < end {
+            self.frame();
+        }
+        self.chooser.choice()
+    }
+
+    /// Runs until the next measurement has ended; returns how many seconds passed before it began.
+    fn measured_after(&mut self) -> f64 {
+        let begin = self.now_ns;
+        while !self.chooser.is_measuring() {
+            self.frame();
+        }
+        let seconds = (self.now_ns - begin) as f64 * 1e-9;
+        while self.chooser.is_measuring() {
+            self.frame();
+        }
+        seconds
+    }
+}
+
+#[test]
+fn the_cheaper_way_is_chosen_by_late_times_of_a_timer() {
+    for (gpu_ms, way) in [(SIMPLE, Way::Synthesis), ([6.1, 8.9], Way::TwoViews)] {
+        for late in [0, 4, 12] {
+            let mut device = Device::new(gpu_ms, Some(late));
+            device.measured_after();
+            let choice = device.chooser.choice();
+            assert_eq!((choice.way, choice.reason), (way, Reason::Cheaper), "{late} frames late");
+            let costs = choice.costs_ms.unwrap();
+            assert!(
+                costs.iter().zip(gpu_ms).all(|(a, b)| (a - b).abs() < 1e-3),
+                "a time belongs to the frame it was measured in, {late} frames late: {costs:?}"
+            );
+            let seconds = (device.now_ns - 5_000_000_000) as f64 * 1e-9;
+            assert!((1.2..1.9).contains(&seconds), "{seconds} s");
+        }
+    }
+}
+
+#[test]
+fn noise_and_spikes_do_not_choose() {
+    for seed in 0..50 {
+        for (gpu_ms, way) in [([9.0, 7.2], Way::Synthesis), ([7.2, 9.0], Way::TwoViews)] {
+            let mut device = Device::new(gpu_ms, Some(4)).noisy(0.2, 0.04, seed);
+            device.refresh_hz = 72.0;
+            device.measured_after();
+            assert_eq!(device.chooser.choice().way, way, "seed {seed}: {:?}", device.chooser.choice());
+        }
+    }
+}
+
+#[test]
+fn equal_costs_do_not_swing_and_measuring_costs_next_to_nothing() {
+    for seed in 0..5 {
+        let mut device = Device::new([8.0, 8.0], Some(4)).noisy(0.1, 0.02, seed);
+        device.run(3600.0);
+        // The first choice may be either.
+        assert!(device.changes <= 1, "seed {seed}: {} changes in an hour", device.changes);
+    }
+    let mut device = Device::new([16.0, 8.0], Some(4));
+    device.run(3600.0);
+    let [dear, cheap] = device.frames.map(|n| n as f32);
+    assert!(dear / cheap < 0.002, "{dear} frames in the dearer way, {cheap} in the cheaper one");
+}
+
+#[test]
+fn heat_is_a_reason_to_measure_again_but_not_at_once() {
+    let mut device = Device::new(SIMPLE, Some(4));
+    device.heat = Some(0.5);
+    device.measured_after();
+    device.run(10.0);
+    // Memory slows down, which synthesis needs most; not by enough to be seen without heat.
+    (device.gpu_ms, device.heat) = ([7.0, 7.9], Some(0.55));
+    device.run(40.0);
+    assert_eq!(device.chooser.choice().way, Way::Synthesis, "hardly warmer");
+    device.heat = Some(0.62);
+    assert!(device.measured_after() < 1.0);
+    assert_eq!(device.chooser.choice().way, Way::TwoViews);
+    device.heat = Some(0.9);
+    let rest = device.measured_after();
+    assert!((29.0..31.0).contains(&rest), "{rest} s after the last measurement");
+    device.heat = None;
+    let rest = device.measured_after();
+    assert!(rest > 50.0, "unknown heat is no change: {rest} s");
+}
+
+#[test]
+fn another_cost_of_the_same_way_is_a_reason_to_measure_again() {
+    let mut device = Device::new(SIMPLE, Some(4));
+    device.measured_after();
+    device.run(40.0);
+    assert!(!device.chooser.is_measuring());
+    device.gpu_ms = [5.0, 9.0];
+    let seconds = device.measured_after();
+    assert!(seconds < 4.5, "{seconds} s");
+    assert_eq!((device.chooser.choice().way, device.changes), (Way::TwoViews, 1));
+}
+
+#[test]
+fn another_scene_is_measured_at_once_and_without_prejudice() {
+    let mut device = Device::new(SIMPLE, Some(4));
+    device.measured_after();
+    // A difference that would not be worth a change in the same scene.
+    device.gpu_ms = [5.8, 6.1];
+    device.run(200.0);
+    assert_eq!(device.chooser.choice().reason, Reason::Similar);
+    device.chooser.scene_changed();
+    assert!(device.chooser.is_measuring());
+    let unmeasured = Choice { way: Way::Synthesis, reason: Reason::Unmeasured, costs_ms: None };
+    assert_eq!(device.chooser.choice(), unmeasured);
+    device.now_ns += 20_000_000_000;
+    device.measured_after();
+    let choice = device.chooser.choice();
+    assert_eq!((choice.way, choice.reason), (Way::TwoViews, Reason::Cheaper));
+}
+
+#[test]
+fn the_display_hides_what_fits_into_a_refresh() {
+    // (GPU's times, chosen way, reason, compared times), without a timer at 60 Hz.
+    for (gpu_ms, way, reason, costs_ms) in [
+        ([12.0, 8.0], Way::Synthesis, Reason::BothHoldRate, None),
+        ([8.0, 12.0], Way::Synthesis, Reason::BothHoldRate, None),
+        ([20.0, 12.0], Way::Synthesis, Reason::HoldsRate, Some([33.333, 16.667])),
+        ([12.0, 20.0], Way::TwoViews, Reason::HoldsRate, Some([16.667, 33.333])),
+        ([20.0, 40.0], Way::TwoViews, Reason::Cheaper, Some([33.333, 50.0])),
+        ([20.0, 30.0], Way::Synthesis, Reason::Cheaper, Some([33.333, 33.333])),
+    ] {
+        let mut device = Device::new(gpu_ms, None);
+        device.measured_after();
+        let choice = device.chooser.choice();
+        assert_eq!((choice.way, choice.reason), (way, reason), "{gpu_ms:?}");
+        let rounded = choice.costs_ms.map(|costs| costs.map(|ms| (ms * 1e3).round() / 1e3));
+        assert_eq!(rounded, costs_ms, "{gpu_ms:?}");
+    }
+    // What does not hold the rate any more is measured again.
+    let mut device = Device::new([12.0, 8.0], None);
+    device.measured_after();
+    device.run(100.0);
+    assert_eq!(device.chooser.choice().reason, Reason::BothHoldRate);
+    device.gpu_ms = [14.0, 20.0];
+    assert!(device.measured_after() < 4.5);
+    assert_eq!(device.chooser.choice().way, Way::TwoViews);
+    // A display of unknown rate sets no pace.
+    let mut device = Device::new([8.0, 12.0], None);
+    device.refresh_hz = 0.0;
+    device.measured_after();
+    assert_eq!(device.chooser.choice().way, Way::TwoViews);
+}
+
+#[test]
+fn holding_the_rate_is_worth_more_than_the_gpus_time() {
+    // Two views are cheaper for the GPU, but the CPU cannot draw everything twice in time.
+    let mut device = Device::new([6.0, 8.0], Some(4));
+    device.cpu_ms = [19.0, 10.0];
+    device.measured_after();
+    let choice = device.chooser.choice();
+    assert_eq!((choice.way, choice.reason), (Way::Synthesis, Reason::HoldsRate));
+}
+
+#[test]
+fn frames_in_place_of_synthesis_do_not_count_for_it() {
+    let mut device = Device::new([6.0, 8.0], Some(4));
+    device.is_near = true;
+    device.measured_after();
+    let choice = device.chooser.choice();
+    assert_eq!((choice.way, choice.reason), (Way::Synthesis, Reason::Incomparable));
+    device.is_near = false;
+    let rest = device.measured_after();
+    assert!((59.0..61.0).contains(&rest), "{rest} s");
+    assert_eq!(device.chooser.choice().way, Way::TwoViews);
+}
+
+#[test]
+fn a_pause_begins_the_measurement_again() {
+    let mut device = Device::new(SIMPLE, Some(4));
+    device.run(0.8);
+    assert!(device.chooser.is_measuring());
+    device.now_ns += 60_000_000_000;
+    let begin = device.now_ns;
+    device.measured_after();
+    let seconds = (device.now_ns - begin) as f64 * 1e-9;
+    assert!((1.2..1.9).contains(&seconds), "{seconds} s");
+    assert!(device.chooser.choice().costs_ms.unwrap().iter().all(|ms| *ms < 10.0));
+    // A choice outlives a pause.
+    device.now_ns += 20_000_000_000;
+    device.frame();
+    assert!(!device.chooser.is_measuring());
+}
+
+#[test]
+fn nonsense_is_no_time() {
+    let mut chooser = Chooser::new(Way::TwoViews);
+    for frame in 0..400i64 {
+        let ms = [f32::NAN, -1.0, 0.0, f32::INFINITY][frame as usize % 4];
+        chooser.end_frame(&FrameEnd {
+            now_ns: frame * 11_000_000,
+            refresh_hz: f32::NAN,
+            rendered: Some(chooser.way()),
+            cost: Some(Cost { frames_ago: [0, 63, 64, u32::MAX][frame as usize % 4], ms }),
+            heat: Some(f32::NAN),
+        });
+    }
+    let choice = chooser.choice();
+    assert!(!chooser.is_measuring());
+    assert_eq!((choice.way, choice.costs_ms), (Way::TwoViews, Some([11.0, 11.0])));
+}

@@ -1,0 +1,116 @@
+#include "include/march.glsl"
+
+// The search of a fragment column by column: for CPU rasterizers, and for OpenGL ES 3.0.
+
+// State of the search. Whole columns are those of the image here, not forward ones.
+struct Search {
+    int column;
+    // Place of the column, and the places where the surfaces of the column before and of this one land, all relative to
+    // the pixel.
+    float shift;
+    float a;
+    float b;
+    // Depth of the column before and its own.
+    float depth;
+    float next;
+    bool found;
+    // Column and depth of the hole's background.
+    int edge;
+    float edge_depth;
+    // The nearest silhouette beside the pixel.
+    int rim;
+    float rim_depth;
+};
+
+// Moves the search to forward column x, where a tile begins.
+void leap(inout Search at, float x, float origin, int row) {
+    at.column = source_column(int(x));
+    at.shift = x - origin;
+    at.next = depth_texel(at.column, row);
+    at.b = at.shift + law.y * at.next;
+}
+
+// Walks column by column until the surface is found, or to forward column `end`.
+void walk(inout Search at, float end, float origin, int row) {
+    // Between two columns: places are rounded.
+    float limit = end - origin - 0.5;
+    int step = mirrored ? -1 : 1;
+    while (at.shift < limit && !at.found) {
+        at.a = at.b;
+        at.depth = at.next;
+        int here = at.column;
+        at.column += step;
+        at.shift += 1.0;
+        at.next = depth_texel(at.column, row);
+        at.b = at.shift + law.y * at.next;
+        bool before = at.a <= 0.0;
+        bool jump = before && at.b > 0.0;
+        bool torn = at.b - at.a >= MAX_STRETCH;
+        at.found = jump && (at.a > -0.5 || !torn);
+        bool fold = before && max(at.b, -1.0) < at.a;
+        bool beside = fold || (jump && torn && at.b < 1.0);
+        bool nearest = beside && at.rim < 0;
+        at.rim = nearest ? (fold ? here : at.column) : at.rim;
+        at.rim_depth = nearest ? (fold ? at.depth : at.next) : at.rim_depth;
+        bool farther = jump && law.y * (at.depth - at.edge_depth) < 0.0;
+        at.edge = farther ? here : at.edge;
+        at.edge_depth = farther ? at.depth : at.edge_depth;
+    }
+}
+
+// Colour and surface of a pixel. Column x lands at x - origin + law.y * depth, relative to the pixel. The search starts
+// at column `x`, of depth `next`, that lands at `b`, and takes `steps` steps at most.
+//
+// A silhouette that crosses the pixel is blended over what lies behind. Where the row jumps over the pixel from a
+// farther to a nearer surface there is a disocclusion: the farthest such jump is remembered and the hole is
+// filled from its background side.
+vec4 march(float origin, int row, float steps, float x, float b, float next, out Surface surface) {
+    float last_column = float(source_size.x - 1);
+    // Columns beyond the borders repeat them.
+    b -= x;
+    x = clamp(x, 0.0, last_column);
+    b += x;
+    // Left of everything the border of the image is the background.
+    bool outside = x == 0.0 && b > 0.0;
+    float end = outside && b < 0.5 ? x : min(x + steps, last_column);
+    int column = source_column(int(x));
+    int edge = outside ? column : -1;
+    float edge_depth = outside ? next : law.y < 0.0 ? -1e9 : 1e9;
+    Search at = Search(column, x - origin, b, b, next, next, false, edge, edge_depth, -1, 0.0);
+#ifndef TEXTURE_GATHER
+    // Nearly every pixel ends within the first tiles; those beside silhouettes of near surfaces go on, tile by tile.
+    float first = (floor(x / float(TILE.x)) + FIRST_TILES) * float(TILE.x);
+    walk(at, min(first, end), origin, row);
+    while (at.shift < end - origin - 0.5 && !at.found) {
+        x = next_candidate(round(at.shift + origin), end, origin - farthest, row);
+        leap(at, x, origin, row);
+        walk(at, min(x + float(TILE.x), end), origin, row);
+    }
+#else
+    // CPU rasterizers execute every fetch in the text. Without those of the tiles they are faster, except in frames of near
+    // surfaces.
+    walk(at, end, origin, row);
+#endif
+    // Where nothing is found: the hole's edge, or the last column right of everything.
+    bool own = at.found || at.edge < 0;
+    column = own ? at.column : at.edge;
+    x = float(source_column(column));
+    float t = at.b - at.a < MAX_STRETCH ? -at.a / (at.b - at.a) : 0.0;
+    t = at.found ? t : 1.0;
+    surface.source = x - 1.0 + t;
+    surface.depth = mix(at.depth, own ? at.next : at.edge_depth, t);
+    float away = x - origin + law.y * surface.depth;
+    surface.hole = !at.found && abs(away) >= 0.5;
+    vec4 color = fill_hole(surface.hole, color_at(surface.source, row), away, x, surface.depth, row);
+    // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
+    // it covers on average.
+    if (at.rim >= 0) {
+        x = float(source_column(at.rim));
+        float coverage = 1.0 - abs(x - origin + law.y * at.rim_depth);
+        color = mix(color, texelFetch(color_map, TEXEL_PLACE(in_image(ivec2(at.rim, row))), 0), coverage);
+        if (coverage >= 0.5) {
+            surface = Surface(x, at.rim_depth, false);
+        }
+    }
+    return color;
+}
