@@ -5,7 +5,7 @@
 #ifndef ENGINE_VULKAN_H
 #define ENGINE_VULKAN_H
 
-#include <vulkan/vulkan.h>
+#define YORO_USE_VULKAN
 #include <yoro.h>
 
 #include "picture.h"

@@ -23,8 +23,7 @@ int main(int argc, char **argv) {
   /* 1. Once, with the engine's context current. `check` is for development: mistakes become sentences. */
   YoroContext *yoro = NULL;
   YoroGlInfo info;
-  memset(&info, 0, sizeof info);
-  info.struct_size = sizeof info;
+  YORO_INIT(info);
   info.outputs = YORO_OUTPUT_DEPTH;
   info.state = YORO_GL_STATE_PRESERVE;
   info.check = 1;
@@ -34,8 +33,7 @@ int main(int argc, char **argv) {
 
   /* 2. Each frame: where the eyes are. With OpenXR, poses and angles are those of xrLocateViews, copied. */
   YoroEyes eyes;
-  memset(&eyes, 0, sizeof eyes);
-  eyes.struct_size = sizeof eyes;
+  YORO_INIT(eyes);
   eyes.rendered = YORO_EYE_RIGHT;
   eyes.width = eyes.height = SIZE;
   for (int eye = 0; eye < 2; ++eye) {
@@ -55,7 +53,7 @@ int main(int argc, char **argv) {
   eyes.guard_band = YORO_GUARD_BAND;
   eyes.messages.callback = on_error;
   YoroViews views;
-  views.struct_size = sizeof views;
+  YORO_INIT(views);
   if (yoro_views_from_eyes(&eyes, &views) != YORO_OK) return 1;
 
   /* 3. The engine renders the opaque objects of one eye. The image is wider than the eye's: it is the crop of it. */
@@ -65,8 +63,7 @@ int main(int argc, char **argv) {
   /* 4. The other eye. Transparent objects are drawn into both afterwards, tested against each eye's depth. */
   Image other = make_image(views.synthesized.width, views.synthesized.height);
   YoroGlImages images;
-  memset(&images, 0, sizeof images);
-  images.struct_size = sizeof images;
+  YORO_INIT(images);
   images.color_texture = source.color;
   images.depth_texture = source.depth;
   images.framebuffer = other.framebuffer;

@@ -19,8 +19,7 @@ int main(int argc, char **argv) {
 
   /* 1. Where the eyes are. With OpenXR, poses and angles are those of xrLocateViews, copied. */
   YoroEyes eyes;
-  memset(&eyes, 0, sizeof eyes);
-  eyes.struct_size = sizeof eyes;
+  YORO_INIT(eyes);
   eyes.rendered = YORO_EYE_RIGHT;
   eyes.width = eyes.height = SIZE;
   for (int eye = 0; eye < 2; ++eye) {
@@ -42,14 +41,13 @@ int main(int argc, char **argv) {
   eyes.guard_band = YORO_GUARD_BAND;
   eyes.messages.callback = on_error;
   YoroViews views;
-  views.struct_size = sizeof views;
+  YORO_INIT(views);
   if (yoro_views_from_eyes(&eyes, &views) != YORO_OK) return 1;
 
   /* 2. Once: pipelines for the target's format, and buffers for the largest sizes. */
   YoroContext *yoro = NULL;
   YoroVkInfo info;
-  memset(&info, 0, sizeof info);
-  info.struct_size = sizeof info;
+  YORO_INIT(info);
   info.loader = vkGetInstanceProcAddr;
   info.instance = instance;
   info.physical_device = gpu;
@@ -80,14 +78,13 @@ int main(int argc, char **argv) {
   YoroVkSource read;
   YoroVkTarget written;
   YoroVkFrame frame;
-  memset(&read, 0, sizeof read), memset(&written, 0, sizeof written), memset(&frame, 0, sizeof frame);
-  read.struct_size = sizeof read;
+  YORO_INIT(read);
+  YORO_INIT(written);
+  YORO_INIT(frame);
   read.width = source.size.width, read.height = source.size.height;
   read.color = color_read, read.depth = depth_read;
-  written.struct_size = sizeof written;
   written.width = written.height = SIZE;
   written.color = color_written, written.depth = depth_written;
-  frame.struct_size = sizeof frame;
   if (yoro_vk_register_source(yoro, &read, &frame.source) != YORO_OK) return 1;
   if (yoro_vk_register_target(yoro, &written, &frame.target) != YORO_OK) return 1;
 

@@ -3,17 +3,26 @@
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  *
- * For Vulkan include <vulkan/vulkan.h> before this file; without it there is the rest.
+ * For Vulkan define YORO_USE_VULKAN, or include <vulkan/vulkan.h> before this file; without it there is the rest. The file can
+ * be included again with it.
+ *
+ * Every function may also return YORO_ERROR_INTERNAL.
  *
  * Made of app/capi/src by cbindgen; `cargo xtask test the_header --bless` renews it.
  */
-
 
 #ifndef YORO_H
 #define YORO_H
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
+
+/**
+ * Sets a structure that begins with struct_size to zeros, and that to its size: YoroEyes eyes; YORO_INIT(eyes);
+ */
+#define YORO_INIT(structure) \
+  (memset(&(structure), 0, sizeof(structure)), (structure).struct_size = (uint32_t)sizeof(structure))
 
 /**
  * Version of this header.
@@ -39,6 +48,14 @@
  * A guard band that is complete for everything farther away than an arm's length, in metres.
  */
 #define YORO_GUARD_BAND 1.0
+
+/**
+ * Finds out whether two renders are cheaper on this device, or one with synthesis: it renders both in turns for about a
+ * second, chooses, and measures again when that may have changed.
+ *
+ * Use it from one thread at a time. It needs no YoroContext.
+ */
+typedef struct YoroChooser YoroChooser;
 
 /**
  * The synthesis in one GL context or on one Vulkan device: compiled shaders and small buffers.
@@ -77,7 +94,7 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_EYES_CANTED (-5)
 /**
- * The eyes do not lie on one horizontal line.
+ * The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL.
  */
 #define YORO_ERROR_EYES_OFF_AXIS (-6)
 /**
@@ -242,8 +259,10 @@ typedef uint32_t YoroEyesFlags;
  */
 #define YORO_EYES_EVEN 1
 /**
- * Gives canted eyes one direction, and frusta that contain their own. Show the images with the resulting poses and angles:
- * an OpenXR runtime turns images back that are submitted with these.
+ * Turns both eyes, which stay where they are, to one direction at right angles to the line between them, and gives them even
+ * frusta that contain their own. For canted eyes, and for eyes that do not lie on one horizontal line, such as those of a
+ * calibrated headset. Show the images with the resulting poses and angles: an OpenXR runtime turns images back that are
+ * submitted with these.
  */
 #define YORO_EYES_PARALLEL 2
 
@@ -269,6 +288,10 @@ typedef struct {
 
 /**
  * The two eyes of a frame, given by poses and angles.
+ *
+ * Metres stand for any unit: all lengths may have another one, the same for all, and the eyes may be any distance apart, so
+ * that a wearer is a giant or a mouse. Positions are rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the
+ * eyes' distance. In larger worlds give poses relative to the head, and move the resulting view matrices by the head's place.
  */
 typedef struct {
   /**
@@ -316,8 +339,8 @@ typedef struct {
    */
   YoroClip clip;
   /**
-   * Guard band: the distance in metres, 0.05 to 1000, from which on the rendered image contains the whole outer border of
-   * the other eye. Smaller values cost more pixels. 0 for no guard band: the border is filled in.
+   * Guard band: the distance in metres from which on the rendered image contains the whole outer border of the other eye.
+   * Smaller values cost more pixels. 0 for no guard band: the border is filled in.
    */
   float guard_band;
   /**
@@ -453,9 +476,9 @@ typedef struct {
 } YoroViews;
 
 /**
- * The two eyes of a frame, given by matrices. All are column-major, for column vectors, as GL and Vulkan take them. The
- * translation of a view matrix is in elements 12 to 14. Element 11 of a projection is -1 for eyes that look along -Z, and 1
- * for eyes that look along +Z.
+ * The two eyes of a frame, given by matrices; they may be any distance apart. All matrices are column-major, for column
+ * vectors, as GL and Vulkan take them. The translation of a view matrix is in elements 12 to 14. Element 11 of a projection is
+ * -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
  */
 typedef struct {
   /**
@@ -502,6 +525,14 @@ typedef struct {
    * Where the sentences of errors go.
    */
   YoroMessages messages;
+  /**
+   * YORO_EYES_ bits. The resulting view matrices are turned as the eyes are.
+   */
+  YoroEyesFlags flags;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
 } YoroMatrices;
 
 /**
@@ -568,6 +599,160 @@ typedef struct {
 } YoroCapabilities;
 
 /**
+ * The GPU's times of one frame, in nanoseconds. All are 0 as long as none is known.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroTimes), set by the caller.
+   */
+  uint32_t struct_size;
+  /**
+   * 1 if the times are those of a frame.
+   */
+  uint32_t is_known;
+  /**
+   * The split of the source into surfaces; 0 with YORO_EDGES_HARD.
+   */
+  uint64_t split_ns;
+  /**
+   * The bounds of the displacements in each tile.
+   */
+  uint64_t tiles_ns;
+  /**
+   * The columns to search for each tile of the target.
+   */
+  uint64_t spans_ns;
+  /**
+   * The search, which writes the target.
+   */
+  uint64_t march_ns;
+} YoroTimes;
+
+/**
+ * A way to make both eyes of a frame, which is also its index in arrays of two.
+ */
+typedef uint32_t YoroWay;
+/**
+ * Both eyes are rendered.
+ */
+#define YORO_WAY_TWO_VIEWS 0
+/**
+ * One eye is rendered, the other synthesized.
+ */
+#define YORO_WAY_SYNTHESIS 1
+/**
+ * Something else, such as both eyes rendered because synthesis was not possible: the frame counts for no way.
+ */
+#define YORO_WAY_OTHER 2
+
+/**
+ * A frame that was handed to the display.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroFrameEnd).
+   */
+  uint32_t struct_size;
+  /**
+   * The way in which the frame was rendered.
+   */
+  YoroWay rendered;
+  /**
+   * The time now, in nanoseconds of a monotonic clock.
+   */
+  int64_t now_ns;
+  /**
+   * Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when you
+   * waited for the GPU to measure it.
+   */
+  float refresh_hz;
+  /**
+   * Milliseconds that a frame has taken; 0 if none are known by now. The GPU's time, if there is a timer; else the time
+   * from the beginning of the frame's work to the end of the GPU's, if you wait for that.
+   */
+  float cost_ms;
+  /**
+   * The frame that took cost_ms, as the number of frames ended since: 0 for this one. 63 at most.
+   */
+  uint32_t cost_frames_ago;
+  /**
+   * 1 if heat is known.
+   */
+  uint32_t has_heat;
+  /**
+   * The device's heat on a scale on which 0.1 matters, such as Android's thermal headroom.
+   */
+  float heat;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+  /**
+   * Where the sentences of errors go.
+   */
+  YoroMessages messages;
+} YoroFrameEnd;
+
+/**
+ * The reason for a choice.
+ */
+typedef uint32_t YoroReason;
+/**
+ * Nothing is measured yet in this scene: it is the way to begin with, or the one before.
+ */
+#define YORO_REASON_UNMEASURED 0
+/**
+ * It costs less.
+ */
+#define YORO_REASON_CHEAPER 1
+/**
+ * It costs more, but too little for a change: it is the way before.
+ */
+#define YORO_REASON_SIMILAR 2
+/**
+ * It holds the display's rate, and the other way does not.
+ */
+#define YORO_REASON_HOLDS_RATE 3
+/**
+ * Both ways hold the display's rate, which hides their costs, and nothing more is known: it is the way before.
+ */
+#define YORO_REASON_BOTH_HOLD_RATE 4
+/**
+ * One of the ways could not be measured: it is the way before.
+ */
+#define YORO_REASON_INCOMPARABLE 5
+
+/**
+ * The way to render, and why.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroChoice), set by the caller.
+   */
+  uint32_t struct_size;
+  /**
+   * The way to render the next frame.
+   */
+  YoroWay next;
+  /**
+   * 1 while both ways are being measured. Keep resolution and quality meanwhile.
+   */
+  uint32_t is_measuring;
+  /**
+   * The way that was chosen last.
+   */
+  YoroWay chosen;
+  /**
+   * Why.
+   */
+  YoroReason reason;
+  /**
+   * The compared times in milliseconds, by way; 0 if there was nothing to compare.
+   */
+  float cost_ms[2];
+} YoroChoice;
+
+/**
  * Bits for outputs besides colour, and for their encoding.
  */
 typedef uint32_t YoroOutputFlags;
@@ -585,11 +770,12 @@ typedef uint32_t YoroOutputFlags;
  */
 typedef uint32_t YoroGlState;
 /**
- * Some of it stays changed (docs/library.md has the table): for engines that set all state that they draw with.
+ * Some of it stays changed: for engines that set all state that they draw with. library.md lists each state.
  */
 #define YORO_GL_STATE_LEAVE 0
 /**
- * All of it is restored.
+ * All of it is restored. A program that was deleted while it was current goes at the first call, as GL says; none is current
+ * then.
  */
 #define YORO_GL_STATE_PRESERVE 1
 
@@ -622,9 +808,25 @@ typedef uint32_t YoroEdges;
 typedef void (*YoroGlProc)(void);
 
 /**
- * Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and others.
+ * Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and others. Cast
+ * those of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
  */
 typedef YoroGlProc (*YoroGlLoader)(const char *name);
+
+/**
+ * Bits for the way in which sources lie in their textures.
+ */
+typedef uint32_t YoroGlSourceFlags;
+/**
+ * The rendered image is a part of larger textures, of any size up to theirs in each frame: dynamic resolution, or both eyes side
+ * by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest sizes.
+ */
+#define YORO_GL_SOURCE_PARTS 1
+/**
+ * The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, of colour and of depth: the textures of GL_OVR_multiview, and of
+ * OpenXR's swapchains for it. Not with YORO_EDGES_MULTISAMPLE.
+ */
+#define YORO_GL_SOURCE_LAYERS 2
 
 /**
  * The options of a context for OpenGL.
@@ -663,6 +865,14 @@ typedef struct {
    * The receiver of the sentences of errors, also in later calls.
    */
   YoroMessages messages;
+  /**
+   * YORO_GL_SOURCE_ bits.
+   */
+  YoroGlSourceFlags sources;
+  /**
+   * 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then. 0: no times.
+   */
+  uint32_t timed;
 } YoroGlInfo;
 
 /**
@@ -674,7 +884,8 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format. All four channels
+   * Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another target or
+   * size with YORO_GL_SOURCE_ bits). All four channels
    * are carried over, in any encoding. Filters and sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is
    * resolved, with values between 0 and 1.
    */
@@ -702,16 +913,250 @@ typedef struct {
    * does not exist any more. Otherwise 0.
    */
   uint32_t sample_color_texture;
+  /**
+   * First column of the rendered part in its textures. This and the next three are for YORO_GL_SOURCE_PARTS, otherwise 0.
+   */
+  uint32_t source_x;
+  /**
+   * First row of the rendered part, counted from the bottom.
+   */
+  uint32_t source_y;
+  /**
+   * Width of the textures in pixels.
+   */
+  uint32_t image_width;
+  /**
+   * Height of the textures in pixels.
+   */
+  uint32_t image_height;
+  /**
+   * The layer of both textures, for YORO_GL_SOURCE_LAYERS; otherwise 0. A layer to draw into is attached to the framebuffer,
+   * by glFramebufferTextureLayer.
+   */
+  uint32_t layer;
 } YoroGlImages;
 
-#if defined(VK_VERSION_1_1)
+#ifdef __cplusplus
+extern "C" {
+#endif /* __cplusplus */
+
+/**
+ * Returns a short text for a result, such as "the eyes are canted", and "unknown result" for other numbers. The text lives
+ * as long as the library.
+ *
+ * Call it from any thread.
+ */
+const char *yoro_result_text(YoroResult result);
+
+/**
+ * Returns the version of the library, in the form of YORO_VERSION, which is the version of the header.
+ *
+ * Call it from any thread.
+ */
+uint32_t yoro_version(void);
+
+/**
+ * Computes the view to render, and the mapping of its pixels to the other eye.
+ *
+ * Call it from any thread, without a context. It allocates and keeps nothing.
+ *
+ * @param eyes  The eyes.
+ * @param views Filled in; the caller sets struct_size.
+ * @pre Both pointers lead to structures of the size that they state.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that are impossible or cannot be
+ *         synthesized; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_views_from_eyes(const YoroEyes *eyes,
+                                YoroViews *views);
+
+/**
+ * Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
+ * volume and units of the given ones. Poses are in metres.
+ *
+ * The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes' distance.
+ * Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds give matrices
+ * relative to the head: subtract its place from both eyes' places, in 64 bits, before making the matrices.
+ *
+ * Call it from any thread, without a context. It allocates and keeps nothing.
+ *
+ * @param matrices The eyes.
+ * @param views    Filled in; the caller sets struct_size.
+ * @pre Both pointers lead to structures of the size that they state.
+ * @return YORO_ERROR_MATRIX for matrices that are not rigid views or perspective projections; otherwise as
+ *         yoro_views_from_eyes.
+ */
+YoroResult yoro_views_from_matrices(const YoroMatrices *matrices,
+                                    YoroViews *views);
+
+/**
+ * Returns the driver of a context and its limits.
+ *
+ * Call it on the thread that may use the context; for OpenGL with the GL context current. It changes no GL state.
+ *
+ * @param context      The context.
+ * @param capabilities Filled in; the caller sets struct_size.
+ * @pre context is alive.
+ * @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
+ */
+YoroResult yoro_capabilities(YoroContext *context,
+                             YoroCapabilities *capabilities);
+
+/**
+ * Returns the times of the passes in an earlier frame. Call it once a frame, before the synthesis; it does not wait.
+ *
+ * OpenGL: of a frame some frames ago, if `timed` of YoroGlInfo is 1 and the driver has timer queries that can be trusted; those
+ * of CPU rasterizers cannot. Vulkan: of the frame that was recorded `timed_frames` of YoroVkInfo calls of yoro_vk_record ago,
+ * on queue families with timestamps.
+ *
+ * Thread and preconditions are those of yoro_capabilities.
+ *
+ * @param context The context.
+ * @param times   Filled in; the caller sets struct_size.
+ * @pre For Vulkan the commands of that frame have been executed.
+ * @return YORO_ERROR_DEVICE_LOST, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
+ */
+YoroResult yoro_times(YoroContext *context,
+                      YoroTimes *times);
+
+/**
+ * Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
+ *
+ * Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device must have
+ * executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL objects that were bound
+ * are not bound any more; other GL state stays.
+ *
+ * @param context The context, or NULL.
+ * @pre context is alive and no other thread uses it.
+ * @return YORO_ERROR_BUSY if another thread is inside a function with the context; nothing is destroyed then.
+ */
+YoroResult yoro_destroy(YoroContext *context);
+
+/**
+ * Creates a chooser.
+ *
+ * Call it from any thread.
+ *
+ * @param first   The way to begin with, which stays if nothing can be measured: YORO_WAY_TWO_VIEWS or YORO_WAY_SYNTHESIS.
+ * @param chooser Receives the chooser; NULL after an error.
+ * @pre chooser can be written.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_NULL.
+ */
+YoroResult yoro_chooser_create(YoroWay first,
+                               YoroChooser **chooser);
+
+/**
+ * Takes a frame that was handed to the display, and says how to render the next one. It allocates nothing. The first frame
+ * is rendered in the way that yoro_chooser_create was given.
+ *
+ * @param chooser The chooser.
+ * @param frame   The frame.
+ * @param choice  Filled in; the caller sets struct_size.
+ * @pre chooser is alive, and no other thread uses it. The others lead to structures of the size that they state.
+ * @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers that
+ *         are not finite: such a frame is not counted.
+ */
+YoroResult yoro_chooser_end_frame(YoroChooser *chooser,
+                                  const YoroFrameEnd *frame,
+                                  YoroChoice *choice);
+
+/**
+ * Has both ways measured again: there is another scene, another place in it, or another resolution.
+ *
+ * @param chooser The chooser.
+ * @pre chooser is alive, and no other thread uses it.
+ * @return YORO_ERROR_NULL.
+ */
+YoroResult yoro_chooser_scene_changed(YoroChooser *chooser);
+
+/**
+ * Destroys a chooser. NULL is allowed, and does nothing.
+ *
+ * @param chooser The chooser, or NULL.
+ * @pre chooser is alive, and no other thread uses it.
+ */
+void yoro_chooser_destroy(YoroChooser *chooser);
+
+/**
+ * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at start,
+ * not in a frame.
+ *
+ * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag stays.
+ *
+ * @param info    The options.
+ * @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+ * @pre The GL context is current, and lives as long as the YoroContext.
+ * @return YORO_ERROR_NO_CONTEXT, YORO_ERROR_UNSUPPORTED, YORO_ERROR_MEMORY, YORO_ERROR_DRIVER, YORO_ERROR_VALUE,
+ *         YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_gl_create(const YoroGlInfo *info,
+                          YoroContext **context);
+
+/**
+ * Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone; drivers add
+ * padding. yoro_capabilities says it of a context that exists.
+ *
+ * Call it from any thread. Neither loader nor GL context is needed.
+ *
+ * @param info  The options.
+ * @param warp  The warp of a frame of the largest sizes.
+ * @param bytes Receives the number.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_gl_buffer_bytes(const YoroGlInfo *info,
+                                const YoroWarp *warp,
+                                uint64_t *bytes);
+
+/**
+ * Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the sizes
+ * are as before.
+ *
+ * Thread, GL state and results are those of yoro_gl_synthesize.
+ *
+ * @param context The context.
+ * @param warp    The warp of a frame of these sizes.
+ * @pre The GL context is current.
+ */
+YoroResult yoro_gl_prepare(YoroContext *context,
+                           const YoroWarp *warp);
+
+/**
+ * Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
+ * objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
+ *
+ * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay the same
+ * it allocates and compiles nothing, and does not wait for the GPU.
+ *
+ * @param context The context.
+ * @param warp    The warp of YoroViews.
+ * @param images  The images to read and the place to draw.
+ * @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says. Transform
+ *      feedback and conditional rendering are not active.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also
+ *         YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT;
+ *         YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_gl_synthesize(YoroContext *context,
+                              const YoroWarp *warp,
+                              const YoroGlImages *images);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  /* __cplusplus */
+
+#endif  /* YORO_H */
+
+#ifdef YORO_USE_VULKAN
+#include <vulkan/vulkan.h>
+#endif
+
+#if defined(VK_VERSION_1_1) && !defined(YORO_VULKAN_H)
+#define YORO_VULKAN_H
+
 /**
  * vkGetInstanceProcAddr of the Vulkan loader, or of a layer in its place.
  */
 typedef void (*(*YoroVkLoader)(VkInstance instance, const char *name))(void);
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * The options of a context for Vulkan.
  */
@@ -789,10 +1234,17 @@ typedef struct {
    * The receiver of the sentences of errors, also in later calls.
    */
   YoroMessages messages;
+  /**
+   * For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0 for no
+   * times.
+   */
+  uint32_t timed_frames;
+  /**
+   * Zero.
+   */
+  uint32_t reserved_too;
 } YoroVkInfo;
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * A use of an image: one side of a barrier.
  */
@@ -802,17 +1254,15 @@ typedef struct {
    */
   VkImageLayout layout;
   /**
-   * The stages that use it.
+   * The stages that use it. 0: nothing is waited for before, or nothing waits afterwards, as where a semaphore does.
    */
   VkPipelineStageFlags stages;
   /**
-   * Their kinds of access.
+   * Their kinds of access; 0 without stages.
    */
   VkAccessFlags access;
 } YoroVkState;
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * One layer of a 2-D image: mip level 0, without multisampling unless stated otherwise.
  */
@@ -839,9 +1289,7 @@ typedef struct {
    */
   YoroVkState after;
 } YoroVkImage;
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * Images to read.
  */
@@ -868,8 +1316,8 @@ typedef struct {
    */
   YoroVkImage color;
   /**
-   * Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT. For
-   * YORO_EDGES_MULTISAMPLE it has YoroVkInfo's samples.
+   * Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or
+   * R32_SFLOAT. For YORO_EDGES_MULTISAMPLE it has YoroVkInfo's samples.
    */
   YoroVkImage depth;
   /**
@@ -878,16 +1326,12 @@ typedef struct {
    */
   YoroVkImage sample_color;
 } YoroVkSource;
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * The id of a registered source, never 0.
  */
 typedef uint32_t YoroVkSourceId;
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * Images to write.
  */
@@ -917,16 +1361,62 @@ typedef struct {
    */
   YoroVkImage depth;
 } YoroVkTarget;
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * The id of a registered target, never 0.
  */
 typedef uint32_t YoroVkTargetId;
-#endif
 
-#if defined(VK_VERSION_1_1)
+/**
+ * The uses of an image before and after one call.
+ */
+typedef struct {
+  /**
+   * Its use before yoro_vk_record: its layout then, and the stages to wait for.
+   */
+  YoroVkState before;
+  /**
+   * Its use afterwards, for which it is made ready.
+   */
+  YoroVkState after;
+} YoroVkUse;
+
+/**
+ * The uses of all images in one call, for engines whose images come from other passes and go to others in each frame. Those of
+ * images that were not registered are ignored. A source is still sampled in the layout that it was registered for: if its
+ * registered layout before is not one of those that can be sampled, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroVkUses).
+   */
+  uint32_t struct_size;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+  /**
+   * Of the source's colour.
+   */
+  YoroVkUse source_color;
+  /**
+   * Of the source's depth.
+   */
+  YoroVkUse source_depth;
+  /**
+   * Of the source's colour of samples.
+   */
+  YoroVkUse source_sample_color;
+  /**
+   * Of the target's colour.
+   */
+  YoroVkUse target_color;
+  /**
+   * Of the target's depth.
+   */
+  YoroVkUse target_depth;
+} YoroVkUses;
+
 /**
  * The images and places of one synthesis.
  */
@@ -959,131 +1449,20 @@ typedef struct {
    * First row of the synthesized image.
    */
   uint32_t target_y;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+  /**
+   * The uses of the images around this call, in place of those of their registration; may be NULL.
+   */
+  const YoroVkUses *uses;
 } YoroVkFrame;
-#endif
 
 #ifdef __cplusplus
 extern "C" {
-#endif // __cplusplus
+#endif
 
-/**
- * Returns a short text for a result, such as "the eyes are canted", and "unknown result" for other numbers. The text lives
- * as long as the library.
- *
- * Call it from any thread.
- */
-const char *yoro_result_text(YoroResult result);
-
-/**
- * Returns the version of the library, in the form of YORO_VERSION, which is the version of the header.
- *
- * Call it from any thread.
- */
-uint32_t yoro_version(void);
-
-/**
- * Computes the view to render, and the mapping of its pixels to the other eye.
- *
- * Call it from any thread, without a context. It allocates and keeps nothing.
- *
- * @param eyes  The eyes.
- * @param views Filled in; the caller sets struct_size.
- * @pre Both pointers lead to structures of the size that they state.
- * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that are impossible or cannot be
- *         synthesized; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
- */
-YoroResult yoro_views_from_eyes(const YoroEyes *eyes,
-                                YoroViews *views);
-
-/**
- * Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
- * volume and units of the given ones. Poses are in metres.
- *
- * Call it from any thread, without a context. It allocates and keeps nothing.
- *
- * @param matrices The eyes.
- * @param views    Filled in; the caller sets struct_size.
- * @pre Both pointers lead to structures of the size that they state.
- * @return YORO_ERROR_MATRIX for matrices that are not rigid views or perspective projections; otherwise as
- *         yoro_views_from_eyes.
- */
-YoroResult yoro_views_from_matrices(const YoroMatrices *matrices,
-                                    YoroViews *views);
-
-/**
- * Returns the driver of a context and its limits.
- *
- * Call it on the thread that may use the context; for OpenGL with the GL context current. It changes no GL state.
- *
- * @param context      The context.
- * @param capabilities Filled in; the caller sets struct_size.
- * @pre context is alive.
- * @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
- */
-YoroResult yoro_capabilities(YoroContext *context,
-                             YoroCapabilities *capabilities);
-
-/**
- * Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
- *
- * Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device must have
- * executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL objects that were bound
- * are not bound any more; other GL state stays.
- *
- * @param context The context, or NULL.
- * @pre context is alive and no other thread uses it.
- * @return YORO_ERROR_BUSY if another thread is inside a function with the context; nothing is destroyed then.
- */
-YoroResult yoro_destroy(YoroContext *context);
-
-/**
- * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at start,
- * not in a frame.
- *
- * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag stays.
- *
- * @param info    The options.
- * @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
- * @pre The GL context is current, and lives as long as the YoroContext.
- * @return YORO_ERROR_NO_CONTEXT, YORO_ERROR_UNSUPPORTED, YORO_ERROR_DRIVER, YORO_ERROR_VALUE, YORO_ERROR_NULL,
- *         YORO_ERROR_STRUCT_SIZE.
- */
-YoroResult yoro_gl_create(const YoroGlInfo *info,
-                          YoroContext **context);
-
-/**
- * Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the sizes
- * are as before.
- *
- * Thread, GL state and results are those of yoro_gl_synthesize.
- *
- * @param context The context.
- * @param warp    The warp of a frame of these sizes.
- * @pre The GL context is current.
- */
-YoroResult yoro_gl_prepare(YoroContext *context,
-                           const YoroWarp *warp);
-
-/**
- * Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
- * objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
- *
- * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay the same
- * it allocates and compiles nothing, and does not wait for the GPU.
- *
- * @param context The context.
- * @param warp    The warp of YoroViews.
- * @param images  The images to read and the place to draw.
- * @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says. Transform
- *      feedback and conditional rendering are not active.
- * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_DRIVER; with `check` also YORO_ERROR_FORMAT;
- *         YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
- */
-YoroResult yoro_gl_synthesize(YoroContext *context,
-                              const YoroWarp *warp,
-                              const YoroGlImages *images);
-
-#if defined(VK_VERSION_1_1)
 /**
  * Creates a context for Vulkan: pipelines, and buffers for the largest sizes. Call it at start, not in a frame.
  *
@@ -1098,9 +1477,20 @@ YoroResult yoro_gl_synthesize(YoroContext *context,
  */
 YoroResult yoro_vk_create(const YoroVkInfo *info,
                           YoroContext **context);
-#endif
 
-#if defined(VK_VERSION_1_1)
+/**
+ * Returns how many bytes the buffers of a context will have on the GPU, of the sizes, formats and edges of its options alone;
+ * drivers add padding. yoro_capabilities says it of a context that exists.
+ *
+ * Call it from any thread. No handle of the options is needed.
+ *
+ * @param info  The options.
+ * @param bytes Receives the number.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_vk_buffer_bytes(const YoroVkInfo *info,
+                                uint64_t *bytes);
+
 /**
  * Creates views and descriptors of images to read. Call it once for each set of images that you render to.
  *
@@ -1116,9 +1506,7 @@ YoroResult yoro_vk_create(const YoroVkInfo *info,
 YoroResult yoro_vk_register_source(YoroContext *context,
                                    const YoroVkSource *source,
                                    YoroVkSourceId *id);
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * Creates views of images to write. Call it once for each image of a swapchain.
  *
@@ -1129,9 +1517,7 @@ YoroResult yoro_vk_register_source(YoroContext *context,
  * @param id      Receives their id.
  */
 YoroResult yoro_vk_register_target(YoroContext *context, const YoroVkTarget *target, YoroVkTargetId *id);
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * Releases the views and descriptors of images to read. Ignores an id that is not registered.
  *
@@ -1143,9 +1529,7 @@ YoroResult yoro_vk_register_target(YoroContext *context, const YoroVkTarget *tar
  * @return YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL.
  */
 YoroResult yoro_vk_release_source(YoroContext *context, YoroVkSourceId id);
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * Releases the views of images to write. Thread and results are those of yoro_vk_release_source.
  *
@@ -1154,9 +1538,7 @@ YoroResult yoro_vk_release_source(YoroContext *context, YoroVkSourceId id);
  * @pre No command that was recorded with the id is pending.
  */
 YoroResult yoro_vk_release_target(YoroContext *context, YoroVkTargetId id);
-#endif
 
-#if defined(VK_VERSION_1_1)
 /**
  * Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten: barriers, and
  * three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the rendered eye, and before
@@ -1182,10 +1564,9 @@ YoroResult yoro_vk_record(YoroContext *context,
                           VkCommandBuffer commands,
                           const YoroWarp *warp,
                           const YoroVkFrame *frame);
-#endif
 
 #ifdef __cplusplus
-}  // extern "C"
-#endif  // __cplusplus
+}
+#endif
 
-#endif  /* YORO_H */
+#endif  /* YORO_VULKAN_H */

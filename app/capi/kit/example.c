@@ -11,8 +11,8 @@ static char *read_file(const char *name) {
   return text;
 }
 
-static GLuint make_pass(const char *name) {
-  const char *files[] = {"screen.vert", name};
+static GLuint make_pass(const char *vertex, const char *name) {
+  const char *files[] = {vertex, name};
   const char *textures[] = {"depth_map", "color_map", "tile_map", "span_map"};
   GLuint program = glCreateProgram();
   for (int i = 0; i < 2; ++i) {
@@ -34,12 +34,12 @@ static GLuint make_pass(const char *name) {
   return program;
 }
 
-/* A target of 32-bit integers. */
+/* A target of four 32-bit integers. */
 static Image make_map(const int size[2]) {
   Image map = {0, 0, 0, size[0], size[1]};
   glGenFramebuffers(1, &map.framebuffer);
   glBindFramebuffer(GL_FRAMEBUFFER, map.framebuffer);
-  map.color = make_texture(GL_R32UI, GL_COLOR_ATTACHMENT0, map.width, map.height);
+  map.color = make_texture(GL_RGBA32UI, GL_COLOR_ATTACHMENT0, map.width, map.height);
   return map;
 }
 
@@ -71,7 +71,8 @@ static void draw_view(GLuint program, const YoroKitFrustum *f, float eye_x, cons
 int main(int argc, char **argv) {
   make_context();
   GLuint scene = make_program();
-  GLuint tiles = make_pass("tiles.frag"), spans = make_pass("spans.frag"), march = make_pass("march.frag");
+  GLuint tiles = make_pass("screen.vert", "tiles.frag"), spans = make_pass("screen.vert", "spans.frag");
+  GLuint march = make_pass("march.vert", "march.frag");
 
   /* 1. What to render, and the uniforms. */
   const float up = tanf(0.65f), out = tanf(0.7f), in = tanf(0.6f);

@@ -8,8 +8,9 @@ use std::path::Path;
 use yoro::synthesis::Uniforms;
 
 /// File of the kit, and file of `yoro-shaders` that it is made of.
-const SHADERS: [(&str, &str); 4] = [
+const SHADERS: [(&str, &str); 5] = [
     ("screen.vert", "screen.vert"),
+    ("march.vert", "synthesis/march.vert"),
     ("tiles.frag", "synthesis/gather/tiles.frag"),
     ("spans.frag", "synthesis/gather/spans.frag"),
     ("march.frag", "synthesis/gather/march.frag"),
@@ -34,7 +35,14 @@ pub fn write(folder: &Path) -> io::Result<()> {
             put(&folder.join(api).join(name), &shader(source, version, macros)?)?;
         }
     }
-    put(&folder.join("yoro_kit.h"), include_str!("yoro_kit.h"))?;
+    for (name, text) in [
+        ("yoro_kit.h", include_str!("yoro_kit.h")),
+        ("example.c", include_str!("example.c")),
+        ("engine_gles.h", include_str!("../examples/engine_gles.h")),
+        ("picture.h", include_str!("../examples/picture.h")),
+    ] {
+        put(&folder.join(name), text)?;
+    }
     put(&folder.join("README.md"), &include_str!("README.md").replace("UNIFORMS\n", &table()))
 }
 
@@ -55,13 +63,15 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
         "{first}\n// yoro, shader kit {}. SPDX-License-Identifier: MIT OR Apache-2.0\n",
         env!("CARGO_PKG_VERSION")
     );
-    if source.ends_with("march.frag") {
-        own += "//\n// Settings:\n\
-                // #define WRITE_DEPTH // The other eye's depth, too, to gl_FragDepth: for transparent objects.\n";
+    if source.ends_with(".frag") {
+        own += "//\n// Settings:\n";
+        if source.ends_with("march.frag") {
+            own += "// #define WRITE_DEPTH // The other eye's depth, too, to gl_FragDepth: for transparent objects.\n";
+        }
         own += match macros.iter().any(|(name, _)| *name == "TEXTURE_GATHER") {
-            true => "// #define SHORT_WAY // For GPUs: fewer steps, the same picture.\n",
+            true => "// #define SHORT_WAY // For GPUs, in all three passes: less work, the same picture.\n",
             false => {
-                "// #define SHORT_WAY // For GPUs, with `#version 310 es` above: fewer steps, the same picture.\n"
+                "// #define SHORT_WAY // For GPUs, in all three passes, with `#version 310 es`: less work, the same picture.\n"
             }
         };
     }

@@ -19,7 +19,7 @@ typedef struct {
 /* Two eyes that look in one direction, at right angles to the line between them. */
 typedef struct {
   YoroKitFrustum frusta[2]; /* left eye first; of one width, one height and the same rows */
-  float ipd;                /* distance between the eyes in metres, 0 to 0.08 */
+  float ipd;                /* distance between the eyes in metres, 0 or more; or all lengths in another unit */
   float near_z, far_z;      /* depth planes in metres, 0 < near_z < far_z; far_z may be INFINITY */
   int reversed;             /* 0: the depth buffer holds 0 at near_z, 1: it holds 1 there */
   int rendered;             /* the eye that is rendered: 0 left, 1 right */
@@ -48,17 +48,23 @@ typedef struct {
   int width, height;        /* of the image to render */
   YoroKitFrustum frustum;   /* to render it with, from the rendered eye's place */
   int crop_x, crop_y;       /* where the rendered eye's own image begins in it, from row 0 */
-  int tile_map[2];          /* size of the target of tiles.frag, format R32UI */
-  int span_map[2];          /* size of the target of spans.frag, format R32UI */
+  int tile_map[2];          /* size of the target of tiles.frag, format RGBA32UI */
+  int span_map[2];          /* size of the target of spans.frag, format RGBA32UI */
   YoroKitUniforms uniforms; /* for all three passes */
 } YoroKitViews;
 
-static inline int yoro_kit_ceil(double pixels) { return pixels > 1e-3 ? (int)ceil(pixels - 1e-3) : 0; }
+/* No driver renders larger images. */
+#define YORO_KIT_MAX_SIDE 65536
+
+static inline int yoro_kit_ceil(double pixels) {
+  return pixels > YORO_KIT_MAX_SIDE ? YORO_KIT_MAX_SIDE + 1 : pixels > 1e-3 ? (int)ceil(pixels - 1e-3) : 0;
+}
 
 /*
  * Works out everything for a frame. x and y are the corner of the other eye's image in its target, at row 0's side.
  * Returns 0 for eyes that cannot be served: give both frusta one width, one height and the same rows, and look at the
- * ranges above. Eyes that are rotated against each other are not told here: do not give them.
+ * ranges above; no image may have more than 65536 pixels on a side, and in images that are wider nothing may move by more
+ * than 4095 of them. Eyes that are rotated against each other are not told here: do not give them.
  */
 static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitViews *views) {
   YoroKitFrustum s = eyes->frusta[eyes->rendered != 0], t = eyes->frusta[eyes->rendered == 0];
@@ -69,14 +75,16 @@ static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitV
     up = t.up, t.up = -t.down, t.down = -up;
   }
   memset(views, 0, sizeof *views);
-  if (!(eyes->width > 0 && eyes->height > 0 && s.right > s.left && s.up > s.down && t.right > t.left && t.up > t.down &&
-        eyes->near_z > 0 && eyes->near_z < eyes->far_z && eyes->ipd >= 0 && eyes->ipd <= 0.08f && eyes->guard_band >= 0))
+  if (!(eyes->width > 0 && eyes->width <= YORO_KIT_MAX_SIDE && eyes->height > 0 && eyes->height <= YORO_KIT_MAX_SIDE &&
+        x >= 0 && x <= YORO_KIT_MAX_SIDE && y >= 0 && y <= YORO_KIT_MAX_SIDE && s.right > s.left && s.up > s.down && t.right > t.left && t.up > t.down &&
+        eyes->near_z > 0 && eyes->near_z < eyes->far_z && eyes->ipd >= 0 && isfinite(eyes->ipd) && eyes->guard_band >= 0))
     return 0;
   const double width = eyes->width, height = eyes->height;
   const double dx = (s.right - s.left) / width, dy = (s.up - s.down) / height; /* tangent per pixel */
   const double row = (s.down - t.down) / dy;
-  if (fabs((t.right - t.left) / width / dx - 1) * width > 0.05 || fabs((t.up - t.down) / height / dy - 1) * height > 0.05 ||
-      fabs(row - round(row)) > 0.05)
+  /* In this form numbers that are not finite fail, too. */
+  if (!(fabs((t.right - t.left) / width / dx - 1) * width <= 0.05 && fabs((t.up - t.down) / height / dy - 1) * height <= 0.05 &&
+        fabs(row - round(row)) <= 0.05))
     return 0;
 
   /* The source: the rendered eye, grown by whole pixels to the union of both frusta and by the guard band, which lies on
@@ -86,6 +94,7 @@ static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitV
   const int left = yoro_kit_ceil((s.left - t.left) / dx) + (to_left ? guard : 0);
   const int right = yoro_kit_ceil((t.right - s.right) / dx) + (to_left ? 0 : guard);
   const int below = yoro_kit_ceil((s.down - t.down) / dy), above = yoro_kit_ceil((t.up - s.up) / dy);
+  if (eyes->width + left + right > YORO_KIT_MAX_SIDE || eyes->height + below + above > YORO_KIT_MAX_SIDE) return 0;
   s.left -= (float)(left * dx), s.right += (float)(right * dx);
   s.down -= (float)(below * dy), s.up += (float)(above * dy);
   views->width = eyes->width + left + right;
@@ -105,6 +114,10 @@ static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitV
   /* Shaders count columns in the direction in which nearer surfaces lie farther along: from the right for a right eye. */
   if (!to_left) offset = width - views->width - offset, scale = -scale;
   const double at_near = offset + (eyes->reversed ? scale : 0.0), at_far = offset + (eyes->reversed ? 0.0 : scale);
+  if (!(fmin(at_near - at_far, width - at_far) <= 4095 && fmax(fabs(at_near), fabs(at_far)) <= 1 << 20)) {
+    memset(views, 0, sizeof *views);
+    return 0;
+  }
   views->tile_map[0] = (views->width + 15) / 16, views->tile_map[1] = (views->height + 7) / 8;
   views->span_map[0] = (eyes->width + 15) / 16, views->span_map[1] = views->tile_map[1];
   const double sense = to_left ? 1.0 : -1.0, first = to_left ? -x - 0.5 : width + x - 0.5, first_row = y + row_offset;

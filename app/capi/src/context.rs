@@ -32,6 +32,9 @@ pub(crate) trait Backend: Any {
     fn api(&self) -> &'static str;
 
     fn capabilities(&self) -> YoroCapabilities;
+
+    /// The times of a frame; None before there are any.
+    fn times(&mut self) -> Result<Option<YoroTimes>, Failure>;
 }
 
 /// The API of a YoroContext.
@@ -97,6 +100,61 @@ pub unsafe extern "C" fn yoro_capabilities(
     }
 }
 
+/// The GPU's times of one frame, in nanoseconds. All are 0 as long as none is known.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroTimes {
+    /// sizeof(YoroTimes), set by the caller.
+    pub struct_size: u32,
+    /// 1 if the times are those of a frame.
+    pub is_known: u32,
+    /// The split of the source into surfaces; 0 with YORO_EDGES_HARD.
+    pub split_ns: u64,
+    /// The bounds of the displacements in each tile.
+    pub tiles_ns: u64,
+    /// The columns to search for each tile of the target.
+    pub spans_ns: u64,
+    /// The search, which writes the target.
+    pub march_ns: u64,
+}
+
+versioned!(YoroTimes);
+
+impl YoroTimes {
+    pub(crate) const UNKNOWN: YoroTimes = YoroTimes {
+        struct_size: size_of::<YoroTimes>() as u32,
+        is_known: 0,
+        split_ns: 0,
+        tiles_ns: 0,
+        spans_ns: 0,
+        march_ns: 0,
+    };
+}
+
+/// Returns the times of the passes in an earlier frame. Call it once a frame, before the synthesis; it does not wait.
+///
+/// OpenGL: of a frame some frames ago, if `timed` of YoroGlInfo is 1 and the driver has timer queries that can be trusted; those
+/// of CPU rasterizers cannot. Vulkan: of the frame that was recorded `timed_frames` of YoroVkInfo calls of yoro_vk_record ago,
+/// on queue families with timestamps.
+///
+/// Thread and preconditions are those of yoro_capabilities.
+///
+/// @param context The context.
+/// @param times   Filled in; the caller sets struct_size.
+/// @pre For Vulkan the commands of that frame have been executed.
+/// @return YORO_ERROR_DEVICE_LOST, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_times(context: *mut YoroContext, times: *mut YoroTimes) -> YoroResult {
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    unsafe {
+        enter(context, |backend| {
+            versioned::check_output(times, "times")?;
+            let known = backend.times()?.map(|known| YoroTimes { is_known: 1, ..known });
+            versioned::write(times, "times", &known.unwrap_or(YoroTimes::UNKNOWN))
+        })
+    }
+}
+
 /// Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
 ///
 /// Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device must have
@@ -157,6 +215,33 @@ pub(crate) unsafe fn create<I: Versioned, B: Backend>(
         let made = YoroContext { state: AtomicU8::new(READY), messages: *told, backend };
         // SAFETY: as above.
         unsafe { context.write(Box::into_raw(Box::new(made))) };
+        Ok(())
+    })
+}
+
+/// Runs the body of a function that works out how much memory the buffers of a context will have.
+///
+/// # Safety
+/// `info` is null or leads to as many bytes as it states; `bytes` is null or can be written.
+pub(crate) unsafe fn write_bytes<I: Versioned>(
+    info: *const I,
+    bytes: *mut u64,
+    messages: impl FnOnce(&I) -> YoroMessages,
+    work_out: impl FnOnce(&I) -> Result<u64, Failure>,
+) -> YoroResult {
+    catch_errors(|told| {
+        // SAFETY: the caller gives a pointer to as many bytes as they state.
+        let info = unsafe { versioned::read(info, "info") }?;
+        *told = messages(&info);
+        if bytes.is_null() {
+            return Err(Failure::new(
+                YORO_ERROR_NULL,
+                "bytes is NULL: give a pointer that receives the number",
+            ));
+        }
+        let number = work_out(&info)?;
+        // SAFETY: the caller gives a pointer that can be written.
+        unsafe { bytes.write(number) };
         Ok(())
     })
 }
@@ -259,6 +344,8 @@ mod tests {
             edges: 0,
             loader: Some(load),
             messages: YoroMessages { callback: Some(count), user: (&raw mut sentences).cast() },
+            sources: 0,
+            timed: 0,
         };
         let mut context = null_mut();
         // SAFETY: a context that is alive until the last line.

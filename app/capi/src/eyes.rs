@@ -4,7 +4,7 @@ use yoro::eyes::{DepthRange, EyePair};
 
 use crate::result::{Failure, YORO_ERROR_EYES_CANTED, YoroMessages, YoroResult};
 use crate::types::{YoroClip, YoroDepth, YoroEye, YoroFov, YoroPose, YoroRows, clip, depth, eye, rows_down};
-use crate::versioned::versioned;
+use crate::versioned::{check_reserved, versioned};
 use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
 /// Bits for changes to eyes that cannot be synthesized as they are.
@@ -12,11 +12,33 @@ pub type YoroEyesFlags = u32;
 /// Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the images
 /// with the resulting angles.
 pub const YORO_EYES_EVEN: YoroEyesFlags = 1;
-/// Gives canted eyes one direction, and frusta that contain their own. Show the images with the resulting poses and angles:
-/// an OpenXR runtime turns images back that are submitted with these.
+/// Turns both eyes, which stay where they are, to one direction at right angles to the line between them, and gives them even
+/// frusta that contain their own. For canted eyes, and for eyes that do not lie on one horizontal line, such as those of a
+/// calibrated headset. Show the images with the resulting poses and angles: an OpenXR runtime turns images back that are
+/// submitted with these.
 pub const YORO_EYES_PARALLEL: YoroEyesFlags = 2;
 
+/// Returns the eyes with the changes that the flags ask for.
+pub(crate) fn with_flags(mut pair: EyePair, flags: YoroEyesFlags) -> Result<EyePair, Failure> {
+    if flags & !(YORO_EYES_EVEN | YORO_EYES_PARALLEL) != 0 {
+        return Err(Failure::value(format!("{flags} has bits that are no YORO_EYES_ flags")));
+    }
+    if flags & YORO_EYES_PARALLEL != 0 {
+        pair = pair.parallelized().ok_or_else(|| {
+            Failure::new(
+                YORO_ERROR_EYES_CANTED,
+                "the eyes see farther than 80 degrees from their common direction: render both",
+            )
+        })?;
+    }
+    Ok(if flags & YORO_EYES_EVEN != 0 { pair.evened() } else { pair })
+}
+
 /// The two eyes of a frame, given by poses and angles.
+///
+/// Metres stand for any unit: all lengths may have another one, the same for all, and the eyes may be any distance apart, so
+/// that a wearer is a giant or a mouse. Positions are rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the
+/// eyes' distance. In larger worlds give poses relative to the head, and move the resulting view matrices by the head's place.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroEyes {
@@ -42,8 +64,8 @@ pub struct YoroEyes {
     pub rows: YoroRows,
     /// The clip volume of the resulting matrices.
     pub clip: YoroClip,
-    /// Guard band: the distance in metres, 0.05 to 1000, from which on the rendered image contains the whole outer border of
-    /// the other eye. Smaller values cost more pixels. 0 for no guard band: the border is filled in.
+    /// Guard band: the distance in metres from which on the rendered image contains the whole outer border of the other eye.
+    /// Smaller values cost more pixels. 0 for no guard band: the border is filled in.
     pub guard_band: f32,
     /// YORO_EYES_ bits.
     pub flags: YoroEyesFlags,
@@ -72,9 +94,7 @@ pub unsafe extern "C" fn yoro_views_from_eyes(eyes: *const YoroEyes, views: *mut
 
 impl YoroEyes {
     fn views(&self) -> Result<YoroViews, Failure> {
-        if self.flags & !(YORO_EYES_EVEN | YORO_EYES_PARALLEL) != 0 {
-            return Err(Failure::value(format!("{} has bits that are no YORO_EYES_ flags", self.flags)));
-        }
+        check_reserved("eyes", &[self.reserved])?;
         let right_angle = std::f32::consts::FRAC_PI_2;
         let angles = self.fovs.iter().flat_map(|f| [f.angle_left, f.angle_right, f.angle_up, f.angle_down]);
         // In this form NaN fails, too.
@@ -94,24 +114,14 @@ impl YoroEyes {
         }
         let depth = DepthRange { near: self.near_z, far: self.far_z, convention: depth(self.depth)? };
         let clip = clip(self.clip)?;
-        let mut pair = EyePair {
+        let pair = EyePair {
             poses: self.poses.each_ref().map(YoroPose::pose),
             frusta: self.fovs.each_ref().map(YoroFov::frustum),
             depth,
             size: [self.width, self.height],
             dominant: eye(self.rendered)?,
         };
-        if self.flags & YORO_EYES_PARALLEL != 0 {
-            pair = pair.parallelized().ok_or_else(|| {
-                Failure::new(
-                    YORO_ERROR_EYES_CANTED,
-                    "the eyes see farther than 80 degrees from their common direction: render both",
-                )
-            })?;
-        }
-        if self.flags & YORO_EYES_EVEN != 0 {
-            pair = pair.evened();
-        }
+        let pair = with_flags(pair, self.flags)?;
         let mut views = views(pair, guard_band(self.guard_band), rows_down(self.rows)?)?;
         images(&mut views).into_iter().for_each(|image| image.set_matrices(&depth, &clip));
         Ok(views)

@@ -21,6 +21,8 @@ mod matrices;
 
 mod context;
 
+mod choice;
+
 mod gl;
 
 #[cfg(feature = "vulkan")]
@@ -28,6 +30,7 @@ mod vulkan;
 
 mod versioned;
 
+pub use choice::*;
 pub use context::*;
 pub use eyes::*;
 pub use gl::*;

@@ -3,14 +3,15 @@
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose};
 
+use crate::eyes::{YoroEyesFlags, with_flags};
 use crate::result::{Failure, YORO_ERROR_MATRIX, YoroMessages, YoroResult};
 use crate::types::{Clip, YoroClip, YoroEye, YoroRows, clip, eye, rows_down};
-use crate::versioned::versioned;
+use crate::versioned::{check_reserved, versioned};
 use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
-/// The two eyes of a frame, given by matrices. All are column-major, for column vectors, as GL and Vulkan take them. The
-/// translation of a view matrix is in elements 12 to 14. Element 11 of a projection is -1 for eyes that look along -Z, and 1
-/// for eyes that look along +Z.
+/// The two eyes of a frame, given by matrices; they may be any distance apart. All matrices are column-major, for column
+/// vectors, as GL and Vulkan take them. The translation of a view matrix is in elements 12 to 14. Element 11 of a projection is
+/// -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroMatrices {
@@ -36,12 +37,20 @@ pub struct YoroMatrices {
     pub units_per_metre: f32,
     /// Where the sentences of errors go.
     pub messages: YoroMessages,
+    /// YORO_EYES_ bits. The resulting view matrices are turned as the eyes are.
+    pub flags: YoroEyesFlags,
+    /// Zero.
+    pub reserved: u32,
 }
 
-versioned!(YoroMatrices);
+versioned!(YoroMatrices since flags);
 
 /// Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
 /// volume and units of the given ones. Poses are in metres.
+///
+/// The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes' distance.
+/// Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds give matrices
+/// relative to the head: subtract its place from both eyes' places, in 64 bits, before making the matrices.
 ///
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
@@ -130,9 +139,16 @@ impl Projection {
     }
 }
 
-/// Returns the contents of a view matrix: the eye's pose in the world's units, and true if the world is left-handed. The pose
-/// is then in the world with the Z axis negated.
-fn pose(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<(DQuat, DVec3, bool), Failure> {
+/// The contents of a view matrix, for an eye that looks along -Z and, in a left-handed world, with the world's Z axis negated.
+#[derive(Clone, Copy, Debug)]
+struct EyeView {
+    orientation: DQuat,
+    /// Translation of the matrix, in the world's units.
+    translation: DVec3,
+    left_handed: bool,
+}
+
+fn eye_view(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<EyeView, Failure> {
     let matrix = DMat4::from_cols_array(&elements.map(f64::from));
     let mut rotation = DMat3::from_mat4(matrix);
     let mut translation = matrix.w_axis.truncate();
@@ -161,11 +177,47 @@ fn pose(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<(DQuat, DVec3, boo
         rotation *= DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
     }
     let orientation = DQuat::from_mat3(&rotation.transpose()).normalize();
-    Ok((orientation, -(rotation.transpose() * translation), left_handed))
+    Ok(EyeView { orientation, translation, left_handed })
+}
+
+/// The places of both eyes.
+struct Places {
+    /// The point between the eyes, in the world's units.
+    head: DVec3,
+    /// From there to each eye.
+    eyes: [DVec3; 2],
+}
+
+impl Places {
+    /// Takes out displacements off the rendered eye's X axis that are no larger than the rounding of the matrices.
+    fn new(views: &mut [EyeView; 2], rendered: Eye) -> Places {
+        const ROUNDING: f64 = f32::EPSILON as f64;
+        // One rotation in another rounding would turn the way to a distant origin.
+        if views[0].orientation.angle_between(views[1].orientation) < 4.0 * ROUNDING {
+            views[1].orientation = views[0].orientation;
+        }
+        let [left, right] = views.map(|view| -(view.orientation * view.translation));
+        let mut between = right - left;
+        let off_axis = between.reject_from_normalized(views[rendered.index()].orientation * DVec3::X);
+        // Each coordinate of a translation is a sum of three products, rounded three times; those of two eyes are off by
+        // six halves of a unit in the last place, in each of two directions off the axis. As much again is for rotations.
+        if off_axis.length() < 8.0 * ROUNDING * left.length().max(right.length()) {
+            between -= off_axis;
+        }
+        Places { head: (left + right) / 2.0, eyes: [-between / 2.0, between / 2.0] }
+    }
+}
+
+/// Returns a view matrix with its eye turned from one orientation to another.
+fn turned(view: &[f32; 16], from: DQuat, to: DQuat, sense: f64) -> [f32; 16] {
+    let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, sense));
+    let turn = mirror * DMat3::from_quat(to.inverse() * from) * mirror;
+    (DMat4::from_mat3(turn) * DMat4::from_cols_array(&view.map(f64::from))).as_mat4().to_cols_array()
 }
 
 impl YoroMatrices {
     fn views(&self) -> Result<YoroViews, Failure> {
+        check_reserved("matrices", &[self.reserved])?;
         let units = if self.units_per_metre == 0.0 { 1.0 } else { f64::from(self.units_per_metre) };
         if !(units > 0.0 && units.is_finite()) {
             return Err(Failure::value(format!(
@@ -175,14 +227,8 @@ impl YoroMatrices {
         let clip = clip(self.clip)?;
         let rendered = eye(self.rendered)?;
         let down = rows_down(self.rows)?;
-        let [left, right] = [Eye::Left, Eye::Right].map(|eye| {
-            let projection = Projection::new(&self.projection[eye.index()], &clip, eye)?;
-            let view = pose(&self.view[eye.index()], projection.sense, eye)?;
-            Ok::<_, Failure>((projection, view))
-        });
-        let eyes = [left?, right?];
-        let [(a, (_, _, a_left_handed)), (b, (_, _, b_left_handed))] = &eyes;
-        if a.sense != b.sense || a_left_handed != b_left_handed {
+        let ([a, b], mut eyes) = self.contents(&clip)?;
+        if a.sense != b.sense || eyes[0].left_handed != eyes[1].left_handed {
             return Err(wrong("one eye's matrices are left-handed and the other's right-handed".into()));
         }
         // The law moves a pixel by the distance that its depth stands for: a thousandth of that does not show.
@@ -191,26 +237,36 @@ impl YoroMatrices {
                 "the eyes' projections have different depth planes: give both the same".into(),
             ));
         }
-        let mut depth = eyes[rendered.index()].0.range(rendered)?;
+        let projections = [a, b];
+        let mut depth = projections[rendered.index()].range(rendered)?;
         depth.near = (f64::from(depth.near) / units) as f32;
         depth.far = (f64::from(depth.far) / units) as f32;
-        let pair = EyePair {
-            poses: eyes.map(|(_, (orientation, position, _))| Pose {
-                position: (position / units).as_vec3(),
-                orientation: orientation.as_quat(),
-            }),
-            frusta: eyes.map(|(projection, _)| projection.frustum),
+        let places = Places::new(&mut eyes, rendered);
+        let pose = |eye: Eye| Pose {
+            position: (places.eyes[eye.index()] / units).as_vec3(),
+            orientation: eyes[eye.index()].orientation.as_quat(),
+        };
+        let given = EyePair {
+            poses: Eye::BOTH.map(pose),
+            frusta: projections.map(|projection| projection.frustum),
             depth,
             size: [self.width, self.height],
             dominant: rendered,
         };
+        let pair = with_flags(given, self.flags)?;
         let mut views = views(pair, guard_band(self.guard_band), down)?;
         for (image, eye) in images(&mut views).into_iter().zip([rendered, rendered, rendered.other()]) {
             let index = eye.index();
+            let sense = projections[index].sense;
+            let place = (places.head + places.eyes[index]) / units;
+            image.pose.position = place.as_vec3().to_array();
             image.view = self.view[index];
+            if pair.poses[index].orientation != given.poses[index].orientation {
+                let to = pair.poses[index].orientation.as_dquat().normalize();
+                image.view = turned(&image.view, eyes[index].orientation, to, sense);
+            }
             image.projection = self.projection[index];
             // Depth stays as it is; edges are the image's.
-            let sense = eyes[index].0.sense;
             for (row, values) in image.projection_xy(&clip).into_iter().enumerate() {
                 image.projection[row] = values.x as f32;
                 image.projection[4 + row] = values.y as f32;
@@ -218,5 +274,15 @@ impl YoroMatrices {
             }
         }
         Ok(views)
+    }
+
+    /// Reads both eyes' matrices.
+    fn contents(&self, clip: &Clip) -> Result<([Projection; 2], [EyeView; 2]), Failure> {
+        let contents = |eye: Eye| {
+            let projection = Projection::new(&self.projection[eye.index()], clip, eye)?;
+            Ok::<_, Failure>((projection, eye_view(&self.view[eye.index()], projection.sense, eye)?))
+        };
+        let [(a, left), (b, right)] = [contents(Eye::Left)?, contents(Eye::Right)?];
+        Ok(([a, b], [left, right]))
     }
 }

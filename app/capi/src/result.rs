@@ -24,7 +24,7 @@ pub const YORO_ERROR_VALUE: YoroResult = -3;
 pub const YORO_ERROR_MATRIX: YoroResult = -4;
 /// The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes.
 pub const YORO_ERROR_EYES_CANTED: YoroResult = -5;
-/// The eyes do not lie on one horizontal line.
+/// The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL.
 pub const YORO_ERROR_EYES_OFF_AXIS: YoroResult = -6;
 /// The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be
 /// synthesized: 4095 in images that are wider than that.
@@ -147,10 +147,15 @@ impl From<EyesError> for Failure {
             _ => YORO_ERROR_VALUE,
         };
         let flag = match code {
-            YORO_ERROR_EYES_CANTED => " (YORO_EYES_PARALLEL)",
+            YORO_ERROR_EYES_CANTED | YORO_ERROR_EYES_OFF_AXIS => " (YORO_EYES_PARALLEL)",
             YORO_ERROR_EYES_DENSITY | YORO_ERROR_EYES_ROWS => " (YORO_EYES_EVEN)",
             _ => "",
         };
+        if let EyesError::GuardBand(_) = error {
+            return Failure::value(
+                "guard_band is not a distance: give 0 for none, or a finite number of more than 0",
+            );
+        }
         Failure::new(code, format!("{error}{flag}"))
     }
 }
@@ -160,6 +165,7 @@ impl From<GlError> for Failure {
         let code = match error {
             GlError::Unsupported(_) => YORO_ERROR_UNSUPPORTED,
             GlError::TooLarge { .. } => YORO_ERROR_TOO_LARGE,
+            GlError::OutOfMemory { .. } => YORO_ERROR_MEMORY,
             GlError::Shader { .. } | GlError::Object { .. } => YORO_ERROR_DRIVER,
             _ => YORO_ERROR_INTERNAL,
         };

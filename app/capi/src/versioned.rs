@@ -20,17 +20,32 @@ pub(crate) unsafe trait Versioned: Copy {
     const FIRST_SIZE: usize;
 }
 
-/// Implements [`Versioned`] for structures that have not grown yet.
+/// Implements [`Versioned`] for a structure. `since` is the first field that its first version did not have; without it
+/// the structure has not grown yet.
 macro_rules! versioned {
-    ($($name:ident),*) => {$(
+    ($name:ident) => {
+        versioned!($name, size_of::<$name>());
+    };
+    ($name:ident since $field:ident) => {
+        versioned!($name, std::mem::offset_of!($name, $field));
+    };
+    ($name:ident, $first_size:expr) => {
         // SAFETY: numbers and nullable pointers behind a u32.
         unsafe impl crate::versioned::Versioned for $name {
             const NAME: &'static str = stringify!($name);
-            const FIRST_SIZE: usize = size_of::<$name>();
+            const FIRST_SIZE: usize = $first_size;
         }
-    )*};
+    };
 }
 pub(crate) use versioned;
+
+/// Checks fields that are zero until a later version gives them a meaning.
+pub(crate) fn check_reserved(what: &str, fields: &[u32]) -> Result<(), Failure> {
+    match fields.iter().find(|field| **field != 0) {
+        None => Ok(()),
+        Some(field) => Err(Failure::value(format!("reserved of {what} is {field}: give 0"))),
+    }
+}
 
 /// Returns the size that the caller states, checked.
 ///

@@ -7,7 +7,7 @@ use crate::result::{Failure, YoroMessages, YoroResult, catch_errors};
 use crate::types::{
     Clip, YORO_DEPTH_REVERSED, YORO_DEPTH_STANDARD, YoroDepth, YoroEye, YoroFov, YoroPose, depth, eye,
 };
-use crate::versioned::{self, Versioned, versioned};
+use crate::versioned::{self, Versioned, check_reserved, versioned};
 
 /// One image: its size, the pose of its eye, its frustum, and the matrices that render it.
 #[repr(C)]
@@ -102,7 +102,7 @@ impl YoroWarp {
 
     /// Returns the core's warp. Checks the numbers, since programs may have made them up.
     pub(crate) fn checked(&self) -> Result<Warp, Failure> {
-        /// The largest size and displacement: no driver renders larger images.
+        /// The largest size: no driver renders larger images.
         const MAX_SIDE: u32 = 1 << 16;
         let sides = [self.source_width, self.source_height, self.target_width, self.target_height];
         if !sides.iter().all(|side| (1..=MAX_SIDE).contains(side)) {
@@ -111,20 +111,19 @@ impl YoroWarp {
                 "a warp from {w}x{h} to {tw}x{th} pixels is impossible: take it from yoro_views_from_eyes"
             )));
         }
-        let reach = f64::from(MAX_SIDE);
-        let in_reach = |columns: f64| columns.abs() <= reach;
-        if !in_reach(self.offset) || !in_reach(self.scale) || self.row_offset.unsigned_abs() > MAX_SIDE {
-            return Err(Failure::value(
-                "the warp's displacement is larger than any image: take it from yoro_views_from_eyes",
-            ));
-        }
-        Ok(Warp {
+        check_reserved("warp", &[self.reserved])?;
+        let warp = Warp {
             source_size: [self.source_width, self.source_height],
             target_size: [self.target_width, self.target_height],
             law: DisparityLaw { offset: self.offset, scale: self.scale },
             row_offset: self.row_offset,
             target_eye: eye(self.target_eye)?,
             convention: depth(self.depth)?,
+        };
+        // In this form NaN fails, too.
+        let in_reach = self.row_offset.unsigned_abs() <= MAX_SIDE && warp.check().is_ok();
+        in_reach.then_some(warp).ok_or_else(|| {
+            Failure::value("the warp has a displacement beyond all images: take it from yoro_views_from_eyes")
         })
     }
 }
@@ -237,7 +236,10 @@ impl YoroView {
         let [x, y] = self.projection_xy(clip);
         let projection = DMat4::from_cols(x, y, along, DVec4::new(0.0, 0.0, -1.0, 0.0)).transpose();
         self.projection = projection.as_mat4().to_cols_array();
-        self.view = self.pose.pose().view_matrix().to_cols_array();
+        let Pose { position, orientation } = self.pose.pose();
+        let placed =
+            DMat4::from_rotation_translation(orientation.as_dquat().normalize(), position.as_dvec3());
+        self.view = placed.inverse().as_mat4().to_cols_array();
     }
 }
 

@@ -1,10 +1,14 @@
 //! Wrong arguments of every kind return the code that the header promises.
 
-use std::ffi::{CStr, c_char, c_void};
-use std::mem::{MaybeUninit, offset_of};
+mod common;
+
+use std::ffi::c_char;
+use std::mem::offset_of;
 use std::ptr::{null, null_mut};
 
-use glow::HasContext;
+use common::{
+    framebuffer, gl_info, good_eyes, matrices_of, messages, texture, views_of, views_of_matrices, zeroed,
+};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use yoro_c::*;
@@ -12,67 +16,6 @@ use yoro_context::{Backend, Headless};
 
 /// A change that makes an argument wrong, and the code that it then returns.
 type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
-
-/// A structure of zeros, which are valid for all structures of the interface.
-fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
-    // SAFETY: the structures have only numbers and nullable pointers, for which zeros are valid.
-    let mut value = unsafe { MaybeUninit::<T>::zeroed().assume_init() };
-    *size(&mut value) = size_of::<T>() as u32;
-    value
-}
-
-unsafe extern "C" fn note(user: *mut c_void, result: YoroResult, sentence: *const c_char) {
-    // SAFETY: the vector that `messages` was given, and a string.
-    unsafe {
-        let noted = &mut *user.cast::<Vec<(YoroResult, String)>>();
-        noted.push((result, CStr::from_ptr(sentence).to_str().unwrap().to_owned()));
-    }
-}
-
-fn messages(noted: &mut Vec<(YoroResult, String)>) -> YoroMessages {
-    YoroMessages { callback: Some(note), user: (&raw mut *noted).cast() }
-}
-
-fn good_eyes() -> YoroEyes {
-    let mut eyes: YoroEyes = zeroed(|e: &mut YoroEyes| &mut e.struct_size);
-    (eyes.rendered, eyes.width, eyes.height) = (YORO_EYE_RIGHT, 160, 120);
-    for (i, (pose, fov)) in eyes.poses.iter_mut().zip(&mut eyes.fovs).enumerate() {
-        *pose =
-            YoroPose { orientation: [0.0, 0.0, 0.0, 1.0], position: [0.063 * (i as f32 - 0.5), 1.6, 0.0] };
-        *fov = YoroFov { angle_left: -0.8, angle_right: 0.8, angle_up: 0.6, angle_down: -0.6 };
-    }
-    (eyes.near_z, eyes.far_z, eyes.guard_band) = (0.1, 100.0, 1.0);
-    eyes
-}
-
-fn views_of(eyes: &YoroEyes) -> Result<YoroViews, YoroResult> {
-    let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
-    // SAFETY: both are whole structures of the size that they state.
-    match unsafe { yoro_views_from_eyes(eyes, &mut views) } {
-        YORO_OK => Ok(views),
-        code => Err(code),
-    }
-}
-
-fn matrices_of(views: &YoroViews, eyes: &YoroEyes) -> YoroMatrices {
-    let mut matrices: YoroMatrices = zeroed(|m: &mut YoroMatrices| &mut m.struct_size);
-    (matrices.rendered, matrices.width, matrices.height) = (eyes.rendered, eyes.width, eyes.height);
-    let (own, other) = (eyes.rendered as usize, 1 - eyes.rendered as usize);
-    for (eye, image) in [(own, &views.rendered), (other, &views.synthesized)] {
-        (matrices.view[eye], matrices.projection[eye]) = (image.view, image.projection);
-    }
-    (matrices.clip, matrices.rows, matrices.guard_band) = (eyes.clip, eyes.rows, eyes.guard_band);
-    matrices
-}
-
-fn views_of_matrices(matrices: &YoroMatrices) -> Result<YoroViews, YoroResult> {
-    let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
-    // SAFETY: both are whole structures of the size that they state.
-    match unsafe { yoro_views_from_matrices(matrices, &mut views) } {
-        YORO_OK => Ok(views),
-        code => Err(code),
-    }
-}
 
 #[test]
 fn impossible_eyes_return_their_codes() {
@@ -360,28 +303,8 @@ fn damaged_eyes_are_refused_or_make_sense() {
         .unwrap();
 }
 
-/// The loader of the current context.
-unsafe extern "C" fn load(name: *const c_char) -> YoroGlProc {
-    type GetProcAddress = unsafe extern "C" fn(*const c_char) -> YoroGlProc;
-    // SAFETY: libEGL is there, since a context of it is current, and is never unloaded.
-    unsafe {
-        let library = libloading::Library::new("libEGL.so.1").unwrap();
-        let get = *library.get::<GetProcAddress>(b"eglGetProcAddress\0").unwrap();
-        std::mem::forget(library);
-        get(name)
-    }
-}
-
 unsafe extern "C" fn load_nothing(_: *const c_char) -> YoroGlProc {
     None
-}
-
-fn gl_info(noted: &mut Vec<(YoroResult, String)>) -> YoroGlInfo {
-    let mut info: YoroGlInfo = zeroed(|i: &mut YoroGlInfo| &mut i.struct_size);
-    info.loader = Some(load);
-    (info.check, info.state) = (1, YORO_GL_STATE_PRESERVE);
-    info.messages = messages(noted);
-    info
 }
 
 #[test]
@@ -416,45 +339,6 @@ fn impossible_contexts_return_their_codes() {
     }
     let _headless = Headless::open(Backend::Egl).unwrap();
     assert_eq!(create(&YoroGlInfo { outputs: YORO_OUTPUT_DEPTH, ..info }), YORO_OK);
-}
-
-/// Creates a texture with one mip level.
-///
-/// # Safety
-/// The context is current.
-unsafe fn texture(gl: &glow::Context, target: u32, format: u32, [w, h]: [u32; 2]) -> u32 {
-    // SAFETY: the context is current; format and sizes are valid.
-    unsafe {
-        let texture = gl.create_texture().unwrap();
-        gl.bind_texture(target, Some(texture));
-        match target {
-            glow::TEXTURE_2D => gl.tex_storage_2d(target, 1, format, w as i32, h as i32),
-            glow::TEXTURE_2D_MULTISAMPLE => {
-                gl.tex_storage_2d_multisample(target, 4, format, w as i32, h as i32, true);
-            }
-            _ => gl.tex_storage_3d(target, 1, format, w as i32, h as i32, 2),
-        }
-        gl.bind_texture(target, None);
-        texture.0.get()
-    }
-}
-
-/// Creates a framebuffer of two textures.
-///
-/// # Safety
-/// As [`texture`].
-unsafe fn framebuffer(gl: &glow::Context, attachments: &[(u32, u32)]) -> u32 {
-    // SAFETY: live textures.
-    unsafe {
-        let framebuffer = gl.create_framebuffer().unwrap();
-        gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
-        for &(attachment, texture) in attachments {
-            let texture = std::num::NonZeroU32::new(texture).map(glow::NativeTexture);
-            gl.framebuffer_texture_2d(glow::FRAMEBUFFER, attachment, glow::TEXTURE_2D, texture, 0);
-        }
-        gl.bind_framebuffer(glow::FRAMEBUFFER, None);
-        framebuffer.0.get()
-    }
 }
 
 #[test]
@@ -498,10 +382,11 @@ fn wrong_images_return_their_codes() {
         call(&views.warp, &images)
     };
     assert_eq!(call(&views.warp, &good), YORO_OK, "{noted:?}");
-    let red_float = plane(glow::R32F, size);
+    let (red_float, red_16) = (plane(glow::R32F, size), plane(glow::R16, size));
     let table: &Mistakes<YoroGlImages> = &[
         (&|_| (), YORO_OK),
         (&|i| i.depth_texture = red_float, YORO_OK),
+        (&|i| i.depth_texture = red_16, YORO_OK),
         (&|i| i.struct_size = 7, YORO_ERROR_STRUCT_SIZE),
         (&|i| i.color_texture = 0, YORO_ERROR_VALUE),
         (&|i| i.depth_texture = 0, YORO_ERROR_VALUE),

@@ -29,6 +29,29 @@ fn arranged(made: &str) -> String {
     blocks.join("\n\n")
 }
 
+/// Moves what is for Vulkan behind the include guard, with one of its own: so the header can be included again behind
+/// vulkan.h. C89 has no other comments than these.
+fn vulkan_last(header: &str) -> String {
+    const CONDITION: &str = "#if defined(VK_VERSION_1_1)\n";
+    let mut rest = header.replace("// __cplusplus", "/* __cplusplus */");
+    let (mut types, mut functions) = (String::new(), String::new());
+    while let Some(start) = rest.find(CONDITION) {
+        let end = start + rest[start..].find("#endif\n").unwrap() + "#endif\n".len();
+        let item = rest[start + CONDITION.len()..end - "#endif\n".len()].to_owned();
+        let to = if item.contains("YoroResult yoro_") { &mut functions } else { &mut types };
+        to.push_str(&format!("\n{item}"));
+        rest.replace_range(start..end, "");
+    }
+    while rest.contains("\n\n\n") {
+        rest = rest.replace("\n\n\n", "\n\n");
+    }
+    format!(
+        "{rest}\n#ifdef YORO_USE_VULKAN\n#include <vulkan/vulkan.h>\n#endif\n\n\
+         #if defined(VK_VERSION_1_1) && !defined(YORO_VULKAN_H)\n#define YORO_VULKAN_H\n{types}\n\
+         #ifdef __cplusplus\nextern \"C\" {{\n#endif\n{functions}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif  /* YORO_VULKAN_H */\n"
+    )
+}
+
 fn negative_in_parentheses(block: &str) -> String {
     match block.rsplit_once(" -") {
         Some((define, number)) if number.bytes().all(|b| b.is_ascii_digit()) => {
@@ -60,7 +83,7 @@ fn the_header_is_that_of_the_source() {
     let bindings = cbindgen::Builder::new().with_crate(package).with_config(config).generate().unwrap();
     let mut made = Vec::new();
     bindings.write(&mut made);
-    let made = arranged(&String::from_utf8(made).unwrap());
+    let made = vulkan_last(&arranged(&String::from_utf8(made).unwrap()));
     let header = package.join("include/yoro.h");
     if std::env::var_os("YORO_BLESS").is_some() {
         std::fs::write(&header, &made).unwrap();

@@ -95,6 +95,41 @@ fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> 
     Some(image)
 }
 
+/// With and without Vulkan, which may come later, in C from C89 on and in C++.
+#[test]
+fn the_header_stands_alone() {
+    const ALONE: &str = "#include <yoro.h>
+        int main(void) { YoroEyes eyes; YoroViews views; YORO_INIT(eyes); YORO_INIT(views);
+          return (int)(eyes.width + views.crop_x); }";
+    const CREATE: &str =
+        "int main(void) { YoroVkInfo info; YORO_INIT(info); return yoro_vk_create(&info, 0); }";
+    let mut texts = vec![ALONE.to_owned()];
+    if Path::new("/usr/include/vulkan/vulkan.h").is_file() {
+        for includes in [
+            "#define YORO_USE_VULKAN\n#include <yoro.h>\n",
+            "#include <vulkan/vulkan.h>\n#include <yoro.h>\n",
+            "#include <yoro.h>\n#include <vulkan/vulkan.h>\n#include <yoro.h>\n",
+        ] {
+            texts.push(format!("{includes}{CREATE}"));
+        }
+    } else {
+        println!("SKIPPED: the header with Vulkan: vulkan/vulkan.h is not here");
+    }
+    let work = tempfile::tempdir().unwrap();
+    let file = work.path().join("text");
+    for (compiler, language, standard) in [("gcc", "c", "c89"), ("gcc", "c", "c11"), ("g++", "c++", "c++98")]
+    {
+        for text in texts.iter().filter(|_| is_here(compiler)) {
+            std::fs::write(&file, text).unwrap();
+            let mut command = Command::new(compiler);
+            command.args(["-x", language, &format!("-std={standard}"), "-fsyntax-only"]).args(WARNINGS);
+            // vulkan.h has numbers of 64 bits.
+            command.args(["-Wno-long-long", "-I"]).arg(package().join("include"));
+            run(command.arg(&file));
+        }
+    }
+}
+
 fn gles() -> Option<image::RgbImage> {
     sample("examples/gles.c", "GLES3/gl31.h", &["include"], &["-lyoro_c", "-lEGL", "-lGLESv2"])
 }
@@ -167,14 +202,49 @@ fn the_kit_draws_the_librarys_picture() {
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
     let folder = kit.path().to_str().unwrap();
-    let Some(drawn) = sample("kit/example.c", "GLES3/gl31.h", &[folder, "examples"], &["-lEGL", "-lGLESv2"])
-    else {
-        return;
-    };
+    // With the kit's own files alone.
+    let example = kit.path().join("example.c");
+    let example = example.to_str().unwrap();
+    let Some(drawn) = sample(example, "GLES3/gl31.h", &[folder], &["-lEGL", "-lGLESv2"]) else { return };
     let Some(expected) = gles() else { return };
     let largest = drawn.iter().zip(expected.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
     let different = drawn.iter().zip(expected.iter()).filter(|(a, b)| a != b).count();
     assert!(largest <= 1 && different * 1000 < drawn.len(), "{largest} {different}");
+}
+
+/// Numbers out of range are refused, and nothing overflows on the way.
+#[test]
+fn the_kit_refuses_what_cannot_be() {
+    if !is_here("gcc") {
+        println!("SKIPPED: no gcc here");
+        return;
+    }
+    const TEXT: &str = "#include \"yoro_kit.h\"
+        #include <limits.h>
+        #include <stdio.h>
+        static const YoroKitEyes GOOD = {{{-1, 1, 1, -1}, {-1, 1, 1, -1}}, 0.063f, 0.1f, INFINITY, 1, 1, 512, 512, 1.0f, 0};
+        static int served(YoroKitEyes eyes) { YoroKitViews views; return yoro_kit_views(&eyes, 0, 0, &views); }
+        #define WITH(change) { YoroKitEyes e = GOOD; change; if (served(e)) { puts(#change); failed = 1; } }
+        int main(void) {
+          int failed = !served(GOOD);
+          YoroKitEyes giant = GOOD;
+          giant.ipd = 63, giant.near_z = 100, giant.guard_band = 1000;
+          failed |= !served(giant);
+          WITH(e.guard_band = 1e-30f) WITH(e.guard_band = NAN) WITH(e.ipd = 1e30f) WITH(e.ipd = INFINITY) WITH(e.ipd = NAN)
+          WITH(e.width = INT_MAX) WITH(e.height = 70000) WITH(e.width = 0) WITH(e.near_z = 1e-30f) WITH(e.near_z = NAN)
+          WITH(e.frusta[0].left = NAN) WITH(e.frusta[1].up = INFINITY) WITH((e.frusta[0].left = -1e9f, e.frusta[0].right = -1e9f + 128))
+          return failed;
+        }";
+    let kit = tempfile::tempdir().unwrap();
+    kit::write(kit.path()).unwrap();
+    let (text, program) = (kit.path().join("numbers.c"), kit.path().join("numbers"));
+    std::fs::write(&text, TEXT).unwrap();
+    let mut command = Command::new("gcc");
+    command
+        .args(["-std=c99", "-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all"])
+        .args(WARNINGS);
+    run(command.arg(&text).arg("-lm").arg("-o").arg(&program));
+    run(&mut Command::new(&program));
 }
 
 /// All variants of the kit's shaders for Vulkan.
@@ -188,8 +258,8 @@ fn the_kits_shaders_for_vulkan_compile() {
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
     let settings: [&[&str]; 3] = [&[], &["-DWRITE_DEPTH"], &["-DWRITE_DEPTH", "-DSHORT_WAY"]];
-    for shader in ["screen.vert", "tiles.frag", "spans.frag", "march.frag"] {
-        let settings = if shader == "march.frag" { &settings[..] } else { &settings[..1] };
+    for shader in ["screen.vert", "march.vert", "tiles.frag", "spans.frag", "march.frag"] {
+        let settings = if shader.ends_with(".vert") { &settings[..1] } else { &settings[..] };
         for macros in settings {
             let mut command = Command::new(COMPILER);
             command.args(["-V", "-o"]).arg(kit.path().join("compiled")).args(*macros);

@@ -98,6 +98,189 @@ unsafe extern "C" fn load_nothing(_: vk::Instance, _: *const c_char) -> Option<u
     None
 }
 
+/// Validation layers return the commands of an extension from a device's table without the extension.
+mod labels {
+    use super::*;
+    use std::ffi::{CStr, c_void};
+    use std::mem::transmute;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    static CALLS: AtomicUsize = AtomicUsize::new(0);
+
+    unsafe extern "system" fn begin(_: vk::CommandBuffer, _: *const c_void) {
+        CALLS.fetch_add(1, Ordering::Relaxed);
+    }
+
+    unsafe extern "system" fn end(_: vk::CommandBuffer) {}
+
+    unsafe extern "system" fn of_device(device: vk::Device, name: *const c_char) -> vk::PFN_vkVoidFunction {
+        // SAFETY: a live device and a name; both functions have the signatures of their commands.
+        unsafe {
+            match CStr::from_ptr(name).to_str().unwrap() {
+                "vkCmdBeginDebugUtilsLabelEXT" => {
+                    transmute::<*const (), vk::PFN_vkVoidFunction>(begin as *const ())
+                }
+                "vkCmdEndDebugUtilsLabelEXT" => {
+                    transmute::<*const (), vk::PFN_vkVoidFunction>(end as *const ())
+                }
+                _ => {
+                    let own = ash::Entry::load().unwrap();
+                    let get = own.static_fn().get_instance_proc_addr;
+                    let _kept = std::mem::ManuallyDrop::new(own);
+                    let instance = INSTANCE.get().copied().unwrap_or_default();
+                    let get = get(vk::Handle::from_raw(instance), c"vkGetDeviceProcAddr".as_ptr());
+                    transmute::<vk::PFN_vkVoidFunction, vk::PFN_vkGetDeviceProcAddr>(get)(device, name)
+                }
+            }
+        }
+    }
+
+    static INSTANCE: std::sync::OnceLock<u64> = std::sync::OnceLock::new();
+
+    unsafe extern "C" fn of_instance(
+        instance: vk::Instance,
+        name: *const c_char,
+    ) -> Option<unsafe extern "C" fn()> {
+        // SAFETY: a live instance and a name.
+        unsafe {
+            if CStr::from_ptr(name) == c"vkGetDeviceProcAddr" {
+                return transmute::<*const (), Option<unsafe extern "C" fn()>>(of_device as *const ());
+            }
+            let own = ash::Entry::load().unwrap();
+            let get = own.static_fn().get_instance_proc_addr;
+            let _kept = std::mem::ManuallyDrop::new(own);
+            transmute::<vk::PFN_vkVoidFunction, Option<unsafe extern "C" fn()>>(get(instance, name))
+        }
+    }
+
+    #[test]
+    fn no_command_of_an_extension_that_is_not_enabled_is_called() {
+        let Some(gpu) = Gpu::open() else { return };
+        INSTANCE.set(vk::Handle::as_raw(gpu.instance.handle())).unwrap();
+        let context = create(&YoroVkInfo { loader: Some(of_instance), ..gpu.info() }).unwrap();
+        let frame = registered(&gpu, context);
+        // SAFETY: live handles; the command buffer is never submitted.
+        unsafe {
+            assert_eq!(yoro_vk_record(context, gpu.commands, &WARP, &frame), YORO_OK);
+            assert_eq!(CALLS.load(Ordering::Relaxed), 0);
+            gpu.device.end_command_buffer(gpu.commands).unwrap();
+            assert_eq!(yoro_destroy(context), YORO_OK);
+        }
+    }
+}
+
+/// A warp that fits the images of [`registered`].
+const WARP: YoroWarp = YoroWarp {
+    source_width: 200,
+    source_height: 120,
+    target_width: 160,
+    target_height: 120,
+    offset: -2.0,
+    scale: 12.0,
+    row_offset: 0,
+    target_eye: YORO_EYE_LEFT,
+    depth: YORO_DEPTH_REVERSED,
+    reserved: 0,
+};
+
+/// Returns a source and a target of 256 x 128 pixels, not registered yet.
+fn images(gpu: &Gpu) -> (YoroVkSource, YoroVkTarget) {
+    let color = gpu.image(vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::COLOR_ATTACHMENT, [256, 128]);
+    let depth = gpu.image(vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT, [256, 128]);
+    let (color, depth) = (plane(color, vk::Format::R8G8B8A8_UNORM), plane(depth, vk::Format::D32_SFLOAT));
+    let mut source: YoroVkSource = zeroed(|s: &mut YoroVkSource| &mut s.struct_size);
+    (source.width, source.height, source.color, source.depth) = (256, 128, color, depth);
+    let mut target: YoroVkTarget = zeroed(|t: &mut YoroVkTarget| &mut t.struct_size);
+    (target.width, target.height, target.color, target.depth) = (256, 128, color, depth);
+    (source, target)
+}
+
+/// Registers [`images`], and returns a frame of them.
+fn registered(gpu: &Gpu, context: *mut YoroContext) -> YoroVkFrame {
+    let (source, target) = images(gpu);
+    let mut frame: YoroVkFrame = zeroed(|f: &mut YoroVkFrame| &mut f.struct_size);
+    // SAFETY: live images and whole structures.
+    unsafe {
+        assert_eq!(yoro_vk_register_source(context, &source, &mut frame.source), YORO_OK);
+        assert_eq!(yoro_vk_register_target(context, &target, &mut frame.target), YORO_OK);
+    }
+    frame
+}
+
+#[test]
+fn uses_memory_and_times_are_those_of_the_core() {
+    let Some(gpu) = Gpu::open() else { return };
+    let info = YoroVkInfo { timed_frames: 1, ..gpu.info() };
+    let mut bytes = 0;
+    // Neither handles nor a loader are needed.
+    let plan = YoroVkInfo { loader: None, device: vk::Device::null(), edges: YORO_EDGES_NEAREST, ..info };
+    // SAFETY: whole structures, and null pointers, which are refused.
+    unsafe {
+        assert_eq!(yoro_vk_buffer_bytes(&plan, &mut bytes), YORO_OK);
+        assert_eq!(bytes, 4 * (16 + 10) * 16 + 8 * 256 * 128);
+        assert_eq!(yoro_vk_buffer_bytes(&plan, null_mut()), YORO_ERROR_NULL);
+        assert_eq!(yoro_vk_buffer_bytes(null(), &mut bytes), YORO_ERROR_NULL);
+    }
+    let context = create(&info).unwrap();
+    let frame = registered(&gpu, context);
+    let general = YoroVkUse { before: ATTACHMENT, after: ATTACHMENT };
+    let mut uses: YoroVkUses = zeroed(|u: &mut YoroVkUses| &mut u.struct_size);
+    (uses.source_color, uses.source_depth) = (general, general);
+    (uses.target_color, uses.target_depth) = (general, general);
+    let record = |uses: &YoroVkUses| {
+        // SAFETY: live handles and whole structures.
+        unsafe { yoro_vk_record(context, gpu.commands, &WARP, &YoroVkFrame { uses, ..frame }) }
+    };
+    let discarded = YoroVkState { layout: vk::ImageLayout::UNDEFINED, ..ATTACHMENT };
+    let table: &Mistakes<YoroVkUses> = &[
+        (&|u| u.struct_size = 3, YORO_ERROR_STRUCT_SIZE),
+        (&|u| u.reserved = 1, YORO_ERROR_VALUE),
+        (&|u| u.source_depth.before = discarded, YORO_ERROR_VALUE),
+        (&|u| u.target_color.after = discarded, YORO_ERROR_VALUE),
+        (&|u| u.target_color.before = discarded, YORO_OK),
+    ];
+    for (i, (change, expected)) in table.iter().enumerate() {
+        let mut changed = uses;
+        change(&mut changed);
+        assert_eq!(record(&changed), *expected, "row {i}");
+    }
+    let mut times: YoroTimes = zeroed(|t: &mut YoroTimes| &mut t.struct_size);
+    // SAFETY: live handles; the commands have been executed before the last lines.
+    unsafe {
+        let other = YoroVkFrame { reserved: 1, ..frame };
+        assert_eq!(yoro_vk_record(context, gpu.commands, &WARP, &other), YORO_ERROR_VALUE);
+        assert_eq!(yoro_times(context, null_mut()), YORO_ERROR_NULL);
+        gpu.device.end_command_buffer(gpu.commands).unwrap();
+        let buffers = [gpu.commands];
+        let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
+        let queue = gpu.device.get_device_queue(0, 0);
+        gpu.device.queue_submit(queue, &submit, vk::Fence::null()).unwrap();
+        gpu.device.device_wait_idle().unwrap();
+        assert_eq!(yoro_times(context, &mut times), YORO_OK);
+        assert_eq!(yoro_destroy(context), YORO_OK);
+    }
+    assert!(times.is_known == 1 && times.march_ns > 0 && times.split_ns < times.march_ns, "{times:?}");
+}
+
+/// A program of the first version knows neither uses nor times.
+#[test]
+fn the_first_version_of_structures_is_taken() {
+    use std::mem::offset_of;
+    // What `sizeof` was then.
+    assert_eq!((offset_of!(YoroVkFrame, reserved), offset_of!(YoroVkInfo, timed_frames)), (28, 104));
+    let Some(gpu) = Gpu::open() else { return };
+    let info = YoroVkInfo { struct_size: 104, timed_frames: 9, reserved_too: 9, ..gpu.info() };
+    let context = create(&info).unwrap();
+    let frame =
+        YoroVkFrame { struct_size: 28, reserved: 9, uses: std::ptr::dangling(), ..registered(&gpu, context) };
+    // SAFETY: live handles; the command buffer is never submitted.
+    unsafe {
+        assert_eq!(yoro_vk_record(context, gpu.commands, &WARP, &frame), YORO_OK);
+        gpu.device.end_command_buffer(gpu.commands).unwrap();
+        assert_eq!(yoro_destroy(context), YORO_OK);
+    }
+}
+
 fn create(info: &YoroVkInfo) -> Result<*mut YoroContext, YoroResult> {
     let mut context = null_mut();
     // SAFETY: a whole structure with live handles, or with what is refused.
@@ -138,7 +321,10 @@ fn wrong_vulkan_arguments_return_their_codes() {
         (&|i| i.color_format = vk::Format::from_raw(i32::MAX), YORO_ERROR_FORMAT),
         (&|i| i.color_format = vk::Format::BC7_SRGB_BLOCK, YORO_ERROR_FORMAT),
         (&|i| i.depth_format = vk::Format::R8G8B8A8_UNORM, YORO_ERROR_FORMAT),
-        (&|i| i.max_source_width = 0, YORO_ERROR_TOO_LARGE),
+        (&|i| i.depth_format = vk::Format::S8_UINT, YORO_ERROR_FORMAT),
+        (&|i| i.max_source_width = 0, YORO_ERROR_VALUE),
+        (&|i| i.max_target_height = 0, YORO_ERROR_VALUE),
+        (&|i| i.reserved = 7, YORO_ERROR_VALUE),
         (&|i| i.max_target_height = u32::MAX, YORO_ERROR_TOO_LARGE),
         (&|i| i.edges = 4, YORO_ERROR_VALUE),
         (&|i| (i.edges, i.samples) = (YORO_EDGES_MULTISAMPLE, 3), YORO_ERROR_UNSUPPORTED),
@@ -158,7 +344,7 @@ fn wrong_vulkan_arguments_return_their_codes() {
     let mut capabilities: YoroCapabilities = zeroed(|c: &mut YoroCapabilities| &mut c.struct_size);
     // SAFETY: alive, and a whole structure.
     assert_eq!(unsafe { yoro_capabilities(context, &mut capabilities) }, YORO_OK);
-    assert_eq!((capabilities.api, capabilities.buffer_bytes), (YORO_API_VULKAN, 4 * (16 + 10) * 16));
+    assert_eq!((capabilities.api, capabilities.buffer_bytes), (YORO_API_VULKAN, 16 * (16 + 10) * 16));
     assert!(capabilities.device[0] != 0);
     for (edges, samples) in [(YORO_EDGES_NEAREST, 0), (YORO_EDGES_SAMPLE, 9), (YORO_EDGES_MULTISAMPLE, 4)] {
         let anti_aliased = create(&YoroVkInfo { edges, samples, ..info }).unwrap();
@@ -170,25 +356,24 @@ fn wrong_vulkan_arguments_return_their_codes() {
         }
     }
 
-    let color = gpu.image(vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::COLOR_ATTACHMENT, [256, 128]);
-    let depth = gpu.image(vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT, [256, 128]);
-    let (color, depth) = (plane(color, vk::Format::R8G8B8A8_UNORM), plane(depth, vk::Format::D32_SFLOAT));
-    let mut source: YoroVkSource = zeroed(|s: &mut YoroVkSource| &mut s.struct_size);
-    (source.width, source.height, source.color, source.depth) = (256, 128, color, depth);
-    let mut target: YoroVkTarget = zeroed(|t: &mut YoroVkTarget| &mut t.struct_size);
-    (target.width, target.height, target.color, target.depth) = (256, 128, color, depth);
+    let (source, target) = images(&gpu);
+    let color = source.color;
     let mut frame: YoroVkFrame = zeroed(|f: &mut YoroVkFrame| &mut f.struct_size);
     let discarded = YoroVkState { layout: vk::ImageLayout::UNDEFINED, ..ATTACHMENT };
     let sources: &Mistakes<YoroVkSource> = &[
         (&|_| (), YORO_OK),
         (&|s| s.struct_size = 1, YORO_ERROR_STRUCT_SIZE),
-        (&|s| s.width = 0, YORO_ERROR_TOO_LARGE),
+        (&|s| s.width = 0, YORO_ERROR_VALUE),
+        (&|s| s.width = 1 << 20, YORO_ERROR_TOO_LARGE),
+        (&|s| s.reserved = 1, YORO_ERROR_VALUE),
         (&|s| s.color.image = vk::Image::null(), YORO_ERROR_NULL),
         (&|s| s.color.format = vk::Format::R8G8B8A8_UINT, YORO_ERROR_FORMAT),
         (&|s| s.color.format = vk::Format::from_raw(1 << 30), YORO_ERROR_FORMAT),
         (&|s| s.depth.format = vk::Format::R8G8B8A8_UNORM, YORO_ERROR_FORMAT),
         (&|s| s.depth.before = discarded, YORO_ERROR_VALUE),
         (&|s| s.color.after = discarded, YORO_ERROR_VALUE),
+        // Access by no stage.
+        (&|s| s.color.before.stages = vk::PipelineStageFlags::empty(), YORO_ERROR_VALUE),
         // Colour of samples, for hard edges.
         (&|s| s.sample_color = color, YORO_ERROR_VALUE),
     ];
@@ -205,22 +390,13 @@ fn wrong_vulkan_arguments_return_their_codes() {
         let other =
             YoroVkTarget { color: YoroVkImage { format: vk::Format::R8G8B8A8_SRGB, ..color }, ..target };
         assert_eq!(yoro_vk_register_target(context, &other, &mut frame.target), YORO_ERROR_FORMAT);
+        let empty = YoroVkTarget { width: 0, ..target };
+        assert_eq!(yoro_vk_register_target(context, &empty, &mut frame.target), YORO_ERROR_VALUE);
         assert_eq!(yoro_vk_register_target(context, &target, &mut frame.target), YORO_OK);
         assert_eq!(yoro_gl_prepare(context, null()), YORO_ERROR_API);
     }
 
-    let warp = YoroWarp {
-        source_width: 200,
-        source_height: 120,
-        target_width: 160,
-        target_height: 120,
-        offset: -2.0,
-        scale: 12.0,
-        row_offset: 0,
-        target_eye: YORO_EYE_LEFT,
-        depth: YORO_DEPTH_REVERSED,
-        reserved: 0,
-    };
+    let warp = WARP;
     let record = |warp: &YoroWarp, frame: &YoroVkFrame| {
         // SAFETY: live handles, and a command buffer that is being recorded and is never submitted.
         unsafe { yoro_vk_record(context, gpu.commands, warp, frame) }
@@ -231,6 +407,7 @@ fn wrong_vulkan_arguments_return_their_codes() {
     assert_eq!(record(&warp, &YoroVkFrame { source_y: u32::MAX, ..frame }), YORO_ERROR_TOO_LARGE);
     assert_eq!(record(&YoroWarp { target_width: 161, ..warp }, &frame), YORO_ERROR_TOO_LARGE);
     assert_eq!(record(&YoroWarp { offset: f64::NAN, ..warp }, &frame), YORO_ERROR_VALUE);
+    assert_eq!(record(&YoroWarp { reserved: 1, ..warp }, &frame), YORO_ERROR_VALUE);
     assert_eq!(record(&warp, &YoroVkFrame { struct_size: 0, ..frame }), YORO_ERROR_STRUCT_SIZE);
     // SAFETY: null pointers are allowed, and refused with a code.
     unsafe {

@@ -5,14 +5,14 @@ use std::num::NonZeroU32;
 use glow::HasContext;
 use yoro::eyes::Warp;
 use yoro::gl::{Context, Destination};
-use yoro::synthesis::{Edges, Outputs, Source};
+use yoro::synthesis::{Edges, Outputs, Source, SynthesisOptions};
 
 use crate::result::{Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT};
 
 /// Checks that textures and framebuffer are as [`YoroGlImages`](super::YoroGlImages) says. Leaves bindings as they were.
 pub(super) fn check_images(
     context: &Context,
-    edges: Edges,
+    options: &SynthesisOptions,
     outputs: Outputs,
     source: Source,
     warp: &Warp,
@@ -25,10 +25,16 @@ pub(super) fn check_images(
             format!("GL already has errors from before the call ({errors}): look for them in the engine"),
         ));
     }
-    let size = warp.source_size;
-    let depth_kind = if edges == Edges::Multisample { &MULTISAMPLE } else { &SINGLE_SAMPLE };
-    check_texture(context, source.color, "color_texture", &SINGLE_SAMPLE, size, Level::is_color)?;
-    check_texture(context, source.depth, "depth_texture", depth_kind, size, Level::is_depth)?;
+    let size = source.part.map_or(warp.source_size, |part| part.image_size);
+    let color_kind = if options.layers { &ARRAY } else { &SINGLE_SAMPLE };
+    let depth_kind = if options.edges == Edges::Multisample { &MULTISAMPLE } else { color_kind };
+    let is_here = |level: &Level| !options.layers || source.layer < level.layers;
+    check_texture(context, source.color, "color_texture", color_kind, size, |level| {
+        level.is_color() && is_here(level)
+    })?;
+    check_texture(context, source.depth, "depth_texture", depth_kind, size, |level| {
+        level.is_depth() && is_here(level)
+    })?;
     if let Some(samples) = source.samples {
         check_texture(context, samples, "sample_color_texture", &MULTISAMPLE, size, Level::is_color)?;
     }
@@ -149,11 +155,13 @@ fn check_texture(
     if level.is_known && level.size != size {
         let ([w, h], [x, y]) = (level.size, size);
         return Err(wrong(format!(
-            "{what} has {w}x{h} pixels, and the source has {x}x{y}: render YoroViews.source"
+            "{what} has {w}x{h} pixels in place of {x}x{y}: render YoroViews.source, or give the textures' size as a part's"
         )));
     }
     if level.is_known && !fits(&level) {
-        return Err(wrong(format!("{what} has a format that cannot be used here: see YoroGlImages")));
+        return Err(wrong(format!(
+            "{what} has a format or a number of layers that cannot be used here: see YoroGlImages"
+        )));
     }
     Ok(())
 }
@@ -170,6 +178,11 @@ const SINGLE_SAMPLE: TextureKind = TextureKind {
     binding: glow::TEXTURE_BINDING_2D,
     remedy: "GL_TEXTURE_2D: give one layer without samples",
 };
+const ARRAY: TextureKind = TextureKind {
+    target: glow::TEXTURE_2D_ARRAY,
+    binding: glow::TEXTURE_BINDING_2D_ARRAY,
+    remedy: "GL_TEXTURE_2D_ARRAY: give one, or no YORO_GL_SOURCE_LAYERS",
+};
 const MULTISAMPLE: TextureKind = TextureKind {
     target: glow::TEXTURE_2D_MULTISAMPLE,
     binding: glow::TEXTURE_BINDING_2D_MULTISAMPLE,
@@ -182,8 +195,12 @@ struct Level {
     is_known: bool,
     /// Width and height in pixels.
     size: [u32; 2],
+    /// Of an array.
+    layers: u32,
     /// GL_FLOAT and others; 0 for depth.
     color_type: u32,
+    /// Bits.
+    red: i32,
     /// Bits.
     depth: i32,
 }
@@ -204,7 +221,9 @@ impl Level {
             let level = Level {
                 is_known,
                 size: [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT].map(|name| query(name) as u32),
+                layers: query(glow::TEXTURE_DEPTH) as u32,
                 color_type: query(glow::TEXTURE_RED_TYPE) as u32,
+                red: query(glow::TEXTURE_RED_SIZE),
                 depth: query(glow::TEXTURE_DEPTH_SIZE),
             };
             gl.bind_texture(kind.target, bound);
@@ -217,6 +236,9 @@ impl Level {
     }
 
     fn is_depth(&self) -> bool {
-        self.depth > 0 || self.color_type == glow::FLOAT
+        // R16 (GL_EXT_texture_norm16) has the steps of 16-bit depth; eight bits are no depth.
+        self.depth > 0
+            || self.color_type == glow::FLOAT
+            || (self.color_type == glow::UNSIGNED_NORMALIZED && self.red == 16)
     }
 }

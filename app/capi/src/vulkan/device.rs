@@ -1,0 +1,136 @@
+//! The part of a context that is made for Vulkan.
+
+use std::ffi::{CStr, c_char};
+use std::time::Duration;
+
+use yoro::vulkan::ash::{Device, Instance, StaticFn, vk};
+use yoro::vulkan::{Gather, Host};
+
+use super::types::{YoroVkInfo, check_format};
+use crate::context::{Backend, YORO_API_VULKAN, YoroCapabilities, YoroTimes};
+use crate::result::{Failure, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL};
+use crate::versioned::check_reserved;
+
+/// The synthesis on a device.
+pub(crate) struct Vulkan {
+    pub(super) gather: Gather,
+    pub(super) writes_depth: bool,
+    /// Sources that have the colour of samples.
+    pub(super) with_samples: Vec<u32>,
+    instance: Instance,
+    physical_device: vk::PhysicalDevice,
+}
+
+impl Vulkan {
+    /// # Safety
+    /// The handles are valid and belong together.
+    pub(super) unsafe fn new(info: &YoroVkInfo) -> Result<Vulkan, Failure> {
+        let null = |what: &str| Failure::new(YORO_ERROR_NULL, format!("{what} is NULL: give it"));
+        let loader = info.loader.ok_or_else(|| null("loader"))?;
+        let handles = [
+            (info.instance == vk::Instance::null(), "instance"),
+            (info.physical_device == vk::PhysicalDevice::null(), "physical_device"),
+            (info.device == vk::Device::null(), "device"),
+        ];
+        if let Some((_, what)) = handles.into_iter().find(|(is_null, _)| *is_null) {
+            return Err(null(what));
+        }
+        check_reserved("info", &[info.reserved, info.reserved_too])?;
+        if info.dynamic_rendering > 1 {
+            return Err(Failure::value(format!(
+                "dynamic_rendering is {}: give 0 or 1",
+                info.dynamic_rendering
+            )));
+        }
+        check_format(info.color_format, "color_format")?;
+        let writes_depth = info.depth_format != vk::Format::UNDEFINED;
+        if writes_depth {
+            check_format(info.depth_format, "depth_format")?;
+        }
+        // ash panics in commands that were not found. These lead to all others, or are of the oldest version that is needed.
+        let has = |name: &CStr| {
+            // SAFETY: the header asks for a live instance; the name ends with 0.
+            unsafe { loader(info.instance, name.as_ptr()) }.is_some()
+        };
+        let needed = [
+            c"vkGetDeviceProcAddr",
+            c"vkGetPhysicalDeviceProperties",
+            c"vkGetPhysicalDeviceProperties2",
+            c"vkCreateImage",
+            c"vkCmdDraw",
+        ];
+        if !needed.into_iter().all(has) {
+            return Err(Failure::new(
+                YORO_ERROR_NO_CONTEXT,
+                "the loader does not return the commands of Vulkan 1.1: give vkGetInstanceProcAddr, and an instance of \
+                 version 1.1 or later",
+            ));
+        }
+        // The loader returns it only if the extension is enabled.
+        let debug_utils = has(c"vkCmdBeginDebugUtilsLabelEXT");
+        // SAFETY: both types have the same signature, and "system" is C's calling convention on these platforms. The header
+        // asks for handles that belong together.
+        let (instance, device) = unsafe {
+            let get_instance_proc_addr = std::mem::transmute::<
+                unsafe extern "C" fn(vk::Instance, *const c_char) -> Option<unsafe extern "C" fn()>,
+                vk::PFN_vkGetInstanceProcAddr,
+            >(loader);
+            let instance = Instance::load(&StaticFn { get_instance_proc_addr }, info.instance);
+            let device = Device::load(instance.fp_v1_0(), info.device);
+            (instance, device)
+        };
+        let host = Host {
+            instance: &instance,
+            physical_device: info.physical_device,
+            device: &device,
+            queue_family: info.queue_family,
+            dynamic_rendering: info.dynamic_rendering == 1,
+            debug_utils,
+        };
+        let options = info.options()?;
+        // SAFETY: the header asks for handles that are valid, belong together, and outlive the context.
+        let gather = unsafe { Gather::new(&host, &options) }?;
+        let with_samples = Vec::new();
+        Ok(Vulkan { gather, writes_depth, with_samples, instance, physical_device: info.physical_device })
+    }
+}
+
+impl Backend for Vulkan {
+    fn times(&mut self) -> Result<Option<YoroTimes>, Failure> {
+        // SAFETY: the header asks that the frame has been executed.
+        let times = unsafe { self.gather.pass_times() }?;
+        let nanoseconds = |time: Duration| time.as_nanos() as u64;
+        Ok(times.map(|times| YoroTimes {
+            split_ns: nanoseconds(times.split),
+            tiles_ns: nanoseconds(times.tiles),
+            spans_ns: nanoseconds(times.spans),
+            march_ns: nanoseconds(times.march),
+            ..YoroTimes::UNKNOWN
+        }))
+    }
+
+    fn api(&self) -> &'static str {
+        "Vulkan"
+    }
+
+    fn capabilities(&self) -> YoroCapabilities {
+        // SAFETY: the header asks for an instance that outlives the context.
+        let properties = unsafe { self.instance.get_physical_device_properties(self.physical_device) };
+        let mut capabilities = YoroCapabilities {
+            struct_size: size_of::<YoroCapabilities>() as u32,
+            api: YORO_API_VULKAN,
+            api_major: vk::api_version_major(properties.api_version),
+            api_minor: vk::api_version_minor(properties.api_version),
+            reserved: 0,
+            compute: 1,
+            software: (properties.device_type == vk::PhysicalDeviceType::CPU).into(),
+            max_image_size: properties.limits.max_image_dimension2_d,
+            buffer_bytes: self.gather.buffer_bytes(),
+            device: [0; 128],
+        };
+        if let Ok(name) = properties.device_name_as_c_str() {
+            capabilities.set_device(&name.to_string_lossy());
+        }
+        capabilities
+    }
+}

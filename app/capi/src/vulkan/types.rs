@@ -1,0 +1,318 @@
+//! The structures for Vulkan, and what they mean to the core.
+
+use std::ffi::c_char;
+
+use yoro::vulkan::ash::vk;
+use yoro::vulkan::{ImageState, LayerImage, Options, Use, Uses, VulkanError};
+
+use crate::result::{
+    Failure, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_MEMORY,
+    YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED,
+    YORO_ERROR_VALUE, YoroMessages,
+};
+use crate::types::{YoroEdges, edges};
+use crate::versioned::{check_reserved, versioned};
+
+/// vkGetInstanceProcAddr of the Vulkan loader, or of a layer in its place.
+pub type YoroVkLoader = Option<
+    unsafe extern "C" fn(instance: vk::Instance, name: *const c_char) -> Option<unsafe extern "C" fn()>,
+>;
+
+/// The options of a context for Vulkan.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkInfo {
+    /// sizeof(YoroVkInfo).
+    pub struct_size: u32,
+    /// Family of the queue that executes the command buffers; it has graphics.
+    pub queue_family: u32,
+    /// The loader of entry points.
+    pub loader: YoroVkLoader,
+    /// The instance, of version 1.1 or later; no extension is needed.
+    pub instance: vk::Instance,
+    /// The physical device of `device`.
+    pub physical_device: vk::PhysicalDevice,
+    /// The device, of version 1.1 or later; no extension and no feature is needed.
+    pub device: vk::Device,
+    /// 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0: render
+    /// passes and framebuffers are used, with the same result.
+    pub dynamic_rendering: u32,
+    /// Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled as sRGB.
+    pub color_format: vk::Format,
+    /// Format of the targets' depth, which is written in the source's encoding; VK_FORMAT_UNDEFINED for no depth.
+    pub depth_format: vk::Format,
+    /// Largest width of a source in pixels.
+    pub max_source_width: u32,
+    /// Largest height of a source in pixels.
+    pub max_source_height: u32,
+    /// Largest width of a synthesized image in pixels.
+    pub max_target_width: u32,
+    /// Largest height of a synthesized image in pixels.
+    pub max_target_height: u32,
+    /// The kind of source images; 0 is YORO_EDGES_HARD.
+    pub edges: YoroEdges,
+    /// For YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
+    pub samples: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// A pipeline cache, or VK_NULL_HANDLE.
+    pub pipeline_cache: vk::PipelineCache,
+    /// The receiver of the sentences of errors, also in later calls.
+    pub messages: YoroMessages,
+    /// For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0 for no
+    /// times.
+    pub timed_frames: u32,
+    /// Zero.
+    pub reserved_too: u32,
+}
+
+versioned!(YoroVkInfo since timed_frames);
+
+/// A use of an image: one side of a barrier.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkState {
+    /// Its layout.
+    pub layout: vk::ImageLayout,
+    /// The stages that use it. 0: nothing is waited for before, or nothing waits afterwards, as where a semaphore does.
+    pub stages: vk::PipelineStageFlags,
+    /// Their kinds of access; 0 without stages.
+    pub access: vk::AccessFlags,
+}
+
+/// One layer of a 2-D image: mip level 0, without multisampling unless stated otherwise.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkImage {
+    /// The image. Its usage has VK_IMAGE_USAGE_SAMPLED_BIT for a source, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or
+    /// VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT for a target.
+    pub image: vk::Image,
+    /// The image's format, or a compatible one if the image has VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT.
+    pub format: vk::Format,
+    /// The layer of the image, for example the eye's; 0 for an image with one layer.
+    pub layer: u32,
+    /// Its use before yoro_vk_record: its layout then, and the stages to wait for.
+    pub before: YoroVkState,
+    /// Its use afterwards, for which it is made ready.
+    pub after: YoroVkState,
+}
+
+/// Images to read.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkSource {
+    /// sizeof(YoroVkSource).
+    pub struct_size: u32,
+    /// Width of the images in pixels; the rendered part may be smaller.
+    pub width: u32,
+    /// Height of the images in pixels.
+    pub height: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Colour of the rendered eye, in any format that can be filtered. All four channels are carried over. Unless
+    /// YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
+    pub color: YoroVkImage,
+    /// Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or
+    /// R32_SFLOAT. For YORO_EDGES_MULTISAMPLE it has YoroVkInfo's samples.
+    pub depth: YoroVkImage,
+    /// For YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
+    /// VK_NULL_HANDLE if it does not exist any more, and for all other edges.
+    pub sample_color: YoroVkImage,
+}
+
+versioned!(YoroVkSource);
+
+/// Images to write.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkTarget {
+    /// sizeof(YoroVkTarget).
+    pub struct_size: u32,
+    /// Width of the images in pixels; the synthesized part may be smaller.
+    pub width: u32,
+    /// Height of the images in pixels.
+    pub height: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Colour, in YoroVkInfo's color_format.
+    pub color: YoroVkImage,
+    /// Depth, in YoroVkInfo's depth_format; ignored if that is VK_FORMAT_UNDEFINED.
+    pub depth: YoroVkImage,
+}
+
+versioned!(YoroVkTarget);
+
+/// The id of a registered source, never 0.
+pub type YoroVkSourceId = u32;
+/// The id of a registered target, never 0.
+pub type YoroVkTargetId = u32;
+
+/// The images and places of one synthesis.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkFrame {
+    /// sizeof(YoroVkFrame).
+    pub struct_size: u32,
+    /// The images to read.
+    pub source: YoroVkSourceId,
+    /// First column of the rendered part.
+    pub source_x: u32,
+    /// First row of the rendered part; row 0 is the first in memory.
+    pub source_y: u32,
+    /// The images to write.
+    pub target: YoroVkTargetId,
+    /// First column of the synthesized image.
+    pub target_x: u32,
+    /// First row of the synthesized image.
+    pub target_y: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// The uses of the images around this call, in place of those of their registration; may be NULL.
+    pub uses: *const YoroVkUses,
+}
+
+versioned!(YoroVkFrame since reserved);
+
+/// The uses of an image before and after one call.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkUse {
+    /// Its use before yoro_vk_record: its layout then, and the stages to wait for.
+    pub before: YoroVkState,
+    /// Its use afterwards, for which it is made ready.
+    pub after: YoroVkState,
+}
+
+/// The uses of all images in one call, for engines whose images come from other passes and go to others in each frame. Those of
+/// images that were not registered are ignored. A source is still sampled in the layout that it was registered for: if its
+/// registered layout before is not one of those that can be sampled, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct YoroVkUses {
+    /// sizeof(YoroVkUses).
+    pub struct_size: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Of the source's colour.
+    pub source_color: YoroVkUse,
+    /// Of the source's depth.
+    pub source_depth: YoroVkUse,
+    /// Of the source's colour of samples.
+    pub source_sample_color: YoroVkUse,
+    /// Of the target's colour.
+    pub target_color: YoroVkUse,
+    /// Of the target's depth.
+    pub target_depth: YoroVkUse,
+}
+
+versioned!(YoroVkUses);
+
+impl YoroVkInfo {
+    pub(super) fn options(&self) -> Result<Options, Failure> {
+        let writes_depth = self.depth_format != vk::Format::UNDEFINED;
+        Ok(Options {
+            color_format: self.color_format,
+            depth_format: writes_depth.then_some(self.depth_format),
+            max_source_size: [self.max_source_width, self.max_source_height],
+            max_target_size: [self.max_target_width, self.max_target_height],
+            edges: edges(self.edges)?,
+            samples: self.samples,
+            timed_frames: self.timed_frames,
+            pipeline_cache: self.pipeline_cache,
+        })
+    }
+}
+
+/// Checks that a format is known: drivers look it up in tables, and some do not check their bounds.
+pub(super) fn check_format(format: vk::Format, what: &str) -> Result<(), Failure> {
+    let last_of_version_1_0 = vk::Format::ASTC_12X12_SRGB_BLOCK.as_raw();
+    if (1..=last_of_version_1_0).contains(&format.as_raw()) {
+        return Ok(());
+    }
+    Err(Failure::new(
+        YORO_ERROR_FORMAT,
+        format!(
+            "{what} is {}, which is not a format that can be rendered to: see the header",
+            format.as_raw()
+        ),
+    ))
+}
+
+impl YoroVkUses {
+    pub(super) fn checked(&self, has_samples: bool, writes_depth: bool) -> Result<Uses, Failure> {
+        check_reserved("uses", &[self.reserved])?;
+        // What is not there is not looked at.
+        let or = |is_there: bool, one: &YoroVkUse, other: Use, what, is_read| {
+            if is_there { one.checked(what, is_read) } else { Ok(other) }
+        };
+        let color = self.source_color.checked("color", true)?;
+        Ok(Uses {
+            source_color: color,
+            source_depth: self.source_depth.checked("depth", true)?,
+            source_sample_color: or(has_samples, &self.source_sample_color, color, "sample_color", true)?,
+            target_color: self.target_color.checked("color", false)?,
+            target_depth: or(writes_depth, &self.target_depth, color, "depth", false)?,
+        })
+    }
+}
+
+impl YoroVkUse {
+    fn checked(&self, what: &str, is_read: bool) -> Result<Use, Failure> {
+        if is_read && self.before.layout == vk::ImageLayout::UNDEFINED {
+            return Err(Failure::value(format!(
+                "the {what} image is read, but its layout before is VK_IMAGE_LAYOUT_UNDEFINED, which discards its contents"
+            )));
+        }
+        if self.after.layout == vk::ImageLayout::UNDEFINED {
+            return Err(Failure::value(format!(
+                "the {what} image's layout after is VK_IMAGE_LAYOUT_UNDEFINED: give the layout that follows"
+            )));
+        }
+        Ok(Use { before: self.before.checked(what)?, after: self.after.checked(what)? })
+    }
+}
+
+impl YoroVkState {
+    fn checked(&self, what: &str) -> Result<ImageState, Failure> {
+        if self.stages.is_empty() && !self.access.is_empty() {
+            return Err(Failure::value(format!(
+                "a state of the {what} image has access but no stages: give the stages, or no access"
+            )));
+        }
+        Ok(ImageState { layout: self.layout, stages: self.stages, access: self.access })
+    }
+}
+
+impl YoroVkImage {
+    pub(super) fn checked(&self, what: &str, is_read: bool) -> Result<LayerImage, Failure> {
+        if self.image == vk::Image::null() {
+            return Err(Failure::new(
+                YORO_ERROR_NULL,
+                format!("the {what} image is VK_NULL_HANDLE: give one"),
+            ));
+        }
+        check_format(self.format, what)?;
+        let Use { before, after } =
+            YoroVkUse { before: self.before, after: self.after }.checked(what, is_read)?;
+        Ok(LayerImage { image: self.image, format: self.format, layer: self.layer, before, after })
+    }
+}
+
+impl From<VulkanError> for Failure {
+    fn from(error: VulkanError) -> Failure {
+        let code = match error {
+            VulkanError::OutOfMemory { .. } => YORO_ERROR_MEMORY,
+            VulkanError::DeviceLost { .. } => YORO_ERROR_DEVICE_LOST,
+            VulkanError::Format { .. } | VulkanError::OtherFormat { .. } => YORO_ERROR_FORMAT,
+            VulkanError::QueueFamily(_) | VulkanError::DynamicRendering | VulkanError::Samples(_) => {
+                YORO_ERROR_UNSUPPORTED
+            }
+            VulkanError::SampleColors => YORO_ERROR_VALUE,
+            VulkanError::Size { size, .. } if size.contains(&0) => YORO_ERROR_VALUE,
+            VulkanError::Size { .. } | VulkanError::Rectangle { .. } => YORO_ERROR_TOO_LARGE,
+            VulkanError::NotRegistered => YORO_ERROR_NOT_REGISTERED,
+            _ => YORO_ERROR_DRIVER,
+        };
+        Failure::new(code, error.to_string())
+    }
+}
