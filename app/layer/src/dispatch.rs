@@ -84,7 +84,31 @@ unsafe extern "system" fn no_visibility_mask(
     sys::Result::ERROR_FUNCTION_UNSUPPORTED
 }
 
+/// xrEnumerateReprojectionModesMSFT where the extension is not enabled.
+unsafe extern "system" fn no_reprojection_modes(
+    _: sys::Instance,
+    _: sys::SystemId,
+    _: sys::ViewConfigurationType,
+    _: u32,
+    _: *mut u32,
+    _: *mut sys::ReprojectionModeMSFT,
+) -> sys::Result {
+    sys::Result::ERROR_FUNCTION_UNSUPPORTED
+}
+
+/// xrGetRecommendedLayerResolutionMETA where the extension is not enabled.
+unsafe extern "system" fn no_recommended_layer_resolution(
+    _: sys::Session,
+    _: *const sys::RecommendedLayerResolutionGetInfoMETA,
+    _: *mut sys::RecommendedLayerResolutionMETA,
+) -> sys::Result {
+    sys::Result::ERROR_FUNCTION_UNSUPPORTED
+}
+
 table! {
+    get_instance_properties: GetInstanceProperties = c"xrGetInstanceProperties",
+    get_system_properties: GetSystemProperties = c"xrGetSystemProperties",
+    poll_event: PollEvent = c"xrPollEvent",
     destroy_instance: DestroyInstance = c"xrDestroyInstance",
     create_session: CreateSession = c"xrCreateSession",
     destroy_session: DestroySession = c"xrDestroySession",
@@ -107,4 +131,8 @@ table! {
     wait_swapchain_image: WaitSwapchainImage = c"xrWaitSwapchainImage",
     release_swapchain_image: ReleaseSwapchainImage = c"xrReleaseSwapchainImage",
     get_visibility_mask: GetVisibilityMaskKHR = c"xrGetVisibilityMaskKHR" or no_visibility_mask,
+    enumerate_reprojection_modes: EnumerateReprojectionModesMSFT = c"xrEnumerateReprojectionModesMSFT"
+        or no_reprojection_modes,
+    get_recommended_layer_resolution: GetRecommendedLayerResolutionMETA = c"xrGetRecommendedLayerResolutionMETA"
+        or no_recommended_layer_resolution,
 }

@@ -1,6 +1,6 @@
 //! An instance of the application, and the view configurations that it is offered.
 
-use std::ffi::c_void;
+use std::ffi::{CStr, c_char, c_void};
 use std::ptr;
 use std::sync::Mutex;
 
@@ -9,8 +9,8 @@ use smallvec::SmallVec;
 use sys::ViewConfigurationType as Views;
 
 use crate::dispatch::{Dispatch, XrResult, check};
-use crate::lock;
 use crate::settings::{OfferedAs, Settings};
+use crate::{lock, sizes};
 
 /// The estimated width of the offered view in widths of an eye's, before a session can tell. The frusta of common
 /// headsets' eyes differ by about as much.
@@ -19,6 +19,12 @@ const ESTIMATED_WIDTH: f32 = 1.25;
 /// The recommended width and height in pixels of an image that is not used.
 const TINY: u32 = 16;
 
+/// Returns the text in an array of characters, which ends in zero.
+pub fn text<const N: usize>(characters: &[c_char; N]) -> String {
+    let bytes = characters.map(|byte| byte as u8);
+    CStr::from_bytes_until_nul(&bytes).unwrap_or_default().to_string_lossy().into_owned()
+}
+
 /// One instance.
 pub struct Instance {
     pub handle: sys::Instance,
@@ -26,12 +32,13 @@ pub struct Instance {
     pub settings: Settings,
     /// The name that the application gives itself in XrApplicationInfo.
     pub application: String,
-    /// True if the application has enabled a graphics interface that the layer knows. Else everything passes through.
+    /// True if the application has enabled a graphics interface that the layer knows, and is not to be left alone. Else
+    /// everything passes through.
     pub serves: bool,
     /// True if the runtime takes depth: it has the extension, and the application has enabled it.
     pub takes_depth: bool,
-    /// The recommended size of the one view in pixels, known since the first session.
-    size: Mutex<Option<[u32; 2]>>,
+    /// The recommended size of the one view of each system, in pixels. It stays as it was first told.
+    sizes: Mutex<Vec<(sys::SystemId, [u32; 2])>>,
 }
 
 impl Instance {
@@ -43,7 +50,7 @@ impl Instance {
         serves: bool,
         takes_depth: bool,
     ) -> Instance {
-        Instance { handle, next, settings, application, serves, takes_depth, size: Mutex::new(None) }
+        Instance { handle, next, settings, application, serves, takes_depth, sizes: Mutex::default() }
     }
 
     /// True if the application is offered one view: the system has two.
@@ -128,14 +135,16 @@ impl Instance {
         let mut chains = [ptr::null_mut(); 2];
         chains[self.settings.dominant.index()] = chain;
         let own = self.own_views(system, chains)?[self.settings.dominant.index()];
-        Ok(self.enlarged(own))
+        Ok(self.enlarged(system, own))
     }
 
-    fn enlarged(&self, own: sys::ViewConfigurationView) -> sys::ViewConfigurationView {
-        let size = lock(&self.size).unwrap_or([
-            (own.recommended_image_rect_width as f32 * ESTIMATED_WIDTH).ceil() as u32,
-            own.recommended_image_rect_height,
-        ]);
+    fn enlarged(&self, system: sys::SystemId, own: sys::ViewConfigurationView) -> sys::ViewConfigurationView {
+        let eye = [own.recommended_image_rect_width, own.recommended_image_rect_height];
+        let size = self.told_size(system).unwrap_or_else(|| {
+            let known = self.circumstances(system).and_then(|key| sizes::recall(&key, eye));
+            let size = known.unwrap_or([(eye[0] as f32 * ESTIMATED_WIDTH).ceil() as u32, eye[1]]);
+            self.latch_size(system, size)
+        });
         sys::ViewConfigurationView {
             recommended_image_rect_width: size[0].min(own.max_image_rect_width),
             recommended_image_rect_height: size[1].min(own.max_image_rect_height),
@@ -156,12 +165,45 @@ impl Instance {
             ..own
         });
         let dominant = self.settings.dominant.index();
-        views[dominant] = self.enlarged(own[dominant]);
+        views[dominant] = self.enlarged(system, own[dominant]);
         Ok(views)
     }
 
-    /// Sets the size of the one view, if no earlier session has set it.
-    pub fn latch_size(&self, size: [u32; 2]) {
-        lock(&self.size).get_or_insert(size);
+    fn told_size(&self, system: sys::SystemId) -> Option<[u32; 2]> {
+        lock(&self.sizes).iter().find(|(known, _)| *known == system).map(|(_, size)| *size)
+    }
+
+    /// Sets the size of a system's one view, unless there is one already: a runtime must always return the same sizes.
+    /// Returns the size that holds.
+    pub fn latch_size(&self, system: sys::SystemId, size: [u32; 2]) -> [u32; 2] {
+        let mut sizes = lock(&self.sizes);
+        if let Some((_, told)) = sizes.iter().find(|(known, _)| *known == system) {
+            return *told;
+        }
+        sizes.push((system, size));
+        size
+    }
+
+    /// Remembers the size of the one view for the next start, beside that of an eye.
+    pub fn remember_size(&self, system: sys::SystemId, eye: [u32; 2], size: [u32; 2]) {
+        if let Some(key) = self.circumstances(system) {
+            sizes::remember(&key, eye, size);
+        }
+    }
+
+    /// Returns all that the frusta of the views and the offered one depend on: runtime, headset and settings.
+    fn circumstances(&self, system: sys::SystemId) -> Option<String> {
+        // SAFETY: plain data, for which zeros are values; a live instance, and structures of their types.
+        let (runtime, headset) = unsafe {
+            let mut runtime =
+                sys::InstanceProperties { ty: sys::InstanceProperties::TYPE, ..std::mem::zeroed() };
+            check((self.next.get_instance_properties)(self.handle, &mut runtime)).ok()?;
+            let mut headset = sys::SystemProperties { ty: sys::SystemProperties::TYPE, ..std::mem::zeroed() };
+            check((self.next.get_system_properties)(self.handle, system, &mut headset)).ok()?;
+            (runtime, headset)
+        };
+        let (runtime, headset) = (text(&runtime.runtime_name), text(&headset.system_name));
+        let Settings { dominant, guard_band, .. } = &self.settings;
+        Some(format!("{runtime}, {headset}, {} eye, guard band {guard_band}", dominant.name()))
     }
 }

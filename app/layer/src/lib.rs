@@ -14,7 +14,8 @@
 //! * `objects`: the application's instances, sessions and swapchains, and the order of locks.
 //! * `frame`: xrEndFrame.
 //! * `session`, `swapchain`, `instance`: one object each. `dispatch`: the functions of the next layer or the runtime.
-//! * `geometry`: the offered view, and the parts of a submitted one.
+//! * `geometry`: the offered view, and the parts of a submitted one. `mirror`: those of flipped images.
+//! * `sizes`: the offered view's size, from one start to the next.
 //! * `binding`: the graphics interface of a session. `synthesizer`: the synthesis, implemented by `vulkan`, on the
 //!   application's device and queue, and by `gl`, in its context.
 //!
@@ -27,12 +28,16 @@ mod frame;
 mod geometry;
 mod gl;
 mod instance;
+pub mod library;
 pub mod log;
 mod manifest;
+mod mirror;
 mod objects;
 mod reason;
 mod session;
 pub mod settings;
+pub mod sizes;
+mod structures;
 mod swapchain;
 mod synthesizer;
 mod vulkan;

@@ -32,7 +32,7 @@ pub enum Reason {
     #[error("{0}")]
     Geometry(GeometryError),
     /// The swapchain's images cannot be read.
-    #[error("{0} is in a swapchain that cannot be read (multisampled, protected, or a cube)")]
+    #[error("{0} is in a swapchain that cannot be read (multisampled, subsampled, protected, or a cube)")]
     Unreadable(&'static str),
     /// The runtime has the image already: it was not released since the last frame, or too early.
     #[error("{0} was not released since the last frame")]

@@ -2,7 +2,7 @@
 
 use std::ffi::c_void;
 use std::ptr;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -14,7 +14,10 @@ use crate::binding::Binding;
 use crate::dispatch::{XrResult, check};
 use crate::geometry::{IDENTITY, Offer, frustum, pose};
 use crate::instance::Instance;
-use crate::lock;
+use crate::{lock, sizes};
+
+/// In place of the number of views: the session has not begun.
+const NOT_BEGUN: usize = usize::MAX;
 
 /// One session.
 pub struct Session {
@@ -24,10 +27,13 @@ pub struct Session {
     pub binding: Option<Binding>,
     /// True if PRIMARY_MONO is the layer's: the runtime shows two views of this system.
     pub offers_mono: bool,
+    system: sys::SystemId,
     /// The size in pixels that the runtime recommends for the dominant eye.
     eye_size: [u32; 2],
-    /// See [`Session::views`].
+    /// See [`Session::views`]; or [`NOT_BEGUN`].
     views: AtomicUsize,
+    /// True if the size of the offered view is remembered for the next start.
+    remembered: AtomicBool,
     /// The last offer, or the reason why nothing can be offered.
     pub offer: Mutex<Option<Result<Offer, EyesError>>>,
     /// When the last xrBeginFrame returned.
@@ -50,14 +56,16 @@ impl Session {
             handle,
             offers_mono,
             instance,
+            system,
             binding,
             eye_size,
-            views: AtomicUsize::new(0),
+            views: AtomicUsize::new(NOT_BEGUN),
+            remembered: AtomicBool::new(false),
             offer: Mutex::default(),
             begun: Mutex::default(),
         };
         if offers_mono && let Some(size) = session.size_before_the_first_frame() {
-            session.instance.latch_size(size);
+            session.instance.latch_size(system, size);
         }
         session
     }
@@ -131,8 +139,19 @@ impl Session {
     pub fn offer(&self, views: &[sys::View; 2]) -> (Pose, Frustum) {
         let offer = self.offer_for(views);
         *lock(&self.offer) = Some(offer);
+        if let Ok(offer) = offer
+            && !self.remembered.swap(true, Ordering::Relaxed)
+        {
+            self.instance.remember_size(self.system, self.eye_size, offer.size);
+        }
         let own = views[self.instance.settings.dominant.index()];
         offer.map_or((pose(own.pose), frustum(own.fov)), |offer| (offer.pose, offer.frustum))
+    }
+
+    /// Returns the size in pixels that an eye's has in the offered view.
+    pub fn enlarged(&self, size: [u32; 2]) -> [u32; 2] {
+        let offered = lock(&self.offer).and_then(Result::ok).map_or(self.eye_size, |offer| offer.size);
+        sizes::scaled(size, self.eye_size, offered)
     }
 
     /// Begins the session; for `views` see [`Session::views`].
@@ -141,9 +160,14 @@ impl Session {
     }
 
     /// The number of views in a projection layer that the layer rewrites: 1, or 2 if one of them is tiny. 0 if
-    /// everything passes through.
+    /// everything passes through, and before the session begins.
     pub fn views(&self) -> usize {
-        self.views.load(Ordering::Relaxed)
+        Some(self.views.load(Ordering::Relaxed)).filter(|views| *views != NOT_BEGUN).unwrap_or(0)
+    }
+
+    /// True if the layer answers calls for PRIMARY_MONO: until the session begins with something else.
+    pub fn answers_mono(&self) -> bool {
+        self.offers_mono && [NOT_BEGUN, 1].contains(&self.views.load(Ordering::Relaxed))
     }
 
     /// True if one of two views is tiny and replaced, should the application begin with two.

@@ -20,6 +20,8 @@ pub enum OfferedAs {
     First,
     /// After the runtime's own.
     Last,
+    /// Not at all: everything passes through.
+    Off,
 }
 
 /// The settings of one application.
@@ -36,8 +38,8 @@ pub struct Settings {
     /// YORO_LAYER_CAPTURE: a folder for pictures of what the runtime gets in one frame.
     #[cfg(feature = "capture")]
     pub capture: Option<PathBuf>,
-    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located. The world stands still, so
-    /// that pictures of two runs can be compared.
+    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located, LOCAL space being STAGE. The
+    /// world stands still, so that pictures of two runs can be compared.
     #[cfg(feature = "capture")]
     pub time: Option<i64>,
 }
@@ -60,14 +62,16 @@ pub struct Setting {
 pub const SETTINGS: [Setting; 4] = [
     Setting {
         key: "offer",
-        values: "only, first or last",
+        values: "only, first, last or off",
         default: "first",
-        help: "Where the list of view configurations has PRIMARY_MONO: alone, before the runtime's own, or after them",
+        help: "Where the list of view configurations has PRIMARY_MONO: alone, before the runtime's own, or after them; \
+               `off` leaves the application alone",
         set: |settings, text| {
             settings.offer = match text {
                 "only" => OfferedAs::Only,
                 "first" => OfferedAs::First,
                 "last" => OfferedAs::Last,
+                "off" => OfferedAs::Off,
                 _ => return None,
             };
             Some(())
@@ -192,6 +196,42 @@ pub enum SettingsError {
     },
 }
 
+/// Returns the mistakes in the settings of every application that the file names, and in those for all.
+pub fn mistakes() -> Vec<SettingsError> {
+    mistakes_in(&file())
+}
+
+fn mistakes_in(file: &Option<SettingsFile>) -> Vec<SettingsError> {
+    let mut names = vec![String::new()];
+    if let Some((_, Ok(text))) = file {
+        let all = text.parse::<Table>().unwrap_or_default();
+        let applications = all.get("application").and_then(Value::as_table);
+        names.extend(applications.into_iter().flat_map(|applications| applications.keys().cloned()));
+    }
+    let mut mistakes: Vec<SettingsError> = Vec::new();
+    for name in names {
+        let (_, errors) = Settings::resolve(&name, file.clone(), variable);
+        for error in errors {
+            if !mistakes.contains(&error) {
+                mistakes.push(error);
+            }
+        }
+    }
+    mistakes
+}
+
+/// The path of the settings file, and its text or the reason why it cannot be read.
+type SettingsFile = (PathBuf, Result<String, String>);
+
+/// Reads the settings file, if there is one.
+fn file() -> Option<SettingsFile> {
+    let path = path()?;
+    match std::fs::read_to_string(&path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
+        text => Some((path, text.map_err(|error| error.to_string()))),
+    }
+}
+
 /// Returns the path of the settings file, `$XDG_CONFIG_HOME/yoro/layer.toml` (`~/.config` if that is not set); None
 /// without a home.
 pub fn path() -> Option<PathBuf> {
@@ -256,21 +296,12 @@ impl Settings {
     /// Returns the settings of an application: those of the environment before those of the file for this application,
     /// before those of the file for all, before the defaults. A mistake is returned as an error and changes nothing.
     pub fn of(application: &str) -> (Settings, Vec<SettingsError>) {
-        let path = path();
-        let text = path.as_deref().map(std::fs::read_to_string);
-        let file = match (path, text) {
-            (Some(path), Some(Ok(text))) => Some((path, Ok(text))),
-            (Some(path), Some(Err(error))) if error.kind() != std::io::ErrorKind::NotFound => {
-                Some((path, Err(error.to_string())))
-            }
-            _ => None,
-        };
-        Settings::resolve(application, file, variable)
+        Settings::resolve(application, file(), variable)
     }
 
     fn resolve(
         application: &str,
-        file: Option<(PathBuf, Result<String, String>)>,
+        file: Option<SettingsFile>,
         environment: impl Fn(&str) -> Option<OsString>,
     ) -> (Settings, Vec<SettingsError>) {
         let mut settings = Settings::default();
@@ -278,16 +309,18 @@ impl Settings {
         if let Some((path, text)) = file {
             match text.and_then(|text| read_file(&text, application)) {
                 Ok(sections) => {
-                    let place = path.display().to_string();
+                    let all = path.display().to_string();
+                    let places = [all.clone(), format!("{all}, [application.{application}]")];
                     let in_file = |section: &Table, setting: &Setting| match section.get(setting.key)? {
                         Value::String(text) => Some(text.clone()),
                         other => Some(other.to_string()),
                     };
-                    for (section, setting) in
-                        sections.iter().flat_map(|s| SETTINGS.iter().map(move |t| (s, t)))
-                    {
-                        if let Some(value) = in_file(section, setting) {
-                            errors.extend(setting.choose(&mut settings, &value, &place, setting.key).err());
+                    for (section, place) in sections.iter().zip(&places) {
+                        for setting in &SETTINGS {
+                            let value = in_file(section, setting);
+                            let chosen =
+                                value.map(|value| setting.choose(&mut settings, &value, place, setting.key));
+                            errors.extend(chosen.and_then(Result::err));
                         }
                     }
                 }
@@ -392,14 +425,23 @@ mod tests {
         assert_eq!(
             errors,
             [
-                "/c/yoro/layer.toml: offer is \"mono\"; give only, first or last",
+                "/c/yoro/layer.toml: offer is \"mono\"; give only, first, last or off",
                 "/c/yoro/layer.toml: guard_band is \"true\"; give none, pixels such as 40px, or metres such as 1.0",
                 "the environment: YORO_LAYER_DOMINANT is \"middle\"; give left or right",
                 "the environment: YORO_LAYER_TIME is \"0\"; give nanoseconds, more than 0",
             ]
         );
         // A number needs no quotes.
-        assert_eq!(resolve("guard_band = 2.5", &[]).0.guard_band, GuardBand::Distance(2.5));
+        for (number, metres) in [("2.5", 2.5), ("1.0", 1.0), ("3", 3.0)] {
+            let (settings, errors) = resolve(&format!("guard_band = {number}"), &[]);
+            assert_eq!((settings.guard_band, errors), (GuardBand::Distance(metres), vec![]), "{number}");
+        }
+        let other = "dominant = 'left'\n[application.other]\ndominant = 'middle'";
+        assert!(resolve(other, &[]).1.is_empty());
+        let mistakes = mistakes_in(&Some(("/c/yoro/layer.toml".into(), Ok(other.to_owned()))));
+        let mistakes: Vec<_> = mistakes.iter().map(ToString::to_string).collect();
+        let want = "/c/yoro/layer.toml, [application.other]: dominant is \"middle\"; give left or right";
+        assert_eq!(mistakes, [want]);
         let (settings, errors) = resolve("ofer = 'only'", &[]);
         assert_eq!(settings, Settings::default());
         assert!(errors[0].starts_with("/c/yoro/layer.toml: unknown field `ofer`"), "{errors:?}");

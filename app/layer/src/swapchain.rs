@@ -117,7 +117,8 @@ impl Swapchain {
     pub unsafe fn wait(&self, info: *const sys::SwapchainImageWaitInfo) -> XrResult<sys::Result> {
         // SAFETY: the application's own arguments.
         let result = unsafe { (self.next().wait_swapchain_image)(self.handle, info) };
-        if result == sys::Result::SUCCESS {
+        // XR_SESSION_LOSS_PENDING is a success, too.
+        if check(result).is_ok() && result != sys::Result::TIMEOUT_EXPIRED {
             lock(&self.state).waited = true;
         }
         Ok(result)
@@ -173,13 +174,15 @@ impl Swapchain {
     }
 
     fn pass_on(&self, state: &mut State) -> XrResult<()> {
-        if state.held.take().is_some() {
+        if state.held.is_some() {
             let info = sys::SwapchainImageReleaseInfo {
                 ty: sys::SwapchainImageReleaseInfo::TYPE,
                 next: std::ptr::null(),
             };
             // SAFETY: the swapchain is live, and the application has waited for this image.
             check(unsafe { (self.next().release_swapchain_image)(self.handle, &info) })?;
+            // After a failure it is passed on in a later call.
+            state.held = None;
         }
         Ok(())
     }

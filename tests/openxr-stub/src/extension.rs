@@ -3,6 +3,8 @@
 use openxr_sys as sys;
 use sys::Result as Code;
 
+use crate::frame::submitted;
+use crate::instance::check_system;
 use crate::log::Entry;
 use crate::session::views_of;
 use crate::world::{Answer, Array, DONE, Event, World, forbid_if};
@@ -46,6 +48,35 @@ pub fn set_performance_level(
     world.session(session)?;
     let what = if domain == sys::PerfSettingsDomainEXT::CPU { "cpu-level" } else { "gpu-level" };
     world.log.write(&Entry::Request { what: what.into(), value: level.into_raw().into() });
+    DONE
+}
+
+pub fn enumerate_reprojection_modes(
+    world: &mut World,
+    instance: sys::Instance,
+    system: sys::SystemId,
+    configuration: sys::ViewConfigurationType,
+    modes: Array<sys::ReprojectionModeMSFT>,
+) -> Answer {
+    world.instance(instance)?;
+    check_system(system)?;
+    views_of(world, configuration)?;
+    modes.fill(&[sys::ReprojectionModeMSFT::DEPTH], |to, from| *to = *from)
+}
+
+/// Recommends three quarters of the first eye's size for projection layers.
+pub fn get_recommended_layer_resolution(
+    world: &mut World,
+    session: sys::Session,
+    info: &sys::RecommendedLayerResolutionGetInfoMETA,
+    resolution: &mut sys::RecommendedLayerResolutionMETA,
+) -> Answer {
+    let views = world.session(session)?.views;
+    // SAFETY: a layer, of the type that it says.
+    unsafe { submitted(world, info.layer, views) }?;
+    let [width, height] = world.script.eyes[0].size.map(|pixels| pixels as i32 * 3 / 4);
+    resolution.recommended_image_dimensions = sys::Extent2Di { width, height };
+    resolution.is_valid = sys::TRUE;
     DONE
 }
 

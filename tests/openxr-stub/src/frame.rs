@@ -7,9 +7,10 @@ use std::time::Duration;
 use openxr_sys as sys;
 use sys::{Handle, Result as Code};
 
+use crate::instance::IMAGE_LAYOUT;
 use crate::log::{Depth, Entry, Image, Layer, View};
 use crate::script::At;
-use crate::session::{Frame, views_of};
+use crate::session::{Frame, fill_depth_range, views_of};
 use crate::space::{compose, inverse, pose, raw_pose};
 use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden};
 
@@ -129,7 +130,11 @@ pub fn locate_views(
             (raw_pose((view.0 * length, view.1)), fov)
         })
         .collect();
-    out.fill(&views, |to, (pose, fov)| (to.pose, to.fov) = (*pose, *fov))?;
+    out.fill(&views, |to, (pose, fov)| {
+        (to.pose, to.fov) = (*pose, *fov);
+        // SAFETY: the application's chain.
+        unsafe { fill_depth_range(to.next) };
+    })?;
     world.success()
 }
 
@@ -183,7 +188,7 @@ pub fn end_frame(world: &mut World, session: sys::Session, info: &sys::FrameEndI
 ///
 /// # Safety
 /// `layer` points to a structure of the type that it says.
-unsafe fn submitted(
+pub unsafe fn submitted(
     world: &mut World,
     layer: *const sys::CompositionLayerBaseHeader,
     expected: u32,
@@ -200,10 +205,16 @@ unsafe fn submitted(
                 Code::ERROR_VALIDATION_FAILURE,
                 format!("{} views instead of {expected}", projection.view_count),
             )?;
+            let upside_down = is_upside_down(world, projection)?;
             let mut views = Vec::new();
             for i in 0..projection.view_count as usize {
                 // SAFETY: the array has that many views.
-                views.push(submitted_view(world, unsafe { &*projection.views.add(i) })?);
+                let mut view = submitted_view(world, unsafe { &*projection.views.add(i) })?;
+                view.image.upside_down = upside_down;
+                if let Some(depth) = &mut view.depth {
+                    depth.image.upside_down = upside_down;
+                }
+                views.push(view);
             }
             Ok(Layer::Projection { views })
         }
@@ -218,6 +229,26 @@ unsafe fn submitted(
     }
 }
 
+/// True if a layer's chain says that its images are upside down.
+fn is_upside_down(world: &mut World, layer: &sys::CompositionLayerProjection) -> Result<bool, Refusal> {
+    let mut next = layer.next.cast::<sys::BaseInStructure>();
+    // SAFETY: a chain of structures.
+    while let Some(structure) = unsafe { next.as_ref() } {
+        if structure.ty == sys::CompositionLayerImageLayoutFB::TYPE {
+            forbid_if(
+                !world.current()?.extensions.iter().any(|enabled| enabled == IMAGE_LAYOUT),
+                Code::ERROR_VALIDATION_FAILURE,
+                format!("an image's layout without {IMAGE_LAYOUT}"),
+            )?;
+            // SAFETY: of this type.
+            let layout = unsafe { &*next.cast::<sys::CompositionLayerImageLayoutFB>() };
+            return Ok(layout.flags.contains(sys::CompositionLayerImageLayoutFlagsFB::VERTICAL_FLIP));
+        }
+        next = structure.next;
+    }
+    Ok(false)
+}
+
 fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView) -> Result<View, Refusal> {
     forbid_if(
         view.ty != sys::CompositionLayerProjectionView::TYPE,
@@ -228,8 +259,9 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
     let fov = [view.fov.angle_left, view.fov.angle_right, view.fov.angle_up, view.fov.angle_down];
     let [left, right, up, down] = fov;
     let limit = std::f32::consts::FRAC_PI_2;
+    // Left may be beyond right, and down beyond up: then the view is flipped.
     forbid_if(
-        !(left < right && down < up && fov.iter().all(|angle| angle.abs() < limit)),
+        !(left != right && down != up && fov.iter().all(|angle| angle.abs() < limit)),
         Code::ERROR_VALIDATION_FAILURE,
         format!("the frustum {fov:?} is none"),
     )?;
@@ -310,6 +342,7 @@ fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: boo
         swapchain: image.swapchain.into_raw(),
         layer: image.image_array_index,
         rect: [offset.x, offset.y, extent.width, extent.height],
+        upside_down: false,
     })
 }
 
@@ -323,10 +356,15 @@ fn is_picture(world: &mut World, layers: &[Layer]) -> bool {
     pixels.is_some_and(|pixels| pixels.chunks_exact(4).any(|pixel| pixel != &pixels[..4]))
 }
 
-/// Returns the pixels of a submitted image.
+/// Returns the pixels of a submitted image, the lowest row of its view first.
 fn read(world: &mut World, image: &Image) -> Option<Vec<u8>> {
     let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()?;
-    world.its_session().ok()?.graphics.read(texture, image.layer, image.rect)
+    let mut pixels = world.its_session().ok()?.graphics.read(texture, image.layer, image.rect)?;
+    if image.upside_down {
+        let row = image.rect[2] as usize * 4;
+        pixels = pixels.chunks_exact(row).rev().flatten().copied().collect();
+    }
+    Some(pixels)
 }
 
 /// Writes pictures of a frame's layers, if the script wants them.

@@ -16,8 +16,11 @@ pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
 /// The one system.
 pub const SYSTEM: u64 = 1;
 
+/// The extension for layers whose images are upside down.
+pub const IMAGE_LAYOUT: &str = "XR_FB_composition_layer_image_layout";
+
 /// The extensions that can be offered, with their versions.
-pub const EXTENSIONS: [(&str, u32); 13] = [
+pub const EXTENSIONS: [(&str, u32); 16] = [
     ("XR_KHR_opengl_es_enable", 8),
     ("XR_KHR_vulkan_enable", 8),
     ("XR_KHR_vulkan_enable2", 2),
@@ -31,6 +34,9 @@ pub const EXTENSIONS: [(&str, u32); 13] = [
     ("XR_KHR_loader_init", 2),
     ("XR_KHR_android_thread_settings", 6),
     ("XR_BD_controller_interaction", 2),
+    (IMAGE_LAYOUT, 1),
+    ("XR_MSFT_composition_layer_reprojection", 1),
+    ("XR_META_recommended_layer_resolution", 1),
 ];
 
 /// Returns the text in an array of characters.

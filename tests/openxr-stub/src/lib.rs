@@ -24,7 +24,7 @@ mod swapchain;
 mod table;
 mod world;
 
-pub use world::{begin, is_inside};
+pub use world::{Watch, begin, is_inside, watch};
 
 use openxr_sys as sys;
 

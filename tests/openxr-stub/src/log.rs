@@ -76,6 +76,9 @@ pub struct Image {
     pub layer: u32,
     /// x, y, width, height in pixels.
     pub rect: [i32; 4],
+    /// True if its rows are in the opposite order (XR_FB_composition_layer_image_layout).
+    #[serde(default)]
+    pub upside_down: bool,
 }
 
 /// Depth of a view.

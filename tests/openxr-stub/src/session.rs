@@ -1,6 +1,7 @@
 //! Sessions and their states.
 
 use std::collections::VecDeque;
+use std::ffi::c_void;
 
 use openxr_sys as sys;
 use sys::{Handle, Result as Code};
@@ -289,17 +290,27 @@ pub fn enumerate_view_configuration_views(
         view.max_image_rect_height = 4096;
         view.recommended_swapchain_sample_count = 1;
         view.max_swapchain_sample_count = 1;
-        let mut next = view.next.cast::<sys::BaseOutStructure>();
-        // SAFETY: a chain of structures that say their type.
-        while let Some(structure) = unsafe { next.as_mut() } {
-            if structure.ty == sys::ViewConfigurationDepthRangeEXT::TYPE {
-                // SAFETY: of this type.
-                let range = unsafe { &mut *next.cast::<sys::ViewConfigurationDepthRangeEXT>() };
-                (range.recommended_near_z, range.recommended_far_z) = DEPTH_RANGE;
-            }
-            next = structure.next;
-        }
+        // SAFETY: the application's chain.
+        unsafe { fill_depth_range(view.next) };
     })
+}
+
+/// Fills the depth range in a chain. It stands for all output structures: views' configurations have it, and here
+/// located views, too, for which the specification has none yet.
+///
+/// # Safety
+/// A chain of structures that say their type.
+pub unsafe fn fill_depth_range(chain: *mut c_void) {
+    let mut next = chain.cast::<sys::BaseOutStructure>();
+    // SAFETY: a structure of the chain.
+    while let Some(structure) = unsafe { next.as_mut() } {
+        if structure.ty == sys::ViewConfigurationDepthRangeEXT::TYPE {
+            // SAFETY: of this type.
+            let range = unsafe { &mut *next.cast::<sys::ViewConfigurationDepthRangeEXT>() };
+            (range.recommended_near_z, range.recommended_far_z) = DEPTH_RANGE;
+        }
+        next = structure.next;
+    }
 }
 
 pub fn enumerate_environment_blend_modes(

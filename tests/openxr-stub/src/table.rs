@@ -214,6 +214,14 @@ table! {
         session: Session, configuration: ViewConfigurationType, view: u32, kind: VisibilityMaskTypeKHR,
         mask out VisibilityMaskKHR
     ), "XR_KHR_visibility_mask";
+    EnumerateReprojectionModesMSFT = extension::enumerate_reprojection_modes(
+        instance: Instance, system: SystemId, configuration: ViewConfigurationType;
+        modes: ReprojectionModeMSFT
+    ), "XR_MSFT_composition_layer_reprojection";
+    GetRecommendedLayerResolutionMETA = extension::get_recommended_layer_resolution(
+        session: Session, info in RecommendedLayerResolutionGetInfoMETA,
+        resolution out RecommendedLayerResolutionMETA
+    ), "XR_META_recommended_layer_resolution";
     SetAndroidApplicationThreadKHR = extension::set_android_application_thread(
         session: Session, kind: AndroidThreadTypeKHR, thread: u32
     ), "XR_KHR_android_thread_settings";

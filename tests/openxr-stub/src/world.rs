@@ -3,8 +3,8 @@
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::ffi::c_char;
-use std::sync::Mutex;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 
 use glam::{Quat, Vec3};
 use openxr_sys as sys;
@@ -160,6 +160,17 @@ pub fn is_inside() -> bool {
     IS_INSIDE.get()
 }
 
+/// A function that gets the name of a call.
+pub type Watch = Arc<dyn Fn(&str) + Send + Sync>;
+
+/// Called before every call, outside all locks.
+static WATCH: Mutex<Option<Watch>> = Mutex::new(None);
+
+/// Sets a function that is called with the name of every call before it begins, outside all locks; None ends that.
+pub fn watch(watch: Option<Watch>) {
+    *WATCH.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = watch;
+}
+
 /// Forgets everything, and continues with this script in place of the file's.
 pub fn begin(script: Script) {
     *WORLD.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(World::new(script));
@@ -172,6 +183,10 @@ pub fn enter(call: &str, work: impl FnOnce(&mut World) -> Answer) -> sys::Result
         crate::frame::pace();
     }
     IS_INSIDE.set(true);
+    let watch = WATCH.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
+    if let Some(watch) = watch {
+        watch(call);
+    }
     let result = entered(call, work);
     IS_INSIDE.set(false);
     result

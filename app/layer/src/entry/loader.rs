@@ -6,8 +6,8 @@ use openxr_sys as sys;
 
 use super::{get_instance_proc_addr, sessions, without_panic};
 use crate::dispatch::{Dispatch, XrResult, check};
-use crate::instance::Instance;
-use crate::settings::Settings;
+use crate::instance::{Instance, text};
+use crate::settings::{OfferedAs, Settings};
 use crate::{log, objects, say};
 
 const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
@@ -93,16 +93,19 @@ unsafe fn create_instance(
         check(result)?;
         let handle = *handle;
         let dispatch = Dispatch::new(next, handle)?;
-        let name = info.application_info.application_name.map(|byte| byte as u8);
-        let name = CStr::from_bytes_until_nul(&name).unwrap_or_default().to_string_lossy().into_owned();
+        let name = text(&info.application_info.application_name);
         let (settings, errors) = Settings::of(&name);
         for error in errors {
             say(format_args!("{error}"));
         }
-        let serves = GRAPHICS.into_iter().any(enables);
-        if !serves {
+        let graphics = GRAPHICS.into_iter().any(enables);
+        let left_alone = settings.offer == OfferedAs::Off;
+        if left_alone {
+            say(format_args!("{name}: passed through: its settings say offer = off"));
+        } else if !graphics {
             say(format_args!("{name}: passed through: it uses neither Vulkan nor OpenGL"));
         }
+        let serves = graphics && !left_alone;
         objects::add_instance(Instance::new(handle, dispatch, settings, name, serves, takes_depth));
         Ok(result)
     }

@@ -73,6 +73,12 @@ intercept! {
         instance: sys::Instance, system: sys::SystemId, kind: ViewConfigurationType, capacity: u32, count: *mut u32,
         modes: *mut sys::EnvironmentBlendMode
     ) => views::enumerate_blend_modes;
+    c"xrEnumerateReprojectionModesMSFT" enumerate_reprojection_modes: EnumerateReprojectionModesMSFT(
+        instance: sys::Instance, system: sys::SystemId, kind: ViewConfigurationType, capacity: u32, count: *mut u32,
+        modes: *mut sys::ReprojectionModeMSFT
+    ) => views::enumerate_reprojection_modes;
+    c"xrPollEvent" poll_event: PollEvent(instance: sys::Instance, event: *mut sys::EventDataBuffer)
+        => views::poll_event;
     c"xrCreateSession" create_session: CreateSession(
         instance: sys::Instance, info: *const sys::SessionCreateInfo, created: *mut sys::Session
     ) => sessions::create;
@@ -83,6 +89,10 @@ intercept! {
         session: sys::Session, kind: ViewConfigurationType, view: u32, mask_kind: sys::VisibilityMaskTypeKHR,
         mask: *mut sys::VisibilityMaskKHR
     ) => views::visibility_mask;
+    c"xrGetRecommendedLayerResolutionMETA" get_recommended_layer_resolution: GetRecommendedLayerResolutionMETA(
+        session: sys::Session, info: *const sys::RecommendedLayerResolutionGetInfoMETA,
+        resolution: *mut sys::RecommendedLayerResolutionMETA
+    ) => views::recommended_layer_resolution;
     c"xrLocateViews" locate_views: LocateViews(
         session: sys::Session, info: *const sys::ViewLocateInfo, state: *mut sys::ViewState, capacity: u32,
         count: *mut u32, views: *mut sys::View
@@ -111,9 +121,10 @@ unsafe extern "system" fn get_instance_proc_addr(
     function: *mut Option<pfn::VoidFunction>,
 ) -> sys::Result {
     without_panic(|| {
-        let instance = objects::instance(handle).ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
         // SAFETY: the caller gives a string, and a place for a function.
         let (name, function) = unsafe { (CStr::from_ptr(name), &mut *function) };
+        *function = None;
+        let instance = objects::instance(handle).ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
         // SAFETY: a live instance, and the same string.
         let result =
             check(unsafe { (instance.next.get_instance_proc_addr)(handle, name.as_ptr(), function) })?;
@@ -136,6 +147,11 @@ fn own_function(name: &CStr, instance: &Instance) -> Option<pfn::VoidFunction> {
         if name == c"xrDestroyInstance" {
             let function: pfn::DestroyInstance = loader::destroy_instance;
             return Some(std::mem::transmute::<pfn::DestroyInstance, pfn::VoidFunction>(function));
+        }
+        #[cfg(feature = "capture")]
+        if name == c"xrCreateReferenceSpace" && instance.settings.time.is_some() {
+            let function: pfn::CreateReferenceSpace = views::create_reference_space;
+            return Some(std::mem::transmute::<pfn::CreateReferenceSpace, pfn::VoidFunction>(function));
         }
         #[cfg(feature = "capture")]
         if name == c"xrLocateSpace" && instance.settings.time.is_some() {

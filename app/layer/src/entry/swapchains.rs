@@ -2,12 +2,26 @@
 
 use std::sync::Arc;
 
+use ash::vk;
 use openxr_sys as sys;
 
 use crate::dispatch::{XrResult, check};
 use crate::lock;
 use crate::objects::{self, LiveSession};
+use crate::structures;
 use crate::swapchain::{Content, Swapchain};
+
+/// True if the images are subsampled: they can be read only by a sampler that was made for that.
+///
+/// # Safety
+/// The structure of a call of xrCreateSwapchain.
+unsafe fn is_subsampled(info: &sys::SwapchainCreateInfo) -> bool {
+    let ty = sys::VulkanSwapchainCreateInfoMETA::TYPE;
+    // SAFETY: the structure's chain, and the structure of this type.
+    let more = unsafe { structures::find::<sys::VulkanSwapchainCreateInfoMETA>(info.next, ty) };
+    let subsampled = vk::ImageCreateFlags::SUBSAMPLED_EXT.as_raw();
+    more.is_some_and(|more| more.additional_create_flags & u64::from(subsampled) != 0)
+}
 
 /// Creates a swapchain whose images the layer can read. If the runtime refuses that, it is created as the application
 /// wants it.
@@ -25,7 +39,8 @@ pub unsafe fn create(
             sys::SwapchainUsageFlags::COLOR_ATTACHMENT | sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT;
         let readable = asked.usage_flags.intersects(attached)
             && (asked.sample_count, asked.face_count) == (1, 1)
-            && !asked.create_flags.contains(sys::SwapchainCreateFlags::PROTECTED_CONTENT);
+            && !asked.create_flags.contains(sys::SwapchainCreateFlags::PROTECTED_CONTENT)
+            && !is_subsampled(&asked);
         let mut result = sys::Result::ERROR_FEATURE_UNSUPPORTED;
         let mut content = None;
         if let Some(binding) = session.binding.filter(|_| readable) {

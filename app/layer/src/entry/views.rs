@@ -6,9 +6,10 @@ use openxr_sys as sys;
 use sys::ViewConfigurationType as ViewsOf;
 
 use crate::dispatch::{XrResult, check};
+use crate::frame::projection;
 use crate::geometry::{xr_fov, xr_pose};
 use crate::instance::Instance;
-use crate::objects::LiveSession;
+use crate::objects::{self, LiveSession};
 
 /// Answers a call for an array: its length, or, if there is room, its elements.
 ///
@@ -113,6 +114,59 @@ pub unsafe fn enumerate_blend_modes(
     Ok(unsafe { next(instance.handle, system, kind, capacity, count, modes) })
 }
 
+pub unsafe fn enumerate_reprojection_modes(
+    instance: &Instance,
+    system: sys::SystemId,
+    kind: ViewsOf,
+    capacity: u32,
+    count: *mut u32,
+    modes: *mut sys::ReprojectionModeMSFT,
+) -> XrResult<sys::Result> {
+    let next = instance.next.enumerate_reprojection_modes;
+    let kind = instance.runtimes(system, kind);
+    // SAFETY: the application's arguments.
+    Ok(unsafe { next(instance.handle, system, kind, capacity, count, modes) })
+}
+
+/// An event that names one of the runtime's two views names the offered one.
+pub unsafe fn poll_event(instance: &Instance, event: *mut sys::EventDataBuffer) -> XrResult<sys::Result> {
+    // SAFETY: the application's own call; the event is of the type that it says.
+    unsafe {
+        let result = check((instance.next.poll_event)(instance.handle, event))?;
+        if result == sys::Result::SUCCESS && (*event).ty == sys::EventDataVisibilityMaskChangedKHR::TYPE {
+            let event = &mut *event.cast::<sys::EventDataVisibilityMaskChangedKHR>();
+            let is_one = objects::session(event.session).is_some_and(|live| live.session.views() == 1);
+            if is_one && event.view_configuration_type == ViewsOf::PRIMARY_STEREO {
+                (event.view_configuration_type, event.view_index) = (ViewsOf::PRIMARY_MONO, 0);
+            }
+        }
+        Ok(result)
+    }
+}
+
+/// The runtime gets two views in place of one. What it recommends for an eye is enlarged as the offered view is.
+pub unsafe fn recommended_layer_resolution(
+    live: &LiveSession,
+    info: *const sys::RecommendedLayerResolutionGetInfoMETA,
+    resolution: *mut sys::RecommendedLayerResolutionMETA,
+) -> XrResult<sys::Result> {
+    let session = &live.session;
+    let next = session.instance.next.get_recommended_layer_resolution;
+    // SAFETY: the application's arguments.
+    unsafe {
+        let layer = info.as_ref().filter(|_| session.views() == 1).and_then(|info| projection(info.layer, 1));
+        let Some(layer) = layer else { return Ok(next(session.handle, info, resolution)) };
+        let views = [*layer.views; 2];
+        let layer = sys::CompositionLayerProjection { view_count: 2, views: views.as_ptr(), ..*layer };
+        let asked = sys::RecommendedLayerResolutionGetInfoMETA { layer: (&raw const layer).cast(), ..*info };
+        let result = check(next(session.handle, &asked, resolution))?;
+        let size = &mut (*resolution).recommended_image_dimensions;
+        let enlarged = session.enlarged([size.width, size.height].map(|pixels| pixels.max(0) as u32));
+        (size.width, size.height) = (enlarged[0] as i32, enlarged[1] as i32);
+        Ok(result)
+    }
+}
+
 pub unsafe fn visibility_mask(
     live: &LiveSession,
     kind: ViewsOf,
@@ -126,7 +180,7 @@ pub unsafe fn visibility_mask(
     // SAFETY: the application's arguments.
     unsafe {
         match kind {
-            ViewsOf::PRIMARY_MONO if session.offers_mono => {
+            ViewsOf::PRIMARY_MONO if session.answers_mono() => {
                 if view != 0 {
                     return Err(sys::Result::ERROR_VALIDATION_FAILURE);
                 }
@@ -155,7 +209,7 @@ pub unsafe fn locate(
     unsafe {
         let mut asked = *info;
         asked.display_time = settings.time(asked.display_time);
-        if asked.view_configuration_type != ViewsOf::PRIMARY_MONO || !session.offers_mono {
+        if asked.view_configuration_type != ViewsOf::PRIMARY_MONO || !session.answers_mono() {
             let next = session.instance.next.locate_views;
             let result = check(next(session.handle, &asked, state, capacity, count, views))?;
             let stereo = asked.view_configuration_type == ViewsOf::PRIMARY_STEREO;
@@ -176,6 +230,27 @@ pub unsafe fn locate(
     }
 }
 
+/// xrCreateReferenceSpace in a world that stands still. Where LOCAL is depends on the moment at which a session begins;
+/// STAGE is always at the same place.
+#[cfg(feature = "capture")]
+pub unsafe extern "system" fn create_reference_space(
+    session: sys::Session,
+    info: *const sys::ReferenceSpaceCreateInfo,
+    space: *mut sys::Space,
+) -> sys::Result {
+    super::without_panic(|| {
+        let instance = objects::any_instance().ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
+        // SAFETY: the application's own arguments.
+        unsafe {
+            let mut info = *info;
+            if info.reference_space_type == sys::ReferenceSpaceType::LOCAL {
+                info.reference_space_type = sys::ReferenceSpaceType::STAGE;
+            }
+            Ok((instance.next.create_reference_space)(session, &info, space))
+        }
+    })
+}
+
 /// xrLocateSpace at the time that the settings for tests name.
 #[cfg(feature = "capture")]
 pub unsafe extern "system" fn locate_space(
@@ -186,7 +261,7 @@ pub unsafe extern "system" fn locate_space(
 ) -> sys::Result {
     super::without_panic(|| {
         // The layer does not keep spaces; a test has one instance.
-        let instance = crate::objects::any_instance().ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
+        let instance = objects::any_instance().ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
         let time = instance.settings.time(time);
         // SAFETY: the application's own arguments.
         Ok(unsafe { (instance.next.locate_space)(space, base, time, location) })

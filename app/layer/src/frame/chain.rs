@@ -6,6 +6,7 @@ use openxr_sys as sys;
 
 use crate::geometry::Rectangle;
 use crate::reason::Reason;
+use crate::structures;
 use crate::swapchain::{Content, Swapchain};
 
 /// The application's layers of a frame.
@@ -23,6 +24,20 @@ pub unsafe fn layers(info: &sys::FrameEndInfo) -> Layers<'_> {
     unsafe { std::slice::from_raw_parts(info.layers, info.layer_count as usize) }
 }
 
+/// Returns a layer if it is a projection layer.
+///
+/// # Safety
+/// The pointer is null, or to a structure of the type that it says.
+unsafe fn any_projection<'a>(
+    layer: *const sys::CompositionLayerBaseHeader,
+) -> Option<&'a sys::CompositionLayerProjection> {
+    // SAFETY: every layer begins with this header, and its type says what it is.
+    unsafe {
+        let is_one = layer.as_ref()?.ty == sys::CompositionLayerProjection::TYPE;
+        is_one.then(|| &*layer.cast::<sys::CompositionLayerProjection>())
+    }
+}
+
 /// Returns a layer if it is a projection layer with this number of views.
 ///
 /// # Safety
@@ -31,14 +46,21 @@ pub unsafe fn projection<'a>(
     layer: *const sys::CompositionLayerBaseHeader,
     views: usize,
 ) -> Option<&'a sys::CompositionLayerProjection> {
-    // SAFETY: every layer begins with this header, and its type says what it is.
-    unsafe {
-        if layer.as_ref()?.ty != sys::CompositionLayerProjection::TYPE {
-            return None;
-        }
-        let layer = &*layer.cast::<sys::CompositionLayerProjection>();
-        (layer.view_count as usize == views && !layer.views.is_null()).then_some(layer)
-    }
+    // SAFETY: the caller's obligation is the same.
+    let layer = unsafe { any_projection(layer) }?;
+    (layer.view_count as usize == views && !layer.views.is_null()).then_some(layer)
+}
+
+/// True if all projection layers have this number of views.
+///
+/// # Safety
+/// The layers are those of a call of xrEndFrame.
+pub unsafe fn all_have(layers: Layers, views: usize) -> bool {
+    // SAFETY: layers of the application's.
+    layers
+        .iter()
+        .filter_map(|&layer| unsafe { any_projection(layer) })
+        .all(|layer| layer.view_count as usize == views)
 }
 
 /// Returns the depth of a view, if its chain has it.
@@ -48,17 +70,19 @@ pub unsafe fn projection<'a>(
 pub unsafe fn depth_of(
     view: &sys::CompositionLayerProjectionView,
 ) -> Option<&sys::CompositionLayerDepthInfoKHR> {
-    let mut structure = view.next.cast::<sys::BaseInStructure>();
-    // SAFETY: every structure of a chain begins with this header, and its type says what it is.
-    unsafe {
-        while let Some(header) = structure.as_ref() {
-            if header.ty == sys::CompositionLayerDepthInfoKHR::TYPE {
-                return Some(&*structure.cast::<sys::CompositionLayerDepthInfoKHR>());
-            }
-            structure = header.next;
-        }
-    }
-    None
+    // SAFETY: the view's chain, and the structure of this type.
+    unsafe { structures::find(view.next, sys::CompositionLayerDepthInfoKHR::TYPE) }
+}
+
+/// True if the rows of a layer's images are in the opposite order (XR_FB_composition_layer_image_layout).
+///
+/// # Safety
+/// The layer is a submitted one.
+pub unsafe fn is_upside_down(layer: &sys::CompositionLayerProjection) -> bool {
+    let ty = sys::CompositionLayerImageLayoutFB::TYPE;
+    // SAFETY: the layer's chain, and the structure of this type.
+    let layout = unsafe { structures::find::<sys::CompositionLayerImageLayoutFB>(layer.next, ty) };
+    layout.is_some_and(|layout| layout.flags.contains(sys::CompositionLayerImageLayoutFlagsFB::VERTICAL_FLIP))
 }
 
 /// Returns the images of a swapchain and the one that the application has released last. `what` is colour or depth.

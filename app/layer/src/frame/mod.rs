@@ -18,13 +18,15 @@ use openxr_sys as sys;
 
 use crate::binding::Binding;
 use crate::dispatch::XrResult;
-use crate::geometry::{Offer, Rectangle, Split, Submitted, SubmittedDepth, frustum, pose, split};
+use crate::geometry::{Offer, Rectangle, Split, Submitted, SubmittedDepth, frustum, pose};
+use crate::mirror;
 use crate::reason::Reason;
 use crate::session::Session;
 use crate::swapchain::{Content, Swapchain};
 use crate::synthesizer::{Image, Job, Synthesizer};
 use crate::{lock, say};
-use chain::{Layers, depth_of, held, projection, rectangle};
+pub use chain::projection;
+use chain::{Layers, depth_of, held, is_upside_down, rectangle};
 use rewrite::{Eyes, Rewritten};
 use statistics::{Report, Statistics};
 use synthesized::{Key, Synthesized};
@@ -43,8 +45,8 @@ pub struct Frames {
     synthesizer: Option<Result<Box<dyn Synthesizer>, Reason>>,
     /// Colour of the other eye, and its depth for runtimes that take depth.
     targets: [Option<Target>; 2],
-    /// True if no target for depth can be made.
-    without_depth: bool,
+    /// Formats of depth for which no target can be made.
+    without_depth: Vec<i64>,
     /// The last synthesized view, while the targets still show it.
     last: Option<Synthesized>,
     /// Kinds of reasons that are in the log.
@@ -62,6 +64,8 @@ struct Source<'a> {
     images: [Image; 2],
     /// The same rectangle in both images.
     part: Rectangle,
+    /// True if the rows of both images are in the opposite order.
+    upside_down: bool,
 }
 
 /// xrEndFrame. `swapchains` are all of the session.
@@ -78,12 +82,17 @@ pub unsafe fn end_frame(
     info: &sys::FrameEndInfo,
 ) -> XrResult<sys::Result> {
     let start = Instant::now();
-    let begun = lock(&session.begun).take();
     let (views, next) = (session.views(), session.instance.next.end_frame);
     // SAFETY: the application's structure.
     let layers = unsafe { chain::layers(info) };
+    // The runtime has begun with two views: it would take what the application must not submit.
+    // SAFETY: the application's layers.
+    if views == 1 && !unsafe { chain::all_have(layers, 1) } {
+        return Err(sys::Result::ERROR_VALIDATION_FAILURE);
+    }
+    let begun = lock(&session.begun).take();
     let mut rewritten = Rewritten::default();
-    let synthesized = {
+    let (synthesized, released) = {
         let mut frames = lock(frames);
         frames.statistics.frames += 1;
         frames.statistics.application += begun.map_or(Duration::ZERO, |begun| start.duration_since(begun));
@@ -93,12 +102,19 @@ pub unsafe fn end_frame(
             session.binding.filter(|_| session.reads_images()).and_then(|binding| unsafe { binding.hold() });
         // SAFETY: the application's layers, which live as long as `info`.
         let synthesized = unsafe { frames.rewrite(session, swapchains, layers, &mut rewritten) };
-        // The application gets now what xrReleaseSwapchainImage would have returned.
         let releases = swapchains.iter().map(|swapchain| swapchain.pass_on_release());
-        releases.fold(Ok(()), Result::and)?;
+        let released = releases.fold(Ok(()), Result::and);
         frames.statistics.layer += start.elapsed();
-        synthesized
+        (synthesized, released)
     };
+    if let Err(failed) = released {
+        // What was not released cannot be shown, but the frame must end. The application gets now what
+        // xrReleaseSwapchainImage would have returned.
+        let empty = sys::FrameEndInfo { layer_count: 0, layers: std::ptr::null(), ..*info };
+        // SAFETY: the application's call, without its layers.
+        unsafe { next(session.handle, &empty) };
+        return Err(failed);
+    }
     if views == 0 {
         // SAFETY: the application's own call.
         return Ok(unsafe { next(session.handle, info) });
@@ -162,6 +178,7 @@ fn source<'a>(
     swapchains: &'a [Arc<Swapchain>],
     view: &'a sys::CompositionLayerProjectionView,
     info: &'a sys::CompositionLayerDepthInfoKHR,
+    upside_down: bool,
 ) -> Result<Source<'a>, Reason> {
     let (color, color_image) = held(swapchains, view.sub_image.swapchain, "colour")?;
     let (depth, depth_image) = held(swapchains, info.sub_image.swapchain, "depth")?;
@@ -173,16 +190,16 @@ fn source<'a>(
         color.image(color_image, view.sub_image.image_array_index),
         depth.image(depth_image, info.sub_image.image_array_index),
     ];
-    Ok(Source { view, info, contents: [color, depth], images, part })
+    Ok(Source { view, info, contents: [color, depth], images, part, upside_down })
 }
 
 /// Returns the two eyes of a submitted view.
 fn split_source(offer: &Offer, source: &Source) -> Result<Split, Reason> {
-    let Source { view, info, part, .. } = source;
+    let Source { view, info, part, upside_down, .. } = source;
     let depth =
         SubmittedDepth { near: info.near_z, far: info.far_z, min: info.min_depth, max: info.max_depth };
     let submitted = Submitted { pose: pose(view.pose), frustum: frustum(view.fov), size: part.size, depth };
-    split(&offer.eyes, &submitted).map_err(Reason::Geometry)
+    mirror::split(&offer.eyes, &submitted, *upside_down).map_err(Reason::Geometry)
 }
 
 impl Frames {
@@ -212,7 +229,7 @@ impl Frames {
                 Err(Reason::Another)
             } else {
                 // SAFETY: a submitted view.
-                let work = AssertUnwindSafe(|| unsafe { self.synthesize(session, swapchains, view) });
+                let work = AssertUnwindSafe(|| unsafe { self.synthesize(session, swapchains, layer, view) });
                 catch_unwind(work).unwrap_or(Err(Reason::Panic))
             };
             let eyes = match eyes {
@@ -234,23 +251,26 @@ impl Frames {
     /// Returns the two views in place of one.
     ///
     /// # Safety
-    /// The view is one of a submitted layer.
+    /// The view is one of this submitted layer.
     unsafe fn synthesize(
         &mut self,
         session: &Session,
         swapchains: &[Arc<Swapchain>],
+        layer: &sys::CompositionLayerProjection,
         view: &sys::CompositionLayerProjectionView,
     ) -> Result<Eyes, Reason> {
         // SAFETY: a submitted view.
         let info = unsafe { depth_of(view) }.ok_or(Reason::NoDepth)?;
-        let key = Key::new(swapchains, view, info);
+        // SAFETY: a submitted layer.
+        let upside_down = unsafe { is_upside_down(layer) };
+        let key = Key::new(swapchains, view, info, upside_down);
         if let Some(last) = self.last.as_ref().filter(|last| last.key == key) {
             return Ok(last.again(view, info));
         }
         self.last = None;
         let binding = session.binding.ok_or(Reason::NoGraphics)?;
         let offer = lock(&session.offer).ok_or(Reason::NoViews)?.map_err(Reason::Views)?;
-        let source = source(swapchains, view, info)?;
+        let source = source(swapchains, view, info, upside_down)?;
         let split = split_source(&offer, &source)?;
         self.synthesizer(binding)?;
         let [color, depth] = self.acquire(session, &binding, source.contents)?;
@@ -291,7 +311,7 @@ impl Frames {
         }
         // The driver may be unable to write this format as depth.
         if let (Err(reason @ (Reason::Gl(_) | Reason::Synthesis(_))), Some(_)) = (&result, depth) {
-            self.give_up_depth(session, reason);
+            self.give_up_depth(session, source.contents[DEPTH].format, reason);
         }
         if let Some(time) = result? {
             self.statistics.gpu += time;
@@ -324,14 +344,13 @@ impl Frames {
         [color, depth]: [&Content; 2],
     ) -> Result<[Option<Acquired>; 2], Reason> {
         self.fit(session, binding, COLOR, color)?;
-        if session.instance.takes_depth
-            && !self.without_depth
-            && let Err(reason) = self.fit(session, binding, DEPTH, depth)
-        {
-            self.give_up_depth(session, &reason);
+        let mut takes_depth = session.instance.takes_depth && !self.without_depth.contains(&depth.format);
+        if takes_depth && let Err(reason) = self.fit(session, binding, DEPTH, depth) {
+            self.give_up_depth(session, depth.format, &reason);
+            takes_depth = false;
         }
         let mut acquired = [None; 2];
-        for which in [COLOR, DEPTH] {
+        for which in [COLOR, DEPTH].into_iter().filter(|which| *which == COLOR || takes_depth) {
             let target = self.targets[which].as_mut().map(|target| target.acquire(session));
             acquired[which] = match target.transpose() {
                 Ok(image) => image,
@@ -363,12 +382,12 @@ impl Frames {
         Ok(())
     }
 
-    /// Stops submitting depth to the runtime. The layer still needs the application's.
-    fn give_up_depth(&mut self, session: &Session, reason: &Reason) {
-        self.without_depth = true;
+    /// Stops submitting depth of a format to the runtime. The layer still needs the application's.
+    fn give_up_depth(&mut self, session: &Session, format: i64, reason: &Reason) {
+        self.without_depth.push(format);
         self.drop_target(session, DEPTH);
         let application = &session.instance.application;
-        say(format_args!("{application}: depth does not go on to the runtime: {reason}"));
+        say(format_args!("{application}: depth of format {format} does not go on to the runtime: {reason}"));
     }
 
     fn drop_target(&mut self, session: &Session, which: usize) {

@@ -20,6 +20,7 @@ pub struct Key {
     releases: [u64; 2],
     fov: [f32; 4],
     planes: [f32; 4],
+    upside_down: bool,
 }
 
 impl Key {
@@ -27,6 +28,7 @@ impl Key {
         swapchains: &[Arc<Swapchain>],
         view: &sys::CompositionLayerProjectionView,
         info: &sys::CompositionLayerDepthInfoKHR,
+        upside_down: bool,
     ) -> Key {
         let images = [&view.sub_image, &info.sub_image];
         let parts = images.map(|part| {
@@ -39,7 +41,8 @@ impl Key {
         });
         let sys::Fovf { angle_left, angle_right, angle_up, angle_down } = view.fov;
         let fov = [angle_left, angle_right, angle_up, angle_down];
-        Key { parts, releases, fov, planes: [info.near_z, info.far_z, info.min_depth, info.max_depth] }
+        let planes = [info.near_z, info.far_z, info.min_depth, info.max_depth];
+        Key { parts, releases, fov, planes, upside_down }
     }
 }
 

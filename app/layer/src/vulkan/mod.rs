@@ -151,8 +151,9 @@ impl Synthesizer {
             physical_device: self.binding.physical_device,
             device: &self.device,
             queue_family: self.binding.queue_family,
-            // The layer does not know if the application has enabled it.
+            // The layer does not know if the application has enabled them.
             dynamic_rendering: false,
+            debug_utils: false,
         };
         // SAFETY: the handles are valid until this is dropped, which waits for its commands.
         let gather = unsafe { Gather::new(&host, &options).map_err(Reason::Synthesis)? };

@@ -54,6 +54,14 @@ pub fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
     assert!(other > 31.0, "{what}: the other eye's image is none of that eye: {other} dB");
 }
 
+/// The runtime must find nothing wrong, each session must have so many synthesized and other frames, and the last images are
+/// checked as by [`assert_seen`].
+pub fn assert_sessions(seen: &Seen, habits: &Habits, counts: &[[u64; 2]], what: &str) {
+    assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+    assert_eq!(seen.counts(), counts, "{what}: {}", seen.said);
+    assert_seen(seen, habits, what);
+}
+
 /// The runtime must have both eyes' depth: in the rectangles of their colour, and like the references.
 pub fn assert_depth(seen: &Seen, habits: &Habits, what: &str) {
     let Planes { near, far, min, max } = habits.planes;

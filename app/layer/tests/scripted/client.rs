@@ -14,6 +14,8 @@ use crate::drawing::Drawing;
 use crate::harness::{self, Gpu, READ, WRITTEN};
 use crate::scene::{self, Picture};
 
+mod extensions;
+
 pub const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
 
 /// A failed call of the application.
@@ -192,6 +194,21 @@ pub struct View {
 }
 
 impl View {
+    /// Returns the view flipped to the sides, upside down, or both.
+    pub fn flipped(self, [sides, upside_down]: [bool; 2]) -> View {
+        let mut view = self;
+        let (frustum, fov) = (&mut view.frustum, &mut view.raw.1);
+        if sides {
+            std::mem::swap(&mut frustum.left, &mut frustum.right);
+            std::mem::swap(&mut fov.angle_left, &mut fov.angle_right);
+        }
+        if upside_down {
+            std::mem::swap(&mut frustum.bottom, &mut frustum.top);
+            std::mem::swap(&mut fov.angle_down, &mut fov.angle_up);
+        }
+        view
+    }
+
     /// Returns the view moved by an offset.
     pub fn at(self, offset: glam::Vec3) -> View {
         let mut view = self;
@@ -221,6 +238,13 @@ pub enum Layer {
 pub struct Frame {
     time: sys::Time,
     pub should_render: bool,
+}
+
+impl Frame {
+    /// Returns the frame with a time that was not predicted.
+    pub fn at_another_time(self) -> Frame {
+        Frame { time: sys::Time::from_nanos(self.time.as_nanos() + 1), ..self }
+    }
 }
 
 /// A picture that can be copied to swapchains.
@@ -259,6 +283,10 @@ pub struct Client<'a> {
     running: bool,
     pub over: bool,
     pub painted: Option<Painted<'a>>,
+    /// True if its images are upside down, and its layers say so.
+    pub upside_down: bool,
+    /// The view configurations and views of the events that told of another visibility mask.
+    pub masks: Vec<(ViewsOf, u32)>,
 }
 
 const IDENTITY: sys::Posef = sys::Posef {
@@ -328,6 +356,8 @@ impl<'a> Client<'a> {
             running: false,
             over: false,
             painted: None,
+            upside_down: false,
+            masks: Vec::new(),
         };
         let info = sys::SystemGetInfo {
             ty: sys::SystemGetInfo::TYPE,
@@ -364,29 +394,6 @@ impl<'a> Client<'a> {
             [view.recommended_image_rect_width, view.recommended_image_rect_height]
         };
         Ok(views[..count as usize].iter().map(size).collect())
-    }
-
-    /// Returns the near and far planes that the runtime recommends in structures chained to the configuration's views.
-    pub fn chained_depth_ranges(&self, count: usize) -> Outcome<Vec<[f32; 2]>> {
-        // SAFETY: plain data; the types and chains are set below.
-        let (empty_view, empty_range) =
-            unsafe { (std::mem::zeroed(), std::mem::zeroed::<sys::ViewConfigurationDepthRangeEXT>()) };
-        let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
-        let mut ranges = vec![sys::ViewConfigurationDepthRangeEXT { ty, ..empty_range }; count];
-        let ty = sys::ViewConfigurationView::TYPE;
-        let view = |range: &mut sys::ViewConfigurationDepthRangeEXT| sys::ViewConfigurationView {
-            ty,
-            next: ptr::from_mut(range).cast(),
-            ..empty_view
-        };
-        let mut views: Vec<_> = ranges.iter_mut().map(view).collect();
-        let (mut number, room) = (0, count as u32);
-        let call = self.xr.enumerate_view_configuration_views;
-        // SAFETY: room for as many as is said.
-        let result =
-            unsafe { call(self.instance, self.system, self.views, room, &mut number, views.as_mut_ptr()) };
-        check("xrEnumerateViewConfigurationViews", result)?;
-        Ok(ranges.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
     }
 
     /// Creates a session and a space.
@@ -431,6 +438,12 @@ impl<'a> Client<'a> {
             let result = unsafe { (self.xr.poll_event)(self.instance, &mut event) };
             if check("xrPollEvent", result)? == sys::Result::EVENT_UNAVAILABLE {
                 return Ok(());
+            }
+            if event.ty == sys::EventDataVisibilityMaskChangedKHR::TYPE {
+                // SAFETY: of this type.
+                let event = unsafe { *(&raw const event).cast::<sys::EventDataVisibilityMaskChangedKHR>() };
+                assert_eq!(event.session, self.session);
+                self.masks.push((event.view_configuration_type, event.view_index));
             }
             if event.ty != sys::EventDataSessionStateChanged::TYPE {
                 continue;
@@ -486,10 +499,13 @@ impl<'a> Client<'a> {
 
     /// Creates a swapchain for colour or for depth.
     pub fn chain(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Outcome<Chain> {
-        let info = self.chain_info(format, size, layers);
+        self.chain_of(&self.chain_info(format, size, layers))
+    }
+
+    fn chain_of(&self, info: &sys::SwapchainCreateInfo) -> Outcome<Chain> {
         let mut handle = sys::Swapchain::NULL;
         // SAFETY: complete structures.
-        let result = unsafe { (self.xr.create_swapchain)(self.session, &info, &mut handle) };
+        let result = unsafe { (self.xr.create_swapchain)(self.session, info, &mut handle) };
         check("xrCreateSwapchain", result)?;
         let (result, images) = self.drawing.images(self.xr.enumerate_swapchain_images, handle);
         check("xrEnumerateSwapchainImages", result)?;
@@ -508,6 +524,13 @@ impl<'a> Client<'a> {
         let (result, images) = self.drawing.images(xr.enumerate_swapchain_images, handle);
         check("xrEnumerateSwapchainImages", result)?;
         Ok(Chain { handle, images })
+    }
+
+    /// Returns a function that destroys a swapchain on any thread.
+    pub fn destroyer(&self, chain: Chain) -> impl Fn() -> sys::Result + Send + Sync + 'static {
+        let destroy = self.xr.destroy_swapchain;
+        // SAFETY: called once, and not used any more.
+        move || unsafe { destroy(chain.handle) }
     }
 
     pub fn destroy_chain(&self, chain: Chain) -> Outcome<()> {
@@ -542,6 +565,26 @@ impl<'a> Client<'a> {
 
     /// Locates the views of a frame: as many as the configuration has.
     pub fn locate(&mut self, frame: Frame) -> Outcome<[Option<View>; 2]> {
+        let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
+        let mut views = [sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov }; 2];
+        let count = self.locate_views(frame, &mut views)?;
+        let mut located = [None; 2];
+        for (place, view) in located.iter_mut().zip(&views[..count]) {
+            let (p, q, f) = (view.pose.position, view.pose.orientation, view.fov);
+            *place = Some(View {
+                pose: Pose {
+                    position: glam::Vec3::new(p.x, p.y, p.z),
+                    orientation: glam::Quat::from_xyzw(q.x, q.y, q.z, q.w),
+                },
+                frustum: Frustum::from_fov(f.angle_left, f.angle_right, f.angle_up, f.angle_down),
+                raw: (view.pose, view.fov),
+            });
+        }
+        Ok(located)
+    }
+
+    /// Locates views, and returns their number.
+    fn locate_views(&self, frame: Frame, views: &mut [sys::View]) -> Outcome<usize> {
         let info = sys::ViewLocateInfo {
             ty: sys::ViewLocateInfo::TYPE,
             next: ptr::null(),
@@ -554,26 +597,11 @@ impl<'a> Client<'a> {
             next: ptr::null_mut(),
             view_state_flags: sys::ViewStateFlags::EMPTY,
         };
-        let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
-        let mut views = [sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov }; 2];
-        let mut count = 0;
-        let call = self.xr.locate_views;
+        let (call, room, mut count) = (self.xr.locate_views, views.len() as u32, 0);
         // SAFETY: complete structures, and room for as many as is said.
-        let result = unsafe { call(self.session, &info, &mut state, 2, &mut count, views.as_mut_ptr()) };
+        let result = unsafe { call(self.session, &info, &mut state, room, &mut count, views.as_mut_ptr()) };
         check("xrLocateViews", result)?;
-        let mut located = [None; 2];
-        for (place, view) in located.iter_mut().zip(&views[..count as usize]) {
-            let (p, q, f) = (view.pose.position, view.pose.orientation, view.fov);
-            *place = Some(View {
-                pose: Pose {
-                    position: glam::Vec3::new(p.x, p.y, p.z),
-                    orientation: glam::Quat::from_xyzw(q.x, q.y, q.z, q.w),
-                },
-                frustum: Frustum::from_fov(f.angle_left, f.angle_right, f.angle_up, f.angle_down),
-                raw: (view.pose, view.fov),
-            });
-        }
-        Ok(located)
+        Ok(count as usize)
     }
 
     pub fn acquire(&self, chain: &Chain) -> Outcome<u64> {
@@ -625,7 +653,8 @@ impl<'a> Client<'a> {
         if self.painted.as_ref().is_some_and(same) {
             return;
         }
-        let picture = scene::render(view.pose, view.frustum, size, samples);
+        let rendered = view.flipped([false, self.upside_down]);
+        let picture = scene::render(rendered.pose, rendered.frustum, size, samples);
         let stored: Vec<f32> = picture.distance.iter().map(|&z| planes.stored(z)).collect();
         let images = match self.drawing {
             Drawing::Vulkan(gpu) => {
@@ -671,6 +700,12 @@ impl<'a> Client<'a> {
         };
         let mut pointers = [ptr::null::<sys::CompositionLayerBaseHeader>(); 8];
         let (space, layer_flags) = (self.space, sys::CompositionLayerFlags::EMPTY);
+        let layout = sys::CompositionLayerImageLayoutFB {
+            ty: sys::CompositionLayerImageLayoutFB::TYPE,
+            next: ptr::null_mut(),
+            flags: sys::CompositionLayerImageLayoutFlagsFB::VERTICAL_FLIP,
+        };
+        let chained = if self.upside_down { (&raw const layout).cast() } else { ptr::null() };
         for (i, layer) in layers.iter().enumerate() {
             match layer {
                 Layer::Projection(submitted) => {
@@ -698,7 +733,7 @@ impl<'a> Client<'a> {
                     }
                     projections[i] = sys::CompositionLayerProjection {
                         ty: sys::CompositionLayerProjection::TYPE,
-                        next: ptr::null(),
+                        next: chained,
                         layer_flags,
                         space,
                         view_count: submitted.len() as u32,

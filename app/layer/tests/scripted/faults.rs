@@ -1,11 +1,17 @@
 //! Faults and losses of the runtime.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, mpsc};
+use std::thread;
+use std::time::Duration;
+
 use openxr_sys as sys;
+use yoro_openxr_stub::log::Entry;
 use yoro_openxr_stub::script::{At, Event, Fault, Script, State, What};
 
-use crate::checks::assert_seen;
+use crate::checks::{assert_seen, assert_sessions};
 use crate::client::{Client, DEPTH, Failure, Outcome};
-use crate::habits::{Chains, Habits, run, until_over};
+use crate::habits::{Chains, Habits, SRGB, frames, run, until_over, with_session};
 use crate::world::{script, watched, with_gpu};
 
 /// When a function of the runtime fails, once or from then on, the application's call of the same name may fail, as
@@ -130,5 +136,86 @@ fn sessions_and_instances_can_be_lost_in_every_state() {
             let [synthesized, not] = counts.last().unwrap();
             assert!(*synthesized > 8 && *not == 0, "{what}: {}", seen.said);
         }
+    });
+}
+
+/// A session that will be lost soon says so in every call; these succeed.
+#[test]
+fn a_session_stays_stereo_until_it_is_lost() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let event = Event { at: At::Frame(1), what: What::SessionLossPending };
+        let seen = watched(Script { events: vec![event], ..script() }, || {
+            with_session(gpu, &habits, |client, chains| frames(client, chains, &habits, 5)).unwrap();
+        });
+        assert_sessions(&seen, &habits, &[[5, 0]], "before the loss");
+    });
+}
+
+/// A release that the layer has held back fails in xrEndFrame. The frame ends, and the image is released later.
+#[test]
+fn a_release_that_fails_late_costs_one_frame() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let failed = sys::Result::ERROR_RUNTIME_FAILURE;
+        // The layer releases its own two images first.
+        let fault = Fault {
+            call: "xrReleaseSwapchainImage".into(),
+            nth: 3,
+            and_later: false,
+            result: failed.into_raw(),
+        };
+        let seen = watched(Script { faults: vec![fault], ..script() }, || {
+            let work = |client: &mut Client, chains: &Chains| {
+                let first = frames(client, chains, &habits, 1);
+                assert_eq!(first, Err(Failure { call: "xrEndFrame", result: failed }));
+                frames(client, chains, &habits, 3)
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        let ends = seen.log.iter().filter(|entry| matches!(entry, Entry::Frame { .. })).count();
+        assert_eq!(
+            (ends, seen.frames().len()),
+            (6, 3),
+            "two before there is a view, one without layers, three"
+        );
+        assert_eq!(seen.counts(), [[4, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "afterwards");
+    });
+}
+
+/// While the runtime is in xrEndFrame, which may wait for the compositor, another thread can destroy a swapchain.
+#[test]
+fn no_lock_is_held_in_the_runtimes_end_of_a_frame() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let work = |client: &mut Client, chains: &Chains| {
+                let unused = client.chain(SRGB, [64; 2], 1)?;
+                let destroy = Arc::new(client.destroyer(unused));
+                let (tell, told) = mpsc::channel();
+                let (tell, told) = (Mutex::new(Some(tell)), Mutex::new(told));
+                let ended = Arc::new(AtomicBool::new(false));
+                let noted = Arc::clone(&ended);
+                yoro_openxr_stub::watch(Some(Arc::new(move |call: &str| {
+                    if call != "xrEndFrame" {
+                        return;
+                    }
+                    let Some(tell) = tell.lock().unwrap().take() else { return };
+                    let destroy = Arc::clone(&destroy);
+                    thread::spawn(move || tell.send(destroy()));
+                    let result = told.lock().unwrap().recv_timeout(Duration::from_secs(10));
+                    noted.store(result == Ok(sys::Result::SUCCESS), Ordering::Relaxed);
+                })));
+                let result = frames(client, chains, &habits, 1);
+                yoro_openxr_stub::watch(None);
+                assert!(ended.load(Ordering::Relaxed), "the swapchain waits for the end of the frame");
+                result
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[1, 0]], "{}", seen.said);
     });
 }

@@ -1,5 +1,7 @@
 //! The rendering habits of a test's application.
 
+use std::ffi::CStr;
+
 use yoro::eyes::Eye;
 use yoro::vulkan::ash::vk;
 
@@ -26,6 +28,10 @@ pub struct Habits {
     /// Samples along one side of a pixel.
     pub samples: u32,
     pub submits_depth: bool,
+    /// True if its field of view is flipped to the sides, and upside down.
+    pub flips: [bool; 2],
+    /// True if its images are upside down, and its layers say so.
+    pub upside_down: bool,
     pub frames: u32,
 }
 
@@ -39,6 +45,8 @@ impl Habits {
         planes: Planes::PLAIN,
         samples: 1,
         submits_depth: true,
+        flips: [false; 2],
+        upside_down: false,
         frames: 3,
     };
 
@@ -94,7 +102,7 @@ pub fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<b
         client.end_frame(frame, &[])?;
         return Ok(false);
     }
-    let view = client.locate(frame)?[0].unwrap();
+    let view = client.locate(frame)?[0].unwrap().flipped(habits.flips);
     let submitted = render(client, chains, habits, view)?;
     client.end_frame(frame, &[Layer::Projection(vec![submitted])])?;
     Ok(true)
@@ -111,7 +119,9 @@ pub fn frames(client: &mut Client, chains: &Chains, habits: &Habits, count: u32)
 
 /// Runs an application that renders one view.
 pub fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Client<'a>> {
-    let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
+    let layout: &[&CStr] = if habits.upside_down { &[c"XR_FB_composition_layer_image_layout"] } else { &[] };
+    let mut client = Client::new(drawing, habits.name, &[&[DEPTH], layout].concat())?;
+    client.upside_down = habits.upside_down;
     client.create_session()?;
     client.poll()?;
     let chains = Chains::new(&client, habits)?;

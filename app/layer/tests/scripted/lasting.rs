@@ -1,11 +1,12 @@
 //! Tests of objects that stay after frames, sessions and instances.
 
-use yoro_openxr_stub::script::Script;
+use yoro_openxr_stub::script::{Fault, Script};
 
-use crate::checks::assert_seen;
+use crate::checks::assert_sessions;
 use crate::client::{Client, DEPTH, Layer};
 use crate::drawing::{Drawing, with_gles};
 use crate::habits::{Chains, Habits, frames, render, run, with_session};
+use crate::harness::Gpu;
 use crate::world::{allocations, script, uncounted, watched, with_gpu, with_unwatched_gpu};
 
 /// Some programs look for a headset with a first instance, and then create another one.
@@ -28,6 +29,62 @@ fn the_log_outlives_an_instance_but_not_its_descriptor() {
     });
 }
 
+/// The recommended size must not change while there is an instance, but the fields of view that it depends on are known
+/// only in a session. So the first start has an estimate, and the next one the size.
+#[test]
+fn the_recommended_size_stays_in_an_instance_and_is_right_in_the_next() {
+    with_gpu(|gpu| {
+        let habits = Habits { frames: 1, ..Habits::PLAIN };
+        let forget = || std::fs::remove_file(yoro_layer::sizes::path().unwrap()).ok();
+        let asked = |script: Script| {
+            let mut sizes = Vec::new();
+            watched(script, || {
+                let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
+                sizes.push(client.sizes().unwrap());
+                client.create_session().unwrap();
+                client.poll().unwrap();
+                sizes.push(client.sizes().unwrap());
+                let chains = Chains::new(&client, &habits).unwrap();
+                frames(&mut client, &chains, &habits, 1).unwrap();
+                sizes.push(client.sizes().unwrap());
+                client.destroy_session().unwrap();
+                client.create_session().unwrap();
+                sizes.push(client.sizes().unwrap());
+            });
+            assert!(sizes.iter().all(|size| *size == sizes[0]), "{sizes:?}");
+            sizes[0][0]
+        };
+        let mut exact = [0; 2];
+        watched(script(), || {
+            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
+            client.create_session().unwrap();
+            exact = client.sizes().unwrap()[0];
+        });
+        assert_ne!(exact, [160, 128]);
+        // The layer locates views when a session is created; some runtimes fail until it begins.
+        let result = openxr_sys::Result::ERROR_SESSION_NOT_RUNNING.into_raw();
+        let late = Fault { call: "xrLocateViews".into(), nth: 1, and_later: false, result };
+        for faults in [vec![], vec![late]] {
+            forget();
+            assert_eq!(
+                asked(Script { faults: faults.clone(), ..script() }),
+                [160, 128],
+                "1.25 times an eye's width"
+            );
+            assert_eq!(asked(Script { faults: faults.clone(), ..script() }), exact);
+            // Another eye renders another view.
+            assert_eq!(watched_size(gpu, Script { faults, ..script() }, "left"), [160, 128], "another view");
+        }
+        forget();
+    });
+}
+
+fn watched_size(gpu: &Gpu, script: Script, name: &str) -> [u32; 2] {
+    let mut size = [0; 2];
+    watched(script, || size = Client::new(gpu, name, &[DEPTH]).unwrap().sizes().unwrap()[0]);
+    size
+}
+
 #[test]
 fn one_session_follows_another() {
     with_gpu(|gpu| {
@@ -42,9 +99,7 @@ fn one_session_follows_another() {
                 client.destroy_session().unwrap();
             }
         });
-        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(seen.counts(), [[2, 0]; 2], "{}", seen.said);
-        assert_seen(&seen, &habits, "the second session");
+        assert_sessions(&seen, &habits, &[[2, 0]; 2], "the second session");
     });
 }
 
@@ -108,9 +163,7 @@ fn frames_on_opengl_es_leave_nothing_behind() {
         for (what, habits) in [("whole", Habits::PLAIN), ("part", part)] {
             let script = Script { formats: Script::default().formats, ..script() };
             let seen = watched(script.clone(), || drop(run(gles, &habits).unwrap()));
-            assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
-            assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
-            assert_seen(&seen, &habits, what);
+            assert_sessions(&seen, &habits, &[[3, 0]], what);
             steady(gles.into(), script, &habits, 300);
         }
     });

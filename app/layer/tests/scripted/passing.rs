@@ -3,9 +3,9 @@
 use openxr_sys as sys;
 use sys::ViewConfigurationType as ViewsOf;
 use yoro_openxr_stub::log;
-use yoro_openxr_stub::script::{Fault, Script};
+use yoro_openxr_stub::script::{At, Event, Fault, Script, What};
 
-use crate::checks::{assert_own_eyes, assert_seen, psnr, truth};
+use crate::checks::{assert_own_eyes, assert_seen, assert_sessions, psnr, truth};
 use crate::client::{Client, DEPTH, Failure, Layer};
 use crate::habits::{Chains, Habits, frames, render, run, with_session};
 use crate::world::{script, watched, with_gpu};
@@ -89,6 +89,11 @@ fn the_runtime_fills_what_is_chained_to_views() {
                 let mut client = Client::new(gpu, name, &[DEPTH]).unwrap();
                 client.views = views;
                 assert_eq!(client.chained_depth_ranges(count).unwrap(), vec![[0.1, 50.0]; count], "{name}");
+                client.create_session().unwrap();
+                client.poll().unwrap();
+                let frame = client.begin_frame().unwrap();
+                let located = client.chained_to_located(frame, count).unwrap();
+                assert_eq!(located, vec![[0.1, 50.0]; count], "{name}: located");
             });
         }
     });
@@ -192,5 +197,129 @@ fn a_runtime_without_depth_gets_two_views() {
         assert_eq!(seen.counts(), [[3, 0]], "{}", seen.said);
         assert_seen(&seen, &habits, "without depth");
         assert!(seen.views().iter().all(|view| view.depth.is_none()));
+    });
+}
+
+/// An application with the wrong number of views learns it from xrEndFrame, as without the layer, and can end the frame
+/// with the right one.
+#[test]
+fn a_layer_of_two_views_is_refused_in_a_session_of_one() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let work = |client: &mut Client, chains: &Chains| {
+                let begun = client.begin_frame()?;
+                let view = client.locate(begun)?[0].unwrap();
+                let submitted = render(client, chains, &habits, view)?;
+                let wrong = client.end_frame(begun, &[Layer::Projection(vec![submitted; 2])]);
+                let result = sys::Result::ERROR_VALIDATION_FAILURE;
+                assert_eq!(wrong, Err(Failure { call: "xrEndFrame", result }));
+                client.end_frame(begun, &[Layer::Projection(vec![submitted])])
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert_sessions(&seen, &habits, &[[1, 0]], "the right number");
+    });
+}
+
+/// Once a session has begun in stereo, one view is what the runtime says it is.
+#[test]
+fn one_view_cannot_be_located_in_stereo() {
+    with_gpu(|gpu| {
+        for (name, mono) in [("right", false), ("shrink", false), ("right", true), ("shrink", true)] {
+            watched(Script { mono, ..script() }, || {
+                let mut client = Client::new(gpu, name, &[DEPTH]).unwrap();
+                client.views = ViewsOf::PRIMARY_STEREO;
+                client.create_session().unwrap();
+                client.poll().unwrap();
+                let frame = client.begin_frame().unwrap();
+                client.views = ViewsOf::PRIMARY_MONO;
+                let located = client.locate(frame);
+                if mono {
+                    // The runtime's own has the left eye's field of view.
+                    let [left, right, ..] =
+                        script().eyes[0].fov_degrees.map(|angle| angle.to_radians().tan());
+                    let frustum = located.unwrap()[0].unwrap().frustum;
+                    let error = (frustum.left - left).abs().max((frustum.right - right).abs());
+                    assert!(error < 1e-5, "{name}: {frustum:?}");
+                } else {
+                    let result = sys::Result::ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED;
+                    assert_eq!(located, Err(Failure { call: "xrLocateViews", result }), "{name}");
+                }
+            });
+        }
+    });
+}
+
+/// `offer = "off"` leaves an application alone, whatever the other settings say: the runtime gets its own calls and no
+/// others.
+#[test]
+fn an_application_can_be_left_alone() {
+    with_gpu(|gpu| {
+        use ViewsOf as V;
+        let seen = watched(script(), || {
+            let mut client = Client::new(gpu, "off", &[DEPTH]).unwrap();
+            assert_eq!(client.configurations().unwrap(), [V::PRIMARY_STEREO, V::PRIMARY_MONO]);
+            client.views = V::PRIMARY_STEREO;
+            assert_eq!(client.sizes().unwrap(), [[128, 128]; 2]);
+            client.create_session().unwrap();
+            client.poll().unwrap();
+            let chain = client.chain(crate::habits::SRGB, [128; 2], 1).unwrap();
+            client.destroy_chain(chain).unwrap();
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.said("passed through: its settings say offer = off"), 1, "{}", seen.said);
+        for call in
+            ["xrCreateReferenceSpace", "xrEnumerateSwapchainImages", "xrEnumerateViewConfigurationViews"]
+        {
+            assert_eq!(seen.calls().get(call), Some(&1), "{call}");
+        }
+        assert_eq!(seen.calls().get("xrLocateViews"), None);
+    });
+}
+
+/// Functions and events of extensions that name a view configuration or a layer of views.
+#[test]
+fn extensions_know_the_offered_view() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let event = Event { at: At::Frame(3), what: What::MaskChanged };
+        let seen = watched(Script { mono: false, events: vec![event], ..script() }, || {
+            let extensions =
+                [DEPTH, c"XR_MSFT_composition_layer_reprojection", c"XR_META_recommended_layer_resolution"];
+            let mut client = Client::new(gpu, habits.name, &extensions).unwrap();
+            let [one, two] = [ViewsOf::PRIMARY_MONO, ViewsOf::PRIMARY_STEREO];
+            assert_eq!(client.reprojection_modes(one).unwrap(), client.reprojection_modes(two).unwrap());
+            client.create_session().unwrap();
+            client.poll().unwrap();
+            let chains = Chains::new(&client, &habits).unwrap();
+            frames(&mut client, &chains, &habits, 1).unwrap();
+            let begun = client.begin_frame().unwrap();
+            let view = client.locate(begun).unwrap()[0].unwrap();
+            let submitted = render(&mut client, &chains, &habits, view).unwrap();
+            client.end_frame(begun, &[Layer::Projection(vec![submitted])]).unwrap();
+            // The runtime recommends three quarters of an eye's size.
+            let [width, height] = client.sizes().unwrap()[0].map(|n| (n * 3).div_ceil(4) as i32);
+            assert!(width > 128 * 3 / 4);
+            assert_eq!(client.recommended_layer_size(begun, submitted).unwrap(), [width, height]);
+            frames(&mut client, &chains, &habits, 2).unwrap();
+            client.poll().unwrap();
+            assert_eq!(client.masks, [(one, 0)]);
+            client.destroy_session().unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+    });
+}
+
+#[test]
+fn a_function_that_is_not_found_is_null() {
+    with_gpu(|gpu| {
+        watched(script(), || {
+            let client = Client::new(gpu, Habits::PLAIN.name, &[DEPTH]).unwrap();
+            let (result, function) = client.function_without_an_instance(c"xrWaitFrame");
+            assert_eq!(result, sys::Result::ERROR_HANDLE_INVALID);
+            assert!(function.is_none());
+        });
     });
 }

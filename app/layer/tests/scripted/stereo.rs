@@ -4,13 +4,14 @@ use openxr_sys as sys;
 use sys::{Handle as _, ViewConfigurationType as ViewsOf};
 use yoro::vulkan::ash::vk;
 use yoro_openxr_stub::log;
-use yoro_openxr_stub::script::Script;
+use yoro_openxr_stub::script::{Fault, Script};
 
 use crate::checks::{
-    assert_depth, assert_own_eyes, assert_seen, assert_synthesized, frustum_of, pose_of, psnr, truth,
-    views_of,
+    assert_depth, assert_own_eyes, assert_seen, assert_sessions, assert_synthesized, frustum_of, pose_of,
+    psnr, truth, views_of,
 };
-use crate::client::{Client, DEPTH, Layer, Part, Planes, Submitted};
+use crate::client::{Client, DEPTH, Failure, Layer, Part, Planes, Submitted};
+use crate::drawing::{Drawing, with_gles};
 use crate::habits::{Chains, D32, Habits, SRGB, frame, frames, render, run, with_session};
 use crate::world::{script, watched, with_gpu};
 
@@ -65,9 +66,7 @@ fn canted_and_unlike_eyes_are_served_by_parallel_ones() {
             unlike.eyes[1].fov_degrees = [-40.0, 50.0, 44.0, -53.0];
             for (what, script) in [("canted", canted), ("unlike", unlike)] {
                 let seen = watched(script.clone(), || drop(run(gpu, &habits).unwrap()));
-                assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
-                assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
-                assert_seen(&seen, &habits, what);
+                assert_sessions(&seen, &habits, &[[3, 0]], what);
                 // The submitted view contains that of the runtime's own eye, to a pixel.
                 for (i, view) in seen.views().iter().enumerate() {
                     let eye = script.eyes[i];
@@ -197,7 +196,9 @@ fn a_view_that_cannot_be_synthesized_is_shown_to_both_eyes() {
             with_depth_part(s, |part| Part { chain: sys::Swapchain::NULL, ..part })
         }),
         ("out of order", plain, |s| with_planes(s, Planes { min: 0.5, max: 0.5, ..Planes::PLAIN })),
-        ("near", plain, |s| with_planes(s, Planes { near: 0.0, ..Planes::PLAIN })),
+        ("the depth planes are out of order", plain, |s| {
+            with_planes(s, Planes { near: 0.0, ..Planes::PLAIN })
+        }),
     ];
     with_gpu(|gpu| {
         for (reason, habits, spoil) in cases {
@@ -254,9 +255,7 @@ fn overlapping_frames_are_synthesized() {
             };
             with_session(gpu, &habits, pipelined).unwrap();
         });
-        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(seen.counts(), [[6, 0]], "{}", seen.said);
-        assert_seen(&seen, &habits, "overlapping frames");
+        assert_sessions(&seen, &habits, &[[6, 0]], "overlapping frames");
     });
 }
 
@@ -359,8 +358,119 @@ fn the_layers_swapchains_follow_new_sizes_and_formats() {
             };
             with_session(gpu, &habits, work).unwrap();
         });
+        assert_sessions(&seen, &habits, &[[12, 0]], "the first size again");
+    });
+}
+
+/// Runs applications whose images are flipped by their fields of view, by an extension, or by both.
+fn flipped(drawing: Drawing, script: &Script, name: &'static str) {
+    let plain = Habits { name, margin: [3, 5], ..Habits::PLAIN };
+    let upside_down = Habits { upside_down: true, ..plain };
+    for (what, habits) in [
+        ("to the sides", Habits { flips: [true, false], ..plain }),
+        ("upside down", Habits { flips: [false, true], ..plain }),
+        ("both", Habits { flips: [true, true], ..plain }),
+        ("by the layer", upside_down),
+        ("by the layer and to the sides", Habits { flips: [true, false], ..upside_down }),
+        ("upside down twice", Habits { flips: [false, true], ..upside_down }),
+    ] {
+        let what = format!("{name}, {what}");
+        let mut script = script.clone();
+        // The vertical part of the view is not the same up and down.
+        script.eyes.iter_mut().for_each(|eye| eye.fov_degrees[2] = 35.0);
+        let seen = watched(script, || drop(run(drawing, &habits).unwrap()));
+        assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
+        assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+        for view in seen.views() {
+            let [left, right, up, down] = view.fov_degrees;
+            assert_eq!([left > right, down > up], habits.flips, "{what}");
+        }
+        assert_seen(&seen, &habits, &what);
+        if matches!(drawing, Drawing::Vulkan(_)) {
+            assert_depth(&seen, &habits, &what);
+        }
+    }
+}
+
+/// A field of view whose left is to the right of its right, or whose bottom is above its top, flips the image; so does
+/// an extension.
+#[test]
+fn flipped_views_are_synthesized() {
+    with_gpu(|gpu| ["left", "right"].into_iter().for_each(|name| flipped(gpu.into(), &script(), name)));
+}
+
+/// In OpenGL, rows count from the bottom.
+#[test]
+fn flipped_views_are_synthesized_on_opengl_es() {
+    let script = Script { formats: Script::default().formats, ..script() };
+    with_gles(|gles| flipped(gles.into(), &script, "right"));
+}
+
+/// A frame that the runtime refuses for another reason can be ended again.
+#[test]
+fn a_frame_that_is_ended_again_is_still_stereo() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let work = |client: &mut Client, chains: &Chains| {
+                let begun = client.begin_frame()?;
+                let view = client.locate(begun)?[0].unwrap();
+                let submitted = render(client, chains, &habits, view)?;
+                let wrong = client.end_frame(begun.at_another_time(), &[Layer::Projection(vec![submitted])]);
+                let result = sys::Result::ERROR_TIME_INVALID;
+                assert_eq!(wrong, Err(Failure { call: "xrEndFrame", result }));
+                client.end_frame(begun, &[Layer::Projection(vec![submitted])])
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert_eq!(seen.counts(), [[2, 0]], "{}", seen.said);
+        assert_seen(&seen, &habits, "ended again");
+    });
+}
+
+/// Depth that one format of swapchains cannot have goes on in others.
+#[test]
+fn depth_that_fails_in_one_format_goes_on_in_another() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let refused = sys::Result::ERROR_RUNTIME_FAILURE.into_raw();
+        // The application makes two, then the layer one for colour and one for depth.
+        let fault = Fault { call: "xrCreateSwapchain".into(), nth: 4, and_later: false, result: refused };
+        let seen = watched(Script { faults: vec![fault], ..script() }, || {
+            let work = |client: &mut Client, chains: &Chains| {
+                frames(client, chains, &habits, 2)?;
+                let other = Habits { formats: [SRGB, vk::Format::D16_UNORM], ..habits };
+                let others = Chains::new(client, &other)?;
+                frames(client, &others, &other, 2)?;
+                frames(client, chains, &habits, 2)
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(seen.counts(), [[12, 0]], "{}", seen.said);
-        assert_seen(&seen, &habits, "the first size again");
+        assert_eq!(seen.counts(), [[6, 0]], "{}", seen.said);
+        let frames = seen.frames();
+        let with_depth = frames.iter().map(|layers| views_of(layers).iter().all(|view| view.depth.is_some()));
+        assert_eq!(with_depth.collect::<Vec<_>>(), [false, false, true, true, false, false]);
+        assert_eq!(seen.said("does not go on to the runtime"), 1, "{}", seen.said);
+    });
+}
+
+/// A subsampled image needs a sampler of its own kind.
+#[test]
+fn subsampled_images_are_shown_to_both_eyes() {
+    with_gpu(|gpu| {
+        let habits = Habits::PLAIN;
+        let seen = watched(script(), || {
+            let work = |client: &mut Client, chains: &Chains| {
+                let color = client.subsampled_chain(SRGB, chains.part.size)?;
+                let part = Part { chain: color.handle, ..chains.part };
+                let depth = client.chain(D32, part.size, 1)?;
+                frames(client, &Chains { color, depth, part }, &habits, 2)
+            };
+            with_session(gpu, &habits, work).unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!(seen.counts(), [[0, 2]], "{}", seen.said);
+        assert_eq!(seen.said("subsampled"), 1, "{}", seen.said);
     });
 }

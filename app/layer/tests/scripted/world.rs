@@ -59,7 +59,8 @@ const SETTINGS: &str = "guard_band = '16px'\n\
     [application.left]\ndominant = 'left'\n\
     [application.shrink]\nshrink = 'on'\n\
     [application.only]\noffer = 'only'\n\
-    [application.last]\noffer = 'last'\n";
+    [application.last]\noffer = 'last'\n\
+    [application.off]\noffer = 'off'\nshrink = 'on'\n";
 
 /// Runs a test on a device under Vulkan's validation layer, with the tests' settings.
 pub fn with_gpu(body: impl FnOnce(&Gpu)) {

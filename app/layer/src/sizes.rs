@@ -1,0 +1,108 @@
+//! The offered view's size, remembered from one start to the next. It depends on the eyes' fields of view, which are
+//! known only in a session; many applications ask for it before, and it must not change then.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value, json};
+
+use crate::xdg;
+
+/// Returns the path of the sizes, `$XDG_STATE_HOME/yoro/layer-sizes.json` (`~/.local/state` if that is not set); None
+/// without a home, and on Android.
+pub fn path() -> Option<PathBuf> {
+    Some(xdg::folder("XDG_STATE_HOME", ".local/state")?.join("yoro/layer-sizes.json"))
+}
+
+/// Returns the size in pixels that was remembered for these circumstances, scaled to an eye of this size.
+pub fn recall(circumstances: &str, eye: [u32; 2]) -> Option<[u32; 2]> {
+    let [old_eye, view] = entry(&read(&path()?), circumstances)?;
+    Some(scaled(eye, old_eye, view))
+}
+
+/// Remembers the size of the view for an eye of this size. If it cannot be written, the next start has an estimate.
+pub fn remember(circumstances: &str, eye: [u32; 2], view: [u32; 2]) {
+    if let Some(path) = path() {
+        write(&path, circumstances, [eye, view]);
+    }
+}
+
+/// Returns a size that has grown as one did, rounded up.
+pub fn scaled(size: [u32; 2], from: [u32; 2], to: [u32; 2]) -> [u32; 2] {
+    [0, 1].map(|i| {
+        let grown = u64::from(size[i]) * u64::from(to[i]);
+        u32::try_from(grown.div_ceil(u64::from(from[i].max(1)))).unwrap_or(u32::MAX)
+    })
+}
+
+/// Returns the file's content; nothing if it is absent or damaged.
+fn read(path: &Path) -> Map<String, Value> {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
+}
+
+/// Returns the sizes of an eye and of the view, if there are any that can be.
+fn entry(sizes: &Map<String, Value>, circumstances: &str) -> Option<[[u32; 2]; 2]> {
+    let entry = sizes.get(circumstances)?;
+    let number = |name: &str, i: usize| u32::try_from(entry[name][i].as_u64()?).ok();
+    let size = |name: &str| Some([number(name, 0)?, number(name, 1)?]);
+    let [eye, view] = [size("eye")?, size("view")?];
+    let can_be = |i: usize| eye[i] > 0 && (eye[i]..=eye[i].saturating_mul(16)).contains(&view[i]);
+    (can_be(0) && can_be(1)).then_some([eye, view])
+}
+
+fn write(path: &Path, circumstances: &str, [eye, view]: [[u32; 2]; 2]) {
+    let mut sizes = read(path);
+    if entry(&sizes, circumstances) == Some([eye, view]) {
+        return;
+    }
+    sizes.insert(circumstances.to_owned(), json!({ "eye": eye, "view": view }));
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).ok();
+    }
+    // Another program may read it at the same time.
+    let part = path.with_extension(format!("{}.part", std::process::id()));
+    if fs::write(&part, format!("{:#}\n", Value::Object(sizes))).is_ok() {
+        fs::rename(&part, path).ok();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_kept_by_their_circumstances_and_a_damaged_file_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state/layer-sizes.json");
+        let known = |circumstances: &str| entry(&read(&path), circumstances);
+        assert_eq!(known("one"), None);
+        write(&path, "one", [[100, 90], [130, 90]]);
+        write(&path, "two", [[10, 10], [12, 11]]);
+        write(&path, "one", [[100, 90], [131, 90]]);
+        assert_eq!((known("one"), known("two")), (Some([[100, 90], [131, 90]]), Some([[10, 10], [12, 11]])));
+        for damaged in [
+            "",
+            "{",
+            "[]",
+            "{\"one\": 7}",
+            "{\"one\": {\"eye\": [100, 90], \"view\": [131]}}",
+            "{\"one\": {\"eye\": [100, 90], \"view\": [131, -90]}}",
+            "{\"one\": {\"eye\": [0, 90], \"view\": [131, 90]}}",
+            "{\"one\": {\"eye\": [100, 90], \"view\": [99, 90]}}",
+        ] {
+            fs::write(&path, damaged).unwrap();
+            assert_eq!(known("one"), None, "{damaged}");
+            write(&path, "one", [[100, 90], [130, 90]]);
+            assert_eq!(known("one"), Some([[100, 90], [130, 90]]), "{damaged}");
+        }
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn another_resolution_grows_alike() {
+        assert_eq!(scaled([320, 240], [320, 240], [331, 240]), [331, 240]);
+        assert_eq!(scaled([640, 480], [320, 240], [331, 240]), [662, 480]);
+        assert_eq!(scaled([1000, 1000], [320, 240], [331, 240]), [1035, 1000]);
+    }
+}

@@ -1,0 +1,134 @@
+//! Calls of extensions.
+
+use std::ffi::CStr;
+use std::ptr;
+
+use openxr_sys as sys;
+use sys::{Handle as _, ViewConfigurationType as ViewsOf, pfn};
+use yoro::vulkan::ash::vk;
+
+use super::{Chain, Client, Frame, Outcome, Submitted, check};
+
+impl Client<'_> {
+    /// Returns the near and far planes that the runtime recommends in structures chained to the configuration's views.
+    pub fn chained_depth_ranges(&self, count: usize) -> Outcome<Vec<[f32; 2]>> {
+        // SAFETY: plain data; the types and chains are set below.
+        let (empty_view, empty_range) =
+            unsafe { (std::mem::zeroed(), std::mem::zeroed::<sys::ViewConfigurationDepthRangeEXT>()) };
+        let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
+        let mut ranges = vec![sys::ViewConfigurationDepthRangeEXT { ty, ..empty_range }; count];
+        let ty = sys::ViewConfigurationView::TYPE;
+        let view = |range: &mut sys::ViewConfigurationDepthRangeEXT| sys::ViewConfigurationView {
+            ty,
+            next: ptr::from_mut(range).cast(),
+            ..empty_view
+        };
+        let mut views: Vec<_> = ranges.iter_mut().map(view).collect();
+        let (mut number, room) = (0, count as u32);
+        let call = self.xr.enumerate_view_configuration_views;
+        // SAFETY: room for as many as is said.
+        let result =
+            unsafe { call(self.instance, self.system, self.views, room, &mut number, views.as_mut_ptr()) };
+        check("xrEnumerateViewConfigurationViews", result)?;
+        Ok(ranges.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
+    }
+
+    /// Returns what the runtime writes to structures chained to the located views.
+    pub fn chained_to_located(&self, frame: Frame, count: usize) -> Outcome<Vec<[f32; 2]>> {
+        // SAFETY: plain data; the types and chains are set below.
+        let (empty, empty_view) =
+            unsafe { (std::mem::zeroed::<sys::ViewConfigurationDepthRangeEXT>(), std::mem::zeroed()) };
+        let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
+        let mut chained = vec![sys::ViewConfigurationDepthRangeEXT { ty, ..empty }; count];
+        let view = |range: &mut sys::ViewConfigurationDepthRangeEXT| sys::View {
+            ty: sys::View::TYPE,
+            next: ptr::from_mut(range).cast(),
+            ..empty_view
+        };
+        let mut views: Vec<_> = chained.iter_mut().map(view).collect();
+        self.locate_views(frame, &mut views)?;
+        Ok(chained.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
+    }
+
+    /// Returns the reprojection modes of a view configuration.
+    pub fn reprojection_modes(&self, views: ViewsOf) -> Outcome<Vec<sys::ReprojectionModeMSFT>> {
+        let (mut modes, mut count) = ([sys::ReprojectionModeMSFT::DEPTH; 4], 0);
+        let name = c"xrEnumerateReprojectionModesMSFT";
+        // SAFETY: a function of this name has this type, and there is room for as many as is said.
+        let result = unsafe {
+            let ask: pfn::EnumerateReprojectionModesMSFT = std::mem::transmute(self.function(name));
+            ask(self.instance, self.system, views, 4, &mut count, modes.as_mut_ptr())
+        };
+        check("xrEnumerateReprojectionModesMSFT", result)?;
+        Ok(modes[..count as usize].to_vec())
+    }
+
+    /// Returns the size that the runtime recommends for a projection layer of one view.
+    pub fn recommended_layer_size(&self, frame: Frame, submitted: Submitted) -> Outcome<[i32; 2]> {
+        let view = sys::CompositionLayerProjectionView {
+            ty: sys::CompositionLayerProjectionView::TYPE,
+            next: ptr::null(),
+            pose: submitted.view.raw.0,
+            fov: submitted.view.raw.1,
+            sub_image: submitted.color.raw(),
+        };
+        let layer = sys::CompositionLayerProjection {
+            ty: sys::CompositionLayerProjection::TYPE,
+            next: ptr::null(),
+            layer_flags: sys::CompositionLayerFlags::EMPTY,
+            space: self.space,
+            view_count: 1,
+            views: &view,
+        };
+        let info = sys::RecommendedLayerResolutionGetInfoMETA {
+            ty: sys::RecommendedLayerResolutionGetInfoMETA::TYPE,
+            next: ptr::null(),
+            layer: (&raw const layer).cast(),
+            predicted_display_time: frame.time,
+        };
+        let mut size = sys::RecommendedLayerResolutionMETA {
+            ty: sys::RecommendedLayerResolutionMETA::TYPE,
+            next: ptr::null_mut(),
+            recommended_image_dimensions: sys::Extent2Di { width: 0, height: 0 },
+            is_valid: sys::FALSE,
+        };
+        // SAFETY: a function of this name has this type; complete structures.
+        let result = unsafe {
+            let ask: pfn::GetRecommendedLayerResolutionMETA =
+                std::mem::transmute(self.function(c"xrGetRecommendedLayerResolutionMETA"));
+            ask(self.session, &info, &mut size)
+        };
+        check("xrGetRecommendedLayerResolutionMETA", result)?;
+        assert_eq!(size.is_valid, sys::TRUE);
+        Ok([size.recommended_image_dimensions.width, size.recommended_image_dimensions.height])
+    }
+
+    /// Returns a function of an enabled extension.
+    fn function(&self, name: &CStr) -> pfn::VoidFunction {
+        let mut function = None;
+        // SAFETY: a live instance, and a name that ends in zero.
+        let result = unsafe { (self.get)(self.instance, name.as_ptr(), &mut function) };
+        assert_eq!(result, sys::Result::SUCCESS, "{name:?}");
+        function.unwrap()
+    }
+
+    /// Asks for a function without an instance. Returns the result, and what is in the function's place afterwards.
+    pub fn function_without_an_instance(&self, name: &CStr) -> (sys::Result, Option<pfn::VoidFunction>) {
+        let mut function = Some(self.function(c"xrWaitFrame"));
+        // SAFETY: a name that ends in zero, and a place for a function.
+        let result = unsafe { (self.get)(sys::Instance::NULL, name.as_ptr(), &mut function) };
+        (result, function)
+    }
+
+    /// Creates a swapchain of subsampled images, as applications with fixed foveation do.
+    pub fn subsampled_chain(&self, format: vk::Format, size: [u32; 2]) -> Outcome<Chain> {
+        let more = sys::VulkanSwapchainCreateInfoMETA {
+            ty: sys::VulkanSwapchainCreateInfoMETA::TYPE,
+            next: ptr::null(),
+            additional_create_flags: vk::ImageCreateFlags::SUBSAMPLED_EXT.as_raw().into(),
+            additional_usage_flags: 0,
+        };
+        let info = self.chain_info(format, size, 1);
+        self.chain_of(&sys::SwapchainCreateInfo { next: (&raw const more).cast(), ..info })
+    }
+}
