@@ -136,7 +136,7 @@ mod tests {
         assert!(mistakes.is_empty(), "{mistakes:?}");
         assert_eq!(
             (settings.method, settings.ipd, settings.seed),
-            (Method::Mono, Some(Ipd::nearest(0.055)), 7)
+            (Method::Mono.into(), Some(Ipd::nearest(0.055)), 7)
         );
         assert_eq!((settings.scene.as_str(), settings.hud), ("stage", false));
     }
@@ -205,7 +205,7 @@ mod tests {
         let (settings, mistakes) = sources.resolve();
         assert_eq!(
             (settings.method, settings.ipd, settings.hud),
-            (Method::Conventional, Some(Ipd::nearest(0.05)), true)
+            (Method::Conventional.into(), Some(Ipd::nearest(0.05)), true)
         );
         assert!(mistakes.is_empty(), "{mistakes:?}");
     }

@@ -61,7 +61,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "A street with a café in the late afternoon",
         stands_for: "Bistro",
         style: ShadingStyle::Realistic,
-        kilo_triangles: 1240,
+        kilo_triangles: 1239,
         generate: street::build,
     },
     Builtin {
@@ -69,7 +69,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "A neon street between towers at night",
         stands_for: "SciFiCity",
         style: ShadingStyle::Realistic,
-        kilo_triangles: 610,
+        kilo_triangles: 590,
         generate: scifi_city::build,
     },
     Builtin {
@@ -77,7 +77,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "A court with columns, arches, curtains and banners",
         stands_for: "Sponza",
         style: ShadingStyle::Realistic,
-        kilo_triangles: 360,
+        kilo_triangles: 365,
         generate: atrium::build,
     },
     Builtin {
@@ -85,7 +85,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "A conference room with screens, blinds and plants",
         stands_for: "Conference",
         style: ShadingStyle::Realistic,
-        kilo_triangles: 125,
+        kilo_triangles: 123,
         generate: conference::build,
     },
     Builtin {
@@ -93,7 +93,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "A voxel landscape with a ruined temple, a bridge, woods and a castle",
         stands_for: "LostEmpire",
         style: ShadingStyle::Voxel,
-        kilo_triangles: 2800,
+        kilo_triangles: 2834,
         generate: voxel::build,
     },
     Builtin {
@@ -101,7 +101,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "A game level of grid textures: ramps, stairs, railings, dummies",
         stands_for: "Prototype",
         style: ShadingStyle::LowPoly,
-        kilo_triangles: 22,
+        kilo_triangles: 24,
         generate: prototype::build,
     },
     Builtin {
@@ -109,7 +109,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "Two stylised figures talking across a table in a room with a garden",
         stands_for: "Chat",
         style: ShadingStyle::Cartoon,
-        kilo_triangles: 110,
+        kilo_triangles: 117,
         generate: talk::build,
     },
     Builtin {
@@ -117,7 +117,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "An anime-style singer on a concert stage at nightfall",
         stands_for: "UnityChan",
         style: ShadingStyle::Anime,
-        kilo_triangles: 140,
+        kilo_triangles: 149,
         generate: stage::build,
     },
 ];

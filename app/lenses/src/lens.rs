@@ -6,8 +6,7 @@ use glam::{Mat4, Quat, Vec2, Vec4};
 
 use crate::optics::{Optics, mesh_strip};
 use yoro::eyes::{Eye, Frustum};
-use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
-use yoro_render::stereo::StereoFrame;
+use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource, Texture};
 
 /// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are
 /// specified: acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
@@ -46,9 +45,9 @@ impl LensPass {
         Ok(LensPass { gl: gl.clone(), program, meshes, frusta, line })
     }
 
-    /// Fills the window. `turn` rotates a direction of the head as it is now into the head as it was when the
+    /// Fills the window from the images of the left and the right eye. `turn` rotates a direction of the head as it is now into the head as it was when the
     /// frame was rendered.
-    pub fn run(&self, frame: &StereoFrame, turn: Quat, window: &Destination) {
+    pub fn run(&self, images: [&Texture; 2], turn: Quat, window: &Destination) {
         let [width, height] = window.size;
         self.gl.pass("lens", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
@@ -62,7 +61,7 @@ impl LensPass {
             for eye in Eye::BOTH {
                 let frustum = &self.frusta[eye.index()];
                 let rectangle = Vec4::new(frustum.left, frustum.bottom, frustum.width(), frustum.height());
-                self.program.texture("image", 0, frame.eye(eye).color(0).raw()).set("frustum", rectangle);
+                self.program.texture("image", 0, images[eye.index()].raw()).set("frustum", rectangle);
                 let mesh = &self.meshes[eye.index()];
                 mesh.bind();
                 mesh.draw_strip();
@@ -105,28 +104,30 @@ mod tests {
         window.read_rgba8(0, at, [1, 1]).try_into().unwrap()
     }
 
-    /// A frame of two images, each of one colour with a white column in the middle (tangent 0).
-    fn marked_frame(gl: &Rc<Context>, optics: &Optics) -> StereoFrame {
+    /// Two images, each of one colour with a white column in the middle (tangent 0).
+    fn marked_eyes(gl: &Rc<Context>, optics: &Optics) -> [RenderTarget; 2] {
         let size = [256, 256];
-        let frame = StereoFrame::new(gl, size).unwrap();
-        for (eye, color) in Eye::BOTH.into_iter().zip([[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]) {
+        Eye::BOTH.map(|eye| {
+            let target = RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Linear)], None).unwrap();
+            let color = [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]][eye.index()];
             let frustum = optics.frustum(eye);
             let middle = (-frustum.left / frustum.width() * size[0] as f32) as u32;
-            frame.eye(eye).bind();
+            target.bind();
             gl.fill([0, 0], size, color);
             gl.fill([middle - 4, 0], [8, size[1]], [1.0; 4]);
-        }
-        frame
+            target
+        })
     }
 
     #[test]
     fn each_eye_sees_its_own_image_around_its_lens() {
         let headless = Headless::open(Backend::Egl).unwrap();
         let (gl, optics) = (headless.gl(), optics());
-        let (frame, window) = (marked_frame(gl, &optics), window(gl));
+        let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
+        let images = eyes.each_ref().map(|eye| eye.color(0));
         for chromatic in [false, true] {
             let lens = LensPass::new(gl, &optics, chromatic).unwrap();
-            lens.run(&frame, Quat::IDENTITY, &Destination::whole(&window));
+            lens.run(images, Quat::IDENTITY, &Destination::whole(&window));
             for (eye, color) in Eye::BOTH.into_iter().zip([[255, 0, 0, 255], [0, 0, 255, 255]]) {
                 let center = optics.lens_center(eye);
                 assert_eq!(pixel(&window, center), [255; 4], "straight ahead is at the lens's centre");
@@ -164,10 +165,11 @@ mod tests {
     fn timewarp_turns_the_image_against_the_head() {
         let headless = Headless::open(Backend::Egl).unwrap();
         let (gl, optics) = (headless.gl(), optics());
-        let (frame, window) = (marked_frame(gl, &optics), window(gl));
+        let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
+        let images = eyes.each_ref().map(|eye| eye.color(0));
         let lens = LensPass::new(gl, &optics, false).unwrap();
         let at = |turn| {
-            lens.run(&frame, turn, &Destination::whole(&window));
+            lens.run(images, turn, &Destination::whole(&window));
             mark(&window, &optics)
         };
         let still = at(Quat::IDENTITY);

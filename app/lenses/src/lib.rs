@@ -3,7 +3,7 @@
 //! A viewer's parameters and a screen's size come in; frusta, the mesh that undoes the lenses' distortion, and the pass
 //! that draws both eyes through it go out. Motion samples come in, and the head's orientation goes out.
 //!
-//! This crate must never know a scene, settings, or where a GL context comes from; it builds for phones and browsers alike.
+//! This crate must never know a renderer, a scene, settings, or where a GL context comes from; it builds for phones and browsers alike.
 
 mod head;
 mod hud;

@@ -6,7 +6,7 @@ use std::path::Path;
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::{DynamicImage, GrayImage, ImageFormat, ImageReader, Rgb, RgbImage};
 
-use yoro_files as files;
+use yoro_files::{self as files, decoder};
 
 use crate::{DepthImage, MAX_SIZE, PictureError, srgb};
 
@@ -82,23 +82,46 @@ fn decode(path: &Path) -> Result<DynamicImage, PictureError> {
 }
 
 fn decode_bytes(path: &Path, bytes: Vec<u8>) -> Result<DynamicImage, PictureError> {
-    let damaged =
-        |error: image::ImageError| PictureError::Damaged { path: path.into(), reason: error.to_string() };
+    let damaged = |reason| PictureError::Damaged { path: path.into(), reason };
     let format = image::guess_format(&bytes)
         .ok()
         // TGA has no signature; anything else without one is not what its name says.
         .or_else(|| ImageFormat::from_path(path).ok().filter(|format| *format == ImageFormat::Tga))
         .filter(ImageFormat::reading_enabled)
         .ok_or_else(|| PictureError::UnknownFormat { path: path.into() })?;
+    if format == ImageFormat::OpenExr {
+        check_exr_has_color(path, &bytes)?;
+    }
     // The decoders are compiled once for each type of reader: this is the one that `image` itself uses.
     let reader = || ImageReader::with_format(Cursor::new(bytes.as_slice()), format);
-    let (width, height) = reader().into_dimensions().map_err(damaged)?;
+    let of_image = |error: image::ImageError| damaged(error.to_string());
+    let (width, height) = decoder::run(|| reader().into_dimensions().map_err(of_image), damaged)?;
     check_size(path, width as usize, height as usize)?;
     let mut reader = reader();
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(4 << 30);
     reader.limits(limits);
-    reader.decode().map_err(damaged)
+    decoder::run(|| reader.decode().map_err(of_image), damaged)
+}
+
+/// Refuses an EXR file that `image` cannot read, although nothing is wrong with it.
+fn check_exr_has_color(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
+    let meta = exr_meta(path, bytes)?;
+    let channels = |header: &exr::meta::header::Header| -> Vec<String> {
+        header.channels.list.iter().map(|channel| channel.name.to_string()).collect()
+    };
+    let has_color = |names: &[String]| ["R", "G", "B"].iter().all(|name| names.iter().any(|n| n == name));
+    let headers: Vec<Vec<String>> = meta.headers.iter().map(channels).collect();
+    if headers.iter().any(|names| has_color(names)) {
+        return Ok(());
+    }
+    Err(PictureError::NoColor { path: path.into(), found: headers.concat().join(", ") })
+}
+
+fn exr_meta(path: &Path, bytes: &[u8]) -> Result<exr::meta::MetaData, PictureError> {
+    let damaged = |reason| PictureError::Damaged { path: path.into(), reason };
+    let read = || exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
+    decoder::run(|| read().map_err(|error| damaged(error.to_string())), damaged)
 }
 
 fn check_size(path: &Path, width: usize, height: usize) -> Result<(), PictureError> {
@@ -109,20 +132,21 @@ fn check_size(path: &Path, width: usize, height: usize) -> Result<(), PictureErr
 }
 
 fn decode_exr_channel(path: &Path, bytes: &[u8]) -> Result<DepthImage, PictureError> {
-    let damaged =
-        |error: exr::error::Error| PictureError::Damaged { path: path.into(), reason: error.to_string() };
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(damaged)?;
-    for header in &meta.headers {
+    for header in &exr_meta(path, bytes)?.headers {
         check_size(path, header.layer_size.width(), header.layer_size.height())?;
     }
-    let file = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(damaged)?;
+    let damaged = |reason| PictureError::Damaged { path: path.into(), reason };
+    let read = || {
+        exr::prelude::read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .all_layers()
+            .all_attributes()
+            .from_buffered(Cursor::new(bytes))
+            .map_err(|error| damaged(error.to_string()))
+    };
+    let file = decoder::run(read, damaged)?;
     let window = file.attributes.display_window;
     let found = || -> String {
         let names = file.layer_data.iter().flat_map(|layer| &layer.channel_data.list);

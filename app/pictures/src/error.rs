@@ -43,6 +43,14 @@ pub enum PictureError {
         /// The file.
         path: PathBuf,
     },
+    /// An EXR file without colour.
+    #[error("{} is no colour picture (its channels are {found}): give one with the channels R, G and B", path.display())]
+    NoColor {
+        /// The file.
+        path: PathBuf,
+        /// The channels it has.
+        found: String,
+    },
     /// An EXR file without a depth channel.
     #[error("{} has no depth channel (Z, depth, Y or R; it has {found}): name the channel Z", path.display())]
     NoDepthChannel {

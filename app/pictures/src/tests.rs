@@ -40,6 +40,9 @@ fn linear_exr_colour_is_encoded() {
     let path = dir.path().join("a.exr");
     image::Rgb32FImage::from_pixel(4, 4, Rgb([0.5, 0.0, 2.0])).save(&path).unwrap();
     assert_eq!(load_color(&path).unwrap().get_pixel(1, 1).0, [188, 0, 255]);
+    save_depth(&path, &DepthImage::new(4, 4)).unwrap();
+    let error = load_color(&path).unwrap_err().to_string();
+    assert!(error.contains("is no colour picture (its channels are Z)"), "{error}");
 }
 
 #[test]

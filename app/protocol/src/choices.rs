@@ -16,6 +16,9 @@ pub const MAX_KERNEL_HEIGHT: u32 = 15;
 /// Numbers of samples that a pixel of the forward renderer may have.
 pub const MSAA: [u32; 3] = [1, 2, 4];
 
+/// Numbers of bits that the depth of a pixel of several samples may have.
+pub const DEPTH_BITS: [u32; 2] = [16, 32];
+
 /// A text that is none of the names of a type.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
@@ -165,6 +168,91 @@ choices! {
         /// Highest clocks, for short bursts
         Boost = "boost",
     }
+}
+
+/// A stereo method, or the cheaper one of two.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum MethodChoice {
+    /// The cheaper one of conventional and yoro, which are measured in turns while they are in use.
+    #[default]
+    Auto,
+    /// The method of this name.
+    Named(Method),
+}
+
+impl MethodChoice {
+    /// All values.
+    pub const ALL: [MethodChoice; 1 + Method::ALL.len()] = {
+        let mut all = [MethodChoice::Auto; 1 + Method::ALL.len()];
+        let mut i = 0;
+        while i < Method::ALL.len() {
+            all[i + 1] = MethodChoice::Named(Method::ALL[i]);
+            i += 1;
+        }
+        all
+    };
+
+    /// The name in settings and on the page.
+    pub fn name(self) -> &'static str {
+        match self {
+            MethodChoice::Auto => "auto",
+            MethodChoice::Named(method) => method.name(),
+        }
+    }
+
+    /// Returns the method that is used as long as nothing is measured.
+    pub fn first(self) -> Method {
+        match self {
+            MethodChoice::Auto => Method::Yoro,
+            MethodChoice::Named(method) => method,
+        }
+    }
+
+    /// True if a method may be in use.
+    pub fn may_be(self, method: Method) -> bool {
+        match self {
+            MethodChoice::Auto => matches!(method, Method::Conventional | Method::Yoro),
+            MethodChoice::Named(named) => named == method,
+        }
+    }
+}
+
+impl From<Method> for MethodChoice {
+    fn from(method: Method) -> MethodChoice {
+        MethodChoice::Named(method)
+    }
+}
+
+impl FromStr for MethodChoice {
+    type Err = ChoiceError;
+
+    fn from_str(text: &str) -> Result<MethodChoice, ChoiceError> {
+        find(&MethodChoice::ALL, MethodChoice::name, text).map_err(ChoiceError)
+    }
+}
+
+impl Serialize for MethodChoice {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for MethodChoice {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<MethodChoice, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+named! {
+    MethodChoice: &{
+        let mut all = [Choice::new("auto", "The cheaper one of conventional and yoro, which are measured in turns"); MethodChoice::ALL.len()];
+        let mut i = 0;
+        while i < Method::ALL.len() {
+            all[i + 1] = Method::CHOICES[i];
+            i += 1;
+        }
+        all
+    }, |text: &str| find(&MethodChoice::ALL, MethodChoice::name, text);
 }
 
 impl Method {

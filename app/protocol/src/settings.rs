@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, Performance, Pipeline,
-    RendererKind, Ssao,
+    AntiAliasing, DEPTH_BITS, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice,
+    Performance, Pipeline, RendererKind, Ssao,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Row;
@@ -120,10 +120,11 @@ settings! {
     "seed" seed: u64 = 1,
     /// The scene's viewpoint to stand at, from 0; beyond the last it starts over.
     "viewpoint" viewpoint: usize = 0,
-    /// The stereo method to start with.
-    "method" method: Method = Method::Yoro,
+    /// The stereo method to start with; `auto` measures `conventional` and `yoro` on the device and uses the cheaper one.
+    "method" method: MethodChoice = MethodChoice::Auto,
     /// The methods that a tap goes through.
-    "methods" methods: Vec<Method> = vec![Method::Yoro, Method::Conventional, Method::Mono];
+    "methods" methods: Vec<MethodChoice> =
+        [MethodChoice::Auto].into_iter().chain([Method::Yoro, Method::Conventional, Method::Mono].map(Into::into)).collect();
         range(|s| !s.methods.is_empty(), "name at least one method, such as yoro,mono"),
     /// The pipeline that synthesizes the other eye.
     "pipeline" pipeline: Pipeline = Pipeline::default(),
@@ -147,7 +148,7 @@ settings! {
     "anti-aliasing" anti_aliasing: Option<AntiAliasing> = None; auto("after; paper: before"),
     /// How the synthesis reads the rendered eye's edges.
     "edges" edges: Option<Edges> = None;
-        auto("what fits the renderer: all samples of several, hard edges of one"),
+        auto("hard; sample with several samples on OpenGL ES 3.0"),
     /// Hybrid near field: render objects nearer than this (metres) for both eyes.
     "near-field" near_field: Option<f32> = None;
         value_name("METRES");
@@ -183,6 +184,11 @@ settings! {
     "renderer" renderer: RendererKind = RendererKind::Deferred,
     /// forward: samples in each pixel, 1, 2 or 4, as far as the driver has them.
     "msaa" msaa: u32 = 4; value_name("N"); range(|s| MSAA.contains(&s.msaa), "give 1, 2 or 4"),
+    /// forward with several samples: bits of the one depth in each pixel that the synthesis reads, 16 or 32. 16 halve what
+    /// it moves of depth.
+    "depth-bits" depth_bits: u32 = 32;
+        value_name("N");
+        range(|s| DEPTH_BITS.contains(&s.depth_bits), "give 16 or 32"),
     /// Edge of the sun's shadow map in texels, at most 8192; 0 for no shadows.
     "shadow-map" shadow_map: u32 = 2048; range(|s| s.shadow_map <= 8192, "give texels from 0 to 8192"),
     /// Ambient occlusion; the forward renderer has none.
@@ -234,8 +240,12 @@ fn is_positive(number: f32) -> bool {
 }
 
 impl Settings {
-    /// The defaults, changed by a TOML file if there is one, then by `key=value` texts in order. An empty value
-    /// changes nothing: that is what a system property that was taken back reads as.
+    /// The defaults of measurements and pictures, in which nothing is left to the device: the method is yoro.
+    pub fn measured() -> Settings {
+        Settings { method: Method::Yoro.into(), ..Settings::default() }
+    }
+
+    /// The defaults, as [`Settings::changed`] changes them.
     ///
     /// # Errors
     /// [`SettingsError`].
@@ -243,7 +253,20 @@ impl Settings {
         file: Option<&Path>,
         overrides: impl IntoIterator<Item = S>,
     ) -> Result<Settings, SettingsError> {
-        let mut settings = Settings::default();
+        Settings::default().changed(file, overrides)
+    }
+
+    /// Returns these settings, changed by a TOML file if there is one, then by `key=value` texts in order. An empty value
+    /// changes nothing: that is what a system property that was taken back reads as.
+    ///
+    /// # Errors
+    /// [`SettingsError`].
+    pub fn changed<S: AsRef<str>>(
+        self,
+        file: Option<&Path>,
+        overrides: impl IntoIterator<Item = S>,
+    ) -> Result<Settings, SettingsError> {
+        let mut settings = self;
         if let Some(path) = file {
             settings.apply_file(path)?;
         }
@@ -375,17 +398,30 @@ mod tests {
         ])
         .unwrap();
         assert_eq!(settings.scene, "/sdcard/a room.obj");
-        assert_eq!(settings.methods, [Method::Mono, Method::Yoro]);
+        assert_eq!(settings.method, Method::Conventional.into());
+        assert_eq!(settings.methods, [Method::Mono, Method::Yoro].map(MethodChoice::from));
         assert_eq!(settings.imbuffer, ImBufferSize::Fixed([256, 128]));
         assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(Ipd::nearest(0.06))));
         assert_eq!(settings.screen.unwrap().metres(), [0.158, 0.0705]);
         assert_eq!((settings.dominant, settings.duration), (Eye::Left, Some(30.0)));
         assert!(settings.adaptive && settings.hud && settings.ssao == Ssao::Off);
         assert_eq!(settings.pipeline, Pipeline::Paper);
-        let again = with(&["ipd=0.06", "ipd=auto", "imbuffer=4", "methods=mono", "guard-band=0.5"]).unwrap();
+        let again = with(&[
+            "ipd=0.06",
+            "ipd=auto",
+            "imbuffer=4",
+            "method=mono",
+            "method=auto",
+            "methods=auto,mono",
+            "guard-band=0.5",
+        ])
+        .unwrap();
         assert_eq!((again.ipd, again.imbuffer), (None, ImBufferSize::Divisor(4)));
         assert_eq!(again.guard_band, Some(GuardBand::Distance(0.5)));
-        assert_eq!(again.methods, [Method::Mono]);
+        assert_eq!(
+            (again.method, again.methods),
+            (MethodChoice::Auto, vec![MethodChoice::Auto, Method::Mono.into()])
+        );
     }
 
     #[test]
@@ -393,10 +429,11 @@ mod tests {
         refused("speed=3", &["\"speed\"", "render-scale"]);
         refused("speed=", &["\"speed\""]);
         refused("method", &["method", "key=value"]);
-        refused("method=fast", &["\"method\"", "fast", "conventional"]);
+        refused("method=fast", &["\"method\"", "fast", "auto", "conventional"]);
         refused("ipd=0.2", &["\"ipd\"", &Ipd::MAX.to_string(), &Ipd::DEFAULT.to_string()]);
         refused("split-disparity=0", &["\"split-disparity\"", "pixels"]);
         refused("msaa=8", &["\"msaa\"", "1, 2 or 4"]);
+        refused("depth-bits=24", &["\"depth-bits\"", "16 or 32"]);
         refused("renderer=fast", &["\"renderer\"", "forward"]);
         refused("point-lights=25", &[&MAX_POINT_LIGHTS.to_string()]);
         refused("ipd=wide", &["\"ipd\"", "wide"]);
@@ -422,7 +459,7 @@ mod tests {
         std::fs::write(&path, "method = \"mono\"\nipd = 0.06\nmethods = [\"mono\"]\nguard-band = 2\n")
             .unwrap();
         let settings = Settings::resolve(Some(&path), ["method=conventional"]).unwrap();
-        assert_eq!((settings.method, settings.ipd), (Method::Conventional, Some(Ipd::nearest(0.06))));
+        assert_eq!((settings.method, settings.ipd), (Method::Conventional.into(), Some(Ipd::nearest(0.06))));
         assert_eq!(settings.guard_band, Some(GuardBand::Distance(2.0)));
         for (text, naming) in [
             ("speed = 3\n", "\"speed\""),

@@ -125,7 +125,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     }
     let bounds = model.bounds();
     let extent = (bounds.max - bounds.min).max_element();
-    if !(1e-3..1e6).contains(&extent) || bounds.center().length() > 1e7 {
+    if !(1e-3..1e6).contains(&extent) || bounds.center().length() > camera_path::FARTHEST {
         return Err(SceneError::unusable(
             path,
             format!(

@@ -37,6 +37,9 @@ pub fn read(file: &Path) -> Result<Vec<Viewpoint>, PathError> {
     Ok(viewpoints)
 }
 
+/// The farthest place from the origin, in metres: f32 has steps of 8 mm there, an eighth of the distance between the eyes.
+pub const FARTHEST: f32 = 1e5;
+
 /// Checks the viewpoints of a file; the error is the fault.
 pub(super) fn check(viewpoints: &[Viewpoint]) -> Result<(), String> {
     if viewpoints.is_empty() {
@@ -45,6 +48,13 @@ pub(super) fn check(viewpoints: &[Viewpoint]) -> Result<(), String> {
     for (i, v) in viewpoints.iter().enumerate() {
         if !v.position.is_finite() || !v.target.is_finite() {
             return Err(format!("viewpoint {} has coordinates that are not numbers", i + 1));
+        }
+        let away = v.position.length().max(v.target.length());
+        if away > FARTHEST {
+            return Err(format!(
+                "viewpoint {} is {away} m away from the origin, {FARTHEST} m at most tell the eyes apart",
+                i + 1
+            ));
         }
         if v.position.distance(v.target) < 1e-6 {
             return Err(format!("viewpoint {} looks at the place where it is", i + 1));

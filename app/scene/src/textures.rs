@@ -6,11 +6,13 @@ use std::io::{Cursor, Read as _};
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
+use image::error::{DecodingError, ImageFormatHint};
 use image::{ImageError, ImageReader, Rgba, RgbaImage};
 use rayon::prelude::*;
 
 use super::error::SceneError;
 use super::model::TextureImage;
+use yoro_files::decoder;
 
 /// Longest edge of a picture that is read.
 const MAX_SOURCE_EDGE: u32 = 16384;
@@ -200,7 +202,9 @@ impl TextureSet {
         let found = self.bytes(source).and_then(|bytes| {
             let reader = self.reader(source, &bytes)?;
             match reader.format() {
-                Some(f) if f.reading_enabled() => reader.into_dimensions().map(Some),
+                Some(f) if f.reading_enabled() => {
+                    decoder::run(|| reader.into_dimensions().map(Some), damaged)
+                }
                 _ => Ok(None),
             }
         });
@@ -234,7 +238,7 @@ impl TextureSet {
             // EXR has 16 bytes a pixel.
             limits.max_alloc = Some(MAX_SOURCE_PIXELS * 16);
             reader.limits(limits);
-            reader.decode()
+            decoder::run(|| reader.decode(), damaged)
         });
         match decoded {
             Ok(image) => {
@@ -277,6 +281,11 @@ impl TextureSet {
         }
         Ok(reader.with_guessed_format()?)
     }
+}
+
+/// An error of a decoder.
+fn damaged(reason: String) -> ImageError {
+    ImageError::Decoding(DecodingError::new(ImageFormatHint::Unknown, reason))
 }
 
 impl Recipe {

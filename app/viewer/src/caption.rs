@@ -4,18 +4,21 @@ use std::fmt::{self, Write};
 
 use yoro_lenses::COLUMNS;
 use yoro_protocol::telemetry::Line;
+use yoro_render::stereo::Auto;
 
 /// How long a message stays in view, in nanoseconds.
 const MESSAGE_NS: i64 = 2_000_000_000;
 
 /// The application's state that the HUD shows.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Status<'a> {
     /// The line of the last second.
     pub frames: Option<&'a Line>,
     /// The device's temperature in degrees Celsius.
     pub celsius: Option<f32>,
     pub method: &'a str,
+    /// The reason for the method, if it was not named.
+    pub auto: Option<&'a Auto>,
     pub pipeline: Option<&'a str>,
     /// The scene that is on its way.
     pub loading: Option<&'a str>,
@@ -78,7 +81,10 @@ impl Caption {
                 }
                 text.push('\n');
             }
-            writeln!(text, "{} {}", status.method, status.pipeline.unwrap_or_default())?;
+            match status.auto {
+                Some(auto) => writeln!(text, "auto:{} {auto}", status.method)?,
+                None => writeln!(text, "{} {}", status.method, status.pipeline.unwrap_or_default())?,
+            }
             match (status.loading, message) {
                 (Some(scene), _) => write!(text, "loading {scene}"),
                 (None, Some(message)) => text.write_str(message),

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use yoro_protocol::{Ipd, Method};
+use yoro_protocol::{Ipd, MethodChoice};
 
 /// An action of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub enum Event {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// The method that is used now.
-    Method(Method),
+    Method(MethodChoice),
     /// The head's direction starts over: that is for the display to do.
     Recenter,
     /// The distance between the eyes.

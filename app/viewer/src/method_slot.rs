@@ -5,25 +5,31 @@ use std::rc::Rc;
 use crate::adaptive::{Controller, Load, Quality};
 use crate::error::ViewerError;
 use crate::scene_slot::Shown;
+use yoro::choice::Cost;
 use yoro::eyes::{EyePair, EyesError};
 use yoro_gl::{Context, GlError};
 use yoro_protocol::Settings;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{
-    self, EyeTarget, GuardBandUse, ImBufferSize, Method, Pipeline, StereoMethod, StereoOptions, Substitute,
+    self, Auto, Chosen, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, StereoOptions,
+    Substitute,
 };
 
 /// The stereo method in use, made once there is a scene.
 pub(crate) struct MethodSlot {
-    method: Method,
+    choice: MethodChoice,
     pipeline: Pipeline,
     controller: Controller,
+    /// The device's thermal headroom, where it is known.
+    headroom: Option<f32>,
+    /// Both methods of [`MethodChoice::Auto`] were rendered in this second.
+    is_mixed: bool,
     /// The quality that the controller asked for last.
     quality: Quality,
     /// The reason why neither eye of the last frame can be synthesized from the other, if so.
     unfit: Option<EyesError>,
     /// The method, while there is a scene to use it on.
-    made: Option<Box<dyn StereoMethod>>,
+    made: Option<Chosen>,
     /// Renders both eyes while they are unfit.
     substitute: Substitute,
 }
@@ -32,9 +38,11 @@ impl MethodSlot {
     /// The method of the settings, at full quality.
     pub fn new(settings: &Settings) -> MethodSlot {
         MethodSlot {
-            method: settings.method,
+            choice: settings.method,
             pipeline: settings.pipeline,
             controller: Controller::new(),
+            headroom: None,
+            is_mixed: false,
             quality: Quality::FULL,
             unfit: None,
             made: None,
@@ -43,13 +51,13 @@ impl MethodSlot {
     }
 
     /// Returns method and pipeline, to be restored by [`MethodSlot::set_choice`].
-    pub fn choice(&self) -> (Method, Pipeline) {
-        (self.method, self.pipeline)
+    pub fn choice(&self) -> (MethodChoice, Pipeline) {
+        (self.choice, self.pipeline)
     }
 
     /// Chooses a method and a pipeline without making them.
-    pub fn set_choice(&mut self, (method, pipeline): (Method, Pipeline)) {
-        (self.method, self.pipeline) = (method, pipeline);
+    pub fn set_choice(&mut self, (choice, pipeline): (MethodChoice, Pipeline)) {
+        (self.choice, self.pipeline) = (choice, pipeline);
     }
 
     /// Chooses the pipeline of the settings, or the one that every driver can do.
@@ -65,13 +73,25 @@ impl MethodSlot {
         }
     }
 
-    /// The method's name in log lines.
-    pub fn name(&self) -> &'static str {
-        self.method.name()
+    /// The method in use: of [`MethodChoice::Auto`] the one that was chosen last.
+    pub fn method(&self) -> Method {
+        self.auto().map_or(self.choice.first(), Auto::method)
     }
 
-    pub fn method(&self) -> Method {
-        self.method
+    /// The choice between two methods, if the settings ask for that and they are made.
+    pub fn auto(&self) -> Option<&Auto> {
+        self.made.as_ref()?.auto()
+    }
+
+    /// The reason for the method in use in the log line; `None` if it was named.
+    pub fn reason(&self) -> Option<String> {
+        let auto = self.auto()?;
+        Some(if self.is_mixed { "measuring".into() } else { auto.to_string() })
+    }
+
+    /// Begins a second of the log.
+    pub fn begin_second(&mut self) {
+        self.is_mixed = false;
     }
 
     pub fn pipeline(&self) -> Pipeline {
@@ -80,7 +100,7 @@ impl MethodSlot {
 
     /// The pipeline's name, where the method synthesizes.
     pub fn pipeline_name(&self) -> Option<&'static str> {
-        (self.method == Method::Yoro).then(|| self.pipeline.name())
+        (self.method() == Method::Yoro).then(|| self.pipeline.name())
     }
 
     /// The factor by which the quality reduces the render scale.
@@ -91,7 +111,7 @@ impl MethodSlot {
     /// Divisor of the ImBuffer's resolution, where there is an ImBuffer of the eye's size.
     pub fn imbuffer_divisor(&self, settings: &Settings) -> Option<u32> {
         match self.options(settings).synthesis.paper.imbuffer {
-            ImBufferSize::Divisor(n) if self.method == Method::Yoro && self.pipeline == Pipeline::Paper => {
+            ImBufferSize::Divisor(n) if self.method() == Method::Yoro && self.pipeline == Pipeline::Paper => {
                 Some(n)
             }
             _ => None,
@@ -109,20 +129,15 @@ impl MethodSlot {
         options
     }
 
-    /// Compiles a method with the options in use.
-    fn create(
-        &self,
-        gl: &Rc<Context>,
-        settings: &Settings,
-        method: Method,
-    ) -> Result<Box<dyn StereoMethod>, GlError> {
-        stereo::create(gl, method, &RenderSettings::of_settings(settings), &self.options(settings))
+    /// Compiles the chosen method with the options in use.
+    fn create(&self, gl: &Rc<Context>, settings: &Settings) -> Result<Chosen, GlError> {
+        Chosen::new(gl, self.choice, &RenderSettings::of_settings(settings), &self.options(settings))
     }
 
     /// Compiles the current method, if there is a context with a scene to use it on.
     pub fn make(&mut self, gl: Option<&Rc<Context>>, settings: &Settings) -> Result<(), GlError> {
         if let Some(gl) = gl {
-            self.made = Some(self.create(gl, settings, self.method)?);
+            self.made = Some(self.create(gl, settings)?);
             self.substitute = Substitute::default();
         }
         self.controller.restart();
@@ -131,11 +146,11 @@ impl MethodSlot {
 
     /// Compiles the method for the first time, or synthesis where the driver cannot do it.
     pub fn make_first(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
-        let made = match self.create(gl, settings, self.method) {
-            Err(GlError::Unsupported(reason)) if self.method != Method::Yoro => {
-                log::warn!("{} is used instead of {}: {reason}", Method::Yoro.name(), self.method.name());
-                self.method = Method::Yoro;
-                self.create(gl, settings, self.method)
+        let made = match self.create(gl, settings) {
+            Err(GlError::Unsupported(reason)) if self.choice != Method::Yoro.into() => {
+                log::warn!("{} is used instead of {}: {reason}", Method::Yoro.name(), self.choice.name());
+                self.choice = Method::Yoro.into();
+                self.create(gl, settings)
             }
             made => made,
         }?;
@@ -154,25 +169,25 @@ impl MethodSlot {
         gl: Option<&Rc<Context>>,
         settings: &Settings,
         step: isize,
-    ) -> Result<Option<Method>, GlError> {
+    ) -> Result<Option<MethodChoice>, GlError> {
         let methods = &settings.methods;
         let count = methods.len() as isize;
-        let at = methods.iter().position(|m| *m == self.method);
+        let at = methods.iter().position(|m| *m == self.choice);
         // A method that is not in the list comes before its first and after its last.
         let start = at.map_or(if step > 0 { 0 } else { -1 }, |at| at as isize + step);
         for next in (0..count).map(|i| methods[(start + i * step).rem_euclid(count) as usize]) {
-            if next == self.method {
+            if next == self.choice {
                 continue;
             }
-            let before = std::mem::replace(&mut self.method, next);
+            let before = std::mem::replace(&mut self.choice, next);
             match self.make(gl, settings) {
                 Ok(()) => return Ok(Some(next)),
                 Err(GlError::Unsupported(reason)) => {
                     log::warn!("the method {} is skipped: {reason}", next.name());
-                    self.method = before;
+                    self.choice = before;
                 }
                 Err(error) => {
-                    self.method = before;
+                    self.choice = before;
                     return Err(error);
                 }
             }
@@ -182,13 +197,13 @@ impl MethodSlot {
 
     /// Checks that one of the eyes can be synthesized from the other, where the method needs that.
     pub fn judge(&mut self, pair: &EyePair) {
-        let unfit = Substitute::reason(self.method, pair);
+        let unfit = Substitute::reason(self.choice.first(), pair);
         if unfit.as_ref().map(std::mem::discriminant) != self.unfit.as_ref().map(std::mem::discriminant) {
             match &unfit {
                 Some(reason) => {
-                    log::warn!("both eyes are rendered instead of using {}: {reason}", self.method.name())
+                    log::warn!("both eyes are rendered instead of using {}: {reason}", self.choice.name())
                 }
-                None => log::info!("{} can be used again", self.method.name()),
+                None => log::info!("{} can be used again", self.choice.name()),
             }
         }
         self.unfit = unfit;
@@ -205,29 +220,54 @@ impl MethodSlot {
     ) -> Result<(), ViewerError> {
         let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
         let method = match &mut self.made {
+            // It renders both eyes by itself.
+            Some(Chosen::Auto(auto)) => auto.as_mut(),
             _ if self.unfit.is_some() => {
                 self.substitute.get(|method| stereo::create(gl, method, &render, &options))?
             }
-            Some(made) => made.as_mut(),
+            Some(Chosen::Named(method)) => method.as_mut(),
             None => return Err(ViewerError::NoContext),
         };
         Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)
     }
 
     /// Returns [`StereoMethod::guard_band`]; `None` while both eyes are rendered in the method's place.
-    pub fn guard_band(&self) -> Option<GuardBandUse> {
-        self.made.as_ref().filter(|_| self.unfit.is_none())?.guard_band()
+    pub fn guard_band(&mut self) -> Option<GuardBandUse> {
+        self.made.as_mut().filter(|_| self.unfit.is_none())?.method().guard_band()
     }
 
-    /// Lets the controller judge a frame. Returns true if the method has to be made again for another ImBuffer, which the
+    /// Ends a frame that was handed to the display, with the GPU time of an earlier one if it is known by now.
+    pub fn end_frame(&mut self, now_ns: i64, refresh_hz: f32, gpu: Option<Cost>) {
+        let Some(auto) = self.made.as_mut().and_then(Chosen::auto_mut) else { return };
+        let (was_measuring, before) = (auto.is_measuring(), auto.choice());
+        auto.end_frame(now_ns, refresh_hz, gpu, self.headroom);
+        self.is_mixed |= was_measuring;
+        if was_measuring && !auto.is_measuring() {
+            log::debug!("auto: {:?} after {before:?}", auto.choice());
+        }
+    }
+
+    /// Measures again, where the cheaper method is used: another place in the scene, or another resolution.
+    pub fn measure_again(&mut self) {
+        if let Some(auto) = self.made.as_mut().and_then(Chosen::auto_mut) {
+            auto.scene_changed();
+        }
+    }
+
+    /// Lets the controller judge a frame; not while two methods are being measured, which have to have the same size. Returns true if the method has to be made again for another ImBuffer, which the
     /// controller keeps rare.
     pub fn adapt(&mut self, load: &Load, settings: &Settings) -> bool {
+        if self.auto().is_some_and(Auto::is_measuring) {
+            self.controller.restart();
+            return false;
+        }
         let before = std::mem::replace(&mut self.quality, self.controller.frame(load));
         before.imbuffer != self.quality.imbuffer && self.imbuffer_divisor(settings).is_some()
     }
 
     /// Sets the device's thermal headroom, where it is known.
     pub fn set_thermal_headroom(&mut self, headroom: Option<f32>) {
+        self.headroom = headroom;
         self.controller.set_thermal_headroom(headroom);
     }
 

@@ -29,6 +29,8 @@ pub struct ViewerState {
     pub imbuffer: Option<u32>,
     /// The name of this run in the settings.
     pub run: Option<String>,
+    /// [`Line::auto`].
+    pub auto: Option<String>,
 }
 
 /// Sum of one stage's GPU times.
@@ -175,6 +177,7 @@ impl Telemetry {
             performance: device.performance.map(str::to_owned),
             guard_columns: guard_band.map(|sum| sum.columns as f64 / f64::from(sum.frames)),
             undrawn: guard_band.map(|sum| sum.undrawn),
+            auto: viewer.auto.clone(),
         }
     }
 

@@ -13,13 +13,16 @@ use super::g_buffer::Layout;
 use super::geometry::{GeometryPass, Part};
 use super::light_tiles::LightTiles;
 use super::lighting::shading_defines;
-use super::request::{PixelDepth, ViewRequest};
+use super::request::{KeptSamples, PixelDepth, ViewRequest};
 use super::scene::GpuScene;
 use super::settings::RenderSettings;
 use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, View};
 use yoro_gl::{Context, GlError, Program, RenderTarget, ShaderSource};
 use yoro_scene::ShadingStyle;
+
+/// For images that are complete.
+const NO_SAMPLES: KeptSamples = KeptSamples { color: false, depth: false };
 
 /// The forward renderer of one scene: passes made for the scene's style and materials.
 pub struct ForwardRenderer {
@@ -132,7 +135,7 @@ impl ViewRenderer for ForwardRenderer {
         self.common.gl.within_columns(drawn, || {
             self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         });
-        self.resolve(targets, view, request.depth != PixelDepth::Unread);
+        self.resolve(targets, view, request.depth != PixelDepth::Unread, request.samples);
         if let Some(drawn) = drawn {
             targets.repeat_columns(drawn)?;
         }
@@ -147,11 +150,11 @@ impl ViewRenderer for ForwardRenderer {
         view: &View,
         depth: bool,
     ) -> Result<(), GlError> {
-        self.fit_for_all(targets, view)?;
+        self.fit_for_all(targets, view, depth)?;
         let culler = Culler::of_view(view);
         self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         self.draw_transparent(targets, scene, &[*view]);
-        self.resolve(targets, view, depth);
+        self.resolve(targets, view, depth, NO_SAMPLES);
         self.develop(targets, view, Eye::Left, false);
         Ok(())
     }
@@ -159,11 +162,12 @@ impl ViewRenderer for ForwardRenderer {
 
 /// Views in parts.
 impl ForwardRenderer {
-    /// Fits targets to a view that is completed at once, so that no sample is needed afterwards.
-    fn fit_for_all(&self, targets: &mut ForwardTargets, view: &View) -> Result<(), GlError> {
+    /// Fits targets to a view that is completed at once, so that no sample is needed afterwards; with `depth` that of each
+    /// pixel is.
+    fn fit_for_all(&self, targets: &mut ForwardTargets, view: &View, depth: bool) -> Result<(), GlError> {
         targets.request = ViewRequest::default();
-        // Outlines read the samples.
-        targets.fit(view.size, self.develops(), !self.ink)
+        // Outlines read the samples, and a tile's depth is lost: EXT_multisampled_render_to_texture2 discards it.
+        targets.fit(view.size, self.develops(), !self.ink && !depth)
     }
 
     /// True if bloom or outlines come after the average of the samples.
@@ -182,7 +186,7 @@ impl ForwardRenderer {
         depth: bool,
     ) {
         self.draw_after_synthesis(targets, scene, view, near);
-        self.resolve(targets, view, depth);
+        self.resolve(targets, view, depth, NO_SAMPLES);
         self.develop(targets, view, Eye::Left, near.is_none());
     }
 
@@ -202,7 +206,7 @@ impl ForwardRenderer {
             self.soften(targets, image.depth(), view);
         });
         self.draw_after_synthesis(targets, scene, view, near);
-        self.resolve_to(targets, image, view, depth);
+        self.resolve_to(targets, image, view, depth, NO_SAMPLES);
     }
 
     /// Draws near objects and transparent surfaces into the targets of one view.
@@ -235,7 +239,7 @@ impl ForwardRenderer {
     ) -> Result<(), GlError> {
         targets.fit(view.size, false, false)?;
         self.draw_on_sky(targets, scene, &[*view], &Part::Slice(slice));
-        self.resolve(targets, view, true);
+        self.resolve(targets, view, true, NO_SAMPLES);
         Ok(())
     }
 
@@ -250,7 +254,7 @@ impl ForwardRenderer {
         (far, crop): (&ForwardTargets, [u32; 2]),
         depth: bool,
     ) -> Result<(), GlError> {
-        self.fit_for_all(targets, view)?;
+        self.fit_for_all(targets, view, depth)?;
         let views = std::slice::from_ref(view);
         self.common.gl.pass("forward", || {
             self.load(targets, (far.resolved.color(0), far.depth()), crop, view);
@@ -260,7 +264,7 @@ impl ForwardRenderer {
             }
         });
         self.draw_transparent(targets, scene, views);
-        self.resolve(targets, view, depth);
+        self.resolve(targets, view, depth, NO_SAMPLES);
         self.develop(targets, view, Eye::Left, false);
         Ok(())
     }
@@ -275,10 +279,10 @@ impl ForwardRenderer {
         depth: bool,
     ) -> Result<(), GlError> {
         let view = &views[0];
-        self.fit_for_all(targets, view)?;
+        self.fit_for_all(targets, view, depth)?;
         self.draw_on_sky(targets, scene, views, &Part::Slice([view.depth.near, view.depth.far]));
         self.draw_transparent(targets, scene, views);
-        self.resolve(targets, view, depth);
+        self.resolve(targets, view, depth, NO_SAMPLES);
         Ok(())
     }
 }

@@ -170,16 +170,15 @@ impl ForwardRenderer {
         self.common.gl.set_viewport(origin, view.size);
     }
 
-    /// Averages the samples, and takes their nearest depth if `depth` is wanted, or if outlines need it; samples that are not
-    /// kept are given up.
-    pub(super) fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool) {
+    /// Averages the samples, and takes their nearest depth if `depth` is wanted, or if outlines need it. Samples that are not
+    /// to be kept are given up.
+    pub(super) fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool, keep: KeptSamples) {
         let depth = depth || (self.ink && !targets.is_readable());
         if let Some(tile) = targets.tile() {
-            if !depth {
-                tile.discard_depth();
-            }
+            debug_assert!(!depth, "depth of tiles is lost");
+            tile.discard_depth();
         } else if targets.samples().is_some() {
-            self.resolve_to(targets, &targets.resolved, view, depth);
+            self.resolve_to(targets, &targets.resolved, view, depth, keep);
         }
         if depth {
             targets.has_resolved_depth();
@@ -188,7 +187,14 @@ impl ForwardRenderer {
 
     /// Does the same as [`ForwardRenderer::resolve`] into another image, which has the view's size, 8-bit colour and float
     /// depth.
-    pub(super) fn resolve_to(&self, targets: &ForwardTargets, to: &RenderTarget, view: &View, depth: bool) {
+    pub(super) fn resolve_to(
+        &self,
+        targets: &ForwardTargets,
+        to: &RenderTarget,
+        view: &View,
+        depth: bool,
+        keep: KeptSamples,
+    ) {
         let gl = &self.common.gl;
         let Some(samples) = targets.samples() else {
             let (color, depth) = (targets.resolved.color(0), targets.depth());
@@ -198,7 +204,7 @@ impl ForwardRenderer {
             });
             return;
         };
-        let KeptSamples { color, depth: kept_depth } = targets.request.samples;
+        targets.keeps(keep);
         let nearest = depth && targets.is_readable() && targets.request.depth != PixelDepth::FirstSample;
         let reads_depth = self.ink || nearest;
         gl.pass("resolve", || {
@@ -206,13 +212,12 @@ impl ForwardRenderer {
             if depth && !nearest {
                 samples.resolve_depth(to);
             }
-            samples.discard(!(color || self.ink), !(kept_depth || reads_depth));
+            samples.discard(!(keep.color || self.ink), !(keep.depth || reads_depth));
         });
         if let (true, Some(program), Some(map)) = (nearest, &self.nearest, samples.depth()) {
             gl.pass("nearest depth", || {
-                to.bind();
+                to.overwrite_depth();
                 gl.set_raster_state(&RasterState::SCREEN_DEPTH);
-                gl.mask_color();
                 program
                     .bind()
                     .texture_multisample("depth_map", 0, map)
@@ -242,7 +247,7 @@ impl ForwardRenderer {
         }
         self.common.gl.pass("develop", || {
             self.common.gl.set_raster_state(&RasterState::SCREEN);
-            to.bind();
+            to.overwrite();
             program
                 .bind()
                 .texture("source", 0, source.raw())

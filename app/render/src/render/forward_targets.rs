@@ -6,16 +6,13 @@ use std::rc::Rc;
 use super::bloom::BloomTargets;
 use super::deferred::hdr_format;
 use super::g_buffer::Layout;
-use super::request::ViewRequest;
-use super::settings::RenderSettings;
+use super::request::{KeptSamples, ViewRequest};
+use super::settings::{RenderSettings, SAMPLE_DEPTH};
 use super::view::ViewImages;
 use yoro::eyes::Eye;
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,
 };
-
-/// Float for both conventions, as synthesized images have it, whose depth is loaded.
-const DEPTH: Format = Format::Depth32F;
 
 /// The images of one view, or of both eyes side by side.
 ///
@@ -39,6 +36,8 @@ pub struct ForwardTargets {
     pub(super) request: ViewRequest,
     /// True if the resolved depth is that of what was drawn.
     has_depth: Cell<bool>,
+    /// The samples that still hold what was drawn.
+    kept: Cell<KeptSamples>,
     /// One column of colour, which is repeated beside the columns that are drawn.
     column: Option<RenderTarget>,
 }
@@ -63,8 +62,9 @@ impl ForwardTargets {
         settings.supported(gl.capabilities())?;
         let bloom = settings.bloom.then(|| BloomTargets::new(gl, hdr_format(gl)));
         let size = layout.texture_size([1, 1]);
-        let samples = (settings.samples() > 1)
-            .then(|| MultisampleTarget::new(gl, size, settings.samples(), Format::Rgba8, DEPTH, readable));
+        let samples = (settings.samples() > 1).then(|| {
+            MultisampleTarget::new(gl, size, settings.samples(), Format::Rgba8, SAMPLE_DEPTH, readable)
+        });
         let tile = (settings.samples() > 1 && gl.capabilities().tile_samples)
             .then(|| TileTarget::new(gl, settings.samples()));
         let formats = [(Format::Rgba8, Filter::Linear)];
@@ -74,11 +74,12 @@ impl ForwardTargets {
             samples: samples.transpose()?,
             tile: tile.transpose()?,
             in_tile: false,
-            resolved: RenderTarget::new(gl, size, &formats, Some(DEPTH))?,
+            resolved: RenderTarget::new(gl, size, &formats, Some(settings.depth_format(readable)))?,
             bloom: bloom.transpose()?,
             developed: None,
             request: ViewRequest::default(),
             has_depth: Cell::new(false),
+            kept: Cell::new(KeptSamples::default()),
             column: None,
         })
     }
@@ -163,11 +164,17 @@ impl ForwardTargets {
     /// Notes that depth is drawn: the resolved one is another until it is resolved again, if there are samples.
     pub(super) fn draws_depth(&self) {
         self.has_depth.set(self.samples.is_none());
+        self.kept.set(KeptSamples::default());
     }
 
     /// Notes that the resolved depth is that of what was drawn.
     pub(super) fn has_resolved_depth(&self) {
         self.has_depth.set(true);
+    }
+
+    /// Notes which samples still hold what was drawn.
+    pub(super) fn keeps(&self, samples: KeptSamples) {
+        self.kept.set(samples);
     }
 
     /// Binds what is drawn into, with a viewport for an image of `size` pixels.
@@ -186,8 +193,7 @@ impl ViewImages for ForwardTargets {
         self.developed.as_ref().unwrap_or(&self.resolved)
     }
 
-    /// The nearest depth of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0), and
-    /// where samples stayed in tiles.
+    /// The nearest depth of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0).
     ///
     /// # Panics
     /// If it was not requested since the last surface was drawn.
@@ -197,11 +203,11 @@ impl ViewImages for ForwardTargets {
     }
 
     fn depth_samples(&self) -> Option<glow::Texture> {
-        self.samples().filter(|_| self.request.samples.depth)?.depth()
+        self.samples().filter(|_| self.kept.get().depth)?.depth()
     }
 
     /// The samples' colour, unless bloom or outlines are added to their average.
     fn color_samples(&self) -> Option<glow::Texture> {
-        self.samples().filter(|_| self.request.samples.color && self.developed.is_none())?.color()
+        self.samples().filter(|_| self.kept.get().color && self.developed.is_none())?.color()
     }
 }

@@ -203,6 +203,40 @@ fn transparent_surfaces_are_tested_per_sample() {
     assert_eq!(gl.take_errors(), None);
 }
 
+/// What is complete keeps no samples: nobody reads them, and a tile-based GPU would write 32 bytes a pixel.
+#[test]
+fn samples_are_given_up_once_drawing_has_resumed() {
+    let head = open();
+    let (scene, renderer, mut targets) = forward(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
+    let view = view(DepthConvention::Standard);
+    renderer.render(&mut targets, &scene, &view, &RESUMED).unwrap();
+    assert!(targets.depth_samples().is_some() && targets.color_samples().is_some());
+    renderer.resume_samples(&targets, &scene, &view, None, false);
+    assert!(targets.depth_samples().is_none() && targets.color_samples().is_none());
+}
+
+/// The samples' own depth stays float: rounding it would let surfaces show through one another.
+#[test]
+fn depth_of_16_bits_is_that_of_32_rounded() {
+    let head = open();
+    let gl = head.gl();
+    for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+        let view = view(convention);
+        let [(fine_color, fine), (color, coarse)] = [32, 16].map(|depth_bits| {
+            let settings = RenderSettings { depth_bits, ..with_samples(4) };
+            let (scene, renderer, mut targets) = forward(gl, scene(ShadingStyle::Realistic), &settings);
+            renderer.render(&mut targets, &scene, &view, &RESUMED).unwrap();
+            let color = targets.color().read_rgba8(0, [0, 0], view.size);
+            (color, depths(gl, targets.depth(), &view))
+        });
+        assert!(color == fine_color);
+        let off = |(a, b): (&f32, &f32)| (a - b).abs() * 65535.0;
+        let furthest = fine.iter().zip(&coarse).map(off).fold(0.0, f32::max);
+        assert!(furthest > 0.1 && furthest < 0.51, "{convention:?}: {furthest} steps");
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
 #[test]
 fn drawing_resumes_over_a_synthesized_eye() {
     let head = open();

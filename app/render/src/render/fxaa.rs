@@ -29,7 +29,7 @@ impl Fxaa {
     pub fn run(&self, source: &Texture, crop: [u32; 2], to: &Destination) {
         self.gl.pass("fxaa", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
-            self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+            self.gl.overwrite(to, 1, false);
             let offset = IVec2::from(crop.map(|n| n as i32)) - IVec2::from(to.origin.map(|n| n as i32));
             self.program.bind().texture("source", 0, source.raw()).set("offset", offset);
             self.gl.draw_screen();

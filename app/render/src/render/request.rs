@@ -21,7 +21,8 @@ pub enum PixelDepth {
     /// The nearest of each pixel's samples.
     #[default]
     Nearest,
-    /// The depth of each pixel's first sample, as drivers resolve it: the only one without multisample textures.
+    /// The depth of each pixel's first sample, as drivers resolve it: the only one without multisample textures. Not with
+    /// [`RenderSettings::depth_bits`](super::RenderSettings::depth_bits) of 16: drivers copy between equal formats.
     FirstSample,
 }
 

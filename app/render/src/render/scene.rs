@@ -149,7 +149,7 @@ impl GpuScene {
     /// Uploads a scene, and sorts its triangles into clusters. Its memory is freed as soon as GL has copied it.
     ///
     /// # Errors
-    /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::Object`] without memory.
+    /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::OutOfMemory`] without memory.
     pub fn upload(gl: &Rc<Context>, scene: Scene) -> Result<GpuScene, GlError> {
         static NEXT_ID: AtomicU64 = AtomicU64::new(0);
         let Scene { name, mut model, style, sky, lights, viewpoints } = scene;

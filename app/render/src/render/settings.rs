@@ -1,8 +1,12 @@
 //! Settings of the renderer.
 
-use yoro_gl::{Capabilities, GlError};
+use yoro_gl::{Capabilities, Format, GlError};
+use yoro_protocol::{DEPTH_BITS, Settings, Ssao};
 pub use yoro_protocol::{MAX_POINT_LIGHTS, MSAA, RendererKind};
-use yoro_protocol::{Settings, Ssao};
+
+/// The format of each sample's depth in the forward renderer: float for both conventions, as synthesized images have it,
+/// whose depth is loaded. With 16 bits surfaces that lie close together would show through one another.
+pub(super) const SAMPLE_DEPTH: Format = Format::Depth32F;
 
 /// Settings of the renderer.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -12,6 +16,8 @@ pub struct RenderSettings {
     pub renderer: RendererKind,
     /// Samples in each pixel of the forward renderer: 1, 2 or 4, if the driver has them. The deferred one has one.
     pub msaa: u32,
+    /// Bits of the one depth that the forward renderer makes of a pixel's samples: 16 or 32. The samples have 32.
+    pub depth_bits: u32,
     /// Edge of the sun's shadow map in texels; 0 for no shadows.
     pub shadow_map_size: u32,
     /// Ambient occlusion; the forward renderer has none.
@@ -33,6 +39,7 @@ impl Default for RenderSettings {
         RenderSettings {
             renderer: RendererKind::default(),
             msaa: 4,
+            depth_bits: 32,
             shadow_map_size: 4096,
             ssao: true,
             ssao_half_size: false,
@@ -50,6 +57,7 @@ impl RenderSettings {
         RenderSettings {
             renderer: settings.renderer,
             msaa: settings.msaa,
+            depth_bits: settings.depth_bits,
             shadow_map_size: settings.shadow_map,
             ssao: settings.ssao != Ssao::Off,
             ssao_half_size: settings.ssao == Ssao::Half,
@@ -88,7 +96,18 @@ impl RenderSettings {
                 "there are no {samples} samples a pixel: choose 1, 2 or 4"
             )));
         }
+        if !DEPTH_BITS.contains(&self.depth_bits) {
+            let bits = self.depth_bits;
+            return Err(GlError::Unsupported(format!("there is no depth of {bits} bits: choose 16 or 32")));
+        }
         capabilities.check_samples(samples)
+    }
+
+    /// Returns the format of the one depth in each pixel of the forward renderer, where shaders can read the samples or not.
+    /// Drivers copy depth between equal formats only.
+    pub(super) fn depth_format(&self, readable: bool) -> Format {
+        let is_coarse = self.depth_bits == 16 && self.samples() > 1 && readable;
+        if is_coarse { Format::Depth16 } else { SAMPLE_DEPTH }
     }
 
     /// Pixels per texel of ambient occlusion, along each axis.

@@ -45,6 +45,11 @@ impl Finish {
         Ok(Finish { gl: setup.gl.clone(), fxaa: fxaa.then(|| Fxaa::new(setup.gl)).transpose()? })
     }
 
+    /// True if an eye's colour is copied as it is.
+    pub(super) fn is_copy(&self) -> bool {
+        self.fxaa.is_none()
+    }
+
     /// Writes an eye's colour, and its depth if the target has depth.
     pub(super) fn run(&self, eye: &EyeImage, to: &EyeTarget) {
         self.color(eye.color, eye.origin, &to.color);

@@ -53,6 +53,11 @@ pub(super) trait FrameMethod: Sized {
     fn guard_band_use(&self) -> Option<GuardBandUse> {
         None
     }
+
+    /// See [`StereoMethod::is_substituted`].
+    fn has_rendered_both(&self) -> bool {
+        false
+    }
 }
 
 /// Returns the renderer as one of the method's kind, checked for this scene.
@@ -77,6 +82,10 @@ impl<M: FrameMethod> StereoMethod for M {
 
     fn guard_band(&self) -> Option<GuardBandUse> {
         self.guard_band_use()
+    }
+
+    fn is_substituted(&self) -> bool {
+        self.has_rendered_both()
     }
 
     fn render_to(

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::render::{DepthCopy, GpuScene, Renderer};
 use yoro::eyes::{Eye, EyePair, EyesError};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
 /// The reason why a stereo frame could not be rendered.
 #[derive(Debug, thiserror::Error)]
@@ -44,6 +44,11 @@ impl StereoFrame {
     /// Returns one eye's image.
     pub fn eye(&self, eye: Eye) -> &RenderTarget {
         &self.eyes[eye.index()]
+    }
+
+    /// Returns both images, left and right.
+    pub fn images(&self) -> [&Texture; 2] {
+        self.eyes.each_ref().map(|eye| eye.color(0))
     }
 
     /// Returns both images as targets, without depth.
@@ -97,6 +102,13 @@ pub trait StereoMethod {
     /// settings that always draw all of it, and before anything was measured.
     fn guard_band(&self) -> Option<GuardBandUse> {
         None
+    }
+
+    /// True if both eyes of the last frame were rendered in place of the method, as [`NearFieldPolicy`] says.
+    ///
+    /// [`NearFieldPolicy`]: super::NearFieldPolicy
+    fn is_substituted(&self) -> bool {
+        false
     }
 
     /// Renders both eyes of a frame into their targets, by [`Eye::index`].

@@ -1,5 +1,6 @@
 //! The stereo methods: ways to make the two eyes of a frame, one file each.
 
+mod auto;
 mod border;
 mod conventional;
 mod finish;
@@ -28,6 +29,7 @@ use std::rc::Rc;
 use crate::render::{DeferredRenderer, ForwardRenderer, Layout, RenderSettings, RendererKind};
 use yoro_gl::{Context, GlError};
 
+pub use auto::{Auto, Chosen};
 use conventional::Conventional;
 use frame::Setup;
 use hybrid::Hybrid;
@@ -36,7 +38,7 @@ pub use method::{DepthTarget, EyeTarget, GuardBandUse, StereoError, StereoFrame,
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
-pub use options::{AntiAliasing, Method, Pipeline, PipelineOptions, StereoOptions};
+pub use options::{AntiAliasing, Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 use shading_reprojection::ShadingReprojection;
 use single_pass::{DeferredPair, SinglePass};

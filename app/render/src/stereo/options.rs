@@ -9,7 +9,7 @@ use yoro::eyes::GuardBand;
 use yoro::synthesis::{self, Edges, Outputs, Synthesis, SynthesisOptions};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_protocol::Settings;
-pub use yoro_protocol::{AntiAliasing, Method, Pipeline};
+pub use yoro_protocol::{AntiAliasing, Method, MethodChoice, Pipeline};
 
 /// Returns what the forward renderer lacks for a method, if anything.
 fn lacking_forward(method: Method) -> Option<&'static str> {
@@ -120,8 +120,10 @@ impl Default for StereoOptions {
 }
 
 impl StereoOptions {
-    /// Returns the meaning of edges for the synthesis. The default depends on the samples of a pixel: with several, all of them
-    /// if shaders can read them, else the first one's depth. Pipelines other than gather know one surface a pixel.
+    /// Returns the meaning of edges for the synthesis. The default depends on the samples of a pixel: if shaders can read them,
+    /// their nearest depth is taken for that of a hard edge, which costs an eighth of what layers do (docs/method.md). Else
+    /// there is the first one's depth, which would leave outlines of objects where they were. Pipelines other than gather
+    /// know one surface a pixel.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for [`Edges::Multisample`] of one sample.
@@ -133,7 +135,7 @@ impl StereoOptions {
             )),
             Some(edges) => Ok(edges),
             None if single => Ok(Edges::Hard),
-            None if capabilities.multisample_textures => Ok(Edges::Multisample),
+            None if capabilities.multisample_textures => Ok(Edges::Hard),
             None => Ok(Edges::Sample),
         }
     }

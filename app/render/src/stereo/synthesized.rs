@@ -12,7 +12,7 @@ use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::{DepthMap, NearFraction};
 use super::options::{AntiAliasing, PipelineOptions, StereoOptions};
 use super::overlay::{EyeSource, Over, Overlay, Smooth};
-use crate::render::{GpuScene, KeptSamples, PixelDepth, Selection, ViewImages, ViewRequest};
+use crate::render::{GpuScene, KeptSamples, PixelDepth, RenderSettings, Selection, ViewImages, ViewRequest};
 use yoro::eyes::{GuardBand, SynthesisViews};
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
@@ -74,6 +74,8 @@ impl<R: StereoRenderer> Synthesized<R> {
     pub(super) fn new(setup: &Setup) -> Result<Synthesized<R>, GlError> {
         let Setup { gl, settings, options } = *setup;
         let edges = options.edges(settings, gl.capabilities())?;
+        // Drivers take the first sample's depth as it is.
+        let depth_bits = if edges == Edges::Sample { 32 } else { settings.depth_bits };
         let reads_samples = edges == Edges::Multisample && gl.capabilities().multisample_textures;
         let switch = options.policy.map(|policy| -> Result<_, GlError> {
             Ok(Switch {
@@ -92,7 +94,7 @@ impl<R: StereoRenderer> Synthesized<R> {
         Ok(Synthesized {
             options: *options,
             edges,
-            targets: R::targets(gl, settings)?,
+            targets: R::targets(gl, &RenderSettings { depth_bits, ..settings.clone() })?,
             synthesizers,
             auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
             smooth: is_smooth.then(|| Smooth::new(gl)).transpose()?,
@@ -194,19 +196,24 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
         self.render_dominant(frame, &views, &over)?;
         let depth_samples = self.depth_samples();
         let color = self.smooth.as_ref().map_or(self.targets.color(), |smooth| &smooth.image);
-        let source = Source {
-            color: color.color(0).raw(),
-            depth: depth_samples.unwrap_or_else(|| self.targets.depth().raw()),
-            samples: self.targets.color_samples(),
-        };
-        let Synthesizer { synthesis, image } =
-            self.synthesizers.get(over.is_any() || frame.wants_depth(other))?;
-        image.resize(pair.size)?;
-        synthesis.synthesize(source, &views.warp, &Destination::whole(image))?;
+        let depth = depth_samples.unwrap_or_else(|| self.targets.depth().raw());
+        let samples = self.targets.color_samples();
+        let source = Source { samples, ..Source::new(color.color(0).raw(), depth) };
+        let needs_depth = over.is_any() || frame.wants_depth(other);
+        // An eye that is complete once it is synthesized is not copied.
+        let is_complete = !needs_depth && self.finish.is_copy();
+        let Synthesizer { synthesis, image } = self.synthesizers.get(needs_depth)?;
+        let mut to = frame.to(other).color;
+        if !is_complete {
+            image.resize(pair.size)?;
+            to = Destination::whole(image);
+        }
+        synthesis.synthesize(source, &views.warp, &to)?;
         self.measure(frame, &views);
-        let image = &self.synthesizers.get(over.is_any() || frame.wants_depth(other))?.image;
+        let image = &self.synthesizers.get(needs_depth)?.image;
         let eyes = [EyeSource::Rendered(self.smooth.as_ref()), EyeSource::Synthesized(image)];
-        for (eye, source) in [dominant, other].into_iter().zip(eyes) {
+        let unfinished = if is_complete { 1 } else { 2 };
+        for (eye, source) in [dominant, other].into_iter().zip(eyes).take(unfinished) {
             let drawn = self.overlay.draw(frame, &views, &over, &self.targets, source)?;
             self.finish.run(&drawn, frame.to(eye));
         }
@@ -215,5 +222,9 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
 
     fn guard_band_use(&self) -> Option<GuardBandUse> {
         self.auto_guard_band.as_ref()?.last()
+    }
+
+    fn has_rendered_both(&self) -> bool {
+        self.switch.as_ref().is_some_and(|switch| switch.mode == FrameMode::BothRendered)
     }
 }

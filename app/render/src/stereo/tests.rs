@@ -49,29 +49,29 @@ fn scene() -> Scene {
 }
 
 /// Only what stays on its pixel: no ambient occlusion, no bloom.
-fn local() -> RenderSettings {
+pub(super) fn local() -> RenderSettings {
     RenderSettings { shadow_map_size: 256, ssao: false, bloom: false, ..RenderSettings::default() }
 }
 
-fn pair(dominant: Eye, convention: DepthConvention) -> EyePair {
+pub(super) fn pair(dominant: Eye, convention: DepthConvention) -> EyePair {
     let depth = DepthRange { near: 0.2, far: 500.0, convention };
     EyePair::parallel(Pose::IDENTITY, Frustum::symmetric(1.0, 4.0 / 3.0), 0.063, depth, SIZE, dominant)
 }
 
-struct Rig {
+pub(super) struct Rig {
     scene: GpuScene,
     renderer: Renderer,
     frame: StereoFrame,
 }
 
 impl Rig {
-    fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Rig {
+    pub(super) fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Rig {
         let scene = GpuScene::upload(gl, scene()).unwrap();
         let renderer = Renderer::new(gl, settings, &scene).unwrap();
         Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() }
     }
 
-    fn render(&mut self, method: &mut dyn StereoMethod, pair: &EyePair) -> [Vec<u8>; 2] {
+    pub(super) fn render(&mut self, method: &mut dyn StereoMethod, pair: &EyePair) -> [Vec<u8>; 2] {
         method.render(&mut self.renderer, &self.scene, pair, &mut self.frame).unwrap();
         Eye::BOTH.map(|eye| self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size))
     }
@@ -346,8 +346,14 @@ fn forward() -> RenderSettings {
     RenderSettings { renderer: RendererKind::Forward, ..local() }
 }
 
-/// Counts how often a frame takes the nearest depth of a view's samples. `wanted`: by [`Eye::index`], who wants its depth.
-fn depths_taken(gl: &Rc<Context>, rig: &mut Rig, method: &mut dyn StereoMethod, wanted: [bool; 2]) -> usize {
+/// Counts the passes of this name in a frame. `wanted`: by [`Eye::index`], who wants its depth.
+fn count_passes(
+    gl: &Rc<Context>,
+    rig: &mut Rig,
+    method: &mut dyn StereoMethod,
+    wanted: [bool; 2],
+    name: &str,
+) -> usize {
     let pair = pair(Eye::Right, DepthConvention::Reversed);
     let copy = DepthCopy::new(gl).unwrap();
     let depth = [(); 2].map(|()| RenderTarget::new(gl, SIZE, &[], Some(Format::Depth32F)).unwrap());
@@ -360,7 +366,7 @@ fn depths_taken(gl: &Rc<Context>, rig: &mut Rig, method: &mut dyn StereoMethod, 
     let passes = gl.take_pass_times();
     gl.set_profiling(Profiling::Off);
     assert!(passes.iter().any(|pass| pass.name == "forward"));
-    passes.iter().filter(|pass| pass.name == "nearest depth").count()
+    passes.iter().filter(|pass| pass.name == name).count()
 }
 
 #[test]
@@ -368,7 +374,7 @@ fn the_nearest_depth_is_resolved_only_where_it_is_read() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut rig = Rig::new(gl, &forward());
-    let plain = StereoOptions::default();
+    let plain = StereoOptions { edges: Some(Edges::Multisample), ..StereoOptions::default() };
     assert!(plain.policy.is_some(), "the switch to two renders reads the samples");
     let near = StereoOptions { near_field: Some(1.6), ..plain };
     let of = |edges| StereoOptions { edges: Some(edges), ..plain };
@@ -389,16 +395,58 @@ fn the_nearest_depth_is_resolved_only_where_it_is_read() {
         (of(Edges::Sample), nobody, 0),
     ] {
         let mut method = create(gl, Method::Yoro, &forward(), &options).unwrap();
-        let taken = depths_taken(gl, &mut rig, &mut *method, wanted);
+        let taken = count_passes(gl, &mut rig, &mut *method, wanted, "nearest depth");
         assert_eq!(taken, expected, "{wanted:?}, {options:?}");
     }
     // Everything is too near: the third frame is rendered twice, and the switch reads the dominant eye's depth.
     let policy = Some(NearFieldPolicy { distance: 400.0, ..NearFieldPolicy::default() });
     let mut method = create(gl, Method::Yoro, &forward(), &StereoOptions { policy, ..plain }).unwrap();
     assert_eq!(
-        [nobody, nobody, nobody, both].map(|wanted| depths_taken(gl, &mut rig, &mut *method, wanted)),
+        [nobody, nobody, nobody, both].map(|wanted| count_passes(
+            gl,
+            &mut rig,
+            &mut *method,
+            wanted,
+            "nearest depth"
+        )),
         [0, 0, 1, 2]
     );
+    assert_eq!(gl.take_errors(), None);
+}
+
+/// A copy is 8 bytes a pixel. Glass is drawn over both eyes, and who wants an eye's depth gets it from the image beside it.
+#[test]
+fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut opaque = scene();
+    opaque.model.materials[3].alpha = Alpha::Opaque;
+    let [nobody, other] = [[false, false], [true, false]];
+    let mut pictures = Vec::new();
+    for (scene, wanted, copies) in [(scene(), nobody, 2), (opaque.clone(), nobody, 1), (opaque, other, 2)] {
+        let mut rig = Rig::new(gl, &forward());
+        rig.scene = GpuScene::upload(gl, scene).unwrap();
+        rig.renderer = Renderer::new(gl, &forward(), &rig.scene).unwrap();
+        let mut method = create(gl, Method::Yoro, &forward(), &StereoOptions::default()).unwrap();
+        assert_eq!(count_passes(gl, &mut rig, &mut *method, wanted, "copy"), copies);
+        pictures.push(Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE)));
+    }
+    assert!(pictures[0] != pictures[1] && pictures[1] == pictures[2]);
+    assert_eq!(gl.take_errors(), None);
+}
+
+/// Drivers copy the first sample's depth between equal formats only.
+#[test]
+fn the_first_samples_depth_is_not_rounded() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let options = StereoOptions { edges: Some(Edges::Sample), ..StereoOptions::default() };
+    let [fine, coarse] = [32, 16].map(|depth_bits| {
+        let settings = RenderSettings { depth_bits, ..forward() };
+        let mut method = create(gl, Method::Yoro, &settings, &options).unwrap();
+        Rig::new(gl, &settings).render(&mut *method, &pair(Eye::Left, DepthConvention::Reversed))
+    });
+    assert!(fine == coarse);
     assert_eq!(gl.take_errors(), None);
 }
 
@@ -406,15 +454,17 @@ fn the_nearest_depth_is_resolved_only_where_it_is_read() {
 fn reading_the_nearest_depth_changes_no_picture() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
-    for near_field in [None, Some(1.6)] {
-        let options = StereoOptions { near_field, ..StereoOptions::default() };
+    for (near_field, edges) in
+        [(None, Edges::Multisample), (Some(1.6), Edges::Multisample), (None, Edges::Hard)]
+    {
+        let options = StereoOptions { near_field, edges: Some(edges), ..StereoOptions::default() };
         let mut rig = Rig::new(gl, &forward());
         let mut method = create(gl, Method::Yoro, &forward(), &options).unwrap();
         let [unread, read] = [[false; 2], [true; 2]].map(|wanted| {
-            depths_taken(gl, &mut rig, &mut *method, wanted);
+            count_passes(gl, &mut rig, &mut *method, wanted, "nearest depth");
             Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE))
         });
-        assert!(unread == read, "{near_field:?}");
+        assert!(unread == read, "{near_field:?}, {edges:?}");
     }
     assert_eq!(gl.take_errors(), None);
 }
@@ -464,7 +514,7 @@ fn of_columns(
         synthesis::create(gl, &options, Outputs { depth: true, ..Outputs::default() }).unwrap();
     let formats = [(Format::Rgba8, Filter::Linear)];
     let other = RenderTarget::new(gl, pair.size, &formats, Some(Format::Depth32F)).unwrap();
-    let source = Source { color: targets.color().color(0).raw(), depth, samples };
+    let source = Source { samples, ..Source::new(targets.color().color(0).raw(), depth) };
     synthesis.synthesize(source, &views.warp, &Destination::whole(&other)).unwrap();
     renderer.resume_samples(&targets, scene, &views.source, None, false);
     let rendered = targets.color().read_rgba8(0, views.dominant_crop, pair.size);

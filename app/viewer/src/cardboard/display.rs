@@ -254,7 +254,7 @@ impl Cardboard {
         let rendered = attached.rendered.unwrap_or(displayed);
         let timewarp = self.viewer.settings().timewarp;
         let turn = if timewarp { rendered.inverse() * displayed } else { Quat::IDENTITY };
-        attached.lens.run(&attached.frame, turn, window);
+        attached.lens.run(attached.frame.images(), turn, window);
         attached.presented.set();
         self.viewer.end(timing)
     }

@@ -25,8 +25,8 @@ impl Viewer {
         if let Some(attached) = &self.attached
             && (method_differs || render != RenderSettings::of_settings(&self.settings))
         {
-            let method = if method_differs { settings.method } else { self.method.method() };
-            render.supports(method, attached.gl.capabilities())?;
+            let choice = if method_differs { settings.method } else { self.method() };
+            render.supports(choice.first(), attached.gl.capabilities())?;
         }
         let before = std::mem::replace(&mut self.settings, settings);
         let in_use = self.method.choice();
@@ -44,9 +44,11 @@ impl Viewer {
         }
         if settings.viewpoint != before.viewpoint {
             self.scene.go_to(settings.viewpoint);
+            self.method.measure_again();
         }
         if settings.adaptive != before.adaptive || settings.render_scale != before.render_scale {
             self.method.restore_quality();
+            self.method.measure_again();
         }
         if settings.duration != before.duration {
             self.stats.reopen();

@@ -5,6 +5,7 @@ use crate::adaptive::Load;
 use crate::caption::Status;
 use crate::error::ViewerError;
 use crate::frame::{FrameReport, FrameTiming, SceneState};
+use yoro::choice::Cost;
 use yoro::eyes::EyePair;
 use yoro_gl::Destination;
 use yoro_lenses::{Content, Panel, Placement};
@@ -80,7 +81,8 @@ impl Viewer {
         let status = Status {
             frames: self.stats.last_line(),
             celsius: self.stats.celsius(),
-            method: self.method.name(),
+            method: self.method.method().name(),
+            auto: self.method.auto(),
             pipeline: self.method.pipeline_name(),
             loading: self.scene.is_loading().then(|| self.scene.name()),
         };
@@ -97,9 +99,14 @@ impl Viewer {
         let Attached { gl, pass_times, .. } = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
         pass_times.clear();
         let timed = gl.end_timed_frame(pass_times);
-        let gpu_ms = (timed > 0).then(|| pass_times.iter().map(|p| p.time.as_secs_f32() * 1e3).sum());
-        let late_refreshes = self.stats.frame(now_ns, refresh_hz, pass_times, timed);
+        let gpu = timed.map(|frames_ago| Cost {
+            frames_ago,
+            ms: pass_times.iter().map(|pass| pass.time.as_secs_f32() * 1e3).sum(),
+        });
+        let gpu_ms = gpu.map(|gpu| gpu.ms);
+        let late_refreshes = self.stats.frame(now_ns, refresh_hz, pass_times, u32::from(timed.is_some()));
         let scene = self.scene.state();
+        self.method.end_frame(now_ns, refresh_hz, gpu);
         let load = Load { now_ns, refresh_hz, late_refreshes, gpu_ms };
         if self.settings.adaptive && scene == SceneState::Ready && self.method.adapt(&load, &self.settings) {
             self.make_method()?;
@@ -124,18 +131,20 @@ impl Viewer {
     pub fn telemetry(&mut self, now_ns: i64, device: &DeviceState) -> Line {
         self.method.set_thermal_headroom(device.thermal_headroom);
         let state = self.state();
+        self.method.begin_second();
         self.stats.line(now_ns, &state, device)
     }
 
     /// Returns the viewer's own part of a log line.
     pub(super) fn state(&self) -> ViewerState {
         ViewerState {
-            method: self.method.name().to_owned(),
+            method: self.method.method().name().to_owned(),
             pipeline: self.method.pipeline_name().map(str::to_owned),
             scene: self.scene.name().to_owned(),
             render_scale: self.render_scale(),
             imbuffer: self.method.imbuffer_divisor(&self.settings),
             run: self.settings.run.clone(),
+            auto: self.method.reason(),
         }
     }
 

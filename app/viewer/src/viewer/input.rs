@@ -28,7 +28,7 @@ impl Viewer {
                 self.caption.is_shown = !self.caption.is_shown;
                 Action::Hud(self.caption.is_shown)
             }
-            Event::NextViewpoint => self.scene.next_viewpoint().map_or(Action::Nothing, Action::Viewpoint),
+            Event::NextViewpoint => self.next_viewpoint(),
             Event::NextScene => self.next_scene(),
         };
         let message = match action {
@@ -94,6 +94,12 @@ impl Viewer {
         let ipd = Ipd::nearest(self.ipd().metres() + change);
         self.ipd.chosen = Some(ipd);
         Action::Ipd(ipd)
+    }
+
+    fn next_viewpoint(&mut self) -> Action {
+        let Some(viewpoint) = self.scene.next_viewpoint() else { return Action::Nothing };
+        self.method.measure_again();
+        Action::Viewpoint(viewpoint)
     }
 
     /// Loads the scene after this one.

@@ -36,7 +36,7 @@ use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::Hud;
 use yoro_protocol::{Ipd, Settings};
 use yoro_render::RenderSettings;
-use yoro_render::stereo::Method;
+use yoro_render::stereo::MethodChoice;
 use yoro_scene::Scene;
 
 /// Passes of a frame for whose times there is room from the start.
@@ -148,9 +148,9 @@ impl Viewer {
         &self.settings
     }
 
-    /// The method in use.
-    pub fn method(&self) -> Method {
-        self.method.method()
+    /// The method that the settings or the user have chosen.
+    pub fn method(&self) -> MethodChoice {
+        self.method.choice().0
     }
 
     /// Distance between the eyes in metres.

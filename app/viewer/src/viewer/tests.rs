@@ -13,6 +13,7 @@ use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
 use yoro_protocol::telemetry::{DeviceState, Line};
+use yoro_render::stereo::Method;
 
 const WINDOW: [u32; 2] = [320, 180];
 const PERIOD_NS: i64 = 16_666_667;
@@ -29,7 +30,7 @@ fn window(gl: &Rc<Context>) -> RenderTarget {
 fn settings(pairs: &[&str]) -> Settings {
     let cheap =
         ["scene=prototype", "viewer=v1", "shadow-map=0", "ssao=off", "bloom=false", "render-scale=0.5"];
-    Settings::resolve(None, cheap.iter().chain(pairs)).unwrap()
+    Settings::measured().changed(None, cheap.iter().chain(pairs)).unwrap()
 }
 
 /// A display and a clock for a viewer.
@@ -124,14 +125,14 @@ fn events_change_method_ipd_hud_and_viewpoint() {
     run.load();
     run.frame();
     let yoro = run.image();
-    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Conventional));
-    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Mono));
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Conventional.into()));
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Mono.into()));
     let objects = gl.object_count();
     for _ in 0..3 {
         run.viewer.event(Event::Tap).unwrap();
         run.frame();
     }
-    assert_eq!(run.viewer.viewer().method(), Method::Mono);
+    assert_eq!(run.viewer.viewer().method(), Method::Mono.into());
     assert_eq!(gl.object_count(), objects, "switching leaves nothing behind");
     run.viewer.event(Event::Tap).unwrap();
     let Action::Ipd(ipd) = run.viewer.event(Event::IpdUp).unwrap() else { panic!() };
@@ -149,6 +150,96 @@ fn events_change_method_ipd_hud_and_viewpoint() {
     run.viewer.resize(rotated).unwrap();
     run.frame();
     assert_eq!(gl.take_errors(), None);
+}
+
+/// Which method is cheaper here is the machine's matter.
+#[test]
+fn auto_measures_both_methods_while_nothing_is_allocated_and_says_which_and_why() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let mut run = Run::new(gl, &["method=auto", "methods=auto,mono", "adaptive=true"]);
+    run.load();
+    run.frame();
+    let held = |gl: &Context| (gl.object_count(), gl.texture_bytes());
+    let both = held(gl);
+    let mut lines = Vec::new();
+    let mut seconds = |run: &mut Run, seconds: usize| {
+        for _ in 0..60 * seconds {
+            if run.frame().telemetry_due {
+                let line = run.viewer.viewer_mut().telemetry(run.now_ns, &DeviceState::default());
+                lines.push(line.to_string().parse::<Line>().unwrap());
+            }
+        }
+        lines.last().unwrap().clone()
+    };
+    assert_eq!(seconds(&mut run, 2).auto.as_deref(), Some("measuring"));
+    let line = seconds(&mut run, 2);
+    let auto = line.auto.unwrap();
+    let times: Vec<f32> = auto.trim_end_matches("ms").split('/').map(|ms| ms.parse().unwrap()).collect();
+    assert!(times.len() == 2 && times[0] <= times[1], "{auto}");
+    assert_eq!(line.pipeline.is_some(), line.method == "yoro");
+    assert_eq!(held(gl), both, "both methods are ready from the first frame on");
+    let seen = run.viewer.viewer().caption.text();
+    assert!(seen.contains(&format!("auto:{} {auto}\n", line.method)), "{seen}");
+    let chosen = run.viewer.viewer().method.method();
+    assert_eq!((chosen.name(), run.viewer.viewer().method()), (line.method.as_str(), MethodChoice::Auto));
+    // Another place is measured again, a method that is named is not.
+    run.viewer.event(Event::NextViewpoint).unwrap();
+    assert_eq!(seconds(&mut run, 2).auto.as_deref(), Some("measuring"));
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Mono.into()));
+    assert_eq!(seconds(&mut run, 2).auto, None);
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(MethodChoice::Auto));
+}
+
+/// Prints what auto measures and chooses on this machine, and the memory of the targets; the times are in docs/viewer.md.
+#[test]
+#[ignore = "takes minutes, and prints what is the machine's matter"]
+fn choices_on_this_machine() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let screen = Screen { size: [640, 360], dpi: [148.0; 2], rotation: Rotation::LandscapeLeft };
+    let window = RenderTarget::new(gl, screen.size, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("wall.obj"), "v -2 -2 -3\nv 2 -2 -3\nv 2 2 -3\nv -2 2 -3\nf 1 2 3 4\n")
+        .unwrap();
+    let bare = ["renderer=forward", "msaa=1", "shadow-map=0", "point-lights=0", "bloom=false"];
+    for (scene, more) in [
+        ("wall", &bare[..]),
+        ("prototype", &bare),
+        ("street", &bare),
+        ("prototype", &[]),
+        ("street", &[]),
+        ("atrium", &[]),
+        ("atrium", &["renderer=forward"]),
+    ] {
+        let scene = format!("scene={scene}");
+        let pairs: Vec<&str> =
+            [scene.as_str(), "viewer=v1"].into_iter().chain(more.iter().copied()).collect();
+        let mut megabytes = Vec::new();
+        for method in ["method=conventional", "method=yoro", "method=auto"] {
+            let settings = Settings::resolve(None, pairs.iter().copied().chain([method])).unwrap();
+            let before = gl.texture_bytes();
+            let mut viewer = Cardboard::new(settings, screen, &[folder.path().into()]).unwrap();
+            viewer.attach(gl.clone()).unwrap();
+            wait(&mut viewer);
+            let mut now_ns = 0;
+            let mut frame = |viewer: &mut Cardboard| {
+                now_ns += 200_000_000;
+                let timing = FrameTiming { now_ns, expected_display_ns: now_ns, refresh_hz: 60.0 };
+                viewer.frame(&Destination::whole(&window), &timing).unwrap();
+            };
+            frame(&mut viewer);
+            megabytes.push((gl.texture_bytes() - before) as f64 / 1e6);
+            while viewer.viewer().method.auto().is_some_and(|auto| auto.is_measuring()) {
+                frame(&mut viewer);
+            }
+            let slot = &viewer.viewer().method;
+            if let Some(auto) = slot.auto() {
+                let ([w, h], name) = (viewer.eye_size(), slot.method().name());
+                println!("{pairs:?} {w}x{h}: auto:{name} {auto}; textures {megabytes:.1?} MB");
+            }
+        }
+    }
 }
 
 #[test]
@@ -215,7 +306,7 @@ fn questions_are_asked_after_the_session_and_answered_by_head_or_keys() {
     assert_eq!(run.viewer.event(Event::IpdUp).unwrap(), Action::Marker(3.5));
     assert_eq!(run.viewer.event(Event::NextViewpoint).unwrap(), Action::Nothing);
     assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Answer);
-    assert_eq!(run.viewer.viewer().method(), Method::Mono);
+    assert_eq!(run.viewer.viewer().method(), Method::Mono.into());
     // The second question: the head turns to the left and stays there.
     let hold = |run: &mut Run, left: f32| {
         let head = Quat::from_rotation_y(left);
@@ -274,10 +365,10 @@ fn only_settings_that_differ_take_effect() {
     viewer.configure(with(&viewer, &["method=mono", "timewarp=false", "hud=false"]), &[]).unwrap();
     assert_eq!(
         (viewer.viewer().method(), viewer.viewer().ipd(), viewer.viewer().caption.is_shown),
-        (Method::Mono, ipd, false)
+        (Method::Mono.into(), ipd, false)
     );
     viewer.event(Event::Tap).unwrap();
-    assert_ne!(viewer.viewer().method(), Method::Mono);
+    assert_ne!(viewer.viewer().method(), Method::Mono.into());
     let tapped = viewer.viewer().method();
     viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "ssao=half"]), &[]).unwrap();
     assert_eq!((viewer.viewer().method(), viewer.viewer().ipd()), (tapped, Ipd::nearest(0.05)));

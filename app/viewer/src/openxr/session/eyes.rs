@@ -48,7 +48,7 @@ impl Session {
 
     /// Returns eyes that the viewer's method can use, near those of the runtime.
     pub(super) fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
-        let reason = Substitute::reason(viewer.method(), &native);
+        let reason = Substitute::reason(viewer.method().first(), &native);
         let aligned = match reason {
             None => None,
             Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(native.evened()),
