@@ -205,6 +205,16 @@ pub enum DeviceError {
         "{0} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its screen lock to none or swipe for the time of the measurement"
     )]
     Locked(String),
+    /// A replay waits for somebody who is not in its script.
+    #[error(
+        "{serial} has {level:.0} %, and nobody in the script of this simulated device plugs a charger in or takes it off: give it charged-below, or the experiment power = false"
+    )]
+    Unattended {
+        /// The device's serial number.
+        serial: String,
+        /// The battery's level in percent.
+        level: f64,
+    },
     /// The device does not cool down.
     #[error(
         "{serial} has {celsius:.1} C and does not cool down to {wanted:.1} C: let it rest in a cooler place, then give the same command"
@@ -321,8 +331,8 @@ fn after_refusal(serial: &str, reason: &str) -> String {
 /// An event of a log that is followed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LogEvent {
-    /// A line without its end.
-    Line(String),
+    /// A line with its end, as it came: messages of drivers need not be valid text.
+    Line(Vec<u8>),
     /// No line came within the wait.
     Quiet,
     /// The log has ended: the device is gone, or its log service was restarted.
@@ -342,6 +352,11 @@ pub trait Device: Send {
 
     /// True for a replay; every result of it must be marked as simulated.
     fn is_simulated(&self) -> bool;
+
+    /// False if nobody will charge the device or take its charger off, however long one waits.
+    fn is_attended(&self) -> bool {
+        true
+    }
 
     /// Runs a command on the device, given as words, and returns what it prints.
     fn shell(&self, words: &[&str]) -> Result<String, DeviceError>;

@@ -19,8 +19,8 @@ const RETRY: Duration = Duration::from_secs(1);
 /// An event while a log is followed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// A new line.
-    Line(String),
+    /// A new line with its end, as it came.
+    Line(Vec<u8>),
     /// No line came within the wait.
     Quiet,
     /// The device is gone.
@@ -94,8 +94,9 @@ impl<'a> Follower<'a> {
         }
     }
 
-    fn is_new(&mut self, line: &str) -> bool {
-        let entry = match log::parse(line) {
+    fn is_new(&mut self, line: &[u8]) -> bool {
+        let text = log::text(line);
+        let entry = match log::parse(&text) {
             log::Kind::Entry(entry) => Some(entry),
             // Logcat's marks come with each connection.
             log::Kind::Mark => return !self.overlaps,

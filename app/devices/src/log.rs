@@ -1,5 +1,7 @@
 //! Parser of logcat lines: time, process, tag and message.
 
+use std::borrow::Cow;
+
 use yoro_protocol::telemetry::{LOG_TAG, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
@@ -35,6 +37,12 @@ pub enum Kind<'a> {
     Mark,
     /// Not a line of logcat.
     Damaged,
+}
+
+/// Returns a line that may have bytes of no text, without its end.
+pub fn text(line: &[u8]) -> Cow<'_, str> {
+    let end = line.iter().rposition(|byte| !matches!(byte, b'\r' | b'\n')).map_or(0, |last| last + 1);
+    String::from_utf8_lossy(&line[..end])
 }
 
 /// Reads a line in logcat's formats `threadtime` (with the time as seconds since 1970, as a date, or as a date with its

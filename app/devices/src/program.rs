@@ -314,13 +314,14 @@ impl Device for ProgramDevice {
             thread::spawn(move || {
                 let mut reader = BufReader::new(stdout);
                 let mut line = Vec::new();
-                // Messages of drivers need not be valid text.
                 while reader.read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
-                    let text = String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']).to_owned();
-                    if sender.send(text).is_err() {
+                    // A connection may end within a line; the next line begins a row of its own.
+                    if !line.ends_with(b"\n") {
+                        line.push(b'\n');
+                    }
+                    if sender.send(std::mem::take(&mut line)).is_err() {
                         break;
                     }
-                    line.clear();
                 }
             });
         }
@@ -362,7 +363,7 @@ impl Device for ProgramDevice {
 /// `adb logcat`, ended with this.
 struct ProgramLog {
     child: Child,
-    lines: Receiver<String>,
+    lines: Receiver<Vec<u8>>,
 }
 
 impl LogStream for ProgramLog {

@@ -45,8 +45,17 @@ impl Sample {
     }
 
     /// Returns the sample of the differences a - b, pair by pair; `None` without pairs, or if a value is not finite.
+    /// Differences that are equal but for the rounding of a and b, such as 4.1 - 3.1 and 3.2 - 2.2, have no scatter.
     pub fn of_differences(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<Sample> {
-        Sample::of(&pairs.into_iter().map(|(a, b)| a - b).collect::<Vec<_>>())
+        let mut largest = 0.0f64;
+        let differences = pairs.into_iter().map(|(a, b)| {
+            largest = largest.max(a.abs()).max(b.abs());
+            a - b
+        });
+        let sample = Sample::of(&differences.collect::<Vec<_>>())?;
+        // A value may be a mean itself, with the rounding of a sum of dozens.
+        let rounding = 64.0 * f64::EPSILON * largest;
+        Some(if sample.std > rounding { sample } else { Sample { std: 0.0, ..sample } })
     }
 
     fn df(&self) -> Option<f64> {
@@ -81,20 +90,22 @@ impl Sample {
     }
 
     /// The interval of d_z at a confidence between 0 and 1: of the noncentral t distributions, those under which the
-    /// t found is not too far out (Steiger and Fouladi 1997).
+    /// t found is not too far out (Steiger and Fouladi 1997). `None` as of [`Sample::t`], and of a confidence so near to 1
+    /// that f64 does not tell it from 1.
     pub fn d_z_interval(&self, confidence: f64) -> Option<Interval> {
         let (t, df) = (self.t(0.0)?, self.df()?);
         let tail = (1.0 - confidence) / 2.0;
         // The probability falls as the noncentrality grows.
         let noncentrality = |p: f64| {
-            let mut reach = 2.0 + t.abs();
-            while noncentral_t_cdf(t, df, t - reach) < p || noncentral_t_cdf(t, df, t + reach) > p {
-                reach *= 2.0;
-            }
-            bisect(t - reach, t + reach, |delta| noncentral_t_cdf(t, df, delta) > p)
+            let is_enough = |reach: &f64| {
+                noncentral_t_cdf(t, df, t - reach) >= p && noncentral_t_cdf(t, df, t + reach) <= p
+            };
+            let reach = (0..64).map(|doubled| (2.0 + t.abs()) * f64::from(doubled).exp2()).find(is_enough)?;
+            Some(bisect(t - reach, t + reach, |delta| noncentral_t_cdf(t, df, delta) > p))
         };
         let root = (self.n as f64).sqrt();
-        Some(Interval { low: noncentrality(1.0 - tail), high: noncentrality(tail) }.map(|delta| delta / root))
+        let interval = Interval { low: noncentrality(1.0 - tail)?, high: noncentrality(tail)? };
+        Some(interval.map(|delta| delta / root))
     }
 
     /// The power that the paired t-test had if the true effect were the one found ("post hoc"). It says nothing that p
@@ -437,6 +448,30 @@ mod tests {
             let found = blocks.interval.unwrap();
             assert_eq!(found.basis, Basis::Repetitions);
             near_interval(found.interval, v.interval, &v.name);
+        }
+    }
+
+    #[test]
+    fn differences_that_are_equal_but_for_rounding_have_no_scatter() {
+        let sample = Sample::of_differences([(4.1, 3.1), (3.2, 2.2), (2.3, 1.3)]).unwrap();
+        assert_eq!((sample.std, sample.t(0.0), sample.d_z_interval(0.95)), (0.0, None, None));
+        let sample = Sample::of_differences([(4.1, 3.1), (3.2, 2.2), (2.3, 1.3 + 1e-9)]).unwrap();
+        assert!(sample.std > 0.0);
+    }
+
+    /// The work was once proportional to |t|, and without an end at a confidence that is 1 in f64.
+    #[test]
+    fn extreme_samples_and_levels_end() {
+        let sample = Sample { n: 3, mean: 1.0, std: 1e-12 };
+        let interval = sample.d_z_interval(0.95).unwrap();
+        assert!(interval.low > 0.0 && interval.high > 1e12, "{interval:?}");
+        let sample = Sample { n: 3, mean: 0.2, std: 0.1 };
+        let interval = sample.d_z_interval(1.0 - 1e-9).unwrap();
+        assert!(interval.low < 0.0 && interval.high > 2.0, "{interval:?}");
+        assert!(sample.d_z_interval(1.0 - 1e-18).is_none_or(|wide| wide.low < -1.0 && wide.high > 5.0));
+        for alpha in [1e-9, 1e-18, 1e-300] {
+            let needed = pairs_for_power(5.0, 0.8, alpha).unwrap();
+            assert!((4..100).contains(&needed), "{needed}");
         }
     }
 

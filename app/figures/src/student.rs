@@ -31,11 +31,21 @@ pub fn noncentral_t_cdf(t: f64, df: f64, delta: f64) -> f64 {
     let constant = LN_2 + half * half.ln() - ln_gamma(half);
     let density = |s: f64| (constant + (df - 1.0) * s.ln() - half * s * s).exp();
     let below = |s: f64| 0.5 * erfc((delta - t * s) * FRAC_1_SQRT_2);
-    // S has about this standard deviation around 1, and `below` rises within 1 / |t|.
+    // S has about this standard deviation around 1.
     let spread = 1.0 / (2.0 * df).sqrt();
     let (from, to) = ((1.0 - 12.0 * spread).max(0.0), 1.0 + 12.0 * spread);
-    let width = spread.min(1.0 / t.abs());
-    gauss_legendre(from, to, ((to - from) / width).ceil() as usize, |s| density(s) * below(s)).clamp(0.0, 1.0)
+    // `below` is 0 or 1 but for a step of this half-width; the larger |t| is, the narrower.
+    let step = |side: f64| if t == 0.0 { 1.0 + side } else { ((delta + 9.0 * side) / t).clamp(from, to) };
+    let (begin, end) = (step(-1.0).min(step(1.0)), step(-1.0).max(step(1.0)));
+    let integral = |from: f64, to: f64, width: f64| {
+        if from >= to {
+            return 0.0;
+        }
+        let panels = ((to - from) / width).ceil() as usize;
+        gauss_legendre(from, to, panels, |s| density(s) * below(s))
+    };
+    let (before, after) = (integral(from, begin, spread), integral(end, to, spread));
+    (before + integral(begin, end, spread.min(1.0 / t.abs())) + after).clamp(0.0, 1.0)
 }
 
 /// Returns the point between `low` and `high` where `below` turns from true to false, to 1e-16 of their distance.

@@ -1,15 +1,19 @@
 //! Files in and out: an output is complete or absent, and an error names the file and the remedy.
 //!
 //! [`read`] and [`write()`] take whole files, [`write_with`] lets the caller fill a file that appears only when it is
-//! complete, and [`find`] lists the files below a folder. Loaders that read piece by piece [`open`] their files: in a
+//! complete, [`append`] opens one that grows, and [`find`] lists the files below a folder. Loaders that read piece by piece [`open`] their files: in a
 //! browser those are files in memory. This crate must never know the contents of the files.
 
+pub mod decoder;
 mod input;
 pub mod interrupt;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 pub use input::*;
 
@@ -50,6 +54,12 @@ pub enum FileError {
         path: PathBuf,
         /// The system's answer.
         source: io::Error,
+    },
+    /// Another process appends to the file.
+    #[error("{} is being written by another yoro: wait until that has ended, or choose another place", path.display())]
+    InUse {
+        /// The file.
+        path: PathBuf,
     },
 }
 
@@ -93,8 +103,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 }
 
 /// Lets `fill` write a file that appears under `path` only when it is complete: it is written under a
-/// temporary name in the same folder and renamed. A crash, a full disk or Ctrl-C leaves the old file.
-/// Missing parent folders are created. A device or pipe (`/dev/stdout`) is written in place.
+/// temporary name in the same folder and renamed. A crash, a full disk or Ctrl-C leaves the old file. What a process that
+/// was killed has left under a temporary name is removed by the next one that writes into the folder. Missing parent folders are created. A device or pipe (`/dev/stdout`) is written in place.
 pub fn write_with(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
@@ -114,8 +124,9 @@ pub fn write_with(
         _ => Path::new("."),
     };
     create_folder(folder)?;
+    sweep(folder);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".yoro-").suffix(".part");
+    builder.prefix(PART[0]).suffix(PART[1]);
     #[cfg(unix)]
     {
         // The crate's default is 0600: an output should have the rights that any new file gets.
@@ -123,9 +134,54 @@ pub fn write_with(
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut part = builder.tempfile_in(folder).map_err(failed)?;
+    // For `sweep`; not every file system has locks.
+    let _ = part.as_file().try_lock();
     fill_and_flush(part.as_file_mut(), fill).map_err(failed)?;
     part.persist(&target).map_err(|error| failed(error.error))?;
     Ok(())
+}
+
+/// Beginning and end of the names of unfinished files.
+const PART: [&str; 2] = [".yoro-", ".part"];
+/// Unfinished files younger than this stay: their writers may be about to lock them.
+const YOUNG: Duration = Duration::from_secs(10);
+
+/// Removes the unfinished files of processes that were killed; looks once into each folder. Those that are being written
+/// are locked.
+fn sweep(folder: &Path) {
+    static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
+    if !SWEPT.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.clone()) {
+        return;
+    }
+    for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if !(name.starts_with(PART[0]) && name.ends_with(PART[1])) {
+            continue;
+        }
+        let age = entry.metadata().and_then(|meta| meta.modified()).ok().and_then(|time| time.elapsed().ok());
+        let is_old = age.is_some_and(|age| age >= YOUNG);
+        if is_old && fs::File::open(entry.path()).is_ok_and(|part| part.try_lock().is_ok()) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Opens a file to append to it, and keeps other processes from doing the same until it is closed. It and missing parent
+/// folders are created.
+pub fn append(path: &Path) -> Result<fs::File, FileError> {
+    if path.is_dir() {
+        return Err(FileError::IsFolder { path: path.into() });
+    }
+    create_folder(path.parent().unwrap_or(Path::new("")))?;
+    let failed = |source| FileError::Write { path: path.into(), source };
+    let file = fs::OpenOptions::new().append(true).create(true).open(path).map_err(failed)?;
+    match file.try_lock() {
+        Err(fs::TryLockError::WouldBlock) => Err(FileError::InUse { path: path.into() }),
+        // Not every file system has locks.
+        Ok(()) | Err(fs::TryLockError::Error(_)) => Ok(file),
+    }
 }
 
 fn fill_and_flush(
@@ -195,6 +251,40 @@ mod tests {
         );
         assert_eq!(read(&path).unwrap(), b"first");
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_a_killed_process_has_left_is_removed() {
+        let dir = tempfile::tempdir().unwrap();
+        let long_ago = std::time::SystemTime::now() - Duration::from_secs(60);
+        let part = |name: &str, age| {
+            let file = fs::File::create(dir.path().join(name)).unwrap();
+            file.set_modified(age).unwrap();
+            file
+        };
+        drop(part(".yoro-dead.part", long_ago));
+        drop(part(".yoro-young.part", std::time::SystemTime::now()));
+        drop(part(".other.part", long_ago));
+        let written = part(".yoro-written.part", long_ago);
+        written.lock().unwrap();
+        write(&dir.path().join("out.txt"), b"x").unwrap();
+        let mut names: Vec<_> =
+            fs::read_dir(dir.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        assert_eq!(names, [".other.part", ".yoro-written.part", ".yoro-young.part", "out.txt"]);
+    }
+
+    #[test]
+    fn two_cannot_append_to_one_file() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("new/results.jsonl");
+        let mut first = append(&path).unwrap();
+        first.write_all(b"1").unwrap();
+        assert!(matches!(append(&path), Err(FileError::InUse { .. })));
+        drop(first);
+        append(&path).unwrap().write_all(b"2").unwrap();
+        assert_eq!(read(&path).unwrap(), b"12");
+        assert!(matches!(append(dir.path()), Err(FileError::IsFolder { .. })));
     }
 
     #[test]

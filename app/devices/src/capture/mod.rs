@@ -55,6 +55,12 @@ pub enum CaptureError {
         /// The folder.
         folder: PathBuf,
     },
+    /// A file of another kind has a name of the capture's.
+    #[error("{} is there already, and the capture would replace it: name another folder", path.display())]
+    Occupied {
+        /// The file.
+        path: PathBuf,
+    },
     /// Written by another version.
     #[error(
         "{} has version {version} of the capture format and this yoro reads version {VERSION}: use the yoro that wrote it",

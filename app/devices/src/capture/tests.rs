@@ -31,13 +31,23 @@ fn others(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
 }
 
 #[test]
+fn a_capture_replaces_no_file_and_leaves_none_behind() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join(SAMPLES_FILE), "mine").unwrap();
+    let error = Writer::create(dir.path(), info()).unwrap_err();
+    assert!(matches!(&error, CaptureError::Occupied { path } if path.ends_with(SAMPLES_FILE)), "{error}");
+    assert_eq!(fs::read(dir.path().join(SAMPLES_FILE)).unwrap(), b"mine");
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+}
+
+#[test]
 fn a_run_is_readable_at_any_time() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path().join("a/b");
     let mut writer = Writer::create(&folder, info()).unwrap();
     let none = read(&folder).unwrap();
     assert!(matches!(none.info.outcome, Outcome::Interrupted { .. }) && none.samples.is_empty());
-    writer.log("one").unwrap();
+    writer.log(b"one\n").unwrap();
     let first = Sample { time_s: 1.0, gpu_ms: Some(4.49), ..Sample::default() };
     writer.sample(&first).unwrap();
     let second = Sample {

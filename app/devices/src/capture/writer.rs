@@ -1,7 +1,7 @@
 //! Writes a run while it lasts.
 
-use std::fs::{File, OpenOptions};
-use std::io::Write as _;
+use std::fs::{self, File, OpenOptions};
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::{CaptureError, Fault, LOG_FILE, Outcome, RUN_FILE, RunInfo, SAMPLES_FILE, Sample};
@@ -22,16 +22,33 @@ impl Writer {
     /// Creates the folder and begins a run in it. Until [`Writer::finish`], the run counts as cut off.
     ///
     /// # Errors
-    /// [`CaptureError`]: also where the folder holds a run already.
-    pub fn create(folder: &Path, mut info: RunInfo) -> Result<Writer, CaptureError> {
+    /// [`CaptureError`]: also where the folder holds a run already, or a file of one of its names.
+    pub fn create(folder: &Path, info: RunInfo) -> Result<Writer, CaptureError> {
         files::create_folder(folder)?;
         if folder.join(RUN_FILE).exists() {
             return Err(CaptureError::Exists { folder: folder.into() });
         }
+        let mut created = Vec::new();
+        let begun = Writer::begin(folder, info, &mut created);
+        if begun.is_err() {
+            for path in created {
+                let _ = fs::remove_file(path);
+            }
+        }
+        begun
+    }
+
+    /// Begins a run in new files, of which each is added to `created`.
+    fn begin(folder: &Path, mut info: RunInfo, created: &mut Vec<PathBuf>) -> Result<Writer, CaptureError> {
         info.outcome = Outcome::Interrupted { reason: "the program that captured it was ended".into() };
-        let new = |name: &str| {
+        let mut new = |name: &str| {
             let path = folder.join(name);
-            File::create(&path).map_err(|source| FileError::Write { path, source })
+            let file = File::create_new(&path).map_err(|source| match source.kind() {
+                ErrorKind::AlreadyExists => CaptureError::Occupied { path: path.clone() },
+                _ => FileError::Write { path: path.clone(), source }.into(),
+            })?;
+            created.push(path);
+            Ok::<_, CaptureError>(file)
         };
         let writer = Writer {
             folder: folder.into(),
@@ -40,7 +57,7 @@ impl Writer {
             samples: new(SAMPLES_FILE)?,
             others: Vec::new(),
         };
-        writer.append(&writer.samples, SAMPLES_FILE, &Sample::header(&[]))?;
+        writer.append(&writer.samples, SAMPLES_FILE, Sample::header(&[]).as_bytes())?;
         writer.renew()?;
         Ok(writer)
     }
@@ -55,9 +72,9 @@ impl Writer {
         &self.folder
     }
 
-    /// Adds a line of the log.
-    pub fn log(&mut self, line: &str) -> Result<(), CaptureError> {
-        self.append(&self.log, LOG_FILE, &format!("{line}\n"))
+    /// Adds bytes of the log, as they came.
+    pub fn log(&mut self, bytes: &[u8]) -> Result<(), CaptureError> {
+        self.append(&self.log, LOG_FILE, bytes)
     }
 
     /// Adds a sample. A key that no sample had before becomes a column of the whole table.
@@ -71,7 +88,7 @@ impl Writer {
         if self.others.len() > before {
             self.widen(before)?;
         }
-        self.append(&self.samples, SAMPLES_FILE, &sample.row(&self.others))
+        self.append(&self.samples, SAMPLES_FILE, sample.row(&self.others).as_bytes())
     }
 
     /// Adds a fault.
@@ -101,9 +118,9 @@ impl Writer {
     }
 
     /// Appends a row in one write: a reader never sees half a line.
-    fn append(&self, mut file: &File, name: &str, text: &str) -> Result<(), CaptureError> {
+    fn append(&self, mut file: &File, name: &str, row: &[u8]) -> Result<(), CaptureError> {
         let failed = |source| FileError::Write { path: self.folder.join(name), source };
-        Ok(file.write_all(text.as_bytes()).map_err(failed)?)
+        Ok(file.write_all(row).map_err(failed)?)
     }
 
     /// Rewrites the table, with empty cells in the new columns; before, there were `before` columns of the others.

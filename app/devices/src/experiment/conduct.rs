@@ -190,7 +190,7 @@ impl Conductor<'_> {
                 Err(error) => return Err(error),
             };
             lost_at = None;
-            if self.experiment.power && self.must_charge(&battery, &mut charging) {
+            if self.experiment.power && self.must_charge(&battery, &mut charging)? {
                 // Charging warms the battery: the time to cool down begins when charging ends.
                 begin = self.device.now();
                 self.device.sleep(COOLING);
@@ -215,16 +215,28 @@ impl Conductor<'_> {
 
     /// True while the experiment waits for the charger to be plugged in or taken off. `charging` is `None` outside of
     /// such a pause; inside, it is true once a charger was seen: taking it off early means to go on.
-    fn must_charge(&self, battery: &Battery, charging: &mut Option<bool>) -> bool {
+    fn must_charge(&self, battery: &Battery, charging: &mut Option<bool>) -> Result<bool, DeviceError> {
         let Experiment { min_level, charge_level, .. } = *self.experiment;
-        let Some(level) = battery.level_percent else { return false };
+        let Some(level) = battery.level_percent else { return Ok(false) };
         let (is_low, plugged) = (level < min_level, battery.plugged());
+        if let Some(was_plugged) = charging {
+            *was_plugged |= plugged;
+            if !plugged && (level >= charge_level || *was_plugged && !is_low) {
+                *charging = None;
+                return Ok(false);
+            }
+        } else if !is_low && !plugged {
+            return Ok(false);
+        }
+        if !self.device.is_attended() {
+            return Err(DeviceError::Unattended { serial: self.device.serial().into(), level });
+        }
         let what = if level < charge_level && (is_low || charging.is_some()) {
             format!("charge it to {charge_level:.0} %, then take the charger off")
         } else {
             "take the charger off".into()
         };
-        if charging.is_none() && (is_low || plugged) {
+        if charging.is_none() {
             *charging = Some(plugged);
             self.bar.suspend(|| {
                 log::warn!(
@@ -233,14 +245,8 @@ impl Conductor<'_> {
                 )
             });
         }
-        let Some(was_plugged) = charging else { return false };
-        *was_plugged |= plugged;
-        if !plugged && (level >= charge_level || *was_plugged && !is_low) {
-            *charging = None;
-            return false;
-        }
         self.bar.set_message(format!("{level:.0} %: {what}"));
-        true
+        Ok(true)
     }
 
     /// Writes a capture for a run that was not made.

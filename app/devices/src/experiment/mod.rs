@@ -22,6 +22,8 @@ mod conduct;
 #[cfg(test)]
 mod tests;
 
+use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use rand::SeedableRng;
@@ -34,8 +36,7 @@ use crate::latin::balanced_square;
 use crate::run::Plan;
 use crate::table::toml_mistake;
 use yoro_files::{self as files, FileError};
-use yoro_protocol::Method;
-use yoro_protocol::{Settings, SettingsError};
+use yoro_protocol::{Method, MethodChoice, Settings, SettingsError};
 
 pub use conduct::{Progress, conduct};
 
@@ -45,6 +46,8 @@ pub const FILE: &str = "experiment.toml";
 const START_S: f64 = 5.0;
 /// Settings that the file may not set.
 const RESERVED: &[&str] = &["scene", "duration", "auto-exit", "run"];
+/// Most runs of an experiment on a device: two weeks of two minutes each.
+const MAX_RUNS: usize = 10_000;
 
 /// The order of the runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -177,6 +180,11 @@ pub enum ExperimentError {
     },
 }
 
+/// The right to make runs in a folder, which one process has at a time.
+#[derive(Debug)]
+#[expect(dead_code, reason = "the file is locked while it is open")]
+pub struct Claim(File);
+
 /// A run in the plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
@@ -236,6 +244,15 @@ impl Experiment {
         ensure(self.repetitions > 0, "repetitions must be 1 at least")?;
         ensure(!self.scenes.is_empty(), "scenes names none: name one at least")?;
         ensure(!self.method.is_empty(), "there is no [[method]]: give one at least")?;
+        let runs =
+            self.scenes.len().saturating_mul(self.method.len()).saturating_mul(self.repetitions as usize);
+        let many = format!(
+            "{runs} runs are too many ({} scenes, {} methods, {} repetitions): up to {MAX_RUNS} are made, so give fewer repetitions",
+            self.scenes.len(),
+            self.method.len(),
+            self.repetitions
+        );
+        ensure(runs <= MAX_RUNS, &many)?;
         ensure(self.refresh_hz.is_none_or(|hz| hz > 0.0 && hz.is_finite()), "refresh-hz must be above 0")?;
         let levels =
             0.0 <= self.min_level && self.min_level < self.charge_level && self.charge_level <= 100.0;
@@ -342,17 +359,23 @@ impl Experiment {
         [run + self.rest_seconds, run + cooling].map(|seconds| seconds * runs as f64)
     }
 
-    /// Writes the experiment into its folder, or checks that the folder already belongs to it.
-    pub fn claim(&self, folder: &Path, path: &Path) -> Result<(), ExperimentError> {
+    /// Writes the experiment into its folder, or checks that the folder already belongs to it. Keeps other processes
+    /// from the folder until what is returned is dropped.
+    pub fn claim(&self, folder: &Path, path: &Path) -> Result<Claim, ExperimentError> {
         let file = folder.join(FILE);
-        if file.exists() {
+        let mut claimed = files::append(&file)?;
+        if claimed.metadata().is_ok_and(|meta| meta.len() > 0) {
             let same = Experiment::read(&file).is_ok_and(|before| before == *self);
             let other = || ExperimentError::Other { folder: folder.into(), path: path.into() };
-            return if same { Ok(()) } else { Err(other()) };
+            return if same { Ok(Claim(claimed)) } else { Err(other()) };
         }
         let text = toml::to_string(self)
             .map_err(|error| ExperimentError::Format { path: path.into(), what: error.to_string() })?;
-        Ok(files::write(&file, text.as_bytes())?)
+        claimed.write_all(text.as_bytes()).map_err(|source| {
+            let _ = fs::remove_file(&file);
+            FileError::Write { path: file.clone(), source }
+        })?;
+        Ok(Claim(claimed))
     }
 }
 
@@ -367,7 +390,7 @@ pub fn file_name(text: &str) -> String {
 /// Returns the stereo method that the settings name, for a table of the plan.
 pub fn method_name(plan: &Plan) -> String {
     match plan.settings.method {
-        Method::Yoro => format!("yoro, {}", plan.settings.pipeline.name()),
+        MethodChoice::Named(Method::Yoro) => format!("yoro, {}", plan.settings.pipeline.name()),
         method => method.name().into(),
     }
 }

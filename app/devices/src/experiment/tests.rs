@@ -2,6 +2,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use super::*;
+use crate::replay::{Phone, Script};
 
 fn read(text: &str) -> Result<Experiment, String> {
     let dir = tempfile::tempdir().unwrap();
@@ -50,7 +51,7 @@ fn methods_are_settings_with_a_name() {
     );
     let experiment = Experiment { order: Order::Listed, ..read(&text).unwrap() };
     let plan = experiment.plan("S1");
-    assert_eq!(plan[0].plan.settings.method, Method::Hybrid);
+    assert_eq!(plan[0].plan.settings.method, Method::Hybrid.into());
     assert_eq!(method_name(&plan[1].plan), "yoro, paper");
     let own = plan[1].plan.own_settings();
     let own: Vec<_> = own.iter().map(|(k, v)| format!("{k}={v}")).collect();
@@ -70,6 +71,7 @@ fn mistakes_are_one_sentence() {
         (format!("{SMALL}{method}settings = {{ speed = 1 }}\n"), "speed"),
         (format!("{SMALL}{method}settings = {{ duration = 1 }}\n"), "duration"),
         (format!("{SMALL}repetitions = 0\n{method}"), "repetitions"),
+        (format!("{SMALL}repetitions = 1000000000\n{method}"), "fewer repetitions"),
         (format!("{SMALL}[cool-down]\nmax-seconds = 3\n{method}"), "celsius"),
         (SMALL.replace("stage", "talk") + method, "twice"),
         (SMALL.replace("10", "-1") + method, "seconds"),
@@ -88,5 +90,9 @@ fn the_repositorys_experiments_are_valid() {
         assert!(experiment.length(runs)[0] < hours * 3600.0, "{name}");
     }
     let paper = Experiment::read(&folder.join("paper.toml")).unwrap();
+    // Its simulated devices are charged before the plan waits for that.
+    let simulated = Script::read(&folder.join("simulated.toml")).unwrap();
+    let is_charged = |phone: &Phone| phone.charged_below.is_some_and(|percent| percent >= paper.min_level);
+    assert!(simulated.device.iter().all(is_charged));
     assert_eq!((paper.seconds, paper.scenes.len()), (600.0, 8));
 }

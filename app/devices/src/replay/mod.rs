@@ -100,6 +100,10 @@ impl Device for ReplayDevice {
         Ok(Box::new(ReplayLog { world: self.world.clone(), at, generation, is_new: true }))
     }
 
+    fn is_attended(&self) -> bool {
+        lock(&self.world).is_attended()
+    }
+
     fn reconnect(&self) {}
 
     fn now(&self) -> f64 {
@@ -123,10 +127,10 @@ struct ReplayLog {
 impl LogStream for ReplayLog {
     fn next(&mut self, wait: Duration) -> LogEvent {
         if std::mem::take(&mut self.is_new) {
-            return LogEvent::Line(format!("{SIMULATED_MARK} by a replay of yoro"));
+            return LogEvent::Line(format!("{SIMULATED_MARK} by a replay of yoro\n").into());
         }
         match lock(&self.world).read_log(&mut self.at, self.generation, wait.as_secs_f64()) {
-            Ok(Some(line)) => LogEvent::Line(line),
+            Ok(Some(line)) => LogEvent::Line((line + "\n").into()),
             Ok(None) => LogEvent::Quiet,
             Err(()) => LogEvent::Ended,
         }

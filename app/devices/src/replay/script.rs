@@ -63,7 +63,7 @@ pub struct Phone {
     pub running: Option<BTreeMap<String, String>>,
     /// True if there is no room to install anything.
     pub storage_full: bool,
-    /// Capacity of the battery in mAh.
+    /// Capacity of the battery in mAh; 0 if the device does not tell: its level stays the same then.
     pub capacity_mah: f64,
     /// Level of the battery in percent.
     pub level_percent: f64,
@@ -84,7 +84,7 @@ pub struct Phone {
     /// True if the values of `dumpsys battery` were set by hand.
     pub battery_held: bool,
     /// Somebody plugs a charger in where no application runs and the level is below this percentage, and takes it off at
-    /// 95 %.
+    /// 95 %; nobody does without it.
     pub charged_below: Option<f64>,
     /// True if the screen lock asks for a PIN.
     pub secure_lock: bool,
@@ -247,6 +247,30 @@ fn first() -> u32 {
     1
 }
 
+impl Phone {
+    /// Returns what is wrong with a number: time and power must add up to something.
+    fn mistake(&self) -> Option<String> {
+        let numbers = [
+            ("capacity-mah", self.capacity_mah, 0.0..=1e6),
+            ("level-percent", self.level_percent, 0.0..=100.0),
+            ("celsius", self.celsius, -100.0..=200.0),
+            ("ambient-celsius", self.ambient_celsius, -100.0..=200.0),
+            ("charged-below", self.charged_below.unwrap_or(0.0), 0.0..=100.0),
+            ("refresh-hz", self.refresh_hz, 1.0..=1000.0),
+        ];
+        let loads = self.load.values().flat_map(|load| {
+            [("frame-ms", load.frame_ms, 1e-3..=1e6), ("milliwatts", load.milliwatts, 0.0..=1e6)]
+        });
+        let faults = self.fault.iter().flat_map(|fault| {
+            let seconds = fault.seconds.unwrap_or(0.0);
+            [("at", fault.at, 0.0..=1e9), ("seconds", seconds, 0.0..=1e9), ("by", fault.by, -1e9..=1e9)]
+        });
+        let mut all = numbers.into_iter().chain(loads).chain(faults);
+        let (name, value, range) = all.find(|(_, value, range)| !range.contains(value))?;
+        Some(format!("{name} is {value}: give a number from {} to {}", range.start(), range.end()))
+    }
+}
+
 impl Script {
     /// Reads a script; or makes one of the captures in a folder, whose logs are played again.
     pub fn read(path: &Path) -> Result<Script, DeviceError> {
@@ -254,6 +278,9 @@ impl Script {
         let refuse = |reason: &str| Err(DeviceError::Replay { path: path.into(), reason: reason.into() });
         if script.speed.is_some_and(|speed| !(speed > 0.0 && speed.is_finite())) {
             return refuse("speed must be above 0");
+        }
+        if let Some((phone, what)) = script.device.iter().find_map(|phone| Some((phone, phone.mistake()?))) {
+            return refuse(&format!("the device {}: {what}", phone.serial));
         }
         let mut serials: Vec<&str> = script.device.iter().map(|phone| phone.serial.as_str()).collect();
         serials.sort_unstable();

@@ -15,7 +15,6 @@ use crate::pins::Pins;
 use crate::plausible::MeanPower;
 use crate::reading::{LineContent, Reading};
 use yoro_files::interrupt;
-use yoro_protocol::Method;
 use yoro_protocol::Settings;
 use yoro_scenes::BUILTINS;
 
@@ -229,8 +228,9 @@ impl Session<'_> {
         }
     }
 
-    fn line(&mut self, line: &str) -> Result<Option<Outcome>, DeviceError> {
+    fn line(&mut self, line: &[u8]) -> Result<Option<Outcome>, DeviceError> {
         self.writer.log(line)?;
+        let line = &*crate::log::text(line);
         let now = self.device.now();
         let passed_s = now - self.heard_s + self.delay_s;
         let damaged = self.reading.damaged();
@@ -314,7 +314,7 @@ impl Session<'_> {
                 format!("the device showed the {what} {shown} in place of {wanted}: its log says why");
             Some(Outcome::Failed { reason })
         };
-        if method != settings.method.name() {
+        if !method.parse().is_ok_and(|method| settings.method.may_be(method)) {
             return failed("method", method, settings.method.name());
         }
         if BUILTINS.iter().any(|known| known.name == settings.scene) && *scene != settings.scene {
@@ -322,9 +322,7 @@ impl Session<'_> {
         }
         let wanted = settings.pipeline.name();
         match sample.other.get("pipeline") {
-            Some(pipeline) if settings.method == Method::Yoro && pipeline != wanted => {
-                failed("pipeline", pipeline, wanted)
-            }
+            Some(pipeline) if pipeline != wanted => failed("pipeline", pipeline, wanted),
             _ => None,
         }
     }

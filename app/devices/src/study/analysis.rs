@@ -8,6 +8,7 @@ use super::error::StudyError;
 use super::ratings::Ratings;
 use yoro_figures::inference::{Equivalence, Interval, Sample, pairs_for_power};
 use yoro_figures::stats::unique;
+use yoro_files::interrupt;
 
 /// Lowest and highest rating.
 pub type Scale = [f64; 2];
@@ -112,7 +113,7 @@ impl Study {
     /// Analyses ratings.
     ///
     /// # Errors
-    /// [`StudyError::Nothing`] without the baseline, or without anything else.
+    /// [`StudyError::Nothing`] without the baseline, or without anything else; [`StudyError::Interrupted`].
     pub fn new(ratings: &Ratings, options: Options, made_by: String) -> Result<Study, StudyError> {
         let methods: BTreeSet<&str> = ratings.rows.iter().map(|row| row.method.as_str()).collect();
         let nothing = |what: String| StudyError::Nothing { path: ratings.path.clone(), what };
@@ -135,6 +136,7 @@ impl Study {
         };
         for question in questions {
             for method in methods.iter().filter(|method| **method != study.options.baseline) {
+                interrupt::check()?;
                 match compare(ratings, question, method, &study.options) {
                     Some(found) => study.questions.push(found),
                     None => study.unanswered.push((question.into(), (*method).into())),

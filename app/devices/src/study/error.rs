@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use yoro_files::FileError;
+use yoro_files::interrupt::Interrupted;
 
 /// The error when a study cannot be planned or analysed: one sentence.
 #[derive(Debug, thiserror::Error)]
@@ -42,4 +43,7 @@ pub enum StudyError {
         "there is no rating in {0}: ratings are lines of the viewer's log that begin with rating,v=1, and name a participant"
     )]
     NoRating(String),
+    /// The user has asked for the end.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
 }

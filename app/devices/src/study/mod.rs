@@ -31,6 +31,17 @@ pub struct Written {
     pub json: PathBuf,
 }
 
+impl Written {
+    /// Returns the files of a report in `folder`.
+    pub fn of(folder: &Path) -> Written {
+        Written {
+            page: folder.join("study.html"),
+            markdown: folder.join("study.md"),
+            json: folder.join("study.json"),
+        }
+    }
+}
+
 impl Study {
     /// The self-contained page.
     ///
@@ -55,11 +66,7 @@ impl Study {
     /// # Errors
     /// [`ReportError`]; everything is made before anything is written.
     pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
-        let written = Written {
-            page: folder.join("study.html"),
-            markdown: folder.join("study.md"),
-            json: folder.join("study.json"),
-        };
+        let written = Written::of(folder);
         let (page, json) = (self.to_html()?, serde_json::to_string_pretty(self)?);
         files::write(&written.json, json.as_bytes())?;
         files::write(&written.markdown, self.to_markdown().as_bytes())?;

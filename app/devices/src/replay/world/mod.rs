@@ -240,7 +240,16 @@ impl World {
     }
 
     fn level_percent(&self) -> f64 {
-        100.0 * self.charge_mah / self.script.capacity_mah.max(1.0)
+        if self.script.capacity_mah == 0.0 {
+            return self.script.level_percent;
+        }
+        100.0 * self.charge_mah / self.script.capacity_mah
+    }
+
+    /// True if somebody charges the device when it needs that, and takes the charger off.
+    pub fn is_attended(&self) -> bool {
+        let charger_goes = self.plugged_until.is_finite() && self.now < self.plugged_until;
+        self.script.charged_below.is_some_and(|percent| percent > 0.0) || charger_goes
     }
 
     /// Returns the voltage as the device gives it.
@@ -260,7 +269,7 @@ impl World {
     }
 
     fn volts(&self) -> f64 {
-        3.5 + 0.7 * self.charge_mah / self.script.capacity_mah.max(1.0)
+        3.5 + 0.7 * self.level_percent() / 100.0
     }
 
     fn discharge(&mut self, seconds: f64) {
@@ -323,7 +332,7 @@ impl World {
             FaultKind::Tap => {
                 let methods = &application.settings.methods;
                 let at = methods.iter().position(|method| method.name() == application.method);
-                application.method = methods[at.map_or(0, |at| at + 1) % methods.len()].name().into();
+                application.method = methods[at.map_or(0, |at| at + 1) % methods.len()].first().name().into();
             }
         }
     }
@@ -408,7 +417,7 @@ impl World {
         let plugged = Some(i32::from(plugged) * 2);
         let current_ma = current_raw.and_then(|raw| application.normalizer.add(raw, Some(status), plugged));
         let settings = &application.settings;
-        let is_yoro = settings.method == Method::Yoro && application.method == Method::Yoro.name();
+        let is_yoro = application.method == Method::Yoro.name();
         Line {
             time_s: 0.0,
             method: application.method.clone(),
@@ -441,6 +450,7 @@ impl World {
             performance: None,
             guard_columns: None,
             undrawn: None,
+            auto: None,
         }
     }
 

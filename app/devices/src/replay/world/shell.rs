@@ -194,7 +194,7 @@ impl World {
         self.application = Some(Application {
             pid,
             other,
-            method: settings.method.name().into(),
+            method: settings.method.first().name().into(),
             settings,
             first_frame: self.now + LOADING_S,
             recorded,
@@ -212,7 +212,7 @@ impl World {
         let is_wanted = |line: &Line| {
             let pipeline =
                 line.pipeline.as_deref().is_none_or(|pipeline| pipeline == settings.pipeline.name());
-            line.method == settings.method.name() && line.scene == settings.scene && pipeline
+            line.method == settings.method.first().name() && line.scene == settings.scene && pipeline
         };
         for path in &self.script.logs {
             let lines: Vec<Line> = read_recording(path)?.into_iter().filter(is_wanted).collect();
@@ -222,7 +222,11 @@ impl World {
         }
         Err(self.refused(
             &["am", "start"],
-            &format!("the replay has no recorded log of {} in {}", settings.method.name(), settings.scene),
+            &format!(
+                "the replay has no recorded log of {} in {}",
+                settings.method.first().name(),
+                settings.scene
+            ),
         ))
     }
 }
