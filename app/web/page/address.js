@@ -2,7 +2,7 @@
 
 import { app } from './app.js';
 import { format, parse } from './link.js';
-import { say } from './messages.js';
+import { say, sayAlso } from './messages.js';
 
 let keeping = 0;
 
@@ -14,19 +14,20 @@ export function keep() {
 
 /** Writes the settings into the address. */
 export function keepNow() {
+  clearTimeout(keeping);
   history.replaceState(null, '', format(app.settings));
 }
 
 /** Writes the settings and the head's place into the address after a short delay. */
 export function keepPlace() {
-  app.settings.at = app.page.place ? Array.from(app.page.place) : null;
+  app.settings.at = app.page?.place ? Array.from(app.page.place) : null;
   keep();
 }
 
-/** Takes the settings from the address, and shows a message about its faults. */
-export function readAddress() {
+/** Takes the settings from the address or another link's part behind `#`, and shows a message about its faults. */
+export function readAddress(link = location.hash) {
   const here = (list) => list.filter(({ reason }) => !reason).map(({ name }) => name);
-  const { settings, faults } = parse(location.hash, {
+  const { settings, faults } = parse(link, {
     scenes: here(app.scenes),
     methods: Object.fromEntries(Object.entries(app.methods).map(([renderer, list]) => [renderer, here(list)])),
   });
@@ -36,6 +37,12 @@ export function readAddress() {
 
 /** Goes to the viewpoint of the settings, or to the place. */
 export function goThere() {
-  app.page.goTo(app.settings.viewpoint);
-  if (app.settings.at) app.page.putAt(new Float32Array(app.settings.at));
+  const { settings } = app;
+  const last = (app.facts?.viewpoints ?? 1) - 1;
+  if (settings.viewpoint > last) {
+    sayAlso(`The link's viewpoint is ${settings.viewpoint + 1}; this scene has ${last + 1}.`);
+    settings.viewpoint = last;
+  }
+  app.page.goTo(settings.viewpoint);
+  if (settings.at) app.page.putAt(new Float32Array(settings.at));
 }

@@ -3,12 +3,26 @@
 import { defaults } from './link.js';
 
 /**
- * @typedef {object} Run Whoever draws instead of the loop: a measurement, a viewer or a headset.
- * @property {string} name
- * @property {() => void} [stop]
+ * @typedef {object} Source What is shown: a built-in scene, a model with its files, or a colour and a depth picture.
+ * @property {string} [builtin]
+ * @property {string} [main]
+ * @property {{name: string, bytes: ArrayBuffer}[]} [files]
+ * @property {{name: string, bytes: ArrayBuffer}} [color]
+ * @property {{name: string, bytes: ArrayBuffer}} [depth]
+ * @property {() => string} [options] of pictures, as JSON
  */
 
-/** @param {string} id */
+/**
+ * @typedef {object} Run Whoever draws instead of the loop: a measurement, a viewer or a headset.
+ * @property {string} name
+ * @property {string} end a sentence: how the user ends it
+ * @property {() => void} stop
+ */
+
+/**
+ * @param {string} id
+ * @returns {any} it: the kinds of elements are index.html's
+ */
 export const element = (id) => document.getElementById(id);
 
 export const app = {
@@ -20,8 +34,10 @@ export const app = {
   /** @type {WebAssembly.Module | null} */
   module: null,
   settings: { ...defaults },
-  /** The source on display: `{builtin}`, `{main, files}` or `{color, depth, options}`. */
+  /** The source on display. @type {Source | null} */
   source: null,
+  /** The source that is being loaded. @type {Source | null} */
+  wanted: null,
   /** The module's facts about the scene; null for pictures. */
   facts: null,
   /** The built-in scenes: `{name, title, kiloTriangles}`. */

@@ -5,6 +5,7 @@ import { app, element } from './app.js';
 import { changed } from './drawing.js';
 import { antiAliasing } from './link.js';
 import { clear, say } from './messages.js';
+import { explanations } from './methods.js';
 import { sentence } from './sentence.js';
 
 /** The settings that have an element of their name. */
@@ -12,6 +13,10 @@ const choices = [
   'scene', 'viewpoint', 'method', 'renderer', 'anti-aliasing', 'dominant', 'display', 'scale', 'ipd',
 ];
 const numbers = ['viewpoint', 'scale', 'ipd'];
+/** Those that pictures have no use for. */
+const ofScenes = ['viewpoint', 'method', 'renderer', 'anti-aliasing', 'dominant'];
+/** The displays that compare with a real render, which pictures lack. */
+const comparing = ['divider', 'difference', 'flicker'];
 let offered = null;
 
 /** Offers the methods and the anti-aliasing of a renderer. */
@@ -20,18 +25,30 @@ function offerRenderer(renderer) {
   element('method').replaceChildren(...app.methods[renderer].map(({ name, reason }) => {
     const option = new Option(reason ? `${name} (not here)` : name, name);
     option.disabled = Boolean(reason);
-    option.title = reason ?? '';
+    option.title = reason ?? explanations[name];
     return option;
   }));
   for (const option of element('anti-aliasing').options) option.disabled = !antiAliasing[renderer].includes(option.value);
 }
 
+/** Shows the settings in the elements. */
+export function showChoices() {
+  const { settings, source, wanted } = app;
+  if (offered !== settings.renderer) offerRenderer(settings.renderer);
+  for (const key of choices) element(key).value = String(settings[key]);
+  const shown = wanted ?? source;
+  element('scene').value = shown ? shown.builtin ?? 'own' : '';
+  for (const key of ofScenes) element(key).disabled = Boolean(source?.color);
+  for (const option of element('display').options) option.disabled = Boolean(source?.color) && comparing.includes(option.value);
+  element('method-note').textContent = explanations[settings.method];
+  element('ipd-value').textContent = `${settings.ipd} mm`;
+  element('error').checked = settings.display === 'difference';
+}
+
 /** Gives the module the settings, and the elements their values. */
 export function apply() {
   const { settings } = app;
-  if (offered !== settings.renderer) offerRenderer(settings.renderer);
-  for (const key of choices) element(key).value = String(settings[key]);
-  element('ipd-value').textContent = settings.ipd;
+  showChoices();
   if (!app.page) return;
   const smoothing = settings['anti-aliasing'];
   app.page.configure(JSON.stringify({
@@ -44,16 +61,36 @@ export function apply() {
 }
 
 /**
- * Chooses the next method or viewpoint, for controllers.
- * @param {'method' | 'viewpoint'} what
+ * Chooses the next one, for keys and controllers.
+ * @param {'method' | 'viewpoint' | 'display'} what
  */
 export function step(what) {
   const options = [...element(what).options].filter((option) => !option.disabled);
   const at = options.findIndex((option) => option.selected);
   const next = options[(at + 1) % options.length];
-  if (!next) return;
+  if (!next || element(what).matches(':disabled')) return;
   element(what).value = next.value;
   element(what).dispatchEvent(new Event('change'));
+}
+
+/** Changes a setting; the one before comes back if it cannot be. */
+function choose(key, value) {
+  const before = { ...app.settings };
+  if (!app.page) return;
+  clear();
+  app.settings[key] = value;
+  if (key === 'renderer') [app.settings['anti-aliasing']] = antiAliasing[value];
+  if (key === 'viewpoint') {
+    app.settings.at = null;
+    app.page.goTo(value);
+  }
+  try {
+    apply();
+  } catch (error) {
+    app.settings = before;
+    apply();
+    say(sentence(error));
+  }
 }
 
 /**
@@ -61,29 +98,15 @@ export function step(what) {
  * @param {(name: string) => void} showScene shows a built-in scene
  */
 export function listenToChoices(showScene) {
-  for (const key of choices) {
+  element('scene').addEventListener('change', ({ target }) => {
+    clear();
+    showScene(target.value);
+  });
+  for (const key of choices.slice(1)) {
     element(key).addEventListener(key === 'ipd' ? 'input' : 'change', ({ target }) => {
-      const before = { ...app.settings };
-      const value = numbers.includes(key) ? Number(target.value) : target.value;
-      if (!app.page) return;
-      clear();
-      if (key === 'scene') {
-        showScene(value);
-        return;
-      }
-      app.settings[key] = value;
-      if (key === 'renderer') [app.settings['anti-aliasing']] = antiAliasing[value];
-      if (key === 'viewpoint') {
-        app.settings.at = null;
-        app.page.goTo(value);
-      }
-      try {
-        apply();
-      } catch (error) {
-        app.settings = before;
-        apply();
-        say(sentence(error));
-      }
+      choose(key, numbers.includes(key) ? Number(target.value) : target.value);
     });
   }
+  element('error').addEventListener('change', ({ target }) => choose('display', target.checked ? 'difference' : 'divider'));
+  element('reset').addEventListener('click', () => choose('viewpoint', app.settings.viewpoint));
 }

@@ -4,6 +4,8 @@ const RADIANS_PER_PIXEL = 0.004;
 const METRES_PER_PIXEL = 0.01;
 const METRES_PER_SECOND = 1.6;
 const TURN_PER_SECOND = 1.2;
+/** A turn goes on for about the inverse of this, in seconds. */
+const FRICTION = 6;
 
 const moves = {
   KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyQ: [0, -1, 0], KeyE: [0, 1, 0],
@@ -18,10 +20,20 @@ export function listen(canvas, move, changed) {
   // Pressed and let go of between two steps: a slow frame loses no key.
   const released = new Set();
   let fast = false;
-  for (const name of ['keydown', 'keyup']) addEventListener(name, (event) => { fast = event.shiftKey; });
+  /** Radians a second to the left and upwards, with which the head turns on after a drag. */
+  let spin = [0, 0];
+  let dragged = 0;
+  addEventListener('keydown', (event) => { fast = event.shiftKey; });
+  addEventListener('keyup', (event) => { fast = event.shiftKey; });
   canvas.addEventListener('pointerdown', (event) => {
     if (event.isTrusted) canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
+    spin = [0, 0];
+  });
+  canvas.addEventListener('pointerup', (event) => {
+    // A finger that rested before it was lifted throws nothing.
+    if (event.timeStamp - dragged > 60) spin = [0, 0];
+    else changed();
   });
   for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) {
     canvas.addEventListener(name, (event) => pointers.delete(event.pointerId));
@@ -29,14 +41,28 @@ export function listen(canvas, move, changed) {
   canvas.addEventListener('pointermove', (event) => {
     const before = pointers.get(event.pointerId);
     if (!before) return;
-    const [dx, dy] = [event.clientX - before[0], event.clientY - before[1]];
-    pointers.set(event.pointerId, [event.clientX, event.clientY]);
-    if (pointers.size === 1) move.turn(dx * RADIANS_PER_PIXEL, dy * RADIANS_PER_PIXEL);
-    // Each of two fingers contributes half.
-    else move.walk((-dx * METRES_PER_PIXEL) / 2, 0, (dy * METRES_PER_PIXEL) / 2);
+    const now = [event.clientX, event.clientY];
+    const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
+    pointers.set(event.pointerId, now);
+    if (pointers.size === 1) {
+      const turn = [dx * RADIANS_PER_PIXEL, dy * RADIANS_PER_PIXEL];
+      const seconds = Math.max((event.timeStamp - dragged) / 1000, 0.008);
+      spin = seconds < 0.1 ? turn.map((angle) => angle / seconds) : [0, 0];
+      dragged = event.timeStamp;
+      move.turn(...turn);
+    } else {
+      // Each of two fingers contributes half; apart they bring what is ahead nearer.
+      const [other] = [...pointers].filter(([id]) => id !== event.pointerId).map(([, place]) => place);
+      const away = (place) => Math.hypot(place[0] - other[0], place[1] - other[1]);
+      const pinch = away(now) - away(before);
+      move.walk((-dx * METRES_PER_PIXEL) / 2, 0, (dy * METRES_PER_PIXEL) / 2 + pinch * METRES_PER_PIXEL);
+      spin = [0, 0];
+    }
     changed();
   });
   canvas.addEventListener('wheel', (event) => {
+    // Where the picture has not been chosen, the wheel scrolls the page; with ctrl it zooms it.
+    if (event.ctrlKey || (document.activeElement !== canvas && !document.fullscreenElement)) return;
     move.walk(0, 0, -event.deltaY * METRES_PER_PIXEL * 0.3);
     event.preventDefault();
     changed();
@@ -52,7 +78,8 @@ export function listen(canvas, move, changed) {
   canvas.addEventListener('blur', () => pressed.clear());
 
   return {
-    /** Moves by the keys that are down, fast with Shift, in `seconds` since the last call; true if any key is down. */
+    /** Moves by the keys that are down, fast with Shift, and by a drag that goes on, in `seconds` since the last call; true
+     * if anything moves. */
     step(seconds) {
       const dt = Math.min(seconds, 0.1);
       for (const code of pressed) {
@@ -60,7 +87,12 @@ export function listen(canvas, move, changed) {
         if (moves[code]) move.walk(...moves[code].map((n) => n * distance));
         else move.turn(turns[code] * dt * TURN_PER_SECOND, 0);
       }
-      const moved = pressed.size > 0;
+      const spins = pointers.size === 0 && Math.hypot(...spin) > 0.05;
+      if (spins) {
+        move.turn(spin[0] * dt, spin[1] * dt);
+        spin = spin.map((speed) => speed * Math.exp(-dt * FRICTION));
+      }
+      const moved = pressed.size > 0 || spins;
       for (const code of released) pressed.delete(code);
       released.clear();
       return moved;

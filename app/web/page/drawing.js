@@ -3,6 +3,9 @@
 import { app, element } from './app.js';
 import { keepPlace } from './address.js';
 import { listen } from './controls.js';
+import { figures, forgetFigures } from './figures.js';
+import { label } from './labels.js';
+import { magnify } from './magnifier.js';
 import { say } from './messages.js';
 import { sentence } from './sentence.js';
 
@@ -15,15 +18,24 @@ const controls = listen(canvas, {
   walk: (right, up, ahead) => { app.page?.walk(right, up, ahead); },
 }, () => { if (app.page) { keepPlace(); changed(); } });
 
-let drawn = false;
+/** What is to be done: nothing, showing what is rendered, or rendering. */
+const [NOTHING, SHOW, RENDER] = [0, 1, 2];
+let due = RENDER;
 let scheduled = false;
 let last = 0;
-let truth = false;
+let real = false;
 let noted = false;
 
-/** Draws soon: something has changed that is not on the canvas yet. */
+/** Draws soon: something has changed that is not rendered yet. */
 export function changed() {
-  drawn = false;
+  due = RENDER;
+  forgetFigures();
+  if (!app.busy && app.page) schedule();
+}
+
+/** Shows the rendered images soon: only the divider or the magnifier has moved. */
+function moved() {
+  due = Math.max(due, SHOW);
   if (!app.busy && app.page) schedule();
 }
 
@@ -39,22 +51,45 @@ function schedule() {
   requestAnimationFrame(frame);
 }
 
+/** Returns the share of the picture that shows the real image. */
+function divider() {
+  if (app.settings.display === 'flicker') return Number(real);
+  return element('divider').valueAsNumber / 100;
+}
+
 function frame(now) {
   scheduled = false;
   if (!app.page || app.busy) return;
   const moving = controls.step(last ? (now - last) / 1000 : 1 / 60);
   last = moving ? now : 0;
-  if (moving) keepPlace();
+  if (moving) {
+    keepPlace();
+    due = RENDER;
+    forgetFigures();
+  }
   const flicker = app.settings.display === 'flicker';
-  const real = flicker && now % 1000 < 500;
+  const turn = flicker && now % 1000 < 500;
+  if (turn !== real) due = Math.max(due, SHOW);
+  real = turn;
   try {
-    if (moving || !drawn || real !== truth) {
+    const work = due;
+    due = NOTHING;
+    if (work === RENDER) {
       resize();
-      app.page.draw(canvas.width, canvas.height, real);
-      truth = real;
-      drawn = true;
-      legend();
-      if (app.facts && !noted) noteFirst();
+      if (app.facts && !noted) {
+        // The first picture is there sooner without the real images; they come with the next frame.
+        app.page.preview(canvas.width, canvas.height);
+        noteFirst();
+        changed();
+        return;
+      }
+      app.page.draw(canvas.width, canvas.height, divider());
+    }
+    if (work !== NOTHING) {
+      const magnified = magnify();
+      if (magnified || work === SHOW) app.page.show(canvas.width, canvas.height, divider());
+      label(real);
+      if (!moving) figures();
     }
     if (moving || flicker) schedule();
   } catch (error) {
@@ -69,18 +104,6 @@ function resize() {
   const size = [width, height].map((n) => Math.max(16, Math.round(n * less)));
   if (canvas.width !== size[0]) canvas.width = size[0];
   if (canvas.height !== size[1]) canvas.height = size[1];
-}
-
-function legend() {
-  const { display, dominant } = app.settings;
-  const other = dominant === 'right' ? 'Left' : 'Right';
-  const texts = {
-    difference: `${other} eye: black where it equals a real render, white where it differs by a quarter of the range or more`,
-    flicker: `${other} eye: ${truth ? 'really rendered' : app.settings.method}`,
-  };
-  const text = app.facts ? texts[display] : undefined;
-  element('legend').hidden = !text;
-  element('legend').textContent = text ?? '';
 }
 
 /** Notes when the first picture was there, in ms since the page was asked for. */
@@ -100,4 +123,26 @@ function noteFirst() {
     element('gpu').textContent += `; first picture after ${(startTime / 1000).toFixed(1)} s`;
   };
   setTimeout(look);
+}
+
+/** Saves the picture that is shown as PNG. */
+export function savePicture() {
+  if (!app.page || app.busy || !app.source) return;
+  app.page.show(canvas.width, canvas.height, divider());
+  canvas.toBlob((blob) => {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(blob);
+    link.download = `yoro-${app.settings.scene ?? 'own'}-${app.settings.display}.png`;
+    link.click();
+    URL.revokeObjectURL(link.href);
+  });
+}
+
+/** Listens to the divider and the magnifier. */
+export function listenToPicture() {
+  new ResizeObserver(changed).observe(canvas);
+  element('divider').addEventListener('input', moved);
+  element('magnifier').addEventListener('change', moved);
+  for (const event of ['pointermove', 'pointerleave']) canvas.addEventListener(event, () => { if (element('magnifier').checked) moved(); });
+  element('save').addEventListener('click', savePicture);
 }

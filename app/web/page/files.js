@@ -1,6 +1,11 @@
 // The user's own files: dropped or chosen, shown, kept on this device.
 
-import { element } from './app.js';
+import { app, element } from './app.js';
+import { changed } from './drawing.js';
+import { clear, say } from './messages.js';
+import { photo } from './photos.js';
+import { checkOptions, fill, guess, options, showFields } from './pictures.js';
+import { showSource } from './sources.js';
 
 const MODEL = /\.(obj|gltf|glb)$/i;
 const PICTURE = /\.(png|jpe?g|bmp|tga|exr)$/i;
@@ -32,7 +37,7 @@ async function dropped(transfer) {
   return found;
 }
 
-/** Returns the files as a source for [app.showSource]; throws a sentence. */
+/** Returns the files as a source for [showSource]; throws a sentence. */
 export function understand(files) {
   const models = files.filter(({ name }) => MODEL.test(name));
   if (models.length) {
@@ -49,42 +54,55 @@ export function understand(files) {
     return { color, depth };
   }
   if (pictures.length) {
-    throw new Error(`${pictures.length === 1 ? 'One picture is' : `${pictures.length} pictures are`} not enough: drop two, colour and depth, the one with “depth” in its name.`);
+    throw new Error(`${pictures.length === 1 ? 'One picture is not enough' : `${pictures.length} pictures are too many`}: drop two, colour and depth, the one with “depth” in its name.`);
   }
   const names = files.map(({ name }) => name).slice(0, 3).join(', ') || 'nothing';
   throw new Error(`There is neither a model (OBJ, glTF, GLB) nor a pair of pictures (PNG, JPEG, EXR) among the files: ${names}.`);
 }
 
-function options() {
-  const keys = [
-    'source', 'encoding', 'near', 'far', 'metres-at-white', 'disparity-offset', 'disparity-scale', 'gamma', 'fov-y-degrees',
-    'edges',
-  ];
-  const entries = keys.map((key) => {
-    const input = element(`picture-${key}`);
-    return [key, input.type === 'number' ? input.valueAsNumber : input.value];
-  });
-  // An empty field is no number.
-  return JSON.stringify(Object.fromEntries(entries.filter(([, value]) => !Number.isNaN(value))));
+/**
+ * Shows files: `{name, file}` each. Says what is wrong with them; what was shown stays then.
+ * @param {{name: string, file: Blob}[]} files
+ * @param {Record<string, string | number> | null} known the options of pictures; null to guess them
+ */
+export async function take(files, known = null) {
+  try {
+    if (app.busy) throw new Error(app.busy.end);
+    if (!app.page) throw new Error('The page has not started, so that it cannot show files yet.');
+    const bytes = files.reduce((sum, { file }) => sum + file.size, 0);
+    if (bytes > MAX_BYTES) throw new Error(`The files have ${(bytes / 1e9).toFixed(1)} GB together, more than a page can hold: leave some out.`);
+    const read = await Promise.all(files.map(async ({ name, file }) => ({ name, bytes: await file.arrayBuffer() })));
+    const carried = read.length === 1 ? await photo(read[0]) : null;
+    /** @type {import('./app.js').Source} */
+    const source = carried?.pair ?? understand(read);
+    clear();
+    if (source.color) {
+      const certain = known ?? carried?.known;
+      fill(certain ?? await guess(source.depth));
+      source.options = options;
+      element('picture-guess').hidden = Boolean(certain);
+    }
+    await showSource(source);
+  } catch (error) {
+    say(error.message);
+  }
 }
 
-/** Makes the panel work. */
-export function offerFiles(app) {
-  const take = async (files) => {
-    try {
-      if (app.busy) throw new Error('Something is being measured or shown elsewhere: end that first.');
-      const bytes = files.reduce((sum, { file }) => sum + file.size, 0);
-      if (bytes > MAX_BYTES) throw new Error(`The files have ${(bytes / 1e9).toFixed(1)} GB together, more than a page can hold: leave some out.`);
-      const read = await Promise.all(files.map(async ({ name, file }) => ({ name, bytes: await file.arrayBuffer() })));
-      const source = understand(read);
-      if (source.color) source.options = options;
-      await app.showSource(source);
-    } catch (error) {
-      app.say(error.message);
-    }
-  };
-  // For tests.
-  app.take = take;
+/** Loads an example of the page's own. */
+async function example(names, known) {
+  try {
+    take(await Promise.all(names.map(async (name) => {
+      const answer = await fetch(name);
+      if (!answer.ok) throw new Error(String(answer.status));
+      return { name, file: await answer.blob() };
+    })), known);
+  } catch (error) {
+    say(`The example cannot be loaded (${error.message}): is there a network?`);
+  }
+}
+
+/** Listens to dropped and chosen files, and to the options of pictures. */
+export function listenToFiles() {
   addEventListener('dragover', (event) => {
     event.preventDefault();
     document.body.classList.add('dropping');
@@ -96,22 +114,30 @@ export function offerFiles(app) {
     event.preventDefault();
     document.body.classList.remove('dropping');
     try {
-      await take(await dropped(event.dataTransfer));
+      const files = await dropped(event.dataTransfer);
+      if (files.length) await take(files);
+      else say('What was dropped is no file: save it first, and drop the file.');
     } catch (error) {
-      app.say(`The files cannot be read (${error.message}): choose them by the button.`);
+      say(`The files cannot be read (${error.message}): choose them by the button.`);
     }
   });
   element('files').addEventListener('change', ({ target }) => {
     take([...target.files].map((file) => ({ name: file.webkitRelativePath || file.name, file })));
   });
+  element('example-pictures').addEventListener('click', () => {
+    example(['example-color.jpg', 'example-depth.png'], { source: 'right', encoding: 'standard-z', near: 0.3, far: 30, 'fov-y-degrees': 60 });
+  });
+  element('example-model').addEventListener('click', () => example(['example.obj', 'example.mtl'], null));
   element('picture-options').addEventListener('change', () => {
     if (!app.source?.color || !app.page) return;
-    app.clear();
+    clear();
+    showFields();
     try {
+      checkOptions();
       app.page.setPictureOptions(options());
     } catch (error) {
-      app.say(error.message);
+      say(error.message);
     }
-    app.changed();
+    changed();
   });
 }

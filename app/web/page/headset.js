@@ -1,7 +1,11 @@
 // A headset, by WebXR: views, projections and framebuffer as the browser gives them.
 
 import { Headset } from './yoro_web.js';
-import { element } from './app.js';
+import { keepPlace } from './address.js';
+import { app, element } from './app.js';
+import { step } from './choices.js';
+import { startLoop } from './drawing.js';
+import { clear, isFree, say } from './messages.js';
 import { sentence } from './sentence.js';
 
 /** xr-standard gamepads: trigger, squeeze, thumbstick; axes 2 and 3 are the thumbstick's. */
@@ -27,10 +31,17 @@ function controllers(session, before) {
   return { presses, stick };
 }
 
-async function enter(app, button) {
+/** Chooses by devices without buttons of their own: hands, and pinches where a glance points. */
+function listenToHands(session) {
+  const isHand = ({ inputSource }) => !inputSource.gamepad;
+  session.addEventListener('select', (event) => { if (isHand(event)) step('method'); });
+  session.addEventListener('squeeze', (event) => { if (isHand(event)) step('viewpoint'); });
+}
+
+async function enter(button) {
   const { gl } = app;
   const session = await navigator.xr.requestSession('immersive-vr', { optionalFeatures: ['local'] });
-  const run = { name: 'headset', stop: () => session.end().catch(() => {}) };
+  const run = { name: 'headset', end: 'The headset shows the scene: leave VR first.', stop: () => session.end().catch(() => {}) };
   app.busy = run;
   button.textContent = 'Leave VR';
   let headset = null;
@@ -38,11 +49,13 @@ async function enter(app, button) {
     headset?.free();
     if (app.busy === run) app.busy = null;
     button.textContent = 'Enter VR';
-    app.startLoop();
+    if (app.page) keepPlace();
+    startLoop();
   });
   try {
     await gl.makeXRCompatible();
     headset = new Headset(app.page);
+    listenToHands(session);
     const layer = new XRWebGLLayer(session, gl, { antialias: false, alpha: false, depth: true, stencil: false });
     const [depthNear, depthFar] = Headset.planes();
     await session.updateRenderState({ baseLayer: layer, depthNear, depthFar });
@@ -61,8 +74,8 @@ async function enter(app, button) {
         if (last) times.push(now - last);
         last = now;
         const { presses, stick } = controllers(session, pressed);
-        if (presses[TRIGGER]) app.step('method');
-        if (presses[SQUEEZE]) app.step('viewpoint');
+        if (presses[TRIGGER]) step('method');
+        if (presses[SQUEEZE]) step('viewpoint');
         if (presses[THUMBSTICK]) shown = !shown;
         const [right, back] = stick.left;
         if (Math.hypot(right, back) > 0.15) app.page.walk(right * dt * METRES_PER_SECOND, 0, -back * dt * METRES_PER_SECOND);
@@ -90,7 +103,7 @@ async function enter(app, button) {
         const fits = headset.draw(app.page, floats, ...size, shown ? text : '');
         if (!fits && !run.told) {
           run.told = true;
-          app.say('This headset’s eyes are canted or shifted: both are rendered.');
+          say('This headset’s eyes are canted or shifted: both are rendered.');
         }
         ports.forEach(({ x, y, width, height }, eye) => {
           gl.bindFramebuffer(gl.FRAMEBUFFER, layer.framebuffer);
@@ -100,7 +113,7 @@ async function enter(app, button) {
         Object.assign(run, { frames: (run.frames ?? 0) + 1, views: floats, size });
       } catch (error) {
         run.stop();
-        app.say(sentence(error));
+        say(sentence(error));
       }
     };
     session.requestAnimationFrame(frame);
@@ -111,7 +124,7 @@ async function enter(app, button) {
 }
 
 /** Makes the panel work. */
-export async function offerHeadset(app) {
+export async function offerHeadset() {
   const [button, state] = [element('headset'), element('headset-state')];
   const look = async () => {
     const here = await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false);
@@ -129,16 +142,13 @@ export async function offerHeadset(app) {
       app.busy.stop();
       return;
     }
-    if (!app.facts || app.busy) {
-      app.say('A headset shows a scene: choose one above.');
-      return;
-    }
-    app.clear();
+    if (!isFree('A headset shows')) return;
+    clear();
     button.disabled = true;
     try {
-      await enter(app, button);
+      await enter(button);
     } catch (error) {
-      app.say(`The headset cannot be entered: ${sentence(error)}`);
+      say(`The headset cannot be entered: ${sentence(error)}`);
     }
     button.disabled = false;
   });

@@ -2,7 +2,7 @@
 
 export const defaults = {
   scene: 'prototype', viewpoint: 0, method: 'yoro', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 63,
-  dominant: 'right', display: 'side-by-side', scale: 1, at: null,
+  dominant: 'right', display: 'divider', scale: 1, at: null,
 };
 
 /** The anti-aliasing that each renderer has, its default first. */
@@ -14,44 +14,55 @@ export const antiAliasing = {
 const allowed = {
   renderer: Object.keys(antiAliasing),
   dominant: ['right', 'left'],
-  display: ['side-by-side', 'cross-eyed', 'anaglyph', 'left', 'right', 'difference', 'flicker'],
+  display: ['divider', 'difference', 'side-by-side', 'cross-eyed', 'anaglyph', 'left', 'right', 'flicker'],
   scale: ['1', '0.75', '0.5'],
 };
+
+/** A head is no farther away than this, in metres: the module's limit. */
+const FARTHEST = 1e6;
+
+/** Returns the number that a text is; NaN for anything else, also for nothing. */
+const number = (text) => (/^[-+]?\d+(\.\d*)?(e[-+]?\d+)?$/i.test(text) ? Number(text) : NaN);
+
+/** Returns a place, or null. @param {string} text */
+function place(text) {
+  const numbers = text.split(',').map(number);
+  return numbers.length === 5 && numbers.every((n) => Math.abs(n) < FARTHEST) ? numbers : null;
+}
 
 /** Returns the settings of a fragment, and a sentence for each invalid part. `known`: the names of scenes, and of the
  * methods of each renderer. */
 export function parse(fragment, known) {
   const fields = new URLSearchParams(fragment.replace(/^#/, ''));
   const renderer = allowed.renderer.find((name) => name === fields.get('renderer')) ?? defaults.renderer;
-  const settings = { ...defaults, 'anti-aliasing': antiAliasing[renderer][0] };
+  const settings = { ...defaults, renderer, 'anti-aliasing': antiAliasing[renderer][0] };
   const faults = [];
   const lists = {
     ...allowed, 'anti-aliasing': antiAliasing[renderer], scene: known.scenes, method: known.methods[renderer],
   };
   for (const [key, value] of fields) {
-    const number = Number(value);
-    if (!(key in defaults)) {
+    if (!Object.hasOwn(defaults, key)) {
       faults.push(`The link has a setting “${key}” that this page does not know; it was left out.`);
-    } else if (key === 'ipd' ? !(value !== '' && number >= 0 && number <= 80) : key === 'viewpoint' && !/^\d{1,3}$/.test(value)) {
+    } else if (key === 'ipd' ? !(number(value) >= 0 && number(value) <= 80) : key === 'viewpoint' && !/^\d{1,3}$/.test(value)) {
       faults.push(`The link's ${key} is “${value}”, which cannot be; it was left out.`);
     } else if (key === 'at') {
-      const place = value.split(',').map(Number);
-      if (place.length === 5 && place.every(Number.isFinite)) settings.at = place;
-      else faults.push('The link’s place cannot be understood; it was left out.');
+      settings.at = place(value);
+      if (!settings.at) faults.push(`The link's place is “${value}”, which cannot be; it was left out.`);
     } else if (lists[key] && !lists[key].includes(value)) {
       faults.push(`The link's ${key} is “${value}”; choose one of ${lists[key].join(', ')}.`);
     } else {
-      settings[key] = typeof defaults[key] === 'number' ? number : value;
+      settings[key] = typeof defaults[key] === 'number' ? Number(value) : value;
     }
   }
   return { settings, faults };
 }
 
-/** The fragment of settings. */
+/** Returns the fragment of settings. Without a built-in scene it has no place either. */
 export function format(settings) {
   const fields = new URLSearchParams();
   const usual = { ...defaults, 'anti-aliasing': antiAliasing[settings.renderer][0] };
   for (const [key, value] of Object.entries(settings)) {
+    if (!settings.scene && ['viewpoint', 'at'].includes(key)) continue;
     if (key === 'at' && value) fields.set(key, value.map((n) => +n.toFixed(4)).join(','));
     else if (value !== null && value !== usual[key]) fields.set(key, value);
   }

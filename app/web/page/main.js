@@ -4,18 +4,19 @@ import init, { Page, builtinScenes } from './yoro_web.js';
 import { goThere, keepNow, readAddress } from './address.js';
 import { app, element } from './app.js';
 import { apply, listenToChoices, step } from './choices.js';
-import { changed, startLoop } from './drawing.js';
-import { offerFiles } from './files.js';
+import { changed, listenToPicture, savePicture, startLoop } from './drawing.js';
+import { listenToFiles, take } from './files.js';
 import { offerHeadset } from './headset.js';
+import { listenToKeys } from './keys.js';
 import { antiAliasing } from './link.js';
 import { offerMeasure } from './measure.js';
 import { clear, loading, say } from './messages.js';
 import { offerPhone } from './phone.js';
 import { sentence } from './sentence.js';
-import { showSource } from './sources.js';
+import { showAgain, showSource, stopLoading } from './sources.js';
 
 const { canvas } = app;
-Object.assign(app, { say, clear, changed, showSource, startLoop, step });
+Object.assign(app, { say, clear, changed, showSource, startLoop, step, take });
 // For the console, and for tests.
 globalThis.yoro = app;
 
@@ -39,57 +40,97 @@ function attach() {
   return true;
 }
 
-function listenToPage() {
-  element('share').addEventListener('click', async () => {
-    keepNow();
-    try {
-      await navigator.clipboard.writeText(location.href);
-      element('facts').textContent = 'The link is in the clipboard.';
-    } catch {
-      element('facts').textContent = location.href;
-    }
-  });
-  element('fullscreen').addEventListener('click', () => {
-    element('stage').requestFullscreen?.().catch((error) => say(`Full screen is not allowed: ${error.message}.`));
-  });
-  element('fullscreen').hidden = !document.fullscreenEnabled;
-  new ResizeObserver(changed).observe(canvas);
-  addEventListener('hashchange', () => {
-    const before = app.settings.scene;
-    readAddress();
-    if (app.settings.scene !== before) showSource({ builtin: app.settings.scene }, { keepPlace: true });
-    else if (app.page) {
-      goThere();
-      apply();
-    }
-  });
-  canvas.addEventListener('webglcontextlost', (event) => {
-    event.preventDefault();
-    app.busy?.stop?.();
-    app.page?.free();
-    Object.assign(app, { page: null, busy: null });
-    say('The GPU has lost the picture. It comes back by itself as soon as the browser gives the GPU back; if it does not, reload the page.');
-  });
-  canvas.addEventListener('webglcontextrestored', () => {
-    if (!attach()) return;
-    clear();
-    apply();
-    if (app.source) showSource(app.source, { keepPlace: true });
-  });
+/** Copies the link, and says so on the button, where people look. */
+async function share() {
+  keepNow();
+  const button = element('share');
+  try {
+    await navigator.clipboard.writeText(location.href);
+    button.textContent = 'Link copied';
+    setTimeout(() => { button.textContent = 'Copy link'; }, 2000);
+  } catch {
+    say(`The browser does not allow copying; the link is ${location.href}`);
+  }
 }
 
-async function start() {
-  listenToChoices((name) => showSource({ builtin: name }));
-  listenToPage();
-  const url = new URL('yoro_web_bg.wasm', import.meta.url);
-  try {
-    app.module = await WebAssembly.compileStreaming(fetch(url));
-    await init({ module_or_path: app.module });
-  } catch (error) {
-    loading(null);
-    say(`The page's module could not be loaded (${error.message}): reload the page, or update the browser.`);
+function followLink({ newURL }) {
+  if (app.busy?.name === 'measure') {
+    keepNow();
+    say(app.busy.end);
     return;
   }
+  clear();
+  // The address may have been written over since it changed: settings are kept after a short delay.
+  readAddress(new URL(newURL).hash);
+  const here = app.wanted ?? app.source;
+  if (here?.builtin !== app.settings.scene) showSource({ builtin: app.settings.scene }, { keepPlace: true });
+  else if (app.page) {
+    goThere();
+    apply();
+  }
+}
+
+function lost(event) {
+  event.preventDefault();
+  app.busy?.stop?.();
+  app.page?.free();
+  Object.assign(app, { page: null, busy: null });
+  say('The GPU has lost the picture. It comes back by itself as soon as the browser gives the GPU back; if it does not, reload the page.');
+}
+
+function restored() {
+  if (!attach()) return;
+  clear();
+  apply();
+  showAgain();
+}
+
+function fillScreen() {
+  if (app.busy) return;
+  if (document.fullscreenElement) document.exitFullscreen();
+  else element('stage').requestFullscreen?.().catch((error) => say(`Full screen is not allowed: ${error.message}.`));
+}
+
+function listenToPage() {
+  listenToChoices((name) => (name === 'own' ? stopLoading() : showSource({ builtin: name })));
+  listenToPicture();
+  listenToKeys({
+    KeyM: () => step('method'), KeyV: () => step('display'), KeyF: fillScreen, KeyP: savePicture,
+    KeyR: () => element('reset').click(), KeyX: () => element('error').click(), KeyZ: () => element('magnifier').click(),
+  });
+  element('share').addEventListener('click', share);
+  element('loading-cancel').addEventListener('click', stopLoading);
+  element('message-close').addEventListener('click', clear);
+  element('fullscreen').addEventListener('click', fillScreen);
+  element('fullscreen').hidden = !document.fullscreenEnabled;
+  canvas.addEventListener('dblclick', fillScreen);
+  addEventListener('hashchange', followLink);
+  canvas.addEventListener('webglcontextlost', lost);
+  canvas.addEventListener('webglcontextrestored', restored);
+}
+
+/** Returns the compiled module; throws a sentence. */
+async function compile() {
+  const response = await fetch(new URL('yoro_web_bg.wasm', import.meta.url));
+  if (!response.ok) throw new Error(`The page's module is missing (${response.status}): reload the page.`);
+  const streams = response.headers.get('content-type')?.startsWith('application/wasm');
+  try {
+    // Some hosts send another type, which only the browser's streaming minds.
+    return await (streams ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer()));
+  } catch (error) {
+    if (/unsafe-eval|Content.Security.Policy/i.test(error.message)) {
+      throw new Error('This server’s Content-Security-Policy forbids WebAssembly: its script-src must have \'wasm-unsafe-eval\'.');
+    }
+    throw error;
+  }
+}
+
+/** Starts the page. */
+export async function start() {
+  listenToPage();
+  listenToFiles();
+  app.module = await compile();
+  await init({ module_or_path: app.module });
   if (!attach()) return;
   app.scenes = JSON.parse(builtinScenes());
   element('scene').replaceChildren(...app.scenes.map(({ name, title, kiloTriangles }) => {
@@ -102,18 +143,13 @@ async function start() {
   }
   element('gpu').textContent = `${app.page.gpu}; ${app.page.glVersion}`;
   readAddress();
-  const faults = element('message').hidden ? null : element('message').textContent;
   apply();
-  offerMeasure(app);
-  offerFiles(app);
-  offerPhone(app);
-  offerHeadset(app);
+  offerMeasure();
+  offerPhone();
+  offerHeadset();
   await showSource({ builtin: app.settings.scene }, { keepPlace: true });
-  if (faults) say(faults);
   app.ready = true;
   // Loaded once, the page works without a network, where browsers allow that: over https and on this machine. What is kept
   // for that is fetched once more, which is not to delay the first picture.
   if ('serviceWorker' in navigator) navigator.serviceWorker.register('offline.js').catch(() => {});
 }
-
-start();

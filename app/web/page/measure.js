@@ -1,27 +1,17 @@
 // The methods against each other, and a file that `yoro report` reads.
 
 import { Bench } from './yoro_web.js';
-import { element } from './app.js';
+import { app, element } from './app.js';
+import { startLoop } from './drawing.js';
+import { clear, isFree, say } from './messages.js';
 import { sentence } from './sentence.js';
+import { median, nextFrame, nextTask } from './timing.js';
 
 /** A batch of frames is at least this long, in ms: browsers round their clocks to 0.005 to 1 ms. */
 const BATCH = 50;
 /** Frames with timer queries a turn: results come some frames late. */
 const TIMED_FRAMES = 10;
 const VIEWPOINTS = 3;
-
-const nextTask = () => new Promise((resolve) => {
-  const { port1, port2 } = new MessageChannel();
-  port1.onmessage = resolve;
-  port2.postMessage(null);
-});
-const nextFrame = () => new Promise((resolve) => requestAnimationFrame(resolve));
-
-const median = (values) => {
-  const sorted = [...values].sort((a, b) => a - b);
-  const middle = sorted.length >> 1;
-  return sorted.length % 2 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
-};
 
 /** Refresh rate of the display in Hz, by the callbacks of a third of a second. */
 async function refreshRate() {
@@ -47,7 +37,7 @@ function clockStep() {
  * Measures the methods; null if the run is stopped.
  * @param {Bench} bench the methods, with images of the wanted size
  */
-async function measure(app, bench, seconds, run) {
+async function measure(bench, seconds, run) {
   const { page } = app;
   const rate = await refreshRate();
   const facts = JSON.parse(bench.facts);
@@ -113,7 +103,7 @@ async function measure(app, bench, seconds, run) {
   return { facts, records, rounds, viewpoints, rate, clock: clockStep() };
 }
 
-function machine(app) {
+function machine() {
   const platform = navigator.userAgentData?.platform || navigator.platform || 'not told';
   return {
     cpu: 'a processor that browsers do not name', cores: navigator.hardwareConcurrency ?? 0, os: platform, gl_renderer: app.page.gpu,
@@ -122,16 +112,16 @@ function machine(app) {
   };
 }
 
-/** The result as `yoro bench` writes it: JSON lines. */
-function lines(app, size, seconds, result) {
+/** The result as `yoro bench` writes it: JSON lines. `settings` are those that the run began with. */
+function lines(settings, size, seconds, result) {
   const setting = { suite: 'scenes', scene: app.facts.name };
   const { facts, records, rounds, rate, clock } = result;
   const parameters = {
     'size per eye, pixels': size.join('x'),
-    'IPD, mm': String(app.settings.ipd),
-    'dominant eye': app.settings.dominant,
+    'IPD, mm': String(settings.ipd),
+    'dominant eye': settings.dominant,
     'renderer': app.page.renderer,
-    'anti-aliasing': app.settings['anti-aliasing'],
+    'anti-aliasing': settings['anti-aliasing'],
     'seconds': String(seconds),
     'browser': navigator.userAgent,
     'refresh rate of the display, Hz': rate.toFixed(1),
@@ -139,9 +129,10 @@ function lines(app, size, seconds, result) {
     'frame time': 'several stereo frames without waiting, up to reading back a pixel',
     'GPU time by pass': facts.timerQueries ? 'EXT_disjoint_timer_query_webgl2' : 'not told',
   };
+  /** @type {object[]} */
   const out = [{
-    record: 'header', yoro_bench: 1, suites: ['scenes'], quick: seconds < 30, machine: machine(app),
-    pass_clock: 'timer-queries',
+    record: 'header', yoro_bench: 1, suites: ['scenes'], quick: seconds < 30, machine: machine(),
+    pass_clock: facts.timerQueries ? 'timer-queries' : 'none',
     parameters: Object.entries(parameters).map(([name, value]) => ({ name, value })),
   }, {
     record: 'scene', ...setting, stands_for: app.facts.standsFor, style: app.facts.style, triangles: app.facts.triangles,
@@ -162,7 +153,7 @@ function cell(kind, text, scope) {
   return made;
 }
 
-function show(app, size, result, run) {
+function show(size, result, run) {
   const { facts, records, rate, clock } = result;
   const of = (name) => records.filter((record) => record.contender === name);
   const ratio = (name, metric) => {
@@ -208,8 +199,13 @@ function show(app, size, result, run) {
   }));
 }
 
+/** Locks what a measurement depends on. @param {boolean} locked */
+function lock(locked) {
+  for (const id of ['look', 'own', 'measure-fields']) element(id).disabled = locked;
+}
+
 /** Makes the panel work. */
-export function offerMeasure(app) {
+export function offerMeasure() {
   const [button, save, bar] = ['measure', 'measure-save', 'measure-progress'].map(element);
   let file = null;
   button.addEventListener('click', async () => {
@@ -217,39 +213,41 @@ export function offerMeasure(app) {
       app.busy.stop();
       return;
     }
-    if (!app.facts || !app.page || app.busy) {
-      app.say('A measurement needs a scene: choose one above.');
-      return;
-    }
-    app.clear();
+    if (!isFree('A measurement needs')) return;
+    clear();
     const size = element('measure-size').value.split('x').map(Number);
     const seconds = Number(element('measure-seconds').value);
     const run = {
-      name: 'measure', stopped: false, progress: (part) => { bar.value = part; }, stop() { this.stopped = true; },
+      name: 'measure', end: 'A measurement is running: stop it first.', stopped: false,
+      progress: (part) => { bar.value = part; }, stop() { this.stopped = true; },
     };
+    const settings = { ...app.settings };
     app.busy = run;
+    lock(true);
     Object.assign(bar, { hidden: false, value: 0 });
     button.textContent = 'Stop';
-    save.hidden = true;
+    save.disabled = true;
     await nextFrame();
     let bench = null;
     try {
       bench = new Bench(app.page, ...size);
-      const result = await measure(app, bench, seconds, run);
+      const result = await measure(bench, seconds, run);
       if (result) {
-        show(app, size, result, run);
-        file = lines(app, size, seconds, result);
+        show(size, result, run);
+        file = lines(settings, size, seconds, result);
         app.measured = file;
-        save.hidden = false;
       }
     } catch (error) {
-      app.say(sentence(error));
+      say(sentence(error));
     }
     bench?.free();
     bar.hidden = true;
     button.textContent = 'Measure';
+    // The figures of an earlier run stay.
+    Object.assign(save, { hidden: !file, disabled: false });
+    lock(false);
     if (app.busy === run) app.busy = null;
-    app.startLoop();
+    startLoop();
   });
   save.addEventListener('click', () => {
     const link = document.createElement('a');

@@ -1,17 +1,35 @@
 // Messages to the user: errors, hints and progress.
 
-import { element } from './app.js';
+import { app, element } from './app.js';
 
-/** Shows an error or a hint. @param {string} text */
+/** Shows an error or a hint, above everything else. @param {string} text */
 export function say(text) {
   const message = element('message');
-  message.textContent = text;
+  element('message-text').textContent = text;
   message.hidden = false;
+  // Shown last, it lies above an element that has the whole screen.
+  message.hidePopover?.();
+  message.showPopover?.();
+}
+
+/** Shows a sentence after those that are shown. @param {string} text */
+export function sayAlso(text) {
+  say(element('message').hidden ? text : `${element('message-text').textContent} ${text}`);
 }
 
 /** Hides the message. */
 export function clear() {
   element('message').hidden = true;
+}
+
+/**
+ * True if nobody else draws and a scene is shown; says otherwise what is missing.
+ * @param {string} need a sentence: what needs a scene
+ */
+export function isFree(need) {
+  if (app.busy) say(app.busy.end);
+  else if (!app.facts || !app.page) say(`${need} a scene: choose one of the list.`);
+  return Boolean(!app.busy && app.facts && app.page);
 }
 
 /**
@@ -22,6 +40,8 @@ export function clear() {
  */
 export function loading(text, part = null, count = '') {
   element('loading').hidden = !text;
+  // There is nothing to go back to before the first scene.
+  element('loading-cancel').hidden = !app.wanted || !app.source;
   if (element('loading-text').textContent !== text) element('loading-text').textContent = text ?? '';
   element('loading-count').textContent = count;
   if (part === null) element('progress').removeAttribute('value');

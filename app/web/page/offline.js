@@ -1,29 +1,40 @@
-// Keeps the page's files, so that it works without a network. Files from the network take precedence.
+// Keeps the page's files, so that it works without a network.
 
-const CACHE = 'yoro';
-const FILES = [
-  './', 'icon.svg', 'style.css', 'main.js', 'address.js', 'app.js', 'choices.js', 'controls.js', 'drawing.js', 'files.js',
-  'headset.js', 'link.js', 'measure.js', 'messages.js', 'phone.js', 'sentence.js', 'sources.js', 'worker.js', 'yoro_web.js',
-  'yoro_web_bg.wasm',
-];
+const CACHE = 'yoro VERSION';
+const FILES = ['./', 'icon.svg', 'manifest.webmanifest', /* FILES */];
+/** A network that takes longer than this, in ms, is none, where the file is kept. */
+const PATIENCE = 4000;
 
 self.addEventListener('install', (event) => {
   event.waitUntil(caches.open(CACHE).then((cache) => cache.addAll(FILES)).then(() => self.skipWaiting()));
 });
-self.addEventListener('activate', (event) => event.waitUntil(self.clients.claim()));
+
+self.addEventListener('activate', (event) => {
+  event.waitUntil((async () => {
+    const old = (await caches.keys()).filter((name) => name.startsWith('yoro') && name !== CACHE);
+    await Promise.all(old.map((name) => caches.delete(name)));
+    await self.clients.claim();
+  })());
+});
+
+/** Returns the network's answer, or fails after a while. */
+function ask(request) {
+  return new Promise((resolve, reject) => {
+    setTimeout(() => reject(new Error('The network does not answer.')), PATIENCE);
+    fetch(request).then(resolve, reject);
+  });
+}
+
+async function answer(request) {
+  const cache = await caches.open(CACHE);
+  // The page has one document, by whatever name it was asked for.
+  const kept = await cache.match(request.mode === 'navigate' ? './' : request, { ignoreSearch: true });
+  // Files of a version never change.
+  if (!kept || new URL(request.url).pathname.includes('/VERSION/')) return kept ?? fetch(request);
+  return ask(request).then((response) => (response.ok ? response : kept), () => kept);
+}
+
 self.addEventListener('fetch', (event) => {
   const { request } = event;
-  if (request.method !== 'GET' || new URL(request.url).origin !== location.origin) return;
-  event.respondWith((async () => {
-    const cache = await caches.open(CACHE);
-    try {
-      const response = await fetch(request);
-      if (response.ok) await cache.put(request, response.clone());
-      return response;
-    } catch (error) {
-      const kept = await cache.match(request, { ignoreSearch: true });
-      if (kept) return kept;
-      throw error;
-    }
-  })());
+  if (request.method === 'GET' && new URL(request.url).origin === location.origin) event.respondWith(answer(request));
 });

@@ -1,127 +1,152 @@
 // A phone in a Cardboard-compatible viewer.
 
 import { Phone } from './yoro_web.js';
-import { element } from './app.js';
+import { keepPlace } from './address.js';
+import { app, element } from './app.js';
+import { startLoop } from './drawing.js';
+import { clear, isFree, say } from './messages.js';
 import { sentence } from './sentence.js';
 
-const RADIANS = Math.PI / 180;
+/** Sensors that have not told anything for so long, in ms, are none. */
+const SILENCE = 1500;
+/** The shortest short edge of a screen in mm: the lenses' limit. */
+const SHORTEST = 30;
 
-const multiply = ([ax, ay, az, aw], [bx, by, bz, bw]) => [
-  aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
-  aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz,
-];
-const about = (axis, angle) => {
-  const out = [0, 0, 0, Math.cos(angle / 2)];
-  out[axis] = Math.sin(angle / 2);
-  return out;
-};
-
-/** Returns the head's orientation for a device's angles (degrees, in browsers' convention) and its screen's rotation
- * `screen` in degrees: a quaternion x, y, z, w in a world with Y up. */
-export function orientation(alpha, beta, gamma, screen) {
-  // Turns about the Earth's axes Z, X and Y, with Z up; then the screen against the device.
-  const device = multiply(multiply(about(2, alpha * RADIANS), about(0, beta * RADIANS)), about(1, gamma * RADIANS));
-  const upright = multiply(about(0, -Math.PI / 2), device);
-  return multiply(upright, about(2, -screen * RADIANS));
-}
+const { canvas } = app;
 
 /** Asks for permission to use the sensors if the browser requires it; throws a sentence. */
 async function askForSensors() {
   if (typeof DeviceOrientationEvent === 'undefined') throw new Error('This browser does not report how it is held.');
-  if (DeviceOrientationEvent.requestPermission) {
-    const answer = await DeviceOrientationEvent.requestPermission().catch((error) => error.message);
+  // Only Apple's browsers ask.
+  const { requestPermission } = /** @type {any} */ (DeviceOrientationEvent);
+  if (requestPermission) {
+    const answer = await requestPermission.call(DeviceOrientationEvent).catch((error) => error.message);
     if (answer !== 'granted') throw new Error('The motion sensors are not allowed: allow them in the browser’s settings for this page, and try again.');
   }
 }
 
-/** Makes the panel work. */
-export function offerPhone(app) {
-  const { canvas } = app;
-  const [button, leave] = ['phone', 'phone-leave'].map(element);
-  button.addEventListener('click', async () => {
-    if (!app.facts || app.busy) {
-      app.say('A viewer shows a scene: choose one above.');
-      return;
+/** Checks both fields, and marks the first that is wrong; true if both are right. */
+function checkFields() {
+  const [viewer, long] = ['phone-viewer', 'phone-width'].map(element);
+  viewer.setCustomValidity(Phone.viewerFault(viewer.value) ?? '');
+  const [width, height] = [screen.width, screen.height];
+  const short = (long.valueAsNumber * Math.min(width, height)) / Math.max(width, height);
+  long.setCustomValidity(short < SHORTEST
+    ? `The short edge of this screen would be ${(short / 10).toFixed(1)} cm: it must be ${SHORTEST / 10} cm or more.` : '');
+  return viewer.reportValidity() && long.reportValidity();
+}
+
+/** A visit to the viewer: draws until it is left. */
+class Visit {
+  name = 'phone';
+  end = 'The viewer shows the scene: leave it first.';
+  /** The phone in the viewer, once the size of the screen is known. @type {Phone | undefined} */
+  #phone;
+  #size = '';
+  /** What the sensors told last: alpha, beta, gamma and the screen's rotation, in degrees. */
+  #angles = null;
+  #awake = null;
+  #silence = 0;
+  #listeners = new AbortController();
+
+  constructor() {
+    // Some browsers give no element the whole screen: it fills the window there.
+    document.body.classList.add('filling');
+    element('phone-leave').hidden = false;
+    const { signal } = this.#listeners;
+    const listen = (target, name, call) => target.addEventListener(name, call, { signal });
+    listen(globalThis, 'deviceorientation', (event) => this.#turned(event));
+    listen(document, 'fullscreenchange', () => { if (!document.fullscreenElement) this.stop(); });
+    listen(document, 'visibilitychange', () => this.#keepAwake());
+    listen(canvas, 'click', () => this.#phone?.recenter());
+    listen(element('phone-leave'), 'click', () => this.stop());
+    this.#keepAwake();
+    this.#silence = setTimeout(() => say('This device’s sensors report nothing: drag to look.'), SILENCE);
+    requestAnimationFrame(() => this.#frame());
+  }
+
+  async #keepAwake() {
+    if (document.visibilityState !== 'visible') return;
+    this.#awake = await navigator.wakeLock?.request('screen').catch(() => null);
+    if (app.busy !== this) this.#awake?.release();
+  }
+
+  #turned({ alpha, beta, gamma }) {
+    if (alpha === null) return;
+    clearTimeout(this.#silence);
+    this.#angles = [alpha, beta, gamma, screen.orientation?.angle ?? globalThis.orientation ?? 0];
+  }
+
+  stop() {
+    if (app.busy !== this) return;
+    app.busy = null;
+    this.#listeners.abort();
+    clearTimeout(this.#silence);
+    element('phone-leave').hidden = true;
+    element('phone-upright').hidden = true;
+    document.body.classList.remove('filling');
+    this.#awake?.release();
+    this.#phone?.free();
+    this.#phone = undefined;
+    if (document.fullscreenElement) document.exitFullscreen();
+    if (app.page) keepPlace();
+    startLoop();
+  }
+
+  #frame() {
+    if (app.busy !== this || !app.page) return;
+    try {
+      const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(16, Math.round(n * devicePixelRatio)));
+      element('phone-upright').hidden = width > height;
+      if (this.#size !== `${width}x${height}`) {
+        this.#size = `${width}x${height}`;
+        Object.assign(canvas, { width, height });
+        const long = element('phone-width').valueAsNumber / 1000;
+        const metres = [width, height].map((n) => (long * n) / Math.max(width, height));
+        // The new phone takes over the direction straight ahead, which consumes the phone before.
+        const before = this.#phone;
+        this.#phone = undefined;
+        this.#phone = new Phone(app.page, element('phone-viewer').value, ...metres, before);
+      }
+      if (this.#angles) this.#phone.turn(...this.#angles);
+      this.#phone.draw(app.page, width, height, app.settings.scale);
+      requestAnimationFrame(() => this.#frame());
+    } catch (error) {
+      this.stop();
+      say(sentence(error));
     }
-    app.clear();
+  }
+}
+
+/** Makes the panel work. */
+export function offerPhone() {
+  // The viewer that was used last; a browser may refuse to keep anything.
+  try {
+    element('phone-viewer').value = localStorage.getItem('viewer') ?? 'v1';
+    element('phone-width').value = localStorage.getItem('screen') ?? '140';
+  } catch { /* The fields keep what they have. */ }
+  element('phone').addEventListener('click', async () => {
+    if (!isFree('A viewer shows') || !checkFields()) return;
+    clear();
     const sensors = askForSensors();
     const full = element('stage').requestFullscreen?.({ navigationUI: 'hide' });
     try {
       await sensors;
       await full;
     } catch (error) {
-      app.say(error.message);
+      say(error.message);
       if (document.fullscreenElement) await document.exitFullscreen();
       return;
     }
     // Only some browsers can, and the phone may be locked upright.
     await screen.orientation?.lock?.('landscape').catch(() => {});
-    let awake = await navigator.wakeLock?.request('screen').catch(() => null);
-    let head = [0, 0, 0, 1];
-    let size = '';
-    /** The phone in the viewer, once the size of the screen is known. */
-    let phone;
-    const turned = ({ alpha, beta, gamma }) => {
-      if (alpha !== null) head = orientation(alpha, beta, gamma, screen.orientation?.angle ?? globalThis.orientation ?? 0);
-    };
-    const tapped = () => phone?.recenter();
-    const seen = async () => {
-      if (document.visibilityState === 'visible') awake = await navigator.wakeLock?.request('screen').catch(() => null);
-    };
-    const run = {
-      name: 'phone',
-      stop() {
-        if (app.busy !== run) return;
-        app.busy = null;
-        removeEventListener('deviceorientation', turned);
-        document.removeEventListener('fullscreenchange', left);
-        document.removeEventListener('visibilitychange', seen);
-        canvas.removeEventListener('click', tapped);
-        leave.removeEventListener('click', run.stop);
-        leave.hidden = true;
-        document.body.classList.remove('filling');
-        awake?.release();
-        phone?.free();
-        phone = undefined;
-        if (document.fullscreenElement) document.exitFullscreen();
-        app.startLoop();
-      },
-    };
-    const left = () => {
-      if (!document.fullscreenElement) run.stop();
-    };
-    app.busy = run;
-    // Some browsers give no element the whole screen: it fills the window there.
-    document.body.classList.add('filling');
-    leave.hidden = false;
-    leave.addEventListener('click', run.stop);
-    addEventListener('deviceorientation', turned);
-    document.addEventListener('fullscreenchange', left);
-    document.addEventListener('visibilitychange', seen);
-    canvas.addEventListener('click', tapped);
-    const frame = () => {
-      if (app.busy !== run || !app.page) return;
-      try {
-        const ratio = devicePixelRatio;
-        const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(16, Math.round(n * ratio)));
-        if (canvas.width !== width) canvas.width = width;
-        if (canvas.height !== height) canvas.height = height;
-        if (size !== `${width}x${height}`) {
-          size = `${width}x${height}`;
-          const long = element('phone-width').valueAsNumber / 1000;
-          const metres = [width, height].map((n) => (long * n) / Math.max(width, height));
-          // The new phone takes over the direction straight ahead, which consumes the phone before.
-          const before = phone;
-          phone = undefined;
-          phone = new Phone(app.page, element('phone-viewer').value, ...metres, before);
-        }
-        phone.draw(app.page, width, height, new Float32Array(head), app.settings.scale);
-        requestAnimationFrame(frame);
-      } catch (error) {
-        run.stop();
-        app.say(sentence(error));
-      }
-    };
-    requestAnimationFrame(frame);
+    try {
+      localStorage.setItem('viewer', element('phone-viewer').value);
+      localStorage.setItem('screen', element('phone-width').value);
+    } catch { /* The fields are to be filled again next time. */ }
+    app.busy = new Visit();
   });
+  for (const id of ['phone-viewer', 'phone-width']) {
+    element(id).addEventListener('input', ({ target }) => target.setCustomValidity(''));
+  }
 }

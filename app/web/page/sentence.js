@@ -2,11 +2,12 @@
 
 /**
  * Returns a sentence for a thrown value.
- * @param {Error} error
+ * @param {any} error
  * @returns {string}
  */
 export function sentence(error) {
-  if (error instanceof WebAssembly.RuntimeError) {
+  // After a failure the module's objects are locked for ever, which the bindings call recursive use.
+  if (error instanceof WebAssembly.RuntimeError || /recursive use of an object/.test(error.message)) {
     return `The module has failed (${error.message}), perhaps for lack of memory: reload the page, and choose a smaller scene.`;
   }
   return error.message ?? String(error);

@@ -2,24 +2,49 @@
 
 import { goThere } from './address.js';
 import { app, element } from './app.js';
-import { apply } from './choices.js';
+import { apply, showChoices } from './choices.js';
 import { changed, startLoop } from './drawing.js';
-import { clear, loading, say } from './messages.js';
+import { loading, say, sayAlso } from './messages.js';
 import { sentence } from './sentence.js';
 
-/** The worker that makes a scene, while there is one. */
-let job = null;
+/** The work on `app.wanted`: ends the worker, and gives its promise null. */
+let cancel = () => {};
 
 /**
- * Loads and shows a source, from its viewpoint of the settings. The content before stays until then.
- * @param {object} source `{builtin}`, `{main, files}` or `{color, depth, options}`
+ * Loads and shows a source, from its first viewpoint. The content before stays until then.
+ * @param {import('./app.js').Source} source
  * @param {{keepPlace?: boolean}} options true to go to the settings' viewpoint and place, not to the first viewpoint
  */
 export async function showSource(source, { keepPlace = false } = {}) {
-  clear();
-  job?.terminate();
+  cancel();
+  app.wanted = source;
+  showChoices();
   if (source.color) showPictures(source);
   else await showScene(source, keepPlace);
+}
+
+/** Shows again what was shown or was to be shown, after a lost context. */
+export function showAgain() {
+  const source = app.wanted ?? app.source;
+  if (source) showSource(source, { keepPlace: true });
+}
+
+/** Gives up loading; what was shown stays. */
+export function stopLoading() {
+  cancel();
+  end();
+}
+
+/** Ends loading, with or without success. */
+function end() {
+  app.wanted = null;
+  loading(null);
+  describe();
+  try {
+    apply();
+  } catch (error) {
+    say(sentence(error));
+  }
 }
 
 function showPictures(source) {
@@ -29,71 +54,83 @@ function showPictures(source) {
       source.color.name, new Uint8Array(source.color.bytes), source.depth.name, new Uint8Array(source.depth.bytes),
       source.options());
     Object.assign(app, { source, facts: null });
-    describe();
+    app.settings.scene = null;
   } catch (error) {
     say(sentence(error));
   }
-  loading(null);
+  end();
   changed();
+}
+
+/** Returns a packed scene and its warnings, or an error; null if the work was cancelled. */
+async function load(source, doing) {
+  const worker = new Worker(new URL('worker.js', import.meta.url), { type: 'module' });
+  const answer = await new Promise((resolve) => {
+    cancel = () => resolve(null);
+    worker.onmessage = ({ data }) => {
+      if (data.bytes || data.error) resolve(data);
+      else generating(doing, source.builtin, data);
+    };
+    worker.onerror = (event) => resolve({
+      error: `The scene could not be made (${event.message ?? 'the worker did not start'}): reload the page, perhaps it has a new version.`,
+    });
+    worker.postMessage({ ...source, module: app.module });
+  });
+  worker.terminate();
+  return answer;
 }
 
 async function showScene(source, keepPlace) {
   const doing = source.builtin ? `Generating ${source.builtin}` : `Loading ${source.main}`;
   loading(doing);
-  const worker = new Worker('worker.js', { type: 'module' });
-  job = worker;
-  const answer = await new Promise((resolve) => {
-    worker.onmessage = ({ data }) => {
-      if (data.bytes || data.error) resolve(data);
-      else if (job === worker) generating(doing, source.builtin, data);
-    };
-    worker.onerror = (event) => resolve({ error: `The scene could not be made (${event.message ?? 'the worker did not start'}).` });
-    worker.postMessage({ ...source, module: app.module });
-  });
-  worker.terminate();
-  if (job !== worker) return;
-  job = null;
-  if (answer.error || !app.page) {
-    loading(null);
-    if (answer.error) say(answer.error);
+  const answer = await load(source, doing);
+  // Somebody else wants something, or the context is lost and the source comes with it.
+  if (!answer || app.wanted !== source || (answer.bytes && !app.page)) return;
+  if (answer.error) {
+    say(answer.error);
+    end();
     return;
   }
   loading('Compiling shaders');
   // Lets the browser show the line above first.
   await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+  if (app.wanted !== source || !app.page) return;
   try {
     app.facts = JSON.parse(app.page.setScene(answer.bytes));
     app.source = source;
     const count = app.facts.viewpoints;
-    element('viewpoint').replaceChildren(...Array.from({ length: count }, (_, i) => new Option(i + 1, i)));
-    const { settings } = app;
-    if (!keepPlace) Object.assign(settings, { viewpoint: 0, at: null });
-    settings.viewpoint = Math.min(settings.viewpoint, count - 1);
-    settings.scene = source.builtin ?? settings.scene;
+    element('viewpoint').replaceChildren(...Array.from({ length: count }, (_, i) => new Option(String(i + 1), String(i))));
+    if (!keepPlace) Object.assign(app.settings, { viewpoint: 0, at: null });
+    app.settings.scene = source.builtin ?? null;
     goThere();
-    describe();
-    apply();
-    if (answer.warnings.length) say(answer.warnings.map((text) => `${text}.`).join(' '));
+    if (answer.warnings.length) sayAlso(answer.warnings.map((text) => `${text}.`).join(' '));
   } catch (error) {
-    app.facts = null;
+    // The module has let go of what was shown.
+    Object.assign(app, { source: null, facts: null });
     say(sentence(error));
   }
-  loading(null);
+  end();
   startLoop();
 }
+
+const counted = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
 
 /** Shows a scene's progress: first the textures, then the triangles, whose final number is known. */
 function generating(doing, name, { textures, triangles }) {
   const { kiloTriangles } = app.scenes.find((scene) => scene.name === name);
   const kilo = Math.round(triangles / 1000);
   if (kilo) loading(doing, Math.min(kilo / kiloTriangles, 1), `${kilo} of ${kiloTriangles} thousand triangles`);
-  else loading(doing, null, `${textures} textures`);
+  else loading(doing, null, counted(textures, 'texture'));
 }
 
+/** Offers the user's own source beside the built-in scenes, and says what is shown. */
 function describe() {
   const { facts, source } = app;
-  element('picture-options').hidden = !source.color;
+  const name = source?.builtin ?? source?.main ?? source?.color.name;
+  element('scene').querySelector('[value=own]')?.remove();
+  if (source && !source.builtin) element('scene').prepend(new Option(`your own: ${name}`, 'own'));
+  element('picture-options').hidden = !source?.color;
   element('facts').textContent = facts
-    ? `${source.builtin ?? source.main}: ${facts.triangles.toLocaleString('en')} triangles, ${facts.style}`
-    : `${source.color.name} with ${source.depth.name}`;
+    ? `${name}: ${facts.triangles.toLocaleString('en')} triangles, ${facts.style}`
+    : source ? `${name} with ${source.depth.name}` : '';
 }

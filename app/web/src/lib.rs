@@ -9,6 +9,8 @@
 #[cfg(target_arch = "wasm32")]
 mod page;
 mod pictures;
+mod psnr;
+mod sensors;
 mod settings;
 mod views;
 mod walker;
@@ -16,6 +18,8 @@ mod walker;
 #[cfg(target_arch = "wasm32")]
 pub use page::Page;
 pub use pictures::{Encoding, PictureError, PictureOptions, PicturePair, SourceEye};
+pub use psnr::psnr;
+pub use sensors::{Head, find_viewer, orientation};
 pub use settings::{Display, Settings};
 pub use views::{VIEW_FLOATS, view};
 pub use walker::Walker;

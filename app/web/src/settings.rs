@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
-use yoro_gl::{Context, GlError};
+use yoro_gl::{Capabilities, Context, GlError};
 use yoro_protocol::Ipd;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoMethod, StereoOptions};
 use yoro_render::{RenderSettings, RendererKind};
@@ -24,13 +24,23 @@ pub enum Display {
     Left,
     /// The right eye's image.
     Right,
-    /// The difference between the eye that is not dominant and a real render of it.
+    /// The eye that is not dominant: really rendered left of a divider, and as the method makes it right of it.
+    Divider,
+    /// The same with the difference between both right of the divider.
     Difference,
-    /// The method's image of that eye and a real render of it, in turn.
+    /// Both in turn: the divider at either border.
     Flicker,
 }
 
 impl Display {
+    /// Returns the display of one eye's image.
+    pub fn one_eye(eye: Eye) -> Display {
+        match eye {
+            Eye::Left => Display::Left,
+            Eye::Right => Display::Right,
+        }
+    }
+
     /// True if both images are on the screen.
     fn is_split(self) -> bool {
         matches!(self, Display::SideBySide | Display::CrossEyed)
@@ -43,7 +53,7 @@ impl Display {
 
     /// True if the eye that is not dominant has to be rendered, too.
     pub fn needs_truth(self) -> bool {
-        matches!(self, Display::Difference | Display::Flicker)
+        matches!(self, Display::Divider | Display::Difference | Display::Flicker)
     }
 }
 
@@ -69,9 +79,9 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        let yoro_protocol::Settings { method, renderer, msaa, dominant, .. } = Default::default();
+        let yoro_protocol::Settings { renderer, msaa, dominant, .. } = Default::default();
         Settings {
-            method,
+            method: Method::default(),
             renderer,
             msaa,
             anti_aliasing: AntiAliasing::After,
@@ -107,6 +117,18 @@ impl Settings {
         self.method == other.method
             && self.stereo_options() == other.stereo_options()
             && self.render_settings() == other.render_settings()
+    }
+
+    /// Returns the reason why a browser cannot do a method with these choices; none if it can.
+    pub fn lacks(&self, method: Method, capabilities: &Capabilities) -> Option<String> {
+        let reason = self.render_settings().supports(method, capabilities).err()?;
+        // The desktop's advice is another driver.
+        let browser = method == Method::Multiview && self.renderer == RendererKind::Deferred;
+        Some(if browser {
+            "This browser has no OVR_multiview2, which headsets' browsers have: choose instanced.".into()
+        } else {
+            reason.to_string()
+        })
     }
 
     /// Compiles a method for these choices.

@@ -10,6 +10,7 @@ use yoro_render::stereo::{Method, Pipeline, StereoFrame, StereoMethod};
 
 use super::Page;
 use super::error::sentence;
+use crate::settings::Settings;
 
 /// All methods that the browser supports, ready to take turns. It is valid for the page's scene.
 #[wasm_bindgen]
@@ -19,6 +20,8 @@ pub struct Bench {
     facts: String,
     frame: StereoFrame,
     size: [u32; 2],
+    /// The choices that it was made with: those of the page may change meanwhile.
+    settings: Settings,
     passes: Vec<PassTime>,
     timed_frames: u32,
 }
@@ -40,12 +43,11 @@ impl Bench {
     #[wasm_bindgen(constructor)]
     pub fn new(page: &Page, width: u32, height: u32) -> Result<Bench, JsError> {
         let Page { gl, settings, .. } = page;
-        let render = settings.render_settings();
         let (mut names, mut entrants, mut unsupported) = (Vec::new(), Vec::new(), Vec::new());
         for method in Method::ALL {
-            match render.supports(method, gl.capabilities()) {
-                Err(reason) => unsupported.push((contender(method), reason.to_string())),
-                Ok(()) => {
+            match settings.lacks(method, gl.capabilities()) {
+                Some(reason) => unsupported.push((contender(method), reason)),
+                None => {
                     names.push(contender(method));
                     entrants.push(settings.create(gl, method).map_err(sentence)?);
                 }
@@ -62,6 +64,7 @@ impl Bench {
             facts: facts.to_string(),
             frame: StereoFrame::new(gl, [width, height]).map_err(sentence)?,
             size: [width, height],
+            settings: *settings,
             passes: Vec::new(),
             timed_frames: 0,
         })
@@ -110,7 +113,7 @@ impl Bench {
         viewpoint: usize,
     ) -> Result<(), JsError> {
         self.frame(page, contender, viewpoint)?;
-        self.timed_frames += self.gl.end_timed_frame(&mut self.passes);
+        self.timed_frames += u32::from(self.gl.end_timed_frame(&mut self.passes).is_some());
         Ok(())
     }
 
@@ -129,11 +132,10 @@ impl Bench {
 
     /// Renders one stereo frame; nothing for a contender or a viewpoint that there is not.
     fn frame(&mut self, page: &mut Page, contender: usize, viewpoint: usize) -> Result<(), JsError> {
-        let settings = page.settings;
         let Some(scene) = page.scene() else { return Err(JsError::new("There is no scene to measure.")) };
         let prepared = &mut scene.prepared;
         let Some(viewpoint) = prepared.scene.viewpoints.get(viewpoint) else { return Ok(()) };
-        let pair = settings.pair(viewpoint.pose(), self.size);
+        let pair = self.settings.pair(viewpoint.pose(), self.size);
         let Some(method) = self.entrants.get_mut(contender) else { return Ok(()) };
         method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame).map_err(sentence)
     }

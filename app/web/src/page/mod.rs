@@ -14,7 +14,7 @@ use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 use web_sys::WebGl2RenderingContext;
 use yoro::eyes::{Eye, Pose};
-use yoro_gl::Context;
+use yoro_gl::{Context, RenderTarget};
 use yoro_render::stereo::Method;
 use yoro_scene::Scene;
 use yoro_scenes::BUILTINS;
@@ -24,6 +24,7 @@ use self::picture_show::PictureShow;
 use self::scene_show::SceneShow;
 use self::show::{Layout, Show};
 use crate::pictures::{PictureOptions, PicturePair};
+use crate::psnr::psnr;
 use crate::settings::{Display, Settings};
 use crate::walker::Walker;
 
@@ -92,11 +93,8 @@ impl Page {
     /// # Errors
     /// A sentence.
     pub fn methods(&self, json: &str) -> Result<String, JsError> {
-        let render = Settings::parse(json).map_err(sentence)?.render_settings();
-        let entry = |method: Method| {
-            let supported = render.supports(method, self.gl.capabilities());
-            serde_json::json!({ "name": method.name(), "reason": supported.err().map(|error| error.to_string()) })
-        };
+        let settings = Settings::parse(json).map_err(sentence)?;
+        let entry = |method: Method| serde_json::json!({ "name": method.name(), "reason": settings.lacks(method, self.gl.capabilities()) });
         Ok(serde_json::Value::from_iter(Method::ALL.map(entry)).to_string())
     }
 
@@ -224,27 +222,70 @@ impl Page {
         self.walker.walk([right, up, ahead]);
     }
 
-    /// Draws on a canvas of this size. `truth` is true if the display that shows two images in turn shows the real one.
+    /// Renders for a canvas of this size, and shows it there as [`Page::show`] does.
     ///
     /// # Errors
     /// A sentence.
-    pub fn draw(&mut self, width: u32, height: u32, truth: bool) -> Result<(), JsError> {
+    pub fn draw(&mut self, width: u32, height: u32, divider: f32) -> Result<(), JsError> {
+        if let Content::Scene(scene) = &mut self.content {
+            let size = self.settings.display.part([width, height]);
+            scene.render(&self.gl, &self.settings, self.walker.pose(), size).map_err(sentence)?;
+        }
+        self.show(width, height, divider);
+        Ok(())
+    }
+
+    /// Draws as [`Page::draw`] does, without the real images that a display compares with: sooner.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn preview(&mut self, width: u32, height: u32) -> Result<(), JsError> {
+        let display = self.settings.display;
+        if display.needs_truth() {
+            self.settings.display = Display::one_eye(self.settings.dominant.other());
+        }
+        let drawn = self.draw(width, height, 0.0);
+        self.settings.display = display;
+        drawn
+    }
+
+    /// Shows the images of the last [`Page::draw`] on the canvas, without rendering. `divider` is the share of the width
+    /// that shows the real image, where the display compares it with the method's.
+    pub fn show(&self, width: u32, height: u32, divider: f32) {
         let Settings { display, dominant, .. } = self.settings;
         let canvas = [width, height];
-        if let Content::Scene(scene) = &mut self.content {
+        if let Content::Scene(scene) = &self.content {
             let size = display.part(canvas);
-            scene.render(&self.gl, &self.settings, self.walker.pose(), size).map_err(sentence)?;
-            let real = scene.real_image(&self.settings).filter(|_| truth || display != Display::Flicker);
-            let layout = Layout { origin: [0, 0], size, step: size[0] };
-            self.show.eyes(display, &scene.frame, dominant, real, &layout);
-            return Ok(());
+            let divider = (size[0] as f32 * divider.clamp(0.0, 1.0)).round() as u32;
+            let layout = Layout { origin: [0, 0], size, step: size[0], divider };
+            self.show.eyes(display, &scene.frame, dominant, scene.real_image(&self.settings), &layout);
+            return;
         }
         self.gl.bind_framebuffer(None, [0, 0], canvas);
         self.gl.clear(None);
         if let Content::Pictures(pictures) = &self.content {
             pictures.draw(&self.show, &self.settings, canvas);
         }
-        Ok(())
+    }
+
+    /// Renders the picture of the last [`Page::draw`] `count` times more, by two renders or by the method, and waits for the
+    /// GPU: to be timed. Nothing without a display that needs both.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn repeat(&mut self, real: bool, count: u32) -> Result<(), JsError> {
+        self.scene().map_or(Ok(()), |scene| scene.repeat(real, count)).map_err(sentence)
+    }
+
+    /// Returns the PSNR in dB of the method's image of the eye that is not dominant, against the real one, both as last drawn.
+    /// It is infinite for equal images, and none without a display that needs both. Waits for the GPU.
+    #[wasm_bindgen(getter)]
+    pub fn psnr(&self) -> Option<f64> {
+        let Content::Scene(scene) = &self.content else { return None };
+        let real = scene.real_eye(&self.settings)?;
+        let made = scene.frame.eye(self.settings.dominant.other());
+        let read = |target: &RenderTarget| target.read_rgba8(0, [0, 0], target.size());
+        Some(psnr(&read(made), &read(real)))
     }
 
     /// Returns an eye's image of the last frame on the canvas, 0 left and 1 right: RGBA, rows from the bottom; empty if

@@ -2,8 +2,8 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::Pose;
-use yoro_gl::{Context, GlError, Texture};
+use yoro::eyes::{Eye, EyePair, Pose};
+use yoro_gl::{Context, GlError, RenderTarget, Texture};
 use yoro_render::stereo::{Method, StereoError, StereoFrame, StereoMethod};
 use yoro_render::{PreparedScene, Renderer};
 use yoro_scene::Scene;
@@ -17,6 +17,8 @@ pub struct SceneShow {
     /// The images of the last frame on the canvas.
     pub frame: StereoFrame,
     truth: Option<Truth>,
+    /// The eyes of that frame.
+    pair: Option<EyePair>,
 }
 
 /// A real render of both eyes, to compare the method's with.
@@ -36,6 +38,7 @@ impl SceneShow {
             method: settings.create(gl, settings.method)?,
             frame: StereoFrame::new(gl, [1, 1])?,
             truth: None,
+            pair: None,
         })
     }
 
@@ -49,7 +52,7 @@ impl SceneShow {
         settings: &Settings,
         before: &Settings,
     ) -> Result<(), GlError> {
-        self.truth = None;
+        (self.truth, self.pair) = (None, None);
         let render = settings.render_settings();
         let renderer = if before.render_settings() == render {
             None
@@ -77,6 +80,7 @@ impl SceneShow {
         let PreparedScene { renderer, scene, .. } = &mut self.prepared;
         let pair = settings.pair(head, size);
         self.method.render(renderer, scene, &pair, &mut self.frame)?;
+        self.pair = Some(pair);
         if !settings.display.needs_truth() {
             self.truth = None;
             return Ok(());
@@ -91,8 +95,30 @@ impl SceneShow {
         truth.method.render(renderer, scene, &pair, &mut truth.frame)
     }
 
-    /// Returns the real image of the eye that is not dominant, where the display needs it.
+    /// Renders the last frame `count` times more, by the method or really, and waits for the GPU. Nothing without a truth.
+    ///
+    /// # Errors
+    /// The method's.
+    pub fn repeat(&mut self, real: bool, count: u32) -> Result<(), StereoError> {
+        let (Some(truth), Some(pair)) = (&mut self.truth, &self.pair) else { return Ok(()) };
+        let PreparedScene { renderer, scene, .. } = &mut self.prepared;
+        let (method, frame) =
+            if real { (&mut truth.method, &mut truth.frame) } else { (&mut self.method, &mut self.frame) };
+        for _ in 0..count {
+            method.render(renderer, scene, pair, frame)?;
+        }
+        // Browsers make little of glFinish; for a pixel they have to wait.
+        frame.eye(Eye::Left).read_rgba8(0, [0, 0], [1, 1]);
+        Ok(())
+    }
+
+    /// Returns the real render of the eye that is not dominant, where the display needs it.
+    pub fn real_eye(&self, settings: &Settings) -> Option<&RenderTarget> {
+        Some(self.truth.as_ref()?.frame.eye(settings.dominant.other()))
+    }
+
+    /// Returns its image.
     pub fn real_image(&self, settings: &Settings) -> Option<&Texture> {
-        Some(self.truth.as_ref()?.frame.eye(settings.dominant.other()).color(0))
+        Some(self.real_eye(settings)?.color(0))
     }
 }

@@ -1,5 +1,6 @@
 //! Shows finished images.
 
+use std::ops::Range;
 use std::rc::Rc;
 
 use glam::Vec4;
@@ -17,6 +18,8 @@ pub struct Layout {
     pub size: [u32; 2],
     /// The distance from the first image's left edge to the second's.
     pub step: u32,
+    /// Columns of the image left of the divider, where a display has one.
+    pub divider: u32,
 }
 
 /// The programs that show images; they fill a rectangle, scaled to it.
@@ -43,10 +46,19 @@ impl Show {
         })
     }
 
-    fn run(&self, program: &Program, first: &Texture, second: Option<(&str, &Texture)>, to: &Destination) {
+    /// Runs a program on some columns of a rectangle that the images fill as a whole.
+    fn run(
+        &self,
+        program: &Program,
+        first: &Texture,
+        second: Option<(&str, &Texture)>,
+        to: &Destination,
+        columns: Range<u32>,
+    ) {
         self.gl.pass("show", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
-            self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+            let origin = [to.origin[0] + columns.start, to.origin[1]];
+            self.gl.bind_framebuffer(to.framebuffer, origin, [columns.end - columns.start, to.size[1]]);
             self.draw(program, first, second, to);
         });
     }
@@ -62,21 +74,30 @@ impl Show {
 
     /// Shows one image.
     pub fn image(&self, image: &Texture, to: &Destination) {
-        self.run(&self.plain, image, None, to);
+        self.run(&self.plain, image, None, to, 0..to.size[0]);
     }
 
     /// Shows red of the left eye's image, green and blue of the right eye's.
     pub fn anaglyph(&self, left: &Texture, right: &Texture, to: &Destination) {
-        self.run(&self.anaglyph, left, Some(("second", right)), to);
+        self.run(&self.anaglyph, left, Some(("second", right)), to, 0..to.size[0]);
     }
 
-    /// Shows the difference of two images: black for none, white from a quarter of the range on.
-    pub fn difference(&self, a: &Texture, b: &Texture, to: &Destination) {
-        self.run(&self.difference, a, Some(("second", b)), to);
+    /// Shows the real image left of the divider. Right of it is the method's image, or the difference of both: black for
+    /// none, white from a quarter of the range on.
+    fn divided(&self, real: &Texture, made: &Texture, difference: bool, to: &Destination, divider: u32) {
+        let [width, _] = to.size;
+        let divider = divider.min(width);
+        if divider > 0 {
+            self.run(&self.plain, real, None, to, 0..divider);
+        }
+        if divider < width && difference {
+            self.run(&self.difference, made, Some(("second", real)), to, divider..width);
+        } else if divider < width {
+            self.run(&self.plain, made, None, to, divider..width);
+        }
     }
 
-    /// Shows both eyes on a display. `real` is the image that the display compares with the eye that is not dominant, or
-    /// shows in its place.
+    /// Shows both eyes on a display. `real` is the image that the display compares with the eye that is not dominant.
     pub fn eyes(
         &self,
         display: Display,
@@ -85,7 +106,7 @@ impl Show {
         real: Option<&Texture>,
         layout: &Layout,
     ) {
-        let Layout { origin: [x, y], size, step } = *layout;
+        let Layout { origin: [x, y], size, step, divider } = *layout;
         let part = |x| Destination { framebuffer: None, origin: [x, y], size };
         let (first, second) = (part(x), part(x + step));
         let image = |eye: Eye| frame.eye(eye).color(0);
@@ -99,8 +120,10 @@ impl Show {
             Display::Anaglyph => self.anaglyph(image(Eye::Left), image(Eye::Right), &first),
             Display::Left => self.image(image(Eye::Left), &first),
             Display::Right => self.image(image(Eye::Right), &first),
-            Display::Difference => self.difference(other, real.unwrap_or(other), &first),
-            Display::Flicker => self.image(real.unwrap_or(other), &first),
+            Display::Divider | Display::Difference | Display::Flicker => {
+                let difference = display == Display::Difference;
+                self.divided(real.unwrap_or(other), other, difference, &first, divider);
+            }
         }
     }
 

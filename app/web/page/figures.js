@@ -1,0 +1,91 @@
+// The figures of the picture in view, measured while nothing moves: the method against two renders.
+
+import { app, element } from './app.js';
+import { median, nextTask } from './timing.js';
+
+/** The picture rests so long before it is measured, in ms. */
+const REST = 500;
+/** Measuring ends after so long, in ms. */
+const LENGTH = 1000;
+/** A batch is at least this long, in ms: browsers round their clocks to 1 ms at worst. */
+const BATCH = 20;
+const MOST_FRAMES = 200;
+
+let timer = 0;
+/** The measurement in progress; another one ends it. */
+let current = null;
+/** The settings that the sentence on display is about. */
+let about = '';
+
+const compares = () => Boolean(app.facts && app.page && !app.busy) && ['divider', 'difference'].includes(app.settings.display);
+
+/** Ends a measurement: the picture changes. */
+export function forgetFigures() {
+  clearTimeout(timer);
+  current = null;
+  const { method, renderer, ipd, scale, scene, dominant } = app.settings;
+  const now = [method, renderer, app.settings['anti-aliasing'], ipd, scale, scene, dominant, app.facts?.name].join();
+  if (about !== now || !compares()) element('figures').textContent = '';
+  about = now;
+}
+
+/** Measures the picture once it has rested. */
+export function figures() {
+  clearTimeout(timer);
+  if (!compares() || current) return;
+  timer = setTimeout(() => {
+    if (!compares() || document.hidden) return;
+    current = {};
+    measure(current).catch(() => {});
+  }, REST);
+}
+
+/** Returns the ms of a frame of two batches, one by the method and one by two renders, and the frames of a batch. */
+function pair(frames) {
+  return [false, true].map((real, i) => {
+    const start = performance.now();
+    app.page.repeat(real, frames[i]);
+    return performance.now() - start;
+  });
+}
+
+async function measure(run) {
+  const frames = [1, 1];
+  let pairs = [];
+  // The first frames warm up.
+  app.page.repeat(false, 1);
+  app.page.repeat(true, 1);
+  const end = performance.now() + LENGTH;
+  while (performance.now() < end || pairs.length < 3) {
+    await nextTask();
+    if (current !== run || !compares()) return;
+    const taken = pair(frames);
+    const short = taken.map((ms, i) => ms < BATCH && frames[i] < MOST_FRAMES);
+    if (short.includes(true)) {
+      pairs = [];
+      taken.forEach((ms, i) => {
+        if (short[i]) frames[i] = Math.min(MOST_FRAMES, Math.max(frames[i] + 1, Math.ceil((frames[i] * BATCH * 1.3) / Math.max(ms, 0.5))));
+      });
+    } else {
+      pairs.push(taken.map((ms, i) => ms / frames[i]));
+    }
+    if (performance.now() > end + 4 * LENGTH) break;
+  }
+  if (!pairs.length) return;
+  const [made, real] = [0, 1].map((i) => median(pairs.map((times) => times[i])));
+  const share = median(pairs.map(([a, b]) => a / b));
+  element('figures').textContent = sentences(app.settings.method, share, made, real, app.page.psnr);
+  app.figures = { share, made, real };
+}
+
+/** Returns the figures in words. */
+export function sentences(method, share, made, real, psnr) {
+  const digits = (ms) => `${ms.toFixed(ms < 10 ? 2 : ms < 100 ? 1 : 0)} ms`;
+  const who = /llvmpipe|swiftshader|software|basic render/i.test(app.page.gpu) ? 'This device’s processor, without a GPU,' : 'Your GPU';
+  const seen = psnr === Infinity ? 'without any difference to a real render' : `at ${psnr.toFixed(1)} dB PSNR against a real render`;
+  if (method === 'conventional') return `${who} draws this stereo picture by two renders in ${digits(real)}. Choose yoro to compare.`;
+  const both = `${digits(made)} against ${digits(real)}`;
+  const percent = Math.round(share * 100);
+  if (share < 0.995) return `${who} draws this stereo picture in ${percent} % of the time of two renders (${both}), ${seen}.`;
+  return `Two renders are cheaper for this picture here: ${method} takes ${percent} % of their time (${both}), ${seen}.`;
+}

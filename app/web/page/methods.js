@@ -1,0 +1,26 @@
+// The methods in words.
+
+/** Returns a sentence for each method. */
+export const explanations = {
+  conventional: 'Renders both eyes, one after the other: the baseline of every comparison.',
+  instanced: 'Renders both eyes in one set of draw calls: less work for the processor, as many pixels.',
+  multiview: 'Renders both eyes in one set of draw calls, by the GPU’s own extension: less work for the processor, as many pixels.',
+  hybrid: 'Renders what is near for both eyes, and what is far once.',
+  'shading-reprojection': 'Draws the geometry of both eyes, and lights of the second only what the first does not see.',
+  mono: 'Shows the picture of one eye to both, without depth: nothing is cheaper.',
+  yoro: 'Renders one eye, and synthesizes the other from its colour and depth.',
+};
+
+/** How each method makes the eye that is not rendered whole. */
+const other = {
+  hybrid: 'near rendered, far copied', 'shading-reprojection': 'shading copied', mono: 'a copy', yoro: 'synthesized',
+};
+
+/**
+ * Returns how an eye is made, in a word or two.
+ * @param {string} method
+ * @param {boolean} dominant
+ */
+export function making(method, dominant) {
+  return (!dominant && other[method]) || 'rendered';
+}

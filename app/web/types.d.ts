@@ -1,0 +1,15 @@
+// What the type checker does not know: the built module, and interfaces that only some browsers have.
+
+declare module '*yoro_web.js' {
+  class Built { constructor(...all: any[]); [member: string]: any; static [member: string]: any }
+  export default function init(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
+  export function builtinScenes(): string;
+  export class Page extends Built {}
+  export class Bench extends Built {}
+  export class Phone extends Built { static viewerFault(viewer: string): string | undefined }
+  export class Headset extends Built { static planes(): Float32Array }
+}
+declare const XRWebGLLayer: any;
+interface Navigator { xr?: any; userAgentData?: { platform: string } }
+interface ScreenOrientation { lock(orientation: string): Promise<void> }
+interface WebGL2RenderingContext { makeXRCompatible(): Promise<void> }
