@@ -125,21 +125,82 @@ pub struct Mean {
     pub identical_pairs: usize,
 }
 
-impl CompareReport {
-    /// Compares two images, or each pair of two folders; error maps are written where they are wanted.
-    pub fn of(inputs: &Inputs) -> Result<CompareReport, CompareError> {
-        let Inputs { a, b, .. } = inputs;
+/// The files of a pair.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PairFiles {
+    /// The path inside the folders, or the first image.
+    pub name: PathBuf,
+    /// The image to judge.
+    pub a: PathBuf,
+    /// The reference.
+    pub b: PathBuf,
+    /// The mask.
+    pub mask: Option<PathBuf>,
+    /// The error map that is written.
+    pub map: Option<PathBuf>,
+}
+
+impl Inputs {
+    /// Returns the files of each pair, sorted by name, and the files of one folder that the other lacks.
+    ///
+    /// # Errors
+    /// [`CompareError`] when there is no pair.
+    pub fn pairs(&self) -> Result<(Vec<PairFiles>, Vec<PathBuf>), CompareError> {
+        let Inputs { a, b, .. } = self;
         for path in [a, b] {
             if !path.exists() {
                 return Err(FileError::Missing { path: path.clone() }.into());
             }
         }
-        let (pairs, unmatched) = match (a.is_dir(), b.is_dir()) {
-            (false, false) => (vec![compare_pair(inputs, None)?], Vec::new()),
-            (true, true) => compare_folders(inputs)?,
-            (true, false) => return Err(CompareError::FileAndFolder { folder: a.clone(), file: b.clone() }),
-            (false, true) => return Err(CompareError::FileAndFolder { folder: b.clone(), file: a.clone() }),
+        match (a.is_dir(), b.is_dir()) {
+            (false, false) => {
+                let (a, b, mask, map) = (a.clone(), b.clone(), self.mask.clone(), self.map.clone());
+                Ok((vec![PairFiles { name: a.clone(), a, b, mask, map }], Vec::new()))
+            }
+            (true, true) => self.pairs_of_folders(),
+            (true, false) => Err(CompareError::FileAndFolder { folder: a.clone(), file: b.clone() }),
+            (false, true) => Err(CompareError::FileAndFolder { folder: b.clone(), file: a.clone() }),
+        }
+    }
+
+    fn pairs_of_folders(&self) -> Result<(Vec<PairFiles>, Vec<PathBuf>), CompareError> {
+        let a = files::find(&self.a, &picture::EXTENSIONS)?;
+        let b = files::find(&self.b, &picture::EXTENSIONS)?;
+        let (names, only_a): (Vec<_>, Vec<_>) = a.into_iter().partition(|name| b.binary_search(name).is_ok());
+        if names.is_empty() {
+            return Err(CompareError::NoPairs { a: self.a.clone(), b: self.b.clone() });
+        }
+        let only_b = b.into_iter().filter(|name| names.binary_search(name).is_err());
+        let unmatched = only_a.into_iter().map(|name| self.a.join(name));
+        let unmatched = unmatched.chain(only_b.map(|name| self.b.join(name))).collect();
+        // One mask may serve a whole folder.
+        let mask = |name: &Path| {
+            self.mask.as_ref().map(|mask| if mask.is_dir() { mask.join(name) } else { mask.clone() })
         };
+        let map = |name: &Path| self.map.as_ref().map(|map| map.join(name).with_extension("png"));
+        let pair = |name: PathBuf| PairFiles {
+            a: self.a.join(&name),
+            b: self.b.join(&name),
+            mask: mask(&name),
+            map: map(&name),
+            name,
+        };
+        Ok((names.into_iter().map(pair).collect(), unmatched))
+    }
+}
+
+impl CompareReport {
+    /// Compares two images, or each pair of two folders; error maps are written where they are wanted.
+    pub fn of(inputs: &Inputs) -> Result<CompareReport, CompareError> {
+        let (files, unmatched) = inputs.pairs()?;
+        let bar = ProgressBar::new(files.len() as u64);
+        let mut pairs = Vec::with_capacity(files.len());
+        for files in files {
+            interrupt::check()?;
+            pairs.push(compare_pair(files, inputs.bright_holes)?);
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
         let mean_of = |which: fn(&Comparison) -> &Quality| {
             Quality::mean(pairs.iter().map(|pair| which(&pair.comparison))).expect("there is a pair")
         };
@@ -199,50 +260,16 @@ impl CompareReport {
     }
 }
 
-fn compare_folders(inputs: &Inputs) -> Result<(Vec<Pair>, Vec<PathBuf>), CompareError> {
-    let a = files::find(&inputs.a, &picture::EXTENSIONS)?;
-    let b = files::find(&inputs.b, &picture::EXTENSIONS)?;
-    let (names, only_a): (Vec<_>, Vec<_>) = a.into_iter().partition(|name| b.binary_search(name).is_ok());
-    if names.is_empty() {
-        return Err(CompareError::NoPairs { a: inputs.a.clone(), b: inputs.b.clone() });
-    }
-    let only_b = b.into_iter().filter(|name| names.binary_search(name).is_err());
-    let unmatched = only_a.into_iter().map(|name| inputs.a.join(name));
-    let unmatched = unmatched.chain(only_b.map(|name| inputs.b.join(name))).collect();
-    let bar = ProgressBar::new(names.len() as u64);
-    let mut pairs = Vec::with_capacity(names.len());
-    for name in names {
-        interrupt::check()?;
-        pairs.push(compare_pair(inputs, Some(&name))?);
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    Ok((pairs, unmatched))
-}
-
-/// Compares the two files, or those called `name` in the two folders.
-fn compare_pair(inputs: &Inputs, name: Option<&Path>) -> Result<Pair, CompareError> {
-    let of_pair = |path: &Path| match name {
-        Some(name) => path.join(name),
-        None => path.to_path_buf(),
-    };
-    let (path_a, path_b) = (of_pair(&inputs.a), of_pair(&inputs.b));
-    let both = |what| CompareError::Pair { a: path_a.clone(), b: path_b.clone(), what };
-    let (a, b) = (picture::load_color(&path_a)?, picture::load_color(&path_b)?);
-    let holes = match &inputs.mask {
-        // One mask may serve a whole folder.
-        Some(mask) => {
-            let path = if mask.is_dir() { of_pair(mask) } else { mask.clone() };
-            Some(holes_of_mask(&picture::load_mask(&path)?, !inputs.bright_holes))
-        }
-        None => None,
-    };
+fn compare_pair(files: PairFiles, bright_holes: bool) -> Result<Pair, CompareError> {
+    let both = |what| CompareError::Pair { a: files.a.clone(), b: files.b.clone(), what };
+    let (a, b) = (picture::load_color(&files.a)?, picture::load_color(&files.b)?);
+    let mask = files.mask.as_deref().map(picture::load_mask).transpose()?;
+    let holes = mask.map(|mask| holes_of_mask(&mask, !bright_holes));
     let comparison = Comparison::of(&a, &b, holes.as_deref()).map_err(both)?;
-    if let Some(map) = &inputs.map {
-        let path = if name.is_some() { of_pair(map).with_extension("png") } else { map.clone() };
-        picture::save_color(&path, &error_map(&a, &b).map_err(both)?)?;
+    if let Some(map) = &files.map {
+        picture::save_color(map, &error_map(&a, &b).map_err(both)?)?;
     }
-    Ok(Pair { name: name.map_or(path_a, Path::to_path_buf), comparison })
+    Ok(Pair { name: files.name, comparison })
 }
 
 /// The mean over the pairs that have such pixels.

@@ -2,75 +2,111 @@
 //!
 //! The compilers list loops in their own order. Here each loop gets the name of what it does in the shader.
 
-use anyhow::{Context as _, ensure};
+use anyhow::{Context as _, bail};
 
 use super::table::Table;
 
 /// The file of the costs, in the workspace.
 pub const FILE: &str = "app/lab/src/bench/gather-cost.csv";
 /// The GPUs of the devices that the suite knows.
-const GPUS: [&str; 3] = ["a650", "a740", "g57"];
-/// Mali's waves have 16 lanes; its rows do not say so.
+const GPUS: [&str; 5] = ["a650", "a740", "g52", "g57", "g610"];
+/// Mali's waves have 16 lanes, G52's 8; their rows do not say so.
 const MALI_LANES: u32 = 16;
-/// The programs: a name for what stands outside of their loops, the program, and names for its loops in the order of the
-/// listing.
-const PROGRAMS: [(&str, &str, &[&str]); 4] = [
-    ("tiles", "synthesis/gather/tiles.frag TEXTURE_GATHER", &["tiles: two rows"]),
-    ("spans", "synthesis/gather/spans.frag", &["spans: tile"]),
-    (
-        "march",
-        "synthesis/gather/march.frag TEXTURE_GATHER SHORT_WAY",
-        // The columns' loop is there twice, of the first tiles and in each later round.
-        &[
-            "march: short step",
-            "march: column",
-            "march: round",
-            "march: tile",
-            "march: later column",
-            "march: fill",
-        ],
-    ),
-    (
-        "march: short way",
-        "synthesis/gather/march.frag TEXTURE_GATHER SHORT_WAY SHORT_WAY_ALONE",
-        &["march: short way's step"],
-    ),
-];
-
+const G52_LANES: u32 = 8;
 /// Issue slots and texture instructions.
 type Work = [i64; 2];
+
+/// What a program executes once: outside of its loops, and in each of them without the loops inside, in the order of the
+/// listing.
+struct Program<const LOOPS: usize> {
+    outside: Work,
+    loops: [Work; LOOPS],
+}
+
+impl<const LOOPS: usize> Program<LOOPS> {
+    fn total(&self) -> Work {
+        self.loops.iter().fold(self.outside, |sum, body| plus(sum, *body))
+    }
+}
 
 /// Returns the file's text: of each part what it executes once, without the loops inside.
 ///
 /// # Errors
-/// When the table lacks a program, or a program has other loops than those named here.
+/// When the table lacks a program, or a program has another number of loops.
 pub fn text(table: &Table) -> anyhow::Result<String> {
     let mut text = "# Written by cargo tools shader-cost --bless\ngpu,lanes,part,slots,fetches\n".to_owned();
     for gpu in GPUS {
-        for (name, program, loops) in PROGRAMS {
-            let row = table.rows.iter().find(|row| row.gpu == gpu && row.program == program);
-            let row = row.with_context(|| format!("there is no row {gpu},{program}"))?;
-            let lanes = row.lanes_per_wave.unwrap_or(MALI_LANES);
-            let bodies = bodies(&row.loops).with_context(|| format!("unreadable loops \"{}\"", row.loops))?;
-            ensure!(
-                bodies.len() == loops.len(),
-                "{program} has {} loops on {gpu}, and {} are named: name them anew in tools/src/shader_cost/gather.rs",
-                bodies.len(),
-                loops.len()
-            );
-            let mut outside = [row.slots, row.fetches].map(|count| i64::from(count.unwrap_or(0)));
-            bodies.iter().for_each(|body| subtract(&mut outside, *body));
-            for (part, [slots, fetches]) in std::iter::once((&name, outside)).chain(loops.iter().zip(bodies))
-            {
-                text += &format!("{gpu},{lanes},{part},{slots},{fetches}\n");
-            }
+        for (lanes, part, [slots, fetches]) in parts(table, gpu)? {
+            text += &format!("{gpu},{lanes},{part},{slots},{fetches}\n");
         }
     }
     Ok(text)
 }
 
-fn subtract(from: &mut Work, what: Work) {
-    from.iter_mut().zip(what).for_each(|(from, what)| *from -= what);
+/// Lanes of a wave, name and work of each part on a GPU.
+fn parts(table: &Table, gpu: &str) -> anyhow::Result<Vec<(u32, &'static str, Work)>> {
+    let of = |file: &str| format!("synthesis/gather/{file}.frag TEXTURE_GATHER SHORT_WAY");
+    let (tile_lanes, tiles) = program::<1>(table, gpu, &of("tiles"))?;
+    let (span_lanes, spans) = program::<3>(table, gpu, &of("spans"))?;
+    let (lanes, _) = program::<4>(table, gpu, &of("march"))?;
+    // Each program has the parts of the one before, and one more: tests/src/programs.rs.
+    let march = |parts: u32| format!("{} PARTS={parts}", of("march"));
+    let (_, law) = program::<0>(table, gpu, &march(1))?;
+    let (_, short) = program::<1>(table, gpu, &march(2))?;
+    let (_, walks) = program::<3>(table, gpu, &march(6))?;
+    let (_, events) = program::<3>(table, gpu, &march(14))?;
+    let (_, fill) = program::<3>(table, gpu, &march(30))?;
+    let (_, all) = program::<4>(table, gpu, &march(62))?;
+    // The loop over events and walks is the second one, that of four columns the last.
+    Ok(vec![
+        (tile_lanes, "tiles", tiles.outside),
+        (tile_lanes, "tiles: two rows", tiles.loops[0]),
+        (span_lanes, "spans", spans.outside),
+        (span_lanes, "spans: tile", spans.loops[0]),
+        (span_lanes, "spans: plane", spans.loops[1]),
+        (span_lanes, "spans: joint", spans.loops[2]),
+        (lanes, "march: law", law.outside),
+        (lanes, "march: short way", short.outside),
+        (lanes, "march: short step", short.loops[0]),
+        (lanes, "march: long way", minus(events.outside, short.outside)),
+        (lanes, "march: walk", walks.loops[1]),
+        (lanes, "march: four columns", events.loops[2]),
+        (lanes, "march: event", minus(events.loops[1], walks.loops[1])),
+        (lanes, "march: fill", minus(fill.total(), events.total())),
+        (lanes, "march: tile", plus(minus(all.loops[1], fill.loops[1]), all.loops[2])),
+    ])
+}
+
+/// Lanes of a wave, and the work of a program with so many loops.
+fn program<const LOOPS: usize>(
+    table: &Table,
+    gpu: &str,
+    name: &str,
+) -> anyhow::Result<(u32, Program<LOOPS>)> {
+    let row = table.rows.iter().find(|row| row.gpu == gpu && row.program == name);
+    let row = row.with_context(|| format!("there is no row {gpu},{name}"))?;
+    let bodies = bodies(&row.loops).with_context(|| format!("unreadable loops \"{}\"", row.loops))?;
+    let count = bodies.len();
+    let Ok(loops) = bodies.try_into() else {
+        bail!(
+            "{name} has {count} loops on {gpu}, and {LOOPS} are named: name them anew in tools/src/shader_cost/gather.rs"
+        );
+    };
+    let all = [row.slots, row.fetches].map(|count| i64::from(count.unwrap_or(0)));
+    let loops: [Work; LOOPS] = loops;
+    let outside = loops.iter().fold(all, |rest, body| minus(rest, *body));
+    Ok((
+        row.lanes_per_wave.unwrap_or(if gpu == "g52" { G52_LANES } else { MALI_LANES }),
+        Program { outside, loops },
+    ))
+}
+
+fn plus(a: Work, b: Work) -> Work {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+fn minus(a: Work, b: Work) -> Work {
+    [a[0] - b[0], a[1] - b[1]]
 }
 
 /// Returns what each loop of a row executes once, without the loops inside.
@@ -83,7 +119,10 @@ fn bodies(loops: &str) -> Option<Vec<Work>> {
         let work = [slots.parse().ok()?, fetches.parse().ok()?];
         match text.len() - body.len() {
             0 => outermost = bodies.len(),
-            1 => subtract(bodies.get_mut(outermost)?, work),
+            1 => {
+                let around = bodies.get_mut(outermost)?;
+                *around = minus(*around, work);
+            }
             _ => return None,
         }
         bodies.push(work);

@@ -112,7 +112,8 @@ pub fn report(
         for (program, said) in programs.iter().zip(&run.programs).filter(|(_, said)| said.ok) {
             let mut rows = Row::all(gpu, &text_of(program, "name"), said);
             // Three vertices cost nothing.
-            let screen = text_of(&program["stages"][0], "file") == "screen.vert";
+            let vertex = text_of(&program["stages"][0], "file");
+            let screen = ["screen.vert", "synthesis/march.vert"].contains(&vertex.as_str());
             rows.retain(|row| !screen || row.stage == "fragment");
             found.rows.extend(rows);
         }

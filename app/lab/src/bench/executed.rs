@@ -1,8 +1,8 @@
 //! Estimate of the synthesis's execution on GPUs that are not here.
 //!
-//! The loops of `gather` are counted where they run, in its own shaders on real frames. Each GPU runs a loop as often as
-//! the slowest pixel of a wave; the sizes of loops and of what stands around them are those that Mesa's compilers
-//! make of the same text (`docs/shader-cost.csv`). Rates of GPUs are assumptions: [`DEVICES`].
+//! The parts of `gather` are counted where they run, in its own shaders on real frames. Each GPU runs a part as often as
+//! the slowest pixel of a wave; the sizes of the parts are those that Mesa's compilers make of the same text
+//! (`docs/shader-cost.csv`). Rates of GPUs are assumptions: [`DEVICES`].
 
 use std::rc::Rc;
 
@@ -17,11 +17,13 @@ use yoro_render::{PreparedScene, Selection, ViewTargets};
 /// Costs of the passes' parts on each GPU, by name; written by `cargo tools shader-cost --bless`.
 const COSTS: &str = include_str!("gather-cost.csv");
 /// Pixels of a tile, one fragment of the first two passes.
-const TILE: [u32; 2] = [16, 8];
+pub(super) const TILE: [u32; 2] = [16, 8];
 /// Row pairs of a tile: trips of its loop.
 const TILE_TRIPS: f64 = TILE[1] as f64 / 2.0;
-/// Bytes that are read and written for each pixel, every texel once: depth for the tiles and for the march, colour, target.
-const BYTES: f64 = 16.0;
+/// Bytes that are read and written for each pixel, every texel once: depth for the tiles, colour, target, and both maps.
+const BYTES: f64 = 4.0 + 4.0 + 4.0 + 2.0 * 2.0 * 16.0 / (TILE[0] * TILE[1]) as f64;
+/// The march's depth, where a tile has no law.
+const DEPTH_BYTES: f64 = 4.0;
 
 /// A GPU, and the size of an eye on the device that has it. The rates are assumptions from public figures, one issue slot
 /// for each lane and clock.
@@ -29,8 +31,8 @@ const BYTES: f64 = 16.0;
 pub struct Device {
     /// Name in results.
     pub name: &'static str,
-    /// [`COSTS`]'s name of the GPU.
-    gpu: &'static str,
+    /// Name of the GPU in tables of costs.
+    pub gpu: &'static str,
     /// Pixels of an eye.
     pub size: [u32; 2],
     /// Lanes times clock, per second.
@@ -51,38 +53,54 @@ pub const DEVICES: [Device; 3] = [
     Device { name: "mali-g57", gpu: "g57", size: [1200, 1080], slots: 0.061e12, fetches: 7.6e9, bytes: 17e9 },
 ];
 
-/// Iterations of the march's loops, from [`Gather::counting`]: of one pixel, or the largest of a wave.
+/// Source tiles that a law may be made of, at most (`LAW_TILES` in `include/laws.glsl`).
+const LAW_TILES: f64 = 4.0;
+
+/// Runs of the march's parts, from [`Gather::counting`]: of one pixel, or the most of a wave's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Trips {
+    /// 1 where a pixel's tile has a law.
+    law: f64,
+    /// 1 where it has none.
+    searches: f64,
     short: f64,
-    fill: f64,
     /// 1 where a pixel goes the long way.
     goes_on: f64,
-    columns: f64,
-    rounds: f64,
+    /// Steps of four columns.
+    steps: f64,
+    walks: f64,
+    events: f64,
     tiles: f64,
+    holes: f64,
 }
 
 impl Trips {
-    fn of([packed, columns, rounds, tiles]: [u8; 4]) -> Trips {
+    fn of([ways, steps, events_and_walks, tiles]: [u8; 4]) -> Trips {
+        let law = f64::from(ways >> 5 & 1);
         Trips {
-            short: f64::from(packed & 15),
-            fill: f64::from(packed >> 4 & 3),
-            goes_on: f64::from(packed >> 7),
-            columns: columns.into(),
-            rounds: rounds.into(),
+            law,
+            searches: 1.0 - law,
+            short: f64::from(ways & 7),
+            goes_on: f64::from(ways >> 4 & 1),
+            steps: steps.into(),
+            walks: f64::from(events_and_walks >> 4),
+            events: f64::from(events_and_walks & 15),
             tiles: tiles.into(),
+            holes: f64::from(ways >> 3 & 1),
         }
     }
 
     fn max(self, other: Trips) -> Trips {
         Trips {
+            law: self.law.max(other.law),
+            searches: self.searches.max(other.searches),
             short: self.short.max(other.short),
-            fill: self.fill.max(other.fill),
             goes_on: self.goes_on.max(other.goes_on),
-            columns: self.columns.max(other.columns),
-            rounds: self.rounds.max(other.rounds),
+            steps: self.steps.max(other.steps),
+            walks: self.walks.max(other.walks),
+            events: self.events.max(other.events),
             tiles: self.tiles.max(other.tiles),
+            holes: self.holes.max(other.holes),
         }
     }
 }
@@ -117,7 +135,7 @@ impl Costs {
         for line in COSTS.lines() {
             let [of, lanes, part, slots, fetches] = line.split(',').collect::<Vec<_>>()[..] else { continue };
             if of == gpu {
-                if part == "march" {
+                if part == "march: law" {
                     costs.lanes = lanes.parse()?;
                 }
                 costs.parts.push((part, Work { slots: slots.parse()?, fetches: fetches.parse()? }));
@@ -138,19 +156,26 @@ impl Costs {
         match self.lanes {
             128 => [16, 8],
             64 => [8, 8],
-            _ => [4, 4],
+            16 => [4, 4],
+            _ => [4, 2],
         }
     }
 
-    /// Returns what a wave executes for each of its pixels at least: of each loop the most iterations of one of its pixels.
-    /// Lanes that walk in different rounds wait for each other, too.
+    /// Returns what a wave executes for each of its pixels at least: of each part as much as the pixel that runs it most often.
+    /// Lanes that run parts at different times wait for each other, too.
     fn march(&self, trips: Trips) -> Work {
-        let short_way = self.part("march: short way").plus(trips.short, self.part("march: short step"));
-        let rest = self.part("march").plus(-1.0, self.part("march: short way"));
-        (short_way.plus(trips.goes_on, rest).plus(trips.rounds, self.part("march: round")))
-            .plus(trips.columns, self.part("march: column"))
-            .plus(trips.tiles, self.part("march: tile"))
-            .plus(trips.fill, self.part("march: fill"))
+        let runs = [
+            ("march: law", trips.law),
+            ("march: short way", trips.searches),
+            ("march: short step", trips.short),
+            ("march: long way", trips.goes_on),
+            ("march: walk", trips.walks),
+            ("march: four columns", trips.steps),
+            ("march: event", trips.events),
+            ("march: tile", trips.tiles),
+            ("march: fill", trips.holes),
+        ];
+        runs.iter().fold(Work::default(), |sum, (part, times)| sum.plus(*times, self.part(part)))
     }
 }
 
@@ -176,7 +201,7 @@ impl Counts<'_> {
 }
 
 /// Returns the mean over the columns of tiles of the target: trips of the loop of the second pass (`synthesis/gather/spans.frag`).
-fn span_trips(views: &SynthesisViews) -> f64 {
+pub(super) fn span_trips(views: &SynthesisViews) -> f64 {
     let warp = &views.warp;
     let Uniforms { near_displacement, far_displacement, .. } = Uniforms::new(warp, [0, 0]);
     let tile = f64::from(TILE[0]);
@@ -197,13 +222,43 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count
 }
 
+/// A synthesis that writes counts in place of colours, and the views that it counts on.
+pub(super) struct Counting<S> {
+    synthesis: S,
+    targets: ViewTargets,
+    counts: RenderTarget,
+}
+
+impl<S: Synthesis> Counting<S> {
+    pub fn new(gl: &Rc<Context>, synthesis: S) -> anyhow::Result<Counting<S>> {
+        let counts = RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?;
+        Ok(Counting { synthesis, targets: ViewTargets::default(), counts })
+    }
+
+    /// Returns the views of one frame with a guard band from 1 m, and the counts of the synthesized eye's pixels.
+    ///
+    /// # Errors
+    /// When the eyes cannot be synthesized, or GL refuses.
+    pub fn count(
+        &mut self,
+        prepared: &mut PreparedScene,
+        pair: &EyePair,
+    ) -> anyhow::Result<(SynthesisViews, Vec<u8>)> {
+        let views = pair.synthesis(GuardBand::Distance(1.0))?;
+        let PreparedScene { renderer, scene } = prepared;
+        let rendered = renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
+        self.counts.resize(pair.size)?;
+        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
+        self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.counts))?;
+        Ok((views, self.counts.read_rgba8(0, [0, 0], pair.size)))
+    }
+}
+
 /// Counts what `gather` executes on a device.
 pub struct Meter {
     device: Device,
     costs: Costs,
-    gather: Gather,
-    targets: ViewTargets,
-    counts: RenderTarget,
+    counting: Counting<Gather>,
 }
 
 impl Meter {
@@ -215,9 +270,7 @@ impl Meter {
         Ok(Meter {
             device,
             costs: Costs::of(device.gpu)?,
-            gather: Gather::counting(gl)?,
-            targets: ViewTargets::default(),
-            counts: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
+            counting: Counting::new(gl, Gather::counting(gl)?)?,
         })
     }
 
@@ -230,15 +283,25 @@ impl Meter {
         prepared: &mut PreparedScene,
         pair: &EyePair,
     ) -> anyhow::Result<Vec<(&'static str, f64)>> {
-        let views = pair.synthesis(GuardBand::Distance(1.0))?;
-        let PreparedScene { renderer, scene } = prepared;
-        let rendered = renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
-        self.counts.resize(pair.size)?;
-        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
-        self.gather.synthesize(source, &views.warp, &Destination::whole(&self.counts))?;
-        let pixels = self.counts.read_rgba8(0, [0, 0], pair.size);
-        let counts = Counts { pixels: &pixels, size: pair.size };
+        let (views, pixels) = self.count(prepared, pair)?;
+        Ok(self.values(&views, &pixels, pair.size))
+    }
 
+    /// Returns the counts of one frame, from which [`Meter::values`] of any device follow.
+    ///
+    /// # Errors
+    /// Those of [`Meter::measure`].
+    pub fn count(
+        &mut self,
+        prepared: &mut PreparedScene,
+        pair: &EyePair,
+    ) -> anyhow::Result<(SynthesisViews, Vec<u8>)> {
+        self.counting.count(prepared, pair)
+    }
+
+    /// Returns the values of counted frames whose eyes have this size, by metric.
+    pub fn values(&self, views: &SynthesisViews, pixels: &[u8], size: [u32; 2]) -> Vec<(&'static str, f64)> {
+        let counts = Counts { pixels, size };
         let Meter { device, costs, .. } = self;
         let waves = counts.waves(costs.wave_size());
         let each = counts.waves([1, 1]);
@@ -249,17 +312,24 @@ impl Meter {
         };
         let tile = 1.0 / f64::from(TILE[0] * TILE[1]);
         let looped = |pass: &str, trips: f64, body: &str| costs.part(pass).plus(trips, costs.part(body));
-        let wider = f64::from(views.warp.source_size[0]) / f64::from(pair.size[0]);
+        let wider = f64::from(views.warp.source_size[0]) / f64::from(size[0]);
         let tiles = Work::default().plus(tile * wider, looped("tiles", TILE_TRIPS, "tiles: two rows"));
-        let spans = Work::default().plus(tile, looped("spans", span_trips(&views), "spans: tile"));
+        let spans = looped("spans", span_trips(views), "spans: tile")
+            .plus(LAW_TILES, costs.part("spans: plane"))
+            .plus(LAW_TILES - 1.0, costs.part("spans: joint"));
+        let spans = Work::default().plus(tile, spans);
         let all = march.plus(1.0, tiles).plus(1.0, spans);
-        let ms_of = 1e3 * f64::from(pair.size[0]) * f64::from(pair.size[1]);
-        Ok(vec![
+        let searches = mean(each.iter().map(|trips| trips.searches));
+        let bytes = BYTES + DEPTH_BYTES * searches;
+        let ms_of = 1e3 * f64::from(size[0]) * f64::from(size[1]);
+        vec![
+            (metric::LAW_PIXEL, 1.0 - searches),
+            (metric::LAW_WAVE, mean(waves.iter().map(|trips| 1.0 - trips.searches))),
             (metric::TRIPS_PIXEL, mean(each.iter().map(|trips| trips.short))),
             (metric::TRIPS_WAVE, mean(waves.iter().map(|trips| trips.short))),
             (metric::GOES_ON_PIXEL, mean(each.iter().map(|trips| trips.goes_on))),
             (metric::GOES_ON_WAVE, mean(waves.iter().map(|trips| trips.goes_on))),
-            (metric::LONG_TRIPS_WAVE, mean(waves.iter().map(|trips| trips.columns))),
+            (metric::LONG_TRIPS_WAVE, mean(waves.iter().map(|trips| trips.steps))),
             (metric::SLOTS_TILES, tiles.slots),
             (metric::SLOTS_SPANS, spans.slots),
             (metric::SLOTS_MARCH, march.slots),
@@ -267,8 +337,8 @@ impl Meter {
             (metric::FETCHES, all.fetches),
             (metric::ALU_MS, ms_of * all.slots / device.slots),
             (metric::FETCH_MS, ms_of * all.fetches / device.fetches),
-            (metric::MEMORY_MS, ms_of * BYTES / device.bytes),
-        ])
+            (metric::MEMORY_MS, ms_of * bytes / device.bytes),
+        ]
     }
 }
 
@@ -280,61 +350,72 @@ mod tests {
     fn all_devices_have_all_parts() {
         for device in DEVICES {
             let costs = Costs::of(device.gpu).unwrap();
-            let [first, later] = ["march: column", "march: later column"].map(|part| costs.part(part).slots);
-            assert!(
-                (0.8..1.25).contains(&(later / first)),
-                "{}: one text, {first} and {later} slots",
-                device.name
-            );
-            let (all, short) = (costs.part("march"), costs.part("march: short way"));
-            assert!(all.slots > short.slots && short.slots > 30.0, "{}: {all:?}, {short:?}", device.name);
-            assert!(
-                all.fetches > short.fetches && short.fetches >= 2.0,
-                "{}: {all:?}, {short:?}",
-                device.name
-            );
-            for part in ["tiles", "tiles: two rows", "spans", "spans: tile"] {
+            let law = costs.part("march: law");
+            let short = costs.part("march: short way");
+            assert!(short.slots > law.slots && law.slots > 15.0, "{}: {short:?}, {law:?}", device.name);
+            assert!(short.fetches > law.fetches && law.fetches >= 2.0, "{}: {short:?}", device.name);
+            for part in ["tiles", "tiles: two rows", "spans", "spans: tile", "spans: plane", "spans: joint"] {
                 assert!(costs.part(part).slots > 0.0, "{}: {part}", device.name);
+            }
+            for part in ["short step", "long way", "walk", "four columns", "event", "tile", "fill"] {
+                let slots = costs.part(&format!("march: {part}")).slots;
+                assert!((15.0..250.0).contains(&slots), "{}: {slots} slots of {part}", device.name);
             }
         }
         assert!(Costs::of("a999").is_err());
     }
 
     #[test]
-    fn a_wave_iterates_as_often_as_its_slowest_pixel() {
+    fn a_wave_runs_each_part_as_often_as_one_of_its_pixels() {
         let mut pixels = vec![0u8; 6 * 3 * 4];
         let mut set = |x: usize, y: usize, counts: [u8; 4]| {
             pixels[(y * 6 + x) * 4..][..4].copy_from_slice(&counts);
         };
+        // A law everywhere, but for three pixels.
+        for y in 0..3 {
+            (0..6).for_each(|x| set(x, y, [32, 0, 0, 0]));
+        }
         set(0, 0, [3, 0, 0, 0]);
-        set(3, 2, [1 | 2 << 4 | 128, 9, 2, 7]);
+        set(3, 2, [1 | 8 | 16, 9, 2 | 4 << 4, 7]);
         set(5, 1, [2, 0, 0, 0]);
         let counts = Counts { pixels: &pixels, size: [6, 3] };
-        let long = Trips { short: 3.0, fill: 2.0, goes_on: 1.0, columns: 9.0, rounds: 2.0, tiles: 7.0 };
-        assert_eq!(counts.waves([4, 4]), [long, Trips { short: 2.0, ..Trips::default() }]);
+        let short = Trips { law: 1.0, searches: 1.0, short: 2.0, ..Trips::default() };
+        let long = Trips {
+            short: 3.0,
+            goes_on: 1.0,
+            steps: 9.0,
+            walks: 4.0,
+            events: 2.0,
+            tiles: 7.0,
+            holes: 1.0,
+            ..short
+        };
+        assert_eq!(counts.waves([4, 4]), [long, short]);
         assert_eq!(counts.waves([1, 1]).len(), 18);
     }
 
     #[test]
-    fn the_work_of_loops_adds_up() {
+    fn the_work_of_parts_adds_up() {
         let body = |slots, fetches| Work { slots, fetches };
         let parts = vec![
-            ("march", body(100.0, 4.0)),
+            ("march: law", body(30.0, 2.0)),
             ("march: short way", body(80.0, 3.0)),
             ("march: short step", body(20.0, 1.0)),
-            ("march: column", body(50.0, 1.0)),
-            ("march: round", body(40.0, 1.0)),
-            ("march: tile", body(60.0, 1.0)),
-            ("march: fill", body(70.0, 4.0)),
+            ("march: long way", body(90.0, 2.0)),
+            ("march: walk", body(50.0, 1.0)),
+            ("march: four columns", body(60.0, 2.0)),
+            ("march: event", body(40.0, 0.0)),
+            ("march: tile", body(70.0, 1.0)),
+            ("march: fill", body(75.0, 8.0)),
         ];
         let costs = Costs { lanes: 128, parts };
-        let short = Trips { short: 2.0, ..Trips::default() };
+        let lawful = Trips { law: 1.0, ..Trips::default() };
+        assert_eq!(costs.march(lawful), body(30.0, 2.0));
+        let short = Trips { searches: 1.0, short: 2.0, ..Trips::default() };
         assert_eq!(costs.march(short), body(80.0 + 40.0, 3.0 + 2.0));
-        // Beyond the short way 20 slots and 1 fetch outside of the loops.
-        let long = Trips { short: 1.0, fill: 2.0, goes_on: 1.0, columns: 30.0, rounds: 2.0, tiles: 3.0 };
-        assert_eq!(
-            costs.march(long),
-            body(100.0 + 20.0 + 80.0 + 1500.0 + 180.0 + 140.0, 4.0 + 1.0 + 2.0 + 30.0 + 3.0 + 8.0)
-        );
+        let long =
+            Trips { goes_on: 1.0, steps: 3.0, walks: 2.0, events: 2.0, tiles: 1.0, holes: 1.0, ..short };
+        let slots = 80.0 + 40.0 + 90.0 + 180.0 + 100.0 + 80.0 + 70.0 + 75.0;
+        assert_eq!(costs.march(long), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 2.0 + 1.0 + 8.0));
     }
 }

@@ -5,6 +5,11 @@ use std::path::{Path, PathBuf};
 use super::record::Setting;
 use yoro_figures::text::slug;
 
+/// Returns the folder for all pictures of a run, beside its file of `results`.
+pub fn pictures_beside(results: &Path) -> PathBuf {
+    results.with_extension("pictures")
+}
+
 /// Returns the folder for the pictures of a setting, beside the file `results`: `RUN.pictures/SUITE/SCENE` with `.LABEL` or
 /// `.POINT`, and in there `dominant.png`, `truth.png` and `CONTENDER.png`.
 pub fn picture_folder(results: &Path, setting: &Setting) -> PathBuf {
@@ -15,5 +20,5 @@ pub fn picture_folder(results: &Path, setting: &Setting) -> PathBuf {
     if let Some(point) = setting.point {
         name += &format!(".{point}");
     }
-    results.with_extension("pictures").join(slug(&setting.suite)).join(name)
+    pictures_beside(results).join(slug(&setting.suite)).join(name)
 }

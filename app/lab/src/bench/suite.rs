@@ -7,6 +7,7 @@ use anyhow::ensure;
 use super::bandwidth::{self, BandwidthOptions};
 use super::contender::Contender;
 use super::executed::{DEVICES, Device};
+use super::frame;
 use super::record::Setting;
 use super::scenes::LazyObject;
 use crate::machine::Parameter;
@@ -88,6 +89,8 @@ pub enum Measure {
     Bandwidth,
     /// An estimate for a GPU that need not be here.
     Executed(Device),
+    /// The same of whole frames, for several.
+    WholeFrames,
 }
 
 /// The source of a scene.
@@ -144,6 +147,9 @@ impl Job {
         if let Measure::Executed(_) = self.measure {
             return self.frames as u64;
         }
+        if self.measure == Measure::WholeFrames {
+            return (self.frames * self.contenders.len()) as u64;
+        }
         (u64::from(self.rounds) * self.frames as u64 + 1) * self.contenders.len() as u64
     }
 }
@@ -157,6 +163,8 @@ pub struct Choices {
     pub eyes: EyeOptions,
     /// The renderer's settings, as the suites do not vary them.
     pub render: RenderSettings,
+    /// `shader-cost`: whole frames in place of the synthesis alone.
+    pub whole_frames: bool,
     /// Timed rounds.
     pub rounds: u32,
     /// Viewpoints per scene.
@@ -273,12 +281,29 @@ impl Choices {
                 })
             }
             Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
+            Suite::ShaderCost if self.whole_frames => plan(
+                Measure::WholeFrames,
+                vec![Contender::CONVENTIONAL],
+            )
+            .over(self.scenes(&every), RendererKind::ALL, |job, renderer| {
+                job.setting.suite = frame::SUITE.to_owned();
+                job.setting.label = Some(renderer.name().to_owned());
+                job.render.renderer = renderer;
+                job.contenders = frame::contenders(renderer);
+            }),
             Suite::ShaderCost => {
                 let measure = Measure::Executed(DEVICES[0]);
                 plan(measure, Vec::new()).over(self.scenes(&every), DEVICES, |job, device| {
                     // GPUs take part, not methods.
                     job.contenders.clear();
                     job.measure = Measure::Executed(device);
+                    // Depth is all that counts.
+                    job.render = RenderSettings {
+                        ssao: false,
+                        bloom: false,
+                        shadow_map_size: 0,
+                        ..job.render.clone()
+                    };
                     job.eyes.size = device.size;
                     job.setting.label = Some(device.name.to_owned());
                 })

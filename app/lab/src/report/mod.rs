@@ -23,6 +23,9 @@ pub use run::{
     Viewpoint,
 };
 
+/// The files of a [`RunReport`]: the page, all figures, and the table.
+pub const FILES: [&str; 3] = ["report.html", "report.json", "report.md"];
+
 impl RunReport {
     /// Returns all figures, without the pictures.
     pub fn to_json(&self) -> Result<String, ReportError> {
@@ -59,13 +62,12 @@ impl RunReport {
         table::text(self)
     }
 
-    /// Writes `report.html`, `report.json` and `report.md` (the table) into `folder` and returns the path of the
-    /// page.
+    /// Writes [`FILES`] into `folder` and returns the path of the page.
     pub fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
-        let page = folder.join("report.html");
+        let [page, json, markdown] = FILES.map(|name| folder.join(name));
         files::write(&page, self.to_html()?.as_bytes())?;
-        files::write(&folder.join("report.json"), self.to_json()?.as_bytes())?;
-        files::write(&folder.join("report.md"), self.to_markdown().as_bytes())?;
+        files::write(&json, self.to_json()?.as_bytes())?;
+        files::write(&markdown, self.to_markdown().as_bytes())?;
         Ok(page)
     }
 }

@@ -1,6 +1,6 @@
 //! Files of results: read as far as rounds are finished, and appended to.
 
-use std::fs::{File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -182,20 +182,23 @@ pub struct Writer {
 
 impl Writer {
     /// Opens the file of a run: a new one, or one that a run with the same header has begun; what was cut off at
-    /// its end is removed. Returns what it holds already.
+    /// its end is removed. Returns what it holds already. One process at a time has the file.
     ///
     /// # Errors
     /// [`RecordError`]; the file stays as it was then.
     pub fn open(path: &Path, header: &Header) -> Result<(Writer, Results), RecordError> {
-        if !path.exists() {
-            files::write(path, &lines(&[Record::Header(header.clone())]))?;
+        let failed = |source| FileError::Write { path: path.into(), source };
+        let mut file = files::append(path)?;
+        if file.metadata().map_err(failed)?.len() == 0 {
+            file.write_all(&lines(&[Record::Header(header.clone())])).map_err(|source| {
+                let _ = fs::remove_file(path);
+                failed(source)
+            })?;
         }
         let results = Results::read(path)?;
         if let Some((name, there, here)) = difference(&results.header, header) {
             return Err(RecordError::Parameters { path: path.into(), name, there, here });
         }
-        let failed = |source| FileError::Write { path: path.into(), source };
-        let file = OpenOptions::new().append(true).open(path).map_err(failed)?;
         file.set_len(results.finished_bytes).map_err(failed)?;
         Ok((Writer { file, path: path.into() }, results))
     }

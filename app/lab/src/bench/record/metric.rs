@@ -75,6 +75,10 @@ pub const UNDRAWN: &str = "undrawn";
 /// PSNR of red, green and blue in dB in the columns at the other eye's outer border that a guard band is for.
 pub const BORDER_PSNR: &str = "border_psnr";
 
+/// Share of the pixels whose tile has a law, 0 to 1.
+pub const LAW_PIXEL: &str = "law_pixel";
+/// Share of the waves all of whose pixels have one.
+pub const LAW_WAVE: &str = "law_wave";
 /// Trips of the loop of the march's short way for a pixel.
 pub const TRIPS_PIXEL: &str = "trips_pixel";
 /// The same for a wave.
@@ -83,7 +87,7 @@ pub const TRIPS_WAVE: &str = "trips_wave";
 pub const GOES_ON_PIXEL: &str = "goes_on_pixel";
 /// Share of the waves of which a pixel does.
 pub const GOES_ON_WAVE: &str = "goes_on_wave";
-/// Columns that the march walks on its long way, for a wave.
+/// Steps of four columns that the march takes on its long way, for a wave.
 pub const LONG_TRIPS_WAVE: &str = "long_trips_wave";
 /// Estimated issue slots for each pixel of the first pass of `gather`.
 pub const SLOTS_TILES: &str = "slots_tiles";

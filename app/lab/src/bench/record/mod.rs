@@ -45,6 +45,8 @@ pub enum PassClock {
     TimerQueries,
     /// The wall clock with glFinish around each pass: a CPU rasterizer, whose timer queries are unusable.
     Finish,
+    /// No clock: a browser that hides timer queries. There are no pass times.
+    None,
 }
 
 /// The first line.

@@ -118,7 +118,7 @@ fn foreign_and_damaged_files_are_named() {
         assert_eq!(fs::read(&path).unwrap(), bytes, "it was changed");
         read
     };
-    for foreign in [&b""[..], b"a letter\n", b"{\"name\":1}\n", b"\x89PNG\r\n\x1a\n", b"[1]"] {
+    for foreign in [&b"a letter\n"[..], b"{\"name\":1}\n", b"\x89PNG\r\n\x1a\n", b"[1]"] {
         assert!(says(foreign).contains("run.jsonl is not a result of yoro bench"));
     }
     assert!(says(b"{\"record\":\"header\",\"yoro_bench\":7}\n").contains("version 7"));
@@ -132,4 +132,16 @@ fn foreign_and_damaged_files_are_named() {
     assert!(error.contains("run.jsonl, line 2 is damaged"), "{error}");
     fs::remove_file(&path).unwrap();
     assert!(Results::read(&path).unwrap_err().to_string().contains("does not exist"));
+}
+
+/// A run that was killed before its first line leaves such a file.
+#[test]
+fn an_empty_file_is_begun() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("run.jsonl");
+    fs::write(&path, b"").unwrap();
+    assert!(Results::read(&path).unwrap_err().to_string().contains("is not a result of yoro bench"));
+    let (_, results) = Writer::open(&path, &header()).unwrap();
+    assert!(results.records.is_empty());
+    assert_eq!(Results::read(&path).unwrap().header, header());
 }

@@ -3,6 +3,7 @@
 mod frames;
 mod patchers;
 mod sequences;
+mod whole_frames;
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -105,6 +106,7 @@ impl<'a> Runner<'a> {
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Bandwidth => self.bandwidth(job, &mut prepared),
             Measure::Executed(device) => self.executed(job, &device, &mut prepared),
+            Measure::WholeFrames => self.whole_frames(job, &mut prepared),
         };
         self.prepared = Some((SceneKey::of(job), prepared));
         measured
@@ -125,7 +127,7 @@ impl<'a> Runner<'a> {
             return Ok(());
         }
         let views = match job.measure {
-            Measure::Frames { .. } | Measure::Patchers | Measure::Executed(_) => {
+            Measure::Frames { .. } | Measure::Patchers | Measure::Executed(_) | Measure::WholeFrames => {
                 Views::spread(job, prepared)?
             }
             // Only the start of the path has to show something; a later frame may look past the scene.

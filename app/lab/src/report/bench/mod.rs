@@ -26,6 +26,9 @@ use yoro_files as files;
 const TEMPLATE: Template =
     Template { name: "bench.html.j2", text: include_str!("../templates/bench.html.j2") };
 
+/// The page, all tables, and the main ones.
+pub const FILES: [&str; 3] = ["report.html", "results.md", "summary.md"];
+
 /// Heading of the page.
 const TITLE: &str = "yoro: every method side by side";
 
@@ -233,7 +236,7 @@ impl BenchReport {
         }
     }
 
-    /// Writes `report.html`, `results.md` and `summary.md`, and where they are wanted the figures as SVG files and a
+    /// Writes [`FILES`], and where they are wanted the figures as SVG files and a
     /// `SUITE.md` for each suite.
     ///
     /// # Errors
@@ -241,8 +244,8 @@ impl BenchReport {
     pub fn write(&self, places: Places) -> Result<Written, ReportError> {
         // Everything is made before anything is written.
         let link = |from: &Path| places.figures.map(|figures| link_from(from, figures));
-        let page = self.to_html()?;
-        let results = self.to_markdown(link(places.report).as_deref());
+        let html = self.to_html()?;
+        let tables = self.to_markdown(link(places.report).as_deref());
         let mut drawn = Vec::new();
         if let Some(to) = places.figures {
             for (_, section) in sections::sections(&self.suites) {
@@ -260,16 +263,11 @@ impl BenchReport {
             files::write(path, text.as_bytes())?;
         }
         let paths = |files: Vec<(PathBuf, String)>| files.into_iter().map(|(path, _)| path).collect();
-        let written = Written {
-            page: places.report.join("report.html"),
-            results: places.report.join("results.md"),
-            summary: places.report.join("summary.md"),
-            figures: paths(drawn),
-            suites: paths(suites),
-        };
-        files::write(&written.results, results.as_bytes())?;
+        let [page, results, summary] = FILES.map(|name| places.report.join(name));
+        let written = Written { page, results, summary, figures: paths(drawn), suites: paths(suites) };
+        files::write(&written.results, tables.as_bytes())?;
         files::write(&written.summary, self.to_summary().as_bytes())?;
-        files::write(&written.page, page.as_bytes())?;
+        files::write(&written.page, html.as_bytes())?;
         Ok(written)
     }
 }

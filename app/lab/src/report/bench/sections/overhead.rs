@@ -93,6 +93,7 @@ fn pass_table(suite: &Suite) -> Table {
     }
     table.note = match suite.header.pass_clock {
         PassClock::TimerQueries => "GPU time by timer queries.".into(),
+        PassClock::None => "Not told by this browser.".into(),
         PassClock::Finish => {
             "Wall clock with glFinish around each pass, on frames of their own: a CPU rasterizer's timer queries \
              are unusable."

@@ -29,9 +29,13 @@ pub fn section(suite: &Suite) -> Section {
         "The eye that is not dominant, against the same eye really rendered. “mono” shows the dominant eye's image to both: the baseline of doing nothing, \
          without which no figure says much.",
     );
-    quality_figures(&mut section, suite);
     // The ground truth has no likeness to itself worth a column.
     let contenders = suite.compared(metric::SSIM);
+    // The paper's figures alone are no section: browsers measure time only.
+    if contenders.is_empty() {
+        return section;
+    }
+    quality_figures(&mut section, suite);
     let mean_of = |name: &str| {
         let ssim = suite.mean(name, metric::SSIM)?;
         let psnr = fixed(suite.mean(name, metric::PSNR), 2);

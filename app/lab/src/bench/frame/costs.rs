@@ -1,0 +1,217 @@
+//! The cost of one invocation of each shader, by `docs/shader-cost.csv`.
+
+use anyhow::{Context as _, ensure};
+use yoro_gl::ProgramRecipe;
+
+/// Written by `cargo tools shader-cost --bless`.
+const TABLE: &str = include_str!("../../../../../docs/shader-cost.csv");
+/// The table has materials without maps and with all of these.
+const MAPS: [&str; 4] = ["DIFFUSE_MAP", "SPECULAR_MAP", "EMISSIVE_MAP", "NORMAL_MAP"];
+
+/// What a fragment shader executes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fragment {
+    /// Issue slots of an invocation without its loop over lamps; other loops once.
+    pub slots: f64,
+    /// Issue slots for each lamp.
+    pub lamp: f64,
+    /// Pixels of a wave.
+    pub lanes: u32,
+}
+
+/// Slots of a shader's text outside of loops, and of its loops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parts {
+    /// Outside of all loops.
+    pub straight: f64,
+    /// Loops that are in no other, without those inside, in the order of the listing.
+    pub loops: Vec<f64>,
+    /// The loop inside of another, if there is one.
+    pub inner: Option<f64>,
+    /// Pixels of a wave.
+    pub lanes: u32,
+}
+
+/// A row of the table.
+struct Row {
+    file: &'static str,
+    macros: Vec<&'static str>,
+    stage: &'static str,
+    instructions: f64,
+    fragment: Fragment,
+    loops: &'static str,
+}
+
+/// The costs on one GPU.
+pub struct Costs {
+    rows: Vec<Row>,
+    /// Pixels of a wave where the table does not say.
+    lanes: u32,
+}
+
+impl Costs {
+    /// Reads the costs on a GPU.
+    ///
+    /// # Errors
+    /// When the table has none of this GPU.
+    pub fn of(gpu: &str) -> anyhow::Result<Costs> {
+        let rows: Vec<Row> = TABLE.lines().filter_map(|line| row(gpu, line)).collect();
+        ensure!(
+            !rows.is_empty(),
+            "docs/shader-cost.csv has nothing of {gpu}: run cargo tools shader-cost --bless"
+        );
+        Ok(Costs { rows, lanes: if gpu == "g52" { 8 } else { 16 } })
+    }
+
+    /// Returns the cost of a program's fragment shader; of one with some maps, between that without maps and that with all.
+    ///
+    /// # Errors
+    /// When the table lacks the shader.
+    pub fn fragment(&self, program: &ProgramRecipe) -> anyhow::Result<Fragment> {
+        let [none, all] = [false, true].map(|maps| self.find(program, "fragment", maps));
+        let none = none.or(all);
+        ensure!(
+            none.is_some(),
+            "docs/shader-cost.csv lacks {:?}: run cargo tools shader-cost --bless",
+            program.files
+        );
+        let [none, all] = [none, all].map(|row| row.map(|row| row.fragment).unwrap_or_default());
+        let maps = MAPS.iter().filter(|map| program.defines.iter().any(|(name, _)| name == *map)).count();
+        let share = if all.slots > 0.0 { maps as f64 / MAPS.len() as f64 } else { 0.0 };
+        Ok(Fragment {
+            slots: none.slots + share * (all.slots - none.slots),
+            lamp: none.lamp + share * (all.lamp - none.lamp),
+            lanes: if none.lanes > 0 { none.lanes } else { self.lanes },
+        })
+    }
+
+    /// Returns the parts of a fragment shader with exactly these macros.
+    ///
+    /// # Errors
+    /// When the table lacks the shader.
+    pub fn parts(&self, file: &str, macros: &[&str]) -> anyhow::Result<Parts> {
+        let found =
+            self.rows.iter().find(|row| row.stage == "fragment" && row.file == file && row.macros == macros);
+        let row = found.with_context(|| {
+            format!("docs/shader-cost.csv lacks {file} {macros:?}: run cargo tools shader-cost --bless")
+        })?;
+        let lanes = if row.fragment.lanes > 0 { row.fragment.lanes } else { self.lanes };
+        let mut parts = Parts { straight: row.fragment.slots, loops: Vec::new(), inner: None, lanes };
+        for text in row.loops.split(' ').filter(|text| !text.is_empty()) {
+            let body =
+                text.trim_start_matches('>').split('/').next().and_then(|slots| slots.parse::<f64>().ok());
+            let body = body.with_context(|| {
+                format!("docs/shader-cost.csv has unreadable loops of {file}: {}", row.loops)
+            })?;
+            match parts.loops.last_mut() {
+                Some(around) if text.starts_with('>') => {
+                    *around -= body;
+                    parts.inner = Some(body);
+                }
+                _ => {
+                    parts.straight -= body;
+                    parts.loops.push(body);
+                }
+            }
+        }
+        Ok(parts)
+    }
+
+    /// Returns the instructions of a program's vertex shader, and on Mali those of its position shader.
+    pub fn vertex(&self, program: &ProgramRecipe) -> f64 {
+        ["position", "vertex"]
+            .iter()
+            .filter_map(|stage| self.find(program, stage, false))
+            .map(|row| row.instructions)
+            .sum()
+    }
+
+    /// Returns the row of a shader that is most like a program's. The table has each style and each way to draw both eyes, but
+    /// not both together, and no scene without a sun.
+    fn find(&self, program: &ProgramRecipe, stage: &str, maps: bool) -> Option<&Row> {
+        let file = program.files.last()?;
+        let has = |text: &&&str| {
+            let (name, value) = text.split_once('=').unwrap_or((text, ""));
+            program.defines.iter().any(|(own, other)| own == name && other == value)
+        };
+        let alike = |row: &&Row| {
+            let macros = row.macros.iter().filter(|name| !MAPS.contains(name));
+            let (shared, all) = (macros.clone().filter(has).count() as i32, macros.count() as i32);
+            (2 * shared - all, shared)
+        };
+        let fits = |row: &&Row| {
+            row.file == file
+                && row.stage == stage
+                && row.macros.iter().any(|name| MAPS.contains(name)) == maps
+        };
+        self.rows.iter().filter(fits).max_by_key(alike)
+    }
+}
+
+/// Reads a line of the table, if it is of this GPU.
+fn row(gpu: &str, line: &'static str) -> Option<Row> {
+    let cells: Vec<&str> = line.split(',').collect();
+    let [of, program, stage, instructions, slots, _, _, lanes, .., loops] = cells[..] else { return None };
+    if of != gpu {
+        return None;
+    }
+    let mut words = program.split(' ');
+    let (file, macros) = (words.next()?, words.collect());
+    let number = |text: &str| text.parse().unwrap_or(0.0);
+    let lamp = if is_lit(file) { loops.split(['/', ' ']).next().map_or(0.0, number) } else { 0.0 };
+    let fragment = Fragment { slots: number(slots) - lamp, lamp, lanes: lanes.parse().unwrap_or(0) };
+    Some(Row { file, macros, stage, instructions: number(instructions), fragment, loops })
+}
+
+/// True if the shader's only loop is that over lamps.
+fn is_lit(file: &str) -> bool {
+    ["render/lighting.frag", "render/forward.frag", "render/transparent.frag"].contains(&file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recipe(file: &str, defines: &[&str]) -> ProgramRecipe {
+        let define = |text: &&str| {
+            let (name, value) = text.split_once('=').unwrap_or((text, ""));
+            (name.to_owned(), value.to_owned())
+        };
+        ProgramRecipe {
+            files: vec!["render/geometry.vert".into(), file.into()],
+            defines: defines.iter().map(define).collect(),
+        }
+    }
+
+    #[test]
+    fn a_program_with_some_maps_costs_something_between_none_and_all() {
+        for gpu in super::super::GPUS {
+            let costs = Costs::of(gpu.gpu).unwrap();
+            let slots =
+                |count: usize| costs.fragment(&recipe("render/geometry.frag", &MAPS[..count])).unwrap().slots;
+            assert!(slots(4) > slots(0) + 10.0, "{}", gpu.name);
+            assert!((slots(1) - (slots(0) + 0.25 * (slots(4) - slots(0)))).abs() < 1e-9, "{}", gpu.name);
+        }
+    }
+
+    #[test]
+    fn the_loop_over_lamps_is_counted_for_each_lamp() {
+        let costs = Costs::of("a740").unwrap();
+        let defines = ["SUN", "SHADOWS", "SSAO", "SSAO_SCALE=1", "MAX_POINT_LIGHTS=24"];
+        let whole = TABLE.lines().find(|line| {
+            line.starts_with("a740,render/lighting.frag SUN SHADOWS SSAO SSAO_SCALE=1 MAX_POINT_LIGHTS=24,")
+        });
+        let total: f64 = whole.unwrap().split(',').nth(4).unwrap().parse().unwrap();
+        let Fragment { slots, lamp, lanes } =
+            costs.fragment(&recipe("render/lighting.frag", &defines)).unwrap();
+        assert!(lamp > 50.0 && (slots + lamp - total).abs() < 1e-9 && lanes == 128, "{slots} {lamp} {lanes}");
+    }
+
+    #[test]
+    fn each_way_to_draw_both_eyes_has_its_own_vertex_shader() {
+        let costs = Costs::of("g57").unwrap();
+        let [one, both] =
+            [&[][..], &["STEREO", "MULTIVIEW"]].map(|d| costs.vertex(&recipe("render/geometry.frag", d)));
+        assert!(both > one && one > 20.0, "{one} {both}");
+    }
+}

@@ -1,0 +1,74 @@
+//! Lights that reach the surfaces of a view.
+
+use std::collections::HashMap;
+
+use glam::{Vec3, vec3};
+use yoro::eyes::View;
+use yoro_render::MAX_POINT_LIGHTS;
+use yoro_scene::PointLight;
+
+/// The lights of each pixel of a view, as bits.
+pub struct Lamps {
+    bits: Vec<u32>,
+    size: [u32; 2],
+    /// Means by the number of lanes in a wave.
+    means: HashMap<u32, f64>,
+}
+
+/// Returns columns and rows of the pixels of a wave.
+pub fn wave_size(lanes: u32) -> [u32; 2] {
+    match lanes {
+        128 => [16, 8],
+        64 => [8, 8],
+        16 => [4, 4],
+        _ => [4, 2],
+    }
+}
+
+impl Lamps {
+    /// Finds the lights of each pixel from its depth, rows from the bottom. Beyond the first 32 lights none is found: no built-in
+    /// scene has more in reach of a wave.
+    pub fn new(view: &View, depth: &[f32], lights: &[PointLight]) -> Lamps {
+        let [width, height] = view.size;
+        let local: Vec<(Vec3, f32)> = lights
+            .iter()
+            .map(|light| {
+                let at = view.pose.orientation.inverse() * (light.position - view.pose.position);
+                (at, light.range * light.range)
+            })
+            .filter(|(at, squared)| at.z < squared.sqrt())
+            .take(32)
+            .collect();
+        let f = view.frustum;
+        let bits = depth.iter().enumerate().map(|(i, &depth)| {
+            if depth == view.depth.clear_value() {
+                return 0;
+            }
+            let at = [i as u32 % width, i as u32 / width].map(|n| n as f32 + 0.5);
+            let x = f.left + at[0] / width as f32 * f.width();
+            let y = f.bottom + at[1] / height as f32 * f.height();
+            let surface = vec3(x, y, -1.0) * view.depth.distance(depth);
+            let reached = local.iter().enumerate();
+            reached.fold(0u32, |bits, (k, (at, squared))| {
+                bits | u32::from(at.distance_squared(surface) < *squared) << k
+            })
+        });
+        Lamps { bits: bits.collect(), size: view.size, means: HashMap::new() }
+    }
+
+    /// Returns the mean over waves of this many lanes of the number of lights that reach one of their pixels.
+    pub fn of_wave(&mut self, lanes: u32) -> f64 {
+        let (bits, [width, height]) = (&self.bits, self.size);
+        *self.means.entry(lanes).or_insert_with(|| {
+            let wave = wave_size(lanes);
+            let across = width.div_ceil(wave[0]) as usize;
+            let mut waves = vec![0u32; across * height.div_ceil(wave[1]) as usize];
+            for (i, bits) in bits.iter().enumerate() {
+                let (x, y) = (i as u32 % width, i as u32 / width);
+                waves[(y / wave[1]) as usize * across + (x / wave[0]) as usize] |= bits;
+            }
+            let lights: u32 = waves.iter().map(|bits| bits.count_ones().min(MAX_POINT_LIGHTS as u32)).sum();
+            f64::from(lights) / waves.len().max(1) as f64
+        })
+    }
+}

@@ -1,0 +1,139 @@
+//! What synthesis from layers executes: its loops are counted where they run, in its own shaders on real frames.
+
+use std::rc::Rc;
+
+use super::costs::{Costs, Parts};
+use super::lamps::wave_size;
+use crate::bench::executed::{Counting, TILE, span_trips};
+use yoro::eyes::EyePair;
+use yoro::synthesis::{Edges, Layers};
+use yoro_gl::Context;
+use yoro_render::PreparedScene;
+
+/// Share of the march's text outside of loops that waves run which end in the first loop: an estimate from the listings.
+const PLAIN_SHARE: f64 = 0.5;
+
+/// Counts loops of the march over layers. All kinds of edges count as [`Edges::Nearest`] do.
+pub struct LayersMeter {
+    counting: Counting<Layers>,
+}
+
+/// Counts of one frame.
+pub struct LayerCounts {
+    /// As [`Layers::counting`] writes them.
+    pixels: Vec<u8>,
+    size: [u32; 2],
+    /// Width of the source over that of the target.
+    wider: f64,
+    span_trips: f64,
+}
+
+impl LayersMeter {
+    /// Compiles the pipeline that counts.
+    ///
+    /// # Errors
+    /// When the driver refuses it.
+    pub fn new(gl: &Rc<Context>) -> anyhow::Result<LayersMeter> {
+        Ok(LayersMeter { counting: Counting::new(gl, Layers::counting(gl, Edges::Nearest)?)? })
+    }
+
+    /// Counts one frame.
+    ///
+    /// # Errors
+    /// When the eyes cannot be synthesized, or GL refuses.
+    pub fn count(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> anyhow::Result<LayerCounts> {
+        let (views, pixels) = self.counting.count(prepared, pair)?;
+        Ok(LayerCounts {
+            pixels,
+            size: pair.size,
+            wider: f64::from(views.warp.source_size[0]) / f64::from(pair.size[0]),
+            span_trips: span_trips(&views),
+        })
+    }
+}
+
+impl LayerCounts {
+    /// Returns the slots for each pixel of the target, by pass.
+    ///
+    /// # Errors
+    /// When the table lacks a shader.
+    pub fn slots(&self, costs: &Costs, edges: Edges) -> anyhow::Result<[(&'static str, f64); 4]> {
+        let macros: &[&str] = if edges == Edges::Multisample { &["MULTISAMPLE"] } else { &[] };
+        let split = costs.parts("synthesis/layers/split.frag", macros)?;
+        let tiles = costs.parts("synthesis/layers/tiles.frag", &[])?;
+        let spans = costs.parts("synthesis/gather/spans.frag", &[])?;
+        let march = costs.parts("synthesis/layers/march.frag", macros)?;
+        // Trips of the loops of a pixel with two surfaces: taps of the estimates, those where nothing else is found (not
+        // counted), neighbours. Of all samples: taps.
+        let trips: &[f64] = if edges == Edges::Multisample { &[8.0] } else { &[12.0, 0.0, 2.0] };
+        let of_split = |wave: &Wave| split.straight + if wave.split { looped(&split, trips) } else { 0.0 };
+        let tile = 1.0 / f64::from(TILE[0] * TILE[1]);
+        Ok([
+            ("layers split", self.wider * self.mean(split.lanes, of_split)),
+            ("layers tiles", self.wider * tile * (tiles.straight + looped(&tiles, &[f64::from(TILE[1])]))),
+            ("layers spans", tile * (spans.straight + looped(&spans, &[self.span_trips]))),
+            ("layers march", self.mean(march.lanes, |wave| march_slots(&march, wave))),
+        ])
+    }
+
+    fn mean(&self, lanes: u32, slots: impl Fn(&Wave) -> f64) -> f64 {
+        let size = wave_size(lanes);
+        let across = self.size[0].div_ceil(size[0]) as usize;
+        let mut waves = vec![Wave::default(); across * self.size[1].div_ceil(size[1]) as usize];
+        for (i, pixel) in self.pixels.as_chunks::<4>().0.iter().enumerate() {
+            let (x, y) = (i as u32 % self.size[0], i as u32 / self.size[0]);
+            waves[(y / size[1]) as usize * across + (x / size[0]) as usize].include(*pixel);
+        }
+        waves.iter().map(slots).sum::<f64>() / waves.len().max(1) as f64
+    }
+}
+
+/// The largest counts of a wave's pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Wave {
+    plain: u8,
+    columns: u8,
+    idle: u8,
+    rows: u8,
+    split: bool,
+}
+
+impl Wave {
+    fn include(&mut self, [plain, columns, idle, rows]: [u8; 4]) {
+        self.plain = self.plain.max(plain);
+        self.columns = self.columns.max(columns);
+        self.idle = self.idle.max(idle);
+        self.rows = self.rows.max(rows & 127);
+        self.split |= rows > 127;
+    }
+}
+
+fn looped(parts: &Parts, trips: &[f64]) -> f64 {
+    parts.loops.iter().zip(trips).map(|(body, trips)| body * trips).sum()
+}
+
+/// What a wave executes of the march.
+fn march_slots(march: &Parts, wave: &Wave) -> f64 {
+    let goes_on = wave.columns > 0 || wave.rows > 0;
+    let straight = march.straight * if goes_on { 1.0 } else { PLAIN_SHARE };
+    let trips = [wave.plain, wave.columns, wave.rows].map(f64::from);
+    // Without a loop of its own, what changes nothing is passed over by the large one.
+    let idle = march.inner.or(march.loops.get(1).copied()).unwrap_or(0.0);
+    straight + looped(march, &trips) + f64::from(wave.idle) * idle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wave_runs_each_loop_as_often_as_its_slowest_pixel() {
+        let march = Parts { straight: 200.0, loops: vec![10.0, 100.0, 30.0], inner: Some(20.0), lanes: 128 };
+        let mut wave = Wave::default();
+        wave.include([3, 0, 0, 0]);
+        assert_eq!(march_slots(&march, &wave), 100.0 + 30.0);
+        wave.include([1, 2, 7, 128 | 5]);
+        assert!(wave.split);
+        assert_eq!(march_slots(&march, &wave), 200.0 + 30.0 + 200.0 + 140.0 + 150.0);
+    }
+}

@@ -1,0 +1,63 @@
+//! The cost of whole stereo frames on mobile GPUs that need not be here: `yoro bench shader-cost --frame`.
+//!
+//! A frame is rendered here and [recorded](yoro_gl::Context::record): its passes, their images, and the samples that pass
+//! each depth test. [`costs`] knows what Mesa's compilers make of each shader, [`traffic`] what a tile-based GPU moves between
+//! its tiles and memory, [`lamps`] how many lights a wave computes, and [`super::executed`] what the synthesis executes.
+//! [`model`] adds up.
+
+mod costs;
+mod lamps;
+mod layers;
+mod model;
+mod pass_table;
+mod traffic;
+
+use super::contender::Contender;
+use super::executed::Device;
+use yoro::synthesis::Edges;
+use yoro_render::RendererKind;
+use yoro_render::stereo::{Method, Pipeline};
+
+pub use lamps::Lamps;
+pub use layers::LayersMeter;
+pub use model::{FrameModel, SYNTHESIS, VERTICES, VERTICES_ONCE};
+pub use pass_table::pass_table;
+pub use traffic::{Piece, Traffic, pieces};
+
+/// The name in settings.
+pub const SUITE: &str = "shader-cost-frame";
+/// Pixels of an eye: Quest 3's.
+pub const SIZE: [u32; 2] = [1680, 1760];
+/// The contender that is made of the record of [`Method::Instanced`]: both draw the same pixels, and differ in vertices.
+pub const MULTIVIEW: &str = "multiview";
+
+/// The GPUs, with rates that are assumptions from public figures.
+pub const GPUS: [Device; 5] = [
+    super::executed::DEVICES[0],
+    super::executed::DEVICES[1],
+    // Two cores with 24 lanes each at 0.85 GHz, and LPDDR4X of 32 bits.
+    Device { name: "mali-g52", gpu: "g52", size: [1200, 1080], slots: 0.041e12, fetches: 3.4e9, bytes: 13e9 },
+    super::executed::DEVICES[2],
+    // Six cores with 64 lanes each at 0.86 GHz, and LPDDR5 of 64 bits.
+    Device { name: "mali-g610", gpu: "g610", size: [1200, 1080], slots: 0.33e12, fetches: 41e9, bytes: 51e9 },
+];
+
+/// Returns the methods that are recorded.
+pub fn contenders(renderer: RendererKind) -> Vec<Contender> {
+    let mut contenders = vec![
+        Contender::CONVENTIONAL,
+        Contender::Method(Method::Instanced),
+        Contender::Method(Method::Hybrid),
+    ];
+    match renderer {
+        RendererKind::Deferred => {
+            contenders.push(Contender::Method(Method::ShadingReprojection));
+            contenders.extend([Contender::MONO, Contender::Yoro(Pipeline::Gather)]);
+        }
+        RendererKind::Forward => {
+            contenders.push(Contender::MONO);
+            contenders.extend([Edges::Hard, Edges::Nearest, Edges::Multisample].map(Contender::Edges));
+        }
+    }
+    contenders
+}

@@ -1,0 +1,191 @@
+//! Slots and bytes of a recorded frame, pass by pass.
+
+use std::collections::BTreeMap;
+
+use super::GPUS;
+use super::costs::Costs;
+use super::lamps::Lamps;
+use super::layers::LayerCounts;
+use super::traffic::{fragments, pieces};
+use crate::bench::executed::Device;
+use yoro::synthesis::Edges;
+use yoro_gl::{Command, Draw, ProgramRecipe, Shape};
+
+/// Beginnings of the names of the passes that synthesize: what they execute is counted by [`crate::bench::executed`].
+pub const SYNTHESIS: [&str; 2] = ["gather ", "layers "];
+/// The pass that vertices are counted as.
+pub const VERTICES: &str = "vertices";
+/// The same with each vertex shaded once for both eyes, as multiview's draw calls allow.
+pub const VERTICES_ONCE: &str = "vertices once";
+/// Fragments of a surface drawn with several samples, for each pixel that it covers: an assumption, since edges between triangles
+/// are shaded once for each of them.
+const EDGE_FRAGMENTS: f64 = 1.05;
+
+/// The costs of a frame for each pixel of an eye, by metric: `slots/a740/g-buffer`, `bytes/g-buffer`, `fragments/g-buffer`.
+pub type Frame = BTreeMap<String, f64>;
+
+/// What is needed to tell the costs of recorded frames.
+pub struct FrameModel {
+    costs: Vec<(Device, Costs)>,
+}
+
+impl FrameModel {
+    /// Reads the costs of shaders.
+    ///
+    /// # Errors
+    /// When the table lacks a GPU.
+    pub fn new() -> anyhow::Result<FrameModel> {
+        let costs = GPUS.into_iter().map(|gpu| Ok((gpu, Costs::of(gpu.gpu)?)));
+        Ok(FrameModel { costs: costs.collect::<anyhow::Result<_>>()? })
+    }
+
+    /// Returns the costs of a recorded frame, whose eyes have this size, without what the synthesis executes.
+    ///
+    /// # Errors
+    /// When the table lacks a shader.
+    pub fn frame(&self, commands: &[Command], size: [u32; 2], lamps: &mut Lamps) -> anyhow::Result<Frame> {
+        let pixels = f64::from(size[0]) * f64::from(size[1]);
+        let mut frame = Frame::new();
+        let mut add = |metric: String, value: f64| *frame.entry(metric).or_default() += value / pixels;
+        for piece in pieces(commands) {
+            add(format!("bytes/{}", piece.passes.join(", ")), piece.bytes());
+            add(format!("bytes/{VERTICES}"), piece.vertex_bytes);
+        }
+        for command in commands {
+            let Command::Draw(draw) = command else { continue };
+            let count = shaded(draw);
+            add(format!("fragments/{}", draw.pass), count);
+            if SYNTHESIS.iter().any(|prefix| draw.pass.starts_with(prefix)) {
+                continue;
+            }
+            for (gpu, costs) in &self.costs {
+                let of = |pass: &str| format!("slots/{}/{pass}", gpu.gpu);
+                let fragment = costs.fragment(&draw.program)?;
+                let lights = if fragment.lamp > 0.0 { lamps.of_wave(fragment.lanes) } else { 0.0 };
+                add(of(draw.pass), count * (fragment.slots + lights * fragment.lamp));
+                if let Shape::Mesh { vertices, .. } = draw.shape {
+                    add(of(VERTICES), vertices as f64 * costs.vertex(&draw.program));
+                }
+            }
+        }
+        Ok(frame)
+    }
+
+    /// Returns what synthesis from layers executes for each pixel of an eye, by metric.
+    ///
+    /// # Errors
+    /// When the table lacks a shader.
+    pub fn layers(&self, counts: &LayerCounts, edges: Edges) -> anyhow::Result<Vec<(String, f64)>> {
+        let mut metrics = Vec::new();
+        for (gpu, costs) in &self.costs {
+            let slots = counts.slots(costs, edges)?.into_iter();
+            metrics.extend(slots.map(|(pass, slots)| (format!("slots/{}/{pass}", gpu.gpu), slots)));
+        }
+        Ok(metrics)
+    }
+
+    /// Returns the costs of the same frame by multiview: the record is that of [`yoro_render::stereo::Method::Instanced`], which
+    /// draws the same pixels.
+    ///
+    /// # Errors
+    /// Those of [`FrameModel::frame`].
+    pub fn multiview(
+        &self,
+        commands: &[Command],
+        size: [u32; 2],
+        lamps: &mut Lamps,
+    ) -> anyhow::Result<Frame> {
+        let commands: Vec<Command> = commands.iter().map(with_layers).collect();
+        let mut frame = self.frame(&commands, size, lamps)?;
+        for (gpu, _) in &self.costs {
+            let twice = frame.get(&format!("slots/{}/{VERTICES}", gpu.gpu)).copied().unwrap_or(0.0);
+            frame.insert(format!("slots/{}/{VERTICES_ONCE}", gpu.gpu), 0.5 * twice);
+        }
+        Ok(frame)
+    }
+}
+
+/// Returns the fragments that a draw call shades.
+fn shaded(draw: &Draw) -> f64 {
+    let samples =
+        draw.target.as_ref().and_then(|target| target.color.first()).map_or(1, |image| image.samples);
+    let edges = samples > 1 && draw.shape != Shape::Screen;
+    fragments(draw) * if edges { EDGE_FRAGMENTS } else { 1.0 }
+}
+
+/// The draw call as multiview makes it, with the programs that draw into layers and read them.
+fn with_layers(command: &Command) -> Command {
+    let Command::Draw(draw) = command else { return command.clone() };
+    // The forward renderer has no layers: its surfaces are taken as instanced.
+    let is_forward = draw.program.defines.iter().any(|(name, _)| name == "FORWARD");
+    let rename = |name: &str| match name {
+        "CLIP_DISTANCE" | "SEAM_DISCARD" if is_forward => "CLIP_DISTANCE".to_owned(),
+        "CLIP_DISTANCE" | "SEAM_DISCARD" => "MULTIVIEW".to_owned(),
+        "HALF" => "LAYER".to_owned(),
+        other => other.to_owned(),
+    };
+    let defines = draw.program.defines.iter().map(|(name, value)| (rename(name), value.clone())).collect();
+    let program = ProgramRecipe { files: draw.program.files.clone(), defines };
+    Command::Draw(Draw { program: program.into(), ..draw.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::rc::Rc;
+
+    use super::*;
+    use yoro::eyes::{EyeOptions, Pose};
+    use yoro_gl::{Attachments, Format, Image};
+
+    /// A surface without maps on 120 of 100 pixels, of a mesh with 20 vertices, and a screen pass.
+    #[test]
+    fn slots_are_fragments_times_what_the_compiler_says() {
+        let size = [10, 10];
+        let image = Image { format: Format::Rgba8, size, samples: 1 };
+        let draw = |pass, file: &str, shape, samples_passed| {
+            Command::Draw(Draw {
+                pass,
+                program: ProgramRecipe { files: vec![file.into()], defines: Vec::new() }.into(),
+                target: Some(Rc::new(Attachments { color: vec![image], depth: None })),
+                textures: Vec::new(),
+                area: size,
+                shape,
+                writes_color: true,
+                blends: false,
+                uses_depth: false,
+                writes_depth: false,
+                samples_passed,
+            })
+        };
+        let mesh = Shape::Mesh { indices: 30, vertices: 20, vertex_bytes: 32 };
+        let commands = [
+            draw("g-buffer", "render/geometry.frag", mesh, Some(120)),
+            draw("fxaa", "render/fxaa.frag", Shape::Screen, None),
+            draw("gather march", "synthesis/gather/march.frag", Shape::Screen, None),
+        ];
+        let pair = EyeOptions { size, ..EyeOptions::default() }.pair(Pose::IDENTITY);
+        let mut lamps = Lamps::new(&pair.view(pair.dominant), &[pair.depth.clear_value(); 100], &[]);
+        let model = FrameModel::new().unwrap();
+        let frame = model.frame(&commands, size, &mut lamps).unwrap();
+        let told = |file: &str, stage: &str, column: usize| {
+            let table = include_str!("../../../../../docs/shader-cost.csv");
+            let line = table.lines().find(|line| line.starts_with(&format!("a740,{file},{stage},"))).unwrap();
+            line.split(',').nth(column).unwrap().parse::<f64>().unwrap()
+        };
+        let close = |metric: &str, expected: f64| {
+            let value = frame[metric];
+            assert!((value - expected).abs() < 1e-9 * expected, "{metric}: {value}, not {expected}");
+        };
+        close("slots/a740/g-buffer", 1.2 * told("render/geometry.frag", "fragment", 4));
+        close("slots/a740/vertices", 0.2 * told("render/geometry.frag", "vertex", 3));
+        close("slots/a740/fxaa", told("render/fxaa.frag", "fragment", 4));
+        close("fragments/g-buffer", 1.2);
+        close("bytes/g-buffer", 8.0);
+        close("bytes/vertices", (20.0 * 32.0 + 30.0 * 4.0) / 100.0);
+        // What the synthesis executes is counted elsewhere.
+        assert!(!frame.contains_key("slots/a740/gather march") && frame.contains_key("bytes/gather march"));
+        // By multiview each vertex is shaded twice, or once for both eyes.
+        let both = model.multiview(&commands, size, &mut lamps).unwrap();
+        assert_eq!(both["slots/a740/vertices once"], 0.5 * both["slots/a740/vertices"]);
+    }
+}

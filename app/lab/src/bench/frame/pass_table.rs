@@ -1,0 +1,83 @@
+//! The table of what each pass reads and writes, from recorded frames.
+
+use std::fmt::Write as _;
+
+use super::traffic::{Piece, Traffic};
+use yoro_gl::Image;
+use yoro_render::RendererKind;
+
+/// A piece of work as the table has it, and how often each method does it in a frame.
+struct Line {
+    renderer: RendererKind,
+    text: String,
+    methods: Vec<(String, u32)>,
+}
+
+/// Returns the table in Markdown: a row for each kind of work on a framebuffer, for frames with the names of their methods.
+pub fn pass_table(frames: &[(RendererKind, String, Vec<Piece>)]) -> String {
+    let mut lines: Vec<Line> = Vec::new();
+    for (renderer, method, pieces) in frames {
+        for piece in pieces {
+            let text =
+                format!("{} | {} | {}", piece.passes.join(", "), images(&piece.images), textures(piece));
+            let at = lines.iter().position(|line| line.renderer == *renderer && line.text == text);
+            let at = at.unwrap_or_else(|| {
+                lines.push(Line { renderer: *renderer, text, methods: Vec::new() });
+                lines.len() - 1
+            });
+            match lines[at].methods.iter_mut().find(|(name, _)| name == method) {
+                Some((_, times)) => *times += 1,
+                None => lines[at].methods.push((method.clone(), 1)),
+            }
+        }
+    }
+    lines.sort_by_key(|line| line.renderer.name());
+    let mut out =
+        "| renderer | pass | draws into | reads | times in a frame |\n|---|---|---|---|---|\n".to_owned();
+    for line in &lines {
+        let methods: Vec<String> =
+            line.methods.iter().map(|(name, times)| format!("{name} {times}")).collect();
+        let _ = writeln!(out, "| {} | {} | {} |", line.renderer.name(), line.text, methods.join(", "));
+    }
+    out
+}
+
+/// Names images with equal neighbours together, and what becomes of them.
+fn images(all: &[Traffic]) -> String {
+    let named = all.iter().map(|traffic| {
+        let fate = match (traffic.loaded, traffic.stored) {
+            (false, false) => "stays in the tile",
+            (false, true) => "written",
+            (true, false) => "read",
+            (true, true) => "read and written",
+        };
+        format!("{} {fate}", name(&traffic.image))
+    });
+    counted(named)
+}
+
+fn textures(piece: &Piece) -> String {
+    let read = piece.textures.iter().filter(|(.., texels)| *texels > 0.0);
+    counted(read.map(|(uniform, image, _)| format!("{uniform} ({})", name(image))))
+}
+
+/// Joins texts by commas, with a number before those that come several times in a row.
+fn counted(texts: impl Iterator<Item = String>) -> String {
+    let mut runs: Vec<(String, u32)> = Vec::new();
+    for text in texts {
+        match runs.last_mut() {
+            Some((last, count)) if *last == text => *count += 1,
+            _ => runs.push((text, 1)),
+        }
+    }
+    let shown =
+        runs.into_iter().map(|(text, count)| if count > 1 { format!("{count} times {text}") } else { text });
+    shown.collect::<Vec<_>>().join(", ")
+}
+
+fn name(image: &Image) -> String {
+    match image.samples {
+        1 => format!("{:?}", image.format),
+        samples => format!("{samples}x {:?}", image.format),
+    }
+}

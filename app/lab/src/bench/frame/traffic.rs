@@ -1,0 +1,323 @@
+//! What a tile-based GPU moves between its tiles and memory.
+//!
+//! From a [record](yoro_gl::Context::record) by these laws:
+//!
+//! 1. Draw calls into one framebuffer, one after the other, are one piece of work: their images stay in the tiles meanwhile.
+//! 2. An image is read into the tiles at the start, unless it is cleared, or first drawn by a triangle that covers the view,
+//!    without blending or a test against its depth.
+//! 3. It is written to memory at the end if anything was drawn into it, unless it is given up.
+//! 4. Samples are averaged in the tiles if that is the next thing after drawing them.
+//! 5. A triangle that covers the view reads each texel of its textures once. A mesh reads a texel of each texture for each
+//!    fragment, and so does everything of the shadow map.
+
+use std::rc::Rc;
+
+use yoro_gl::{Attachments, Command, Draw, Image, Shape};
+
+/// The texture that is always sampled near one place for each fragment.
+const SHADOW_MAP: &str = "shadow_map";
+
+/// An image that a piece draws into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Traffic {
+    /// The image.
+    pub image: Image,
+    /// True if it is read from memory first.
+    pub loaded: bool,
+    /// True if it is written to memory.
+    pub stored: bool,
+    /// True if anything has touched it.
+    touched: bool,
+}
+
+/// A piece of work on one framebuffer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Names of its passes, each once.
+    pub passes: Vec<&'static str>,
+    /// Colour attachments, then depth.
+    pub images: Vec<Traffic>,
+    /// Textures with the texels that are read, by name.
+    pub textures: Vec<(String, Image, f64)>,
+    /// Columns and rows that are drawn.
+    pub area: [u32; 2],
+    /// The framebuffer.
+    framebuffer: Option<Rc<Attachments>>,
+    /// Bytes of vertices and indices.
+    pub vertex_bytes: f64,
+}
+
+fn pixels(size: [u32; 2]) -> f64 {
+    f64::from(size[0]) * f64::from(size[1])
+}
+
+fn texel_bytes(image: &Image) -> f64 {
+    image.format.bytes() as f64 * f64::from(image.samples)
+}
+
+impl Piece {
+    fn new(target: &Rc<Attachments>) -> Piece {
+        let traffic = |image: &Image| Traffic { image: *image, loaded: false, stored: false, touched: false };
+        let images = target.color.iter().chain(&target.depth).map(traffic).collect();
+        Piece {
+            passes: Vec::new(),
+            images,
+            textures: Vec::new(),
+            area: [0, 0],
+            framebuffer: Some(target.clone()),
+            vertex_bytes: 0.0,
+        }
+    }
+
+    /// Returns the bytes of images and textures.
+    pub fn bytes(&self) -> f64 {
+        let moved = |t: &Traffic| (f64::from(t.loaded) + f64::from(t.stored)) * texel_bytes(&t.image);
+        let images: f64 = self.images.iter().map(moved).sum();
+        let textures: f64 = self.textures.iter().map(|(_, image, texels)| texels * texel_bytes(image)).sum();
+        images * pixels(self.area) + textures
+    }
+
+    fn draws_into(&self, target: &Rc<Attachments>) -> bool {
+        self.framebuffer.as_ref().is_some_and(|own| Rc::ptr_eq(own, target))
+    }
+
+    fn name(&mut self, pass: &'static str) {
+        if !self.passes.contains(&pass) {
+            self.passes.push(pass);
+        }
+    }
+
+    fn of_kind(&mut self, depth: bool) -> impl Iterator<Item = &mut Traffic> {
+        self.images.iter_mut().filter(move |traffic| traffic.image.format.is_depth() == depth)
+    }
+
+    fn clear(&mut self, depth: bool) {
+        let cleared = |t: &mut Traffic| (t.touched, t.stored) = (true, true);
+        self.of_kind(false).for_each(cleared);
+        if depth {
+            self.of_kind(true).for_each(cleared);
+        }
+    }
+
+    fn draw(&mut self, draw: &Draw) {
+        self.name(draw.pass);
+        let covers = draw.shape == Shape::Screen;
+        if pixels(draw.area) > pixels(self.area) {
+            self.area = draw.area;
+        }
+        let touch = |t: &mut Traffic, overwritten: bool, written: bool| {
+            t.loaded |= !t.touched && !overwritten;
+            t.stored |= written;
+            t.touched = true;
+        };
+        if draw.writes_color {
+            self.of_kind(false).for_each(|t| touch(t, covers && !draw.blends, true));
+        }
+        if draw.uses_depth {
+            self.of_kind(true).for_each(|t| touch(t, covers && draw.writes_depth, draw.writes_depth));
+        }
+        for (name, image) in &draw.textures {
+            let texels =
+                if covers && name != SHADOW_MAP { texels_once(image, draw.area) } else { fragments(draw) };
+            match self.textures.iter_mut().find(|(other, at, _)| other == name && at == image) {
+                Some((.., sum)) => *sum += texels,
+                None => self.textures.push((name.clone(), *image, texels)),
+            }
+        }
+        if let Shape::Mesh { indices, vertices, vertex_bytes } = draw.shape {
+            self.vertex_bytes += vertices as f64 * f64::from(vertex_bytes) + 4.0 * indices as f64;
+        }
+    }
+}
+
+/// Returns the fragments of a draw call: those counted, or all pixels of the view.
+pub fn fragments(draw: &Draw) -> f64 {
+    let samples =
+        draw.target.as_ref().and_then(|target| target.color.first()).map_or(1, |image| image.samples);
+    draw.samples_passed.map_or(pixels(draw.area), |passed| passed as f64 / f64::from(samples))
+}
+
+/// Returns the texels of a texture that a triangle reads that covers a view of this size. Two views may lie side by side in the
+/// texture, and it may be larger or smaller than the view.
+fn texels_once(image: &Image, area: [u32; 2]) -> f64 {
+    let scale = (f64::from(image.size[1]) / f64::from(area[1].max(1))).round().max(1.0);
+    let part = [0, 1].map(|i| f64::from(image.size[i]).min(f64::from(area[i]) * scale));
+    part[0] * part[1]
+}
+
+/// Returns the pieces of a recorded frame.
+pub fn pieces(commands: &[Command]) -> Vec<Piece> {
+    let mut pieces: Vec<Piece> = Vec::new();
+    // True if the next draw call into the framebuffer of the last piece belongs to it.
+    let mut open = false;
+    for command in commands {
+        match command {
+            Command::Clear(Some(target), depth) => {
+                begin(&mut pieces, &mut open, target).clear(*depth);
+            }
+            Command::Draw(draw @ Draw { target: Some(target), .. }) => {
+                begin(&mut pieces, &mut open, target).draw(draw);
+            }
+            Command::Discard(Some(target), given_up) => {
+                let of = |piece: &&mut Piece| piece.draws_into(target);
+                if let Some(piece) = pieces.iter_mut().rev().find(of) {
+                    for (depth, _) in
+                        [false, true].into_iter().zip(given_up).filter(|(_, given_up)| **given_up)
+                    {
+                        piece.of_kind(depth).for_each(|t| t.stored = false);
+                    }
+                }
+            }
+            Command::Copy { pass, from, to, size, depth } => {
+                let image = |target: &Option<Rc<Attachments>>| {
+                    let images = target.as_ref()?;
+                    if *depth { images.depth } else { images.color.first().copied() }
+                };
+                let (Some(source), Some(target)) = (image(from), image(to)) else { continue };
+                let follows = from.as_ref().is_some_and(|from| is_of_last(&pieces, from));
+                let in_tile = source.samples > 1 && follows;
+                pieces.push(Piece {
+                    passes: vec![*pass],
+                    images: vec![Traffic { image: target, loaded: false, stored: true, touched: true }],
+                    textures: vec![("samples".into(), source, if in_tile { 0.0 } else { pixels(*size) })],
+                    area: *size,
+                    framebuffer: None,
+                    vertex_bytes: 0.0,
+                });
+                open = false;
+            }
+            Command::Clear(None, _) | Command::Draw(_) | Command::Discard(None, _) => {}
+        }
+    }
+    pieces.retain(|piece| !piece.passes.is_empty());
+    pieces
+}
+
+/// True if the last piece that is not a copy draws into this framebuffer.
+fn is_of_last(pieces: &[Piece], target: &Rc<Attachments>) -> bool {
+    let drawn = pieces.iter().rev().find(|piece| piece.framebuffer.is_some());
+    drawn.is_some_and(|piece| piece.draws_into(target))
+}
+
+/// Returns the piece that is being drawn into a framebuffer, a new one if that was another.
+fn begin<'a>(pieces: &'a mut Vec<Piece>, open: &mut bool, target: &Rc<Attachments>) -> &'a mut Piece {
+    let goes_on = *open && pieces.last().is_some_and(|piece| piece.draws_into(target));
+    if !goes_on {
+        pieces.push(Piece::new(target));
+        *open = true;
+    }
+    pieces.last_mut().expect("one was pushed if there was none")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use yoro_gl::{Format, ProgramRecipe};
+
+    const SIZE: [u32; 2] = [10, 4];
+    const PIXELS: f64 = 40.0;
+
+    fn image(format: Format, samples: u32) -> Image {
+        Image { format, size: SIZE, samples }
+    }
+
+    fn target(color: Image, depth: Option<Image>) -> Option<Rc<Attachments>> {
+        Some(Rc::new(Attachments { color: vec![color], depth }))
+    }
+
+    fn draw(
+        pass: &'static str,
+        to: &Option<Rc<Attachments>>,
+        shape: Shape,
+        textures: &[(&str, Image)],
+    ) -> Draw {
+        let is_mesh = shape != Shape::Screen;
+        Draw {
+            pass,
+            program: ProgramRecipe { files: vec!["a.frag".into()], defines: Vec::new() }.into(),
+            target: to.clone(),
+            textures: textures.iter().map(|(name, image)| ((*name).to_owned(), *image)).collect(),
+            area: SIZE,
+            shape,
+            writes_color: true,
+            blends: false,
+            uses_depth: is_mesh,
+            writes_depth: is_mesh,
+            samples_passed: is_mesh.then_some(4 * 30),
+        }
+    }
+
+    const MESH: Shape = Shape::Mesh { indices: 6, vertices: 4, vertex_bytes: 32 };
+
+    /// Four samples are drawn, averaged and given up; with depth that is read afterwards, that is kept.
+    #[test]
+    fn samples_stay_in_the_tile_unless_something_reads_them() {
+        let samples = target(image(Format::Rgba8, 4), Some(image(Format::Depth32F, 4)));
+        let resolved = target(image(Format::Rgba8, 1), Some(image(Format::Depth32F, 1)));
+        let map = [("diffuse_map", image(Format::Srgb8Alpha8, 1))];
+        let copy = Command::Copy {
+            pass: "resolve",
+            from: samples.clone(),
+            to: resolved.clone(),
+            size: SIZE,
+            depth: false,
+        };
+        let forward = [
+            Command::Clear(samples.clone(), true),
+            Command::Draw(draw("forward", &samples, MESH, &map)),
+            Command::Draw(draw("transparent", &samples, MESH, &map)),
+            copy,
+        ];
+        let bytes = |given_up: [bool; 2], more: &[Command]| {
+            let discard = [Command::Discard(samples.clone(), given_up)];
+            let pieces = pieces(&[&forward[..], &discard, more].concat());
+            pieces.iter().map(|piece| (piece.passes.join(", "), piece.bytes())).collect::<Vec<_>>()
+        };
+        // 30 fragments of each draw call read a texel of 4 bytes.
+        let maps = 2.0 * 30.0 * 4.0;
+        let named = |name: &str, bytes: f64| (name.to_owned(), bytes);
+        assert_eq!(
+            bytes([true, true], &[]),
+            [named("forward, transparent", maps), named("resolve", 4.0 * PIXELS)]
+        );
+        let mut nearest =
+            draw("nearest depth", &resolved, Shape::Screen, &[("depth_map", image(Format::Depth32F, 4))]);
+        (nearest.writes_color, nearest.uses_depth, nearest.writes_depth) = (false, true, true);
+        assert_eq!(
+            bytes([true, false], &[Command::Draw(nearest)]),
+            [
+                named("forward, transparent", maps + 16.0 * PIXELS),
+                named("resolve", 4.0 * PIXELS),
+                named("nearest depth", (16.0 + 4.0) * PIXELS),
+            ]
+        );
+    }
+
+    #[test]
+    fn what_goes_on_in_an_image_is_read_first() {
+        let [a, b] = [0, 1].map(|_| target(image(Format::Rgba8, 1), None));
+        let screen = |to| Command::Draw(draw("screen", to, Shape::Screen, &[]));
+        let blended = |to| Command::Draw(Draw { blends: true, ..draw("blend", to, Shape::Screen, &[]) });
+        let bytes = |commands: &[Command]| pieces(commands).iter().map(Piece::bytes).sum::<f64>();
+        // Written once; and blended with while it is in the tile.
+        assert_eq!(bytes(&[screen(&a), blended(&a)]), 4.0 * PIXELS);
+        // Something else came in between: written, and read and written again.
+        assert_eq!(bytes(&[screen(&a), screen(&b), blended(&a)]), (4.0 + 4.0 + 8.0) * PIXELS);
+    }
+
+    #[test]
+    fn a_view_beside_another_is_half_of_the_texture() {
+        let wide = Image { format: Format::Rgba8, size: [20, 4], samples: 1 };
+        assert_eq!(texels_once(&wide, SIZE), PIXELS);
+        // All of a texture of twice the size, and of a small one.
+        assert_eq!(texels_once(&Image { size: [20, 8], ..wide }, SIZE), 4.0 * PIXELS);
+        assert_eq!(texels_once(&Image { size: [5, 2], ..wide }, SIZE), 10.0);
+    }
+
+    #[test]
+    fn vertices_and_indices_are_read_once() {
+        let to = target(image(Format::Rgba8, 1), None);
+        let pieces = pieces(&[Command::Draw(draw("g-buffer", &to, MESH, &[]))]);
+        assert_eq!(pieces[0].vertex_bytes, 4.0 * 32.0 + 6.0 * 4.0);
+    }
+}

@@ -1,0 +1,265 @@
+//! The cost of whole frames on mobile GPUs.
+
+use super::section::Section;
+use crate::bench::frame::{self, SYNTHESIS};
+use crate::report::bench::data::{CONVENTIONAL, Measured, SettingData, Suite};
+use yoro_figures::grid::{Cell, Table};
+use yoro_figures::stats::{mean, unique};
+
+/// Passes whose cost is that of the application's surfaces.
+const SURFACES: [&str; 3] = ["g-buffer", "lighting", "forward"];
+
+/// A contender of one renderer.
+#[derive(Clone, Copy)]
+struct Entry<'a> {
+    suite: &'a Suite,
+    renderer: &'a str,
+    name: &'a str,
+    /// Vertices shaded once for both eyes.
+    once: bool,
+}
+
+impl<'a> Entry<'a> {
+    fn all(suite: &'a Suite) -> Vec<Entry<'a>> {
+        let mut entries = Vec::new();
+        for renderer in suite.labels() {
+            let of_renderer = suite.settings.iter().filter(|s| s.setting.label.as_deref() == Some(renderer));
+            for name in unique(of_renderer.flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()))) {
+                let entry = Entry { suite, renderer, name, once: false };
+                if name == frame::MULTIVIEW {
+                    entries.push(Entry { once: true, ..entry });
+                }
+                entries.push(entry);
+            }
+        }
+        entries
+    }
+
+    fn title(&self) -> String {
+        match (self.name, self.once) {
+            (CONVENTIONAL, _) => "two renders".into(),
+            (frame::MULTIVIEW, true) => "multiview, vertices once".into(),
+            (frame::MULTIVIEW, false) => "multiview, vertices twice".into(),
+            (name, _) => name.into(),
+        }
+    }
+
+    fn is_synthesis(&self) -> bool {
+        self.name.starts_with("yoro-")
+    }
+
+    fn settings(&self) -> impl Iterator<Item = &'a SettingData> {
+        let renderer = self.renderer;
+        self.suite.settings.iter().filter(move |s| s.setting.label.as_deref() == Some(renderer))
+    }
+
+    /// The value for each scene.
+    fn by_scene(&self, value: impl Fn(&Measured) -> f64) -> Vec<f64> {
+        self.settings().filter_map(|setting| Some(value(setting.find(self.name)?))).collect()
+    }
+
+    /// Two renders by the same renderer.
+    fn baseline(&self) -> Entry<'a> {
+        Entry { name: CONVENTIONAL, once: false, ..*self }
+    }
+
+    /// Slots for each pixel of an eye, in the scenes, of the passes that `counts` takes.
+    fn slots(&self, gpu: &str, counts: impl Fn(&str) -> bool) -> Vec<f64> {
+        let left_out = if self.once { frame::VERTICES } else { frame::VERTICES_ONCE };
+        self.sums(&format!("slots/{gpu}/"), |pass| pass != left_out && counts(pass))
+    }
+
+    fn bytes(&self) -> Vec<f64> {
+        self.sums("bytes/", |_| true)
+    }
+
+    /// Sums the metrics with a prefix whose rest `counts` takes, in the scenes.
+    fn sums(&self, prefix: &str, counts: impl Fn(&str) -> bool) -> Vec<f64> {
+        self.by_scene(|measured| {
+            let names = unique(measured.metrics()).into_iter();
+            let counted = names.filter(|name| name.strip_prefix(prefix).is_some_and(&counts));
+            counted.filter_map(|name| value(self.suite, measured, name)).sum()
+        })
+    }
+}
+
+/// The mean of a metric of a pass. There are as many vertices in a frame of any size: they are counted for each pixel of an eye of
+/// [`frame::SIZE`].
+fn value(suite: &Suite, measured: &Measured, metric: &str) -> Option<f64> {
+    let scale =
+        if metric.contains(frame::VERTICES) { measured_pixels(suite) / pixels(frame::SIZE) } else { 1.0 };
+    Some(scale * measured.mean(metric)?)
+}
+
+fn pixels(size: [u32; 2]) -> f64 {
+    f64::from(size[0]) * f64::from(size[1])
+}
+
+/// Pixels of an eye as it was measured: `512 x 512` in the header.
+fn measured_pixels(suite: &Suite) -> f64 {
+    let size = suite.header.parameters.iter().find(|parameter| parameter.name == "size of each eye, pixels");
+    let parts =
+        size.map(|size| size.value.split(" x ").filter_map(|n| n.parse::<f64>().ok()).product::<f64>());
+    parts.unwrap_or(pixels(frame::SIZE))
+}
+
+fn average(values: &[f64]) -> f64 {
+    mean(values.iter().copied()).unwrap_or(f64::NAN)
+}
+
+/// The cost of surfaces, in slots for each pixel of an eye, from which on a method is cheaper than two renders.
+///
+/// Two renders cost `x * surfaces[0] + rest[0]` and the method `x * surfaces[1] + rest[1]`, where surfaces cost `x` times what they
+/// do in the scenes. `None` if the method is never cheaper.
+fn break_even(surfaces: [f64; 2], rest: [f64; 2]) -> Option<f64> {
+    let saved = surfaces[0] - surfaces[1];
+    (saved > 0.0).then(|| 0.5 * surfaces[0] * (rest[1] - rest[0]) / saved)
+}
+
+/// The section of `shader-cost --frame`.
+pub fn section(suite: &Suite) -> Section {
+    let mut section = Section::new(
+        "frame-cost",
+        "Whole frames on mobile GPUs",
+        "An estimate: nothing here was timed on a GPU. Frames are rendered here; the samples that pass each depth test are \
+         counted, shaders are sized by Mesa's compilers for these GPUs, and the loops of lamps and of the synthesis are counted \
+         by waves. Bytes are those that a tile-based GPU moves between tiles and memory.",
+    );
+    let entries = Entry::all(suite);
+    section.table(ratios(&entries));
+    section.table(break_evens(&entries));
+    section.table(bandwidth(&entries));
+    section.table(passes(&entries));
+    section
+}
+
+fn gpu_columns<'a>(first: &[&'a str]) -> Vec<&'a str> {
+    first.iter().copied().chain(frame::GPUS.iter().map(|gpu| gpu.name)).collect()
+}
+
+fn ratios(entries: &[Entry]) -> Table {
+    let mut columns = gpu_columns(&["<renderer", "<method"]);
+    columns.extend(["bytes a pixel", "bytes, ratio"]);
+    let mut table =
+        Table::new("Executed slots over two renders: mean of the scenes, least and most", &columns);
+    for (i, entry) in entries.iter().enumerate() {
+        let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
+        for gpu in frame::GPUS {
+            let (own, base) = (entry.slots(gpu.gpu, |_| true), entry.baseline().slots(gpu.gpu, |_| true));
+            let ratios: Vec<f64> = own.iter().zip(&base).map(|(own, base)| own / base).collect();
+            let text = if entry.name == CONVENTIONAL {
+                format!("{:.0} slots", average(&own))
+            } else {
+                spread(&ratios)
+            };
+            cells.push(if entry.name == CONVENTIONAL {
+                Cell::base(Some(text))
+            } else {
+                Cell::ours(Some(text))
+            });
+        }
+        let (own, base) = (average(&entry.bytes()), average(&entry.baseline().bytes()));
+        cells.push(Cell::ours(Some(format!("{own:.0}"))));
+        cells.push(Cell::ours(Some(format!("{:.2}", own / base))));
+        table.push_grouped(cells, i > 0 && entries[i - 1].renderer != entry.renderer);
+    }
+    table
+}
+
+/// Writes a mean with the least and the most.
+fn spread(values: &[f64]) -> String {
+    let (low, high) = values.iter().fold((f64::INFINITY, 0f64), |(low, high), v| (low.min(*v), high.max(*v)));
+    format!("{:.2} ({low:.2}–{high:.2})", average(values))
+}
+
+fn break_evens(entries: &[Entry]) -> Table {
+    let title = "Synthesis pays if surfaces cost more than this, in slots for each pixel of an eye with overdraw; in these scenes";
+    let mut table = Table::new(title, &gpu_columns(&["<renderer", "<method"]));
+    for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
+        let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
+        for gpu in frame::GPUS {
+            let both = [entry.baseline(), *entry];
+            let surfaces = both.map(|entry| average(&entry.slots(gpu.gpu, |pass| SURFACES.contains(&pass))));
+            let rest = both.map(|entry| average(&entry.slots(gpu.gpu, |pass| !SURFACES.contains(&pass))));
+            let here = 0.5 * surfaces[0];
+            let text = match break_even(surfaces, rest) {
+                Some(slots) if slots > 0.0 => format!("{slots:.0}; {here:.0}"),
+                Some(_) => format!("0; {here:.0}"),
+                None => format!("never; {here:.0}"),
+            };
+            cells.push(Cell::ours(Some(text)));
+        }
+        table.push(cells);
+    }
+    table
+}
+
+fn bandwidth(entries: &[Entry]) -> Table {
+    let title = "Bytes beyond those of two renders, for each pixel of an eye, and the time that they take at each GPU's bandwidth, in ms";
+    let mut table = Table::new(title, &gpu_columns(&["<renderer", "<method", "bytes"]));
+    for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
+        let more = average(&entry.bytes()) - average(&entry.baseline().bytes());
+        let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
+        cells.push(Cell::ours(Some(format!("{more:+.0}"))));
+        for gpu in frame::GPUS {
+            let pixels = f64::from(gpu.size[0]) * f64::from(gpu.size[1]);
+            cells.push(Cell::ours(Some(format!("{:+.2}", 1e3 * more * pixels / gpu.bytes))));
+        }
+        table.push(cells);
+    }
+    let sizes = frame::GPUS.map(|gpu| {
+        format!("{} {} x {} pixels an eye, {} GB/s", gpu.name, gpu.size[0], gpu.size[1], gpu.bytes / 1e9)
+    });
+    table.note = format!("Assumed: {}.", sizes.join("; "));
+    table
+}
+
+fn passes(entries: &[Entry]) -> Table {
+    let mut columns = gpu_columns(&["<renderer", "<method", "<pass", "fragments"]);
+    columns.push("bytes");
+    let title = "Pass by pass: fragments, slots and bytes for each pixel of an eye, means of the scenes";
+    let mut table = Table::new(title, &columns);
+    for entry in entries.iter().filter(|entry| entry.is_synthesis() || entry.name == CONVENTIONAL) {
+        let measured = entry.settings().filter_map(|setting| setting.find(entry.name));
+        let names = unique(measured.flat_map(Measured::metrics).filter_map(|metric| {
+            let (kind, rest) = metric.split_once('/')?;
+            if kind == "slots" { Some(rest.split_once('/')?.1) } else { Some(rest) }
+        }));
+        for (i, name) in names.into_iter().filter(|name| *name != frame::VERTICES_ONCE).enumerate() {
+            let mean = |metric: String| {
+                let of = |measured: &Measured| value(entry.suite, measured, &metric).unwrap_or(0.0);
+                average(&entry.by_scene(of))
+            };
+            let shown =
+                |value: f64, digits: usize| Cell::ours((value > 0.0).then(|| format!("{value:.digits$}")));
+            let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title()), Cell::plain(name)];
+            cells.push(shown(mean(format!("fragments/{name}")), 2));
+            let slots = frame::GPUS.map(|gpu| shown(mean(format!("slots/{}/{name}", gpu.gpu)), 1));
+            cells.extend(slots);
+            cells.push(shown(mean(format!("bytes/{name}")), 1));
+            table.push_grouped(cells, i == 0);
+        }
+    }
+    let synthesis = SYNTHESIS.map(str::trim_end).join(" and ");
+    let [width, height] = frame::SIZE;
+    table.note = format!(
+        "Passes of the synthesis begin with {synthesis}. Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels."
+    );
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Surfaces of 300 slots, seen twice, against once and a tenth; the rest costs 100 each, and the synthesis 180.
+    #[test]
+    fn costs_are_equal_at_the_break_even() {
+        let (surfaces, rest) = ([600.0, 330.0], [200.0, 380.0]);
+        let slots = break_even(surfaces, rest).unwrap();
+        assert!((slots - 200.0).abs() < 1e-9, "{slots}");
+        let x = slots / 300.0;
+        assert!((x * surfaces[0] + rest[0] - x * surfaces[1] - rest[1]).abs() < 1e-9);
+        assert_eq!(break_even([600.0, 600.0], rest), None);
+    }
+}
