@@ -4,7 +4,8 @@ mod cli;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::Parser;
+use cli::{Subcommand, terminal};
 use yoro_files::interrupt;
 
 /// Render one eye, synthesize the other
@@ -18,7 +19,7 @@ struct Arguments {
     verbose: u8,
 }
 
-#[derive(Subcommand)]
+#[derive(clap::Subcommand)]
 enum Command {
     Bench(Box<cli::bench::BenchArgs>),
     Run(cli::run::RunArgs),
@@ -36,6 +37,27 @@ enum Command {
     Info(cli::info::InfoArgs),
 }
 
+impl Command {
+    fn subcommand(&self) -> &dyn Subcommand {
+        match self {
+            Command::Bench(args) => &**args,
+            Command::Run(args) => args,
+            Command::Render(args) => args,
+            Command::Synthesize(args) => args,
+            Command::Report(args) => args,
+            Command::Compare(args) => args,
+            Command::Dataset(args) => args,
+            Command::Scenes(args) => args,
+            Command::Device(args) => args,
+            Command::Study(args) => args,
+            Command::View(args) => args,
+            Command::Xr(args) => args,
+            Command::Layer(args) => args,
+            Command::Info(args) => args,
+        }
+    }
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let level = match arguments.verbose {
@@ -43,33 +65,40 @@ fn main() -> ExitCode {
         1 => "info",
         _ => "debug",
     };
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(level))
-        .format_timestamp(None)
-        .format_target(false)
-        .init();
-    cli::terminal::end_with_reader();
-    cli::terminal::catch_interrupt();
-    let result = match &arguments.command {
-        Command::Bench(args) => cli::bench::run(args),
-        Command::Run(args) => cli::run::run(args),
-        Command::Render(args) => cli::render::run(args),
-        Command::Synthesize(args) => cli::synthesize::run(args),
-        Command::Report(args) => cli::report::run(args),
-        Command::Compare(args) => cli::compare::run(args),
-        Command::Dataset(args) => cli::dataset::run(args),
-        Command::Scenes(args) => cli::scenes::run(args),
-        Command::Device(args) => cli::device::run(args),
-        Command::Study(args) => cli::study::run(args),
-        Command::View(args) => cli::view::run(args),
-        Command::Xr(args) => cli::xr::run(args),
-        Command::Layer(args) => cli::layer::run(args),
-        Command::Info(args) => cli::info::run(args),
-    };
-    match result {
+    terminal::log_from(level);
+    terminal::quiet_decoders();
+    terminal::catch_interrupt();
+    match cli::run(arguments.command.subcommand()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {}", cli::message::of(&error));
             ExitCode::from(if interrupt::requested() { 130 } else { 2 })
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    fn check_defaults(command: &clap::Command) {
+        for argument in command.get_arguments() {
+            let values = argument.get_default_values();
+            assert!(
+                values.len() <= 1,
+                "{} {argument}: help shows {values:?} with spaces",
+                command.get_name()
+            );
+        }
+        command.get_subcommands().for_each(check_defaults);
+    }
+
+    #[test]
+    fn defaults_in_the_help_can_be_typed() {
+        let command = Arguments::command();
+        command.clone().debug_assert();
+        check_defaults(&command);
     }
 }

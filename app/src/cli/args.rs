@@ -55,6 +55,11 @@ impl PatcherArgs {
     }
 }
 
+/// Returns names as an option takes several of them.
+pub fn list(names: impl IntoIterator<Item = &'static str>) -> String {
+    names.into_iter().collect::<Vec<_>>().join(",")
+}
+
 /// Parses a finite number.
 pub fn parse_finite(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {

@@ -5,21 +5,26 @@ use std::time::Duration;
 
 use anyhow::{bail, ensure};
 
+use crate::cli::Subcommand;
 use crate::cli::args::{GlArgs, parse_fov};
 use crate::cli::choices;
 use crate::cli::eyes;
 use crate::cli::machine;
+use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyeOptions};
+use yoro_context::{Backend, Headless};
 use yoro_files::interrupt::Interrupted;
-use yoro_gl::Context;
+use yoro_gl::{Context, GlApi};
 use yoro_lab::bench::record::{Header, PassClock, VERSION};
 use yoro_lab::bench::{
-    self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, process,
+    self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, frame, process,
 };
 use yoro_lab::inpaint::PatcherOptions;
+use yoro_lab::report::bench::BenchReport;
 use yoro_protocol::Ipd;
+use yoro_render::RenderSettings;
 use yoro_scene::load::sidecar_file;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
@@ -31,6 +36,10 @@ pub struct BenchArgs {
     /// The short form: smaller images, fewer scenes, points, viewpoints and rounds
     #[arg(long)]
     quick: bool,
+    /// shader-cost: whole stereo frames by every method on five mobile GPUs, in place of the synthesis alone. Counts
+    /// samples by desktop GL, so that the GL context comes from OSMesa unless --gl says otherwise
+    #[arg(long)]
+    frame: bool,
     /// Timed rounds; in each, every contender renders every frame once [default: 5; quick: 2]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: Option<u32>,
@@ -40,7 +49,7 @@ pub struct BenchArgs {
     /// bandwidth: frames of the sequence that is coded [default: 30; quick: 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
     frames: Option<u32>,
-    /// Size of each eye's image in pixels [default: 1024x1024; quick: 512x512]
+    /// Size of each eye's image in pixels [default: 1024x1024; --frame: 1680x1760; quick: 512x512]
     #[arg(long, value_name = "WxH", value_parser = eyes::parse_size)]
     size: Option<[u32; 2]>,
     /// Scenes instead of the suite's: a built-in one, or an OBJ, glTF or GLB file; more than once for several
@@ -91,8 +100,23 @@ pub struct BenchArgs {
     gl: GlArgs,
 }
 
+impl Subcommand for BenchArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        files.read(&self.scenes);
+        files.read([&self.path, &self.object, &self.model].into_iter().flatten());
+        files.fill(bench::pictures_beside(&self.out()), "the pictures");
+        files.write(self.out(), "the results");
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Measures, appends to the file of results, and prints a short table.
-pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
+fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let choices = args.choices()?;
     yoro_scenes::check(&choices.scenes, choices.seed)?;
     let path = args.path.as_deref().map(yoro_scene::path::read).transpose()?;
@@ -102,9 +126,9 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let object = args.object.as_deref().map(Object::load).transpose()?;
     let object = LazyObject::new(Box::new(|| object.unwrap_or_else(Object::hare)));
     let jobs = jobs(args, &choices, &object)?;
-    let headless = args.gl.open()?;
+    let headless = args.open()?;
     let gl = headless.gl();
-    let out = args.out.clone().unwrap_or_else(|| args.default_out());
+    let out = args.out();
     let (writer, before) = Writer::open(&out, &header(args, &choices, gl))?;
     let finished = jobs.iter().filter(|job| before.rounds(&job.setting) >= job.rounds).count();
     if finished > 0 {
@@ -135,16 +159,45 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
         }
     }
     bar.finish_and_clear();
-    print!("{}", bench::text(&bench::Results::read(&out)?));
+    let results = bench::Results::read(&out)?;
+    if args.frame {
+        print!("{}", BenchReport::new(vec![results])?.to_markdown(None));
+    } else {
+        print!("{}", bench::text(&results));
+    }
     println!("results: {}", out.display());
     Ok(())
 }
 
 impl BenchArgs {
+    fn open(&self) -> anyhow::Result<Headless> {
+        if !self.frame {
+            return Ok(self.gl.open()?);
+        }
+        ensure!(
+            self.suites == [Suite::ShaderCost],
+            "--frame belongs to the suite shader-cost alone: run yoro bench shader-cost --frame"
+        );
+        let backend = match self.gl.backend {
+            Backend::Auto => Backend::Osmesa,
+            given => given,
+        };
+        let headless = GlArgs { backend }.open()?;
+        ensure!(
+            headless.gl().capabilities().api == GlApi::Desktop,
+            "shader-cost --frame counts samples, which OpenGL ES does not: give --gl osmesa"
+        );
+        Ok(headless)
+    }
+
     fn choices(&self) -> anyhow::Result<Choices> {
         let of = |full, quick| if self.quick { quick } else { full };
         let eyes = EyeOptions {
-            size: self.size.unwrap_or(if self.quick { [512; 2] } else { [1024; 2] }),
+            size: self.size.unwrap_or(match (self.quick, self.frame) {
+                (true, _) => [512; 2],
+                (false, true) => frame::SIZE,
+                (false, false) => [1024; 2],
+            }),
             fov_y: self.fov_y,
             ipd: self.ipd.metres(),
             dominant: self.dominant,
@@ -152,8 +205,14 @@ impl BenchArgs {
         };
         Ok(Choices {
             quick: self.quick,
+            whole_frames: self.frame,
             eyes,
-            render: self.renderer.render_settings()?,
+            // Phones render by the viewer's settings.
+            render: if self.frame {
+                RenderSettings::of_settings(self.renderer.settings())
+            } else {
+                self.renderer.render_settings()?
+            },
             rounds: self.rounds.unwrap_or(of(5, 2)),
             viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,
             sequence: self.frames.unwrap_or(of(30, 8)) as usize,
@@ -169,9 +228,12 @@ impl BenchArgs {
         self.suites.iter().map(|suite| suite.name().to_owned()).collect()
     }
 
-    fn default_out(&self) -> PathBuf {
+    fn out(&self) -> PathBuf {
+        let frame = if self.frame { "-frame" } else { "" };
         let quick = if self.quick { "-quick" } else { "" };
-        Path::new("out").join(format!("bench-{}{quick}.jsonl", self.suite_names().join("-")))
+        let default =
+            || Path::new("out").join(format!("bench-{}{frame}{quick}.jsonl", self.suite_names().join("-")));
+        self.out.clone().unwrap_or_else(default)
     }
 }
 

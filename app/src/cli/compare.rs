@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use super::Subcommand;
+use super::outputs::Files;
 use yoro_lab::compare::{CompareReport, Inputs};
 
 /// Compare two images, or two folders of images, by PSNR, SSIM and FLIP
@@ -25,15 +27,39 @@ pub struct CompareArgs {
     json: bool,
 }
 
+impl CompareArgs {
+    fn inputs(&self) -> Inputs {
+        Inputs {
+            a: self.a.clone(),
+            b: self.b.clone(),
+            mask: self.mask.clone(),
+            bright_holes: self.bright_holes,
+            map: self.map.clone(),
+        }
+    }
+}
+
+impl Subcommand for CompareArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        for pair in self.inputs().pairs()?.0 {
+            files.read([&pair.a, &pair.b]);
+            files.read(&pair.mask);
+            if let Some(map) = pair.map {
+                files.write(map, format!("the error map of {}", pair.a.display()));
+            }
+        }
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Compares and prints; error maps are written if asked for.
-pub fn run(args: &CompareArgs) -> anyhow::Result<()> {
-    let report = CompareReport::of(&Inputs {
-        a: args.a.clone(),
-        b: args.b.clone(),
-        mask: args.mask.clone(),
-        bright_holes: args.bright_holes,
-        map: args.map.clone(),
-    })?;
+fn run(args: &CompareArgs) -> anyhow::Result<()> {
+    let report = CompareReport::of(&args.inputs())?;
     for path in &report.unmatched {
         log::warn!("{} has no partner and is left out", path.display());
     }

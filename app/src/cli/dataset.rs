@@ -9,9 +9,11 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::cli::Subcommand;
 use crate::cli::args::{GlArgs, PatcherArgs};
 use crate::cli::choices;
-use crate::cli::eyes::EyeArgs;
+use crate::cli::eyes::{self, EyeArgs};
+use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
@@ -132,8 +134,44 @@ struct Depth {
     law: DisparityLaw,
 }
 
+impl DatasetArgs {
+    /// Returns the names of the scenes.
+    fn names(&self) -> Vec<String> {
+        match self.scenes.as_slice() {
+            [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
+            given => given.to_vec(),
+        }
+    }
+
+    /// Returns the folder of a scene's groups.
+    fn folder(&self, scene: &str) -> PathBuf {
+        self.out.join(eyes::stem(scene))
+    }
+}
+
+impl Subcommand for DatasetArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        let names = self.names();
+        files.read(&names);
+        files.read([&self.path, &self.patcher.model].into_iter().flatten());
+        for name in &names {
+            let folder = self.folder(name);
+            for part in PICTURES.iter().chain([&GROUPS]) {
+                files.fill(folder.join(part), format!("the groups of {name}"));
+            }
+            files.write(folder.join(SETTINGS), format!("the groups of {name}"));
+        }
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Makes the missing groups.
-pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
+fn run(args: &DatasetArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
     ensure!(
         args.eyes.half_angles_degrees.is_none(),
@@ -141,19 +179,12 @@ pub fn run(args: &DatasetArgs) -> anyhow::Result<()> {
     );
     args.patcher.check()?;
     let path = args.path.as_deref().map(path::read).transpose()?;
-    let names: Vec<String> = match args.scenes.as_slice() {
-        [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
-        given => given.to_vec(),
-    };
+    let names = args.names();
     // Names and folders are checked before hours of work.
-    let mut jobs: Vec<Job> = Vec::new();
-    for name in &names {
-        let job = Job::new(args, name, path.as_deref())?;
-        if let Some(other) = jobs.iter().find(|other| other.folder == job.folder) {
-            bail!("{} and {name} would both go to {}: give one at a time", other.name, job.folder.display());
-        }
-        jobs.push(job);
-    }
+    let jobs = names
+        .iter()
+        .map(|name| Job::new(args, name, path.as_deref()))
+        .collect::<anyhow::Result<Vec<Job>>>()?;
     let total = names.len() as u64 * u64::from(args.groups);
     let missing: u64 = jobs.iter().map(|job| job.missing.len() as u64).sum();
     let bar = progress_bar(total);
@@ -193,8 +224,7 @@ impl<'a> Job<'a> {
         if is_file && !Path::new(name).exists() {
             yoro_scenes::load(name, args.seed, None)?;
         }
-        let stem = Path::new(name).file_stem().unwrap_or_default();
-        let folder = args.out.join(if is_file { stem } else { name.as_ref() });
+        let folder = args.folder(name);
         let settings = serde_json::to_value(Settings {
             scene: name,
             seed: args.seed,

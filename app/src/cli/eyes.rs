@@ -12,6 +12,8 @@ use yoro::eyes::{
 };
 use yoro_protocol::Ipd;
 use yoro_scene::Viewpoint;
+use yoro_scene::path::FARTHEST;
+use yoro_scenes::BUILTINS;
 
 /// The eyes and what they see of the world.
 #[derive(clap::Args, Clone, Debug)]
@@ -92,6 +94,13 @@ pub fn viewpoint(position: Option<Vec3>, target: Option<Vec3>) -> Option<Viewpoi
     Some(Viewpoint { position, target: target.unwrap_or(position + Vec3::NEG_Z) })
 }
 
+/// Returns the name that a built-in scene or a file gives to its pictures.
+pub fn stem(scene: &str) -> String {
+    let is_builtin = BUILTINS.iter().any(|builtin| builtin.name == scene);
+    let stem = Path::new(scene).file_stem().unwrap_or_default();
+    if is_builtin { scene.to_owned() } else { stem.to_string_lossy().into_owned() }
+}
+
 /// Returns the path of a scene's picture.
 pub fn picture_path(folder: &Path, stem: &str, kind: &str) -> PathBuf {
     folder.join(format!("{stem}.{kind}.png"))
@@ -100,8 +109,9 @@ pub fn picture_path(folder: &Path, stem: &str, kind: &str) -> PathBuf {
 /// Parses `x,y,z` in metres.
 pub fn parse_point(text: &str) -> Result<Vec3, String> {
     let numbers: Vec<f32> = text.split(',').filter_map(|n| n.trim().parse().ok()).collect();
-    match numbers.as_slice() {
-        &[x, y, z] if Vec3::new(x, y, z).is_finite() => Ok(Vec3::new(x, y, z)),
+    match *numbers.as_slice() {
+        [x, y, z] if Vec3::new(x, y, z).length() <= FARTHEST => Ok(Vec3::new(x, y, z)),
+        [_, _, _] => Err(format!("give a place up to {FARTHEST} m from the origin")),
         _ => Err("give three numbers in metres, such as 1.5,1.6,-2".into()),
     }
 }

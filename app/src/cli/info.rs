@@ -1,6 +1,8 @@
 //! `yoro info`: what this machine offers.
 
+use crate::cli::Subcommand;
 use crate::cli::args::GlArgs;
+use crate::cli::outputs::Files;
 use yoro_context::{Backend, Headless};
 
 /// Show the GL drivers of this machine and what they offer
@@ -13,8 +15,18 @@ pub struct InfoArgs {
     json: bool,
 }
 
+impl Subcommand for InfoArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Prints one block per backend. Fails only when no backend works.
-pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
+fn run(args: &InfoArgs) -> anyhow::Result<()> {
     let backends = match args.gl.backend {
         Backend::Auto => vec![("egl", Backend::Egl), ("osmesa", Backend::Osmesa)],
         Backend::Egl => vec![("egl", Backend::Egl)],

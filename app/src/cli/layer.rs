@@ -4,14 +4,17 @@ use std::env;
 use std::ffi::OsString;
 use std::fs;
 use std::io::{ErrorKind, Seek as _};
+use std::os::unix::ffi::OsStrExt as _;
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
+use super::Subcommand;
+use super::outputs::Files;
 use anyhow::{Context as _, bail};
-use clap::Subcommand;
 use yoro_files as files;
+use yoro_layer::library::version;
 use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME, xdg};
 
 const LIBRARY: &str = "libyoro_layer.so";
@@ -25,7 +28,7 @@ pub struct LayerArgs {
     task: Task,
 }
 
-#[derive(Subcommand, Clone, Debug)]
+#[derive(clap::Subcommand, Clone, Debug)]
 enum Task {
     /// Run a program with the layer, without installing it
     Run {
@@ -37,8 +40,8 @@ enum Task {
     },
     /// Install the layer for this user's OpenXR loaders
     Install {
-        /// Enable it for every program that runs with YORO_LAYER_ENABLE=1, instead of those with the layer's name in
-        /// XR_ENABLE_API_LAYERS
+        /// Enable it for every program that runs with the variable YORO_LAYER_ENABLE, set to anything, instead of those
+        /// with the layer's name in XR_ENABLE_API_LAYERS
         #[arg(long)]
         implicit: bool,
         #[command(flatten)]
@@ -64,7 +67,14 @@ struct LibraryArgs {
 }
 
 impl LibraryArgs {
+    /// Returns the absolute path of the library, which is the layer's.
     fn find(&self) -> anyhow::Result<PathBuf> {
+        let path = self.look()?;
+        version(&path)?;
+        Ok(path)
+    }
+
+    fn look(&self) -> anyhow::Result<PathBuf> {
         if let Some(library) = &self.library {
             return library.canonicalize().with_context(|| {
                 format!(
@@ -88,10 +98,21 @@ impl LibraryArgs {
     }
 }
 
-/// Returns the folder of this user's data.
+/// Returns the folder of this user's data, where loaders look.
 fn data() -> anyhow::Result<PathBuf> {
-    let data = xdg::folder("XDG_DATA_HOME", ".local/share");
-    data.context("neither XDG_DATA_HOME nor HOME is an absolute path; set one of them")
+    let set = env::var_os("XDG_DATA_HOME").map(PathBuf::from).unwrap_or_default();
+    if !set.as_os_str().is_empty() && !set.is_absolute() {
+        bail!(
+            "XDG_DATA_HOME is {}: each program would look below its own working directory; set it to an absolute path",
+            set.display()
+        );
+    }
+    let data = xdg::folder("XDG_DATA_HOME", ".local/share")
+        .context("neither XDG_DATA_HOME nor HOME is an absolute path; set one of them")?;
+    if data.as_os_str().as_bytes().contains(&b':') {
+        bail!("{}: loaders split paths at colons; set XDG_DATA_HOME to a path without one", data.display());
+    }
+    Ok(data)
 }
 
 /// The manifest as an implicit layer and as an explicit one.
@@ -115,18 +136,43 @@ fn remove(path: &Path) -> anyhow::Result<bool> {
     }
 }
 
+/// Removes the folders of a file below this one, as far as they are empty.
+fn remove_empty_folders(path: &Path, below: &Path) {
+    let folders = path.ancestors().skip(1).take_while(|folder| folder.starts_with(below) && *folder != below);
+    for folder in folders {
+        if fs::remove_dir(folder).is_err() {
+            return;
+        }
+    }
+}
+
+/// Writes a file. A link in its place is replaced, and its target stays.
 fn write(path: &Path, content: &[u8]) -> anyhow::Result<()> {
+    if path.is_symlink() {
+        remove(path)?;
+    }
     if let Some(folder) = path.parent() {
         files::create_folder(folder)?;
     }
     Ok(files::write(path, content)?)
 }
 
+impl Subcommand for LayerArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        // The installed layer is replaced by the library that is read, which may be the same.
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Runs the subcommand.
 ///
 /// # Errors
 /// When a file cannot be found, written or removed, or the program cannot be started.
-pub fn run(args: &LayerArgs) -> anyhow::Result<()> {
+fn run(args: &LayerArgs) -> anyhow::Result<()> {
     match &args.task {
         Task::Run { library, program } => run_program(&library.find()?, program),
         Task::Install { implicit, library } => install(*implicit, &library.find()?),
@@ -139,6 +185,7 @@ pub fn run(args: &LayerArgs) -> anyhow::Result<()> {
             for path in all {
                 if remove(&path)? {
                     println!("removed {}", path.display());
+                    remove_empty_folders(&path, &data);
                     any = true;
                 }
             }
@@ -160,7 +207,7 @@ fn install(implicit: bool, library: &Path) -> anyhow::Result<()> {
     remove(&manifest_path(&data, !implicit))?;
     println!("{}\n{}", own.display(), manifest.display());
     if implicit {
-        println!("on in programs that run with {ENABLE}=1; off with {DISABLE}=1");
+        println!("on in programs that run with {ENABLE} set, to anything; off with {DISABLE} set");
     } else {
         println!("on in programs that run with XR_ENABLE_API_LAYERS={NAME}");
     }
@@ -168,28 +215,31 @@ fn install(implicit: bool, library: &Path) -> anyhow::Result<()> {
 }
 
 fn status() -> anyhow::Result<()> {
-    let data = data()?;
+    let (data, mut installed) = (data()?, false);
     for (implicit, how) in [(false, "explicit"), (true, "implicit")] {
         let manifest = manifest_path(&data, implicit);
         if manifest.is_file() {
             println!("{how}: {}", manifest.display());
-            let library = library_path(&data);
-            if !library.is_file() {
-                bail!("{} is missing; run `yoro layer install`", library.display());
-            }
+            installed = true;
         } else {
             println!("{how}: not installed");
         }
+    }
+    if installed {
+        let library = library_path(&data);
+        if !library.is_file() {
+            bail!("{} is missing; run `yoro layer install`", library.display());
+        }
+        println!("library: {}, version {}", library.display(), version(&library)?);
     }
     if let Some(path) = yoro_layer::log::path().filter(|path| path.is_file()) {
         println!("log: {}", path.display());
     }
     if let Some(path) = yoro_layer::settings::path() {
-        let there = if path.is_file() { "" } else { " (not there)" };
+        let there = if path.exists() { "" } else { " (not there)" };
         println!("settings: {}{there}", path.display());
     }
-    let (_, errors) = yoro_layer::settings::Settings::of("");
-    match errors.into_iter().next() {
+    match yoro_layer::settings::mistakes().into_iter().next() {
         Some(error) => Err(error.into()),
         None => Ok(()),
     }
@@ -201,6 +251,9 @@ fn show_log(follow: bool) -> anyhow::Result<()> {
     let mut file = fs::File::open(&path).with_context(|| {
         format!("{}: no program has run with the layer yet; see `yoro layer run`", path.display())
     })?;
+    if !file.metadata()?.is_file() {
+        bail!("{} is no file; remove it, so that the layer can write its log there", path.display());
+    }
     let mut out = std::io::stdout().lock();
     loop {
         std::io::copy(&mut file, &mut out)?;

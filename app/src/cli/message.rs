@@ -4,12 +4,30 @@
 use yoro_context::ContextError;
 use yoro_devices::adb::{DeviceError, quoted};
 use yoro_devices::experiment::ExperimentError;
+use yoro_files::FileError;
 use yoro_lab::bench::record::RecordError;
 
-/// The sentence, and the option of its remedy if it has one.
+/// Characters of the longest message, and of its end where its middle is left out. The remedy is at the end.
+const LONGEST: usize = 2000;
+const END: usize = 600;
+
+/// The sentence, and the option of its remedy if it has one, in one line.
 pub fn of(error: &anyhow::Error) -> String {
-    let sentence = sentence(error);
+    let sentence = one_line(&sentence(error));
     option(error).map_or_else(|| sentence.clone(), |option| format!("{sentence} ({option})"))
+}
+
+/// Returns a message, which may quote any file, without control characters and not longer than a person reads.
+pub fn one_line(text: &str) -> String {
+    let parts = text.split(char::is_control).map(str::trim).filter(|part| !part.is_empty());
+    let line = parts.collect::<Vec<_>>().join(" ");
+    let count = line.chars().count();
+    if count <= LONGEST {
+        return line;
+    }
+    let begin: String = line.chars().take(LONGEST - END).collect();
+    let end: String = line.chars().skip(count - END).collect();
+    format!("{begin} [{} characters left out] {end}", count - LONGEST)
 }
 
 /// An error and what caused it. Many errors of libraries tell their cause in their own words: it is not told again.
@@ -39,8 +57,13 @@ fn option(error: &anyhow::Error) -> Option<String> {
                 _ => None,
             };
         }
-        let other_out = matches!(cause.downcast_ref(), Some(ExperimentError::Other { .. }))
-            || matches!(cause.downcast_ref(), Some(RecordError::Parameters { .. }));
+        use {ExperimentError as Experiment, FileError::InUse, RecordError as Record};
+        let other_out =
+            matches!(cause.downcast_ref(), Some(Experiment::Other { .. } | Experiment::File(InUse { .. })))
+                || matches!(
+                    cause.downcast_ref(),
+                    Some(Record::Parameters { .. } | Record::File(InUse { .. }))
+                );
         other_out.then(|| "--out".into())
     })
 }
@@ -62,6 +85,15 @@ mod tests {
         assert_eq!(sentence(&error), told);
         let error = Err::<(), _>(io::Error::other("full")).context("out.png").unwrap_err();
         assert_eq!(of(&error), "out.png: full");
+    }
+
+    #[test]
+    fn a_message_is_one_line_that_can_be_read() {
+        let error = anyhow::anyhow!("a.jpg is damaged (Error:\r\n\tno marker\u{1b}[31m): copy it again\n");
+        assert_eq!(of(&error), "a.jpg is damaged (Error: no marker [31m): copy it again");
+        let line = one_line(&format!("\"{}\": correct it", "é".repeat(500_000)));
+        assert!(line.chars().count() < LONGEST + 100 && line.ends_with("é\": correct it"), "{line}");
+        assert!(line.starts_with("\"éé") && line.contains("[498014 characters left out]"), "{line}");
     }
 
     #[test]

@@ -1,5 +1,8 @@
 //! The subcommands of the program `yoro`, one file each.
 
+#[macro_use]
+pub mod terminal;
+
 pub mod args;
 pub mod bench;
 pub mod choices;
@@ -19,6 +22,31 @@ pub mod scenes;
 pub mod settings;
 pub mod study;
 pub mod synthesize;
-pub mod terminal;
 pub mod view;
 pub mod xr;
+
+use outputs::Files;
+
+/// A subcommand with its arguments.
+pub trait Subcommand {
+    /// Returns the files that it reads and writes, as far as its arguments tell. [`run`] checks them first.
+    ///
+    /// # Errors
+    /// When a folder of inputs cannot be read.
+    fn files(&self) -> anyhow::Result<Files>;
+
+    /// Does the work.
+    ///
+    /// # Errors
+    /// One sentence for the user.
+    fn run(&self) -> anyhow::Result<()>;
+}
+
+/// Runs a subcommand, unless one of its outputs would replace an input.
+///
+/// # Errors
+/// The subcommand's.
+pub fn run(subcommand: &dyn Subcommand) -> anyhow::Result<()> {
+    subcommand.files()?.check()?;
+    subcommand.run()
+}

@@ -1,4 +1,5 @@
-//! Checks that every output has a path of its own, before anything is written.
+//! The files of a run of the program, checked before anything is written: no output replaces an input, and each has a
+//! place of its own.
 
 use std::collections::HashMap;
 use std::ffi::OsStr;
@@ -6,31 +7,65 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-/// Refuses two outputs with the same file, and outputs that are inputs. Each has a description for the message.
-pub fn check<'a>(
-    inputs: impl IntoIterator<Item = &'a Path>,
-    outputs: impl IntoIterator<Item = (PathBuf, String)>,
-) -> anyhow::Result<()> {
-    let inputs: HashMap<PathBuf, &Path> = inputs.into_iter().map(|path| (identity(path), path)).collect();
-    let mut taken: HashMap<PathBuf, String> = HashMap::new();
-    for (path, what) in outputs {
-        // A device takes any number of files.
-        if path.exists() && !path.is_file() {
-            continue;
-        }
-        let place = identity(&path);
-        if let Some(input) = inputs.get(&place) {
-            bail!("{} is read, so {what} cannot be written there: choose another place", input.display());
-        }
-        if let Some(other) = taken.get(&place) {
-            bail!(
-                "{other} and {what} would both be written to {}: choose different places, or rename one of the inputs",
-                path.display()
-            );
-        }
-        taken.insert(place, what);
+/// What a run reads and writes, as far as its options tell.
+#[derive(Debug, Default)]
+pub struct Files {
+    inputs: Vec<PathBuf>,
+    outputs: Vec<Output>,
+}
+
+#[derive(Debug)]
+struct Output {
+    path: PathBuf,
+    what: String,
+    /// All in it belongs to this output.
+    is_folder: bool,
+}
+
+impl Files {
+    /// Adds files that are read. They need not exist.
+    pub fn read<P: AsRef<Path>>(&mut self, paths: impl IntoIterator<Item = P>) {
+        self.inputs.extend(paths.into_iter().map(|path| path.as_ref().to_owned()));
     }
-    Ok(())
+
+    /// Adds a file that is written, with its description for messages.
+    pub fn write(&mut self, path: impl Into<PathBuf>, what: impl Into<String>) {
+        self.outputs.push(Output { path: path.into(), what: what.into(), is_folder: false });
+    }
+
+    /// Adds a folder in which all files may be written.
+    pub fn fill(&mut self, folder: impl Into<PathBuf>, what: impl Into<String>) {
+        self.outputs.push(Output { path: folder.into(), what: what.into(), is_folder: true });
+    }
+
+    /// Refuses outputs that are inputs, and two outputs with the same place.
+    pub fn check(&self) -> anyhow::Result<()> {
+        let inputs: HashMap<PathBuf, &Path> =
+            self.inputs.iter().map(|path| (identity(path), path.as_path())).collect();
+        let mut taken: HashMap<PathBuf, &str> = HashMap::new();
+        for Output { path, what, is_folder } in &self.outputs {
+            // A device takes any number of files.
+            if !is_folder && path.exists() && !path.is_file() {
+                continue;
+            }
+            let place = identity(path);
+            let replaced = if *is_folder {
+                inputs.iter().find(|(input, _)| input.starts_with(&place)).map(|(_, input)| *input)
+            } else {
+                inputs.get(&place).copied()
+            };
+            if let Some(input) = replaced {
+                bail!("{} is read, so {what} cannot be written there: choose another place", input.display());
+            }
+            if let Some(other) = taken.insert(place, what) {
+                bail!(
+                    "{other} and {what} would both be written to {}: choose different places, or rename one of the inputs",
+                    path.display()
+                );
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Returns a path that identifies a file, which need not exist.
@@ -44,4 +79,57 @@ fn identity(path: &Path) -> PathBuf {
         rest.extend(present.file_name());
     }
     whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(fill: impl FnOnce(&mut Files)) -> String {
+        let mut files = Files::default();
+        fill(&mut files);
+        files.check().map_or_else(|error| error.to_string(), |()| String::new())
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn no_output_replaces_an_input() {
+        let dir = tempfile::tempdir().unwrap();
+        let at = |name: &str| dir.path().join(name);
+        std::fs::write(at("a.png"), "").unwrap();
+        std::os::unix::fs::symlink(at("a.png"), at("link.png")).unwrap();
+        std::fs::create_dir(at("rgb")).unwrap();
+        let one = |input: &str, output: &str| {
+            refusal(|files| {
+                files.read([at(input)]);
+                files.write(at(output), "the map");
+            })
+        };
+        assert!(
+            one("a.png", "rgb/../a.png")
+                .ends_with("a.png is read, so the map cannot be written there: choose another place")
+        );
+        assert!(one("link.png", "a.png").contains("link.png is read"));
+        assert!(one("a.png", "link.png").contains("a.png is read"));
+        assert!(one("missing.png", "missing.png").contains("missing.png is read"));
+        assert_eq!(one("a.png", "b.png"), "");
+        let inside = |input: &str| {
+            refusal(|files| {
+                files.read([at(input)]);
+                files.fill(at("rgb"), "pictures");
+            })
+        };
+        assert!(inside("rgb/1.png").contains("rgb/1.png is read, so pictures"));
+        assert_eq!(inside("rgb.png"), "");
+        let twice = refusal(|files| {
+            files.write(at("b.png"), "one");
+            files.write(at("./b.png"), "the other");
+        });
+        assert!(twice.contains("one and the other would both be written"), "{twice}");
+        let device = refusal(|files| {
+            files.write("/dev/null", "one");
+            files.write("/dev/null", "the other");
+        });
+        assert_eq!(device, "");
+    }
 }

@@ -9,9 +9,11 @@ use glam::Vec3;
 use image::RgbImage;
 use serde::Serialize;
 
-use crate::cli::args::GlArgs;
+use crate::cli::Subcommand;
+use crate::cli::args::{GlArgs, list};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
+use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, Pose};
@@ -91,7 +93,7 @@ pub struct RenderArgs {
     #[arg(long, default_value = "out", value_name = "FOLDER")]
     out: PathBuf,
     /// The pictures to write
-    #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Output::Left, Output::Right, Output::SideBySide])]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = list([Output::Left, Output::Right, Output::SideBySide].map(Output::name)))]
     outputs: Vec<Output>,
     /// Print PSNR and SSIM of the synthesized eye
     #[arg(long)]
@@ -121,8 +123,33 @@ struct FrameReport {
     same_image: Option<Quality>,
 }
 
+impl Subcommand for RenderArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        files.read([&self.scene]);
+        let frames = self.frames.unwrap_or(1) as usize;
+        for frame in 0..frames {
+            let stem = frame_stem(&eyes::stem(&self.scene), frame, frames);
+            for output in &self.outputs {
+                let path = eyes::picture_path(&self.out, &stem, output.name());
+                files.write(path, format!("the picture {}", output.name()));
+            }
+        }
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
+/// Returns the name of a frame's pictures.
+fn frame_stem(scene: &str, frame: usize, frames: usize) -> String {
+    if frames > 1 { format!("{scene}-{frame:04}") } else { scene.to_owned() }
+}
+
 /// Renders and writes the pictures.
-pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
+fn run(args: &RenderArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
     let settings = args.renderer.render_settings()?;
     let scene = yoro_scenes::load(&args.scene, args.seed, args.style)?;
@@ -179,7 +206,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
             ]);
             truth_image = Some(real);
         }
-        let stem = if heads.len() > 1 { format!("{}-{i:04}", scene.name) } else { scene.name.clone() };
+        let stem = frame_stem(&scene.name, i, heads.len());
         let mut pictures = Vec::new();
         for &output in &args.outputs {
             let path = eyes::picture_path(&args.out, &stem, output.name());

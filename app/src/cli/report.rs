@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use super::Subcommand;
+use super::outputs::Files;
 use yoro_files as files;
 use yoro_lab::bench::Results;
-use yoro_lab::report::bench::{BenchReport, Places};
+use yoro_lab::report::bench::{self, BenchReport, Places};
 
 /// Turn results of `yoro bench` into a self-contained page, Markdown tables and figures
 #[derive(clap::Args, Clone, Debug)]
@@ -23,8 +25,31 @@ pub struct ReportArgs {
     results: Option<PathBuf>,
 }
 
+impl Subcommand for ReportArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        files.read(&self.files);
+        for name in bench::FILES {
+            files.write(self.out.join(name), format!("the report's {name}"));
+        }
+        // Figures and suites are known when the results are read, their extensions before.
+        for (folder, extension) in [(&self.figures, "svg"), (&self.results, "md")] {
+            let Some(folder) = folder else { continue };
+            let same = self.files.iter().filter(|file| files::has_extension(file, &[extension]));
+            for name in same.filter_map(|file| file.file_name()) {
+                files.write(folder.join(name), format!("the report's .{extension} files"));
+            }
+        }
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Reads the results, writes the report and prints where it is.
-pub fn run(args: &ReportArgs) -> anyhow::Result<()> {
+fn run(args: &ReportArgs) -> anyhow::Result<()> {
     let results = args.files.iter().map(|path| Results::read(path)).collect::<Result<Vec<_>, _>>()?;
     let report = BenchReport::new(results)?;
     // Figures are drawn for a while; a folder that cannot be is told at once.

@@ -1,13 +1,15 @@
 //! `yoro run`: the main job on the built-in scenes, with pictures, figures and a report page.
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 use image::RgbImage;
 
-use crate::cli::args::GlArgs;
+use crate::cli::Subcommand;
+use crate::cli::args::{GlArgs, list};
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::machine;
-use crate::cli::outputs;
+use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::Eye;
@@ -15,7 +17,7 @@ use yoro_files as files;
 use yoro_gl::Context;
 use yoro_lab::machine::Parameter;
 use yoro_lab::picture;
-use yoro_lab::report::RunReport;
+use yoro_lab::report::{self, RunReport};
 use yoro_lab::run::{Candidate, Plan};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, Pipeline};
@@ -39,7 +41,7 @@ pub struct RunArgs {
     #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Yoro.name(), value_name = "METHODS")]
     methods: Vec<Method>,
     /// Pipelines to compare
-    #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_values = Pipeline::ALL.map(Pipeline::name))]
+    #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = list(Pipeline::ALL.map(Pipeline::name)))]
     pipelines: Vec<Pipeline>,
     /// Seed of the built-in scenes
     #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
@@ -60,23 +62,55 @@ pub struct RunArgs {
     gl: GlArgs,
 }
 
+impl RunArgs {
+    /// Returns the names of the scenes.
+    fn names(&self) -> Vec<String> {
+        match self.scenes.as_slice() {
+            [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
+            given => given.to_vec(),
+        }
+    }
+}
+
+impl Subcommand for RunArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        let names = self.names();
+        files.read(&names);
+        let methods = self.methods.iter().map(|method| method.name());
+        let mut compared: BTreeSet<&str> =
+            methods.chain(self.pipelines.iter().map(|pipeline| pipeline.name())).collect();
+        compared.remove(Method::Conventional.name());
+        for name in &names {
+            let mut picture = |kind: &str| {
+                files.write(
+                    eyes::picture_path(&self.out, &eyes::stem(name), kind),
+                    format!("pictures of {name}"),
+                )
+            };
+            picture(Method::Conventional.name());
+            for method in &compared {
+                picture(method);
+                picture(&format!("{method}.error-map"));
+            }
+        }
+        for name in report::FILES {
+            files.write(self.out.join(name), "the report");
+        }
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Measures, writes the report and prints its table.
-pub fn run(args: &RunArgs) -> anyhow::Result<()> {
+fn run(args: &RunArgs) -> anyhow::Result<()> {
     args.eyes.check()?;
     let settings = args.renderer.render_settings()?;
-    let names: Vec<String> = match args.scenes.as_slice() {
-        [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
-        given => given.to_vec(),
-    };
+    let names = args.names();
     yoro_scenes::check(&names, args.seed)?;
-    let place = |name: &str| {
-        let is_builtin = BUILTINS.iter().any(|b| b.name == name);
-        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-        let stem = if is_builtin { name } else { &stem };
-        (eyes::picture_path(&args.out, stem, Method::Conventional.name()), format!("pictures of {name}"))
-    };
-    let inputs = names.iter().map(Path::new);
-    outputs::check(inputs, names.iter().map(|name| place(name)))?;
     files::create_folder(&args.out)?;
     let headless = args.gl.open()?;
     let gl = headless.gl();

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
+use super::Subcommand;
+use super::outputs::Files;
 use yoro_files as files;
 use yoro_scene::{self as scene, Scene};
 use yoro_scenes::{self, BUILTINS, DEFAULT_SEED};
@@ -36,8 +38,19 @@ struct ExportArgs {
     seed: u64,
 }
 
+impl Subcommand for ScenesArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        // Nothing is read.
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Prints a table, or exports.
-pub fn run(args: &ScenesArgs) -> anyhow::Result<()> {
+fn run(args: &ScenesArgs) -> anyhow::Result<()> {
     match &args.command {
         Some(Command::Export(export)) => run_export(export),
         None if args.json => list_json(),

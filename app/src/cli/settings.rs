@@ -2,9 +2,9 @@
 
 use std::ffi::OsStr;
 use std::marker::PhantomData;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::ensure;
+use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
@@ -23,7 +23,7 @@ pub trait Group {
 pub struct Renderer;
 
 impl Group for Renderer {
-    const KEYS: &'static [&'static str] = &["renderer", "msaa"];
+    const KEYS: &'static [&'static str] = &["renderer", "msaa", "depth-bits"];
 }
 
 /// The synthesis pipeline and its knobs.
@@ -91,12 +91,12 @@ impl<G: Group> SettingOptions<G> {
 impl SettingOptions<Renderer> {
     /// Returns the renderer; what has no option is as on the desktop.
     pub fn render_settings(&self) -> anyhow::Result<RenderSettings> {
-        let Settings { renderer, msaa, .. } = self.settings;
-        ensure!(
-            renderer == RendererKind::Forward || self.given.iter().all(|(key, _)| *key != "msaa"),
-            "--msaa goes with --renderer forward only: give that, or leave it out"
-        );
-        Ok(RenderSettings { renderer, msaa, ..RenderSettings::default() })
+        let Settings { renderer, msaa, depth_bits, .. } = self.settings;
+        let of_forward = self.given.iter().find(|(key, _)| *key != "renderer");
+        if let Some((key, _)) = of_forward.filter(|_| renderer != RendererKind::Forward) {
+            bail!("--{key} goes with --renderer forward only: give that, or leave it out");
+        }
+        Ok(RenderSettings { renderer, msaa, depth_bits, ..RenderSettings::default() })
     }
 }
 
@@ -172,19 +172,23 @@ fn option(setting: &'static Setting) -> Arg {
         .long(setting.key)
         .help(help + &default)
         .value_name(name)
-        .value_parser(ValueOf(setting))
+        .value_parser(ValueOf { setting, fits: |_| true })
         .allow_negative_numbers(true)
 }
 
 /// Parses the value of a setting, which stays a text.
 #[derive(Clone, Copy)]
-struct ValueOf(&'static Setting);
+struct ValueOf {
+    setting: &'static Setting,
+    /// True for the names that the option takes.
+    fits: fn(&str) -> bool,
+}
 
 impl TypedValueParser for ValueOf {
     type Value = String;
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<String, clap::Error> {
-        let setting = self.0;
+        let setting = self.setting;
         let check = move |text: String| {
             // The guard band `auto` on the command line is the one that sets its own width.
             let text = if setting.key == "guard-band" && text == "auto" { "auto:1".into() } else { text };
@@ -197,19 +201,19 @@ impl TypedValueParser for ValueOf {
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        let choices = self.0.choices.iter();
-        (!self.0.choices.is_empty())
+        let choices = self.setting.choices.iter().filter(|choice| (self.fits)(choice.name));
+        (!self.setting.choices.is_empty())
             .then(|| Box::new(choices.map(|choice| PossibleValue::new(choice.name).help(choice.help()))) as _)
     }
 }
 
-/// Parses a type whose names are those of a setting.
+/// Parses a type whose names are among those of a setting.
 pub fn value_of<T>(key: &'static str) -> impl TypedValueParser<Value = T>
 where
     T: std::str::FromStr<Err: std::error::Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
 {
     let setting = Setting::find(key).expect("a key of the table");
-    ValueOf(setting).try_map(|text| text.parse::<T>())
+    ValueOf { setting, fits: |name| name.parse::<T>().is_ok() }.try_map(|text| text.parse::<T>())
 }
 
 /// Settings of the viewer on the command line
@@ -227,10 +231,19 @@ pub struct SettingsArgs {
 }
 
 impl SettingsArgs {
-    /// Returns the settings; what has an option of its own, as `key=value`, is stronger than `--set`.
-    pub fn resolve(&self, named: impl IntoIterator<Item = String>) -> anyhow::Result<Settings> {
+    /// Returns the file of settings.
+    pub fn file(&self) -> Option<&Path> {
+        self.settings.as_deref()
+    }
+
+    /// Returns the settings, which change `defaults`; what has an option of its own, as `key=value`, is stronger than `--set`.
+    pub fn resolve(
+        &self,
+        defaults: Settings,
+        named: impl IntoIterator<Item = String>,
+    ) -> anyhow::Result<Settings> {
         let hud = self.no_hud.then(|| "hud=false".to_owned());
         let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
-        Ok(Settings::resolve(self.settings.as_deref(), overrides)?)
+        Ok(defaults.changed(self.settings.as_deref(), overrides)?)
     }
 }

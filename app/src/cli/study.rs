@@ -6,8 +6,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
 
+use crate::cli::Subcommand;
 use crate::cli::machine;
-use yoro_devices::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
+use crate::cli::outputs::Files;
+use yoro_devices::study::{
+    Collected, Condition, Options, Plan, Ratings, Study, StudyError, Written, read_trials,
+};
 use yoro_files as files;
 use yoro_protocol::Settings;
 use yoro_render::stereo::Method;
@@ -126,12 +130,33 @@ fn parse_alpha(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "give a number between 0 and 0.5".into())
 }
 
-/// Runs the subcommand.
-pub fn run(args: &StudyArgs) -> anyhow::Result<()> {
-    match &args.command {
-        Command::Plan(args) => plan(args),
-        Command::Collect(args) => collect(args),
-        Command::Analyse(args) => analyse(args),
+impl Subcommand for StudyArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        match &self.command {
+            Command::Plan(args) => files.write(&args.out, "the plan"),
+            Command::Collect(args) => {
+                files.read(args.logs.iter().filter(|log| log.as_os_str() != "-"));
+                files.read(&args.plan);
+                files.write(&args.out, "the table of ratings");
+            }
+            Command::Analyse(args) => {
+                files.read([&args.ratings]);
+                let written = Written::of(&args.out);
+                for path in [written.page, written.markdown, written.json] {
+                    files.write(path, "the report");
+                }
+            }
+        }
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        match &self.command {
+            Command::Plan(args) => plan(args),
+            Command::Collect(args) => collect(args),
+            Command::Analyse(args) => analyse(args),
+        }
     }
 }
 

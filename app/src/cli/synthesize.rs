@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, bail, ensure};
 use image::{GrayImage, Luma};
 
+use crate::cli::Subcommand;
 use crate::cli::args::{GlArgs, PatcherArgs, parse_finite, parse_fov, parse_positive};
 use crate::cli::choices;
-use crate::cli::outputs;
+use crate::cli::outputs::Files;
 use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Warp};
@@ -157,13 +158,27 @@ impl Job {
     }
 }
 
+impl Subcommand for SynthesizeArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        ensure!(self.near < self.far, "--near {} must be less than --far {}", self.near, self.far);
+        self.patcher.check()?;
+        let mut files = Files::default();
+        files.read(&self.patcher.model);
+        for job in jobs(self)? {
+            files.read([&job.color, &job.depth]);
+            job.outputs(self.dominant).into_iter().for_each(|(path, what)| files.write(path, what));
+        }
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Synthesizes one image or a folder of them.
-pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
-    ensure!(args.near < args.far, "--near {} must be less than --far {}", args.near, args.far);
-    args.patcher.check()?;
+fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
     let jobs = jobs(args)?;
-    let inputs = jobs.iter().flat_map(|job| [job.color.as_path(), job.depth.as_path()]);
-    outputs::check(inputs, jobs.iter().flat_map(|job| job.outputs(args.dominant)))?;
     let headless = args.gl.open()?;
     let mut offline = Offline::new(headless.gl(), &args.synthesis.options(), args.edges)?;
     let mut patcher = args.patcher.create(headless.gl())?;

@@ -6,7 +6,9 @@ use std::time::Duration;
 use anyhow::bail;
 use glam::{EulerRot, Quat};
 
+use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs};
+use crate::cli::outputs::Files;
 use crate::cli::settings::{Lenses, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro_files as files;
@@ -64,7 +66,9 @@ pub struct ViewArgs {
 impl ViewArgs {
     fn resolve(&self) -> anyhow::Result<Settings> {
         let scene = self.scene.iter().map(|scene| format!("scene={scene}"));
-        self.settings.resolve(scene.chain(self.lenses.pairs()).chain(self.renderer.pairs()))
+        // A picture is no measurement of two methods.
+        self.settings
+            .resolve(Settings::measured(), scene.chain(self.lenses.pairs()).chain(self.renderer.pairs()))
     }
 
     fn head(&self) -> HeldHead {
@@ -76,8 +80,22 @@ impl ViewArgs {
     }
 }
 
+impl Subcommand for ViewArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        files.read(&self.scene);
+        files.read(self.settings.file());
+        files.write(&self.png, "the picture");
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Draws and writes the picture.
-pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
+fn run(args: &ViewArgs) -> anyhow::Result<()> {
     if !files::has_extension(&args.png, &["png"]) {
         return Err(PictureError::Extension { path: args.png.clone(), allowed: ".png" }.into());
     }

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use anyhow::{bail, ensure};
 use serde::Serialize;
 
+use crate::cli::Subcommand;
 use crate::cli::args::GlArgs;
+use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyePair};
@@ -19,7 +21,7 @@ use yoro_protocol::Settings;
 use yoro_protocol::telemetry::DeviceState;
 use yoro_protocol::telemetry::stats::median;
 use yoro_render::RenderSettings;
-use yoro_render::stereo::Method;
+use yoro_render::stereo::MethodChoice;
 use yoro_viewer::openxr::runtime::{self, NoBroker, Place, Runtime};
 use yoro_viewer::openxr::{Capture, Description, Frame, Headset, Options, Step};
 use yoro_viewer::{SceneState, Viewer};
@@ -40,9 +42,9 @@ pub struct XrArgs {
     /// Stop after this many frames of the scene with each method [default: run until Ctrl-C]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "N")]
     frames: Option<u32>,
-    /// The stereo methods, one after the other with --frames [default: yoro]
-    #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', value_name = "METHODS")]
-    methods: Vec<Method>,
+    /// The stereo methods, one after the other with --frames [default: yoro with --frames, else auto]
+    #[arg(long = "method", value_parser = settings::value_of::<MethodChoice>("method"), value_delimiter = ',', value_name = "METHODS")]
+    methods: Vec<MethodChoice>,
     /// Write the last frame of each method, as the runtime gets it, to this folder
     #[arg(long, value_name = "FOLDER", requires = "frames")]
     capture: Option<PathBuf>,
@@ -66,7 +68,8 @@ impl XrArgs {
         let method = self.methods.first().map(|method| format!("method={}", method.name()));
         let one_view = self.mono.then(|| "one-view=true".to_owned());
         let named = scene.into_iter().chain(method).chain(one_view);
-        self.settings.resolve(named.chain(self.renderer.pairs()))
+        let defaults = if self.frames.is_some() { Settings::measured() } else { Settings::default() };
+        self.settings.resolve(defaults, named.chain(self.renderer.pairs()))
     }
 
     fn find_runtime(&self) -> anyhow::Result<Runtime> {
@@ -149,7 +152,7 @@ impl Collected {
         self.stale += frame.report.map_or(0, |report| report.late_refreshes);
     }
 
-    fn summary(self, method: Method) -> MethodSummary {
+    fn summary(self, method: MethodChoice) -> MethodSummary {
         let seconds = self.shown_ns.map_or(0.0, |[first, last]| (last - first) as f64 * 1e-9);
         MethodSummary {
             method: method.name().into(),
@@ -163,8 +166,34 @@ impl Collected {
     }
 }
 
+impl Subcommand for XrArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        files.read(&self.scene);
+        files.read(self.settings.file());
+        files.read(&self.runtime);
+        if let Some(folder) = &self.capture {
+            for method in if self.methods.is_empty() { &MethodChoice::ALL[..] } else { &self.methods } {
+                for eye in Eye::BOTH {
+                    files.write(capture_path(folder, *method, eye), "the captured frames");
+                }
+            }
+        }
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
+/// Returns the path of an eye's last frame.
+fn capture_path(folder: &Path, method: MethodChoice, eye: Eye) -> PathBuf {
+    folder.join(format!("{}.{}.png", method.name(), eye.name()))
+}
+
 /// Shows the scene until the user, the runtime or --frames ends it.
-pub fn run(args: &XrArgs) -> anyhow::Result<()> {
+fn run(args: &XrArgs) -> anyhow::Result<()> {
     let settings = args.resolve()?;
     let runtime = args.find_runtime()?;
     let found = runtime.found().to_string();
@@ -175,7 +204,7 @@ pub fn run(args: &XrArgs) -> anyhow::Result<()> {
     let headless = args.gl.open()?;
     let gl = headless.gl();
     for method in &args.methods {
-        RenderSettings::of_settings(&settings).supports(*method, gl.capabilities())?;
+        RenderSettings::of_settings(&settings).supports(method.first(), gl.capabilities())?;
     }
     let mut viewer = Viewer::new(settings, &[])?;
     viewer.attach(gl.clone())?;
@@ -313,8 +342,8 @@ fn check_end(frames: Option<u32>, methods: usize, summaries: &[MethodSummary]) -
     }
 }
 
-fn write(folder: &Path, method: Method, capture: &Capture) -> anyhow::Result<Captured> {
-    let path = |eye: Eye| folder.join(format!("{}.{}.png", method.name(), eye.name()));
+fn write(folder: &Path, method: MethodChoice, capture: &Capture) -> anyhow::Result<Captured> {
+    let path = |eye| capture_path(folder, method, eye);
     for (eye, pixels) in Eye::BOTH.into_iter().zip(&capture.eyes) {
         picture::save_color(&path(eye), &picture::rgb_image(pixels, capture.pair.size))?;
     }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 
 use super::which::{WhichArgs, each};
+use crate::cli::Subcommand;
+use crate::cli::outputs::Files;
 use yoro_devices::experiment::{self, Experiment, length, method_name};
 
 /// Make the runs of an experiment: methods, scenes and repetitions in a balanced order, with pauses to cool down
@@ -27,8 +29,19 @@ pub struct ExperimentArgs {
     which: WhichArgs,
 }
 
+impl Subcommand for ExperimentArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        // Captures replace no file, and the experiment in their folder is the one that is read, or is refused.
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Makes the runs on each device.
-pub fn run(args: &ExperimentArgs) -> anyhow::Result<()> {
+fn run(args: &ExperimentArgs) -> anyhow::Result<()> {
     let mut experiment = Experiment::read(&args.file)?;
     experiment.power &= !args.plugged;
     if args.dry_run {
@@ -38,7 +51,7 @@ pub fn run(args: &ExperimentArgs) -> anyhow::Result<()> {
     let devices = args.which.choose()?;
     let default = || Path::new("out/device").join(experiment::file_name(&experiment.name));
     let out = args.out.clone().unwrap_or_else(default);
-    experiment.claim(&out, &args.file)?;
+    let _claim = experiment.claim(&out, &args.file)?;
     each(devices, |device, bar| {
         let progress = experiment::conduct(device, &experiment, &out, bar)?;
         if progress.failed.is_empty() {

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::ensure;
 
 use super::which::{WhichArgs, each};
+use crate::cli::Subcommand;
+use crate::cli::outputs::Files;
 
 /// APKs that `cargo xtask apk` makes, the release first.
 const BUILT: [&str; 2] = ["target/apk/yoro.apk", "target/apk/yoro-debug.apk"];
@@ -19,8 +21,19 @@ pub struct InstallArgs {
     which: WhichArgs,
 }
 
+impl Subcommand for InstallArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        // Nothing is written here.
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Installs it on each device.
-pub fn run(args: &InstallArgs) -> anyhow::Result<()> {
+fn run(args: &InstallArgs) -> anyhow::Result<()> {
     let built = || BUILT.iter().map(Path::new).find(|path| path.is_file()).unwrap_or(Path::new(BUILT[0]));
     let apk = args.apk.as_deref().unwrap_or_else(built);
     ensure!(

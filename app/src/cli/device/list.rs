@@ -1,6 +1,8 @@
 //! `yoro device list`.
 
 use super::which::SourceArgs;
+use crate::cli::Subcommand;
+use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError, State};
 use yoro_devices::phone;
 
@@ -11,8 +13,18 @@ pub struct ListArgs {
     source: SourceArgs,
 }
 
+impl Subcommand for ListArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Prints a table.
-pub fn run(args: &ListArgs) -> anyhow::Result<()> {
+fn run(args: &ListArgs) -> anyhow::Result<()> {
     let adb = args.source.open()?;
     let devices = adb.devices()?;
     if devices.is_empty() {

@@ -9,12 +9,15 @@ use std::time::{Duration, SystemTime};
 use anyhow::{Context, bail, ensure};
 
 use super::which::WhichArgs;
+use crate::cli::Subcommand;
 use crate::cli::args::parse_positive;
+use crate::cli::message;
+use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION, Writer};
 use yoro_devices::follow::{Event, Follower, faults_of_loss};
 use yoro_devices::foreign::{Foreign, Subject};
-use yoro_devices::log::SIMULATED_MARK;
+use yoro_devices::log::{self, SIMULATED_MARK};
 use yoro_devices::phone;
 use yoro_devices::plausible::MeanPower;
 use yoro_devices::reading::{LineContent, Reading};
@@ -62,8 +65,19 @@ pub struct LogcatArgs {
     which: WhichArgs,
 }
 
+impl Subcommand for LogcatArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        // A capture replaces no file, and so no input.
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Follows or reads, and prints the faults.
-pub fn run(args: &LogcatArgs) -> anyhow::Result<()> {
+fn run(args: &LogcatArgs) -> anyhow::Result<()> {
     match &args.file {
         Some(file) => saved(args, file),
         None => live(args),
@@ -93,7 +107,7 @@ fn saved(args: &LogcatArgs, file: &Path) -> anyhow::Result<()> {
     let mut table = Table::new(args.out.as_deref(), args, device, began, None)?;
     let mut line = Vec::new();
     while !interrupt::requested() && input.read_until(b'\n', &mut line).map_err(failed)? > 0 {
-        table.line(String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']), None)?;
+        table.line(&line, None)?;
         line.clear();
     }
     if !table.reading.has_read() {
@@ -222,10 +236,11 @@ impl<'a> Table<'a> {
         })
     }
 
-    fn line(&mut self, line: &str, passed_s: Option<f64>) -> anyhow::Result<()> {
+    fn line(&mut self, line: &[u8], passed_s: Option<f64>) -> anyhow::Result<()> {
         if let Some(writer) = &mut self.writer {
             writer.log(line)?;
         }
+        let line = &*log::text(line);
         if line.starts_with(SIMULATED_MARK) && !self.simulated {
             self.simulated = true;
             println!("SIMULATED: {}", line.trim_matches(['-', ' ']));
@@ -236,7 +251,7 @@ impl<'a> Table<'a> {
             LineContent::Sample(sample) => self.sample(*sample)?,
             LineContent::Damaged(why) => {
                 let text: String = line.chars().take(60).collect();
-                println!("damaged line ({why}): {text}...");
+                println!("{}", message::one_line(&format!("damaged line ({why}): {text}...")));
             }
             LineContent::Summary | LineContent::Other => {}
         }

@@ -8,6 +8,9 @@ pub mod report;
 pub mod run;
 mod which;
 
+use super::Subcommand;
+use super::outputs::Files;
+
 /// Measure on phones and headsets
 #[derive(clap::Args, Clone, Debug)]
 pub struct DeviceArgs {
@@ -25,14 +28,25 @@ enum Command {
     Report(report::ReportArgs),
 }
 
-/// Runs the subcommand.
-pub fn run(args: &DeviceArgs) -> anyhow::Result<()> {
-    match &args.command {
-        Command::List(args) => list::run(args),
-        Command::Install(args) => install::run(args),
-        Command::Run(args) => run::run(args),
-        Command::Logcat(args) => logcat::run(args),
-        Command::Experiment(args) => experiment::run(args),
-        Command::Report(args) => report::run(args),
+impl DeviceArgs {
+    fn subcommand(&self) -> &dyn Subcommand {
+        match &self.command {
+            Command::List(args) => args,
+            Command::Install(args) => args,
+            Command::Run(args) => &**args,
+            Command::Logcat(args) => args,
+            Command::Experiment(args) => args,
+            Command::Report(args) => args,
+        }
+    }
+}
+
+impl Subcommand for DeviceArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        self.subcommand().files()
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        self.subcommand().run()
     }
 }

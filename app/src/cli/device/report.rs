@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use anyhow::ensure;
 
+use crate::cli::Subcommand;
 use crate::cli::machine;
+use crate::cli::outputs::Files;
 use yoro_devices::capture;
 use yoro_devices::report::DeviceReport;
 use yoro_files as files;
@@ -28,8 +30,19 @@ pub struct ReportArgs {
     out: PathBuf,
 }
 
+impl Subcommand for ReportArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        // The files of captures have other names than those of the report.
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Reads the captures, writes the report and prints what matters.
-pub fn run(args: &ReportArgs) -> anyhow::Result<()> {
+fn run(args: &ReportArgs) -> anyhow::Result<()> {
     let mut sets = Vec::new();
     for folder in &args.folders {
         let mut captures = Vec::new();

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 
 use super::which::{WhichArgs, each, folder_of};
+use crate::cli::Subcommand;
 use crate::cli::args::parse_positive;
+use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::Outcome;
 use yoro_devices::foreign::Subject;
@@ -67,8 +69,19 @@ pub struct RunArgs {
     which: WhichArgs,
 }
 
+impl Subcommand for RunArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        // A capture replaces no file, and so no input.
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
 /// Makes the run on each device.
-pub fn run(args: &RunArgs) -> anyhow::Result<()> {
+fn run(args: &RunArgs) -> anyhow::Result<()> {
     let other = args.package.as_ref().zip(args.activity.as_ref()).map(|(package, activity)| Other {
         subject: Subject {
             package: package.clone(),
@@ -82,7 +95,8 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
             let named = [("scene", &args.scene), ("method", &args.method)];
             let named =
                 named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
-            Settings::resolve(args.settings.as_deref(), args.overrides.iter().cloned().chain(named))?
+            let overrides = args.overrides.iter().cloned().chain(named);
+            Settings::measured().changed(args.settings.as_deref(), overrides)?
         }
     };
     let method = args.name.clone().or(args.method.clone().filter(|_| other.is_some()));
