@@ -62,6 +62,18 @@ fn only_what_is_missing_is_made() {
     assert_eq!(times(&scene), second, "a mistake changes nothing");
 }
 
+/// Settings are compared with those in a file: each number must come back as it was written.
+#[test]
+fn a_folder_is_continued_whatever_its_numbers() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = "[{\"position\": [0.051, 1.6, 2.3], \"target\": [0.1, 1.2, -0.0575]}]";
+    fs::write(dir.path().join("path.json"), path).unwrap();
+    let line =
+        "dataset prototype --groups 1 --size 16x16 --ipd 0.051 --near 0.03 --far 3.4e38 --path path.json";
+    assert!(succeed(dir.path(), line).stdout.contains("(1 new)"));
+    assert!(succeed(dir.path(), line).stdout.contains("(0 new)"));
+}
+
 /// A patcher on image files has the same result as on a group in memory.
 #[test]
 fn synthesize_with_a_patcher() {

@@ -186,6 +186,13 @@ fn mistakes_and_conditions_are_one_sentence() {
             ["battery saver of SIM1", "low_power 0"],
         ),
         (device("secure-lock = true"), "experiment e.toml", ["locked by PIN", "none or swipe"]),
+        (device("level-percent = 15"), "experiment e.toml", ["SIM1 has 15 %, and nobody", "charged-below"]),
+        (device("capacity-mah = inf"), "list", ["capacity-mah is inf", "from 0 to 1000000"]),
+        (
+            device("load = { yoro = { frame-ms = 9.0, milliwatts = -inf } }"),
+            "run",
+            ["milliwatts is -inf", "give a number from 0"],
+        ),
         (
             device("serial = \"adb-X (2)._adb-tls-connect._tcp\"\nplugged = true")
                 .replace("serial = \"SIM1\"\n", ""),
@@ -619,6 +626,7 @@ fn a_saved_log_is_a_table_and_a_capture() {
         run.stdout,
         run.stderr
     );
+    assert_eq!(fs::read(at.join("damaged/log.txt")).unwrap(), fs::read(at.join("damaged.log")).unwrap());
     let damaged = read(&at.join("damaged"));
     assert_eq!(kinds(&damaged), [FaultKind::DamagedLines]);
     assert_eq!(damaged.samples[11].other["gaze"], "0.25");

@@ -8,6 +8,7 @@ mod compare;
 mod dataset;
 mod device;
 mod device_report;
+mod files;
 mod interrupt;
 mod layer;
 mod memory;

@@ -15,6 +15,11 @@ fn color_and_depth(dir: &Path) {
     picture::save_depth(&dir.join("depth.png"), &pair::metres(0.5)).unwrap();
 }
 
+const PALETTE_OF_FOUR_BYTES: &[u8] =
+    b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x10\0\0\0\x10\x08\x03\0\0\0(-\x0fS\
+    \0\0\0\x04PLTE\x01\x02\x03\x04#\xdb\x8a\xab\
+    \0\0\0\rIDATx\xdac`\x18\x05\xc8\0\0\x01\x10\0\x01\x7f\xcd\x03\xb5\0\0\0\0IEND\xaeB`\x82";
+
 #[test]
 fn files_that_are_no_pictures_are_refused() {
     let dir = tempfile::tempdir().unwrap();
@@ -39,6 +44,19 @@ fn files_that_are_no_pictures_are_refused() {
     }
     assert_eq!(fs::read(at.join("out.png")).unwrap(), b"made earlier");
     assert!(!at.join("new").exists(), "a folder for nothing");
+    // A palette of four bytes, on which the decoder panics (png 0.18.1), and a header after which nothing comes, of
+    // which the decoder writes two lines.
+    fs::write(at.join("palette.png"), PALETTE_OF_FOUR_BYTES).unwrap();
+    fs::write(at.join("header.jpg"), b"\xff\xd8\xff\xe0\0\x10JFIF\0").unwrap();
+    for name in ["palette.png", "header.jpg"] {
+        run(at, &format!("compare {name} color.png")).refuses(&[name, "is damaged"]);
+        run(at, &format!("synthesize --color color.png --depth {name} --out out.png"))
+            .refuses(&[name, "is damaged"]);
+        let model = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
+        fs::write(at.join("m.obj"), model).unwrap();
+        fs::write(at.join("m.mtl"), format!("newmtl m\nmap_Kd {name}\n")).unwrap();
+        run(at, "render m.obj --size 64x64 --out out").refuses(&["the texture", name]);
+    }
     run(at, "compare color.png nowhere.png").refuses(&["nowhere.png does not exist"]);
     run(at, "compare color.png text.png").refuses(&["text.png is not a picture"]);
 }
@@ -104,6 +122,7 @@ fn options_out_of_range() {
         ("render prototype --size 100000x100000", &["--size", "16 to 4096"]),
         ("render prototype --size big", &["--size", "1024x1024"]),
         ("render prototype --msaa 4", &["--msaa goes with --renderer forward"]),
+        ("render prototype --depth-bits 16", &["--depth-bits goes with --renderer forward"]),
         ("render prototype --renderer forward --msaa 3", &["give 1, 2 or 4"]),
         (
             "render prototype --renderer forward --method shading-reprojection",
@@ -122,6 +141,7 @@ fn options_out_of_range() {
         ),
         ("render prototype --imbuffer 0", &["--imbuffer", "512x512"]),
         ("render prototype --position 1,2", &["--position", "three numbers"]),
+        ("render prototype --position 1e38,0,0", &["--position", "up to 100000 m from the origin"]),
         ("render prototype --half-angles-degrees 95,10", &["--half-angles-degrees", "1 to 85"]),
         ("render prototype --guard-band wide", &["--guard-band", "none"]),
         ("render", &["<SCENE>"]),
@@ -159,6 +179,19 @@ fn a_machine_without_gl_is_refused() {
         let run = without_egl("info --gl auto");
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         assert!(run.stdout.contains("osmesa: "), "{}", run.stdout);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_standard_output_is_an_error() {
+    let dir = tempfile::tempdir().unwrap();
+    color_and_depth(dir.path());
+    for line in ["scenes", "scenes --json", "compare color.png color.png --json"] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let mut command = yoro(line.split(' '));
+        finish(command.current_dir(dir.path()).stdout(full))
+            .refuses(&["cannot write standard output: the disk is full"]);
     }
 }
 

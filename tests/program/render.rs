@@ -6,7 +6,7 @@ use std::path::Path;
 use image::{Rgb, RgbImage};
 use yoro_lab::picture;
 
-use crate::program::succeed;
+use crate::program::{run, succeed};
 
 /// A textured wall in front of a red one; `mtllib` and the texture are written by those who want them.
 const OBJ: &str = "mtllib room.mtl
@@ -33,6 +33,30 @@ fn right_eye(dir: &Path) -> RgbImage {
 fn hue(image: &RgbImage, x: u32, y: u32) -> usize {
     let pixel = image.get_pixel(x, y).0;
     (0..3).max_by_key(|&c| pixel[c]).unwrap()
+}
+
+/// Rounding to f32 displaces eyes far from the origin; the library takes it for what it is.
+#[test]
+fn scenes_far_from_the_origin_are_rendered() {
+    let dir = tempfile::tempdir().unwrap();
+    for (distance, turn) in [(1500.0f32, 0.4f32), (10_000.0, 1.1), (90_000.0, 2.3)] {
+        let (sin, cos) = turn.sin_cos();
+        let [x, z] = [distance * cos, distance * sin];
+        let place = format!("--position {x},1.6,{z} --target {},1.2,{}", x + 4.0, z + 3.0);
+        succeed(dir.path(), &format!("render prototype --size 64x64 --outputs left {place}"));
+    }
+    // The steps between are as far.
+    fs::write(dir.path().join("m.obj"), "v 1500 0 0\nv 1510 0 0\nv 1500 5 1\nf 1 2 3\n").unwrap();
+    let camera = |x: f32| {
+        format!(
+            "[{{\"position\": [{x}, 1.6, 9.3], \"target\": [1503.1, 1.1, 0]}}, {{\"position\": [1507.7, 1.7, 8.1], \"target\": [1501.3, 1.9, 0]}}]"
+        )
+    };
+    fs::write(dir.path().join("camera.json"), camera(1502.2)).unwrap();
+    let frames = succeed(dir.path(), "render m.obj --size 64x64 --outputs left --frames 9");
+    assert_eq!(frames.stdout.lines().count(), 9);
+    fs::write(dir.path().join("camera.json"), camera(1e38)).unwrap();
+    run(dir.path(), "render m.obj --size 64x64").refuses(&["camera.json", "viewpoint 1", "100000 m at most"]);
 }
 
 #[test]

@@ -85,6 +85,25 @@ fn from_a_plan_to_a_verdict() {
         .refuses(&["ratings.csv, line 2", "from 1 to 3"]);
 }
 
+/// The viewer logs ratings with one decimal: 4.1 - 3.1, 3.2 - 2.2 and 2.3 - 1.3 are not equal in f64.
+#[test]
+fn participants_who_differ_by_the_same_have_no_scatter() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut table = String::from("participant,method,scene,question,rating\n");
+    for (participant, ours, baseline) in [("P1", 4.1, 3.1), ("P2", 3.2, 2.2), ("P3", 2.3, 1.3)] {
+        let _ = writeln!(
+            table,
+            "{participant},yoro,street,q,{ours}\n{participant},conventional,street,q,{baseline}"
+        );
+    }
+    fs::write(dir.path().join("ratings.csv"), &table).unwrap();
+    let said = succeed(dir.path(), "study analyse ratings.csv --alpha 1e-9").stdout;
+    assert!(said.contains("differ by the same 1.00: there is no scatter"), "{said}");
+    fs::write(dir.path().join("ratings.csv"), table.replace("2.3", "2.4")).unwrap();
+    let said = succeed(dir.path(), "study analyse ratings.csv --alpha 1e-9").stdout;
+    assert!(said.contains("Undecided"), "{said}");
+}
+
 #[test]
 fn mistakes() {
     let dir = tempfile::tempdir().unwrap();

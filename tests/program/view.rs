@@ -49,6 +49,16 @@ fn both_eyes_behind_their_lenses() {
     assert!(synthesized < 0.7 * same, "{synthesized} synthesized, {same} without stereo");
 }
 
+/// The program once ended in a segmentation fault after the picture: objects were deleted after their context.
+#[test]
+fn objects_keep_their_context() {
+    if std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some() {
+        return;
+    }
+    let dir = tempfile::tempdir().unwrap();
+    assert_eq!(view(dir.path(), "--loading --gl osmesa").dimensions(), (384, 216));
+}
+
 #[test]
 fn timewarp_makes_up_for_a_late_turn() {
     let dir = tempfile::tempdir().unwrap();

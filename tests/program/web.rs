@@ -2,6 +2,7 @@
 
 use std::env;
 use std::io::{BufRead as _, BufReader};
+use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -32,6 +33,8 @@ const SIZE: [u32; 2] = [240, 160];
 struct Server {
     child: Child,
     address: String,
+    /// What listens in its place, once it has fallen silent.
+    silent: Option<TcpListener>,
 }
 
 impl Server {
@@ -50,11 +53,18 @@ impl Server {
         let address = lines.map_while(Result::ok).find_map(|line| {
             line.split_whitespace().find(|word| word.starts_with("http://")).map(str::to_owned)
         });
-        Some(Server { child, address: address.expect("the server says where it is") })
+        Some(Server { child, address: address.expect("the server says where it is"), silent: None })
     }
 }
 
 impl Server {
+    /// Ends the server; its port takes connections and answers none.
+    fn fall_silent(&mut self) {
+        self.stop();
+        let port = self.address.rsplit(':').next().unwrap().trim_end_matches('/');
+        self.silent = Some(TcpListener::bind((Ipv4Addr::LOCALHOST, port.parse().unwrap())).unwrap());
+    }
+
     fn stop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
@@ -66,6 +76,15 @@ impl Drop for Server {
         self.stop();
     }
 }
+
+/// Has the page's second load get the module with a type that browsers do not stream.
+const WRONG_TYPE: &str = "if (location.search === '?again') {
+    const ask = fetch;
+    globalThis.fetch = async (...what) => {
+        const answer = await ask(...what);
+        return new Response(answer.body, { headers: { 'Content-Type': 'application/octet-stream' } });
+    };
+}";
 
 /// A browser with the page.
 struct Page {
@@ -116,8 +135,19 @@ impl Page {
 
     /// The page's message, if it shows one.
     fn message(&mut self) -> Option<String> {
-        let said = "(() => { const m = document.getElementById('message'); return m.hidden ? null : m.textContent; })()";
+        let said = "document.getElementById('message').hidden ? null : document.getElementById('message-text').textContent";
         self.evaluate(said).as_str().map(str::to_owned)
+    }
+
+    /// Opens a fragment, loses the context before the first scene is there, and gives it back when its worker has ended.
+    fn go_and_lose(&mut self, address: &str) {
+        self.browser.go(&format!("{}{address}", self.server.address));
+        self.until("Boolean(globalThis.yoro?.page)");
+        self.evaluate("yoro.lose = yoro.gl.getExtension('WEBGL_lose_context'); yoro.lose.loseContext(); 0");
+        self.until("yoro.ready === true");
+        assert_eq!(self.evaluate("yoro.source"), Value::Null, "the context was lost in time");
+        self.evaluate("yoro.lose.restoreContext(); 0");
+        self.until("yoro.facts !== null && document.getElementById('loading').hidden");
     }
 
     fn choose(&mut self, id: &str, value: &str) {
@@ -182,7 +212,9 @@ fn close(name: &str, here: &RgbImage, desktop: &RgbImage) {
 
 #[test]
 fn every_method_shows_what_the_desktop_shows() {
-    let Some(mut page) = Page::open("#scene=prototype&viewpoint=1", None) else { return };
+    let Some(mut page) = Page::open("#scene=prototype&viewpoint=1&display=side-by-side", None) else {
+        return;
+    };
     assert_eq!(page.message(), None);
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
@@ -226,7 +258,7 @@ fn every_method_shows_what_the_desktop_shows() {
 
 #[test]
 fn multiview_shows_what_two_renders_show() {
-    let Some(mut page) = Page::open_with(&MULTIVIEW, "#method=multiview", None) else { return };
+    let Some(mut page) = Page::open_with(&MULTIVIEW, "#method=multiview&display=left", None) else { return };
     if page.evaluate("yoro.gl.getExtension('OVR_multiview2') !== null") != json!(true) {
         eprintln!("SKIPPED: this Chromium has no OVR_multiview2");
         return;
@@ -245,7 +277,7 @@ fn multiview_shows_what_two_renders_show() {
 #[test]
 fn a_link_sets_everything_and_the_page_lasts() {
     let fragment = "#viewpoint=2&method=hybrid&renderer=forward&anti-aliasing=off&ipd=70&dominant=left&display=anaglyph&scale=0.5";
-    let Some(mut page) = Page::open(fragment, None) else { return };
+    let Some(mut page) = Page::open(fragment, Some(WRONG_TYPE)) else { return };
     let shown = "['viewpoint', 'method', 'renderer', 'anti-aliasing', 'ipd', 'dominant', 'display', 'scale'].map((id) => \
                  document.getElementById(id).value).join()";
     assert_eq!(page.evaluate(shown), "2,hybrid,forward,off,70,left,anaglyph,0.5");
@@ -275,16 +307,42 @@ fn a_link_sets_everything_and_the_page_lasts() {
     assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null);
 
     // Every display draws; turned and resized, as a phone is.
-    for display in ["side-by-side", "cross-eyed", "left", "right", "difference", "flicker", "anaglyph"] {
+    for display in
+        ["side-by-side", "cross-eyed", "left", "right", "divider", "difference", "flicker", "anaglyph"]
+    {
         page.choose("display", display);
-        page.evaluate("yoro.page.draw(64, 48, false)");
+        page.evaluate("yoro.page.draw(64, 48, 0.5)");
+        page.until("!document.getElementById('label-left').hidden");
     }
     for (width, height) in [(390, 844), (844, 390), (320, 500), (1000, 900)] {
         page.browser.resize(width, height);
         page.until("Math.abs(yoro.canvas.width - yoro.canvas.clientWidth * 0.5) <= 1");
+        // Errors are where the user looks, however long their words, and move nothing.
+        let seen = "(() => { scrollTo(0, 1e6); const before = document.body.scrollHeight; yoro.say('x'.repeat(300)); \
+                    const b = document.getElementById('message').getBoundingClientRect(); \
+                    const moved = document.body.scrollHeight - before; \
+                    return moved === 0 && b.top >= 0 && b.bottom <= innerHeight && b.height > 20; })()";
+        assert_eq!(page.evaluate(seen), json!(true), "{width}x{height}");
         let wide = page.evaluate("document.documentElement.scrollWidth");
         assert!(wide.as_u64().unwrap() <= u64::from(width), "{wide} pixels wide in a window of {width}");
     }
+    page.evaluate("document.getElementById('message-close').click()");
+    assert_eq!(page.message(), None);
+
+    // Elements have names, and what is not here has a reason for browsers.
+    assert_eq!(page.evaluate("document.getElementById('ipd').labels[0].textContent"), "Eyes apart");
+    let reason = page.evaluate("document.querySelector('#method [value=multiview]').title");
+    assert!(!reason.as_str().unwrap().contains("Mesa"), "{reason}");
+
+    // The link is copied without a loss, and followed: what was wrong before is no longer told.
+    let facts = page.evaluate("document.getElementById('facts').textContent");
+    assert!(facts.as_str().unwrap().contains("23,558 triangles"), "{facts}");
+    page.evaluate("document.getElementById('share').click()");
+    page.evaluate("location.hash = '#nonsense=1'; 0");
+    page.until("document.getElementById('message-text').textContent.includes('nonsense')");
+    page.evaluate("location.hash = '#display=left&scale=0.5'; 0");
+    page.until("document.getElementById('message').hidden");
+    assert_eq!(page.evaluate("document.getElementById('facts').textContent"), facts);
 
     // The page shows the progress while a scene is generated.
     let told = page.evaluate(
@@ -327,45 +385,67 @@ fn a_link_sets_everything_and_the_page_lasts() {
     assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null);
     page.browser.expect_silence();
 
-    // In a viewer: turned by the sensors, and left again.
+    // What is no viewer or no screen is marked at its field, and not entered.
+    page.evaluate("Object.defineProperty(screen, 'width', { value: 844 }); Object.defineProperty(screen, 'height', { value: 390 }); 0");
+    for (id, value, part) in [
+        ("phone-viewer", "goo.gl/abc", "shortened"),
+        ("phone-viewer", "V1", "no viewer"),
+        ("phone-width", "60", "2.8 cm"),
+    ] {
+        let field = format!("document.getElementById('{id}')");
+        let before = page.evaluate(&format!("{field}.value"));
+        page.evaluate(&format!("{field}.value = '{value}'"));
+        let told =
+            page.evaluate(&format!("document.getElementById('phone').click(); {field}.validationMessage"));
+        assert!(told.as_str().unwrap().contains(part), "{value}: {told}");
+        assert_eq!((page.evaluate("yoro.busy"), page.message()), (Value::Null, None), "{value}");
+        page.evaluate(&format!("{field}.value = {before}; {field}.dispatchEvent(new Event('input')); 0"));
+    }
+
+    // In a viewer: told how to hold it, turned by the sensors, and left again.
     page.evaluate("document.getElementById('phone').click()");
     page.until("yoro.busy?.name === 'phone'");
+    page.browser.resize(300, 640);
+    page.until("!document.getElementById('phone-upright').hidden");
     page.browser.resize(640, 300);
-    page.until("yoro.canvas.width === 640");
-    page.evaluate("document.getElementById('phone-leave').click()");
+    page.until("yoro.canvas.width === 640 && document.getElementById('phone-upright').hidden");
+    page.until("document.getElementById('message-text').textContent.includes('sensors')");
+    page.evaluate("dispatchEvent(new DeviceOrientationEvent('deviceorientation', { alpha: 150, beta: 0, gamma: -90 })); yoro.clear(); 0");
+    page.evaluate("document.getElementById('measure').click()");
+    assert!(page.message().unwrap().contains("leave it first"));
+    page.evaluate("yoro.clear(); document.getElementById('phone-leave').click()");
     page.until("yoro.busy === null && document.fullscreenElement === null");
     assert_eq!(page.message(), None);
-    let head = |page: &mut Page, angles: &str| {
-        let turned =
-            page.evaluate(&format!("import('./phone.js').then((phone) => phone.orientation({angles}))"));
-        let of = |i: usize| turned[i].as_f64().unwrap() as f32;
-        glam::Quat::from_xyzw(of(0), of(1), of(2), of(3)) * glam::Vec3::NEG_Z
-    };
-    // Held upright it looks ahead, lying on a table down, and on its side ahead again.
-    for (angles, ahead) in [
-        ("0, 90, 0, 0", glam::Vec3::NEG_Z),
-        ("0, 0, 0, 0", glam::Vec3::NEG_Y),
-        ("90, 90, 0, 0", glam::Vec3::NEG_X),
-        ("0, 0, -90, 90", glam::Vec3::X),
-    ] {
-        let looks = head(&mut page, angles);
-        assert!((looks - ahead).length() < 1e-5, "{angles}: {looks}");
-    }
     page.browser.expect_silence();
 
-    // A link's invalid parts are reported, and the rest is applied.
-    page.go("?again#viewpoint=1&ipd=900&method=none&size=3&anti-aliasing=msaa");
+    // A link's invalid parts are reported, and the rest is applied, also where another scene is chosen while the first one
+    // loads; a host's wrong type for the module does not matter.
+    let link = "?again#scene=conference&viewpoint=1&ipd=%20&method=none&size=3&anti-aliasing=msaa&toString=1&__proto__=1&at=1e9,,0,0,0";
+    page.browser.go(&format!("{}{link}", page.server.address));
+    page.until("globalThis.yoro?.wanted?.builtin === 'conference'");
     let told = page.message().unwrap();
-    for part in ["ipd is “900”", "method is “none”", "“size”", "anti-aliasing is “msaa”"] {
-        assert!(told.contains(part), "{told}");
+    for part in [
+        "ipd is “ ”",
+        "method is “none”",
+        "“size”",
+        "anti-aliasing is “msaa”",
+        "“toString”",
+        "“__proto__”",
+        "place is “1e9",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
     }
-    assert_eq!(page.evaluate("document.getElementById('viewpoint').value"), "1");
+    page.choose("scene", "prototype");
+    page.until("yoro.ready === true");
+    page.until("yoro.source?.builtin === 'prototype' && yoro.wanted === null");
+    page.evaluate("location.hash = '#viewpoint=98&display=left'; 0");
+    page.until("document.getElementById('message-text').textContent.includes('viewpoint is 99')");
 
-    // Loaded once, it needs no network.
+    // Loaded once, it needs no network, by whatever name it is asked for; and a network that never answers is none.
     page.until("navigator.serviceWorker.controller !== null");
-    page.until("caches.open('yoro').then((cache) => cache.match('yoro_web_bg.wasm')).then(Boolean)");
-    page.server.stop();
-    page.go("?offline#viewpoint=3");
+    page.until("caches.match(performance.getEntriesByType('resource').find(({ name }) => name.endsWith('wasm')).name).then(Boolean)");
+    page.server.fall_silent();
+    page.go_and_lose("index.html?offline#viewpoint=3&display=left");
     assert_eq!((page.message(), page.evaluate("yoro.settings.viewpoint")), (None, json!(3)));
 }
 
@@ -377,6 +457,32 @@ fn png(image: impl Into<DynamicImage>) -> Vec<u8> {
 
 const ROOM: &str = "mtllib room.mtl\nv -2 0 -4\nv 2 0 -4\nv 2 3 -4\nv -2 3 -4\nv -2 0 2\nv 2 0 2\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                     usemtl wall\nf 1/1 2/2 3/3 4/4\nf 5/1 6/2 2/3 1/4\n";
+
+/// A JPEG of this size that carries a smaller depth, as phones' portrait photos do: near on the left.
+fn portrait(size: [u32; 2]) -> Vec<u8> {
+    let mut jpeg = std::io::Cursor::new(Vec::new());
+    let color = RgbImage::from_fn(size[0], size[1], |x, y| Rgb([(x * 2) as u8, (y * 3) as u8, 90]));
+    DynamicImage::from(color).write_to(&mut jpeg, ImageFormat::Jpeg).unwrap();
+    let depth = STANDARD.encode(png(GrayImage::from_fn(6, 4, |x, _| Luma([(x * 40) as u8]))));
+    let (first, second) = depth.split_at(depth.len() / 2);
+    let xmp = |text: String| {
+        let length = (text.len() + 2) as u16;
+        [&[0xff, 0xe1][..], &length.to_be_bytes(), text.as_bytes()].concat()
+    };
+    let mut out = jpeg.get_ref()[..2].to_vec();
+    let head =
+        "GDepth:Format=\"RangeInverse\" GDepth:Near=\"0.5\" GDepth:Far=\"9\" GDepth:Mime=\"image/png\"";
+    out.extend(xmp(format!("http://ns.adobe.com/xap/1.0/\0<rdf {head}/>")));
+    // The parts of what does not fit into one segment may come in any order.
+    let part = |offset: u8, text: &str| {
+        let id = "0".repeat(32);
+        xmp(format!("http://ns.adobe.com/xmp/extension/\0{id}\0\0\0\0\0\0\0{}{text}", char::from(offset)))
+    };
+    out.extend(part(9, &format!("{second}\"/>")));
+    out.extend(part(0, &format!("<rdf GDepth:Data=\"{first}")));
+    out.extend(&jpeg.get_ref()[2..]);
+    out
+}
 
 /// A GLB of one triangle.
 fn glb() -> Vec<u8> {
@@ -409,7 +515,11 @@ fn glb() -> Vec<u8> {
 
 #[test]
 fn dropped_files_are_shown_or_refused() {
-    let Some(mut page) = Page::open("", None) else { return };
+    let Some(mut page) = Page::open("#display=left", None) else { return };
+    let dropped = "const text = new DataTransfer(); text.setData('text/plain', 'words'); \
+                   dispatchEvent(new DragEvent('drop', { dataTransfer: text, cancelable: true }))";
+    assert_eq!(page.evaluate(dropped), json!(false), "the browser opens nothing");
+    page.until("document.getElementById('message-text').textContent.includes('no file')");
     let texture = png(RgbImage::from_fn(8, 8, |x, y| Rgb([(x * 30) as u8, (y * 30) as u8, 90])));
     let mtl = b"newmtl wall\nKd 1 1 1\nmap_Kd bricks.png\n".to_vec();
     page.drop_files(&[("room.obj", ROOM.into()), ("room.mtl", mtl), ("bricks.png", texture)]);
@@ -417,6 +527,15 @@ fn dropped_files_are_shown_or_refused() {
     page.evaluate(&draw([48, 32]));
     page.drop_files(&[("one.glb", glb())]);
     assert_eq!((page.message(), page.evaluate("yoro.facts.triangles")), (None, json!(1)));
+
+    // The list of scenes says what is shown; a link cannot carry it, nor a place in it. What fails changes nothing.
+    let scene = "document.getElementById('scene').value";
+    assert_eq!(page.evaluate(scene), "own");
+    page.evaluate("yoro.page.walk(0, 0, 1); document.getElementById('share').click(); 0");
+    let link = page.evaluate("location.hash");
+    assert!(!link.as_str().unwrap().contains("at=") && !link.as_str().unwrap().contains("scene="), "{link}");
+    page.evaluate("yoro.showSource({ builtin: 'nowhere' })");
+    assert_eq!((page.message().is_some(), page.evaluate(scene)), (true, json!("own")));
 
     // Pictures are as `yoro synthesize` makes them.
     let size = [96u32, 64];
@@ -434,6 +553,7 @@ fn dropped_files_are_shown_or_refused() {
     let tenths = DepthImage::from_fn(size[0], size[1], |x, y| Luma([if near(x, y) { 0.0713 } else { 0.4 }]));
     save_depth(&path("tenths-depth.png"), &tenths).unwrap();
     color.save(path("view.png")).unwrap();
+    // Their depth is guessed: by a brighter bottom, by the kind of file, by 16 bits.
     for (depth, encoding, key, value, edges) in [
         ("depth.png", "disparity", "disparity-scale", "12", "hard"),
         ("metres.exr", "metres", "metres-at-white", "3", "hard"),
@@ -443,6 +563,7 @@ fn dropped_files_are_shown_or_refused() {
         page.drop_files(&files);
         assert_eq!(page.message(), None, "{depth}");
         assert_eq!(page.evaluate("yoro.source.depth.name"), depth);
+        assert_eq!(page.evaluate("document.getElementById('picture-encoding').value"), encoding, "{depth}");
         page.choose("picture-edges", edges);
         page.choose("picture-encoding", encoding);
         page.evaluate(&format!(
@@ -460,15 +581,32 @@ fn dropped_files_are_shown_or_refused() {
         close(depth, &page.eyes(size)[0], &desktop);
     }
 
+    // What pictures have no use for cannot be chosen.
+    let without = "['method', 'viewpoint', 'renderer'].every((id) => document.getElementById(id).disabled)";
+    assert_eq!(page.evaluate(without), json!(true));
+    for (value, part) in
+        [("''", Some("Metres at white: ")), ("1e30", Some("Metres at white: ")), ("10", None)]
+    {
+        page.evaluate(&format!(
+            "document.getElementById('picture-metres-at-white').value = {value}; \
+             document.getElementById('picture-options').dispatchEvent(new Event('change')); 0"
+        ));
+        let told = page.message();
+        assert_eq!(told.is_some(), part.is_some(), "{value}");
+        assert!(told.is_none_or(|told| told.starts_with(part.unwrap())), "{value}");
+    }
+    let hidden = "['near', 'far', 'disparity-scale'].every((key) => document.getElementById(`picture-${key}`).labels[0].hidden)";
+    assert_eq!(page.evaluate(hidden), json!(true), "fields that distances have no use for");
+
     // Pictures have no truth for a difference: the eye itself is shown.
     let synthesized = page.evaluate(&sum("left"));
     assert!(synthesized.as_u64().unwrap() > 0);
     assert_eq!(page.evaluate(&sum("difference")), synthesized);
 
-    // Ten invalid inputs: a sentence each, and the content before stays.
+    // Eleven invalid inputs: a sentence each, and the content before stays.
     type Files<'a> = &'a [(&'a str, Vec<u8>)];
     let gray = |w, h| png(GrayImage::new(w, h));
-    let broken: [(Files, &str); 10] = [
+    let broken: [(Files, &str); 11] = [
         (&[("a.obj", Vec::new())], "a.obj"),
         (&[("a.obj", b"v 1 2\nf 1 2 3\n".to_vec())], "a.obj"),
         (&[("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n".to_vec())], "a.obj"),
@@ -483,6 +621,7 @@ fn dropped_files_are_shown_or_refused() {
         ),
         (&[("a.gltf", b"{".to_vec())], "a.gltf"),
         (&[("a.png", gray(4, 4))], "One picture is not enough"),
+        (&[("a.png", gray(4, 4)), ("b.png", gray(4, 4)), ("c.png", gray(4, 4))], "3 pictures are too many"),
         (&[("a.png", gray(4, 4)), ("a-depth.png", gray(5, 4))], "4x4"),
         (&[("a.png", b"no picture".to_vec()), ("a-depth.png", gray(4, 4))], "a.png is not a picture"),
         (&[("a.txt", b"text".to_vec())], "neither a model"),
@@ -493,7 +632,32 @@ fn dropped_files_are_shown_or_refused() {
         assert!(told.contains(part) && told.ends_with('.'), "{part}: {told}");
         assert_eq!(page.evaluate("Boolean(yoro.source.color)"), json!(true), "{part}: the pictures stay");
     }
+
+    // A photo that carries its depth.
+    page.drop_files(&[("portrait.jpg", portrait([96, 64]))]);
+    assert_eq!((page.message(), page.evaluate("yoro.source.color.name")), (None, json!("portrait.jpg")));
+    let fields = "['source', 'encoding', 'near', 'far'].map((key) => document.getElementById(`picture-${key}`).value).join()";
+    assert_eq!(page.evaluate(fields), "center,standard-z,0.5,9");
+
+    // The page's own examples, and back to a scene of the list.
+    page.evaluate("document.getElementById('example-pictures').click()");
+    page.until("yoro.source.color?.name === 'example-color.jpg'");
+    assert_eq!(
+        (page.message(), page.evaluate("document.getElementById('picture-encoding').value")),
+        (None, json!("standard-z"))
+    );
+    page.evaluate("document.getElementById('example-model').click()");
+    page.until("yoro.source.main === 'example.obj'");
+    assert_eq!((page.message(), page.evaluate("yoro.wanted")), (None, Value::Null));
+    page.choose("scene", "prototype");
+    page.until("yoro.source.builtin === 'prototype'");
     page.browser.expect_silence();
+
+    // Opened as a file, it says what to do.
+    let xtask = PathBuf::from(env::var_os("YORO_TEST_WEB").unwrap());
+    page.browser.open(&xtask.ancestors().nth(2).unwrap().join("web/index.html"));
+    page.until("!document.getElementById('message').hidden");
+    assert!(page.message().unwrap().contains("serve its folder"));
 }
 
 #[test]
@@ -505,10 +669,25 @@ fn a_measurement_is_reported() {
     );
     page.choose("measure-size", "64x48");
     page.choose("measure-seconds", "4");
+    let places = "JSON.stringify(['own', 'phone-viewer', 'headset'].map((id) => document.getElementById(id).getBoundingClientRect()))";
+    let before = page.evaluate(places);
     page.evaluate("document.getElementById('measure').click()");
     page.until("yoro.busy !== null || yoro.measured !== undefined");
+    // What it depends on stays as it is, whatever is chosen or followed.
+    for id in ["scene", "renderer", "anti-aliasing", "ipd", "dominant", "measure-size", "files"] {
+        let locked = format!("document.getElementById('{id}').matches(':disabled')");
+        assert_eq!(page.evaluate(&locked), json!(true), "{id}");
+    }
+    page.evaluate("location.hash = '#scene=talk&ipd=0'; 0");
+    page.until("document.getElementById('message-text').textContent.includes('stop it first')");
+    page.evaluate("yoro.clear()");
     page.until("yoro.busy === null");
-    assert_eq!(page.message(), None);
+    assert_eq!((page.message(), page.evaluate("yoro.settings.ipd")), (None, json!(63)));
+    assert_eq!(page.evaluate(places), before, "the panels stay where they are");
+    // A second one that is stopped loses nothing of the first.
+    page.evaluate("document.getElementById('measure').click(); document.getElementById('measure').click()");
+    page.until("yoro.busy === null");
+    assert_eq!(page.evaluate("document.getElementById('measure-save').hidden"), json!(false));
     let table = page.evaluate("document.querySelector('#measure-result table').innerText");
     let table = table.as_str().unwrap();
     assert!(
@@ -525,6 +704,7 @@ fn a_measurement_is_reported() {
     for part in ["prototype", "yoro-gather", "shading-reprojection", "multiview"] {
         assert!(results.contains(part), "{part}: {results}");
     }
+    assert!(!results.contains("Image quality"), "the page measures none: {results}");
 }
 
 /// The Immersive Web Emulation Runtime's script; without it the test is to end.
@@ -579,7 +759,7 @@ const HEADSET: &str = "
 fn a_headset_shows_both_eyes() {
     let Some(emulator) = emulator() else { return };
     let script = format!("{emulator}\n{HEADSET}");
-    let Some(mut page) = Page::open("#method=conventional", Some(&script)) else { return };
+    let Some(mut page) = Page::open("#method=conventional&display=left", Some(&script)) else { return };
     // The emulator's displays have the window's size.
     page.browser.resize(400, 240);
     page.until("!document.getElementById('headset').disabled");
@@ -615,10 +795,17 @@ fn a_headset_shows_both_eyes() {
             press(&mut page, "trigger");
             assert_eq!(page.evaluate("yoro.settings.method"), "instanced");
         }
+        if visit == 1 {
+            page.evaluate("document.getElementById('measure').click()");
+            assert!(page.message().unwrap().contains("leave VR first"));
+            page.evaluate("yoro.clear(); yoro.page.walk(0, 0, 1)");
+        }
         page.evaluate("document.getElementById('headset').click()");
         page.until("yoro.busy === null && document.getElementById('headset').textContent === 'Enter VR'");
         assert_eq!(page.message(), None);
     }
+    // The way walked is in the link.
+    page.until("location.hash.includes('at=')");
     page.browser.expect_silence();
 }
 

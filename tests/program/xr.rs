@@ -362,7 +362,7 @@ fn controllers_switch_methods() {
     let summary = run.json();
     let methods: Vec<&str> =
         summary["methods"].as_array().unwrap().iter().map(|m| m["method"].as_str().unwrap()).collect();
-    assert_eq!(methods, ["yoro", "conventional", "yoro"]);
+    assert_eq!(methods, ["auto", "yoro", "auto"]);
 }
 
 #[test]

@@ -11,6 +11,8 @@ use std::rc::Rc;
 use anyhow::Context as _;
 use yoro_context::{Backend, Headless};
 use yoro_gl::Context;
+use yoro_render::RenderSettings;
+use yoro_render::stereo::Method;
 
 /// The variable that `cargo xtask test` sets on systems without OSMesa (Mesa 25.1 dropped it).
 const WITHOUT_OSMESA: &str = "YORO_TEST_WITHOUT_OSMESA";
@@ -36,6 +38,26 @@ pub fn on_every_backend(body: impl Fn(&Rc<Context>) -> anyhow::Result<()>) -> an
         anyhow::ensure!(gl.object_count() == 0, "{backend:?}: {} GL objects left", gl.object_count());
     }
     Ok(())
+}
+
+/// The variable that is set where the driver was chosen for its multiview.
+pub const MULTIVIEW_EXPECTED: &str = "YORO_TEST_MULTIVIEW_EXPECTED";
+
+/// True if a method is tested with these settings on this driver. Says what the driver lacks, but for multiview, which the
+/// tests in `tests/gl/multiview.rs` bring; what a renderer has on no driver is not worth a word.
+///
+/// # Panics
+/// If the driver lacks what it was chosen for.
+pub fn is_tested(method: Method, settings: &RenderSettings, gl: &Context) -> bool {
+    let Err(reason) = settings.supports(method, gl.capabilities()) else { return true };
+    if settings.is_forward() && matches!(method, Method::Multiview | Method::ShadingReprojection) {
+        return false;
+    }
+    if method != Method::Multiview {
+        eprintln!("SKIPPED: {} is not tested here: {reason}", method.name());
+    }
+    assert!(std::env::var_os(MULTIVIEW_EXPECTED).is_none(), "{reason}");
+    false
 }
 
 /// The code of the project's README is compiled with the tests of the documentation.

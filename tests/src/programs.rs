@@ -15,12 +15,13 @@ use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::{Scene, ShadingStyle};
 use yoro_shaders::{Assembled, MissingFile};
 
-use crate::scene;
+use crate::{is_tested, scene};
 
-/// The variants of the renderer's programs to make. Other programs are always made in every variant.
+/// The variants of the renderer's programs to make. Other programs are always made in every variant, but for those of
+/// synthesis from parts and layers of textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variants {
-    /// All combinations of maps, opacity, style, light and settings.
+    /// All combinations of maps, opacity, style, light and settings, and synthesis from parts and layers.
     Every,
     /// Under default settings, materials without maps and with all maps: the cost of the others lies between these. By
     /// every method in the realistic style only.
@@ -32,12 +33,16 @@ pub enum Variants {
 /// # Errors
 /// The driver refuses a program.
 pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
-    synthesis(gl)?;
+    synthesis(gl, variants)?;
     rendering(gl, variants)?;
     stereo(gl)?;
     patchers(gl)?;
     viewer(gl)
 }
+
+/// Values of `PARTS` in `include/four_columns.glsl`: the law; the short way; the long way to its end; with events, with the fill,
+/// with tiles passed over.
+const MARCH_PARTS: [&str; 6] = ["1", "2", "6", "14", "30", "62"];
 
 const STYLES: [ShadingStyle; 5] = [
     ShadingStyle::Realistic,
@@ -47,7 +52,7 @@ const STYLES: [ShadingStyle; 5] = [
     ShadingStyle::Anime,
 ];
 
-fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
+fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let outputs = [(false, false), (false, true), (true, false), (true, true)]
         .map(|(depth, source_map)| Outputs { depth, source_map, ..Outputs::default() });
     for outputs in outputs {
@@ -71,9 +76,24 @@ fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
             Gather::with_variant(gl, Outputs { depth, ..Outputs::default() }, variant)?;
         }
     }
-    // The part of the march that every pixel runs, for the executed cost.
-    let alone = ["TEXTURE_GATHER", "SHORT_WAY", "SHORT_WAY_ALONE"].map(|name| (name, String::new()));
-    Program::new(gl, ShaderSource::Screen("synthesis/gather/march.frag"), &alone)?;
+    if variants == Variants::Every {
+        for (parts, layers) in [(true, false), (false, true), (true, true)] {
+            let options = SynthesisOptions { parts, layers, ..SynthesisOptions::default() };
+            for variant in GatherVariant::ALL {
+                Gather::with_variant_of(gl, Outputs::default(), variant, &options)?;
+            }
+            for edges in [Edges::Nearest, Edges::Sample] {
+                synthesis::create(gl, &SynthesisOptions { edges, ..options }, Outputs::default())?;
+            }
+        }
+    }
+    // The march by its parts, for the executed cost.
+    let march =
+        ShaderSource::Raster { vertex: "synthesis/march.vert", fragment: "synthesis/gather/march.frag" };
+    for parts in MARCH_PARTS {
+        let defines = [("TEXTURE_GATHER", ""), ("SHORT_WAY", ""), ("PARTS", parts)];
+        Program::new(gl, march, &defines.map(|(name, value)| (name, value.to_owned())))?;
+    }
     Ok(())
 }
 
@@ -81,10 +101,9 @@ fn synthesis(gl: &Rc<Context>) -> anyhow::Result<()> {
 fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> anyhow::Result<()> {
     let mut renderer = Renderer::new(gl, settings, scene)?;
     for method in Method::ALL {
-        match settings.supports(method, gl.capabilities()) {
-            Ok(()) => stereo::create(gl, method, settings, &StereoOptions::default())?
-                .prepare(&mut renderer, scene)?,
-            Err(reason) => eprintln!("SKIPPED: {} is not compiled here: {reason}", method.name()),
+        if is_tested(method, settings, gl) {
+            let options = StereoOptions::default();
+            stereo::create(gl, method, settings, &options)?.prepare(&mut renderer, scene)?;
         }
     }
     Ok(())

@@ -105,7 +105,8 @@ impl Multisampled {
 
     /// The source for [`yoro::synthesis::Edges::Multisample`].
     pub fn source(&self, with_colors: bool) -> Source {
-        Source { color: self.resolved.raw(), depth: self.depth, samples: with_colors.then_some(self.color) }
+        let samples = with_colors.then_some(self.color);
+        Source { samples, ..Source::new(self.resolved.raw(), self.depth) }
     }
 
     /// The resolved colour.

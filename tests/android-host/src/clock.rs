@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::host::{host, lock};
+use crate::threads;
 
 /// Time since boot, nanoseconds, that the application's clocks show.
 pub struct Clock {
@@ -51,14 +52,7 @@ impl Wait<'_> {
 /// True if every other thread of the process sleeps. A thread that is ready but gets no processor counts as running, so
 /// a loaded machine does not make time pass.
 fn nobody_runs() -> bool {
-    // SAFETY: takes nothing and cannot fail.
-    let own = unsafe { libc::gettid() }.to_string();
-    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return false };
-    tasks.flatten().filter(|task| task.file_name() != own.as_str()).all(|task| {
-        let Ok(stat) = std::fs::read_to_string(task.path().join("stat")) else { return true };
-        // The state follows the name, which is in parentheses and may hold some.
-        stat.rsplit(") ").next().is_none_or(|rest| !rest.starts_with(['R', 'D']))
-    })
+    threads::others().is_some_and(|mut others| others.all(|(_, state)| !matches!(state, 'R' | 'D')))
 }
 
 /// A device is never asked at the moment of its boot.

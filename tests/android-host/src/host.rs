@@ -22,6 +22,7 @@ use crate::jni::Jni;
 use crate::library::Library;
 use crate::script::{Battery, Device, Script, Thermal};
 use crate::summary::{InputFacts, LABEL, LibraryFacts, Mark, Summary};
+use crate::threads::{self, Progress};
 
 /// The simulated device: everything that the application can ask.
 pub struct Host {
@@ -95,7 +96,7 @@ pub struct Report {
 
 struct Watch {
     timeout: Duration,
-    doing: Mutex<Option<(String, Instant)>>,
+    doing: Mutex<Option<(String, Progress)>>,
     longest_callback_us: AtomicU64,
 }
 
@@ -208,14 +209,15 @@ impl Host {
         lock(&self.report)
     }
 
-    /// Returns the time limit of a step.
+    /// Returns the patience with a step.
     pub fn timeout(&self) -> Duration {
         self.watch.timeout
     }
 
     /// Runs something that must end in time, or the run fails with its name.
     pub fn watched<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
-        *lock(&self.watch.doing) = Some((what.to_owned(), Instant::now()));
+        let progress = Progress::new(Instant::now(), threads::processor_time());
+        *lock(&self.watch.doing) = Some((what.to_owned(), progress));
         let result = run();
         *lock(&self.watch.doing) = None;
         result
@@ -348,28 +350,14 @@ fn watch() {
     loop {
         std::thread::sleep(Duration::from_millis(200));
         let host = host();
-        let late =
-            lock(&host.watch.doing).as_ref().filter(|(_, since)| since.elapsed() > host.timeout()).cloned();
-        if let Some((what, since)) = late {
-            fatal(format!("{what} takes longer than {:.0} s; {}", since.elapsed().as_secs_f64(), threads()));
+        let late = lock(&host.watch.doing).as_mut().and_then(|(what, progress)| {
+            let reason = progress.given_up(Instant::now(), threads::processor_time(), host.timeout())?;
+            Some(format!("{what} {reason}"))
+        });
+        if let Some(late) = late {
+            fatal(format!("{late}; {}", threads::list()));
         }
     }
-}
-
-/// Returns the kernel function that each thread waits in: the first clue to a deadlock.
-fn threads() -> String {
-    let mut states: BTreeMap<String, u32> = BTreeMap::new();
-    for task in std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
-        let read = |file| std::fs::read_to_string(task.path().join(file)).unwrap_or_default();
-        let state = read("stat").rsplit(") ").next().and_then(|rest| rest.chars().next()).unwrap_or('?');
-        *states.entry(format!("{} ({state}, {})", read("comm").trim(), read("wchan").trim())).or_default() +=
-            1;
-    }
-    let list: Vec<_> = states
-        .into_iter()
-        .map(|(name, count)| if count > 1 { format!("{count}x {name}") } else { name })
-        .collect();
-    format!("threads: {}", list.join(", "))
 }
 
 /// The number of times that entries are counted; the smallest count is taken.

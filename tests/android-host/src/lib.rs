@@ -27,6 +27,7 @@ mod player;
 mod random;
 pub mod script;
 pub mod summary;
+mod threads;
 mod thunk;
 
 use std::os::fd::AsFd;

@@ -14,6 +14,7 @@ use crate::host::{Host, fatal, host, lock};
 use crate::jni;
 use crate::random;
 use crate::script::{Battery, Key, Step, Thermal};
+use crate::threads;
 
 /// The stages of an activity that the script has reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -176,6 +177,7 @@ impl Player {
             Step::ContextLoss => self.host.graphics.lose_context(),
             Step::Capture(name) => self.capture(name.clone()),
             Step::Mark(name) => {
+                self.host.watched("mark", threads::rest);
                 let mark = self.host.mark(name);
                 self.host.report().marks.push(mark);
             }

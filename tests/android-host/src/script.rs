@@ -25,7 +25,8 @@ use serde::{Deserialize, Serialize};
 pub struct Script {
     /// Shown in the summary.
     pub name: String,
-    /// Real seconds that one step, or one callback of the activity, may take before the run fails.
+    /// Real seconds for which one step, or one callback of the activity, may stand still before the run fails; it may use
+    /// 20 times as much processor time.
     #[serde(default = "default_timeout")]
     pub patience_seconds: f64,
     /// The device at power-on.

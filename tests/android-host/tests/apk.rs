@@ -23,8 +23,9 @@ use host::{READY, Run, device, layer, play, play_arm64, show};
 
 /// The settings of each test's device, and of the desktop it is compared with: a scene and a quality that a CPU draws
 /// fast.
-const SETTINGS: [(&str, &str); 8] = [
+const SETTINGS: [(&str, &str); 9] = [
     ("scene", "prototype"),
+    ("method", "yoro"),
     ("hud", "false"),
     ("shadow-map", "512"),
     ("ssao", "off"),
@@ -36,10 +37,15 @@ const SETTINGS: [(&str, &str); 8] = [
 const SIZE: [u32; 2] = [320, 180];
 const DPI: f32 = 74.0;
 
+/// The settings of all tests with those of one test, which come in their place.
+fn settings<'a>(own: &[(&'a str, &'a str)]) -> Vec<(&'a str, &'a str)> {
+    let is_shared = |(key, _): &&(&str, &str)| !own.iter().any(|(other, _)| other == key);
+    SETTINGS.iter().filter(is_shared).chain(own).copied().collect()
+}
+
 /// A phone with the settings of all tests and `more`, and more keys of `[device]`.
 fn phone(more: &[(&str, &str)], keys: &str) -> String {
-    let settings: Vec<_> = SETTINGS.iter().chain(more).copied().collect();
-    device(&settings, keys)
+    device(&settings(more), keys)
 }
 
 fn lines(run: &Run) -> Vec<Line> {
@@ -400,7 +406,7 @@ fn headset(folder: &Path, system: bool) -> String {
 }
 
 /// Returns a `[device]` with a headset of this script, with more settings and keys of `[device.openxr]`.
-fn headset_with(folder: &Path, script: Headset, settings: &[(&str, &str)], keys: &str) -> String {
+fn headset_with(folder: &Path, script: Headset, more: &[(&str, &str)], keys: &str) -> String {
     let script = Headset {
         log: Some(folder.join("log.jsonl")),
         poison: true,
@@ -409,8 +415,8 @@ fn headset_with(folder: &Path, script: Headset, settings: &[(&str, &str)], keys:
     };
     let path = folder.join("headset.json");
     std::fs::write(&path, serde_json::to_string(&script).unwrap()).unwrap();
-    let own = SETTINGS.iter().filter(|(key, _)| *key != "render-scale");
-    let settings: Vec<_> = own.chain(settings).copied().collect();
+    let mut settings = settings(more);
+    settings.retain(|(key, _)| *key != "render-scale");
     let keys = format!("[device.openxr]\nscript = {:?}\n{keys}", path.display().to_string());
     format!("{}\n{keys}", device(&settings, ""))
 }

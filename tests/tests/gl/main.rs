@@ -1,8 +1,10 @@
 //! The library on a real GL context: golden images, shader variants and costs, GL objects; scenes on Vulkan.
 
+mod frame_passes;
 mod golden;
 mod layers;
 mod methods;
+mod multiview;
 mod objects;
 mod refusals;
 mod shader_cost;

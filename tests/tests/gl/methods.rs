@@ -9,7 +9,7 @@ use yoro_gl::Context;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::{Scene, ShadingStyle};
-use yoro_tests::{on_every_backend, scene};
+use yoro_tests::{is_tested, on_every_backend, scene};
 
 const SIZE: [u32; 2] = [128, 96];
 const IPD: f32 = 0.063;
@@ -110,8 +110,7 @@ fn single_pass_stereo_equals_two_renders() {
             for (name, pair) in pairs(&stage) {
                 let expected = stage.render(Method::Conventional, &options, &pair)?;
                 for method in [Method::Instanced, Method::Multiview] {
-                    if let Err(reason) = stage.settings.supports(method, gl.capabilities()) {
-                        eprintln!("SKIPPED: {} is not tested here: {reason}", method.name());
+                    if !is_tested(method, &stage.settings, gl) {
                         continue;
                     }
                     let both = stage.render(method, &options, &pair)?;

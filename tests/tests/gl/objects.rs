@@ -8,7 +8,7 @@ use yoro_gl::Context;
 use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::ShadingStyle;
-use yoro_tests::{backends, scene};
+use yoro_tests::{backends, is_tested, scene};
 
 /// Every way to make a frame, by name.
 fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, StereoOptions)> {
@@ -38,13 +38,7 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
         ("near field", Method::Yoro, near_field),
     ]
     .into_iter()
-    .filter(|(name, method, _)| match settings.supports(*method, gl.capabilities()) {
-        Ok(()) => true,
-        Err(reason) => {
-            eprintln!("SKIPPED: {name} is not tested here: {reason}");
-            false
-        }
-    })
+    .filter(|(_, method, _)| is_tested(*method, settings, gl))
     .collect()
 }
 

@@ -8,7 +8,9 @@ use std::rc::Rc;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
 use yoro::synthesis::{Edges, Layers, Outputs, Source, Synthesis as _};
 use yoro::vulkan::ash::{self, vk};
-use yoro::vulkan::{Frame, Gather, Host, ImageState, Options, SourceImages, TargetImages, VulkanError};
+use yoro::vulkan::{
+    Frame, Gather, Host, ImageState, LayerImage, Options, SourceImages, TargetImages, VulkanError,
+};
 use yoro_context::Headless;
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_tests::backends;
@@ -56,11 +58,13 @@ fn compile(work: &Path, name: &str, text: &str) -> Vec<u32> {
 struct Drawn<'a> {
     single: Vec<[Image<'a>; 2]>,
     multisample: [Image<'a>; 2],
+    /// The depth of one sample of each pixel, and how the render pass chose it.
+    resolved: Option<(vk::ResolveModeFlags, Image<'a>)>,
 }
 
 impl<'a> Drawn<'a> {
-    /// Draws each sample alone, by the sample mask.
-    fn new(gpu: &'a Gpu, samples: &Samples) -> Drawn<'a> {
+    /// Draws each sample alone, by the sample mask, and resolves depth if that is wanted.
+    fn new(gpu: &'a Gpu, samples: &Samples, resolve: Option<vk::ResolveModeFlags>) -> Drawn<'a> {
         let size = samples.size;
         let single: Vec<_> = (0..4)
             .map(|k| {
@@ -71,7 +75,8 @@ impl<'a> Drawn<'a> {
             })
             .collect();
         let multisample = [gpu.multisampled(COLOR, size, 4), gpu.multisampled(DEPTH, size, 4)];
-        let drawn = Drawn { single, multisample };
+        let resolved = resolve.map(|mode| (mode, gpu.image(DEPTH, size, 1)));
+        let drawn = Drawn { single, multisample, resolved };
         // SAFETY: valid descriptions, and objects that live until everything is executed.
         unsafe { drawn.draw(gpu, size) };
         drawn
@@ -136,11 +141,20 @@ impl<'a> Drawn<'a> {
             let [color, depth] = &self.multisample;
             let colors = [attachment(view(color, color_aspect), ImageState::COLOR_ATTACHMENT.layout)];
             let depth_view = view(depth, vk::ImageAspectFlags::DEPTH);
-            let depths = attachment(depth_view, ImageState::DEPTH_ATTACHMENT.layout);
+            let mut depths = attachment(depth_view, ImageState::DEPTH_ATTACHMENT.layout);
+            if let Some((mode, image)) = &self.resolved {
+                depths = depths
+                    .resolve_mode(*mode)
+                    .resolve_image_view(view(image, vk::ImageAspectFlags::DEPTH))
+                    .resolve_image_layout(ImageState::RESOLVED_DEPTH.layout);
+            }
             let area = vk::Rect2D { extent: vk::Extent2D { width, height }, ..Default::default() };
             gpu.run(|commands| {
                 color.barrier(commands, 0, ImageState::DISCARDED, ImageState::COLOR_ATTACHMENT);
                 depth.barrier(commands, 0, ImageState::DISCARDED, ImageState::DEPTH_ATTACHMENT);
+                if let Some((_, image)) = &self.resolved {
+                    image.barrier(commands, 0, ImageState::DISCARDED, ImageState::RESOLVED_DEPTH);
+                }
                 let info = vk::RenderingInfo::default().render_area(area).layer_count(1);
                 let info = info.color_attachments(&colors).depth_attachment(&depths);
                 device.cmd_begin_rendering(commands, &info);
@@ -249,13 +263,33 @@ fn on_vulkan(
     warp: &Warp,
     largest: [u32; 2],
 ) -> Vec<u8> {
-    let drawn = Drawn::new(gpu, samples);
-    let resolved = gpu.image(COLOR, samples.size, 1);
-    resolved.upload_rgba8(0, &samples.resolved(), WRITTEN);
+    let drawn = Drawn::new(gpu, samples, None);
     let single = gpu.image(vk::Format::R32_SFLOAT, samples.size, 1);
     single.upload_depth(0, &one_depth(samples, edges, warp), WRITTEN);
-    let target = gpu.image(COLOR, warp.target_size, 1);
     let [sample_color, sample_depth] = &drawn.multisample;
+    let depth = match edges {
+        Edges::Multisample => {
+            sample_depth.layer(0, ImageState::DEPTH_ATTACHMENT, ImageState::DEPTH_ATTACHMENT)
+        }
+        _ => single.layer(0, WRITTEN, ImageState::SAMPLED),
+    };
+    let drawn_color = sample_color.layer(0, ImageState::COLOR_ATTACHMENT, ImageState::COLOR_ATTACHMENT);
+    synthesize(gpu, host, samples, edges, (depth, colors.then_some(drawn_color)), warp, largest)
+}
+
+/// Synthesizes from the samples' mean colour and what else is given of them.
+fn synthesize(
+    gpu: &Gpu,
+    host: &Host,
+    samples: &Samples,
+    edges: Edges,
+    (depth, sample_color): (LayerImage, Option<LayerImage>),
+    warp: &Warp,
+    largest: [u32; 2],
+) -> Vec<u8> {
+    let resolved = gpu.image(COLOR, samples.size, 1);
+    resolved.upload_rgba8(0, &samples.resolved(), WRITTEN);
+    let target = gpu.image(COLOR, warp.target_size, 1);
     let options = Options {
         color_format: COLOR,
         max_source_size: largest,
@@ -264,22 +298,11 @@ fn on_vulkan(
         timed_frames: 1,
         ..Options::default()
     };
-    let depth = match edges {
-        Edges::Multisample => {
-            sample_depth.layer(0, ImageState::DEPTH_ATTACHMENT, ImageState::DEPTH_ATTACHMENT)
-        }
-        _ => single.layer(0, WRITTEN, ImageState::SAMPLED),
-    };
-    let drawn_color = sample_color.layer(0, ImageState::COLOR_ATTACHMENT, ImageState::COLOR_ATTACHMENT);
     // SAFETY: the images live until everything is executed, and are in the declared states.
     unsafe {
         let mut gather = Gather::new(host, &options).unwrap();
-        let images = SourceImages {
-            color: resolved.layer(0, WRITTEN, ImageState::SAMPLED),
-            depth,
-            sample_color: colors.then_some(drawn_color),
-            size: samples.size,
-        };
+        let color = resolved.layer(0, WRITTEN, ImageState::SAMPLED);
+        let images = SourceImages { color, depth, sample_color, size: samples.size };
         let source = gather.register_source(&images).unwrap();
         let images = TargetImages {
             color: target.layer(0, ImageState::DISCARDED, READ),
@@ -290,7 +313,7 @@ fn on_vulkan(
         let frame = Frame { source, source_origin: [0, 0], target: written, target_origin: [0, 0] };
         gpu.run(|commands| gather.record(commands, &frame, warp).unwrap());
         let times = gather.pass_times().unwrap().expect("one frame was recorded and is done");
-        assert!(!times.split.is_zero() && !times.march.is_zero(), "{times:?}");
+        assert!(times.split.is_zero() == (edges == Edges::Hard) && !times.march.is_zero(), "{times:?}");
     }
     target.read_rgba8(0, READ)
 }
@@ -327,6 +350,40 @@ fn vulkan_equals_opengl_for_anti_aliased_sources() {
             }
         });
     }
+}
+
+/// Depth that the host's render pass resolves is the same source as depth that a pass of its own chose from the samples.
+/// Lavapipe has the first sample's depth only, not MIN and MAX.
+#[test]
+fn depth_that_a_render_pass_resolved_gives_the_same_picture() {
+    use vk::ResolveModeFlags as Mode;
+    with_gpu(Rendering::Core, |gpu| {
+        for (mode, edges, convention) in [
+            (Mode::SAMPLE_ZERO, Edges::Sample, DepthConvention::Standard),
+            (Mode::MIN, Edges::Hard, DepthConvention::Standard),
+            (Mode::MAX, Edges::Hard, DepthConvention::Reversed),
+        ] {
+            if !gpu.resolves_depth(mode) {
+                println!("LEFT OUT: {} does not resolve depth by {mode:?}", gpu.name());
+                continue;
+            }
+            let depth = DepthRange { near: 0.3, far: 100.0, convention };
+            let frustum = Frustum::symmetric(1.2, 3.0);
+            let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], Eye::Right);
+            let warp = pair.synthesis(GuardBand::Pixels(21)).unwrap().warp;
+            let samples = picture(warp.source_size, depth, false);
+            let drawn = Drawn::new(gpu, &samples, Some(mode));
+            let (_, resolved) = drawn.resolved.as_ref().unwrap();
+            let resolved = resolved.layer(0, ImageState::RESOLVED_DEPTH, ImageState::SAMPLED);
+            let chosen = gpu.image(vk::Format::R32_SFLOAT, samples.size, 1);
+            chosen.upload_depth(0, &one_depth(&samples, edges, &warp), WRITTEN);
+            let chosen = chosen.layer(0, WRITTEN, ImageState::SAMPLED);
+            let [got, want] = [resolved, chosen].map(|depth| {
+                synthesize(gpu, &gpu.host(), &samples, edges, (depth, None), &warp, warp.source_size)
+            });
+            assert!(got == want, "{mode:?}");
+        }
+    });
 }
 
 #[test]

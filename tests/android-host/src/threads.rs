@@ -1,0 +1,151 @@
+//! The threads of this process: whether they go on, and when they are at rest.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// The number of looks that must find a thread asleep.
+const LOOKS: u32 = 4;
+/// The pause between two looks.
+const PAUSE: Duration = Duration::from_millis(2);
+
+/// The part of its patience that a process that goes on spends on processors at least. On a loaded machine, and more so
+/// under qemu, a frame may take minutes; so real time alone does not tell that it hangs.
+const LEAST: f64 = 0.02;
+/// The processor time, in times of its patience, after which a process runs in circles.
+const MOST: f64 = 20.0;
+
+/// The progress of something that must end.
+pub struct Progress {
+    /// Processor time of the process when it began.
+    begun: Duration,
+    /// The last moment at which the process had spent enough processor time, and how much.
+    moved: (Instant, Duration),
+}
+
+impl Progress {
+    /// Begins at this moment, with this processor time of the process.
+    pub fn new(now: Instant, spent: Duration) -> Progress {
+        Progress { begun: spent, moved: (now, spent) }
+    }
+
+    /// Returns the reason for giving up, if there is one.
+    pub fn given_up(&mut self, now: Instant, spent: Duration, patience: Duration) -> Option<String> {
+        let used = spent.saturating_sub(self.begun);
+        if used > patience.mul_f64(MOST) {
+            return Some(format!("has used {:.0} s of processor time", used.as_secs_f64()));
+        }
+        if spent.saturating_sub(self.moved.1) > patience.mul_f64(LEAST) {
+            self.moved = (now, spent);
+        }
+        let still = now.saturating_duration_since(self.moved.0);
+        (still > patience).then(|| format!("has stood still for {:.0} s", still.as_secs_f64()))
+    }
+}
+
+/// Returns the processor time of all threads since the process began.
+pub fn processor_time() -> Duration {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: writes to the structure.
+    unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &raw mut time) };
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+/// Returns name and state of a thread: R for one that runs or could, S for one that sleeps.
+fn state(task: &Path) -> Option<(String, char)> {
+    let stat = std::fs::read_to_string(task.join("stat")).ok()?;
+    // The name, in parentheses, may have some itself.
+    let (before, after) = stat.rsplit_once(") ")?;
+    Some((before.split_once('(')?.1.to_owned(), after.chars().next()?))
+}
+
+/// Returns the names of all other threads in /proc, and their states; nothing if they cannot be listed.
+pub fn others() -> Option<impl Iterator<Item = (OsString, char)>> {
+    // SAFETY: takes nothing and cannot fail.
+    let own = unsafe { libc::gettid() }.to_string();
+    let tasks = std::fs::read_dir("/proc/self/task").ok()?;
+    let others = tasks.flatten().filter(move |task| task.file_name() != own.as_str());
+    Some(others.filter_map(|task| Some((task.file_name(), state(&task.path())?.1))))
+}
+
+/// Waits until all other threads are at rest, so that those that end by themselves have ended. One that waits for an
+/// instant of the virtual clock looks at it again and again: it need not sleep in each look.
+pub fn rest() {
+    let mut asleep: BTreeMap<OsString, u32> = BTreeMap::new();
+    loop {
+        let mut at_rest = true;
+        for (thread, state) in others().into_iter().flatten() {
+            let looks = asleep.entry(thread).or_default();
+            *looks += u32::from(state == 'S');
+            at_rest &= *looks >= LOOKS;
+        }
+        if at_rest {
+            return;
+        }
+        std::thread::sleep(PAUSE);
+    }
+}
+
+/// Returns the kernel function that each thread waits in: the first clue to a deadlock.
+pub fn list() -> String {
+    let mut states: BTreeMap<String, u32> = BTreeMap::new();
+    for task in std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
+        let (name, state) = state(&task.path()).unwrap_or(("?".into(), '?'));
+        let wchan = std::fs::read_to_string(task.path().join("wchan")).unwrap_or_default();
+        *states.entry(format!("{name} ({state}, {})", wchan.trim())).or_default() += 1;
+    }
+    let list: Vec<_> = states
+        .into_iter()
+        .map(|(name, count)| if count > 1 { format!("{count}x {name}") } else { name })
+        .collect();
+    format!("threads: {}", list.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::RecvTimeoutError;
+
+    use super::*;
+
+    #[test]
+    fn a_step_hangs_when_it_stands_still_or_runs_in_circles_and_not_when_it_is_slow() {
+        let (start, patience) = (Instant::now(), Duration::from_secs(60));
+        let seconds = Duration::from_secs_f64;
+        // Returns when a process is given up that gets this share of a processor.
+        let given_up = |share: f64| {
+            let mut progress = Progress::new(start, seconds(5.0));
+            (0..40_000).find_map(|second| {
+                let (now, spent) = (seconds(f64::from(second)), seconds(5.0 + share * f64::from(second)));
+                progress.given_up(start + now, spent, patience).map(|reason| (second, reason))
+            })
+        };
+        assert_eq!(given_up(0.0), Some((61, "has stood still for 61 s".into())));
+        assert_eq!(given_up(0.0001), Some((61, "has stood still for 61 s".into())));
+        assert_eq!(given_up(0.025), None, "1200 s of processor time take 48000 s");
+        assert_eq!(given_up(0.1), Some((12_001, "has used 1200 s of processor time".into())));
+    }
+
+    #[test]
+    fn a_thread_that_ends_by_itself_is_waited_for() {
+        let count = || std::fs::read_dir("/proc/self/task").unwrap().count();
+        // It wakes often, and stays.
+        let (stop, stopped) = std::sync::mpsc::channel::<()>();
+        let waker = std::thread::spawn(move || {
+            while stopped.recv_timeout(Duration::from_micros(100)) == Err(RecvTimeoutError::Timeout) {}
+        });
+        rest();
+        let before = count();
+        for _ in 0..20 {
+            let working = std::thread::spawn(|| {
+                let start = Instant::now();
+                while start.elapsed() < Duration::from_millis(5) {}
+            });
+            drop(working);
+            rest();
+            assert_eq!(count(), before);
+        }
+        drop(stop);
+        waker.join().unwrap();
+    }
+}
