@@ -4,6 +4,8 @@ use anyhow::{Context as _, bail};
 use serde_json::Value;
 use yoro_tools::cargo;
 
+use crate::web;
+
 /// The packages that others could take from a registry: the library's core and what it stands on.
 const PUBLISHED: [&str; 3] = ["yoro-shaders", "yoro-gl", "yoro"];
 
@@ -26,11 +28,14 @@ pub fn lint() -> anyhow::Result<()> {
     let mut package = vec!["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
     package.extend(PUBLISHED.iter().flat_map(|name| ["--package", name]));
     checks.push(package);
-    let failed: Vec<String> = checks
+    let mut failed: Vec<String> = checks
         .iter()
         .filter(|check| !cargo::succeeds(check, &[("RUSTDOCFLAGS", "--deny warnings")]))
         .map(|check| format!("cargo {}", check.join(" ")))
         .collect();
+    if !web::check_types()? {
+        failed.push("the type checker (app/web/tsconfig.json)".into());
+    }
     if !failed.is_empty() {
         bail!("{} found something: see above", failed.join(", "));
     }

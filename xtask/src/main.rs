@@ -81,13 +81,17 @@ enum Task {
         #[arg(long)]
         serve: bool,
         /// Do not build it again
-        #[arg(long, requires = "serve")]
+        #[arg(long)]
         as_built: bool,
         /// Port to serve at; 0 for any free one
         #[arg(long, default_value_t = 8080, value_name = "NUMBER")]
         port: u16,
+        /// Copy it into this folder, too, beside earlier versions, whose open tabs keep working
+        #[arg(long, value_name = "FOLDER")]
+        out: Option<PathBuf>,
     },
-    /// Check formatting, clippy, documentation, each library without its default features, and the packages to publish
+    /// Check formatting, clippy, documentation, each library without its default features, the packages to publish, and the
+    /// types of the page's scripts
     Lint,
 }
 
@@ -130,8 +134,11 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Kit => {
             kit::kit()?;
         }
-        Task::Web { serve, as_built, port } => {
+        Task::Web { serve, as_built, port, out } => {
             let folder = if as_built { web::built()? } else { web::build()? };
+            if let Some(out) = out {
+                web::publish(&folder, &out)?;
+            }
             if serve {
                 web::serve(&folder, port)?;
             }

@@ -23,10 +23,11 @@ pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
         ("prefab/modules/yoro/module.json".into(), module().into()),
         ("prefab/modules/yoro/include/yoro.h".into(), header),
     ];
+    files.extend(licences()?);
     let build_folder = target_folder()?.join("android/capi");
     for architecture in ARCHITECTURES {
         let cargo = library_cargo(architecture)?;
-        let built = build(cargo, Some(architecture.triple), LIBRARY, &build_folder)?;
+        let built = build(cargo, Some(architecture.triple), LIBRARY, &[], &build_folder)?;
         let library = read(&built.shared)?;
         let place = format!("prefab/modules/yoro/libs/android.{}", architecture.abi);
         files.push((format!("{place}/abi.json"), abi(architecture).into()));
@@ -50,6 +51,12 @@ pub fn pack(files: &[(String, Vec<u8>)], packed: &Path) -> anyhow::Result<()> {
     remove(&content)?;
     println!("{}", packed.display());
     Ok(())
+}
+
+/// The licences, where archives of Java have them.
+pub fn licences() -> anyhow::Result<Vec<(String, Vec<u8>)>> {
+    let names = ["LICENSE-APACHE", "LICENSE-MIT"];
+    names.iter().map(|name| Ok((format!("META-INF/{name}"), read(&root().join(name))?))).collect()
 }
 
 /// The content of a file.
@@ -88,6 +95,14 @@ fn abi(architecture: Architecture) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_aar_has_both_licences() {
+        let licences = licences().unwrap();
+        let names: Vec<&str> = licences.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["META-INF/LICENSE-APACHE", "META-INF/LICENSE-MIT"]);
+        assert!(licences.iter().all(|(_, text)| text.len() > 1000));
+    }
 
     #[test]
     fn prefab_has_the_version_and_the_api_level() {

@@ -9,7 +9,7 @@ use anyhow::Context as _;
 use yoro_tools::folders::{root, target_folder};
 use yoro_tools::ndk::target::{ARCHITECTURES, Architecture};
 
-use super::android::{android_manifest, pack, read};
+use super::android::{android_manifest, licences, pack, read};
 use super::{VERSION, compile};
 
 use crate::android::library_cargo;
@@ -39,12 +39,13 @@ fn aar_for(architectures: &[Architecture], folder: &Path) -> anyhow::Result<Path
         ("AndroidManifest.xml".to_owned(), android_manifest("org.yoro.layer").into()),
         (format!("assets/openxr/1/api_layers/implicit.d/{MANIFEST}"), manifest),
     ];
+    files.extend(licences()?);
     // Beside the C library, whose dependencies it shares.
     let build_folder = target_folder()?.join("android/capi");
     for &architecture in architectures {
         let cargo = library_cargo(architecture)?;
         let target = Some(architecture.triple);
-        let (built, _) = compile(cargo, "yoro-layer", "cdylib", target, LIBRARY, &build_folder)?;
+        let (built, _) = compile(cargo, "yoro-layer", "cdylib", target, LIBRARY, &[], &build_folder)?;
         files.push((format!("jni/{}/{LIBRARY}", architecture.abi), read(&built.join(LIBRARY))?));
     }
     let packed = folder.join(format!("yoro-layer-{VERSION}.aar"));

@@ -10,20 +10,38 @@ use yoro_tools::arm64;
 use yoro_tools::cargo::cargo;
 use yoro_tools::folders::{copy, remove, root, target_folder, write};
 
-use super::texts::{cmake, cmake_version, pkg_config, soname, with_links};
+use super::portable::{self, OLDEST_GLIBC};
+use super::texts::{cmake, cmake_version, manual, pkg_config, readme, soname, with_links};
 use super::{Built, VERSION, build};
 
 /// Makes the package for this machine.
 pub fn native(folder: &Path) -> anyhow::Result<PathBuf> {
-    let built = build(cargo(), None, &soname(), &target_folder()?)?;
+    let target = target_folder()?;
+    let built = portable(cargo(), None, portable::native_compiler(), &target)?;
     archive(&built, std::env::consts::ARCH, "strip", folder)
 }
 
 /// Makes the package for arm64, with this machine's clang and Debian's libraries for arm64.
 pub fn aarch64(folder: &Path) -> anyhow::Result<PathBuf> {
-    let cargo = arm64::cargo()?;
-    let built = build(cargo, Some(arm64::TRIPLE), &soname(), &target_folder()?.join("android/arm64/capi"))?;
+    let mut compiler = Command::new("clang");
+    compiler.arg("--target=aarch64-linux-gnu");
+    let target = target_folder()?.join("android/arm64/capi");
+    let built = portable(arm64::cargo()?, Some(arm64::TRIPLE), compiler, &target)?;
     archive(&built, "aarch64", "llvm-strip", folder)
+}
+
+/// Builds the library for old systems, without the builder's folders in it.
+fn portable(
+    mut cargo: Command,
+    target: Option<&str>,
+    mut compiler: Command,
+    folder: &Path,
+) -> anyhow::Result<Built> {
+    portable::set_flags(&mut cargo);
+    let old_functions = portable::old_functions(&mut compiler, folder)?;
+    let built = build(cargo, target, &soname(), &[&old_functions], folder)?;
+    portable::check(&built.shared)?;
+    Ok(built)
 }
 
 /// Packs `yoro-VERSION-linux-ARCHITECTURE.tar.xz`, and returns the file.
@@ -41,6 +59,7 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     }
     copy(&built.archive, &library.join("libyoro.a"))?;
     run(Command::new(strip).arg("--strip-debug").arg(library.join("libyoro.a")))?;
+    portable::check(&library.join("libyoro.a"))?;
     write(&library.join("pkgconfig/yoro.pc"), pkg_config(&built.needs))?;
     write(&library.join("cmake/yoro/yoro-config.cmake"), cmake(&built.needs))?;
     write(&library.join("cmake/yoro/yoro-config-version.cmake"), cmake_version())?;
@@ -54,9 +73,10 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
         let name = Path::new(document).file_name().unwrap_or_default();
         copy(&root().join(document), &documents.join(name))?;
     }
-    let manual = root().join("docs/library.md");
-    let text = fs::read_to_string(&manual).with_context(|| format!("{} cannot be read", manual.display()))?;
-    write(&documents.join("library.md"), with_links(&text, packaged))?;
+    let guide = root().join("docs/library.md");
+    let text = fs::read_to_string(&guide).with_context(|| format!("{} cannot be read", guide.display()))?;
+    write(&documents.join("library.md"), with_links(&manual(&text), packaged))?;
+    write(&content.join("README.md"), readme(architecture, OLDEST_GLIBC))?;
     let packed = folder.join(format!("{name}.tar.xz"));
     let unfinished = folder.join(format!("{name}.tar.xz.tmp"));
     let mut tar = Command::new("tar");
@@ -94,11 +114,31 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_first_page_has_a_line_for_each_sample() {
+        let page = readme("x86_64", (2, 28));
+        let files = fs::read_dir(root().join("app/capi/examples")).unwrap();
+        let names = files.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned());
+        let samples: Vec<String> = names.filter(|name| name.ends_with(".c")).collect();
+        assert!(samples.len() >= 2);
+        for sample in samples {
+            assert!(page.contains(&format!("\ncc share/yoro/examples/{sample} ")), "{sample}");
+        }
+        assert!(page.contains("glibc 2.28"));
+    }
+
+    #[test]
     fn every_link_of_the_packages_document_leads_into_the_package() {
         let text = fs::read_to_string(root().join("docs/library.md")).unwrap();
         let mut kept = Vec::new();
+        let text = manual(&text);
         let packed = with_links(&text, |target| packaged(target).inspect(|to| kept.push(to.clone())));
         let links = packed.matches("](").count();
+        let headings: Vec<&str> = text.lines().filter(|line| line.starts_with("## ")).collect();
+        let anchor =
+            |heading: &str| heading[3..].to_lowercase().replace(' ', "-").replace(['(', ')', ','], "");
+        for inside in kept.iter().filter_map(|target| target.strip_prefix('#')) {
+            assert!(headings.iter().any(|heading| anchor(heading) == inside), "no chapter #{inside}");
+        }
         assert_eq!(links, kept.len());
         let here = |file: &str| root().join(file).is_file();
         for target in kept.iter().filter(|target| !target.starts_with('#')) {

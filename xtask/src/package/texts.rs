@@ -71,6 +71,53 @@ pub fn cmake_version() -> String {
     )
 }
 
+/// Returns the part of docs/library.md that concerns C: its chapter first, then those that it leads to.
+pub fn manual(text: &str) -> String {
+    const CHAPTERS: [&str; 4] =
+        ["## C and C++", "## GL state", "## Anti-aliased sources", "## When two renders are cheaper"];
+    let mut manual = String::from("# yoro in C and C++\n");
+    for chapter in CHAPTERS {
+        let Some(start) = text.find(&format!("\n{chapter}\n")) else { continue };
+        let body = &text[start + 1..];
+        let end = body.find("\n## ").map_or(body.len(), |end| end + 1);
+        manual.push('\n');
+        manual.push_str(body[..end].trim_end());
+        manual.push('\n');
+    }
+    manual
+}
+
+/// The first page of a package: what is in it, and how to compile the samples.
+pub fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
+    format!(
+        "# yoro {VERSION} for Linux on {architecture}\n\
+         \n\
+         Render one eye, synthesize the other. Needs glibc {major}.{minor} or newer, and at run time the drivers' libraries.\n\
+         \n\
+         | | |\n\
+         |---|---|\n\
+         | [include/yoro.h](include/yoro.h) | every function: arguments, threads, errors |\n\
+         | [share/doc/yoro/library.md](share/doc/yoro/library.md) | the guide |\n\
+         | [share/yoro/examples](share/yoro/examples) | samples, with a `CMakeLists.txt` |\n\
+         | `lib` | `libyoro.so`, `libyoro.a`, files for pkg-config and CMake |\n\
+         \n\
+         The samples, from this folder:\n\
+         \n\
+         ```sh\n\
+         export PKG_CONFIG_PATH=$PWD/lib/pkgconfig\n\
+         FLAGS=\"$(pkg-config --cflags --libs yoro) -Wl,-rpath,$PWD/lib\"\n\
+         cc share/yoro/examples/gles.c $FLAGS -lEGL -lGLESv2 -lm -o gles && ./gles\n\
+         cc share/yoro/examples/vulkan.c $FLAGS -lvulkan -lm -o vulkan && ./vulkan\n\
+         cmake -S share/yoro/examples -B build -DCMAKE_PREFIX_PATH=$PWD && cmake --build build    # or both by CMake\n\
+         ```\n\
+         \n\
+         They write `gles.png` and `vulkan.png`, both eyes side by side, and print how close the synthesized eye is to a\n\
+         rendered one. A program of your own links `yoro` as they do; `lib/libyoro.a` in place of it needs no `-rpath`.\n\
+         \n\
+         MIT or Apache 2.0, at your option: `share/doc/yoro`.\n"
+    )
+}
+
 /// Replaces the targets of Markdown's links; a link without a target becomes its label.
 pub fn with_links(text: &str, mut target: impl FnMut(&str) -> Option<String>) -> String {
     let (mut out, mut rest) = (String::new(), text);
@@ -102,6 +149,12 @@ mod tests {
         let text = "See [a](x.md), `b[0]`, [c](y.md#z) and ![d](p.png).";
         let led = with_links(text, |target| target.ends_with("png").then(|| format!("q/{target}")));
         assert_eq!(led, "See a, `b[0]`, c and ![d](q/p.png).");
+    }
+
+    #[test]
+    fn the_manual_is_about_c() {
+        let text = "# All\n\n## GL state\n\nb\n\n## Vulkan\n\nc\n\n## C and C++\n\na\n### Depth\n\n## The shader kit\nd\n";
+        assert_eq!(manual(text), "# yoro in C and C++\n\n## C and C++\n\na\n### Depth\n\n## GL state\n\nb\n");
     }
 
     #[test]

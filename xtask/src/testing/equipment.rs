@@ -26,7 +26,7 @@ struct Item {
     build: Option<fn() -> anyhow::Result<PathBuf>>,
 }
 
-static ITEMS: [Item; 9] = [
+static ITEMS: [Item; 10] = [
     Item {
         what: "the page",
         variable: "WEB",
@@ -56,6 +56,14 @@ static ITEMS: [Item; 9] = [
         variable: "MONADO",
         users: &[("yoro-app", "monado")],
         fetch: monado::make,
+        build: None,
+    },
+    Item {
+        what: "Mesa 25",
+        variable: "MULTIVIEW",
+        users: &[("yoro-tests", "multiview::")],
+        // Monado's drivers, and its launcher for programs of this machine.
+        fetch: || Ok(monado::make()?.join("run")),
         build: None,
     },
     Item {

@@ -1,7 +1,8 @@
 //! The page: `app/web` compiled for browsers, and the files around it, for any static host.
 
-mod emulator;
+mod npm;
 mod serve;
+mod site;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,11 +11,12 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 use yoro_tools::cargo::{self, announce};
-use yoro_tools::folders::{self, remove, root, target_folder};
+use yoro_tools::folders::{remove, target_folder};
 use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
 
-pub use emulator::emulator;
+pub use npm::{check_types, emulator};
 pub use serve::serve;
+pub use site::publish;
 
 const TRIPLE: &str = "wasm32-unknown-unknown";
 const MODULE: &str = "yoro_web";
@@ -44,8 +46,8 @@ pub fn build() -> anyhow::Result<PathBuf> {
     let module = compile(&target.join("wasm"))?;
     let (folder, unfinished) = (target.join("web"), target.join("web.part"));
     remove(&unfinished)?;
-    copy(&root().join("app/web/page"), &unfinished)?;
-    let (bytes, transferred) = bind(&module, &unfinished)?;
+    let (bytes, transferred) = bind(&module, &unfinished.join(site::VERSION))?;
+    site::assemble(&unfinished)?;
     remove(&folder)?;
     fs::rename(&unfinished, &folder).with_context(|| format!("{} cannot be written", folder.display()))?;
     println!(
@@ -102,15 +104,4 @@ fn bind(module: &Path, folder: &Path) -> anyhow::Result<(u64, u64)> {
         (Some(Ok(bytes)), Some(Ok(transferred))) => Ok((bytes, transferred)),
         _ => bail!("yoro-web-bindgen says {text:?} instead of two numbers"),
     }
-}
-
-/// Copies a folder of files.
-fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
-    for entry in fs::read_dir(from).with_context(|| format!("{} cannot be read", from.display()))? {
-        let path = entry?.path();
-        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
-            folders::copy(&path, &to.join(name))?;
-        }
-    }
-    Ok(())
 }

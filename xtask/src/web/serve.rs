@@ -9,6 +9,8 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 
+use super::site::POLICY;
+
 /// The longest line of a request that is read, in bytes.
 const MAX_LINE: u64 = 8 << 10;
 
@@ -52,7 +54,8 @@ fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
     };
     write!(
         stream,
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-cache\r\nConnection: close\r\n\r\n",
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-cache\r\n\
+         Content-Security-Policy: {POLICY}\r\nConnection: close\r\n\r\n",
         body.len()
     )?;
     if !request.starts_with("HEAD") {
@@ -77,6 +80,7 @@ fn kind(path: &Path) -> &'static str {
         Some("js") => "text/javascript; charset=utf-8",
         Some("wasm") => "application/wasm",
         Some("svg") => "image/svg+xml",
+        Some("jpg") => "image/jpeg",
         Some("webmanifest") => "application/manifest+json",
         _ => "application/octet-stream",
     }

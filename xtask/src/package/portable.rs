@@ -1,0 +1,135 @@
+//! What makes a library run on other people's Linux: old functions of the C library, and nothing of the builder's machine.
+
+use std::env::consts::ARCH;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context as _, bail};
+use yoro_tools::folders::{root, write};
+use yoro_tools::rust::anonymous_paths;
+
+/// The oldest glibc that packages for Linux run with: Debian 10, Ubuntu 18.10, RHEL 8 and all that is newer.
+pub const OLDEST_GLIBC: (u32, u32) = (2, 28);
+
+/// Rust's std calls `stat64` and `fstat64`, which glibc exports since 2.33. Older ones export what their headers made of
+/// these calls, and newer ones still have it. `gettid` is there since 2.30; std can do without, but LLD does not write that
+/// into the file.
+const OLD_FUNCTIONS: &str = r#"
+#if defined(__x86_64__)
+#define BASE "GLIBC_2.2.5"
+#define STAT_VERSION 1
+#define GETTID 186
+#elif defined(__aarch64__)
+#define BASE "GLIBC_2.17"
+#define STAT_VERSION 0
+#define GETTID 178
+#endif
+extern long syscall(long number, ...);
+extern int old_stat(int version, const char *path, void *result);
+extern int old_fstat(int version, int file, void *result);
+__asm__(".symver old_stat, __xstat64@" BASE);
+__asm__(".symver old_fstat, __fxstat64@" BASE);
+__attribute__((visibility("hidden"))) int stat64(const char *path, void *result) {
+  return old_stat(STAT_VERSION, path, result);
+}
+__attribute__((visibility("hidden"))) int fstat64(int file, void *result) { return old_fstat(STAT_VERSION, file, result); }
+__attribute__((visibility("hidden"))) int gettid(void) { return (int)syscall(GETTID); }
+"#;
+
+/// Compiles these functions by a C compiler with its arguments, and returns the object to link.
+pub fn old_functions(compiler: &mut Command, folder: &Path) -> anyhow::Result<PathBuf> {
+    let (source, object) = (folder.join("old_functions.c"), folder.join("old_functions.o"));
+    write(&source, OLD_FUNCTIONS)?;
+    let program = compiler.get_program().to_string_lossy().into_owned();
+    let output = compiler.args(["-c", "-O2", "-fPIC", "-o"]).arg(&object).arg(&source).output();
+    let output = output.with_context(|| format!("{program} cannot be started: install it"))?;
+    if !output.status.success() {
+        bail!("{program} failed: {}", String::from_utf8_lossy(&output.stderr).trim());
+    }
+    Ok(object)
+}
+
+/// Adds rustc's flag by which the library names source files without the builder's folders.
+pub fn set_flags(cargo: &mut Command) {
+    let given = cargo.get_envs().find(|(name, _)| *name == OsStr::new("CARGO_ENCODED_RUSTFLAGS"));
+    let given = given.and_then(|(_, value)| value).map(|value| value.to_string_lossy().into_owned());
+    let flags: Vec<String> = given.into_iter().chain(anonymous_paths()).collect();
+    cargo.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
+}
+
+/// Checks that a library needs no newer glibc than the oldest, and holds no folder of the builder's.
+pub fn check(file: &Path) -> anyhow::Result<()> {
+    let content = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
+    let newest = newest_glibc(&content);
+    if newest.is_some_and(|newest| newest > OLDEST_GLIBC) {
+        let ((major, minor), (old_major, old_minor)) = (newest.unwrap_or_default(), OLDEST_GLIBC);
+        bail!(
+            "{} needs glibc {major}.{minor}, newer than {old_major}.{old_minor}: `objdump -T` names the functions; give \
+             older ones in xtask/src/package/portable.rs",
+            file.display()
+        );
+    }
+    let home = std::env::home_dir();
+    for folder in [Some(root()), home.as_deref().map(Path::to_owned)].into_iter().flatten() {
+        let name = folder.to_string_lossy().into_owned();
+        // A home that is / or /root says nothing of anybody, but for what is in it.
+        if holds(&content, format!("{name}/").as_bytes()) {
+            bail!("{} holds the builder's folder {name}: remap it", file.display());
+        }
+    }
+    Ok(())
+}
+
+fn holds(content: &[u8], text: &[u8]) -> bool {
+    content.windows(text.len()).any(|window| window == text)
+}
+
+/// Returns the newest version of glibc that a library's dynamic symbols have.
+fn newest_glibc(content: &[u8]) -> Option<(u32, u32)> {
+    const NAME: &[u8] = b"GLIBC_";
+    let names = content.windows(NAME.len()).enumerate().filter(|(_, window)| *window == NAME);
+    let versions = names.filter_map(|(at, _)| {
+        let rest = &content[at + NAME.len()..];
+        let end = rest.iter().position(|byte| !matches!(byte, b'0'..=b'9' | b'.'))?;
+        let mut numbers = std::str::from_utf8(&rest[..end]).ok()?.split('.').map(str::parse);
+        Some((numbers.next()?.ok()?, numbers.next()?.ok()?))
+    });
+    versions.max()
+}
+
+/// This machine's C compiler.
+pub fn native_compiler() -> Command {
+    debug_assert!(matches!(ARCH, "x86_64" | "aarch64"), "glibc's versions of {ARCH} are not known");
+    Command::new("cc")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_version_is_found() {
+        let names = b"\0libc.so.6\0GLIBC_2.9\0GLIBC_2.17\0GLIBC_2.2.5\0GLIBC_PRIVATE\0";
+        assert_eq!(newest_glibc(names), Some((2, 17)));
+        assert_eq!(newest_glibc(b"nothing"), None);
+    }
+
+    /// The check fails for what a package must not be.
+    #[test]
+    fn newer_functions_and_the_builders_folders_are_found() {
+        let folder = std::env::temp_dir().join(format!("yoro-portable-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let outcome = |name: &str, content: String| {
+            let file = folder.join(name);
+            fs::write(&file, content).unwrap();
+            check(&file).map_err(|error| error.to_string())
+        };
+        assert_eq!(outcome("old", "\0GLIBC_2.17\0/rustc/library/std/src".into()), Ok(()));
+        assert!(outcome("new", "\0GLIBC_2.33\0".into()).unwrap_err().contains("glibc 2.33"));
+        let own = format!("\0{}/app/core/src/lib.rs\0", root().display());
+        assert!(outcome("folder", own).unwrap_err().contains("builder's folder"));
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,56 @@
+//! Packages of npm that check the page: a headset for its tests, and a checker of its types.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use anyhow::{Context as _, bail};
+use yoro_tools::folders::{make_once, root, target_folder};
+
+/// Returns the Immersive Web Emulation Runtime, which plays a headset to the page's tests: a script.
+///
+/// # Errors
+/// When there is no npm, or it cannot fetch.
+pub fn emulator() -> anyhow::Result<PathBuf> {
+    fetch("iwer", "iwer@2.5.0", "build/iwer.min.js")
+}
+
+/// Checks the types of the page's scripts by their JSDoc comments. True if nothing was found, or the checker is not to be
+/// had, which is said.
+///
+/// # Errors
+/// When Node cannot be started.
+pub fn check_types() -> anyhow::Result<bool> {
+    let compiler = match fetch("typescript", "typescript@5.9.3", "lib/tsc.js") {
+        Ok(compiler) => compiler,
+        Err(error) => {
+            println!("the types of the page's scripts were not checked: {error:#}");
+            return Ok(true);
+        }
+    };
+    let project = root().join("app/web/tsconfig.json");
+    let status = Command::new("node").arg(compiler).arg("--project").arg(project).status();
+    Ok(status.context("node cannot be started: apt-get install nodejs")?.success())
+}
+
+/// Fetches a package without its dependencies, unless it is here, and returns a script of it.
+fn fetch(name: &str, package: &str, script: &str) -> anyhow::Result<PathBuf> {
+    let folder = target_folder()?.join(name);
+    let script = folder.join("package").join(script);
+    make_once(&folder, package, || {
+        fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+        let mut npm = Command::new("npm");
+        npm.args(["pack", "--silent", package]).current_dir(&folder);
+        let output = npm.output().context("npm cannot be started: apt-get install npm")?;
+        if !output.status.success() {
+            bail!("npm cannot fetch {package}: {}", String::from_utf8_lossy(&output.stderr).trim());
+        }
+        let archive = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        let unpacked = Command::new("tar").args(["-xzf", &archive]).current_dir(&folder).status();
+        if !unpacked.context("tar cannot be started")?.success() || !script.is_file() {
+            bail!("{package} has not the script that was expected");
+        }
+        Ok(())
+    })?;
+    Ok(script)
+}

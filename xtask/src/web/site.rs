@@ -1,0 +1,147 @@
+//! The files of the page as a host serves them: one document, and a folder for each version of everything else, so that a tab
+//! that is open while a new version comes keeps finding its own files.
+
+use std::fs;
+use std::hash::{DefaultHasher, Hasher as _};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use yoro_tools::folders::{self, copy, root};
+
+/// The name that stands for the version in the page's sources.
+pub const VERSION: &str = "VERSION";
+/// The page's address on a code host; without one there is no link to the source.
+const SOURCE: Option<&str> = None;
+/// The files that keep their names from version to version.
+const LASTING: [&str; 8] = [
+    "index.html",
+    "offline.js",
+    "icon.svg",
+    "manifest.webmanifest",
+    "example-color.jpg",
+    "example-depth.png",
+    "example.obj",
+    "example.mtl",
+];
+/// The scripts that the page does not load as modules of its own.
+const SEPARATE: [&str; 2] = ["boot.js", "worker.js"];
+/// The content policy that the page works under.
+pub const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; object-src 'none'; base-uri 'none'; form-action 'none'";
+
+/// Completes a folder in which the module lies in [`VERSION`]: copies the page's sources, and names the version by its content.
+///
+/// # Errors
+/// When a file cannot be read or written.
+pub fn assemble(folder: &Path) -> anyhow::Result<()> {
+    let (page, unnamed) = (root().join("app/web/page"), folder.join(VERSION));
+    for path in files(&page)? {
+        let name = name(&path);
+        copy(&path, &if LASTING.contains(&&*name) { folder.join(name) } else { unnamed.join(name) })?;
+    }
+    copy(&root().join("docs/web.jpg"), &folder.join("preview.jpg"))?;
+    let mut hash = DefaultHasher::new();
+    let mut names = Vec::new();
+    for path in files(&unnamed)? {
+        hash.write(name(&path).as_bytes());
+        hash.write(&read(&path)?);
+        names.push(name(&path));
+    }
+    let version = format!("{:016x}", hash.finish());
+    let named = folder.join(&version);
+    fs::rename(&unnamed, &named).with_context(|| format!("{} cannot be written", named.display()))?;
+    for name in ["index.html", "offline.js"] {
+        let path = folder.join(name);
+        let text = String::from_utf8_lossy(&read(&path)?).into_owned();
+        folders::write(&path, fill(&text, &version, &names))?;
+    }
+    folders::write(&folder.join("_headers"), headers(&version))
+}
+
+/// Copies the built page into a folder that may hold earlier versions, the document last.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn publish(built: &Path, out: &Path) -> anyhow::Result<()> {
+    for entry in fs::read_dir(built).with_context(|| format!("{} cannot be read", built.display()))? {
+        let path = entry?.path();
+        if path.is_dir() {
+            for file in files(&path)? {
+                copy(&file, &out.join(name(&path)).join(name(&file)))?;
+            }
+        }
+    }
+    for file in files(built)?.into_iter().filter(|file| name(file) != "index.html") {
+        copy(&file, &out.join(name(&file)))?;
+    }
+    copy(&built.join("index.html"), &out.join("index.html"))?;
+    println!("{}: copy it to any static host; earlier versions in it keep working", out.display());
+    Ok(())
+}
+
+/// Puts the version and its files into a document or a script.
+fn fill(text: &str, version: &str, names: &[String]) -> String {
+    let scripts = names.iter().filter(|name| name.ends_with(".js") && !SEPARATE.contains(&name.as_str()));
+    let modules: Vec<String> =
+        scripts.map(|name| format!("<link rel=\"modulepreload\" href=\"{VERSION}/{name}\">")).collect();
+    let list: Vec<String> = names.iter().map(|name| format!("'{VERSION}/{name}'")).collect();
+    let source = SOURCE.map_or_else(String::new, |source| format!("<a href=\"{source}\">Source</a>"));
+    text.replace("<!-- MODULES -->", &modules.join("\n"))
+        .replace("/* FILES */", &list.join(", "))
+        .replace("<!-- SOURCE -->", &source)
+        .replace(VERSION, version)
+}
+
+/// Returns the headers that the page wants, as Netlify's and Cloudflare's hosts read them.
+fn headers(version: &str) -> String {
+    format!(
+        "/*\n  Content-Security-Policy: {POLICY}\n  Cache-Control: no-cache\n\
+         /{version}/*\n  ! Cache-Control\n  Cache-Control: public, max-age=31536000, immutable\n"
+    )
+}
+
+/// Returns the files of a folder in the order of their names.
+fn files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))?;
+    let mut found = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
+    found.retain(|path| path.is_file());
+    found.sort();
+    Ok(found)
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_earlier_version_stays_beside_the_new_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let [built, out] = ["built", "out"].map(|name| folder.path().join(name));
+        for version in ["one", "two"] {
+            folders::remove(&built).unwrap();
+            folders::write(&built.join(version).join("main.js"), version).unwrap();
+            folders::write(&built.join("index.html"), version).unwrap();
+            publish(&built, &out).unwrap();
+        }
+        let content = |name: &str| fs::read_to_string(out.join(name)).unwrap();
+        assert_eq!(["one/main.js", "two/main.js", "index.html"].map(content), ["one", "two", "two"]);
+    }
+
+    #[test]
+    fn every_file_is_asked_for_by_its_version() {
+        let names = ["boot.js", "main.js", "yoro_web_bg.wasm"].map(str::to_owned);
+        let page = fs::read_to_string(root().join("app/web/page/index.html")).unwrap();
+        let filled = fill(&page, "0123", &names);
+        assert!(filled.contains("src=\"0123/boot.js\"") && !filled.contains(VERSION), "{filled}");
+        assert_eq!(filled.matches("modulepreload").count(), 1);
+        let offline = fs::read_to_string(root().join("app/web/page/offline.js")).unwrap();
+        assert!(fill(&offline, "0123", &names).contains("'0123/main.js', '0123/yoro_web_bg.wasm'"));
+    }
+}
