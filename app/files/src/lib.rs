@@ -1,8 +1,9 @@
 //! Files in and out: an output is complete or absent, and an error names the file and the remedy.
 //!
 //! [`read`] and [`write()`] take whole files, [`write_with`] lets the caller fill a file that appears only when it is
-//! complete, [`append`] opens one that grows, and [`find`] lists the files below a folder. Loaders that read piece by piece [`open`] their files: in a
-//! browser those are files in memory. This crate must never know the contents of the files.
+//! complete, [`append`] opens one that grows, and [`find`] lists the files below a folder. Loaders that read piece by
+//! piece [`open`] their files: in a browser those are files in memory. This crate must never know the contents of the
+//! files.
 
 pub mod decoder;
 mod input;
@@ -88,13 +89,14 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
 
 /// Creates the folder `path` and its parents if they do not exist.
 pub fn create_folder(path: &Path) -> Result<(), FileError> {
-    if path.as_os_str().is_empty() || path.is_dir() {
+    if path.as_os_str().is_empty() {
         return Ok(());
     }
-    if path.exists() {
-        return Err(FileError::NotFolder { path: path.into() });
-    }
-    fs::create_dir_all(path).map_err(|source| FileError::Write { path: path.into(), source })
+    // Creates before it looks: another thread may create the same folder meanwhile.
+    fs::create_dir_all(path).map_err(|source| match path.exists() {
+        true if !path.is_dir() => FileError::NotFolder { path: path.into() },
+        _ => FileError::Write { path: path.into(), source },
+    })
 }
 
 /// Writes `bytes` to `path`, as [`write_with`] does.
@@ -102,9 +104,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_with(path, |out| out.write_all(bytes))
 }
 
-/// Lets `fill` write a file that appears under `path` only when it is complete: it is written under a
-/// temporary name in the same folder and renamed. A crash, a full disk or Ctrl-C leaves the old file. What a process that
-/// was killed has left under a temporary name is removed by the next one that writes into the folder. Missing parent folders are created. A device or pipe (`/dev/stdout`) is written in place.
+/// Lets `fill` write a file that appears under `path` only when it is complete: it is written under a temporary name in
+/// the same folder and renamed. A crash, a full disk or Ctrl-C leaves the old file. What a process that was killed has
+/// left under a temporary name is removed by the next one that writes into the folder. Missing parent folders are
+/// created. A device or pipe (`/dev/stdout`) is written in place.
 pub fn write_with(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
@@ -301,6 +304,23 @@ mod tests {
         write(&file, b"x").unwrap();
         assert!(matches!(create_folder(&file), Err(FileError::NotFolder { .. })));
         assert!(matches!(write(&file.join("below"), b""), Err(FileError::NotFolder { .. })));
+    }
+
+    #[test]
+    fn many_threads_may_create_one_folder() {
+        let dir = tempfile::tempdir().unwrap();
+        for round in 0..200 {
+            let folder = dir.path().join(format!("{round}/a/b"));
+            let start = std::sync::Barrier::new(4);
+            std::thread::scope(|scope| {
+                for _ in 0..4 {
+                    scope.spawn(|| {
+                        start.wait();
+                        create_folder(&folder).unwrap();
+                    });
+                }
+            });
+        }
     }
 
     #[cfg(unix)]
