@@ -89,6 +89,30 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
 }
 
 #[test]
+fn the_files_of_all_shards_are_one_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let line = "bench ipd --quick --scene prototype --size 32 --rounds 1 --contender yoro-gather";
+    for part in ["1/2", "2/2"] {
+        succeed(at, &format!("{line} --shard {part}"));
+    }
+    succeed(at, &format!("{line} --out whole.jsonl"));
+    let parts = ["out/bench-ipd-quick-1of2.jsonl", "out/bench-ipd-quick-2of2.jsonl"];
+    let records_of = |name: &str| -> Vec<Value> { records(&at.join(name)).split_off(1) };
+    // Quality alone is measured here, so that all records are equal.
+    assert_eq!(parts.map(records_of).concat(), records_of("whole.jsonl"));
+    succeed(at, &format!("report {} {} --out parts", parts[0], parts[1]));
+    succeed(at, "report whole.jsonl --out whole");
+    let tables = |folder: &str| -> Vec<String> {
+        let text = fs::read_to_string(at.join(folder).join("summary.md")).unwrap();
+        text.lines().filter(|line| line.starts_with('|')).map(String::from).collect()
+    };
+    assert!(tables("parts").len() > 3);
+    assert_eq!(tables("parts"), tables("whole"));
+    run(at, &format!("{line} --shard 1/9")).refuses(&["1/9 is empty", "3 settings"]);
+}
+
+#[test]
 fn sweeps_have_their_points_and_baselines() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();

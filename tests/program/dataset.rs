@@ -62,6 +62,29 @@ fn only_what_is_missing_is_made() {
     assert_eq!(times(&scene), second, "a mistake changes nothing");
 }
 
+/// Array jobs may write into one folder or into several that are copied together.
+#[test]
+fn the_parts_of_all_shards_are_one_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let line = "dataset prototype voxel --groups 2 --size 32";
+    assert_eq!(succeed(dir.path(), &format!("{line} --out whole")).stdout, "4 groups in whole (4 new)\n");
+    for (shard, groups) in [("1/3", 1), ("2/3", 1), ("3/3", 2), ("3/5", 1)] {
+        let new = if shard == "3/5" { 0 } else { groups };
+        let said = succeed(dir.path(), &format!("{line} --shard {shard} --out parts")).stdout;
+        assert_eq!(said, format!("{groups} groups in parts ({new} new)\n"));
+    }
+    let content = |folder: &str| -> BTreeMap<PathBuf, Vec<u8>> {
+        let folder = dir.path().join(folder);
+        let files = yoro_files::find(&folder, &["png", "json"]).unwrap();
+        files.into_iter().map(|file| (file.clone(), fs::read(folder.join(file)).unwrap())).collect()
+    };
+    let whole = content("whole");
+    assert_eq!(whole.len(), 4 * (KINDS.len() + 1) + 2);
+    assert_eq!(content("parts").into_keys().collect::<Vec<_>>(), whole.keys().cloned().collect::<Vec<_>>());
+    assert!(content("parts") == whole, "a file differs");
+    run(dir.path(), &format!("{line} --shard 0/3")).refuses(&["--shard", "1/8 up to 8/8"]);
+}
+
 /// Settings are compared with those in a file: each number must come back as it was written.
 #[test]
 fn a_folder_is_continued_whatever_its_numbers() {

@@ -1,7 +1,10 @@
 //! Options that several subcommands share.
 
+use std::fmt;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::str::FromStr;
 
 use anyhow::ensure;
 
@@ -55,6 +58,40 @@ impl PatcherArgs {
     }
 }
 
+/// A share of the work, for array jobs: the `index`th of `count` parts, from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// Returns this part of the positions below `total`. The parts of one `count` are consecutive, differ by one
+    /// position at most, and together are everything.
+    pub fn part(self, total: usize) -> Range<usize> {
+        let end = |parts: usize| (total as u128 * parts as u128 / self.count as u128) as usize;
+        end(self.index - 1)..end(self.index)
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Shard, String> {
+        let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+        match numbers {
+            Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count }),
+            _ => Err("give the number of the part and of all parts, such as 1/8 up to 8/8".into()),
+        }
+    }
+}
+
 /// Returns names as an option takes several of them.
 pub fn list(names: impl IntoIterator<Item = &'static str>) -> String {
     names.into_iter().collect::<Vec<_>>().join(",")
@@ -81,5 +118,27 @@ pub fn parse_fov(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(value) if (1.0..=170.0).contains(&value) => Ok(value.to_radians()),
         _ => Err("give degrees from 1 to 170".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_are_everything_once() {
+        for (total, count) in [(0, 3), (1, 4), (10, 1), (10, 3), (29_128, 512)] {
+            let parts: Vec<_> = (1..=count).map(|index| Shard { index, count }.part(total)).collect();
+            assert_eq!(
+                parts.iter().flat_map(Clone::clone).collect::<Vec<_>>(),
+                (0..total).collect::<Vec<_>>()
+            );
+            let lengths: Vec<_> = parts.iter().map(Range::len).collect();
+            assert!(lengths.iter().max().unwrap() - lengths.iter().min().unwrap() <= 1);
+        }
+        assert_eq!("3/8".parse(), Ok(Shard { index: 3, count: 8 }));
+        for wrong in ["0/8", "9/8", "1", "1/0", "-1/8", "a/b", "1/8/2", ""] {
+            assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+        }
     }
 }

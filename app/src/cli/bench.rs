@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::{bail, ensure};
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, parse_fov};
+use crate::cli::args::{GlArgs, Shard, parse_fov};
 use crate::cli::choices;
 use crate::cli::eyes;
 use crate::cli::machine;
@@ -62,8 +62,11 @@ pub struct BenchArgs {
     /// and mono for quality, are always measured
     #[arg(long = "contender", value_name = "NAME", value_parser = parse_contender)]
     contenders: Vec<Contender>,
+    /// Only this part of the settings, for array jobs: 1/8 up to 8/8. `yoro report` takes the files of all parts
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// File of results. One that an interrupted run has left is continued
-    /// [default: out/bench-SUITES.jsonl]
+    /// [default: out/bench-SUITES.jsonl; --shard: out/bench-SUITES-IofN.jsonl]
     #[arg(long, value_name = "FILE.jsonl")]
     out: Option<PathBuf>,
     /// Distance between the eyes in metres
@@ -231,8 +234,9 @@ impl BenchArgs {
     fn out(&self) -> PathBuf {
         let frame = if self.frame { "-frame" } else { "" };
         let quick = if self.quick { "-quick" } else { "" };
-        let default =
-            || Path::new("out").join(format!("bench-{}{frame}{quick}.jsonl", self.suite_names().join("-")));
+        let shard = self.shard.map(|shard| format!("-{shard}").replace('/', "of")).unwrap_or_default();
+        let suites = self.suite_names().join("-");
+        let default = || Path::new("out").join(format!("bench-{suites}{frame}{quick}{shard}.jsonl"));
         self.out.clone().unwrap_or_else(default)
     }
 }
@@ -261,6 +265,11 @@ fn jobs(args: &BenchArgs, choices: &Choices, object: &LazyObject) -> anyhow::Res
             );
             jobs.push(job);
         }
+    }
+    if let Some(shard) = args.shard {
+        let part = shard.part(jobs.len());
+        ensure!(!part.is_empty(), "{shard} is empty: there are {} settings, so give fewer parts", jobs.len());
+        jobs = jobs.drain(part).collect();
     }
     Ok(jobs)
 }

@@ -1,6 +1,7 @@
 //! `yoro dataset`: image groups for training and measuring.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -10,7 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, PatcherArgs};
+use crate::cli::args::{GlArgs, PatcherArgs, Shard};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::outputs::Files;
@@ -43,6 +44,9 @@ pub struct DatasetArgs {
     /// Groups of each scene, at even pace along its camera path
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=1_000_000), value_name = "N")]
     groups: u32,
+    /// Only this part of all groups, for array jobs: 1/8 up to 8/8. Parts may share a folder
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// Another camera path than the scene's own: a JSON array of {position, target}
     #[arg(long, value_name = "FILE")]
     path: Option<PathBuf>,
@@ -181,11 +185,18 @@ fn run(args: &DatasetArgs) -> anyhow::Result<()> {
     let path = args.path.as_deref().map(path::read).transpose()?;
     let names = args.names();
     // Names and folders are checked before hours of work.
+    let groups = args.groups as usize;
+    let all = 0..names.len() * groups;
+    let part = args.shard.map_or(all.clone(), |shard| shard.part(all.len()));
     let jobs = names
         .iter()
-        .map(|name| Job::new(args, name, path.as_deref()))
+        .zip(0..)
+        .map(|(name, at)| {
+            let within = |position: usize| position.clamp(at * groups, (at + 1) * groups) - at * groups;
+            Job::new(args, name, path.as_deref(), within(part.start) as u32..within(part.end) as u32)
+        })
         .collect::<anyhow::Result<Vec<Job>>>()?;
-    let total = names.len() as u64 * u64::from(args.groups);
+    let total = part.len() as u64;
     let missing: u64 = jobs.iter().map(|job| job.missing.len() as u64).sum();
     let bar = progress_bar(total);
     bar.set_position(total - missing);
@@ -219,7 +230,13 @@ struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    fn new(args: &DatasetArgs, name: &'a str, path: Option<&[Viewpoint]>) -> anyhow::Result<Job<'a>> {
+    /// Returns what is missing of the groups `indices` of a scene.
+    fn new(
+        args: &DatasetArgs,
+        name: &'a str,
+        path: Option<&[Viewpoint]>,
+        indices: Range<u32>,
+    ) -> anyhow::Result<Job<'a>> {
         let is_file = !BUILTINS.iter().any(|b| b.name == name);
         if is_file && !Path::new(name).exists() {
             yoro_scenes::load(name, args.seed, None)?;
@@ -246,7 +263,7 @@ impl<'a> Job<'a> {
             options: group_options(args),
         })?;
         check_settings(&folder, &settings)?;
-        let missing = (0..args.groups).filter(|&index| !is_finished(&folder, index)).collect();
+        let missing = indices.filter(|&index| !is_finished(&folder, index)).collect();
         Ok(Job { name, folder, settings, missing })
     }
 
