@@ -17,6 +17,10 @@ struct Search {
     // Column and depth of the hole's background.
     int edge;
     float edge_depth;
+#ifdef HISTORY
+    // law.y * depth of the foreground beside it.
+    float front;
+#endif
     // The nearest silhouette beside the pixel.
     int rim;
     float rim_depth;
@@ -55,6 +59,9 @@ void walk(inout Search at, float end, float origin, int row) {
         bool farther = jump && law.y * (at.depth - at.edge_depth) < 0.0;
         at.edge = farther ? here : at.edge;
         at.edge_depth = farther ? at.depth : at.edge_depth;
+#ifdef HISTORY
+        at.front = farther ? law.y * at.next : at.front;
+#endif
     }
 }
 
@@ -76,7 +83,11 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
     int column = source_column(int(x));
     int edge = outside ? column : -1;
     float edge_depth = outside ? next : law.y < 0.0 ? -1e9 : 1e9;
+#ifdef HISTORY
+    Search at = Search(column, x - origin, b, b, next, next, false, edge, edge_depth, 1e9, -1, 0.0);
+#else
     Search at = Search(column, x - origin, b, b, next, next, false, edge, edge_depth, -1, 0.0);
+#endif
 #ifndef TEXTURE_GATHER
     // Nearly every pixel ends within the first tiles; those beside silhouettes of near surfaces go on, tile by tile.
     float first = (floor(x / float(TILE.x)) + FIRST_TILES) * float(TILE.x);
@@ -101,7 +112,17 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
     surface.depth = mix(at.depth, own ? at.next : at.edge_depth, t);
     float away = x - origin + law.y * surface.depth;
     surface.hole = !at.found && abs(away) >= 0.5;
+#ifdef HISTORY
+    vec4 color = color_at(surface.source, row);
+    bool unknown = surface.hole;
+    // A loop, as in `fill_hole`.
+    for (int i = surface.hole ? 0 : 1; i < 1; ++i) {
+        unknown = !recall(at.front, origin, row, color, surface.depth);
+    }
+    color = fill_hole(unknown, color, away, x, surface.depth, row);
+#else
     vec4 color = fill_hole(surface.hole, color_at(surface.source, row), away, x, surface.depth, row);
+#endif
     // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
     // it covers on average.
     if (at.rim >= 0) {

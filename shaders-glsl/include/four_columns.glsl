@@ -78,6 +78,10 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     // Column and depth of the hole's background.
     float edge = -1.0;
     float edge_depth = law.y < 0.0 ? -1e9 : 1e9;
+#ifdef HISTORY
+    // law.y * depth of the foreground beside it.
+    float front = 1e9;
+#endif
     // The nearest silhouette beside the pixel.
     float rim = -1.0;
     float rim_depth = 0.0;
@@ -105,6 +109,9 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
             rim = nearest ? at.x + (jump ? 1.0 : 0.0) : rim;
             rim_depth = nearest ? (jump ? at.depths.y : at.depths.x) : rim_depth;
             bool farther = jump && law.y * (at.depths.x - edge_depth) < 0.0;
+#ifdef HISTORY
+            front = farther ? law.y * at.depths.y : front;
+#endif
             edge = farther ? at.x : edge;
             edge_depth = farther ? at.depths.x : edge_depth;
             // Past it.
@@ -125,7 +132,12 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     float away = x - origin + law.y * surface.depth;
     surface.hole = !found && abs(away) >= 0.5;
     vec4 color = color_sample(vec2(column_at(surface.source), row_at(0.0)));
+#ifdef HISTORY
+    bool recalled = surface.hole && recall(front, origin, row, color, surface.depth);
+    if ((PARTS & FILL) != 0 && surface.hole && !recalled) {
+#else
     if ((PARTS & FILL) != 0 && surface.hole) {
+#endif
         color = fill_hole(true, color, away, x, surface.depth, row);
     }
     // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that

@@ -24,6 +24,7 @@ static FILES: &[(&str, &str)] = embed![
     "include/four_columns.glsl",
     "include/g_buffer.glsl",
     "include/hdr.glsl",
+    "include/history.glsl",
     "include/imbuffer.glsl",
     "include/ink.glsl",
     "include/laws.glsl",

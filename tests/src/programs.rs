@@ -18,10 +18,10 @@ use yoro_shaders::{Assembled, MissingFile};
 use crate::{is_tested, scene};
 
 /// The variants of the renderer's programs to make. Other programs are always made in every variant, but for those of
-/// synthesis from parts and layers of textures.
+/// synthesis from parts and layers of textures, and with a history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variants {
-    /// All combinations of maps, opacity, style, light and settings, and synthesis from parts and layers.
+    /// All combinations of maps, opacity, style, light and settings, and synthesis from parts and layers and with a history.
     Every,
     /// Under default settings, materials without maps and with all maps: the cost of the others lies between these. By
     /// every method in the realistic style only.
@@ -77,8 +77,10 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         }
     }
     if variants == Variants::Every {
-        for (parts, layers) in [(true, false), (false, true), (true, true)] {
-            let options = SynthesisOptions { parts, layers, ..SynthesisOptions::default() };
+        for (parts, layers, history) in
+            [(true, false, false), (false, true, false), (true, true, false), (false, false, true)]
+        {
+            let options = SynthesisOptions { parts, layers, history, ..SynthesisOptions::default() };
             for variant in GatherVariant::ALL {
                 Gather::with_variant_of(gl, Outputs::default(), variant, &options)?;
             }

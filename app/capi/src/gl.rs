@@ -275,7 +275,7 @@ impl Gl {
         let context = unsafe { Context::with_loader(entry_points::wrap(load)?, load)? };
         let has = |bit| info.sources & bit != 0;
         let (parts, layers) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
-        let options = SynthesisOptions { edges, gl_state, parts, layers };
+        let options = SynthesisOptions { edges, gl_state, parts, layers, history: false };
         let synthesis = synthesis::create(&context, &options, outputs)?;
         let timed = info.timed == 1;
         if timed {

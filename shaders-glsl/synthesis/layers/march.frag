@@ -42,6 +42,20 @@ Layer layer_at(int column, int row) {
     return Layer(both.x, both.y, true, mask);
 }
 
+#ifdef HISTORY
+// law.y * depth of the far plane.
+float far_nearness() {
+    return far_displacement - law.x;
+}
+
+// law.y * depth of a forward column's front.
+float nearness_at(int x, int row) {
+    uint bits = layer_bits(source_column(x), row);
+    return far_nearness() + (is_full(bits) ? full_front(bits) : split_displacements(bits).x);
+}
+#include "include/history.glsl"
+#endif
+
 // Share of each stripe right of a place in the pixel, 0 to 1.
 vec4 right_of(float place) {
     return clamp(STRIPES + 1.0 - 4.0 * place, 0.0, 1.0);
@@ -129,6 +143,10 @@ void main() {
     Layer here = layer_at(column, row);
     Edge edge = Edge(-1, false, 1e9, 1.0);
     Edge second = edge;
+#ifdef HISTORY
+    // Displacement of the foreground beside the edge.
+    float beside = 1e9;
+#endif
     // Left of all surfaces: the border of the image.
     if (x == 0.0) {
         if (here.front > t) {
@@ -240,6 +258,9 @@ void main() {
                     second = edge;
                 }
                 edge = found;
+#ifdef HISTORY
+                beside = next.front;
+#endif
             } else if (reach < second.reach) {
                 second = found;
             }
@@ -285,6 +306,13 @@ void main() {
             fill = mix(weighted(second.column, row, one.x, one.y), fill, edge.weight);
         }
         hole = hole && away >= 0.5;
+#ifdef HISTORY
+        float depth = (edge.reach + far_nearness()) / law.y;
+        float origin = origins.x * gl_FragCoord.x + origins.y;
+        if (away >= 0.5 && recall(beside + far_nearness(), origin, row, fill, depth)) {
+            edge.reach = law.y * depth - far_nearness();
+        }
+#endif
         color += cover(seen, 1.0, edge_x, edge.reach) * fill;
     }
 #ifdef COUNT_TRIPS

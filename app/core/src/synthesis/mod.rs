@@ -10,12 +10,14 @@
 
 mod edges;
 mod forward;
+mod history;
 #[cfg(feature = "gl")]
 mod opengl;
 mod source_map;
 mod uniforms;
 
 pub use edges::Edges;
+pub use history::Strips;
 #[cfg(feature = "gl")]
 pub use opengl::*;
 pub use source_map::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE, SourceMapEntry};

@@ -14,9 +14,10 @@ pub const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: fals
 /// GL_DEPTH_BOUNDS_TEST_EXT.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
 
-/// Both kinds of textures without samples.
-pub fn ways() -> [SynthesisOptions; 2] {
-    [Edges::Hard, Edges::Nearest].map(|edges| SynthesisOptions { edges, ..SynthesisOptions::default() })
+/// Both kinds of textures without samples, and a pipeline that takes histories.
+pub fn ways() -> [SynthesisOptions; 3] {
+    [(Edges::Hard, false), (Edges::Nearest, false), (Edges::Hard, true)]
+        .map(|(edges, history)| SynthesisOptions { edges, history, ..SynthesisOptions::default() })
 }
 
 pub fn warp(size: [u32; 2]) -> Warp {

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::{
-    Outputs, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source, set_source,
+    Outputs, Recall, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source, set_source,
     set_source_layer,
 };
 use crate::eyes::Warp;
@@ -58,6 +58,7 @@ pub struct Gather {
     march: Program,
     tile_map: RenderTarget,
     span_map: RenderTarget,
+    recall: Option<Recall>,
 }
 
 impl Gather {
@@ -125,7 +126,7 @@ impl Gather {
     ) -> Result<Gather, GlError> {
         let variant = variant.iter().map(|&name| (name, String::new())).chain(options.defines());
         let variant: Vec<_> = variant.collect();
-        let march: Vec<_> = outputs.defines().into_iter().chain(variant.clone()).collect();
+        let march = [outputs.defines(), variant.clone(), options.last_pass_defines()].concat();
         let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
         let map = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba32Ui, Filter::Nearest)], None);
         Ok(Gather {
@@ -137,6 +138,7 @@ impl Gather {
             march: Program::new(gl, march_source("synthesis/gather/march.frag"), &march)?,
             tile_map: map()?,
             span_map: map()?,
+            recall: options.recall(gl)?,
         })
     }
 }
@@ -171,6 +173,9 @@ impl Synthesis for Gather {
             set_source(self.march.bind(), source, &uniforms);
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());
+            if let Some(recall) = &self.recall {
+                recall.set(&self.march, source.history, 4);
+            }
             draw_target(gl, target, self.outputs);
         });
         gl.end_synthesis();

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::IVec4;
 use glow::HasContext as _;
 
-use super::{Outputs, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source};
+use super::{Outputs, Recall, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source};
 use crate::eyes::Warp;
 use crate::synthesis::edges::Edges;
 use crate::synthesis::uniforms::Uniforms;
@@ -36,6 +36,7 @@ pub struct Layers {
     layers: RenderTarget,
     tile_map: RenderTarget,
     span_map: RenderTarget,
+    recall: Option<Recall>,
 }
 
 /// The first pass, without and with the colours of samples.
@@ -109,7 +110,7 @@ impl Layers {
         let edge_defines = define.into_iter().map(|name| (name, String::new())).chain(sources.clone());
         let edge_defines: Vec<_> = edge_defines.collect();
         let of_samples = [edge_defines.clone(), vec![("SAMPLE_COLORS", String::new())]].concat();
-        let march = [&edge_defines[..], &outputs.defines(), counts].concat();
+        let march = [&edge_defines[..], &outputs.defines(), &options.last_pass_defines(), counts].concat();
         let split = "synthesis/layers/split.frag";
         let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);
         // Back surfaces are stored like the source's colour: unmixing is right in the colour space of the resolve.
@@ -129,6 +130,7 @@ impl Layers {
             layers: RenderTarget::new(gl, [1, 1], &layers, None)?,
             tile_map: map()?,
             span_map: map()?,
+            recall: options.recall(gl)?,
         })
     }
 
@@ -205,6 +207,10 @@ impl Synthesis for Layers {
             program.texture("span_map", 2, self.span_map.color(0).raw());
             program.texture("layer_map", 3, layers).texture("back_map", 4, backs);
             uniforms.set(program);
+            if let Some(recall) = &self.recall {
+                // The march does not read the source's depth.
+                recall.set(program, source.history, 0);
+            }
             draw_target(gl, target, self.outputs);
         });
         gl.end_synthesis();

@@ -7,15 +7,19 @@ mod preserve;
 use std::rc::Rc;
 
 use super::edges::Edges;
+use super::history::Strips;
 use super::uniforms::{Places, Uniforms, tiles};
 use crate::eyes::Warp;
-use yoro_gl::{Context, Destination, GlError, Program, ShaderSource, Touched};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
 
 pub use gather::Gather;
 #[doc(hidden)]
 pub use gather::GatherVariant;
 pub use layers::Layers;
 use preserve::Preserving;
+
+/// The unit of a history's colour, which is filtered.
+const HISTORY_COLOR_UNIT: u32 = 5;
 
 /// The outputs of a pipeline besides colour, and their encoding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,12 +68,25 @@ pub struct Source {
     pub part: Option<Part>,
     /// The layer of both textures, for a pipeline with [`SynthesisOptions::layers`]; 0 otherwise.
     pub layer: u32,
+    /// What the other eye has seen, for a pipeline with [`SynthesisOptions::history`].
+    pub history: Option<History>,
+}
+
+/// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
+#[derive(Clone, Copy, Debug)]
+pub struct History {
+    /// Colour: what synthesis takes, so without what is drawn over both eyes afterwards. In the encoding of the source's.
+    pub color: glow::Texture,
+    /// Depth, of the same size, one value a pixel, with the planes and encoding of the source's.
+    pub depth: glow::Texture,
+    /// The views of its strips.
+    pub strips: Strips,
 }
 
 impl Source {
     /// Returns a source that is the whole of two textures, without the colours of samples.
     pub fn new(color: glow::Texture, depth: glow::Texture) -> Source {
-        Source { color, depth, samples: None, part: None, layer: 0 }
+        Source { color, depth, samples: None, part: None, layer: 0, history: None }
     }
 
     /// Returns the place of the source of a warp in its textures.
@@ -113,11 +130,11 @@ pub enum GlState {
 /// | vertex array | one without attributes | changed |
 /// | draw and read framebuffer | the target's | changed |
 /// | viewport (the first; with `OES_viewport_array` all) | the target's rectangle | changed |
-/// | 2-D texture of units 0 to 3, of 0 to 4 other than with hard edges | depth, colour, intermediate | changed |
+/// | 2-D texture of units 0 to 3, of 0 to 4 other than with hard edges, of 0 to 5 with a history | depth, colour, intermediate | changed |
 /// | multisample texture of units 0 and 3, with multisampled sources | depth, colour | changed |
 /// | array texture of units 0 and 1, for sources that are layers | depth, colour | changed |
-/// | sampler object of units 0 to 4 | yoro's own | none |
-/// | active unit | 0 to 4 | changed |
+/// | sampler object of units 0 to 5 | yoro's own | none |
+/// | active unit | 0 to 5 | changed |
 /// | scissor test (as the viewport), stencil and depth test, face culling | off; depth test on for the target if depth is written | off |
 /// | depth function, depth mask, depth range (as the viewport) | `ALWAYS`, on, 0 to 1 | as set |
 /// | blending and colour mask, of draw buffer 0 and, with a source map or other than with hard edges, 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | as set |
@@ -166,9 +183,20 @@ pub struct SynthesisOptions {
     /// True if colour and depth are layers of array textures, as those of multiview are ([`Source::layer`]). Not with
     /// [`Edges::Multisample`].
     pub layers: bool,
+    /// True if sources may have a history ([`Source::history`]).
+    pub history: bool,
 }
 
 impl SynthesisOptions {
+    /// Returns the macro of a last pass that looks disocclusions up.
+    fn last_pass_defines(&self) -> Vec<(&'static str, String)> {
+        self.history.then(|| ("HISTORY", String::new())).into_iter().collect()
+    }
+
+    fn recall(&self, gl: &Rc<Context>) -> Result<Option<Recall>, GlError> {
+        self.history.then(|| Recall::new(gl)).transpose()
+    }
+
     /// Returns the preprocessor's macros that select this kind of source.
     fn defines(&self) -> Vec<(&'static str, String)> {
         let defines = [("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.layers)];
@@ -240,6 +268,27 @@ fn set_source_layer(program: &Program, source: Source, uniforms: &Uniforms) {
     program.texture_array("depth_map", 0, source.depth).texture_array("color_map", 1, source.color);
     program.set("source_layer", source.layer as i32);
     uniforms.set(program);
+}
+
+/// What a pipeline with [`SynthesisOptions::history`] has besides: a texture to bind for sources without one.
+struct Recall {
+    nothing: RenderTarget,
+}
+
+impl Recall {
+    fn new(gl: &Rc<Context>) -> Result<Recall, GlError> {
+        Ok(Recall { nothing: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)? })
+    }
+
+    /// Sets what `include/history.glsl` declares, with depth in a unit that is not filtered. The program must be current.
+    fn set(&self, program: &Program, history: Option<History>, depth_unit: u32) {
+        let nothing = self.nothing.color(0).raw();
+        let none = History { color: nothing, depth: nothing, strips: Strips::NONE };
+        let History { color, depth, strips } = history.unwrap_or(none);
+        program.texture("history_depth", depth_unit, depth);
+        program.texture("history_color", HISTORY_COLOR_UNIT, color);
+        strips.set(program);
+    }
 }
 
 /// Returns the shaders of a pipeline's last pass.

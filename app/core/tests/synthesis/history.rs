@@ -1,0 +1,396 @@
+//! Disocclusions that are looked up in a history: an f64 reference of the look-up, and its laws.
+
+use std::rc::Rc;
+
+use glam::{DVec3, Quat, Vec3};
+
+use crate::in_memory::OUTPUTS;
+use crate::laws::{on_every_backend, positions, row};
+use crate::reference::gather_row;
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, View, Warp};
+use yoro::synthesis::*;
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
+
+const SIZE: [u32; 2] = [160, 48];
+
+/// An upright rectangle that faces along Z, in metres: left, right, bottom, top, z.
+type Sheet = [f64; 5];
+
+const WALL: Sheet = [-50.0, 50.0, -50.0, 50.0, -6.0];
+const SHEETS: [Sheet; 5] = [
+    WALL,
+    [-0.5, -0.2, -9.0, 9.0, -1.0],
+    [0.15, 0.4, -0.3, 0.05, -0.8],
+    [0.6, 1.2, -0.2, 0.5, -2.0],
+    [-1.6, -0.9, -0.5, 0.1, -3.0],
+];
+
+/// Colour and depth of a view, rows from the bottom.
+struct Picture {
+    rgba: Vec<u8>,
+    depth: Vec<f32>,
+}
+
+fn local(view: &View, world: DVec3) -> DVec3 {
+    view.pose.orientation.as_dquat().inverse() * (world - view.pose.position.as_dvec3())
+}
+
+/// Returns the pixel of a view, its middle at + 0.5, that shows a point, and the point's distance along the axis.
+fn project(view: &View, world: DVec3) -> ([f64; 2], f64) {
+    let (own, f) = (local(view, world), view.frustum);
+    let z = -own.z;
+    let at = |x: f64, low: f32, wide: f32, n: u32| (x / z - f64::from(low)) / f64::from(wide) * f64::from(n);
+    ([at(own.x, f.left, f.width(), view.size[0]), at(own.y, f.bottom, f.height(), view.size[1])], z)
+}
+
+/// Returns the point that a pixel of a view shows at a distance along the axis.
+fn unproject(view: &View, [x, y]: [f64; 2], z: f64) -> DVec3 {
+    let f = view.frustum;
+    let tangent = |at: f64, low: f32, wide: f32, n: u32| f64::from(low) + at / f64::from(n) * f64::from(wide);
+    let x = tangent(x, f.left, f.width(), view.size[0]);
+    let y = tangent(y, f.bottom, f.height(), view.size[1]);
+    view.pose.position.as_dvec3() + view.pose.orientation.as_dquat() * (DVec3::new(x, y, -1.0) * z)
+}
+
+/// Casts a ray for each pixel. Colours vary slowly, so that resampling them changes them little.
+fn render(view: &View, sheets: &[Sheet]) -> Picture {
+    let [w, h] = view.size;
+    let mut picture = Picture { rgba: Vec::new(), depth: Vec::new() };
+    for i in 0..w * h {
+        let pixel = [f64::from(i % w) + 0.5, f64::from(i / w) + 0.5];
+        let from = view.pose.position.as_dvec3();
+        let ray = unproject(view, pixel, 1.0) - from;
+        let hits = sheets.iter().enumerate().filter_map(|(n, [left, right, bottom, top, z])| {
+            let t = (z - from.z) / ray.z;
+            let at = from + t * ray;
+            let inside = t > 0.0 && (*left..*right).contains(&at.x) && (*bottom..*top).contains(&at.y);
+            inside.then_some((n, t, at))
+        });
+        let (n, _, at) = hits.min_by(|a, b| a.1.total_cmp(&b.1)).expect("a wall behind all");
+        let wave = |x: f64| (127.0 + 100.0 * x.sin()) as u8;
+        picture.rgba.extend([wave(1.5 * at.x + n as f64), wave(2.0 * at.y), 40 * n as u8, 255]);
+        picture.depth.push(view.depth.depth(-local(view, at).z as f32));
+    }
+    picture
+}
+
+fn eyes(head: Pose, dominant: Eye, ipd: f32, convention: DepthConvention) -> EyePair {
+    let depth = DepthRange { near: 0.3, far: 100.0, convention };
+    EyePair::parallel(head, Frustum::symmetric(0.5, 10.0 / 3.0), ipd, depth, SIZE, dominant)
+}
+
+/// A head that has moved and turned by some frames' worth.
+fn moved(frames: f32) -> Pose {
+    Pose {
+        position: frames * Vec3::new(0.008, -0.003, 0.01),
+        orientation: Quat::from_euler(glam::EulerRot::YXZ, 0.012 * frames, 0.004 * frames, -0.003 * frames),
+    }
+}
+
+/// A pipeline, and textures for it.
+struct Bench {
+    gl: Rc<Context>,
+    pipeline: Box<dyn Synthesis>,
+    target: RenderTarget,
+}
+
+/// A history in memory: the picture, its size, the relation.
+type Remembered<'a> = Option<(&'a Picture, [u32; 2], Strips)>;
+
+impl Bench {
+    fn new(
+        gl: &Rc<Context>,
+        make: impl FnOnce(&SynthesisOptions) -> Box<dyn Synthesis>,
+        history: bool,
+    ) -> Bench {
+        let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
+        Bench {
+            gl: gl.clone(),
+            pipeline: make(&SynthesisOptions { history, ..SynthesisOptions::default() }),
+            target: RenderTarget::new(gl, SIZE, &formats, None).unwrap(),
+        }
+    }
+
+    fn run(&mut self, source: &Picture, warp: &Warp, history: Remembered) -> (Vec<u8>, Vec<u32>) {
+        let texture = |size, format, bytes: &[u8]| {
+            let texture = Texture::new(&self.gl, size, format, Filter::Nearest).unwrap();
+            texture.upload(bytes);
+            texture
+        };
+        let upload = |size, picture: &Picture| {
+            let depth: Vec<u8> = picture.depth.iter().flat_map(|z| z.to_ne_bytes()).collect();
+            [texture(size, Format::Rgba8, &picture.rgba), texture(size, Format::R32F, &depth)]
+        };
+        let own = upload(warp.source_size, source);
+        let former = history.map(|(picture, size, strips)| (upload(size, picture), strips));
+        let history = former.as_ref().map(|([color, depth], strips)| History {
+            color: color.raw(),
+            depth: depth.raw(),
+            strips: *strips,
+        });
+        let source = Source { history, ..Source::new(own[0].raw(), own[1].raw()) };
+        self.pipeline.synthesize(source, warp, &Destination::whole(&self.target)).unwrap();
+        (self.target.read_rgba8(0, [0, 0], SIZE), self.target.read_u32(1, [0, 0], SIZE))
+    }
+}
+
+/// Runs a body for each pipeline, made by a function of the options.
+fn for_each_pipeline(body: impl Fn(&Rc<Context>, &str, &dyn Fn(&SynthesisOptions) -> Box<dyn Synthesis>)) {
+    on_every_backend(|gl| {
+        for variant in GatherVariant::ALL {
+            body(gl, &format!("{variant:?}"), &|options| {
+                Box::new(Gather::with_variant_of(gl, OUTPUTS, variant, options).unwrap())
+            });
+        }
+        body(gl, "layers", &|options| {
+            create(gl, &SynthesisOptions { edges: Edges::Nearest, ..*options }, OUTPUTS).unwrap()
+        });
+    });
+}
+
+fn is_hole(entry: u32) -> bool {
+    entry & SOURCE_MAP_HOLE != 0
+}
+
+/// Without a history, and with one of which no strip is there, the picture is that of a pipeline that knows of none.
+#[test]
+fn no_history_changes_no_bit() {
+    for_each_pipeline(|gl, what, make| {
+        let p = eyes(Pose::IDENTITY, Eye::Right, 0.063, DepthConvention::Standard);
+        let views = p.synthesis(GuardBand::None).unwrap();
+        let source = render(&views.source, &SHEETS);
+        let plain = Bench::new(gl, make, false).run(&source, &views.warp, None);
+        let mut recalling = Bench::new(gl, make, true);
+        assert_eq!(recalling.run(&source, &views.warp, None), plain, "{what}");
+        let empty = Strips::new(&views.target, &[None; 3]);
+        assert_eq!(recalling.run(&source, &views.warp, Some((&source, SIZE, empty))), plain, "{what}");
+    });
+}
+
+/// Without a distance between the eyes nothing is uncovered, and nothing is taken from a history.
+#[test]
+fn without_a_distance_nothing_is_recalled() {
+    for_each_pipeline(|gl, what, make| {
+        let p = eyes(Pose::IDENTITY, Eye::Left, 0.0, DepthConvention::Reversed);
+        let views = p.synthesis(GuardBand::None).unwrap();
+        let (source, other) = (render(&views.source, &SHEETS), render(&views.target, &SHEETS[..2]));
+        let strips = Strips::new(&views.target, &[Some(views.target)]);
+        let (rgba, _) = Bench::new(gl, make, true).run(&source, &views.warp, Some((&other, SIZE, strips)));
+        assert_eq!(rgba, source.rgba, "{what}");
+    });
+}
+
+/// What is uncovered shows what is really there, if the history is this very frame's.
+#[test]
+fn a_history_of_this_frame_is_the_truth() {
+    for_each_pipeline(|gl, what, make| {
+        for dominant in Eye::BOTH {
+            let p = eyes(moved(3.0), dominant, 0.063, DepthConvention::Standard);
+            let views = p.synthesis(GuardBand::None).unwrap();
+            let source = render(&views.source, &SHEETS);
+            let truth = render(&views.target, &SHEETS);
+            let strips = Strips::new(&views.target, &[Some(views.target)]);
+            let (plain, map) = Bench::new(gl, make, false).run(&source, &views.warp, None);
+            let (rgba, _) =
+                Bench::new(gl, make, true).run(&source, &views.warp, Some((&truth, SIZE, strips)));
+            let off = |image: &[u8], i: usize| {
+                let pixels = image[i * 4..][..4].iter().zip(&truth.rgba[i * 4..][..4]);
+                pixels.map(|(a, b)| a.abs_diff(*b)).max().unwrap()
+            };
+            let holes: Vec<usize> = (0..map.len()).filter(|i| is_hole(map[*i])).collect();
+            let [before, after] =
+                [&plain, &rgba].map(|image| holes.iter().filter(|i| off(image, **i) <= 2).count());
+            assert!(holes.len() > 300, "{what}: {} holes", holes.len());
+            // Beside a foreground, some show a silhouette that is blended over them; layers blend whatever covers a part.
+            let least = if what == "layers" { 13 } else { 17 };
+            assert!(20 * after > least * holes.len(), "{what}: {after} of {}, {before} before", holes.len());
+            let worse =
+                (0..map.len()).filter(|i| off(&rgba, *i) > off(&plain, *i).saturating_add(16)).count();
+            assert!(50 * worse < holes.len(), "{what}: {worse} are worse, of {} holes", holes.len());
+        }
+    });
+}
+
+/// A history that shows a sheet close before the eyes, and one of a room that is elsewhere, change nothing.
+#[test]
+fn a_history_of_another_scene_changes_nothing() {
+    for_each_pipeline(|gl, what, make| {
+        let p = eyes(Pose::IDENTITY, Eye::Right, 0.063, DepthConvention::Reversed);
+        let views = p.synthesis(GuardBand::None).unwrap();
+        let source = render(&views.source, &SHEETS);
+        let plain = Bench::new(gl, make, false).run(&source, &views.warp, None);
+        let mut recalling = Bench::new(gl, make, true);
+        let near = render(&views.target, &[[-50.0, 50.0, -50.0, 50.0, -0.5]]);
+        let strips = Strips::new(&views.target, &[Some(views.target)]);
+        // Beyond the borders of the source there is no foreground to be nearer than.
+        let inner = |(rgba, map): &(Vec<u8>, Vec<u32>)| -> Vec<u8> {
+            let beyond = |i: &usize| !is_hole(map[*i]) || (20..140).contains(&(i % SIZE[0] as usize));
+            (0..map.len()).filter(beyond).flat_map(|i| rgba[i * 4..][..4].to_vec()).collect()
+        };
+        let got = recalling.run(&source, &views.warp, Some((&near, SIZE, strips)));
+        assert!(inner(&got) == inner(&plain), "{what}: nearer than the foreground");
+        // Looking the other way.
+        let back = Pose { orientation: Quat::from_rotation_y(3.0), ..Pose::IDENTITY };
+        let strips = Strips::new(&views.target, &[Some(View { pose: back, ..views.target })]);
+        let got = recalling.run(&source, &views.warp, Some((&near, SIZE, strips)));
+        assert_eq!(got, plain, "{what}: behind the head");
+    });
+}
+
+/// The look-up of a hole's pixel in f64: place in the history's image, fractional, where it shows the pixel's surface.
+/// `Err` within rounding of a decision.
+struct Lookup<'a> {
+    target: &'a View,
+    strips: &'a [Option<View>],
+    picture: &'a Picture,
+    size: [u32; 2],
+}
+
+impl Lookup<'_> {
+    fn place(&self, pixel: [f64; 2], z: f64) -> Option<([f64; 2], usize)> {
+        let rows = self.size[1].div_ceil(self.strips.len() as u32);
+        let world = unproject(self.target, pixel, z);
+        let scale = f64::from(self.size[1]) / f64::from(self.target.size[1]);
+        let mut strip = (pixel[1] * scale) as usize / rows as usize;
+        for _ in 0..2 {
+            let (at, z) = project(self.strips.get(strip)?.as_ref()?, world);
+            let inside = (0..2).all(|i| at[i] >= 0.0 && at[i] < f64::from(self.size[i]));
+            if z <= 0.0 || !inside {
+                return None;
+            }
+            let landed = at[1] as usize / rows as usize;
+            if landed == strip {
+                return Some((at, strip));
+            }
+            strip = landed;
+        }
+        None
+    }
+
+    /// Returns the surface's distance and its place, for a pixel whose background and foreground have these distances, and
+    /// `seen`, the nearest distance that the rendered eye sees where a surface of some distance would be.
+    fn recall(
+        &self,
+        pixel: [f64; 2],
+        background: f64,
+        front: Option<f64>,
+        ipd_pixels: f64,
+        seen: impl Fn(f64) -> Option<f64>,
+    ) -> Option<[f64; 2]> {
+        let (at, strip) = self.place(pixel, background)?;
+        let texel = at[1] as usize * self.size[0] as usize + at[0] as usize;
+        let view = self.strips[strip].as_ref()?;
+        let z = f64::from(view.depth.distance(self.picture.depth[texel]));
+        let (back, here) = project(self.target, unproject(view, at, z));
+        let off = ((back[0] - pixel[0]).powi(2) + (back[1] - pixel[1]).powi(2)).sqrt();
+        let pixels = |z: f64| ipd_pixels / z;
+        let behind = front
+            .is_none_or(|front| pixels(here) <= pixels(front) - 0.25 * (pixels(front) - pixels(background)));
+        let hidden = seen(here).is_none_or(|nearest| pixels(nearest) > pixels(here) - 1.0);
+        (off < 1.0 && behind && hidden).then(|| self.place(pixel, here)).flatten().map(|(at, _)| at)
+    }
+}
+
+#[test]
+fn the_lookup_is_its_reference() {
+    on_every_backend(|gl| {
+        for variant in GatherVariant::ALL {
+            for (dominant, convention, scale) in [
+                (Eye::Right, DepthConvention::Standard, 1),
+                (Eye::Left, DepthConvention::Reversed, 1),
+                (Eye::Right, DepthConvention::Reversed, 2),
+            ] {
+                let what = format!("{variant:?}, {dominant:?} dominant, {convention:?}, 1/{scale}");
+                let at =
+                    |head: Pose| eyes(head, dominant, 0.063, convention).synthesis(GuardBand::None).unwrap();
+                let views = at(Pose::IDENTITY);
+                let size = SIZE.map(|n| n / scale);
+                // One of five strips is missing.
+                let strips: Vec<Option<View>> = (0..5)
+                    .map(|i| (i != 3).then(|| View { size, ..at(moved(i as f32 - 6.0)).target }))
+                    .collect();
+                let mut picture = Picture { rgba: Vec::new(), depth: Vec::new() };
+                let rows = size[1].div_ceil(5);
+                for y in 0..size[1] {
+                    let strip = strips[(y / rows) as usize].unwrap_or(views.target);
+                    let whole = render(&View { size, ..strip }, &SHEETS);
+                    let own = (y * size[0]) as usize..((y + 1) * size[0]) as usize;
+                    picture.rgba.extend(&whole.rgba[own.start * 4..own.end * 4]);
+                    picture.depth.extend(&whole.depth[own]);
+                }
+                let source = render(&views.source, &SHEETS);
+                let make = |options: &SynthesisOptions| -> Box<dyn Synthesis> {
+                    Box::new(Gather::with_variant_of(gl, OUTPUTS, variant, options).unwrap())
+                };
+                let (plain, map) = Bench::new(gl, make, false).run(&source, &views.warp, None);
+                let relation = Strips::new(&views.target, &strips);
+                let (rgba, _) =
+                    Bench::new(gl, make, true).run(&source, &views.warp, Some((&picture, size, relation)));
+                let lookup = Lookup { target: &views.target, strips: &strips, picture: &picture, size };
+                is_its_reference(&lookup, &source, &views.warp, [&plain, &rgba], &map, &what);
+            }
+        }
+    });
+}
+
+fn is_its_reference(
+    lookup: &Lookup,
+    source: &Picture,
+    warp: &Warp,
+    [plain, rgba]: [&[u8]; 2],
+    map: &[u32],
+    what: &str,
+) {
+    let [w, h] = SIZE.map(|n| n as usize);
+    let mirrored = warp.target_eye == Eye::Right;
+    let range = lookup.target.depth;
+    let focal = f64::from(SIZE[0]) / f64::from(lookup.target.frustum.width());
+    let (mut holes, mut served, mut wrong) = (0, 0, 0);
+    for y in 0..h {
+        let depths = row(&source.depth, y, w);
+        let distance = |forward: usize| {
+            f64::from(range.distance(depths[if mirrored { w - 1 - forward } else { forward }]))
+        };
+        let p = positions(depths, warp);
+        for (t, entry) in gather_row(&p, w).iter().enumerate() {
+            let i = y * w + if mirrored { w - 1 - t } else { t };
+            if !entry.hole || !is_hole(map[i]) || entry.rim.is_some() {
+                continue;
+            }
+            holes += 1;
+            let edge = entry.source as usize;
+            let border = edge == w - 1 || (edge == 0 && p[0] > t as f64);
+            let front = (!border).then(|| distance(edge + 1));
+            let pixel = [(i % w) as f64 + 0.5, y as f64 + 0.5];
+            let seen = |z: f64| {
+                let column = (t as f64 - focal * 0.063 / z).floor();
+                let inside = column >= 0.0 && column < (w - 1) as f64;
+                inside.then(|| distance(column as usize).min(distance(column as usize + 1)))
+            };
+            let place = lookup.recall(pixel, distance(edge), front, focal * 0.063, seen);
+            let (got, before) = (&rgba[i * 4..][..4], &plain[i * 4..][..4]);
+            let expected = match place {
+                None => [before; 2],
+                Some([x, y]) => {
+                    served += 1;
+                    // One of the texels around it, or between them.
+                    let column = |x: f64| x.clamp(0.0, f64::from(lookup.size[0] - 1)) as usize;
+                    let line = |y: f64| y.clamp(0.0, f64::from(lookup.size[1] - 1)) as usize;
+                    let texel = |x: f64, y: f64| {
+                        &lookup.picture.rgba[(line(y) * lookup.size[0] as usize + column(x)) * 4..][..4]
+                    };
+                    [texel(x - 0.5, y - 0.5), texel(x + 0.5, y + 0.5)]
+                }
+            };
+            let tolerance = if place.is_some() { 4 } else { 0 };
+            let near = |c: usize| {
+                let [a, b] = expected.map(|pixel| pixel[c]);
+                (a.min(b).saturating_sub(tolerance)..=a.max(b).saturating_add(tolerance)).contains(&got[c])
+            };
+            wrong += usize::from(!(0..4).all(near));
+        }
+    }
+    assert!(holes > 300 && 4 * served > holes && served < holes, "{what}: {served} of {holes}");
+    // Within rounding of a decision.
+    assert!(50 * wrong <= holes, "{what}: {wrong} of {holes} ({served} served) differ");
+}
