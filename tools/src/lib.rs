@@ -7,6 +7,7 @@
 pub mod apt;
 pub mod arm64;
 pub mod cargo;
+pub mod compiled;
 pub mod console;
 pub mod folders;
 pub mod hello_xr;

@@ -1,6 +1,6 @@
 //! `cargo tools`: the commands that only maintainers run.
 
-mod spirv;
+mod compile;
 
 use std::process::ExitCode;
 
@@ -30,6 +30,8 @@ enum Task {
     },
     /// Compile the synthesis shaders for Vulkan: app/core/src/vulkan/spirv
     Spirv,
+    /// Compile the synthesis shaders for wgpu: app/wgpu/src/wgsl
+    Wgsl,
     /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
@@ -48,7 +50,8 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             let options = shader_cost::Options { filter, gpus, bless };
             shader_cost::report(&options, &compilers, shader_cost::programs()?)?
         }
-        Task::Spirv => (spirv::compile()?, true),
+        Task::Spirv => (compile::spirv()?, true),
+        Task::Wgsl => (compile::wgsl()?, true),
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
     };

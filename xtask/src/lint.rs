@@ -7,7 +7,7 @@ use yoro_tools::cargo;
 use crate::web;
 
 /// The packages that others could take from a registry: the library's core and what it stands on.
-const PUBLISHED: [&str; 3] = ["yoro-shaders", "yoro-gl", "yoro"];
+const PUBLISHED: [&str; 4] = ["yoro-shaders", "yoro-gl", "yoro", "yoro-wgpu"];
 
 /// Runs every check, even after one has found something.
 ///

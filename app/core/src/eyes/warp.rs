@@ -63,6 +63,13 @@ impl Warp {
         })
     }
 
+    /// Returns the warp for images whose rows are counted from the top: what those graphics interfaces use inside.
+    #[doc(hidden)]
+    pub fn rows_from_top(&self) -> Warp {
+        let [source, target] = [self.source_size[1], self.target_size[1]].map(|rows| rows as i32);
+        Warp { row_offset: (target - source).saturating_sub(self.row_offset), ..*self }
+    }
+
     /// Checks that the shaders can store all displacements that land in the target. Those of
     /// [`EyePair::synthesis`](super::EyePair::synthesis) are checked.
     ///
@@ -98,5 +105,24 @@ mod tests {
         let fov = 60f32.to_radians();
         assert!((minimum_object_distance(0.075, fov) - 0.065).abs() < 1e-3);
         assert!((full_overlap_distance(0.075, fov) - 0.129).abs() < 2e-3);
+    }
+
+    #[test]
+    fn rows_from_the_top_lead_to_the_same_rows() {
+        let warp = Warp {
+            source_size: [8, 13],
+            target_size: [8, 10],
+            law: DisparityLaw { offset: 0.0, scale: 1.0 },
+            row_offset: -2,
+            target_eye: Eye::Left,
+            convention: DepthConvention::Standard,
+        };
+        let turned = warp.rows_from_top();
+        for source_row in 0..13 {
+            let target_row = source_row + warp.row_offset;
+            let (source_from_top, target_from_top) = (12 - source_row, 9 - target_row);
+            assert_eq!(source_from_top + turned.row_offset, target_from_top);
+        }
+        assert_eq!(turned.rows_from_top(), warp);
     }
 }

@@ -1,7 +1,8 @@
 //! Colour and depth of one eye in, the other eye out.
 //!
 //! On OpenGL (feature `gl`) [`create`] compiles a pipeline, which takes two textures, a [`Warp`](crate::eyes::Warp) and a
-//! framebuffer; `examples/engine.rs` shows it in a foreign engine. On Vulkan the same passes are in `yoro::vulkan`.
+//! framebuffer; `examples/engine.rs` shows it in a foreign engine. On Vulkan the same passes are in `yoro::vulkan`, on
+//! wgpu in the crate `yoro-wgpu`.
 //!
 //! | pipeline | for | passes, all fragment shaders | needs |
 //! |---|---|---|---|
@@ -22,8 +23,6 @@ pub use history::Strips;
 pub use opengl::*;
 pub use source_map::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE, SourceMapEntry};
 pub use uniforms::Uniforms;
-
-#[cfg(feature = "vulkan")]
-pub(crate) use uniforms::Places;
-#[cfg(feature = "vulkan")]
-pub(crate) use uniforms::tiles;
+/// For crates that have the passes on another graphics interface.
+#[doc(hidden)]
+pub use uniforms::{Places, tiles};

@@ -10,7 +10,8 @@ use crate::eyes::Warp;
 const TILE: [u32; 2] = [16, 8];
 
 /// Returns the number of tiles of an image, in columns and rows.
-pub(crate) fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
+#[doc(hidden)]
+pub fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
     [columns.div_ceil(TILE[0]), rows.div_ceil(TILE[1])]
 }
 
@@ -77,8 +78,9 @@ uniforms! {
 }
 
 /// The places of source and target in their images.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Places {
+pub struct Places {
     /// Corner of the source in its image.
     pub source_origin: [u32; 2],
     /// Size of the source's image in pixels.
@@ -99,7 +101,8 @@ impl Uniforms {
 
     /// Returns the uniforms for these places. Columns and rows are affine in `gl_FragCoord`. Their factors are computed here
     /// and not by each fragment, and in f64, since they are differences of large numbers.
-    pub(crate) fn of_part(warp: &Warp, places: &Places) -> Uniforms {
+    #[doc(hidden)]
+    pub fn of_part(warp: &Warp, places: &Places) -> Uniforms {
         let law = ForwardLaw::new(warp);
         let size = |s: [u32; 2]| IVec2::from(s.map(|n| n as i32));
         let pair = |x: f64, y: f64| Vec2::new(x as f32, y as f32);

@@ -217,7 +217,7 @@ impl Gather {
         let (source, target) = self.registered(frame)?;
         self.check_frame(frame, warp, source, target)?;
 
-        let warp = rows_from_top(warp);
+        let warp = warp.rows_from_top();
         let tile_size = tiles(warp.source_size);
         let span_size = tiles([warp.target_size[0], warp.source_size[1]]);
         let part = warp.source_size != source.images.size
@@ -320,35 +320,4 @@ fn release_images(commands: &Commands, source: &Source, target: &Target, uses: O
         barriers.registered(&image, state, image.after);
     }
     barriers.record(commands);
-}
-
-/// The warp for images whose rows are counted from the top.
-fn rows_from_top(warp: &Warp) -> Warp {
-    let [source, target] = [warp.source_size[1], warp.target_size[1]].map(|rows| rows as i32);
-    Warp { row_offset: (target - source).saturating_sub(warp.row_offset), ..*warp }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::eyes::{DepthConvention, DisparityLaw, Eye};
-
-    #[test]
-    fn rows_from_the_top_lead_to_the_same_rows() {
-        let warp = Warp {
-            source_size: [8, 13],
-            target_size: [8, 10],
-            law: DisparityLaw { offset: 0.0, scale: 1.0 },
-            row_offset: -2,
-            target_eye: Eye::Left,
-            convention: DepthConvention::Standard,
-        };
-        let turned = rows_from_top(&warp);
-        for source_row in 0..13 {
-            let target_row = source_row + warp.row_offset;
-            let (source_from_top, target_from_top) = (12 - source_row, 9 - target_row);
-            assert_eq!(source_from_top + turned.row_offset, target_from_top);
-        }
-        assert_eq!(rows_from_top(&turned), warp);
-    }
 }

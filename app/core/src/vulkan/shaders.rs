@@ -60,9 +60,9 @@ pub(super) fn march(edges: Edges, variant: GatherVariant, depth: bool) -> &'stat
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-    use std::path::{Path, PathBuf};
-    use std::process::Command;
+    use std::path::Path;
+
+    use yoro_tools::compiled::{self, Compiled, Source};
 
     /// A file in `spirv/` without its ending, the file of `yoro-shaders` that it is made of, and the macros for that.
     type Module = (&'static str, &'static str, &'static [&'static str]);
@@ -93,88 +93,29 @@ mod tests {
         ("tiles", TILES, &["TEXTURE_GATHER"]),
         ("tiles-short", TILES, &["TEXTURE_GATHER", "SHORT_WAY"]),
     ];
-    const GLSLANG: &str = "glslangValidator";
     /// Vulkan 1.0's SPIR-V, optimized for size, without names and lines.
     const ARGUMENTS: [&str; 3] = ["-V", "-Os", "-g0"];
-    const REMEDY: &str = "run `cargo tools spirv`";
 
-    fn folder() -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv")
-    }
-
-    /// The text that is compiled.
-    fn text((_, file, macros): &Module) -> String {
+    fn source((name, file, macros): &Module) -> Source {
         let mut defines = vec![("UNIFORM_BLOCK", "layout(push_constant, std140)".to_owned())];
         defines.extend(macros.iter().map(|name| (*name, String::new())));
-        yoro_shaders::assemble(file, "310 es", &defines).unwrap().text
-    }
-
-    /// FNV-1a, which never changes with a version of Rust.
-    fn hash(text: &str) -> u64 {
-        text.bytes()
-            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
-    }
-
-    /// The contents of the file `SOURCES`: the compiler of the modules, and the hash of each one's text.
-    fn sources(compiler: &str) -> String {
-        let line = |module: &Module| format!("{:016x} {}\n", hash(&text(module)), module.0);
-        format!("{compiler}\n{}", MODULES.iter().map(line).collect::<String>())
-    }
-
-    /// Returns glslang's version in one line; None if it is not installed.
-    fn glslang() -> Option<String> {
-        let output = Command::new(GLSLANG).arg("--version").output().ok()?;
-        let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        let version = text.lines().next()?.trim_start_matches("Glslang Version: ");
-        Some(format!("{GLSLANG} {version} {}", ARGUMENTS.join(" ")))
-    }
-
-    fn compile(module: &Module, work: &Path) -> Vec<u8> {
-        let (name, file, _) = module;
-        let source = work.join(name).with_extension(if file.ends_with(".vert") { "vert" } else { "frag" });
-        let compiled = work.join(name).with_extension("spv");
-        fs::write(&source, text(module)).unwrap();
-        let output =
-            Command::new(GLSLANG).args(ARGUMENTS).arg("-o").arg(&compiled).arg(&source).output().unwrap();
-        assert!(output.status.success(), "{file}: {}", String::from_utf8_lossy(&output.stdout));
-        fs::read(compiled).unwrap()
-    }
-
-    fn write(name: &str, content: &[u8]) {
-        let unfinished = folder().join(format!("{name}.tmp"));
-        fs::write(&unfinished, content).unwrap();
-        fs::rename(unfinished, folder().join(name)).unwrap();
+        let text = yoro_shaders::assemble(file, "310 es", &defines).unwrap().text;
+        Source { name, vertex: file.ends_with(".vert"), text }
     }
 
     #[test]
     fn modules_are_compiled_from_the_present_shaders() {
-        let work = std::env::temp_dir().join(format!("yoro-spirv-{}", std::process::id()));
-        fs::create_dir_all(&work).unwrap();
-        let compiler = glslang();
+        let compiled = Compiled {
+            folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv"),
+            ending: "spv",
+            compiler: compiled::glslang(&ARGUMENTS),
+            command: "cargo tools spirv",
+            compile: |source: &Source| compiled::spirv(source, &ARGUMENTS),
+        };
+        let sources = MODULES.each_ref().map(source);
         if std::env::var_os("YORO_BLESS_SPIRV").is_some() {
-            let compiler = compiler.expect("glslangValidator is needed: `cargo xtask setup`");
-            MODULES.iter().for_each(|module| write(&format!("{}.spv", module.0), &compile(module, &work)));
-            write("SOURCES", sources(&compiler).as_bytes());
+            compiled.renew(&sources).unwrap();
         }
-        let committed = fs::read_to_string(folder().join("SOURCES")).unwrap();
-        let made_by = committed.lines().next().unwrap_or_default();
-        assert!(committed == sources(made_by), "the shaders are not those that were compiled: {REMEDY}");
-        match glslang() {
-            Some(here) if here == made_by => {
-                for module in &MODULES {
-                    let kept = fs::read(folder().join(format!("{}.spv", module.0))).unwrap();
-                    assert!(
-                        kept == compile(module, &work),
-                        "{} is not what {here} makes: {REMEDY}",
-                        module.0
-                    );
-                }
-            }
-            here => println!(
-                "LEFT OUT: compiling the shaders again: {} is here, not {made_by}",
-                here.as_deref().unwrap_or("no glslang")
-            ),
-        }
-        fs::remove_dir_all(&work).unwrap();
+        compiled.check(&sources).unwrap();
     }
 }

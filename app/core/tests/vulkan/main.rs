@@ -1,27 +1,27 @@
 //! Pictures of the Vulkan passes equal those of the OpenGL passes, under the validation layer.
 
+mod against_opengl;
 mod failures;
 mod harness;
-#[path = "../synthesis/in_memory.rs"]
-mod in_memory;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::{Cell, RefCell};
-use std::rc::Rc;
 
 use proptest::test_runner::{Config, TestRunner};
 use rand::{Rng, SeedableRng};
 
+use against_opengl::{
+    Gl, Picture, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture, warps,
+};
 use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
-use in_memory::{InMemory, SynthesizedImage};
-use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::synthesis::{self, GatherVariant as GlVariant, Outputs, SourceMapEntry, SynthesisOptions};
+use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
+use yoro::synthesis::{self, Outputs, SynthesisOptions};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
     Frame, Gather, GatherVariant, ImageState, Options, SourceImages, TargetImages, Use, Uses, VulkanError,
 };
 use yoro_context::{Backend, Headless};
-use yoro_gl::{self as gl, Context, Destination, Filter, RenderTarget, Texture};
+use yoro_gl::{self as gl, Destination};
 
 /// An allocator that counts this thread's allocations.
 struct Counting;
@@ -51,62 +51,7 @@ fn allocations() -> usize {
     ALLOCATIONS.get()
 }
 
-const VARIANTS: [(GatherVariant, GlVariant); 2] =
-    [(GatherVariant::Software, GlVariant::Software), (GatherVariant::ShortWay, GlVariant::ShortWay)];
-
-/// A rendered eye, rows from the bottom.
-struct Picture {
-    warp: Warp,
-    rgba: Vec<u8>,
-    depth: Vec<f32>,
-}
-
-/// A slanted wall with boxes and wires before it, in colours that differ from pixel to pixel but smoothly enough for an
-/// error of position to be one of colour in the same measure.
-fn picture(warp: &Warp, range: DepthRange, seed: u64) -> Picture {
-    let [w, h] = warp.source_size.map(|n| n as usize);
-    let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
-    let mut z: Vec<f32> =
-        (0..w * h).map(|i| 4.0 + 3.0 * (i % w) as f32 / w as f32 + 0.01 * (i / w) as f32).collect();
-    let mut paint = vec![0u32; w * h];
-    for number in 1..12 {
-        let (x, y) = (rng.random_range(0..w), rng.random_range(0..h));
-        let wire = rng.random_bool(0.3);
-        let (bw, bh) =
-            if wire { (1, h) } else { (rng.random_range(1..w / 3 + 2), rng.random_range(1..h / 2 + 2)) };
-        let (near, slope) = (rng.random_range(0.5..3.0f32), rng.random_range(-0.01..0.01f32));
-        for j in y..(y + bh).min(h) {
-            for i in x..(x + bw).min(w) {
-                let here = (near + slope * (i - x) as f32).max(0.4);
-                if here < z[j * w + i] {
-                    (z[j * w + i], paint[j * w + i]) = (here, number);
-                }
-            }
-        }
-    }
-    let rgba = (0..w * h).flat_map(|i| {
-        let (x, y, number) = (i % w, i / w, paint[i]);
-        [(x * 5 + number as usize * 40) as u8, (y * 3 + x) as u8, (number * 20) as u8, (200 + number) as u8]
-            .map(|value| if (value / 64) % 2 == 0 { value } else { 255 - value })
-    });
-    Picture { warp: *warp, rgba: rgba.collect(), depth: z.iter().map(|z| range.depth(*z)).collect() }
-}
-
-fn eyes(size: [u32; 2], dominant: Eye, range: DepthRange) -> EyePair {
-    let frustum = Frustum::symmetric(1.2, size[0] as f32 / size[1] as f32);
-    EyePair::parallel(Pose::IDENTITY, frustum, 0.063, range, size, dominant)
-}
-
-/// Standard, reversed, infinite, and reversed by swapped planes as in OpenXR.
-fn ranges() -> [DepthRange; 4] {
-    let standard = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Standard };
-    [
-        standard,
-        DepthRange { convention: DepthConvention::Reversed, ..standard },
-        DepthRange { far: f32::INFINITY, convention: DepthConvention::Reversed, near: 0.1 },
-        DepthRange::from_distances(100.0, 0.3),
-    ]
-}
+const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
 
 /// The parameters of a synthesis.
 #[derive(Clone, Copy, Debug)]
@@ -156,27 +101,6 @@ impl Setup {
 struct Result {
     rgba: Vec<u8>,
     depth: Option<Vec<f32>>,
-}
-
-/// The rectangle of an image at a place counted from the top, all rows from the bottom.
-fn cut<T: Copy>(all: &[T], image: [u32; 2], origin: [u32; 2], size: [u32; 2], channels: usize) -> Vec<T> {
-    let [w, h] = image.map(|n| n as usize);
-    let bottom = h - (origin[1] + size[1]) as usize;
-    let row =
-        |y: usize| &all[((bottom + y) * w + origin[0] as usize) * channels..][..size[0] as usize * channels];
-    (0..size[1] as usize).flat_map(row).copied().collect()
-}
-
-/// `all` with a rectangle of it replaced; places as in [`cut`].
-fn pasted<T: Copy>(mut all: Vec<T>, image: [u32; 2], origin: [u32; 2], part: &[T], width: usize) -> Vec<T> {
-    let [w, h] = image.map(|n| n as usize);
-    let channels = all.len() / (w * h);
-    let rows = part.chunks_exact(width * channels);
-    let bottom = h - origin[1] as usize - rows.len();
-    for (y, row) in rows.enumerate() {
-        all[((bottom + y) * w + origin[0] as usize) * channels..][..row.len()].copy_from_slice(row);
-    }
-    all
 }
 
 /// Synthesizes a picture with images around it that hold something else.
@@ -258,64 +182,12 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
     Result { rgba, depth }
 }
 
-/// The same on OpenGL ES.
-struct Gl {
-    headless: Headless,
-    offline: [RefCell<InMemory>; 2],
-}
-
-impl Gl {
-    fn new() -> Gl {
-        let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
-        let offline = VARIANTS.map(|(_, variant)| {
-            let gather = synthesis::Gather::with_variant(headless.gl(), in_memory::OUTPUTS, variant).unwrap();
-            RefCell::new(InMemory::new(headless.gl(), Box::new(gather)))
-        });
-        Gl { headless, offline }
-    }
-
-    fn run(&self, variant: usize, picture: &Picture) -> SynthesizedImage {
-        let Picture { warp, rgba, depth } = picture;
-        self.offline[variant].borrow_mut().run(rgba, depth, warp)
-    }
-}
-
-/// The largest difference of a channel, by the number of a variant. The two APIs count rows from opposite ends, so that tiles
-/// and their laws are others: an eighth of a pixel, in noise of 255 levels.
-const TOLERANCES: [u8; 2] = [1, 32];
-
-/// Checks that every channel is as good as equal, but for a few pixels whose positions lie within rounding of a decision.
-fn assert_equal(got: &[u8], want: &[u8], channels: usize, number: usize, what: &str) {
-    assert_eq!(got.len(), want.len());
-    let most = TOLERANCES[number];
-    let differs = |(a, b): (&[u8], &[u8])| a[..channels].iter().zip(b).any(|(a, b)| a.abs_diff(*b) > most);
-    let different = got.chunks_exact(4).zip(want.chunks_exact(4)).filter(|&pair| differs(pair)).count();
-    assert!(different * 4000 <= got.len() / 4, "{what}: {different} of {} pixels differ", got.len() / 4);
-}
-
-/// Warps of both eyes, in all depth ranges, with targets that lie higher and lower than their sources, and beyond them.
-fn warps() -> Vec<(Warp, DepthRange)> {
-    let mut warps = Vec::new();
-    for (i, range) in ranges().into_iter().enumerate() {
-        let dominant = Eye::BOTH[i % 2];
-        for eye in [dominant, dominant.other()] {
-            let views = eyes([150, 41], eye, range).synthesis(GuardBand::Pixels(13 * i as u32)).unwrap();
-            warps.push((views.warp, range));
-        }
-        let whole = warps[warps.len() - 1].0;
-        let lower = Warp { target_size: [150, 30], row_offset: -7 - i as i32, ..whole };
-        let higher = Warp { target_size: [150, 48], row_offset: 5, ..whole };
-        warps.extend([(lower, range), (higher, range)]);
-    }
-    warps
-}
-
 #[test]
 fn pictures_equal_those_of_opengl() {
     let gl = Gl::new();
     for rendering in Rendering::ALL {
         with_gpu(rendering, |gpu| {
-            for (number, (variant, _)) in VARIANTS.into_iter().enumerate() {
+            for (number, variant) in VARIANTS.into_iter().enumerate() {
                 for (i, (warp, range)) in warps().into_iter().enumerate() {
                     let picture = picture(&warp, range, i as u64);
                     let setup = Setup::PLAIN;
@@ -363,7 +235,7 @@ fn parts_and_layers_are_found() {
                 ..setup
             },
         ];
-        for (number, (variant, _)) in VARIANTS.into_iter().enumerate() {
+        for (number, variant) in VARIANTS.into_iter().enumerate() {
             let all: Vec<Warp> = warps.iter().map(|(warp, _)| *warp).collect();
             // SAFETY: the device outlives it, and everything is executed.
             let mut gather =
@@ -377,21 +249,6 @@ fn parts_and_layers_are_found() {
             }
         }
     });
-}
-
-/// The expected depth of a target, from the columns that OpenGL has written.
-fn expected_depth(picture: &Picture, source_map: &[u32]) -> Vec<f32> {
-    let warp = &picture.warp;
-    let [width, height] = warp.source_size.map(|n| n as i32);
-    let entries = source_map.iter().enumerate().map(|(i, entry)| {
-        let (x, y) = (i as u32 % warp.target_size[0], i as u32 / warp.target_size[0]);
-        let column = SourceMapEntry::decode(*entry, x, warp).column;
-        let row = (y as i32 - warp.row_offset).clamp(0, height - 1);
-        let at = |column: f32| picture.depth[(row * width + (column as i32).clamp(0, width - 1)) as usize];
-        let t = column.fract();
-        at(column.floor()) * (1.0 - t) + at(column.floor() + 1.0) * t
-    });
-    entries.collect()
 }
 
 #[test]
@@ -465,33 +322,13 @@ fn srgb_is_filtered_in_linear_light() {
     });
 }
 
-/// Colour and depth as textures, and a target of the colour's format.
-fn gl_images(gl: &Rc<Context>, picture: &Picture, format: gl::Format) -> ([Texture; 2], RenderTarget) {
-    let Picture { warp, rgba, depth } = picture;
-    let color = Texture::new(gl, warp.source_size, format, Filter::Linear).unwrap();
-    color.upload(rgba);
-    let map = Texture::new(gl, warp.source_size, gl::Format::R32F, Filter::Nearest).unwrap();
-    map.upload(&depth.iter().flat_map(|value| value.to_ne_bytes()).collect::<Vec<_>>());
-    let target = RenderTarget::new(gl, warp.target_size, &[(format, Filter::Nearest)], None).unwrap();
-    ([color, map], target)
-}
-
-fn gl_srgb(gl: &Rc<Context>, picture: &Picture) -> Vec<u8> {
-    let ([color, depth], target) = gl_images(gl, picture, gl::Format::Srgb8Alpha8);
-    let outputs = Outputs { srgb: true, ..Outputs::default() };
-    let mut gather = synthesis::create(gl, &SynthesisOptions::default(), outputs).unwrap();
-    let source = synthesis::Source::new(color.raw(), depth.raw());
-    gather.synthesize(source, &picture.warp, &Destination::whole(&target)).unwrap();
-    target.read_rgba8(0, [0, 0], picture.warp.target_size)
-}
-
 /// Any sizes, rectangles, eyes and laws.
 #[test]
 fn sizes_and_rectangles_at_random() {
     let gl = Gl::new();
     with_gpu(Rendering::Core, |gpu| {
         let limits = Options { max_source_size: [96, 70], max_target_size: [96, 70], ..Options::default() };
-        let gathers = VARIANTS.map(|(variant, _)| {
+        let gathers = VARIANTS.map(|variant| {
             // SAFETY: the device outlives it, and everything is executed.
             RefCell::new(unsafe { Gather::with_variant(&gpu.host(), &limits, variant).unwrap() })
         });
@@ -540,7 +377,7 @@ fn near_surfaces_equal_those_of_opengl() {
     with_gpu(Rendering::Core, |gpu| {
         let limits = Options { max_source_size: [540, 30], max_target_size: [540, 30], ..Options::default() };
         let range = DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
-        for (number, (variant, _)) in VARIANTS.into_iter().enumerate() {
+        for (number, variant) in VARIANTS.into_iter().enumerate() {
             // SAFETY: the device outlives it, and everything is executed.
             let mut gather = unsafe { Gather::with_variant(&gpu.host(), &limits, variant).unwrap() };
             for (scale, source_margins) in [(300.0, [[0, 0], [0, 0]]), (-300.0, [[7, 3], [5, 2]])] {

@@ -1,0 +1,185 @@
+//! What the caller gives, against what the device and the pipelines can use.
+
+use wgpu::{
+    Device, Features, TextureFormat, TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
+    TextureView,
+};
+use yoro::eyes::Warp;
+use yoro::synthesis::Edges;
+
+use crate::{Options, Source, Target, WgpuError};
+
+/// Checks that the device can do what the options ask for.
+pub(crate) fn options(device: &Device, options: &Options) -> Result<(), WgpuError> {
+    let drawn =
+        |features: TextureFormatFeatures| features.allowed_usages.contains(TextureUsages::RENDER_ATTACHMENT);
+    let (color, role) = (options.color_format, "a target's colour");
+    let is_float = matches!(color.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
+    if !is_float || color.is_depth_stencil_format() {
+        return Err(WgpuError::Format { format: color, role });
+    }
+    check_format(device, color, role, drawn)?;
+    if let Some(format) = options.depth_format {
+        let role = "a target's depth";
+        if !format.has_depth_aspect() {
+            return Err(WgpuError::Format { format, role });
+        }
+        check_format(device, format, role, drawn)?;
+    }
+    if options.edges == Edges::Multisample && !matches!(options.samples, 2 | 4) {
+        return Err(WgpuError::SampleCount(options.samples));
+    }
+    Ok(())
+}
+
+/// Asks the device for what all devices of its features can do with a format. With adapter-specific features only the adapter
+/// knows, and wgpu says what is wrong.
+fn check_format(
+    device: &Device,
+    format: TextureFormat,
+    role: &'static str,
+    fits: impl Fn(TextureFormatFeatures) -> bool,
+) -> Result<(), WgpuError> {
+    let features = device.features();
+    let enabled = features.contains(format.required_features());
+    let own = features.contains(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
+    if enabled && (own || fits(format.guaranteed_format_features(features))) {
+        Ok(())
+    } else {
+        Err(WgpuError::Format { format, role })
+    }
+}
+
+/// Checks everything that is given to one call.
+pub(crate) fn frame(
+    device: &Device,
+    options: &Options,
+    source: &Source,
+    warp: &Warp,
+    target: &Target,
+) -> Result<(), WgpuError> {
+    let limit = [device.limits().max_texture_dimension_2d; 2];
+    check_size("a source", warp.source_size, limit)?;
+    check_size("a target", warp.target_size, limit)?;
+    check_source(device, options, source)?;
+    check_target(options, target)?;
+    check_rectangle("a source", source.origin, warp.source_size, size(source.color))?;
+    check_rectangle("a target", target.origin, warp.target_size, size(target.color))
+}
+
+fn check_source(device: &Device, options: &Options, source: &Source) -> Result<(), WgpuError> {
+    let filtered =
+        |features: TextureFormatFeatures| features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
+    check_format(device, source.color.texture().format(), "a source's colour", filtered)?;
+    let depth = source.depth.texture().format();
+    let is_float =
+        matches!(depth, TextureFormat::R32Float | TextureFormat::R16Unorm | TextureFormat::R16Float);
+    if !is_float && !depth.has_depth_aspect() {
+        return Err(WgpuError::Format { format: depth, role: "a source's depth" });
+    }
+    let samples = if options.edges == Edges::Multisample { options.samples } else { 1 };
+    if source.sample_color.is_some() && options.edges != Edges::Multisample {
+        return Err(WgpuError::SampleColors);
+    }
+    let textures = [
+        ("a source's colour", Some(source.color), 1),
+        ("a source's depth", Some(source.depth), samples),
+        ("the colour of samples", source.sample_color, samples),
+    ];
+    for (what, view, expected) in textures {
+        if let Some(view) = view {
+            check_texture(what, view, TextureUsages::TEXTURE_BINDING, expected, source.color)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_target(options: &Options, target: &Target) -> Result<(), WgpuError> {
+    let format = |view: &TextureView| view.texture().format();
+    // A view may be sRGB where its texture is not; which one only wgpu knows.
+    let color = format(target.color);
+    if color.remove_srgb_suffix() != options.color_format.remove_srgb_suffix() {
+        return Err(WgpuError::OtherFormat { expected: options.color_format, found: color });
+    }
+    let (expected, found) = (options.depth_format, target.depth.map(format));
+    if expected != found {
+        return Err(WgpuError::OtherDepth { expected, found });
+    }
+    check_texture("a target's colour", target.color, TextureUsages::RENDER_ATTACHMENT, 1, target.color)?;
+    match target.depth {
+        Some(depth) => {
+            check_texture("a target's depth", depth, TextureUsages::RENDER_ATTACHMENT, 1, target.color)
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_texture(
+    what: &'static str,
+    view: &TextureView,
+    usage: TextureUsages,
+    expected: u32,
+    color: &TextureView,
+) -> Result<(), WgpuError> {
+    let (texture, of_color) = (view.texture(), size(color));
+    if !texture.usage().contains(usage) {
+        return Err(WgpuError::Usage { what, usage });
+    }
+    if texture.sample_count() != expected {
+        return Err(WgpuError::Samples { what, expected, found: texture.sample_count() });
+    }
+    if size(view) != of_color {
+        return Err(WgpuError::Sizes { what, size: size(view), color: of_color });
+    }
+    Ok(())
+}
+
+/// Width and height of a view's texture.
+pub(crate) fn size(view: &TextureView) -> [u32; 2] {
+    [view.texture().width(), view.texture().height()]
+}
+
+fn check_size(what: &'static str, size: [u32; 2], limit: [u32; 2]) -> Result<(), WgpuError> {
+    if (0..2).all(|i| (1..=limit[i]).contains(&size[i])) {
+        Ok(())
+    } else {
+        Err(WgpuError::Size { what, size, limit })
+    }
+}
+
+fn check_rectangle(
+    what: &'static str,
+    origin: [u32; 2],
+    size: [u32; 2],
+    image: [u32; 2],
+) -> Result<(), WgpuError> {
+    let fits = |i: usize| origin[i].checked_add(size[i]).is_some_and(|end| end <= image[i]);
+    if fits(0) && fits(1) { Ok(()) } else { Err(WgpuError::Rectangle { what, origin, size, image }) }
+}
+
+/// Makes objects, and returns wgpu's first error about them. In browsers errors come later, to the device's handler of
+/// uncaptured errors.
+pub(crate) fn made<T>(device: &Device, make: impl FnOnce() -> T) -> Result<T, WgpuError> {
+    if cfg!(target_arch = "wasm32") {
+        return Ok(make());
+    }
+    let filters =
+        [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
+    let mut scopes = filters.map(|filter| Some(device.push_error_scope(filter)));
+    let objects = make();
+    let mut first = None;
+    // The innermost first.
+    for scope in scopes.iter_mut().rev().filter_map(Option::take) {
+        let mut popped = std::pin::pin!(scope.pop());
+        let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+        if let std::task::Poll::Ready(Some(error)) = popped.as_mut().poll(&mut context) {
+            first = first.or(Some(error));
+        }
+    }
+    match first {
+        Some(error) => {
+            Err(WgpuError::Refused(error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")))
+        }
+        None => Ok(objects),
+    }
+}

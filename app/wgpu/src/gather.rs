@@ -1,0 +1,218 @@
+//! Synthesis of the other eye, recorded into the caller's command encoder.
+
+use wgpu::{CommandEncoder, Device, DeviceType, Queue, TextureView};
+use yoro::eyes::Warp;
+use yoro::synthesis::{Places, Uniforms, tiles};
+
+use crate::buffers::Buffers;
+use crate::checks::{self, made, size};
+use crate::passes::{Drawn, Groups, Passes};
+use crate::uniforms::UniformRing;
+use crate::{GatherVariant, Options, Source, Target, WgpuError};
+
+/// The bindings of a source that was not used for so many calls are dropped, and with them its textures.
+const KEPT_CALLS: u64 = 32;
+
+/// The passes of synthesis: tile bounds, tile spans, march. For anti-aliased sources there is a split into layers before
+/// them.
+///
+/// All calls share the intermediate buffers: submit what they have recorded to one queue. Up to 64 calls may be recorded
+/// before the first of them is submitted.
+pub struct Gather {
+    options: Options,
+    passes: Passes,
+    uniforms: UniformRing,
+    buffers: Option<Buffers>,
+    kept: Vec<Kept>,
+    calls: u64,
+}
+
+/// What was made for a source.
+struct Kept {
+    /// Colour, depth, and colour of the samples.
+    views: [Option<TextureView>; 3],
+    groups: Groups,
+    /// The number of the last call that used it.
+    used: u64,
+}
+
+impl Gather {
+    /// Makes everything that does not depend on the textures: the pipelines.
+    ///
+    /// # Errors
+    /// [`WgpuError::Format`] and [`WgpuError::SampleCount`] for what the device cannot do, [`WgpuError::Refused`] for
+    /// whatever else it refuses. In a browser such things are told to the device's handler of uncaptured errors.
+    pub fn new(device: &Device, options: &Options) -> Result<Gather, WgpuError> {
+        let variant = match device.adapter_info().device_type {
+            DeviceType::Cpu => GatherVariant::Software,
+            _ => GatherVariant::ShortWay,
+        };
+        Gather::with_variant(device, options, variant)
+    }
+
+    /// Does what [`Gather::new`] does on another kind of device: for tests of shaders that this device would not use.
+    ///
+    /// # Errors
+    /// As [`Gather::new`].
+    #[doc(hidden)]
+    pub fn with_variant(
+        device: &Device,
+        options: &Options,
+        variant: GatherVariant,
+    ) -> Result<Gather, WgpuError> {
+        checks::options(device, options)?;
+        let (passes, uniforms) =
+            made(device, || (Passes::new(device, options, variant), UniformRing::new(device)))?;
+        Ok(Gather { options: *options, passes, uniforms, buffers: None, kept: Vec::new(), calls: 0 })
+    }
+
+    /// Makes the intermediate buffers for sources and targets up to these sizes in pixels. [`Gather::record`] does so when it
+    /// meets a size that is larger than all before; called beforehand, no frame has to.
+    ///
+    /// # Errors
+    /// [`WgpuError::Refused`] without memory for them.
+    pub fn prepare(
+        &mut self,
+        device: &Device,
+        max_source_size: [u32; 2],
+        max_target_size: [u32; 2],
+    ) -> Result<(), WgpuError> {
+        let sizes = match &self.buffers {
+            Some(buffers) if buffers.hold(max_source_size, max_target_size) => return Ok(()),
+            Some(buffers) => buffers.grown(max_source_size, max_target_size),
+            None => (max_source_size, max_target_size),
+        };
+        self.buffers = Some(made(device, || Buffers::new(device, &self.options, sizes))?);
+        // They bind the buffers.
+        self.kept.clear();
+        Ok(())
+    }
+
+    /// Records the passes, each of which is a render pass: call it outside of passes. Source and target are as their types
+    /// say; the target is none of the source's textures.
+    ///
+    /// What is made for the views of a source is kept for the next calls with the same views, until 32 calls in a row
+    /// were without them. Buffers are made when sizes are larger than all before.
+    ///
+    /// # Errors
+    /// One of [`WgpuError`] for what does not fit, [`WgpuError::DeviceLost`]; nothing is recorded then.
+    pub fn record(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        source: &Source,
+        warp: &Warp,
+        target: &Target,
+    ) -> Result<(), WgpuError> {
+        checks::frame(device, &self.options, source, warp, target)?;
+        let places = Places {
+            source_origin: source.origin,
+            image_size: size(source.color),
+            target_origin: target.origin,
+            part: true,
+        };
+        let uniforms = self.uniforms.write(queue, &Uniforms::of_part(&warp.rows_from_top(), &places))?;
+        self.prepare(device, warp.source_size, warp.target_size)?;
+        self.calls += 1;
+        let index = self.bound(device, source);
+        let Some(buffers) = &self.buffers else { return Ok(()) };
+
+        let [[x, y], [width, height]] = [target.origin, warp.target_size];
+        let drawn = Drawn {
+            color: target.color,
+            depth: target.depth,
+            area: [x, y, width, height],
+            whole: size(target.color) == warp.target_size,
+        };
+        let sizes =
+            [warp.source_size, tiles(warp.source_size), tiles([warp.target_size[0], warp.source_size[1]])];
+        self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, uniforms, &drawn);
+        Ok(())
+    }
+
+    /// Returns the place of a source's bindings among those that are kept.
+    fn bound(&mut self, device: &Device, source: &Source) -> usize {
+        let calls = self.calls;
+        let views = [Some(source.color), Some(source.depth), source.sample_color];
+        self.kept.retain(|kept| kept.used + KEPT_CALLS >= calls);
+        let found = self.kept.iter().position(|kept| kept.views.each_ref().map(Option::as_ref) == views);
+        let index = found.unwrap_or(self.kept.len());
+        if let (None, Some(buffers)) = (found, &self.buffers) {
+            let groups = self.passes.groups(device, source, buffers, &self.uniforms);
+            self.kept.push(Kept { views: views.map(|view| view.cloned()), groups, used: calls });
+        }
+        self.kept[index].used = calls;
+        index
+    }
+
+    /// Returns the bytes of the intermediate buffers' texels; 0 before there are any.
+    pub fn buffer_bytes(&self) -> u64 {
+        self.buffers.as_ref().map_or(0, Buffers::bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+    use yoro::eyes::{DepthConvention, DisparityLaw, Eye};
+
+    use super::*;
+
+    fn view(device: &Device, format: TextureFormat, usage: TextureUsages) -> TextureView {
+        let texture = device.create_texture(&TextureDescriptor {
+            label: None,
+            size: Extent3d { width: 64, height: 64, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        });
+        texture.create_view(&Default::default())
+    }
+
+    fn warp(size: [u32; 2]) -> Warp {
+        Warp {
+            source_size: size,
+            target_size: size,
+            law: DisparityLaw { offset: 0.0, scale: 5.0 },
+            row_offset: 0,
+            target_eye: Eye::Left,
+            convention: DepthConvention::Reversed,
+        }
+    }
+
+    #[test]
+    fn bindings_are_kept_while_the_views_are_used_and_buffers_only_grow() {
+        // A device that draws nothing.
+        let (device, queue) = Device::noop(&wgpu::DeviceDescriptor::default());
+        let mut gather = Gather::new(&device, &Options::default()).unwrap();
+        let binding = TextureUsages::TEXTURE_BINDING;
+        let sources = [0, 1].map(|_| {
+            [TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float]
+                .map(|format| view(&device, format, binding))
+        });
+        let target = view(&device, TextureFormat::Rgba8Unorm, TextureUsages::RENDER_ATTACHMENT);
+        let record = |gather: &mut Gather, source: usize, size| {
+            let [color, depth] = &sources[source];
+            let mut encoder = device.create_command_encoder(&Default::default());
+            let (source, target) = (Source::new(color, depth), Target::new(&target));
+            gather.record(&device, &queue, &mut encoder, &source, &warp(size), &target).unwrap();
+            drop(encoder.finish());
+        };
+        (0..100).for_each(|frame| record(&mut gather, frame % 2, [40, 40]));
+        assert_eq!(gather.kept.len(), 2);
+        let tiles = |gather: &Gather| gather.buffers.as_ref().map(|buffers| buffers.tiles.clone());
+        let (before, bytes) = (tiles(&gather), gather.buffer_bytes());
+        assert_eq!(bytes, 2 * 16 * 3 * 5);
+        record(&mut gather, 0, [20, 30]);
+        assert_eq!((tiles(&gather), gather.buffer_bytes()), (before.clone(), bytes));
+        (0..40).for_each(|_| record(&mut gather, 1, [40, 40]));
+        assert_eq!(gather.kept.len(), 1, "the textures of a source that is used no more are released");
+        record(&mut gather, 1, [20, 64]);
+        assert_ne!(tiles(&gather), before);
+        assert_eq!(gather.buffer_bytes(), 2 * 16 * 3 * 8);
+    }
+}

@@ -1,0 +1,231 @@
+//! Render one eye, synthesize the other, on wgpu: the passes of [`yoro`] in the caller's command encoder.
+//!
+//! [`Gather`] takes colour and depth of one eye as views of textures, and draws the other eye: the counterpart of
+//! `yoro::vulkan`, from the same shaders. [`yoro::eyes`] says which view to render, and gives the
+//! [`Warp`](yoro::eyes::Warp). wgpu is part of the interface, and is handed on as [`wgpu`].
+//!
+//! Images have wgpu's own orientation, row 0 at the top. Give the warp as
+//! [`EyePair::synthesis`](yoro::eyes::EyePair::synthesis) returns it: its rows, which are counted from the bottom, are turned
+//! inside. [`SynthesisViews::dominant_crop_from_top`](yoro::eyes::SynthesisViews::dominant_crop_from_top) is the place of the
+//! dominant eye's own image in the source.
+//!
+//! ```no_run
+//! use yoro::eyes::SynthesisViews;
+//! use yoro_wgpu::{Gather, Options, Source, Target, wgpu};
+//!
+//! # fn example(
+//! #     device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, views: &SynthesisViews,
+//! #     [color, depth, target]: [&wgpu::TextureView; 3],
+//! # ) -> Result<(), yoro_wgpu::WgpuError> {
+//! // Once: pipelines for the target's format.
+//! let options = Options { color_format: wgpu::TextureFormat::Rgba8UnormSrgb, ..Options::default() };
+//! let mut gather = Gather::new(device, &options)?;
+//! // Each frame, outside of passes:
+//! let (source, target) = (Source::new(color, depth), Target::new(target));
+//! gather.record(device, queue, encoder, &source, &views.warp, &target)?;
+//! # Ok(())
+//! # }
+//! ```
+
+#![forbid(unsafe_code)]
+
+mod buffers;
+mod checks;
+mod gather;
+mod passes;
+mod shaders;
+mod uniforms;
+
+pub use wgpu;
+use wgpu::{TextureFormat, TextureUsages, TextureView};
+pub use yoro;
+use yoro::synthesis::Edges;
+
+pub use gather::Gather;
+#[doc(hidden)]
+pub use shaders::GatherVariant;
+
+/// Errors of creating a pipeline and of recording.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WgpuError {
+    /// The device cannot use this format in this role.
+    #[error(
+        "the wgpu device cannot use {format:?} as {role}; choose another format, or enable the feature for it"
+    )]
+    Format {
+        /// The format.
+        format: TextureFormat,
+        /// The role of the texture.
+        role: &'static str,
+    },
+    /// A target's colour does not have the format of [`Options`].
+    #[error(
+        "a target of {found:?} does not fit pipelines that were made for {expected:?}; give a target of that format, or make pipelines for the other"
+    )]
+    OtherFormat {
+        /// The format of [`Options`].
+        expected: TextureFormat,
+        /// The format of the target's texture.
+        found: TextureFormat,
+    },
+    /// A target's depth does not have the format of [`Options`].
+    #[error(
+        "a target with {} does not fit pipelines that were made for {}; give a target like that, or make pipelines for the other",
+        depth_of(.found), depth_of(.expected)
+    )]
+    OtherDepth {
+        /// The format of [`Options`].
+        expected: Option<TextureFormat>,
+        /// The format of the target's texture.
+        found: Option<TextureFormat>,
+    },
+    /// A texture was made without a usage that its role needs.
+    #[error("{what} needs a texture with the usage {usage:?}; add it where the texture is created")]
+    Usage {
+        /// The role of the texture.
+        what: &'static str,
+        /// The usage that is missing.
+        usage: TextureUsages,
+    },
+    /// A texture has another number of samples than its role needs.
+    #[error("{what} of {found} samples cannot be used; give a texture of {expected}")]
+    Samples {
+        /// The role of the texture.
+        what: &'static str,
+        /// The number that is needed.
+        expected: u32,
+        /// The texture's.
+        found: u32,
+    },
+    /// The number of depth samples in [`Options`] is not 2 or 4.
+    #[error("a source's depth of {0} samples cannot be used; give 4, or 2 where the device has that")]
+    SampleCount(u32),
+    /// A source has the colour of its samples, which only [`Edges::Multisample`] uses.
+    #[error("colour of samples is for edges of multisample textures only; leave out sample_color")]
+    SampleColors,
+    /// A size is zero, or beyond the device's.
+    #[error(
+        "{what} of {}x{} pixels is not between 1x1 and {}x{}; give a size in that range, or a device with larger limits",
+        size[0], size[1], limit[0], limit[1]
+    )]
+    Size {
+        /// The image that has the size.
+        what: &'static str,
+        /// Width and height.
+        size: [u32; 2],
+        /// The largest.
+        limit: [u32; 2],
+    },
+    /// The textures of a source, or of a target, are not of one size.
+    #[error(
+        "{what} of {}x{} pixels does not go with colour of {}x{} pixels; give textures of one size",
+        size[0], size[1], color[0], color[1]
+    )]
+    Sizes {
+        /// The texture beside colour.
+        what: &'static str,
+        /// Its width and height.
+        size: [u32; 2],
+        /// Those of colour.
+        color: [u32; 2],
+    },
+    /// A rectangle reaches beyond its image.
+    #[error(
+        "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
+        size[0], size[1], origin[0], origin[1], image[0], image[1]
+    )]
+    Rectangle {
+        /// The rectangle.
+        what: &'static str,
+        /// Upper left corner.
+        origin: [u32; 2],
+        /// Width and height.
+        size: [u32; 2],
+        /// Width and height of the image.
+        image: [u32; 2],
+    },
+    /// wgpu refused to make a pipeline or a texture.
+    #[error("wgpu cannot make the pipelines or buffers of synthesis: {0}")]
+    Refused(String),
+    /// The device is lost, or has no memory left for a few bytes: create it and all of its objects again.
+    #[error("the wgpu device is lost or out of memory; create it and all of its objects again")]
+    DeviceLost,
+}
+
+fn depth_of(format: &Option<TextureFormat>) -> String {
+    format.map_or("no depth".into(), |format| format!("depth of {format:?}"))
+}
+
+/// The formats and the kind of sources for which pipelines are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Format of the targets' colour, any that the device can render to: that of the view, where it differs from the texture's.
+    pub color_format: TextureFormat,
+    /// Format of the targets' depth, which is written in the source's encoding; None for colour only.
+    pub depth_format: Option<TextureFormat>,
+    /// The kind of source images; docs/library.md says which to choose.
+    pub edges: Edges,
+    /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 4, or 2 where the device has that.
+    pub samples: u32,
+}
+
+impl Default for Options {
+    /// Rgba8Unorm without depth, hard edges.
+    fn default() -> Options {
+        Options {
+            color_format: TextureFormat::Rgba8Unorm,
+            depth_format: None,
+            edges: Edges::Hard,
+            samples: 4,
+        }
+    }
+}
+
+/// The rendered eye and its guard band: views of one layer and one mip level, the largest, of 2-D textures of one size, with
+/// the usage TEXTURE_BINDING. The source's size is the warp's.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// Colour in any format that can be filtered: Rgba8Unorm or Rgba8UnormSrgb, Rgb10a2Unorm, Rgba16Float and others. All four
+    /// channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the edges are [`Edges::Hard`]
+    /// it is resolved, with values between 0 and 1.
+    pub color: &'a TextureView,
+    /// Depth: R32Float, R16Unorm, or any depth format; of one with stencil a view of the depth alone
+    /// ([`wgpu::TextureAspect::DepthOnly`]). For [`Edges::Multisample`] it has [`Options::samples`] samples.
+    pub depth: &'a TextureView,
+    /// For [`Edges::Multisample`], the texture with as many samples that the colour was resolved from, if it still exists.
+    pub sample_color: Option<&'a TextureView>,
+    /// Upper left corner of the rendered rectangle in the textures, in pixels.
+    pub origin: [u32; 2],
+}
+
+impl<'a> Source<'a> {
+    /// Returns a source that begins at the upper left corner of two textures, without the colours of samples.
+    pub fn new(color: &'a TextureView, depth: &'a TextureView) -> Source<'a> {
+        Source { color, depth, sample_color: None, origin: [0, 0] }
+    }
+}
+
+/// Where the other eye goes: views of one layer of 2-D textures of one size, with the usage RENDER_ATTACHMENT. The target's
+/// size is the warp's.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// Colour, in [`Options::color_format`].
+    pub color: &'a TextureView,
+    /// Depth, in [`Options::depth_format`], with all of its aspects. Stencil stays as it is.
+    pub depth: Option<&'a TextureView>,
+    /// Upper left corner of the rectangle to write in the textures, in pixels. Pixels outside of it stay as they are.
+    pub origin: [u32; 2],
+}
+
+impl<'a> Target<'a> {
+    /// Returns a target that begins at the upper left corner of a texture, without depth.
+    pub fn new(color: &'a TextureView) -> Target<'a> {
+        Target { color, depth: None, origin: [0, 0] }
+    }
+}
+
+/// The code of the README is compiled with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,69 @@
+//! The shaders of the passes as WGSL, compiled beforehand from the files of `yoro-shaders`: `cargo tools wgsl`.
+
+use yoro::synthesis::Edges;
+
+/// The kind of device that the shaders are written for.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GatherVariant {
+    /// A CPU rasterizer.
+    Software,
+    /// A GPU.
+    ShortWay,
+}
+
+pub(crate) const SCREEN: &str = include_str!("wgsl/screen.wgsl");
+pub(crate) const MARCH_VERTEX: &str = include_str!("wgsl/march-vertex.wgsl");
+
+/// Returns the first pass for resolved colour; None for hard edges.
+pub(crate) fn split(edges: Edges, samples: u32) -> Option<&'static str> {
+    match (edges, samples) {
+        (Edges::Hard, _) => None,
+        (Edges::Nearest, _) => Some(include_str!("wgsl/split-nearest.wgsl")),
+        (Edges::Sample, _) => Some(include_str!("wgsl/split-sample.wgsl")),
+        (Edges::Multisample, 2) => Some(include_str!("wgsl/split-multisample-two.wgsl")),
+        (Edges::Multisample, _) => Some(include_str!("wgsl/split-multisample.wgsl")),
+    }
+}
+
+/// Returns the first pass for depth and colour of all samples.
+pub(crate) fn split_samples(samples: u32) -> &'static str {
+    match samples {
+        2 => include_str!("wgsl/split-samples-two.wgsl"),
+        _ => include_str!("wgsl/split-samples.wgsl"),
+    }
+}
+
+/// Returns the pass that finds the bounds of tiles.
+pub(crate) fn tiles(edges: Edges, variant: GatherVariant) -> &'static str {
+    match (edges, variant) {
+        (Edges::Hard, GatherVariant::Software) => include_str!("wgsl/tiles.wgsl"),
+        (Edges::Hard, GatherVariant::ShortWay) => include_str!("wgsl/tiles-short.wgsl"),
+        _ => include_str!("wgsl/layer-tiles.wgsl"),
+    }
+}
+
+/// Returns the pass that finds what each tile of the target has to search.
+pub(crate) fn spans(edges: Edges, variant: GatherVariant) -> &'static str {
+    match (edges, variant) {
+        (Edges::Hard, GatherVariant::ShortWay) => include_str!("wgsl/spans-short.wgsl"),
+        _ => include_str!("wgsl/spans.wgsl"),
+    }
+}
+
+/// Returns the last pass.
+pub(crate) fn march(edges: Edges, variant: GatherVariant, depth: bool) -> &'static str {
+    match (edges, variant, depth) {
+        (Edges::Hard, GatherVariant::Software, false) => include_str!("wgsl/march.wgsl"),
+        (Edges::Hard, GatherVariant::Software, true) => include_str!("wgsl/march-depth.wgsl"),
+        (Edges::Hard, GatherVariant::ShortWay, false) => include_str!("wgsl/march-short.wgsl"),
+        (Edges::Hard, GatherVariant::ShortWay, true) => include_str!("wgsl/march-short-depth.wgsl"),
+        (Edges::Multisample, _, false) => include_str!("wgsl/layer-march-multisample.wgsl"),
+        (Edges::Multisample, _, true) => include_str!("wgsl/layer-march-multisample-depth.wgsl"),
+        (_, _, false) => include_str!("wgsl/layer-march.wgsl"),
+        (_, _, true) => include_str!("wgsl/layer-march-depth.wgsl"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

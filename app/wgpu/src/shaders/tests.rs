@@ -1,0 +1,172 @@
+//! The modules are those of the present shaders, and every back end takes them.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context as _, anyhow};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use yoro_tools::compiled::{self, Compiled, Source};
+
+/// A file in `wgsl/` without its ending, the file of `yoro-shaders` that it is made of, and the macros for that.
+type Row = (&'static str, &'static str, &'static [&'static str]);
+
+const MARCH: &str = "synthesis/gather/march.frag";
+const LAYER_MARCH: &str = "synthesis/layers/march.frag";
+const SPANS: &str = "synthesis/gather/spans.frag";
+const SPLIT: &str = "synthesis/layers/split.frag";
+const TILES: &str = "synthesis/gather/tiles.frag";
+const MODULES: [Row; 21] = [
+    ("layer-march", LAYER_MARCH, &[]),
+    ("layer-march-depth", LAYER_MARCH, &["WRITE_DEPTH"]),
+    ("layer-march-multisample", LAYER_MARCH, &["MULTISAMPLE"]),
+    ("layer-march-multisample-depth", LAYER_MARCH, &["MULTISAMPLE", "WRITE_DEPTH"]),
+    ("layer-tiles", "synthesis/layers/tiles.frag", &[]),
+    ("march", MARCH, &["TEXTURE_GATHER"]),
+    ("march-depth", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH"]),
+    ("march-short", MARCH, &["TEXTURE_GATHER", "SHORT_WAY"]),
+    ("march-short-depth", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH"]),
+    ("march-vertex", "synthesis/march.vert", &[]),
+    ("screen", "screen.vert", &[]),
+    ("spans", SPANS, &[]),
+    ("spans-short", SPANS, &["SHORT_WAY"]),
+    ("split-multisample", SPLIT, &["MULTISAMPLE"]),
+    ("split-multisample-two", SPLIT, &["MULTISAMPLE", "TWO"]),
+    ("split-nearest", SPLIT, &[]),
+    ("split-sample", SPLIT, &["FIRST_SAMPLE"]),
+    ("split-samples", SPLIT, &["MULTISAMPLE", "SAMPLE_COLORS"]),
+    ("split-samples-two", SPLIT, &["MULTISAMPLE", "SAMPLE_COLORS", "TWO"]),
+    ("tiles", TILES, &["TEXTURE_GATHER"]),
+    ("tiles-short", TILES, &["TEXTURE_GATHER", "SHORT_WAY"]),
+];
+
+/// Vulkan 1.0's SPIR-V as it was written: names and functions stay, so that a capture can be read.
+const ARGUMENTS: [&str; 1] = ["-V"];
+
+fn folder() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src/wgsl"))
+}
+
+fn source(&(name, file, macros): &Row) -> Source {
+    let mut defines = vec![("UNIFORM_BLOCK", "layout(set = 0, binding = 7, std140)".to_owned())];
+    let (two, macros): (Vec<&str>, Vec<&str>) = macros.iter().partition(|name| **name == "TWO");
+    defines.extend(macros.iter().map(|name| (*name, String::new())));
+    let text = yoro_shaders::assemble(file, "450", &defines).unwrap().text;
+    Source { name, vertex: file.ends_with(".vert"), text: for_wgsl(&text, !two.is_empty()) }
+}
+
+/// The text without what WGSL does not have, in four changes.
+fn for_wgsl(text: &str, two_samples: bool) -> String {
+    text.lines().map(|line| line_for_wgsl(line, two_samples) + "\n").collect()
+}
+
+fn line_for_wgsl(line: &str, two_samples: bool) -> String {
+    // Textures and samplers are apart.
+    if let Some((binding, declared)) = line.strip_prefix("TEXTURE(").and_then(|rest| rest.split_once(')')) {
+        let declared = declared.trim_start_matches(" uniform ").trim_start_matches("highp ");
+        let (kind, name) = declared.trim_end_matches(';').split_once(' ').unwrap();
+        let texture = kind.replace("sampler", "texture");
+        let filter = if name == "color_map" { "linear" } else { "nearest" };
+        return format!(
+            "layout(set = 0, binding = {binding}) uniform {texture} {name}_texture;\n\
+             #define {name} {kind}({name}_texture, {filter}_sampler)"
+        );
+    }
+    match line.trim() {
+        // Fetches instead of samples: of integers there are no others.
+        "layout(constant_id = 0) const bool PART = false;" => {
+            "layout(set = 0, binding = 8) uniform sampler nearest_sampler;\n\
+             layout(set = 0, binding = 9) uniform sampler linear_sampler;\n\
+             const bool PART = true;"
+                .to_owned()
+        }
+        "return texture(span_map, span_at);" => "return uvec4(0u);".to_owned(),
+        // Nothing is computed from constants that come later.
+        "layout(constant_id = 1) const bool TWO_SAMPLES = false;" => {
+            format!("const bool TWO_SAMPLES = {two_samples};")
+        }
+        _ => line.to_owned(),
+    }
+}
+
+fn validated(module: &naga::Module) -> anyhow::Result<ModuleInfo> {
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+    validator.validate(module).map_err(|error| anyhow!("{}", error.emit_to_string("")))
+}
+
+fn wgsl(source: &Source) -> anyhow::Result<Vec<u8>> {
+    let spirv = compiled::spirv(source, &ARGUMENTS)?;
+    let mut module = naga::front::spv::parse_u8_slice(&spirv, &naga::front::spv::Options::default())
+        .map_err(|error| anyhow!("{}", error.emit_to_string("")))
+        .with_context(|| source.name)?;
+    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+    // GLSL's names: without the types of the arguments, and one for the block, which has none.
+    for (_, function) in module.functions.iter_mut() {
+        let name = function.name.take().unwrap_or_default();
+        function.name = name.split('(').next().map(str::to_owned);
+    }
+    for (_, variable) in module.global_variables.iter_mut() {
+        if variable.space == naga::AddressSpace::Uniform {
+            variable.name = Some("synthesis".to_owned());
+        }
+    }
+    let info = validated(&module).with_context(|| source.name)?;
+    let flags = naga::back::wgsl::WriterFlags::empty();
+    let text = naga::back::wgsl::write_string(&module, &info, flags)?;
+    Ok(format!("// Made of yoro's GLSL by `cargo tools wgsl`.\n{text}").into_bytes())
+}
+
+/// The version of naga that the workspace has; None without its lock file.
+fn naga_version() -> Option<String> {
+    let lock = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.lock")).ok()?;
+    let version = lock.split("name = \"naga\"\nversion = \"").nth(1)?.split('"').next()?;
+    Some(version.to_owned())
+}
+
+#[test]
+fn modules_are_compiled_from_the_present_shaders() {
+    let compiler = compiled::glslang(&ARGUMENTS).zip(naga_version());
+    let compiled = Compiled {
+        folder: folder().to_owned(),
+        ending: "wgsl",
+        compiler: compiler.map(|(glslang, naga)| format!("{glslang}, naga {naga}")),
+        command: "cargo tools wgsl",
+        compile: wgsl,
+    };
+    let sources = MODULES.each_ref().map(source);
+    if std::env::var_os("YORO_BLESS_WGSL").is_some() {
+        compiled.renew(&sources).unwrap();
+    }
+    compiled.check(&sources).unwrap();
+}
+
+/// The modules as drivers get them: Metal's language, HLSL, SPIR-V's way by Vulkan is in the tests of pictures.
+#[test]
+fn modules_are_valid_webgpu_metal_and_hlsl() {
+    for (name, ..) in MODULES {
+        let text = fs::read_to_string(folder().join(name).with_extension("wgsl")).unwrap();
+        let module = naga::front::wgsl::parse_str(&text)
+            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
+        // No capability beyond WebGPU's.
+        let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+            .validate(&module)
+            .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(&text)));
+        let metal = naga::back::msl::write_string(
+            &module,
+            &info,
+            &naga::back::msl::Options {
+                fake_missing_bindings: true,
+                lang_version: (2, 0),
+                ..Default::default()
+            },
+            &naga::back::msl::PipelineOptions::default(),
+        );
+        let metal = metal.unwrap_or_else(|error| panic!("{name}: no Metal: {error}")).0;
+        assert!(metal.contains("main_"), "{name}: {metal}");
+        let mut hlsl = String::new();
+        let (options, pipeline) = Default::default();
+        naga::back::hlsl::Writer::new(&mut hlsl, &options, &pipeline)
+            .write(&module, &info, None)
+            .unwrap_or_else(|error| panic!("{name}: no HLSL: {error}"));
+        assert!(hlsl.contains("main"), "{name}: {hlsl}");
+    }
+}

@@ -1,0 +1,437 @@
+//! Pictures of the passes on wgpu equal those of the OpenGL passes, on wgpu's Vulkan and on its OpenGL.
+
+#[path = "../../../core/tests/vulkan/against_opengl.rs"]
+mod against_opengl;
+mod harness;
+
+use rand::{Rng, SeedableRng};
+
+use against_opengl::{Gl, Picture, assert_equal, cut, expected_depth, eyes, gl_srgb, pasted, picture, warps};
+use harness::{Gpu, depth_of, flipped, one_layer, with_gpus};
+use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
+use yoro::synthesis::Edges;
+use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
+use yoro_wgpu::{Gather, GatherVariant, Options, Source, Target, WgpuError};
+
+const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
+
+/// The parameters of a synthesis.
+#[derive(Clone, Copy, Debug)]
+struct Setup {
+    color: TextureFormat,
+    depth: TextureFormat,
+    /// Formats of the target.
+    target: TextureFormat,
+    target_depth: Option<TextureFormat>,
+    /// Upper left corners and what lies beyond the lower right ones.
+    source_margins: [[u32; 2]; 2],
+    target_margins: [[u32; 2]; 2],
+    /// Of two, if it is the second one; else of one.
+    source_layer: u32,
+    target_layer: u32,
+}
+
+impl Setup {
+    const PLAIN: Setup = Setup {
+        color: TextureFormat::Rgba8Unorm,
+        depth: TextureFormat::R32Float,
+        target: TextureFormat::Rgba8Unorm,
+        target_depth: None,
+        source_margins: [[0; 2]; 2],
+        target_margins: [[0; 2]; 2],
+        source_layer: 0,
+        target_layer: 0,
+    };
+
+    fn options(&self) -> Options {
+        Options { color_format: self.target, depth_format: self.target_depth, ..Options::default() }
+    }
+
+    /// This one, with what the device can do.
+    fn on(&self, gpu: &Gpu) -> Setup {
+        Setup { source_layer: if gpu.samples_layers() { self.source_layer } else { 0 }, ..*self }
+    }
+
+    fn gather(&self, gpu: &Gpu, variant: GatherVariant) -> Gather {
+        Gather::with_variant(&gpu.device, &self.options(), variant).unwrap()
+    }
+}
+
+struct Result {
+    rgba: Vec<u8>,
+    depth: Option<Vec<f32>>,
+}
+
+/// Synthesizes a picture with textures around it that hold something else.
+fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) -> Result {
+    let warp = &picture.warp;
+    let sum = |[a, b]: [[u32; 2]; 2], size: [u32; 2]| [0, 1].map(|i| a[i] + size[i] + b[i]);
+    let source_image = sum(setup.source_margins, warp.source_size);
+    let target_image = sum(setup.target_margins, warp.target_size);
+    let pixels = |size: [u32; 2]| size[0] as usize * size[1] as usize;
+    let [source_origin, target_origin] = [setup.source_margins[0], setup.target_margins[0]];
+    let width = warp.source_size[0] as usize;
+
+    let [source_layers, target_layers] = [setup.source_layer + 1, setup.target_layer + 1];
+    let color = gpu.texture(setup.color, source_image, source_layers);
+    let depth = gpu.texture(setup.depth, source_image, source_layers);
+    // Near and far at random, which would show.
+    let mut rng = rand_pcg::Pcg32::seed_from_u64(99);
+    let junk: Vec<u8> = (0..pixels(source_image) * 4).map(|_| rng.random()).collect();
+    let junk_depth: Vec<f32> = (0..pixels(source_image)).map(|_| rng.random_range(0.0..=1.0)).collect();
+    for layer in 0..source_layers {
+        let (mut rgba, mut values) = (junk.clone(), junk_depth.clone());
+        if layer == setup.source_layer {
+            rgba = pasted(rgba, source_image, source_origin, &picture.rgba, width);
+            values = pasted(values, source_image, source_origin, &picture.depth, width);
+        }
+        gpu.upload_rgba8(&color, layer, &rgba);
+        gpu.upload_depth(&depth, layer, &values);
+    }
+    let target = gpu.texture(setup.target, target_image, target_layers);
+    let before: Vec<u8> = (0..pixels(target_image) * 4).map(|_| rng.random()).collect();
+    (0..target_layers).for_each(|layer| gpu.upload_rgba8(&target, layer, &before));
+    // Whatever conversions there are between, what is read back unharmed is this.
+    let before = gpu.read_rgba8(&target, setup.target_layer);
+    let target_depth = setup.target_depth.map(|format| gpu.texture(format, target_image, target_layers));
+    let junk_depth: Vec<f32> = (0..pixels(target_image)).map(|_| rng.random_range(0.0..=1.0)).collect();
+    let depth_before = target_depth.as_ref().map(|depth| {
+        gpu.upload_depth(depth, setup.target_layer, &junk_depth);
+        gpu.read_depth(depth, setup.target_layer)
+    });
+
+    let drawn = |texture| one_layer(texture, setup.target_layer, TextureAspect::All);
+    let (color, depth) =
+        (one_layer(&color, setup.source_layer, TextureAspect::All), depth_of(&depth, setup.source_layer));
+    let (target_view, depth_view) = (drawn(&target), target_depth.as_ref().map(drawn));
+    let source = Source { origin: source_origin, ..Source::new(&color, &depth) };
+    let target_of = Target { color: &target_view, depth: depth_view.as_ref(), origin: target_origin };
+    gpu.run(|encoder| gather.record(&gpu.device, &gpu.queue, encoder, &source, warp, &target_of)).unwrap();
+
+    let after = gpu.read_rgba8(&target, setup.target_layer);
+    let rgba = cut(&after, target_image, target_origin, warp.target_size, 4);
+    let width = warp.target_size[0] as usize;
+    let outside = pasted(before, target_image, target_origin, &rgba, width);
+    assert!(outside == after, "pixels outside of the target's rectangle have changed: {setup:?}");
+    let depth = target_depth.zip(depth_before).map(|(depth, before)| {
+        let after = gpu.read_depth(&depth, setup.target_layer);
+        let values = cut(&after, target_image, target_origin, warp.target_size, 1);
+        let outside = pasted(before, target_image, target_origin, &values, width);
+        assert!(outside == after, "depth outside of the target's rectangle has changed: {setup:?}");
+        values
+    });
+    Result { rgba, depth }
+}
+
+/// What OpenGL makes of warps, with seeds from `first`, by each of [`VARIANTS`]. It is given the pictures upside down, so that
+/// the same rows are in one tile as on wgpu, whose rows are counted from the top.
+fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture, [Vec<u8>; 2])> {
+    let numbered = warps.iter().zip(first..);
+    let pictures = numbered.map(|((warp, range), seed)| picture(warp, *range, seed));
+    pictures
+        .map(|picture| {
+            let Picture { warp, rgba, depth } = &picture;
+            let [source_rows, target_rows] = [warp.source_size[1], warp.target_size[1]];
+            let turned = Picture {
+                warp: warp.rows_from_top(),
+                rgba: flipped(rgba, source_rows),
+                depth: flipped(depth, source_rows),
+            };
+            let wanted = [0, 1].map(|variant| flipped(&gl.run(variant, &turned).rgba, target_rows));
+            (picture, wanted)
+        })
+        .collect()
+}
+
+#[test]
+fn pictures_equal_those_of_opengl() {
+    let pictures = on_opengl(&Gl::new(), &warps(), 0);
+    with_gpus(|gpu| {
+        for (number, variant) in VARIANTS.into_iter().enumerate() {
+            let mut gather = Setup::PLAIN.gather(gpu, variant);
+            for (picture, wanted) in &pictures {
+                let got = synthesize(gpu, &mut gather, &Setup::PLAIN, picture);
+                let what = format!("{}, {variant:?}, {:?}", gpu.name, picture.warp);
+                assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
+            }
+        }
+    });
+}
+
+/// Parts of larger textures and layers of arrays, one pipeline for several sizes.
+#[test]
+fn parts_and_layers_are_found() {
+    let pictures = on_opengl(&Gl::new(), &warps(), 50);
+    let setup = Setup { depth: TextureFormat::Depth32Float, ..Setup::PLAIN };
+    let setups = [
+        Setup { source_layer: 1, source_margins: [[5, 3], [2, 7]], target_layer: 1, ..setup },
+        Setup { target_margins: [[4, 9], [1, 2]], target_layer: 1, ..setup },
+        Setup { source_margins: [[0, 2], [3, 0]], target_margins: [[1, 0], [0, 5]], ..setup },
+        Setup { source_margins: [[1, 1], [1, 1]], ..setup },
+    ];
+    with_gpus(|gpu| {
+        for (number, variant) in VARIANTS.into_iter().enumerate() {
+            let mut gather = setup.gather(gpu, variant);
+            for ((picture, wanted), setup) in pictures.iter().zip(setups.iter().cycle()) {
+                let setup = setup.on(gpu);
+                let got = synthesize(gpu, &mut gather, &setup, picture);
+                let what = format!("{}, {variant:?}, {:?}, {setup:?}", gpu.name, picture.warp);
+                assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
+            }
+        }
+    });
+}
+
+#[test]
+fn every_format_is_taken() {
+    let color = [
+        TextureFormat::Rgba8Unorm,
+        TextureFormat::Rgb10a2Unorm,
+        TextureFormat::Rgba16Float,
+        TextureFormat::Bgra8Unorm,
+    ];
+    let depth = [
+        TextureFormat::Depth16Unorm,
+        TextureFormat::Depth24Plus,
+        TextureFormat::Depth24PlusStencil8,
+        TextureFormat::Depth32Float,
+        TextureFormat::Depth32FloatStencil8,
+    ];
+    let sources = [&depth[..], &[TextureFormat::R16Unorm, TextureFormat::R32Float]].concat();
+    let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
+    let warp = eyes([150, 41], Eye::Left, range).synthesis(GuardBand::Pixels(9)).unwrap().warp;
+    let gl = Gl::new();
+    let exact = picture(&warp, range, 70);
+    let mut rounded = picture(&warp, range, 70);
+    rounded.depth.iter_mut().for_each(|depth| *depth = (*depth * 65535.0).round() / 65535.0);
+    let [exact, rounded] = [exact, rounded].map(|picture| (gl.run(0, &picture), picture));
+    drop(gl);
+    with_gpus(|gpu| {
+        for (i, format) in sources.iter().copied().enumerate() {
+            let target_depth = depth[(i + 1) % depth.len()];
+            if let Some(missing) = [format, target_depth].into_iter().find(|format| !gpu.has(*format)) {
+                println!("SKIPPED: {} has no {missing:?}", gpu.name);
+                continue;
+            }
+            let (wanted, picture) = match format {
+                TextureFormat::Depth16Unorm | TextureFormat::R16Unorm => &rounded,
+                _ => &exact,
+            };
+            let setup = Setup {
+                color: color[i % color.len()],
+                depth: format,
+                target: color[(i + 1) % color.len()],
+                target_depth: Some(target_depth),
+                source_margins: [[2, 2], [0, 0]],
+                target_margins: [[0, 1], [1, 0]],
+                ..Setup::PLAIN
+            };
+            let mut gather = setup.gather(gpu, GatherVariant::Software);
+            let got = synthesize(gpu, &mut gather, &setup, picture);
+            // Ten bits have two of alpha.
+            assert_equal(&got.rgba, &wanted.rgba, 3, 0, &format!("{}, {setup:?}", gpu.name));
+            let expected = expected_depth(picture, &wanted.source_map);
+            let depth = got.depth.unwrap();
+            let error = depth.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(error < 4e-5, "{}, {setup:?}: depth differs by {error}", gpu.name);
+        }
+    });
+}
+
+/// sRGB is decoded, filtered and encoded: by wgpu as by OpenGL.
+#[test]
+fn srgb_is_filtered_in_linear_light() {
+    let (warp, range) = warps()[2];
+    let picture = picture(&warp, range, 80);
+    let gl = Gl::new();
+    let (want, plain) = (gl_srgb(gl.headless.gl(), &picture), gl.run(0, &picture).rgba);
+    drop(gl);
+    assert_ne!(want, plain, "linear light makes a difference");
+    with_gpus(|gpu| {
+        let srgb = TextureFormat::Rgba8UnormSrgb;
+        let setup = Setup { color: srgb, target: srgb, ..Setup::PLAIN };
+        let got = synthesize(gpu, &mut setup.gather(gpu, GatherVariant::Software), &setup, &picture);
+        assert_equal(&got.rgba, &want, 4, 0, &gpu.name);
+    });
+}
+
+/// Any sizes, rectangles, eyes and laws; displacements of up to 300 pixels, where the search passes over tiles.
+#[test]
+fn sizes_and_rectangles_at_random() {
+    let range = DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
+    let warp = |source_size, target_size, row_offset, offset, scale: f64| Warp {
+        source_size,
+        target_size,
+        law: DisparityLaw { offset, scale },
+        row_offset,
+        // Nearer surfaces lie farther along in forward columns, or there is no law.
+        target_eye: Eye::BOTH[usize::from(scale < 0.0)],
+        convention: DepthConvention::Reversed,
+    };
+    let mut rng = rand_pcg::Pcg32::seed_from_u64(11);
+    let mut setups: Vec<(Warp, Setup)> = (0..40)
+        .map(|_| {
+            let mut pair = |to: [u32; 2], from: u32| to.map(|n| rng.random_range(from..=n));
+            let (source, target) = (pair([96, 70], 1), pair([96, 70], 1));
+            let setup = Setup {
+                source_margins: [pair([3, 3], 0), pair([3, 3], 0)],
+                target_margins: [pair([3, 3], 0), pair([3, 3], 0)],
+                source_layer: pair([1, 1], 0)[0],
+                target_layer: pair([1, 1], 0)[0],
+                ..Setup::PLAIN
+            };
+            let (offset, scale) = (rng.random_range(-40.0..40.0), rng.random_range(-30.0..30.0));
+            (warp(source, target, rng.random_range(-30..30), offset, scale), setup)
+        })
+        .collect();
+    for (scale, source_margins) in [(300.0, [[0, 0], [0, 0]]), (-300.0, [[7, 3], [5, 2]])] {
+        let setup = Setup { source_margins, ..Setup::PLAIN };
+        setups.push((warp([520, 24], [500, 24], 0, 0.0, scale), setup));
+    }
+    let warps: Vec<_> = setups.iter().map(|(warp, _)| (*warp, range)).collect();
+    let pictures = on_opengl(&Gl::new(), &warps, 3);
+    with_gpus(|gpu| {
+        for (number, variant) in VARIANTS.into_iter().enumerate() {
+            let mut gather = Setup::PLAIN.gather(gpu, variant);
+            for ((picture, wanted), (warp, setup)) in pictures.iter().zip(&setups) {
+                let setup = setup.on(gpu);
+                let got = synthesize(gpu, &mut gather, &setup, picture);
+                let what = format!("{}, {variant:?}, {warp:?}, {setup:?}", gpu.name);
+                assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
+            }
+        }
+    });
+}
+
+/// Calls of one submission do not share their uniforms, and their buffers are those of whichever runs.
+#[test]
+fn calls_of_one_submission_do_not_disturb_each_other() {
+    let (near, range) = warps()[2];
+    let far = Warp { law: DisparityLaw { scale: 0.25 * near.law.scale, ..near.law }, ..near };
+    let pictures = on_opengl(&Gl::new(), &[(near, range), (far, range)], 5);
+    with_gpus(|gpu| {
+        let mut gather = Setup::PLAIN.gather(gpu, GatherVariant::Software);
+        let made = [0, 1].map(|number| {
+            let picture = &pictures[number].0;
+            let color = gpu.texture(Setup::PLAIN.color, picture.warp.source_size, 1);
+            let depth = gpu.texture(Setup::PLAIN.depth, picture.warp.source_size, 1);
+            let target = gpu.texture(Setup::PLAIN.target, picture.warp.target_size, 1);
+            gpu.upload_rgba8(&color, 0, &picture.rgba);
+            gpu.upload_depth(&depth, 0, &picture.depth);
+            [color, depth, target]
+        });
+        gpu.run(|encoder| {
+            // The second picture over the first, and the first over the second.
+            for (source, target) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
+                let [color, depth, _] = made[source].each_ref().map(|texture| depth_of(texture, 0));
+                let into = depth_of(&made[target][2], 0);
+                let (source_of, target_of) = (Source::new(&color, &depth), Target::new(&into));
+                let warp = &pictures[source].0.warp;
+                gather.record(&gpu.device, &gpu.queue, encoder, &source_of, warp, &target_of).unwrap();
+            }
+        });
+        for (target, source) in [(0, 1), (1, 0)] {
+            let got = gpu.read_rgba8(&made[target][2], 0);
+            assert_equal(&got, &pictures[source].1[0], 4, 0, &gpu.name);
+        }
+    });
+}
+
+/// A caller's mistake is one error, and nothing is recorded.
+#[test]
+fn mistakes_are_refused() {
+    with_gpus(|gpu| {
+        let (warp, _) = warps()[0];
+        let plain = Setup::PLAIN.options();
+        let make = |options: &Options| Gather::new(&gpu.device, options).err();
+        for format in [TextureFormat::Rgba8Uint, TextureFormat::Depth32Float, TextureFormat::Rgb9e5Ufloat] {
+            let options = Options { color_format: format, ..plain };
+            assert!(matches!(make(&options), Some(WgpuError::Format { .. })), "{format:?}");
+        }
+        let options = Options { depth_format: Some(TextureFormat::Rgba8Unorm), ..plain };
+        assert!(matches!(make(&options), Some(WgpuError::Format { .. })));
+        for samples in [0, 1, 3, 8] {
+            let options = Options { edges: Edges::Multisample, samples, ..plain };
+            assert_eq!(make(&options), Some(WgpuError::SampleCount(samples)));
+        }
+
+        let mut gather = Gather::new(&gpu.device, &plain).unwrap();
+        let [w, h] = warp.source_size;
+        let whole = |texture| one_layer(&texture, 0, TextureAspect::All);
+        let texture = |format, size| whole(gpu.texture(format, size, 1));
+        let color = texture(TextureFormat::Rgba8Unorm, [w, h]);
+        let depth = texture(TextureFormat::Depth32Float, [w, h]);
+        let small = texture(TextureFormat::Depth32Float, [8, 8]);
+        let many = whole(gpu.multisampled(TextureFormat::Depth32Float, [w, h], 4));
+        let unsampled = gpu.with_usage(TextureFormat::Depth32Float, [w, h], TextureUsages::COPY_SRC);
+        let into = texture(TextureFormat::Rgba8Unorm, warp.target_size);
+        let float = texture(TextureFormat::Rgba16Float, warp.target_size);
+        let usage = TextureUsages::TEXTURE_BINDING;
+        let undrawn = gpu.with_usage(TextureFormat::Rgba8Unorm, warp.target_size, usage);
+        let (source, target) = (Source::new(&color, &depth), Target::new(&into));
+        let of_depth = |depth| Source { depth, ..source };
+        let at = |origin| Source { origin, ..source };
+        gpu.run(|encoder| {
+            let mut refused = |source: Source, warp: Warp, target: Target, want: &str| {
+                let result = gather.record(&gpu.device, &gpu.queue, encoder, &source, &warp, &target);
+                let got = result.unwrap_err().to_string();
+                assert!(got.starts_with(want) && !got.contains('\n'), "{got:?} is not {want:?}");
+            };
+            let cannot = "the wgpu device cannot use";
+            refused(of_depth(&color), warp, target, &format!("{cannot} Rgba8Unorm as a source's depth"));
+            let of_color = Source { color: &depth, ..source };
+            refused(of_color, warp, target, &format!("{cannot} Depth32Float as a source's colour"));
+            refused(
+                of_depth(&small),
+                warp,
+                target,
+                "a source's depth of 8x8 pixels does not go with colour of",
+            );
+            refused(of_depth(&unsampled), warp, target, "a source's depth needs a texture with the usage");
+            refused(
+                of_depth(&many),
+                warp,
+                target,
+                "a source's depth of 4 samples cannot be used; give a texture of 1",
+            );
+            let samples = Source { sample_color: Some(&color), ..source };
+            refused(samples, warp, target, "colour of samples is for edges of multisample");
+            refused(at([1, 0]), warp, target, "a source of");
+            refused(at([0, u32::MAX]), warp, target, "a source of");
+            let source_size = |source_size| Warp { source_size, ..warp };
+            refused(source, source_size([w + 1, h]), target, "a source of");
+            refused(
+                source,
+                source_size([1 << 20, h]),
+                target,
+                "a source of 1048576x41 pixels is not between 1x1",
+            );
+            let none = Warp { target_size: [0, h], ..warp };
+            refused(source, none, target, "a target of 0x41 pixels is not between 1x1");
+            refused(source, warp, Target { origin: [0, 1], ..target }, "a target of");
+            refused(source, warp, Target { color: &float, ..target }, "a target of Rgba16Float does not fit");
+            refused(source, warp, Target { color: &undrawn, ..target }, "a target's colour needs a texture");
+            let with_depth = Target { depth: Some(&depth), ..target };
+            refused(source, warp, with_depth, "a target with depth of Depth32Float does not fit");
+        });
+    });
+}
+
+#[test]
+fn a_lost_device_is_an_error() {
+    if std::env::var_os("YORO_TEST_WITHOUT_VULKAN").is_some() {
+        return println!("LEFT OUT: wgpu on Vulkan");
+    }
+    let gpu = Gpu::open(Backends::VULKAN).unwrap();
+    let (warp, _) = warps()[0];
+    let mut gather = Setup::PLAIN.gather(&gpu, GatherVariant::Software);
+    let texture = |format, size| one_layer(&gpu.texture(format, size, 1), 0, TextureAspect::All);
+    let [color, depth] =
+        [Setup::PLAIN.color, Setup::PLAIN.depth].map(|format| texture(format, warp.source_size));
+    let into = texture(Setup::PLAIN.target, warp.target_size);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    gpu.device.destroy();
+    let (source, target) = (Source::new(&color, &depth), Target::new(&into));
+    let lost = gather.record(&gpu.device, &gpu.queue, &mut encoder, &source, &warp, &target);
+    assert_eq!(lost, Err(WgpuError::DeviceLost));
+}

@@ -1,0 +1,159 @@
+//! Files that are compiled from the shaders and kept in the repository, so that nobody who builds a library needs a compiler.
+//! Beside them lies the file `SOURCES`: the compiler, and the hash of the text of each.
+
+use std::env;
+use std::fs;
+use std::path::PathBuf;
+use std::process::{self, Command};
+
+use anyhow::{Context as _, bail, ensure};
+
+use crate::folders;
+
+const GLSLANG: &str = "glslangValidator";
+
+/// A shader to compile.
+pub struct Source {
+    /// The name of the file that it becomes, without its ending.
+    pub name: &'static str,
+    /// True for a vertex shader, false for a fragment shader.
+    pub vertex: bool,
+    /// The text that is compiled.
+    pub text: String,
+}
+
+/// A folder of compiled files.
+pub struct Compiled<F> {
+    /// The folder.
+    pub folder: PathBuf,
+    /// The ending of the files' names.
+    pub ending: &'static str,
+    /// The compiler and its version, in one line; None if it is not installed.
+    pub compiler: Option<String>,
+    /// The command that renews the files.
+    pub command: &'static str,
+    /// Compiles a shader.
+    pub compile: F,
+}
+
+impl<F: Fn(&Source) -> anyhow::Result<Vec<u8>>> Compiled<F> {
+    /// Compiles all shaders, and writes the folder.
+    ///
+    /// # Errors
+    /// Without a compiler, when a shader does not compile, and when a file cannot be written.
+    pub fn renew(&self, sources: &[Source]) -> anyhow::Result<()> {
+        let compiler = self.compiler.as_ref().context("glslangValidator is needed: `cargo xtask setup`")?;
+        for source in sources {
+            folders::write(&self.file(source), (self.compile)(source)?)?;
+        }
+        folders::write(&self.folder.join("SOURCES"), listed(compiler, sources))
+    }
+
+    /// Checks that the folder is made of these shaders. With the compiler that made it they are compiled again; with another
+    /// one, or without, a line on the standard output says that this was left out.
+    ///
+    /// # Errors
+    /// When a file is not what these shaders become.
+    pub fn check(&self, sources: &[Source]) -> anyhow::Result<()> {
+        let command = self.command;
+        let committed = fs::read_to_string(self.folder.join("SOURCES"))
+            .with_context(|| format!("{} has no SOURCES: run `{command}`", self.folder.display()))?;
+        let made_by = committed.lines().next().unwrap_or_default();
+        ensure!(
+            committed == listed(made_by, sources),
+            "the shaders are not those that were compiled: run `{command}`"
+        );
+        match self.compiler.as_deref() {
+            Some(here) if here == made_by => {
+                for source in sources {
+                    let kept = fs::read(self.file(source)).unwrap_or_default();
+                    let name = source.name;
+                    ensure!(
+                        kept == (self.compile)(source)?,
+                        "{name} is not what {here} makes: run `{command}`"
+                    );
+                }
+            }
+            here => println!(
+                "LEFT OUT: compiling the shaders again: {} is here, not {made_by}",
+                here.unwrap_or("no glslang")
+            ),
+        }
+        Ok(())
+    }
+
+    fn file(&self, source: &Source) -> PathBuf {
+        self.folder.join(format!("{}.{}", source.name, self.ending))
+    }
+}
+
+/// Returns the content of the file `SOURCES`.
+fn listed(compiler: &str, sources: &[Source]) -> String {
+    let line = |source: &Source| format!("{:016x} {}\n", hash(&source.text), source.name);
+    format!("{compiler}\n{}", sources.iter().map(line).collect::<String>())
+}
+
+/// FNV-1a, which never changes with a version of Rust.
+fn hash(text: &str) -> u64 {
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// Returns glslang's version and arguments in one line; None if it is not installed.
+pub fn glslang(arguments: &[&str]) -> Option<String> {
+    let output = Command::new(GLSLANG).arg("--version").output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let version = text.lines().next()?.trim_start_matches("Glslang Version: ");
+    Some(format!("{GLSLANG} {version} {}", arguments.join(" ")))
+}
+
+/// Returns the SPIR-V that glslang makes of a shader.
+///
+/// # Errors
+/// When glslang cannot be run or does not compile it.
+pub fn spirv(source: &Source, arguments: &[&str]) -> anyhow::Result<Vec<u8>> {
+    let work = env::temp_dir().join(format!("yoro-glslang-{}-{}", process::id(), source.name));
+    fs::create_dir_all(&work).with_context(|| format!("{} cannot be made", work.display()))?;
+    let text = work.join(if source.vertex { "shader.vert" } else { "shader.frag" });
+    let compiled = work.join("shader.spv");
+    let run = || -> anyhow::Result<Vec<u8>> {
+        fs::write(&text, &source.text)?;
+        let output = Command::new(GLSLANG).args(arguments).arg("-o").arg(&compiled).arg(&text).output()?;
+        if !output.status.success() {
+            bail!("{}: {}", source.name, String::from_utf8_lossy(&output.stdout));
+        }
+        Ok(fs::read(&compiled)?)
+    };
+    let result = run();
+    folders::remove(&work)?;
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn old_and_changed_files_are_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let compiled = |version: &str| Compiled {
+            folder: folder.path().to_owned(),
+            ending: "txt",
+            compiler: Some(version.to_owned()),
+            command: "cargo tools x",
+            compile: |source: &Source| Ok(source.text.to_uppercase().into_bytes()),
+        };
+        let sources = |text: &str| [Source { name: "a", vertex: false, text: text.to_owned() }];
+        assert!(compiled("1").check(&sources("one")).is_err(), "an empty folder");
+        compiled("1").renew(&sources("one")).unwrap();
+        assert_eq!(fs::read_to_string(folder.path().join("a.txt")).unwrap(), "ONE");
+        compiled("1").check(&sources("one")).unwrap();
+        let error = compiled("1").check(&sources("two")).unwrap_err().to_string();
+        assert_eq!(error, "the shaders are not those that were compiled: run `cargo tools x`");
+        fs::write(folder.path().join("a.txt"), "other").unwrap();
+        let error = compiled("1").check(&sources("one")).unwrap_err().to_string();
+        assert_eq!(error, "a is not what 1 makes: run `cargo tools x`");
+        // Only the compiler that made a file can tell.
+        compiled("2").check(&sources("one")).unwrap();
+    }
+}
