@@ -57,6 +57,7 @@ pub fn every_material(style: ShadingStyle) -> Scene {
         sky: Sky::default(),
         lights: vec![PointLight { position: Vec3::new(0.5, 0.5, -1.0), color: Vec3::ONE, range: 5.0 }],
         viewpoints: vec![Viewpoint { position: Vec3::ZERO, target: Vec3::NEG_Z }],
+        ..Scene::default()
     }
 }
 

@@ -7,11 +7,15 @@ use glow::HasContext;
 
 use crate::{Context, GlError, Shape};
 
-/// A vertex array with one interleaved vertex buffer of floats and 32-bit indices.
+/// Copies of vertices that are rewritten: the GPU may still read those of frames that are on their way.
+const COPIES: usize = 3;
+
+/// Vertex arrays with one interleaved vertex buffer of floats each, and 32-bit indices.
 pub struct Mesh {
     gl: Rc<Context>,
-    array: glow::VertexArray,
-    vertices: glow::Buffer,
+    /// One, or [`COPIES`] if the vertices are rewritten.
+    copies: Vec<(glow::VertexArray, glow::Buffer)>,
+    current: usize,
     indices: glow::Buffer,
     index_count: usize,
     vertex_count: usize,
@@ -33,45 +37,95 @@ impl Mesh {
         vertices: &[V],
         indices: &[u32],
     ) -> Result<Mesh, GlError> {
+        Mesh::with_copies(gl, attributes, vertices, indices, 1)
+    }
+
+    /// Uploads vertices that [`Mesh::rewrite`] replaces, as [`Mesh::new`] does.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`].
+    ///
+    /// # Panics
+    /// As [`Mesh::new`].
+    pub fn rewritable<V: bytemuck::Pod>(
+        gl: &Rc<Context>,
+        attributes: &[i32],
+        vertices: &[V],
+        indices: &[u32],
+    ) -> Result<Mesh, GlError> {
+        Mesh::with_copies(gl, attributes, vertices, indices, COPIES)
+    }
+
+    fn with_copies<V: bytemuck::Pod>(
+        gl: &Rc<Context>,
+        attributes: &[i32],
+        vertices: &[V],
+        indices: &[u32],
+        copies: usize,
+    ) -> Result<Mesh, GlError> {
         let stride = attributes.iter().sum::<i32>() * size_of::<f32>() as i32;
         assert_eq!(stride as usize, size_of::<V>(), "attributes and vertex differ in size");
         let object = |what: &str, reason| GlError::Object { what: what.into(), reason };
         let raw = gl.raw();
+        let usage = if copies > 1 { glow::DYNAMIC_DRAW } else { glow::STATIC_DRAW };
         // SAFETY: the attributes lie inside a vertex, as asserted above.
         unsafe {
-            let array = raw.create_vertex_array().map_err(|e| object("a vertex array", e))?;
-            let vertex_buffer = raw.create_buffer().map_err(|e| object("a vertex buffer", e))?;
             let index_buffer = raw.create_buffer().map_err(|e| object("an index buffer", e))?;
-            gl.count(3);
-            let mesh = Mesh {
+            gl.count(1);
+            let mut mesh = Mesh {
                 gl: gl.clone(),
-                array,
-                vertices: vertex_buffer,
+                copies: Vec::with_capacity(copies),
+                current: 0,
                 indices: index_buffer,
                 index_count: indices.len(),
                 vertex_count: vertices.len(),
                 vertex_bytes: stride as u32,
             };
-            raw.bind_vertex_array(Some(array));
-            raw.bind_buffer(glow::ARRAY_BUFFER, Some(vertex_buffer));
-            raw.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytemuck::cast_slice(vertices), glow::STATIC_DRAW);
-            raw.bind_buffer(glow::ELEMENT_ARRAY_BUFFER, Some(index_buffer));
-            raw.buffer_data_u8_slice(
-                glow::ELEMENT_ARRAY_BUFFER,
-                bytemuck::cast_slice(indices),
-                glow::STATIC_DRAW,
-            );
-            let mut offset = 0;
-            for (location, &floats) in (0..).zip(attributes) {
-                raw.enable_vertex_attrib_array(location);
-                raw.vertex_attrib_pointer_f32(location, floats, glow::FLOAT, false, stride, offset);
-                offset += floats * size_of::<f32>() as i32;
+            for copy in 0..copies {
+                let array = raw.create_vertex_array().map_err(|e| object("a vertex array", e))?;
+                let vertex_buffer = raw.create_buffer().map_err(|e| object("a vertex buffer", e))?;
+                gl.count(2);
+                mesh.copies.push((array, vertex_buffer));
+                raw.bind_vertex_array(Some(array));
+                raw.bind_buffer(glow::ARRAY_BUFFER, Some(vertex_buffer));
+                raw.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytemuck::cast_slice(vertices), usage);
+                raw.bind_buffer(glow::ELEMENT_ARRAY_BUFFER, Some(index_buffer));
+                if copy == 0 {
+                    raw.buffer_data_u8_slice(
+                        glow::ELEMENT_ARRAY_BUFFER,
+                        bytemuck::cast_slice(indices),
+                        glow::STATIC_DRAW,
+                    );
+                }
+                let mut offset = 0;
+                for (location, &floats) in (0..).zip(attributes) {
+                    raw.enable_vertex_attrib_array(location);
+                    raw.vertex_attrib_pointer_f32(location, floats, glow::FLOAT, false, stride, offset);
+                    offset += floats * size_of::<f32>() as i32;
+                }
+                raw.bind_vertex_array(None);
             }
-            raw.bind_vertex_array(None);
             if raw.get_error() == glow::OUT_OF_MEMORY {
                 return Err(object("a mesh", format!("out of memory for {} vertices", vertices.len())));
             }
             Ok(mesh)
+        }
+    }
+
+    /// Replaces the vertices of a mesh that was made by [`Mesh::rewritable`] for the draw calls that follow its next
+    /// [`Mesh::bind`].
+    ///
+    /// # Panics
+    /// If their number is another one.
+    pub fn rewrite<V: bytemuck::Pod>(&mut self, vertices: &[V]) {
+        let bytes: &[u8] = bytemuck::cast_slice(vertices);
+        assert_eq!(bytes.len(), self.vertex_count * self.vertex_bytes as usize, "other vertices than before");
+        self.current = (self.current + 1) % self.copies.len();
+        let gl = self.gl.raw();
+        // SAFETY: the buffer lives as long as the mesh and has just this size.
+        unsafe {
+            gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.copies[self.current].1));
+            gl.buffer_sub_data_u8_slice(glow::ARRAY_BUFFER, 0, bytes);
         }
     }
 
@@ -83,7 +137,7 @@ impl Mesh {
     /// Binds the vertex array for the following [`Mesh::draw`] calls.
     pub fn bind(&self) {
         // SAFETY: the vertex array lives as long as the mesh.
-        unsafe { self.gl.raw().bind_vertex_array(Some(self.array)) }
+        unsafe { self.gl.raw().bind_vertex_array(Some(self.copies[self.current].0)) }
     }
 
     /// Draws all indices as one triangle strip. The mesh must be bound.
@@ -130,10 +184,12 @@ impl Drop for Mesh {
     fn drop(&mut self) {
         // SAFETY: created in `new`, deleted once.
         unsafe {
-            self.gl.raw().delete_vertex_array(self.array);
-            self.gl.raw().delete_buffer(self.vertices);
+            for &(array, vertices) in &self.copies {
+                self.gl.raw().delete_vertex_array(array);
+                self.gl.raw().delete_buffer(vertices);
+            }
             self.gl.raw().delete_buffer(self.indices);
         }
-        self.gl.count(-3);
+        self.gl.count(-1 - 2 * self.copies.len() as isize);
     }
 }

@@ -25,4 +25,12 @@ impl PreparedScene {
         let renderer = Renderer::new(gl, settings, &scene)?;
         Ok(PreparedScene { scene, renderer })
     }
+
+    /// Moves everything to where it is at a time in seconds. A scene in which nothing moves costs nothing.
+    ///
+    /// # Errors
+    /// As [`Renderer::set_time`].
+    pub fn set_time(&mut self, seconds: f64) -> Result<(), GlError> {
+        self.renderer.set_time(&mut self.scene, seconds)
+    }
 }

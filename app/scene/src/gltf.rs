@@ -19,7 +19,9 @@ use gltf::texture::{MagFilter, WrappingMode};
 use gltf::{Document, Primitive, Semantic};
 
 use super::error::{MAX_ELEMENTS, SceneError, file_size};
+use super::gltf_motion::{Carried, Standing, place_carried};
 use super::model::{Alpha, Material, Model, PointLight, Sky, Vertex, Viewpoint};
+use super::motion::{Motion, MovingLight};
 use super::palette::{paint, palette};
 use super::repair::{NO_NORMAL, NO_UV, RawMesh, assemble};
 use super::textures::{
@@ -40,9 +42,13 @@ pub struct GltfScene {
     pub sky: Option<Sky>,
     /// Its point and spot lights, without their cones.
     pub lights: Option<Vec<PointLight>>,
+    /// What moves. The rest is as it stands at time 0.
+    pub motion: Motion,
 }
 
-/// Reads a `.gltf` or `.glb` file in the pose it is stored in; animations, skins and morph targets are ignored.
+/// Reads a `.gltf` or `.glb` file, with nodes, skins and morph targets as its animations begin.
+///
+/// Of several animations of the same node the first is taken, and each starts over where it ends. Cameras stand still.
 ///
 /// Metallic-roughness materials become diffuse and specular colours; where a texture says what is metal, both are
 /// computed pixel by pixel, and the roughness is its mean. So do specular-glossiness materials, which go before the
@@ -85,7 +91,8 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     // Behind the others: the one of primitives without.
     materials.push(Material::default());
     wanted.push(Wanted::default());
-    let Nodes { mut meshes, colors, cameras, lamps, sun } = reader.nodes(&document, &mut wanted)?;
+    let Nodes { mut meshes, colors, cameras, lamps, sun, mut motion, carried } =
+        reader.nodes(&document, &mut wanted)?;
     let mut built = reader.textures.build()?;
     for (material, wanted) in materials.iter_mut().zip(&wanted) {
         wanted.apply(material, &built);
@@ -102,18 +109,32 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     if !meshes.iter().any(|m| m.material == materials.len() - 1) {
         materials.pop();
     }
-    let mut model = assemble(path, meshes, materials)?;
+    let (mut model, placed) = assemble(path, meshes, materials)?;
     model.textures = built.images;
-    let sky = sun.map(|(forward, color)| Sky {
+    place_carried(&carried, placed, &mut motion, &mut model);
+    motion.sun = sun.and_then(|(_, _, mover)| mover);
+    let sky = sun.map(|(forward, color, _)| Sky {
         sun_direction: -forward,
         sun_color: Sky::default().sun_color.max_element() * color / color.max_element().max(1e-6),
         ..Sky::default()
     });
-    Ok(GltfScene { model, cameras, sky, lights: (!lamps.is_empty()).then(|| lights(lamps)) })
+    let lights = (!lamps.is_empty()).then(|| lights(lamps, &mut motion));
+    if motion.is_still() {
+        motion = Motion::default();
+    }
+    Ok(GltfScene { model, cameras, sky, lights, motion })
 }
 
-/// A point or spot light: position, intensity in candela, range in metres.
-type Lamp = (Vec3, Vec3, Option<f32>);
+/// A point or spot light.
+struct Lamp {
+    position: Vec3,
+    /// Candela, linear RGB.
+    intensity: Vec3,
+    /// Metres.
+    range: Option<f32>,
+    /// The node of [`Motion`] that carries it, if it moves.
+    mover: Option<usize>,
+}
 
 /// The contents of a scene's nodes, in world space.
 #[derive(Default)]
@@ -123,12 +144,21 @@ struct Nodes {
     colors: Vec<Option<Vec<Vec3>>>,
     cameras: Vec<Viewpoint>,
     lamps: Vec<Lamp>,
-    /// Direction and colour of the first directional light.
-    sun: Option<(Vec3, Vec3)>,
+    /// Direction and colour of the first directional light, and the node of [`Motion`] that carries it, if it moves.
+    sun: Option<(Vec3, Vec3, Option<usize>)>,
+    motion: Motion,
+    /// By [`RawMesh::moving`].
+    carried: Vec<Carried>,
 }
 
 impl Nodes {
-    fn add_light(&mut self, document: &Document, light: &gltf::khr_lights_punctual::Light, to_world: &Mat4) {
+    fn add_light(
+        &mut self,
+        document: &Document,
+        light: &gltf::khr_lights_punctual::Light,
+        to_world: &Mat4,
+        mover: Option<usize>,
+    ) {
         let (position, forward) = placed(to_world);
         let stated = document.as_json().extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
         let directional = stated
@@ -136,9 +166,10 @@ impl Nodes {
             .is_some_and(|l| matches!(l.type_, Checked::Valid(khr_lights::Type::Directional)));
         let color = Vec3::from(light.color()).max(Vec3::ZERO);
         if directional {
-            self.sun = self.sun.or(Some((forward, color)));
+            self.sun = self.sun.or(Some((forward, color, mover)));
         } else if position.is_finite() && light.intensity() > 0.0 && color.is_finite() {
-            self.lamps.push((position, color * light.intensity(), light.range()));
+            let intensity = color * light.intensity();
+            self.lamps.push(Lamp { position, intensity, range: light.range(), mover });
         }
     }
 }
@@ -180,23 +211,30 @@ fn paint_meshes(
     }
     built.images.push(palette());
     for (mesh, colors) in meshes.iter_mut().zip(colors).filter(|(mesh, _)| painted[mesh.material]) {
-        paint(&mut mesh.vertices, &mut mesh.indices, |corners| match colors {
+        let former = paint(&mut mesh.vertices, &mut mesh.indices, |corners| match colors {
             Some(colors) => {
                 let mean = corners.into_iter().map(|i| colors[i as usize]).sum::<Vec3>() / 3.0;
                 Vec3::from(mean.to_array().map(to_srgb))
             }
             None => Vec3::ONE,
         });
+        mesh.split(&former);
     }
 }
 
 /// glTF states candela without saying how bright the picture is to be, and exporters disagree by orders of
-/// magnitude: the brightest light is made one that lights a room, the others in proportion.
-fn lights(lamps: Vec<Lamp>) -> Vec<PointLight> {
-    let brightest = lamps.iter().map(|l| l.1.max_element()).fold(1e-6, f32::max);
-    let mut lights: Vec<PointLight> = lamps
+/// magnitude: the brightest light is made one that lights a room, the others in proportion. Brightest first; those
+/// that move go into the motion.
+fn lights(mut lamps: Vec<Lamp>, motion: &mut Motion) -> Vec<PointLight> {
+    let brightest = lamps.iter().map(|l| l.intensity.max_element()).fold(1e-6, f32::max);
+    lamps.sort_by(|a, b| b.intensity.max_element().total_cmp(&a.intensity.max_element()));
+    motion.lights = (0..)
+        .zip(&lamps)
+        .filter_map(|(light, lamp)| Some(MovingLight { light, node: lamp.mover?, position: Vec3::ZERO }))
+        .collect();
+    lamps
         .into_iter()
-        .map(|(position, intensity, range)| {
+        .map(|Lamp { position, intensity, range, .. }| {
             let color = intensity * (8.0 / brightest);
             let fades = (color.max_element() / 0.01).sqrt().max(1.0);
             PointLight {
@@ -205,9 +243,7 @@ fn lights(lamps: Vec<Lamp>) -> Vec<PointLight> {
                 range: range.filter(|r| r.is_finite() && *r > 0.0).map_or(fades, |r| r.min(fades)),
             }
         })
-        .collect();
-    lights.sort_by(|a, b| b.color.max_element().total_cmp(&a.color.max_element()));
-    lights
+        .collect()
 }
 
 fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
@@ -277,6 +313,18 @@ fn check(path: &Path, document: &Document) -> Result<(), SceneError> {
     for (i, image) in root.images.iter().enumerate() {
         if image.uri.is_none() && (image.buffer_view.is_none() || image.mime_type.is_none()) {
             fault = fault.or(Some(format!("images[{i}] has no data or no type")));
+        }
+    }
+    // The validation leaves out the targets of animations.
+    for (i, animation) in root.animations.iter().enumerate() {
+        for (k, target) in animation.channels.iter().map(|channel| &channel.target).enumerate() {
+            if target.node.value() >= root.nodes.len() {
+                fault =
+                    fault.or(Some(format!("channel {k} of animation {i} moves a node that does not exist")));
+            }
+            if target.path == Checked::Invalid {
+                fault = fault.or(Some(format!("channel {k} of animation {i} has an unknown path")));
+            }
         }
     }
     if let Some(fault) = fault {
@@ -449,8 +497,8 @@ fn surface_textures<'a>(m: &gltf::Material<'a>) -> [Option<gltf::texture::Info<'
     }
 }
 
-struct Reader<'a> {
-    path: &'a Path,
+pub(super) struct Reader<'a> {
+    pub(super) path: &'a Path,
     buffers: Vec<Vec<u8>>,
     textures: TextureSet,
     /// Sources of pictures by their number.
@@ -458,7 +506,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn damaged(&self, what: String) -> SceneError {
+    pub(super) fn damaged(&self, what: String) -> SceneError {
         SceneError::unusable(self.path, format!("{what}; export the model again"))
     }
 
@@ -516,23 +564,19 @@ impl Reader<'_> {
     fn nodes(&self, document: &Document, wanted: &mut [Wanted]) -> Result<Nodes, SceneError> {
         let mut nodes = Nodes::default();
         let mut corners = 0;
-        let mut visited = vec![false; document.nodes().len()];
-        let scene = document.default_scene().or_else(|| document.scenes().next());
-        let mut open: Vec<(gltf::Node, Mat4)> = match scene {
-            Some(scene) => scene.nodes().map(|n| (n, Mat4::IDENTITY)).collect(),
-            None => document.nodes().map(|n| (n, Mat4::IDENTITY)).collect(),
-        };
-        open.reverse();
-        while let Some((node, parent)) = open.pop() {
-            // A node has one parent; a damaged file may have circles.
-            if std::mem::replace(&mut visited[node.index()], true) {
-                continue;
-            }
-            let to_world = parent * Mat4::from_cols_array_2d(&node.transform().matrix());
+        let mut moves = self.moves(document)?;
+        for at in 0..moves.standing.len() {
+            let Standing { node, to_world, mover } = moves.standing[at].clone();
             if let Some(mesh) = node.mesh() {
                 let name = node.name().or(mesh.name()).unwrap_or("mesh");
                 for primitive in mesh.primitives() {
-                    let Some(mut raw) = self.primitive(&primitive, &to_world)? else { continue };
+                    let carried = self.carried(&mut moves, at, &mesh, &primitive)?;
+                    let standing = match &carried {
+                        // Left in the frame of what carries it, and turned round if that mirrors it.
+                        Some(carried) => (Mat4::IDENTITY, carried.mirrored),
+                        None => (to_world, to_world.determinant() < 0.0),
+                    };
+                    let Some(mut raw) = self.primitive(&primitive, standing)? else { continue };
                     corners += raw.indices.len().max(raw.vertices.len());
                     if corners > MAX_ELEMENTS {
                         return Err(SceneError::TooLarge {
@@ -540,6 +584,11 @@ impl Reader<'_> {
                             limit: MAX_ELEMENTS,
                             what: "corners of triangles",
                         });
+                    }
+                    if let Some(carried) = carried {
+                        raw.moving = Some(nodes.carried.len());
+                        raw.sources = (0..raw.vertices.len() as u32).collect();
+                        nodes.carried.push(carried);
                     }
                     raw.name = name.into();
                     raw.material = primitive.material().index().unwrap_or(wanted.len() - 1);
@@ -556,10 +605,10 @@ impl Reader<'_> {
                 nodes.cameras.push(Viewpoint { position, target: position + forward * 4.0 });
             }
             if let Some(light) = node.light() {
-                nodes.add_light(document, &light, &to_world);
+                nodes.add_light(document, &light, &to_world, mover);
             }
-            open.extend(node.children().map(|child| (child, to_world)));
         }
+        nodes.motion = moves.motion;
         Ok(nodes)
     }
 
@@ -685,7 +734,12 @@ impl Reader<'_> {
         Surface { diffuse, specular: factors[1], roughness, opacity }
     }
 
-    fn primitive(&self, primitive: &Primitive, to_world: &Mat4) -> Result<Option<RawMesh>, SceneError> {
+    /// The triangles of a primitive, transformed, and turned round to show their other sides if `turned`.
+    fn primitive(
+        &self,
+        primitive: &Primitive,
+        (to_world, turned): (Mat4, bool),
+    ) -> Result<Option<RawMesh>, SceneError> {
         let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(None) };
         let positions = self.floats::<3>(&positions, &[Dimensions::Vec3])?;
         let normals = primitive
@@ -699,14 +753,13 @@ impl Reader<'_> {
             .map(|a| self.floats::<2>(&a, &[Dimensions::Vec2]))
             .transpose()?
             .unwrap_or_default();
-        let linear = Mat3::from_mat4(*to_world);
-        let turned = linear.determinant() < 0.0;
+        let linear = Mat3::from_mat4(to_world);
         // Normals turn with the inverse transpose; the cofactors are that without the division.
         let normal_matrix = Mat3::from_cols(
             linear.y_axis.cross(linear.z_axis),
             linear.z_axis.cross(linear.x_axis),
             linear.x_axis.cross(linear.y_axis),
-        ) * if turned { -1.0 } else { 1.0 };
+        ) * if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
         let vertices: Vec<Vertex> = positions
             .iter()
             .enumerate()
@@ -818,7 +871,7 @@ impl Reader<'_> {
     }
 
     /// The first N components of vectors of one of the `wanted` kinds.
-    fn floats<const N: usize>(
+    pub(super) fn floats<const N: usize>(
         &self,
         accessor: &gltf::Accessor,
         wanted: &[Dimensions],

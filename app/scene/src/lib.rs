@@ -10,8 +10,12 @@ pub mod export;
 #[cfg(test)]
 mod file_tests;
 mod gltf;
+mod gltf_motion;
 pub mod load;
 pub mod model;
+pub mod motion;
+#[cfg(test)]
+mod motion_tests;
 mod mtl;
 mod obj;
 mod palette;
@@ -25,4 +29,5 @@ pub use error::SceneError;
 pub use export::export;
 pub use load::load;
 pub use model::*;
+pub use motion::{Moment, Motion};
 pub use path::CameraPath;

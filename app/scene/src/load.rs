@@ -10,6 +10,7 @@ use super::defaults;
 use super::error::{SceneError, file_size};
 use super::gltf::load_gltf;
 use super::model::{Alpha, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use super::motion::Motion;
 use super::obj::load_obj;
 use super::path as camera_path;
 use super::rays::Rays;
@@ -93,11 +94,11 @@ impl From<AlphaNotes> for Alpha {
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     file_size(path)?;
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let (mut model, mut cameras, mut sky, mut lights) = match extension.as_str() {
-        "obj" => (load_obj(path)?, Vec::new(), None, None),
+    let (mut model, mut cameras, mut sky, mut lights, mut motion) = match extension.as_str() {
+        "obj" => (load_obj(path)?, Vec::new(), None, None, Motion::default()),
         "gltf" | "glb" => {
             let file = load_gltf(path)?;
-            (file.model, file.cameras, file.sky, file.lights)
+            (file.model, file.cameras, file.sky, file.lights, file.motion)
         }
         _ => return Err(SceneError::UnknownFormat { path: path.into() }),
     };
@@ -106,6 +107,8 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         check_notes(&file, &notes)?;
         let scale = notes.scale.unwrap_or(1.0);
         model.vertices.iter_mut().for_each(|v| v.position *= scale);
+        lights.iter_mut().flatten().for_each(|light| light.position *= scale);
+        motion.enlarge(scale);
         cameras
             .iter_mut()
             .for_each(|v| *v = Viewpoint { position: v.position * scale, target: v.target * scale });
@@ -116,6 +119,13 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         }
         model.textures.iter_mut().filter(|t| notes.nearest.contains(&t.name)).for_each(|t| t.nearest = true);
         style = notes.style;
+        // Lights that are stated there stand still.
+        if notes.sky.is_some() {
+            motion.sun = None;
+        }
+        if notes.lights.is_some() {
+            motion.lights.clear();
+        }
         sky = notes.sky.or(sky);
         lights = notes.lights.or(lights);
     }
@@ -159,6 +169,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         sky: sky.unwrap_or_default(),
         lights: lights.unwrap_or_default(),
         viewpoints: cameras,
+        motion,
     })
 }
 

@@ -6,6 +6,8 @@ use glam::{Vec2, Vec3};
 
 use yoro::eyes::Pose;
 
+use super::motion::Motion;
+
 /// One vertex. 32 bytes, uploaded as it is.
 #[repr(C)]
 #[derive(
@@ -280,4 +282,6 @@ pub struct Scene {
     pub lights: Vec<PointLight>,
     /// Camera path: key viewpoints, at least one. Smooth in between by [`crate::path`].
     pub viewpoints: Vec<Viewpoint>,
+    /// What moves. All else says how the scene stands at time 0.
+    pub motion: Motion,
 }

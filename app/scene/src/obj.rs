@@ -91,7 +91,7 @@ pub(crate) fn load_obj(path: &Path) -> Result<Model, SceneError> {
         built.images.push(palette());
     }
     drop(input);
-    let mut model = assemble(path, meshes, materials)?;
+    let (mut model, _) = assemble(path, meshes, materials)?;
     model.textures = built.images;
     Ok(model)
 }
@@ -228,7 +228,7 @@ fn raw_mesh(
         let color = |i: u32| triple(&mesh.vertex_color, i as usize);
         paint(&mut vertices, &mut indices, |corners| corners.into_iter().map(color).sum::<Vec3>() / 3.0);
     }
-    RawMesh { name, material: part.material, vertices, indices, flat: part.flat }
+    RawMesh { name, material: part.material, vertices, indices, flat: part.flat, ..RawMesh::default() }
 }
 
 /// Numbers names in the order of first use.

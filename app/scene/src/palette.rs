@@ -29,20 +29,27 @@ pub(super) fn palette() -> TextureImage {
 
 /// Gives every triangle the texture coordinates of its colour in the [`palette`]: display-referred (sRGB), 0 to 1. One
 /// colour a triangle, since neighbours in the palette are not neighbours in colour; vertices that triangles of
-/// different colours share are split.
-pub(super) fn paint(vertices: &mut Vec<Vertex>, indices: &mut [u32], color: impl Fn([u32; 3]) -> Vec3) {
+/// different colours share are split. Returns each vertex's former index.
+pub(super) fn paint(
+    vertices: &mut Vec<Vertex>,
+    indices: &mut [u32],
+    color: impl Fn([u32; 3]) -> Vec3,
+) -> Vec<u32> {
     let mut known = HashMap::new();
     let mut split = Vec::with_capacity(vertices.len());
+    let mut former = Vec::with_capacity(vertices.len());
     for triangle in indices.chunks_exact_mut(3) {
         let uv = palette_uv(color([triangle[0], triangle[1], triangle[2]]));
         for i in triangle {
             *i = *known.entry((*i, uv.x.to_bits(), uv.y.to_bits())).or_insert_with(|| {
                 split.push(Vertex { uv, ..vertices[*i as usize] });
+                former.push(*i);
                 split.len() as u32 - 1
             });
         }
     }
     *vertices = split;
+    former
 }
 
 /// Middle of a colour's texel in the palette.

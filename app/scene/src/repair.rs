@@ -2,6 +2,7 @@
 //! sorts triangles by material.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3};
@@ -26,6 +27,29 @@ pub(super) struct RawMesh {
     pub indices: Vec<u32>,
     /// Missing normals are those of the faces.
     pub flat: bool,
+    /// A number for meshes that move: their vertices are in the frame of what carries them.
+    pub moving: Option<usize>,
+    /// For such meshes, each vertex's index in the file.
+    pub sources: Vec<u32>,
+}
+
+impl RawMesh {
+    /// Notes that the vertices were split: the former index of each.
+    pub fn split(&mut self, former: &[u32]) {
+        if self.moving.is_some() {
+            self.sources = former.iter().map(|&i| self.sources[i as usize]).collect();
+        }
+    }
+}
+
+/// The place of a mesh that moves in the model.
+pub(super) struct Placed {
+    /// Its [`RawMesh::moving`].
+    pub moving: usize,
+    /// Range of the model's vertices.
+    pub vertices: Range<usize>,
+    /// Each vertex's index in the file.
+    pub sources: Vec<u32>,
 }
 
 /// Marks a missing normal.
@@ -33,12 +57,13 @@ pub(super) const NO_NORMAL: Vec3 = Vec3::NAN;
 /// Marks missing texture coordinates.
 pub(super) const NO_UV: Vec2 = Vec2::NAN;
 
-/// Makes the model; textures are left to the caller, who must have set the materials' maps.
+/// Makes the model, and tells where what moves is in it; textures are left to the caller, who must have set the materials'
+/// maps.
 pub(super) fn assemble(
     path: &Path,
     mut meshes: Vec<RawMesh>,
     materials: Vec<Material>,
-) -> Result<Model, SceneError> {
+) -> Result<(Model, Vec<Placed>), SceneError> {
     let before: usize = meshes.iter().map(|m| m.indices.len() / 3).sum();
     meshes.par_iter_mut().for_each(clean);
     let kept: usize = meshes.iter().map(|m| m.indices.len() / 3).sum();
@@ -111,6 +136,7 @@ fn generate(meshes: &mut [RawMesh], materials: &[Material]) {
             return;
         }
         let mut vertices = Vec::with_capacity(mesh.vertices.len());
+        let mut former = Vec::with_capacity(mesh.vertices.len());
         let mut indices = Vec::with_capacity(mesh.indices.len());
         let mut known: HashMap<[u32; 6], u32> = HashMap::new();
         for triangle in 0..mesh.indices.len() / 3 {
@@ -128,10 +154,12 @@ fn generate(meshes: &mut [RawMesh], materials: &[Material]) {
                 let key = [old, bits[0], bits[1], bits[2], bits[3], bits[4]];
                 indices.push(*known.entry(key).or_insert_with(|| {
                     vertices.push(*v);
+                    former.push(old);
                     vertices.len() as u32 - 1
                 }));
             }
         }
+        mesh.split(&former);
         mesh.vertices = vertices;
         mesh.indices = indices;
     });
@@ -208,8 +236,9 @@ impl Neighbours {
 }
 
 /// One vertex and one index list, sorted by material, parts of one name and material joined, unused vertices left
-/// out; otherwise in the order of the file.
-fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> Model {
+/// out; otherwise in the order of the file. What moves is a part of its own.
+fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> (Model, Vec<Placed>) {
+    let mut placed = Vec::new();
     let mut model = Model { materials, ..Model::default() };
     let mut first: HashMap<(usize, &str), usize> = HashMap::new();
     let place: Vec<usize> = meshes
@@ -223,18 +252,26 @@ fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> Model {
     for i in order {
         let mesh = &meshes[i];
         let mut remap = vec![u32::MAX; mesh.vertices.len()];
-        let start = model.indices.len();
+        let (start, first) = (model.indices.len(), model.vertices.len());
+        let mut sources = Vec::new();
         for &index in &mesh.indices {
             let slot = &mut remap[index as usize];
             if *slot == u32::MAX {
                 *slot = model.vertices.len() as u32;
                 model.vertices.push(mesh.vertices[index as usize]);
+                sources.extend(mesh.sources.get(index as usize));
             }
             model.indices.push(*slot);
         }
         let end = model.indices.len();
+        let still = mesh.moving.is_none() && placed.last().is_none_or(|p: &Placed| p.vertices.end < first);
+        if let Some(moving) = mesh.moving {
+            placed.push(Placed { moving, vertices: first..model.vertices.len(), sources });
+        }
         match model.parts.last_mut() {
-            Some(last) if last.material == mesh.material && last.name == mesh.name => last.indices.end = end,
+            Some(last) if still && last.material == mesh.material && last.name == mesh.name => {
+                last.indices.end = end;
+            }
             _ => model.parts.push(Part {
                 name: mesh.name.clone(),
                 material: mesh.material,
@@ -242,7 +279,7 @@ fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> Model {
             }),
         }
     }
-    model
+    (model, placed)
 }
 
 #[cfg(test)]
@@ -267,7 +304,7 @@ mod tests {
     fn ridge(degrees: f32) -> Model {
         let (s, c) = degrees.to_radians().sin_cos();
         let m = mesh(&[[0., 0., 0.], [0., 0., -1.], [-1., 0., 0.], [c, -s, 0.]], &[0, 1, 2, 0, 3, 1]);
-        assemble(Path::new("ridge"), vec![m], vec![Material::default()]).unwrap()
+        assemble(Path::new("ridge"), vec![m], vec![Material::default()]).unwrap().0
     }
 
     #[test]
@@ -286,7 +323,7 @@ mod tests {
         let (s, c) = 30f32.to_radians().sin_cos();
         let a = mesh(&[[-0.0, 0., 0.], [0., 0., -1.], [-1., 0., 0.]], &[0, 1, 2]);
         let b = mesh(&[[0., 0., 0.], [c, -s, 0.], [0., 0., -1.]], &[0, 1, 2]);
-        let model = assemble(Path::new("x"), vec![a, b], vec![Material::default()]).unwrap();
+        let (model, _) = assemble(Path::new("x"), vec![a, b], vec![Material::default()]).unwrap();
         assert!((model.vertices[0].normal.angle_between(Vec3::Y).to_degrees() - 15.0).abs() < 0.1);
         assert_eq!(model.parts.len(), 1);
         assert_eq!(model.parts[0].indices, 0..6);
@@ -298,7 +335,7 @@ mod tests {
             &[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [f32::NAN, 0., 0.], [2., 0., 0.], [1e30, 0., 0.]],
             &[0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 0, 1, 0, 1, 99],
         );
-        let model = assemble(Path::new("x"), vec![m.clone()], vec![Material::default()]).unwrap();
+        let (model, _) = assemble(Path::new("x"), vec![m.clone()], vec![Material::default()]).unwrap();
         assert_eq!((model.triangle_count(), model.vertices.len()), (1, 3));
         assert_eq!(model.bounds().max, Vec3::new(1.0, 1.0, 0.0));
         let nothing = RawMesh { indices: vec![0, 0, 1], ..m };
@@ -311,16 +348,16 @@ mod tests {
     #[test]
     fn tiny_triangles_are_kept() {
         let m = mesh(&[[0., 0., 0.], [1e-12, 0., 0.], [0., 1e-12, 0.]], &[0, 1, 2]);
-        let model = assemble(Path::new("x"), vec![m], vec![Material::default()]).unwrap();
+        let (model, _) = assemble(Path::new("x"), vec![m], vec![Material::default()]).unwrap();
         assert_eq!(model.vertices[0].normal, Vec3::Z);
     }
 
     #[test]
     fn texture_coordinates_are_in_metres_and_only_where_needed() {
         let m = mesh(&[[0., 0., 0.], [3., 0., 0.], [3., 2., 0.]], &[0, 1, 2]);
-        let model = assemble(Path::new("x"), vec![m.clone()], vec![mapped()]).unwrap();
+        let (model, _) = assemble(Path::new("x"), vec![m.clone()], vec![mapped()]).unwrap();
         assert_eq!(model.vertices[2].uv, Vec2::new(3.0, 2.0));
-        let model = assemble(Path::new("x"), vec![m], vec![Material::default()]).unwrap();
+        let (model, _) = assemble(Path::new("x"), vec![m], vec![Material::default()]).unwrap();
         assert_eq!(model.vertices[2].uv, Vec2::ZERO);
     }
 
@@ -332,7 +369,7 @@ mod tests {
             ..mesh(&[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]], &[0, 1, 2])
         };
         let meshes = vec![part("a", 1), part("b", 0), part("c", 1), part("a", 1)];
-        let model = assemble(Path::new("x"), meshes, vec![Material::default(), mapped()]).unwrap();
+        let (model, _) = assemble(Path::new("x"), meshes, vec![Material::default(), mapped()]).unwrap();
         let parts: Vec<_> =
             model.parts.iter().map(|p| (p.name.as_str(), p.material, p.indices.clone())).collect();
         assert_eq!(parts, [("b", 0, 0..3), ("a", 1, 3..9), ("c", 1, 9..12)]);

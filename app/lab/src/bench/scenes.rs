@@ -98,6 +98,7 @@ impl Object {
             sky: Sky::default(),
             lights: vec![light(-2.5, -2.0), light(2.5, -2.0), light(0.0, 3.0)],
             viewpoints: [-24.0, 0.0, 24.0].map(viewpoint).to_vec(),
+            ..Scene::default()
         }
     }
 
@@ -145,6 +146,7 @@ impl Object {
             sky: Sky::default(),
             lights: vec![light(-4.0, 4.0), light(4.0, 4.0), light(-4.0, -1.0), light(4.0, -1.0)],
             viewpoints: [0.0, -0.3, 0.3].map(viewpoint).to_vec(),
+            ..Scene::default()
         }
     }
 

@@ -31,6 +31,8 @@ pub struct Batch {
     pub material: usize,
     /// Its clusters, neighbours in space near each other in the list, without gaps in their indices.
     pub clusters: Range<usize>,
+    /// True if they move: their indices are those of the mesh that is rewritten.
+    pub moves: bool,
 }
 
 /// A model's triangles in clusters: the result of [`build`].
@@ -73,7 +75,7 @@ pub fn build(model: &Model) -> Clusters {
         }
         let first = built.clusters.len();
         gather_units(model, &mut units, &triangles, &mut built);
-        built.batches.push(Batch { material, clusters: first..built.clusters.len() });
+        built.batches.push(Batch { material, clusters: first..built.clusters.len(), moves: false });
     }
     built
 }

@@ -37,6 +37,13 @@ impl Common {
         })
     }
 
+    /// Draws again what depends on a scene that has moved.
+    pub(super) fn renew(&mut self, scene: &GpuScene) {
+        if let Some(shadow) = &mut self.shadow {
+            shadow.renew(&self.gl, scene);
+        }
+    }
+
     /// Refuses another scene than the renderer was made for.
     pub fn check_scene(&self, scene: &GpuScene) -> Result<(), GlError> {
         if scene.id == self.scene_id {

@@ -119,7 +119,7 @@ struct LightPasses {
 
 /// The deferred renderer of one scene: passes made for the scene's style and materials.
 pub struct DeferredRenderer {
-    common: Common,
+    pub(super) common: Common,
     ssao_radius: f32,
     /// Geometry passes by [`Layout::index`].
     geometry: [Option<GeometryPass>; Layout::COUNT],

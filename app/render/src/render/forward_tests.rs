@@ -52,6 +52,7 @@ fn flat(quads: &[(Vec3, Alpha, [Vec3; 3])]) -> Scene {
         sky: Sky { sun_color: Vec3::ZERO, ..Sky::default() },
         lights: Vec::new(),
         viewpoints: vec![Viewpoint { position: Vec3::ZERO, target: Vec3::NEG_Z }],
+        ..Scene::default()
     }
 }
 

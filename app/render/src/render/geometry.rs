@@ -60,7 +60,7 @@ impl GeometryPass {
         alpha_to_coverage: bool,
     ) -> Result<GeometryPass, GlError> {
         let mut programs = [const { None }; Features::COMBINATIONS];
-        for (material, _) in scene.opaque() {
+        for (material, ..) in scene.opaque() {
             let slot: &mut Option<Program> = &mut programs[material.features.index()];
             if slot.is_none() {
                 let mut defines = material.features.defines();
@@ -117,8 +117,8 @@ impl GeometryPass {
         if clip {
             self.gl.set_clip_distance(true);
         }
-        scene.mesh.bind();
-        for (material, clusters) in scene.opaque() {
+        let mut bound = None;
+        for (material, moves, clusters) in scene.opaque() {
             let Some(program) = &self.programs[material.features.index()] else { continue };
             let mut ranges = visible(cullers, clusters).peekable();
             if ranges.peek().is_none() {
@@ -140,7 +140,8 @@ impl GeometryPass {
                     .set("seam", self.layout.origin(first.size, Eye::Right)[0] as f32);
             }
             scene.set_material(program, material);
-            ranges.for_each(|range| scene.mesh.draw(range, self.layout.instances()));
+            let mesh = scene.bind_mesh(moves, &mut bound);
+            ranges.for_each(|range| mesh.draw(range, self.layout.instances()));
         }
         if clip {
             self.gl.set_clip_distance(false);

@@ -1,6 +1,6 @@
 //! One view of a scene: colour and depth, rendered the deferred way or the forward way.
 //!
-//! Deferred: sun shadow map (once per scene) -> g-buffer -> ambient occlusion -> lighting -> bloom -> tone mapping. [`Fxaa`] and
+//! Deferred: sun shadow map (once per scene, or whenever something moves) -> g-buffer -> ambient occlusion -> lighting -> bloom -> tone mapping. [`Fxaa`] and
 //! transparent surfaces ([`DeferredRenderer::draw_transparent`]) belong to the finished image of one eye, so that they
 //! come after synthesis.
 //!
@@ -23,6 +23,9 @@ mod geometry;
 mod light_tiles;
 mod lighting;
 mod lights;
+mod moving;
+#[cfg(test)]
+mod moving_tests;
 mod renderer;
 mod request;
 mod role;
@@ -48,7 +51,7 @@ pub(crate) use g_buffer::{GBuffer, Layout, Seam};
 pub(crate) use geometry::Part;
 pub(crate) use renderer::RendererOfKind;
 pub use renderer::{RenderedView, Renderer, ViewTargets};
-pub(crate) use request::{Columns, KeptSamples, PixelDepth, ViewRequest};
+pub(crate) use request::{Columns, KeptSamples, PixelDepth, ViewRequest, of_columns};
 pub(crate) use role::{Reprojection, Role, RoleKind};
 pub use scene::GpuScene;
 pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings, RendererKind};

@@ -83,6 +83,23 @@ impl Renderer {
         })
     }
 
+    /// Moves everything in a scene to where it is at a time in seconds, and draws its shadow map again. A scene in which
+    /// nothing moves, or that is there already, costs nothing.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for another scene than the renderer was made for.
+    pub fn set_time(&mut self, scene: &mut GpuScene, seconds: f64) -> Result<(), GlError> {
+        let common = match self {
+            Renderer::Deferred(renderer) => &mut renderer.common,
+            Renderer::Forward(renderer) => &mut renderer.common,
+        };
+        common.check_scene(scene)?;
+        if scene.set_time(seconds) {
+            common.renew(scene);
+        }
+        Ok(())
+    }
+
     /// Renders the opaque part of a scene: colour and depth. Where nothing is drawn, depth keeps its far value and colour is
     /// the sky.
     ///

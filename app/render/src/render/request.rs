@@ -62,7 +62,7 @@ impl ViewRequest {
 }
 
 /// Returns the part of a view that its columns `[first, end]` show.
-fn of_columns(view: &View, [first, end]: [u32; 2]) -> View {
+pub(crate) fn of_columns(view: &View, [first, end]: [u32; 2]) -> View {
     let tangent = view.frustum.width() / view.size[0] as f32;
     let left = view.frustum.left + first as f32 * tangent;
     let right = view.frustum.left + end as f32 * tangent;

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{Vec3, Vec4};
 
 use super::cluster::{self, Batch, Cluster, Culler};
+use super::moving::Moving;
 use yoro::eyes::{DepthRange, View};
 use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
 use yoro_scene::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
@@ -131,7 +132,8 @@ pub struct GpuScene {
     pub viewpoints: Vec<Viewpoint>,
     bounds: Bounds,
     triangle_count: usize,
-    pub(super) mesh: Mesh,
+    mesh: Mesh,
+    moving: Option<Moving>,
     pub(super) materials: Vec<GpuMaterial>,
     textures: Vec<Texture>,
     pub(super) clusters: Vec<Cluster>,
@@ -139,23 +141,30 @@ pub struct GpuScene {
 }
 
 /// Floats of position, normal and uv of a [`yoro_scene::Vertex`].
-const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
+pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
 /// The texture units that materials use.
 const MAP_NAMES: [&str; 4] = ["diffuse_map", "specular_map", "emissive_map", "normal_map"];
 /// First texture unit that no material uses.
 pub(super) const FREE_UNIT: u32 = MAP_NAMES.len() as u32;
 
 impl GpuScene {
-    /// Uploads a scene, and sorts its triangles into clusters. Its memory is freed as soon as GL has copied it.
+    /// Uploads a scene as it stands at time 0, and sorts its triangles into clusters. Its memory is freed as soon as GL has
+    /// copied it.
     ///
     /// # Errors
     /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::OutOfMemory`] without memory.
     pub fn upload(gl: &Rc<Context>, scene: Scene) -> Result<GpuScene, GlError> {
         static NEXT_ID: AtomicU64 = AtomicU64::new(0);
-        let Scene { name, mut model, style, sky, lights, viewpoints } = scene;
-        let bounds = model.bounds();
+        let Scene { name, mut model, style, sky, lights, viewpoints, motion } = scene;
+        let (still, reached) = (model.bounds(), motion.bounds());
+        let bounds =
+            if reached.is_empty() { still } else { still.including(reached.min).including(reached.max) };
         let triangle_count = model.triangle_count();
-        let cluster::Clusters { clusters, mut batches, indices } = cluster::build(&model);
+        let mut moving = Moving::take(gl, &mut model, motion)?;
+        let cluster::Clusters { mut clusters, mut batches, indices } = cluster::build(&model);
+        if let Some(moving) = &mut moving {
+            moving.append(&mut clusters, &mut batches);
+        }
         // Cut-out materials come last: much of them is hidden by then, and `discard` defeats early depth tests.
         batches.sort_by_key(|b| matches!(model.materials[b.material].alpha, Alpha::Cutout(_)));
         model.indices = Vec::new();
@@ -179,6 +188,7 @@ impl GpuScene {
             bounds,
             triangle_count,
             mesh,
+            moving,
             materials,
             textures,
             clusters,
@@ -186,7 +196,7 @@ impl GpuScene {
         })
     }
 
-    /// Returns the smallest box around all vertices.
+    /// Returns the smallest box around all vertices, wherever they move.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
@@ -194,6 +204,37 @@ impl GpuScene {
     /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangle_count
+    }
+
+    /// True if something moves.
+    pub fn moves(&self) -> bool {
+        self.moving.is_some()
+    }
+
+    /// Moves everything to where it is at a time in seconds; false if it is there already. A renderer's shadow map has to be
+    /// drawn again then.
+    pub(super) fn set_time(&mut self, seconds: f64) -> bool {
+        let Some(moving) = &mut self.moving else { return false };
+        let moved = moving.set_time(seconds, &mut self.clusters);
+        if moved {
+            moving.moment.light(&moving.motion, &mut self.lights, &mut self.sky);
+        }
+        moved
+    }
+
+    /// True if any triangle that moves may be seen in a view.
+    pub(crate) fn is_moving_in(&self, view: &View) -> bool {
+        let culler = Culler::of_view(view);
+        self.moving.as_ref().is_some_and(|m| m.of(&self.clusters).iter().any(|c| culler.sees(&c.bounds)))
+    }
+
+    /// Binds the mesh of a batch, unless it is `bound` already, and returns it.
+    pub(super) fn bind_mesh(&self, moves: bool, bound: &mut Option<bool>) -> &Mesh {
+        let mesh = self.moving.as_ref().filter(|_| moves).map_or(&self.mesh, |moving| &moving.mesh);
+        if bound.replace(moves) != Some(moves) {
+            mesh.bind();
+        }
+        mesh
     }
 
     /// True if there is a sun.
@@ -209,7 +250,7 @@ impl GpuScene {
     /// True if anything opaque may be seen in a slice of a view (near and far plane in metres).
     pub(crate) fn is_seen(&self, view: &View, [near, far]: [f32; 2]) -> bool {
         let culler = Culler::of_view(&View { depth: DepthRange { near, far, ..view.depth }, ..*view });
-        self.opaque().any(|(_, clusters)| clusters.iter().any(|c| culler.sees(&c.bounds)))
+        self.opaque().any(|(_, _, clusters)| clusters.iter().any(|c| culler.sees(&c.bounds)))
     }
 
     /// Returns the defines of the scene's shading style.
@@ -228,11 +269,11 @@ impl GpuScene {
         defines
     }
 
-    /// Returns the batches of opaque triangles with their materials and clusters.
-    pub(super) fn opaque(&self) -> impl Iterator<Item = (&GpuMaterial, &[Cluster])> {
+    /// Returns the batches of opaque triangles: the material, whether they move, and the clusters.
+    pub(super) fn opaque(&self) -> impl Iterator<Item = (&GpuMaterial, bool, &[Cluster])> {
         self.batches.iter().filter_map(|batch| {
             let material = &self.materials[batch.material];
-            (!material.blended).then(|| (material, &self.clusters[batch.clusters.clone()]))
+            (!material.blended).then(|| (material, batch.moves, &self.clusters[batch.clusters.clone()]))
         })
     }
 

@@ -13,7 +13,7 @@ use yoro_scene::{Bounds, Viewpoint};
 /// Metres around the viewpoints within which a large scene has shadows.
 const REACH: f32 = 60.0;
 
-/// Shadow map of a scene that does not move: drawn once, then only read.
+/// Shadow map of a scene: drawn once, then only read, until something moves.
 ///
 /// Writes a depth texture of its own; reads diffuse maps for alpha.
 pub struct ShadowMap {
@@ -22,6 +22,32 @@ pub struct ShadowMap {
     matrix: Mat4,
     /// See `include/shade.glsl`.
     texel: Vec3,
+    /// Kept if the scene moves.
+    programs: Option<Programs>,
+}
+
+/// The programs that draw casters.
+struct Programs {
+    solid: Program,
+    /// Cut out by a colour's opacity.
+    colored: Program,
+    /// Cut out by a diffuse map.
+    mapped: Program,
+}
+
+impl Programs {
+    fn new(gl: &Rc<Context>) -> Result<Programs, GlError> {
+        let program = |features: Features| {
+            let source =
+                ShaderSource::Raster { vertex: "render/geometry.vert", fragment: "render/shadow.frag" };
+            Program::new(gl, source, &features.defines())
+        };
+        Ok(Programs {
+            solid: program(Features::default())?,
+            colored: program(Features::CUTOUT)?,
+            mapped: program(Features::CUTOUT.or(Features::DIFFUSE_MAP))?,
+        })
+    }
 }
 
 impl ShadowMap {
@@ -29,30 +55,38 @@ impl ShadowMap {
     pub fn new(gl: &Rc<Context>, scene: &GpuScene, size: u32) -> Result<ShadowMap, GlError> {
         let size = size.min(gl.capabilities().max_texture_size);
         let target = RenderTarget::shadow_map(gl, [size, size], Format::Depth16)?;
-        let program = |features: Features| {
-            let source =
-                ShaderSource::Raster { vertex: "render/geometry.vert", fragment: "render/shadow.frag" };
-            Program::new(gl, source, &features.defines())
-        };
-        let (solid, colored, mapped) = (
-            program(Features::default())?,
-            program(Features::CUTOUT)?,
-            program(Features::CUTOUT.or(Features::DIFFUSE_MAP))?,
-        );
+        let mut map = ShadowMap { target, matrix: Mat4::IDENTITY, texel: Vec3::ONE, programs: None };
+        let programs = Programs::new(gl)?;
+        map.draw(gl, scene, &programs);
+        map.programs = scene.moves().then_some(programs);
+        Ok(map)
+    }
+
+    /// Draws it again, for a scene that has moved.
+    pub fn renew(&mut self, gl: &Context, scene: &GpuScene) {
+        if let Some(programs) = self.programs.take() {
+            self.draw(gl, scene, &programs);
+            self.programs = Some(programs);
+        }
+    }
+
+    fn draw(&mut self, gl: &Context, scene: &GpuScene, programs: &Programs) {
+        let [size, _] = self.target.size();
         let (to_clip, extent) = light_box(scene.bounds(), &scene.viewpoints, scene.sky.sun_direction);
         let texel = extent.x.max(extent.y) / size as f32;
         gl.pass("shadow", || {
-            target.bind();
+            self.target.bind();
             gl.clear(Some(1.0));
             let culler = Culler::new(Vec3::ZERO, &to_clip, Selection::All);
-            for (material, clusters) in scene.opaque() {
+            let mut bound = None;
+            for (material, moves, clusters) in scene.opaque() {
                 let features = material.features.and(Features::CUTOUT.or(Features::DIFFUSE_MAP));
                 let program = if !features.contains(Features::CUTOUT) {
-                    &solid
+                    &programs.solid
                 } else if features.contains(Features::DIFFUSE_MAP) {
-                    &mapped
+                    &programs.mapped
                 } else {
-                    &colored
+                    &programs.colored
                 };
                 // Rooms are often shells that face inwards: the sun is to fall through their roofs.
                 let state =
@@ -60,15 +94,15 @@ impl ShadowMap {
                 gl.set_raster_state(&state);
                 program.bind().set("eye", Vec3::ZERO).set("eye_to_clip", to_clip);
                 scene.set_material(program, material);
-                scene.mesh.bind();
-                culler.visible(clusters).for_each(|range| scene.mesh.draw(range, 1));
+                let mesh = scene.bind_mesh(moves, &mut bound);
+                culler.visible(clusters).for_each(|range| mesh.draw(range, 1));
             }
         });
         let to_unit =
             Mat4::from_scale_rotation_translation(Vec3::splat(0.5), Quat::IDENTITY, Vec3::splat(0.5));
+        self.matrix = to_unit * to_clip;
         // Depth bias: a texel's height on a slope of 45 degrees.
-        let texel = Vec3::new(1.0 / size as f32, texel, texel / extent.z.max(1e-3));
-        Ok(ShadowMap { target, matrix: to_unit * to_clip, texel })
+        self.texel = Vec3::new(1.0 / size as f32, texel, texel / extent.z.max(1e-3));
     }
 
     /// Sets the uniforms of `include/shade.glsl`, for positions relative to `eye`.

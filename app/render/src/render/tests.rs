@@ -73,6 +73,7 @@ pub fn scene(style: ShadingStyle) -> Scene {
             })
             .collect(),
         viewpoints: vec![Viewpoint { position: EYE, target: TARGET }],
+        ..Scene::default()
     }
 }
 

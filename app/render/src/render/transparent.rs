@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use glam::IVec2;
 
-use super::cluster::Culler;
+use super::cluster::{Batch, Culler};
 use super::light_tiles::LightTiles;
 use super::lighting::shading_defines;
 use super::role::RoleKind;
@@ -135,11 +135,12 @@ impl TransparentPass {
             if let Onto::Image(to, _) = onto {
                 self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
             }
-            scene.mesh.bind();
+            let mut bound = None;
             let matrix = eye_to_clip(view);
             let mut current = u32::MAX;
             for &(_, batch, cluster) in order.iter() {
-                let material = &scene.materials[scene.batches[batch as usize].material];
+                let Batch { material, moves, .. } = scene.batches[batch as usize];
+                let material = &scene.materials[material];
                 let programs = &self.programs[usize::from(layer.is_some())];
                 let Some(program) = &programs[material.features.index()] else { continue };
                 if batch != current {
@@ -155,7 +156,8 @@ impl TransparentPass {
                     scene.set_material(program, material);
                 }
                 let cluster = &scene.clusters[cluster as usize];
-                scene.mesh.draw(cluster.start as usize..cluster.end as usize, 1);
+                let mesh = scene.bind_mesh(moves, &mut bound);
+                mesh.draw(cluster.start as usize..cluster.end as usize, 1);
             }
             self.gl.set_raster_state(&RasterState::SCREEN);
         });

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::border::{BANDS, Border, CELLS, Profile, Width};
 use super::method::GuardBandUse;
 use super::readback::Readback;
-use crate::render::Columns;
+use crate::render::{Columns, GpuScene, of_columns};
 use yoro::eyes::{Eye, EyePair, SynthesisViews};
 use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
@@ -53,8 +53,9 @@ impl AutoGuardBand {
         })
     }
 
-    /// Returns the columns of the source to draw in a frame.
-    pub(super) fn columns(&mut self, pair: &EyePair, views: &SynthesisViews) -> Columns {
+    /// Returns the columns of the source to draw in a frame of a scene. All are drawn where something moves in the band or
+    /// beside it: earlier frames do not tell where that is.
+    pub(super) fn columns(&mut self, pair: &EyePair, views: &SynthesisViews, scene: &GpuScene) -> Columns {
         let border = Border::new(pair, views);
         let mut texels = [0u8; BYTES];
         let frame = self.readback.take(&mut texels);
@@ -65,7 +66,15 @@ impl AutoGuardBand {
             undrawn: profile.undrawn,
         });
         let guard = views.guard_columns;
-        let drawn = self.width.next(profile.as_ref(), &border, least(guard));
+        let mut drawn = self.width.next(profile.as_ref(), &border, least(guard));
+        let [width, _] = views.source.size;
+        let around = match views.warp.target_eye {
+            Eye::Left => [0, (2 * guard).min(width)],
+            Eye::Right => [width.saturating_sub(2 * guard), width],
+        };
+        if scene.is_moving_in(&of_columns(&views.source, around)) {
+            drawn = guard;
+        }
         // Reaches as far into the picture as the band is wide: surfaces that turn out of it come from there.
         self.frame = Some(Frame { border, drawn, step: (drawn + guard).div_ceil(CELLS as u32) });
         let without = |left_out: u32| match views.warp.target_eye {

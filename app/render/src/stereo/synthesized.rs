@@ -137,7 +137,7 @@ impl<R: StereoRenderer> Synthesized<R> {
         let reads_depth = !multisample || self.auto_guard_band.is_some() || hands_on;
         let request = ViewRequest {
             selection: near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance }),
-            columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(frame.pair, views)),
+            columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(frame.pair, views, frame.scene)),
             depth: match self.edges {
                 _ if !reads_depth => PixelDepth::Unread,
                 Edges::Sample => PixelDepth::FirstSample,

@@ -15,7 +15,8 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, 
 use yoro::synthesis::{self, Edges, Outputs, Source, SynthesisOptions};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, Profiling, RenderTarget};
-use yoro_scene::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_scene::motion::{Carrier, MovingMesh, Node, Track};
+use yoro_scene::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewpoint};
 
 const SIZE: [u32; 2] = [160, 120];
 
@@ -45,6 +46,7 @@ fn scene() -> Scene {
         sky: Sky::default(),
         lights: Vec::new(),
         viewpoints: vec![Viewpoint { position: Vec3::ZERO, target: Vec3::NEG_Z }],
+        ..Scene::default()
     }
 }
 
@@ -338,6 +340,47 @@ fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
         let share = equal_share(&filled, &drawn);
         assert!(share > 0.95, "{renderer:?}: {share} of the picture as it should be");
     }
+    assert_eq!(gl.take_errors(), None);
+}
+
+#[test]
+fn what_moves_at_the_border_is_drawn_at_once() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut scene = scene();
+    scene.model.parts.truncate(2);
+    // A board at 40 cm comes in at the left border in an eighth of a second, and stays a while.
+    let first = scene.model.vertices.len();
+    quad(&mut scene.model, 2, Vec3::new(-1.6, -0.5, -0.4), Vec3::X * 0.5, Vec3::Y);
+    let vertices = first..first + 4;
+    let rest = scene.model.vertices[vertices.clone()].to_vec();
+    let moves = Track {
+        times: vec![0.1, 0.225, 0.4],
+        values: vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+        ..Track::default()
+    };
+    let nodes = vec![Node { moves: Some(moves), ..Node::default() }];
+    let meshes = vec![MovingMesh { vertices, rest, carrier: Carrier::Node(0), morph: None }];
+    scene.motion = Motion { loops: vec![0.4], nodes, meshes, ..Motion::default() };
+    let scene = GpuScene::upload(gl, scene).unwrap();
+    let renderer = Renderer::new(gl, &local(), &scene).unwrap();
+    let mut rig = Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() };
+    let pair = pair(Eye::Right, DepthConvention::Standard);
+    let whole = StereoOptions { guard_band: GuardBand::Distance(0.2), ..StereoOptions::default() };
+    let [mut whole, mut auto] =
+        [whole, auto_band()].map(|options| create(gl, Method::Yoro, &local(), &options).unwrap());
+    let mut narrow = 0;
+    for frame in 0..24 {
+        rig.renderer.set_time(&mut rig.scene, f64::from(frame) / 60.0).unwrap();
+        let [expected, images] = [&mut whole, &mut auto].map(|method| rig.render(&mut **method, &pair));
+        let share = equal_share(&images[0], &expected[0]);
+        assert!(share > 0.999 && images[1] == expected[1], "frame {frame}: {share}");
+        if let Some(used) = auto.guard_band() {
+            assert_eq!(used.undrawn, 0, "frame {frame}");
+            narrow += u32::from(used.columns < used.most);
+        }
+    }
+    assert!(narrow > 2, "{narrow} frames drew less than the whole band");
     assert_eq!(gl.take_errors(), None);
 }
 

@@ -1,0 +1,101 @@
+//! What moves in a scene, on the GPU.
+
+use std::rc::Rc;
+
+use super::cluster::{Batch, Cluster};
+use super::scene::VERTEX_ATTRIBUTES;
+use yoro_gl::{Context, GlError, Mesh};
+use yoro_scene::{Model, Moment, Motion, Part};
+
+/// Vertices that are worked out on the CPU and rewritten whenever the time changes. Each part of the model that moves is a
+/// cluster with the bounds of the mesh that it belongs to.
+pub struct Moving {
+    pub motion: Motion,
+    pub moment: Moment,
+    pub mesh: Mesh,
+    pieces: Vec<Piece>,
+    /// Index of the first piece's cluster; they follow one another.
+    first: usize,
+    seconds: f64,
+}
+
+/// A part that moves.
+struct Piece {
+    material: usize,
+    /// Range of the mesh's indices.
+    start: u32,
+    end: u32,
+    /// Index into [`Motion::meshes`].
+    moved: usize,
+}
+
+impl Moving {
+    /// Takes what moves out of a model. `None` if nothing does.
+    pub fn take(gl: &Rc<Context>, model: &mut Model, motion: Motion) -> Result<Option<Moving>, GlError> {
+        if motion.is_still() {
+            return Ok(None);
+        }
+        let ranges: Vec<_> = motion.meshes.iter().map(|mesh| mesh.vertices.clone()).collect();
+        let moved = |part: &Part| {
+            let vertices = || model.indices[part.indices.clone()].iter().map(|&v| v as usize);
+            let first = vertices().next()?;
+            let at = ranges.partition_point(|range| range.end <= first);
+            vertices().all(|v| ranges.get(at).is_some_and(|range| range.contains(&v))).then_some(at)
+        };
+        let mut parts: Vec<(Part, usize)> =
+            model.parts.iter().filter_map(|part| Some((part.clone(), moved(part)?))).collect();
+        parts.sort_by_key(|(part, _)| part.material);
+        let still: Vec<Part> = model.parts.iter().filter(|part| moved(part).is_none()).cloned().collect();
+        // Of each range's vertices the first among all that move.
+        let firsts: Vec<usize> =
+            ranges.iter().scan(0, |next, range| Some(std::mem::replace(next, *next + range.len()))).collect();
+        let (mut indices, mut pieces) = (Vec::new(), Vec::new());
+        for (part, at) in parts {
+            let start = indices.len() as u32;
+            let shift = |v: &u32| (*v as usize - ranges[at].start + firsts[at]) as u32;
+            indices.extend(model.indices[part.indices].iter().map(shift));
+            pieces.push(Piece { material: part.material, start, end: indices.len() as u32, moved: at });
+        }
+        model.parts = still;
+        let moment = motion.start();
+        let mesh = Mesh::rewritable(gl, &VERTEX_ATTRIBUTES, &moment.vertices, &indices)?;
+        Ok(Some(Moving { motion, moment, mesh, pieces, first: 0, seconds: 0.0 }))
+    }
+
+    /// Adds what moves to a scene's clusters, batches of their own behind those that stand still.
+    pub fn append(&mut self, clusters: &mut Vec<Cluster>, batches: &mut Vec<Batch>) {
+        self.first = clusters.len();
+        for pieces in self.pieces.chunk_by(|a, b| a.material == b.material) {
+            let first = clusters.len();
+            clusters.extend(pieces.iter().map(|piece| Cluster {
+                bounds: self.moment.bounds[piece.moved],
+                start: piece.start,
+                end: piece.end,
+            }));
+            batches.push(Batch {
+                material: pieces[0].material,
+                clusters: first..clusters.len(),
+                moves: true,
+            });
+        }
+    }
+
+    /// Returns the clusters that move.
+    pub fn of<'a>(&self, clusters: &'a [Cluster]) -> &'a [Cluster] {
+        &clusters[self.first..self.first + self.pieces.len()]
+    }
+
+    /// Moves everything to where it is at a time in seconds, and its clusters' bounds; false if it is there already.
+    pub fn set_time(&mut self, seconds: f64, clusters: &mut [Cluster]) -> bool {
+        if seconds == self.seconds {
+            return false;
+        }
+        self.seconds = seconds;
+        self.motion.at(seconds, &mut self.moment);
+        self.mesh.rewrite(&self.moment.vertices);
+        for (piece, cluster) in self.pieces.iter().zip(&mut clusters[self.first..]) {
+            cluster.bounds = self.moment.bounds[piece.moved];
+        }
+        true
+    }
+}
