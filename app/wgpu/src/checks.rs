@@ -1,116 +1,136 @@
 //! What the caller gives, against what the device and the pipelines can use.
 
 use wgpu::{
-    Device, Features, TextureFormat, TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
-    TextureView,
+    Backend, Device, Features, TextureFormat, TextureFormatFeatureFlags, TextureFormatFeatures,
+    TextureSampleType, TextureUsages, TextureView,
 };
 use yoro::eyes::Warp;
 use yoro::synthesis::Edges;
 
 use crate::{Options, Source, Target, WgpuError};
 
-/// Checks that the device can do what the options ask for.
-pub(crate) fn options(device: &Device, options: &Options) -> Result<(), WgpuError> {
-    let drawn =
-        |features: TextureFormatFeatures| features.allowed_usages.contains(TextureUsages::RENDER_ATTACHMENT);
-    let (color, role) = (options.color_format, "a target's colour");
-    let is_float = matches!(color.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
-    if !is_float || color.is_depth_stencil_format() {
-        return Err(WgpuError::Format { format: color, role });
-    }
-    check_format(device, color, role, drawn)?;
-    if let Some(format) = options.depth_format {
-        let role = "a target's depth";
-        if !format.has_depth_aspect() {
-            return Err(WgpuError::Format { format, role });
-        }
-        check_format(device, format, role, drawn)?;
-    }
-    if options.edges == Edges::Multisample && !matches!(options.samples, 2 | 4) {
-        return Err(WgpuError::SampleCount(options.samples));
-    }
-    Ok(())
+/// What the device and the pipelines can use.
+pub(crate) struct Checks {
+    pub(crate) options: Options,
+    features: Features,
+    /// Largest width and height of a texture.
+    limit: [u32; 2],
+    /// True for wgpu's OpenGL back end. It has no views of textures: it samples a layer of an array as something else.
+    opengl: bool,
 }
 
-/// Asks the device for what all devices of its features can do with a format. With adapter-specific features only the adapter
-/// knows, and wgpu says what is wrong.
-fn check_format(
-    device: &Device,
-    format: TextureFormat,
-    role: &'static str,
-    fits: impl Fn(TextureFormatFeatures) -> bool,
-) -> Result<(), WgpuError> {
-    let features = device.features();
-    let enabled = features.contains(format.required_features());
-    let own = features.contains(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
-    if enabled && (own || fits(format.guaranteed_format_features(features))) {
+impl Checks {
+    /// Checks that the device can do what the options ask for.
+    pub(crate) fn new(device: &Device, options: &Options) -> Result<Checks, WgpuError> {
+        let checks = Checks {
+            options: *options,
+            features: device.features(),
+            limit: [device.limits().max_texture_dimension_2d; 2],
+            opengl: device.adapter_info().backend == Backend::Gl,
+        };
+        let drawn = |features: TextureFormatFeatures| {
+            features.allowed_usages.contains(TextureUsages::RENDER_ATTACHMENT)
+        };
+        let (color, role) = (options.color_format, "a target's colour");
+        let is_float = matches!(color.sample_type(None, None), Some(TextureSampleType::Float { .. }));
+        if !is_float || color.is_depth_stencil_format() {
+            return Err(WgpuError::Format { format: color, role });
+        }
+        checks.format(color, role, drawn)?;
+        if let Some(format) = options.depth_format {
+            let role = "a target's depth";
+            if !format.has_depth_aspect() {
+                return Err(WgpuError::Format { format, role });
+            }
+            checks.format(format, role, drawn)?;
+        }
+        if options.edges == Edges::Multisample {
+            if !matches!(options.samples, 2 | 4) {
+                return Err(WgpuError::SampleCount(options.samples));
+            }
+            if checks.opengl {
+                let (what, instead) = ("textures of several samples", "one depth in each pixel");
+                return Err(WgpuError::OpenGl { what, instead });
+            }
+        }
+        Ok(checks)
+    }
+
+    /// Checks a format against what all devices with these features can do. With adapter-specific features only the adapter
+    /// knows, and wgpu says what is wrong.
+    fn format(
+        &self,
+        format: TextureFormat,
+        role: &'static str,
+        fits: impl Fn(TextureFormatFeatures) -> bool,
+    ) -> Result<(), WgpuError> {
+        let enabled = self.features.contains(format.required_features());
+        let own = self.features.contains(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
+        if enabled && (own || fits(format.guaranteed_format_features(self.features))) {
+            Ok(())
+        } else {
+            Err(WgpuError::Format { format, role })
+        }
+    }
+
+    /// Checks everything that is given to one call.
+    pub(crate) fn frame(&self, source: &Source, warp: &Warp, target: &Target) -> Result<(), WgpuError> {
+        check_size("a source", warp.source_size, self.limit)?;
+        check_size("a target", warp.target_size, self.limit)?;
+        self.source(source)?;
+        self.target(target)?;
+        check_rectangle("a source", source.origin, warp.source_size, size(source.color))?;
+        check_rectangle("a target", target.origin, warp.target_size, size(target.color))
+    }
+
+    fn source(&self, source: &Source) -> Result<(), WgpuError> {
+        let filtered =
+            |features: TextureFormatFeatures| features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
+        self.format(source.color.texture().format(), "a source's colour", filtered)?;
+        let depth = source.depth.texture().format();
+        let is_float =
+            matches!(depth, TextureFormat::R32Float | TextureFormat::R16Unorm | TextureFormat::R16Float);
+        if !is_float && !depth.has_depth_aspect() {
+            return Err(WgpuError::Format { format: depth, role: "a source's depth" });
+        }
+        let multisample = self.options.edges == Edges::Multisample;
+        if source.sample_color.is_some() && !multisample {
+            return Err(WgpuError::SampleColors);
+        }
+        let samples = if multisample { self.options.samples } else { 1 };
+        let textures = [
+            ("a source's colour", Some(source.color), 1),
+            ("a source's depth", Some(source.depth), samples),
+            ("the colour of samples", source.sample_color, samples),
+        ];
+        for (what, view, samples) in textures {
+            let Some(view) = view else { continue };
+            check_texture(what, view, TextureUsages::TEXTURE_BINDING, samples, source.color)?;
+            if self.opengl && view.texture().depth_or_array_layers() > 1 {
+                let (what, instead) = ("a layer of a texture array", "a texture of one layer");
+                return Err(WgpuError::OpenGl { what, instead });
+            }
+        }
         Ok(())
-    } else {
-        Err(WgpuError::Format { format, role })
     }
-}
 
-/// Checks everything that is given to one call.
-pub(crate) fn frame(
-    device: &Device,
-    options: &Options,
-    source: &Source,
-    warp: &Warp,
-    target: &Target,
-) -> Result<(), WgpuError> {
-    let limit = [device.limits().max_texture_dimension_2d; 2];
-    check_size("a source", warp.source_size, limit)?;
-    check_size("a target", warp.target_size, limit)?;
-    check_source(device, options, source)?;
-    check_target(options, target)?;
-    check_rectangle("a source", source.origin, warp.source_size, size(source.color))?;
-    check_rectangle("a target", target.origin, warp.target_size, size(target.color))
-}
-
-fn check_source(device: &Device, options: &Options, source: &Source) -> Result<(), WgpuError> {
-    let filtered =
-        |features: TextureFormatFeatures| features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
-    check_format(device, source.color.texture().format(), "a source's colour", filtered)?;
-    let depth = source.depth.texture().format();
-    let is_float =
-        matches!(depth, TextureFormat::R32Float | TextureFormat::R16Unorm | TextureFormat::R16Float);
-    if !is_float && !depth.has_depth_aspect() {
-        return Err(WgpuError::Format { format: depth, role: "a source's depth" });
-    }
-    let samples = if options.edges == Edges::Multisample { options.samples } else { 1 };
-    if source.sample_color.is_some() && options.edges != Edges::Multisample {
-        return Err(WgpuError::SampleColors);
-    }
-    let textures = [
-        ("a source's colour", Some(source.color), 1),
-        ("a source's depth", Some(source.depth), samples),
-        ("the colour of samples", source.sample_color, samples),
-    ];
-    for (what, view, expected) in textures {
-        if let Some(view) = view {
-            check_texture(what, view, TextureUsages::TEXTURE_BINDING, expected, source.color)?;
+    fn target(&self, target: &Target) -> Result<(), WgpuError> {
+        let format = |view: &TextureView| view.texture().format();
+        // A view may be sRGB where its texture is not; which one only wgpu knows.
+        let (expected, found) = (self.options.color_format, format(target.color));
+        if expected.remove_srgb_suffix() != found.remove_srgb_suffix() {
+            return Err(WgpuError::OtherFormat { expected, found });
         }
-    }
-    Ok(())
-}
-
-fn check_target(options: &Options, target: &Target) -> Result<(), WgpuError> {
-    let format = |view: &TextureView| view.texture().format();
-    // A view may be sRGB where its texture is not; which one only wgpu knows.
-    let color = format(target.color);
-    if color.remove_srgb_suffix() != options.color_format.remove_srgb_suffix() {
-        return Err(WgpuError::OtherFormat { expected: options.color_format, found: color });
-    }
-    let (expected, found) = (options.depth_format, target.depth.map(format));
-    if expected != found {
-        return Err(WgpuError::OtherDepth { expected, found });
-    }
-    check_texture("a target's colour", target.color, TextureUsages::RENDER_ATTACHMENT, 1, target.color)?;
-    match target.depth {
-        Some(depth) => {
-            check_texture("a target's depth", depth, TextureUsages::RENDER_ATTACHMENT, 1, target.color)
+        let (expected, found) = (self.options.depth_format, target.depth.map(format));
+        if expected != found {
+            return Err(WgpuError::OtherDepth { expected, found });
         }
-        None => Ok(()),
+        let textures = [("a target's colour", Some(target.color)), ("a target's depth", target.depth)];
+        for (what, view) in textures {
+            let Some(view) = view else { continue };
+            check_texture(what, view, TextureUsages::RENDER_ATTACHMENT, 1, target.color)?;
+        }
+        Ok(())
     }
 }
 

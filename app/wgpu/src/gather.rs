@@ -5,7 +5,7 @@ use yoro::eyes::Warp;
 use yoro::synthesis::{Places, Uniforms, tiles};
 
 use crate::buffers::Buffers;
-use crate::checks::{self, made, size};
+use crate::checks::{Checks, made, size};
 use crate::passes::{Drawn, Groups, Passes};
 use crate::uniforms::UniformRing;
 use crate::{GatherVariant, Options, Source, Target, WgpuError};
@@ -19,7 +19,7 @@ const KEPT_CALLS: u64 = 32;
 /// All calls share the intermediate buffers: submit what they have recorded to one queue. Up to 64 calls may be recorded
 /// before the first of them is submitted.
 pub struct Gather {
-    options: Options,
+    checks: Checks,
     passes: Passes,
     uniforms: UniformRing,
     buffers: Option<Buffers>,
@@ -40,8 +40,8 @@ impl Gather {
     /// Makes everything that does not depend on the textures: the pipelines.
     ///
     /// # Errors
-    /// [`WgpuError::Format`] and [`WgpuError::SampleCount`] for what the device cannot do, [`WgpuError::Refused`] for
-    /// whatever else it refuses. In a browser such things are told to the device's handler of uncaptured errors.
+    /// [`WgpuError::Format`], [`WgpuError::SampleCount`] and [`WgpuError::OpenGl`] for what the device cannot do,
+    /// [`WgpuError::Refused`] for whatever else it refuses. In a browser such things are told to the device's handler of uncaptured errors.
     pub fn new(device: &Device, options: &Options) -> Result<Gather, WgpuError> {
         let variant = match device.adapter_info().device_type {
             DeviceType::Cpu => GatherVariant::Software,
@@ -60,10 +60,10 @@ impl Gather {
         options: &Options,
         variant: GatherVariant,
     ) -> Result<Gather, WgpuError> {
-        checks::options(device, options)?;
+        let checks = Checks::new(device, options)?;
         let (passes, uniforms) =
             made(device, || (Passes::new(device, options, variant), UniformRing::new(device)))?;
-        Ok(Gather { options: *options, passes, uniforms, buffers: None, kept: Vec::new(), calls: 0 })
+        Ok(Gather { checks, passes, uniforms, buffers: None, kept: Vec::new(), calls: 0 })
     }
 
     /// Makes the intermediate buffers for sources and targets up to these sizes in pixels. [`Gather::record`] does so when it
@@ -82,7 +82,7 @@ impl Gather {
             Some(buffers) => buffers.grown(max_source_size, max_target_size),
             None => (max_source_size, max_target_size),
         };
-        self.buffers = Some(made(device, || Buffers::new(device, &self.options, sizes))?);
+        self.buffers = Some(made(device, || Buffers::new(device, &self.checks.options, sizes))?);
         // They bind the buffers.
         self.kept.clear();
         Ok(())
@@ -105,7 +105,7 @@ impl Gather {
         warp: &Warp,
         target: &Target,
     ) -> Result<(), WgpuError> {
-        checks::frame(device, &self.options, source, warp, target)?;
+        self.checks.frame(source, warp, target)?;
         let places = Places {
             source_origin: source.origin,
             image_size: size(source.color),

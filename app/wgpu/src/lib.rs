@@ -145,6 +145,14 @@ pub enum WgpuError {
         /// Width and height of the image.
         image: [u32; 2],
     },
+    /// wgpu's OpenGL back end cannot sample something that the others can.
+    #[error("wgpu's OpenGL back end cannot sample {what}; take another back end, or give {instead}")]
+    OpenGl {
+        /// What it cannot sample.
+        what: &'static str,
+        /// What it can sample.
+        instead: &'static str,
+    },
     /// wgpu refused to make a pipeline or a texture.
     #[error("wgpu cannot make the pipelines or buffers of synthesis: {0}")]
     Refused(String),

@@ -6,7 +6,7 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, 
 use yoro::synthesis::{Edges, Layers, Outputs, SOURCE_MAP_HOLE, Source, Synthesis as _};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_tests::on_every_backend;
-use yoro_tests::samples::{Multisampled, STANDARD, Samples};
+use yoro_tests::samples::{Multisampled, STANDARD, Samples, picture};
 
 const LINK: f64 = 0.5;
 const TILE: [usize; 2] = [16, 8];
@@ -486,49 +486,6 @@ pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) ->
         out.fetches.colors += 4 * rows as u32;
     }
     (out.color, hole, out.fetches)
-}
-
-/// Slanted rectangles before a slanted background, seen by four samples of each pixel.
-pub fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
-    // Left, right, bottom, top in fractions of the picture, distance in metres, colour.
-    const SHAPES: [([f64; 4], f64, [u8; 3]); 5] = [
-        ([0.11, 0.34, 0.13, 0.71], 0.9, [220, 60, 40]),
-        ([0.41, 0.43, 0.0, 1.0], 1.3, [30, 160, 60]),
-        ([0.52, 0.5268, 0.2, 0.93], 0.7, [240, 230, 90]),
-        ([0.63, 0.88, 0.37, 0.81], 2.1, [60, 80, 220]),
-        ([0.71, 0.79, 0.05, 0.6], 0.6, [200, 200, 210]),
-    ];
-    let [w, h] = size.map(f64::from);
-    let seen = |x: f64, y: f64| {
-        let (u, v) = (x / w, y / h);
-        // Silhouettes that cross the rows at a slant.
-        let u = u + 0.06 * (v - 0.5);
-        let wave = 20.0 * (9.0 * u).sin() * (5.0 * v).cos();
-        let hit = SHAPES.iter().filter(|([l, r, b, t], ..)| (*l..*r).contains(&u) && (*b..*t).contains(&v));
-        let nearest = hit.min_by(|a, b| a.1.total_cmp(&b.1));
-        let (z, color) = nearest
-            .map_or((4.0 + 3.0 * u + v, [120, 120, 130]), |(_, z, color)| (z * (1.0 + 0.03 * u), *color));
-        (range.depth(z as f32), color.map(|c: u8| (f64::from(c) + wave).clamp(0.0, 255.0) as u8))
-    };
-    let place = |i: usize, k: usize| {
-        let (column, row) = ((i % size[0] as usize) as f64, (i / size[0] as usize) as f64);
-        // The pattern is counted from the upper left corner, rows from the bottom.
-        let x = column + STANDARD[k][0];
-        (if mirrored { w - x } else { x }, row + 1.0 - STANDARD[k][1])
-    };
-    let count = (size[0] * size[1]) as usize;
-    Samples {
-        size,
-        rgba: std::array::from_fn(|k| {
-            (0..count)
-                .flat_map(|i| {
-                    let [r, g, b] = seen(place(i, k).0, place(i, k).1).1;
-                    [r, g, b, 255]
-                })
-                .collect()
-        }),
-        depth: std::array::from_fn(|k| (0..count).map(|i| seen(place(i, k).0, place(i, k).1).0).collect()),
-    }
 }
 
 /// The samples as the plain version sees them: forward columns, stripes from left to right, displacements.

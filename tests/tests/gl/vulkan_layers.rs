@@ -14,9 +14,8 @@ use yoro::vulkan::{
 use yoro_context::Headless;
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_tests::backends;
-use yoro_tests::samples::{Multisampled, Samples};
+use yoro_tests::samples::{Multisampled, Samples, picture};
 
-use super::layers::picture;
 use super::vulkan::harness::{Gpu, Image, READ, Rendering, WRITTEN, with_gpu};
 
 const COLOR: vk::Format = vk::Format::R8G8B8A8_UNORM;

@@ -69,10 +69,9 @@ impl Gpu {
         self.device.features().contains(format.required_features())
     }
 
-    /// True if a layer of an array can be sampled as a texture of its own: wgpu's OpenGL, which has no views, does not see which
-    /// layer is meant.
-    pub fn samples_layers(&self) -> bool {
-        self.device.adapter_info().backend != wgpu::Backend::Gl
+    /// True for wgpu's OpenGL, which samples neither layers of arrays nor textures of several samples.
+    pub fn is_opengl(&self) -> bool {
+        self.device.adapter_info().backend == wgpu::Backend::Gl
     }
 
     /// Records, submits and waits.
@@ -90,9 +89,9 @@ impl Gpu {
         self.texture_of(format, size, layers, 1, copied)
     }
 
-    /// A texture of several samples that can be rendered to and sampled.
-    pub fn multisampled(&self, format: TextureFormat, size: [u32; 2], samples: u32) -> Texture {
-        self.texture_of(format, size, 1, samples, TextureUsages::empty())
+    /// A texture of four samples that can be rendered to and sampled.
+    pub fn multisampled(&self, format: TextureFormat, size: [u32; 2]) -> Texture {
+        self.texture_of(format, size, 1, 4, TextureUsages::empty())
     }
 
     /// A view of a texture of one sample with this usage alone.
@@ -166,13 +165,9 @@ impl Gpu {
         rows.flat_map(|row| &row[..4 * texture.width() as usize]).copied().collect()
     }
 
-    /// Draws pixel for pixel from one texture into a layer of another: colour, depth, or the bits of depth.
-    fn draw(&self, from: &TextureView, into: &Texture, layer: u32) {
-        self.draw_samples(from, into, layer, !0);
-    }
-
-    /// The same into some of the samples of a texture.
-    pub fn draw_samples(&self, from: &TextureView, into: &Texture, into_layer: u32, mask: u64) {
+    /// Draws pixel for pixel from one texture into a layer of another: colour, depth, or the bits of depth; into
+    /// each sample, if it has several.
+    pub fn draw(&self, from: &TextureView, into: &Texture, layer: u32) {
         let (device, format) = (&self.device, into.format());
         let module = device.create_shader_module(wgpu::include_wgsl!("copies.wgsl"));
         let entry = BindGroupLayoutEntry {
@@ -211,11 +206,13 @@ impl Gpu {
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
-            multisample: MultisampleState { count: into.sample_count(), mask, ..Default::default() },
+            multisample: MultisampleState { count: into.sample_count(), ..Default::default() },
             fragment: Some(FragmentState {
                 module: &module,
                 entry_point: Some(match format {
                     TextureFormat::R32Uint => "bits",
+                    _ if into.sample_count() > 1 && is_depth => "sample_depth",
+                    _ if into.sample_count() > 1 => "sample_color",
                     _ if is_depth => "depth",
                     _ => "color",
                 }),
@@ -232,7 +229,7 @@ impl Gpu {
             layout: &layout,
             entries: &entries,
         });
-        let view = one_layer(into, into_layer, TextureAspect::All);
+        let view = one_layer(into, layer, TextureAspect::All);
         let colors = [Some(RenderPassColorAttachment {
             view: &view,
             depth_slice: None,

@@ -2,6 +2,7 @@
 
 #[path = "../../../core/tests/vulkan/against_opengl.rs"]
 mod against_opengl;
+mod edges;
 mod harness;
 
 use rand::{Rng, SeedableRng};
@@ -49,7 +50,7 @@ impl Setup {
 
     /// This one, with what the device can do.
     fn on(&self, gpu: &Gpu) -> Setup {
-        Setup { source_layer: if gpu.samples_layers() { self.source_layer } else { 0 }, ..*self }
+        Setup { source_layer: if gpu.is_opengl() { 0 } else { self.source_layer }, ..*self }
     }
 
     fn gather(&self, gpu: &Gpu, variant: GatherVariant) -> Gather {
@@ -362,12 +363,13 @@ fn mistakes_are_refused() {
         let color = texture(TextureFormat::Rgba8Unorm, [w, h]);
         let depth = texture(TextureFormat::Depth32Float, [w, h]);
         let small = texture(TextureFormat::Depth32Float, [8, 8]);
-        let many = whole(gpu.multisampled(TextureFormat::Depth32Float, [w, h], 4));
+        let many = whole(gpu.multisampled(TextureFormat::Depth32Float, [w, h]));
         let unsampled = gpu.with_usage(TextureFormat::Depth32Float, [w, h], TextureUsages::COPY_SRC);
         let into = texture(TextureFormat::Rgba8Unorm, warp.target_size);
         let float = texture(TextureFormat::Rgba16Float, warp.target_size);
         let usage = TextureUsages::TEXTURE_BINDING;
         let undrawn = gpu.with_usage(TextureFormat::Rgba8Unorm, warp.target_size, usage);
+        let layer = one_layer(&gpu.texture(TextureFormat::Depth32Float, [w, h], 2), 1, TextureAspect::All);
         let (source, target) = (Source::new(&color, &depth), Target::new(&into));
         let of_depth = |depth| Source { depth, ..source };
         let at = |origin| Source { origin, ..source };
@@ -413,6 +415,9 @@ fn mistakes_are_refused() {
             refused(source, warp, Target { color: &undrawn, ..target }, "a target's colour needs a texture");
             let with_depth = Target { depth: Some(&depth), ..target };
             refused(source, warp, with_depth, "a target with depth of Depth32Float does not fit");
+            if gpu.is_opengl() {
+                refused(of_depth(&layer), warp, target, "wgpu's OpenGL back end cannot sample a layer");
+            }
         });
     });
 }
