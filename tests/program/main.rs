@@ -20,6 +20,7 @@ mod run;
 mod scenes;
 mod study;
 mod synthesize;
+mod video;
 mod view;
 mod web;
 mod xr;

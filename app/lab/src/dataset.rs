@@ -9,7 +9,7 @@ use image::{Luma, RgbImage};
 use crate::depth::DepthReader;
 use crate::inpaint::{InpaintError, Reprojected};
 use crate::picture::{self, DepthImage};
-use yoro::eyes::{DepthConvention, EyePair, EyesError, GuardBand, SynthesisViews, View};
+use yoro::eyes::{DepthConvention, DepthRange, EyePair, EyesError, GuardBand, SynthesisViews, View};
 use yoro::synthesis::Edges;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_render::stereo::{Offline, PipelineOptions};
@@ -88,6 +88,19 @@ impl ImageGroup {
     }
 }
 
+/// The rendered eye of a view. Both images have row 0 at the top.
+#[derive(Clone, Debug)]
+pub struct SourceImage {
+    /// The rendered view, the synthesized one, and how pixels move between them.
+    pub views: SynthesisViews,
+    /// The dominant eye as rendered, transparent objects included; of the source view's size.
+    pub color: RgbImage,
+    /// Its depth buffer; transparent objects are not in it.
+    pub depth: DepthImage,
+    /// The meaning of the depth.
+    pub depth_range: DepthRange,
+}
+
 /// Makes image groups of scenes; everything is compiled once.
 pub struct GroupRenderer {
     options: GroupOptions,
@@ -130,17 +143,32 @@ impl GroupRenderer {
         let source = self.render_view(renderer, scene, &views.source)?;
         let depth = self.depth.read();
         let result = self.offline.run(&source, &depth, &views.warp)?;
-        let [width, height] = views.source.size;
-        let flipped = depth.chunks_exact(width as usize).rev().flatten().copied().collect();
         Ok(ImageGroup {
             pair: *pair,
             color: picture::rgb_image(&source, views.source.size),
-            depth: DepthImage::from_raw(width, height, flipped).expect("one value for each pixel"),
+            depth: depth_image(&depth, views.source.size),
             truth: picture::rgb_image(&truth, views.target.size),
             reprojected: Reprojected::from_synthesis(&result, &views.warp)?,
             synthesized: picture::rgb_image(&result.rgba, views.target.size),
             views,
         })
+    }
+
+    /// Renders the dominant eye alone.
+    ///
+    /// # Errors
+    /// [`GroupError::Eyes`] and [`GroupError::Gl`], as [`GroupRenderer::render`].
+    pub fn render_source(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+    ) -> Result<SourceImage, GroupError> {
+        let views = pair.synthesis(self.options.guard_band)?;
+        let color = self.render_view(renderer, scene, &views.source)?;
+        let (color, depth) = (picture::rgb_image(&color, views.source.size), self.depth.read());
+        let depth = depth_image(&depth, views.source.size);
+        Ok(SourceImage { views, color, depth, depth_range: pair.depth })
     }
 
     /// Returns RGBA of one view, rows from the bottom, and leaves its depth in `self.depth`.
@@ -160,4 +188,10 @@ impl GroupRenderer {
         }
         Ok(color.read_rgba8(0, [0, 0], view.size))
     }
+}
+
+/// Returns an image of depth that was read back, whose rows run from the bottom.
+fn depth_image(depth: &[f32], [width, height]: [u32; 2]) -> DepthImage {
+    let flipped = depth.chunks_exact(width as usize).rev().flatten().copied().collect();
+    DepthImage::from_raw(width, height, flipped).expect("one value for each pixel")
 }

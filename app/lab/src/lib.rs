@@ -5,8 +5,7 @@
 //! other papers; [`dataset`] renders image groups; [`run`] compares methods with rendering both eyes, [`mod@bench`] every
 //! method with every other, and [`report`] makes pages of both.
 //!
-//! The heavy parts are features: `neural` (weights of a network and a runtime for them) and `h264` (an encoder that
-//! compiles C).
+//! The feature `neural` has the weights of a network and a runtime for them.
 //!
 //! This crate must never know the command line; nothing that runs on a phone or in a headset depends on it.
 

@@ -22,6 +22,7 @@ pub mod scenes;
 pub mod settings;
 pub mod study;
 pub mod synthesize;
+pub mod video;
 pub mod view;
 pub mod xr;
 

@@ -16,6 +16,7 @@ use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
+use crate::cli::video::{self, CodingArgs};
 use yoro::eyes::{Eye, Pose};
 use yoro_files::interrupt;
 use yoro_gl::Context;
@@ -95,6 +96,15 @@ pub struct RenderArgs {
     /// The pictures to write
     #[arg(long, value_enum, value_delimiter = ',', default_value = list([Output::Left, Output::Right, Output::SideBySide].map(Output::name)))]
     outputs: Vec<Output>,
+    /// Write the frames as an RGBD video (.mp4) instead of pictures: the rendered eye with its guard band, and its
+    /// depth beside it. `yoro synthesize FILE` makes stereo of it
+    #[arg(long, value_name = "FILE", requires = "frames", conflicts_with_all = ["out", "outputs", "measure", "json", "method"])]
+    video: Option<PathBuf>,
+    /// Videos: frames a second
+    #[arg(long, default_value_t = 30, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    frame_rate: u32,
+    #[command(flatten)]
+    coding: CodingArgs,
     /// Print PSNR and SSIM of the synthesized eye
     #[arg(long)]
     measure: bool,
@@ -127,6 +137,10 @@ impl Subcommand for RenderArgs {
     fn files(&self) -> anyhow::Result<Files> {
         let mut files = Files::default();
         files.read([&self.scene]);
+        if let Some(video) = &self.video {
+            files.write(video, "the video");
+            return Ok(files);
+        }
         let frames = self.frames.unwrap_or(1) as usize;
         for frame in 0..frames {
             let stem = frame_stem(&eyes::stem(&self.scene), frame, frames);
@@ -177,6 +191,10 @@ fn run(args: &RenderArgs) -> anyhow::Result<()> {
     settings.supports(args.method, gl.capabilities())?;
     let mut prepared = PreparedScene::new(gl, scene, &settings)?;
     warn_of_blank(gl, args, &mut prepared, &heads)?;
+    if let Some(file) = &args.video {
+        let coding = (args.frame_rate, args.coding);
+        return video::render(gl, file, prepared, &heads, (&args.eyes, &options), coding);
+    }
     let PreparedScene { scene, mut renderer } = prepared;
     let mut method = stereo::create(gl, args.method, &settings, &options)?;
     let measured = args.measure || args.outputs.iter().any(|o| o.needs_truth());

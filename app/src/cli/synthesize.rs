@@ -1,4 +1,4 @@
-//! `yoro synthesize`: the other eye from a colour and a depth image.
+//! `yoro synthesize`: the other eye from a colour and a depth image, or of a video.
 
 use std::path::{Path, PathBuf};
 
@@ -11,6 +11,7 @@ use crate::cli::choices;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
+use crate::cli::video::{self, CodingArgs};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Warp};
 use yoro::synthesis::{Edges, SourceMapEntry};
 use yoro_files as files;
@@ -19,6 +20,7 @@ use yoro_lab::inpaint::{Patcher, Reprojected};
 use yoro_lab::picture::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
 use yoro_protocol::Ipd;
 use yoro_render::stereo::{Offline, SynthesizedImage};
+use yoro_video::Reader;
 
 /// The meaning of a depth image's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -44,16 +46,20 @@ pub enum SourceEye {
     Center,
 }
 
-/// Synthesize the other eye from a colour image and a depth image, or from folders of them
+/// Synthesize the other eye from a colour image and a depth image, from folders of them, or of an RGBD video
 #[derive(clap::Args, Clone, Debug)]
 pub struct SynthesizeArgs {
+    /// An RGBD video of `yoro render --video`; --out is a video of both eyes side by side then
+    #[arg(conflicts_with_all = ["color", "depth", "dominant", "depth_encoding", "depth_gamma", "near", "far", "metres_at_white",
+        "disparity_offset", "disparity_scale", "fov_y", "ipd", "mask_out", "disparity_out", "source_out", "edges", "patcher"])]
+    video: Option<PathBuf>,
     /// Colour image of the rendered eye, or a folder
-    #[arg(long, value_name = "FILE|FOLDER")]
-    color: PathBuf,
+    #[arg(long, required_unless_present = "video", value_name = "FILE|FOLDER")]
+    color: Option<PathBuf>,
     /// Depth image of the same size: 8 or 16-bit PNG, or EXR; or a folder with files of the same names
-    #[arg(long, value_name = "FILE|FOLDER")]
-    depth: PathBuf,
-    /// File for the synthesized eye (.png), or a folder
+    #[arg(long, required_unless_present = "video", value_name = "FILE|FOLDER")]
+    depth: Option<PathBuf>,
+    /// File for the synthesized eye (.png, for a video .mp4), or a folder
     #[arg(long, value_name = "FILE|FOLDER")]
     out: PathBuf,
     /// The eye that the images show
@@ -98,6 +104,8 @@ pub struct SynthesizeArgs {
     /// Content of pixels on silhouettes: one surface, or a mixture of two
     #[arg(long, value_parser = choices::stored_edges(), default_value = Edges::Hard.name())]
     edges: Edges,
+    #[command(flatten)]
+    coding: CodingArgs,
     #[command(flatten)]
     synthesis: SettingOptions<Synthesis>,
     #[command(flatten)]
@@ -164,6 +172,11 @@ impl Subcommand for SynthesizeArgs {
         self.patcher.check()?;
         let mut files = Files::default();
         files.read(&self.patcher.model);
+        if let Some(video) = &self.video {
+            files.read([video]);
+            files.write(&self.out, "the video");
+            return Ok(files);
+        }
         for job in jobs(self)? {
             files.read([&job.color, &job.depth]);
             job.outputs(self.dominant).into_iter().for_each(|(path, what)| files.write(path, what));
@@ -178,6 +191,12 @@ impl Subcommand for SynthesizeArgs {
 
 /// Synthesizes one image or a folder of them.
 fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
+    if let Some(file) = &args.video {
+        // A wrong file is told before a context is opened.
+        Reader::open(file)?.rgbd()?;
+        let headless = args.gl.open()?;
+        return video::synthesize(headless.gl(), file, &args.out, &args.synthesis.options(), args.coding);
+    }
     let jobs = jobs(args)?;
     let headless = args.gl.open()?;
     let mut offline = Offline::new(headless.gl(), &args.synthesis.options(), args.edges)?;
@@ -199,19 +218,22 @@ fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
 }
 
 fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
-    for path in [&args.color, &args.depth] {
+    let (Some(color), Some(depth)) = (&args.color, &args.depth) else {
+        bail!("give --color and --depth, or a video");
+    };
+    for path in [color, depth] {
         ensure!(path.exists(), "{} does not exist: check the path", path.display());
     }
-    if !args.color.is_dir() {
+    if !color.is_dir() {
         ensure!(
-            !args.depth.is_dir(),
+            !depth.is_dir(),
             "{} is a folder and {} is a file: give two files or two folders",
-            args.depth.display(),
-            args.color.display()
+            depth.display(),
+            color.display()
         );
         return Ok(vec![Job {
-            color: args.color.clone(),
-            depth: args.depth.clone(),
+            color: color.clone(),
+            depth: depth.clone(),
             out: args.out.clone(),
             mask: args.mask_out.clone(),
             disparity: args.disparity_out.clone(),
@@ -219,36 +241,31 @@ fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
         }]);
     }
     ensure!(
-        args.depth.is_dir(),
+        depth.is_dir(),
         "{} is a folder and {} is a file: give two files or two folders",
-        args.color.display(),
-        args.depth.display()
+        color.display(),
+        depth.display()
     );
-    let colors = files::find(&args.color, &picture::EXTENSIONS)?;
-    let depths = files::find(&args.depth, &picture::EXTENSIONS)?;
-    ensure!(
-        !colors.is_empty(),
-        "{} holds no images ({})",
-        args.color.display(),
-        picture::EXTENSIONS.join(", ")
-    );
+    let colors = files::find(color, &picture::EXTENSIONS)?;
+    let depths = files::find(depth, &picture::EXTENSIONS)?;
+    ensure!(!colors.is_empty(), "{} holds no images ({})", color.display(), picture::EXTENSIONS.join(", "));
     colors
         .iter()
         .map(|name| {
             let stem = name.with_extension("");
-            let depth = depths.iter().find(|d| d.with_extension("") == stem).with_context(|| {
+            let found = depths.iter().find(|d| d.with_extension("") == stem).with_context(|| {
                 format!(
                     "{} has no depth image of that name in {}",
-                    args.color.join(name).display(),
-                    args.depth.display()
+                    color.join(name).display(),
+                    depth.display()
                 )
             })?;
             let within = |folder: &Option<PathBuf>, extension: &str| {
                 folder.as_ref().map(|folder| folder.join(name).with_extension(extension))
             };
             Ok(Job {
-                color: args.color.join(name),
-                depth: args.depth.join(depth),
+                color: color.join(name),
+                depth: depth.join(found),
                 out: args.out.join(name).with_extension("png"),
                 mask: within(&args.mask_out, "png"),
                 disparity: within(&args.disparity_out, "exr"),

@@ -21,8 +21,6 @@ use std::rc::Rc;
 use anyhow::Context as _;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 
-use super::coder::Coder;
-use super::yuv::Planes;
 use crate::dataset::{GroupOptions, GroupRenderer};
 use crate::metrics::{Channels, MetricsError, SsimWindow, psnr, ssim};
 use crate::picture::{self, DepthImage};
@@ -31,6 +29,7 @@ use yoro::synthesis::Edges;
 use yoro_gl::Context;
 use yoro_render::PreparedScene;
 use yoro_render::stereo::{Offline, StereoOptions};
+use yoro_video::{Decoder, Encoder, Planes, VideoError};
 
 /// Both eyes, side by side.
 pub const STEREO_RGB: &str = "stereo-rgb";
@@ -130,6 +129,26 @@ enum Layout {
     Packed,
 }
 
+/// An encoder with the decoder at the other end.
+struct Coder {
+    encoder: Encoder,
+    decoder: Decoder,
+    bytes: usize,
+}
+
+impl Coder {
+    fn new(quantizer: u8) -> Result<Coder, VideoError> {
+        Ok(Coder { encoder: Encoder::new(quantizer, FRAME_RATE)?, decoder: Decoder::new()?, bytes: 0 })
+    }
+
+    /// Codes the next picture and returns it as decoded.
+    fn code(&mut self, picture: &Planes) -> Result<Planes, VideoError> {
+        let coded = self.encoder.encode(picture)?;
+        self.bytes += coded.len();
+        self.decoder.decode(&coded)
+    }
+}
+
 /// A rendered sequence, as it goes into the coder.
 struct Sequence {
     frames: Vec<Frame>,
@@ -191,8 +210,8 @@ impl Sequence {
         step: &mut dyn FnMut() -> anyhow::Result<()>,
     ) -> anyhow::Result<Vec<(&'static str, StreamStats)>> {
         let depth_quantizer = quantizer.saturating_add_signed(depth_offset).min(51);
-        let mut main = Coder::new(quantizer, FRAME_RATE)?;
-        let mut second = Coder::new(depth_quantizer, FRAME_RATE)?;
+        let mut main = Coder::new(quantizer)?;
+        let mut second = Coder::new(depth_quantizer)?;
         let names: &[&'static str] = match layout {
             Layout::Stereo => &[STEREO_RGB],
             Layout::TwoStreams => &[RGB_DEPTH, MONO_RGB],

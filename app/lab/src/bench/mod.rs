@@ -7,11 +7,6 @@
 
 pub mod bandwidth;
 mod blank;
-#[cfg(feature = "h264")]
-mod coder;
-#[cfg(not(feature = "h264"))]
-#[path = "no_coder.rs"]
-mod coder;
 mod contender;
 mod entrant;
 mod executed;
@@ -26,7 +21,6 @@ mod scenes;
 mod suite;
 mod summary;
 mod views;
-mod yuv;
 
 pub use blank::BlankFinder;
 pub use contender::Contender;

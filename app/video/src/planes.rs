@@ -1,17 +1,17 @@
-//! Pictures as video coders take them.
-
 use image::{GrayImage, Luma, Rgb, RgbImage};
 
-/// A picture in 4:2:0: luma and both colour differences, rows from the top. Sizes are even.
+/// A picture as video coders take it, in 4:2:0, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Planes {
+pub struct Planes {
+    /// Width and height in pixels, both even.
     pub size: [usize; 2],
+    /// Luma, and both colour differences of half the width and height.
     pub planes: [Vec<u8>; 3],
 }
 
 impl Planes {
-    /// Converts to BT.601, full range, as in JPEG; colour differences are the mean of 2x2 pixels. An odd last column or row is
-    /// repeated.
+    /// Converts to BT.601, full range, as in JPEG; colour differences are the mean of 2x2 pixels. An odd last column or
+    /// row is repeated.
     pub fn of_rgb(image: &RgbImage) -> Planes {
         let size = even(image.dimensions());
         let at = |x: usize, y: usize| {
@@ -38,7 +38,7 @@ impl Planes {
         Planes { size, planes }
     }
 
-    /// Samples as luma, without colour.
+    /// Takes samples as luma, without colour.
     pub fn of_gray(image: &GrayImage) -> Planes {
         let [w, h] = even(image.dimensions());
         let at = |x: usize, y: usize| {
@@ -59,7 +59,7 @@ impl Planes {
         Planes { size: [2 * w, h], planes }
     }
 
-    /// The two pictures that [`Planes::beside`] put together.
+    /// Returns the two pictures that [`Planes::beside`] put together.
     pub fn halves(&self) -> [Planes; 2] {
         let [w, h] = self.size;
         [0, 1].map(|side| {
@@ -105,7 +105,14 @@ fn even((width, height): (u32, u32)) -> [usize; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::tests::image;
+
+    /// Returns a picture of noise.
+    fn image(width: u32, height: u32, seed: u32) -> RgbImage {
+        let hash = |x: u32| x.wrapping_mul(0x9e37_79b9).rotate_left(13).wrapping_mul(0x85eb_ca6b) >> 24;
+        RgbImage::from_fn(width, height, |x, y| {
+            Rgb([0, 1, 2].map(|c| hash(x + width * y + seed * 7919 + c * 104_729) as u8))
+        })
+    }
 
     fn near(a: &RgbImage, b: &RgbImage, within: u8) -> bool {
         a.iter().zip(b.iter()).all(|(a, b)| a.abs_diff(*b) <= within)

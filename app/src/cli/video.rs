@@ -1,0 +1,131 @@
+//! RGBD videos: `yoro render --video` writes them, `yoro synthesize VIDEO` makes stereo videos of them.
+
+use std::path::Path;
+use std::rc::Rc;
+
+use anyhow::{Context as _, bail};
+use image::imageops;
+
+use crate::cli::eyes::EyeArgs;
+use crate::cli::terminal::progress_bar;
+use yoro::eyes::{Eye, Pose};
+use yoro::synthesis::Edges;
+use yoro_files::interrupt;
+use yoro_gl::Context;
+use yoro_lab::dataset::{GroupOptions, GroupRenderer};
+use yoro_lab::picture::{rgb_image, side_by_side};
+use yoro_render::PreparedScene;
+use yoro_render::stereo::{Offline, PipelineOptions, StereoOptions};
+use yoro_video::{Format, Planes, Reader, Rgbd};
+
+/// How videos are coded.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct CodingArgs {
+    /// Videos: H.264's quantizer, 0 (best) to 51
+    #[arg(long, default_value_t = 20, value_name = "QP", value_parser = clap::value_parser!(u8).range(0..=51))]
+    pub quantizer: u8,
+}
+
+/// Renders the dominant eye from each of `heads`, with its guard band, and writes an RGBD video.
+pub fn render(
+    gl: &Rc<Context>,
+    file: &Path,
+    prepared: PreparedScene,
+    heads: &[Pose],
+    (eyes, stereo): (&EyeArgs, &StereoOptions),
+    (frame_rate, coding): (u32, CodingArgs),
+) -> anyhow::Result<()> {
+    let PreparedScene { scene, mut renderer } = prepared;
+    let options =
+        GroupOptions { synthesis: stereo.synthesis, guard_band: stereo.guard_band, anti_aliasing: true };
+    let mut groups = GroupRenderer::new(gl, &options)?;
+    // Twice: 8 bits of depth are spread over the distances that all frames show.
+    let bar = progress_bar(2 * heads.len() as u64);
+    bar.set_message("distances");
+    let [mut nearest, mut farthest, mut columns] = [f32::INFINITY, 0.0, 0.0f32];
+    for &head in heads {
+        interrupt::check()?;
+        let source = groups.render_source(&mut renderer, &scene, &eyes.pair(head))?;
+        columns = columns.max((source.views.source.size[0] - eyes.size[0]) as f32);
+        let distances = source.depth.iter().map(|depth| source.depth_range.distance(*depth));
+        for distance in distances.filter(|distance| distance.is_finite()) {
+            [nearest, farthest] = [nearest.min(distance), farthest.max(distance)];
+        }
+        bar.inc(1);
+    }
+    if nearest >= farthest {
+        bail!("every pixel of the video is equally far: choose another place or scene");
+    }
+    let options = eyes.options();
+    let rgbd = Rgbd {
+        size: options.size,
+        eye: options.dominant,
+        guard_columns: columns as u32,
+        fov_y: options.fov_y,
+        outer_inner: options.outer_inner,
+        ipd: options.ipd,
+        nearest,
+        farthest,
+    };
+    let format = Format { frame_rate, quantizer: coding.quantizer, frames: heads.len(), rgbd: Some(rgbd) };
+    bar.set_message("video");
+    let mut rest = heads.iter();
+    let bytes = yoro_video::write(file, &format, || -> anyhow::Result<Option<Planes>> {
+        interrupt::check()?;
+        let Some(&head) = rest.next() else { return Ok(None) };
+        let source = groups.render_source(&mut renderer, &scene, &eyes.pair(head))?;
+        bar.inc(1);
+        let distance = |x, y| source.depth_range.distance(source.depth.get_pixel(x, y).0[0]);
+        Ok(Some(rgbd.pack(&source.color, distance)))
+    })?;
+    bar.finish_and_clear();
+    println!(
+        "{}: {} frames, {:.0} kbit/s, depth from {nearest:.2} to {farthest:.2} m",
+        file.display(),
+        heads.len(),
+        rate(bytes, heads.len(), frame_rate)
+    );
+    Ok(())
+}
+
+/// Synthesizes the other eye of each picture of an RGBD video, and writes both eyes side by side.
+pub fn synthesize(
+    gl: &Rc<Context>,
+    video: &Path,
+    out: &Path,
+    options: &PipelineOptions,
+    coding: CodingArgs,
+) -> anyhow::Result<()> {
+    let mut reader = Reader::open(video)?;
+    let rgbd = reader.rgbd()?;
+    let views = rgbd.views().with_context(|| format!("cannot synthesize {}", video.display()))?;
+    let mut offline = Offline::new(gl, options, Edges::Hard)?;
+    let (frames, frame_rate) = (reader.frames(), reader.frame_rate());
+    let format = Format { frame_rate, quantizer: coding.quantizer, frames, rgbd: None };
+    let bar = progress_bar(frames as u64);
+    let bytes = yoro_video::write(out, &format, || -> anyhow::Result<Option<Planes>> {
+        interrupt::check()?;
+        let Some(picture) = reader.read()? else { return Ok(None) };
+        let (color, depth) = rgbd.unpack(&picture);
+        let rgba: Vec<u8> = color.rows().rev().flatten().flat_map(|p| [p[0], p[1], p[2], 255]).collect();
+        let depth: Vec<f32> = depth.rows().rev().flatten().map(|p| f32::from(p[0]) / 255.0).collect();
+        let result = offline.run(&rgba, &depth, &views.warp)?;
+        let synthesized = rgb_image(&result.rgba, views.target.size);
+        let [width, height] = rgbd.size;
+        let rendered = imageops::crop_imm(&color, views.dominant_crop[0], 0, width, height).to_image();
+        let both = match rgbd.eye {
+            Eye::Left => side_by_side(&rendered, &synthesized)?,
+            Eye::Right => side_by_side(&synthesized, &rendered)?,
+        };
+        bar.inc(1);
+        Ok(Some(Planes::of_rgb(&both)))
+    })?;
+    bar.finish_and_clear();
+    println!("{}: {frames} frames, {:.0} kbit/s", out.display(), rate(bytes, frames, frame_rate));
+    Ok(())
+}
+
+/// Returns kbit/s, of 1000 bits.
+fn rate(bytes: u64, frames: usize, frame_rate: u32) -> f64 {
+    bytes as f64 * 8e-3 * f64::from(frame_rate) / frames.max(1) as f64
+}

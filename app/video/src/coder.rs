@@ -1,0 +1,157 @@
+use openh264::OpenH264API;
+use openh264::encoder::{
+    BitRate, Complexity, EncoderConfig, FrameRate, IntraFramePeriod, QpRange, RateControlMode, VuiConfig,
+};
+use openh264::formats::{YUVSlices, YUVSource};
+
+use crate::{Planes, VideoError};
+
+/// An H.264 encoder at one quantizer.
+pub struct Encoder(openh264::encoder::Encoder);
+
+impl Encoder {
+    /// Starts at `quantizer` (QP, 0 to 51), for `frame_rate` pictures a second. The first picture is an intra frame.
+    ///
+    /// # Errors
+    /// [`VideoError::Coder`].
+    pub fn new(quantizer: u8, frame_rate: f32) -> Result<Encoder, VideoError> {
+        // Quality is what is asked for, so the quantizer is held and the rate is what comes of it: of the encoder's
+        // modes this one moves the quantizer within its range only, and never skips a frame for it. One thread, so
+        // that a repeated run gives the same bytes.
+        let config = EncoderConfig::new()
+            .rate_control_mode(RateControlMode::Bufferbased)
+            .qp(QpRange::new(quantizer, quantizer))
+            .bitrate(BitRate::from_bps(100_000_000))
+            .max_frame_rate(FrameRate::from_hz(frame_rate))
+            .intra_frame_period(IntraFramePeriod::auto())
+            .complexity(Complexity::Medium)
+            .skip_frames(false)
+            .scene_change_detect(false)
+            .adaptive_quantization(false)
+            .background_detection(false)
+            .num_threads(1)
+            .vui(VuiConfig::bt601().full_range(true));
+        let encoder = openh264::encoder::Encoder::with_api_config(OpenH264API::from_source(), config);
+        Ok(Encoder(encoder.map_err(|error| coder("the encoder does not start", &error))?))
+    }
+
+    /// Makes the next picture an intra frame, from which players can start.
+    pub fn force_intra_frame(&mut self) {
+        self.0.force_intra_frame();
+    }
+
+    /// Returns the next picture in the format of Annex B.
+    ///
+    /// # Errors
+    /// [`VideoError::Coder`] for a picture that is too large, or of another size than the one before.
+    pub fn encode(&mut self, picture: &Planes) -> Result<Vec<u8>, VideoError> {
+        let [w, h] = picture.size;
+        let planes = (&picture.planes[0][..], &picture.planes[1][..], &picture.planes[2][..]);
+        let slices = YUVSlices::new(planes, (w, h), (w, w / 2, w / 2));
+        let bits =
+            self.0.encode(&slices).map_err(|error| coder(&format!("cannot code {w}x{h} pixels"), &error))?;
+        Ok(bits.to_vec())
+    }
+}
+
+/// An H.264 decoder.
+pub struct Decoder(openh264::decoder::Decoder);
+
+impl Decoder {
+    /// Starts a decoder.
+    ///
+    /// # Errors
+    /// [`VideoError::Coder`].
+    pub fn new() -> Result<Decoder, VideoError> {
+        let decoder = openh264::decoder::Decoder::new();
+        Ok(Decoder(decoder.map_err(|error| coder("the decoder does not start", &error))?))
+    }
+
+    /// Decodes the next picture, which is in the format of Annex B.
+    ///
+    /// # Errors
+    /// [`VideoError::Coder`] for damaged bytes, and for streams whose pictures do not come in the order in which they are
+    /// shown.
+    pub fn decode(&mut self, bytes: &[u8]) -> Result<Planes, VideoError> {
+        let decoded = self.0.decode(bytes).map_err(|error| coder("a picture cannot be decoded", &error))?;
+        let decoded = decoded.ok_or_else(|| VideoError::Coder("the decoder holds a picture back".into()))?;
+        let (w, h) = decoded.dimensions();
+        if w % 2 != 0 || h % 2 != 0 {
+            return Err(VideoError::Coder(format!("{w}x{h} pixels are no even size")));
+        }
+        let (sy, su, sv) = decoded.strides();
+        let plane = |data: &[u8], stride: usize, width: usize, height: usize| -> Vec<u8> {
+            data.chunks(stride).take(height).flat_map(|row| &row[..width]).copied().collect()
+        };
+        Ok(Planes {
+            size: [w, h],
+            planes: [
+                plane(decoded.y(), sy, w, h),
+                plane(decoded.u(), su, w / 2, h / 2),
+                plane(decoded.v(), sv, w / 2, h / 2),
+            ],
+        })
+    }
+}
+
+fn coder(what: &str, error: &openh264::Error) -> VideoError {
+    VideoError::Coder(format!("{what} ({error})"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{Rgb, RgbImage};
+
+    fn psnr(a: &[u8], b: &[u8]) -> f64 {
+        let error: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum();
+        10.0 * (255.0f64.powi(2) * a.len() as f64 / error).log10()
+    }
+
+    #[test]
+    fn every_plane_is_as_good_as_its_quantizer() {
+        let frame = |t: u32| {
+            RgbImage::from_fn(64, 48, |x, y| {
+                let (u, v) = (f64::from(x + t) / 9.0, f64::from(y) / 7.0);
+                Rgb([u.sin(), v.cos(), (u + v).sin()].map(|wave| (128.0 + 100.0 * wave) as u8))
+            })
+        };
+        let (mut encoder, mut decoder) = (Encoder::new(20, 30.0).unwrap(), Decoder::new().unwrap());
+        for t in 0..4 {
+            let planes = Planes::of_rgb(&frame(t));
+            let decoded = decoder.decode(&encoder.encode(&planes).unwrap()).unwrap();
+            for (plane, (a, b)) in decoded.planes.iter().zip(&planes.planes).enumerate() {
+                let psnr = psnr(a, b);
+                // A step of the quantizer is 6.5: 43 dB where errors are spread evenly over it.
+                assert!(psnr > 40.0, "frame {t}, plane {plane}: {psnr:.1} dB");
+            }
+        }
+    }
+
+    #[test]
+    fn finer_quantizers_cost_more_bits_look_better_and_are_deterministic() {
+        let frames: Vec<RgbImage> = (0..3)
+            .map(|t| {
+                RgbImage::from_fn(64, 48, |x, y| {
+                    Rgb([(x * 3 + t) as u8, (y * 5) as u8, ((x * y + t) % 256) as u8])
+                })
+            })
+            .collect();
+        let run = |quantizer: u8| {
+            let (mut encoder, mut decoder) =
+                (Encoder::new(quantizer, 30.0).unwrap(), Decoder::new().unwrap());
+            let (mut bytes, mut quality) = (0, 0.0);
+            for frame in &frames {
+                let coded = encoder.encode(&Planes::of_rgb(frame)).unwrap();
+                let decoded = decoder.decode(&coded).unwrap().rgb((64, 48));
+                bytes += coded.len();
+                quality += psnr(&decoded, frame) / 3.0;
+            }
+            (bytes, quality)
+        };
+        let (fine, middle, coarse) = (run(20), run(32), run(44));
+        assert!(fine.0 > middle.0 && middle.0 > coarse.0, "{fine:?} {middle:?} {coarse:?}");
+        assert!(fine.1 > middle.1 && middle.1 > coarse.1, "{fine:?} {middle:?} {coarse:?}");
+        assert_eq!(run(32), middle);
+    }
+}

@@ -1,0 +1,409 @@
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use shiguredo_mp4::bitstream::h264::{
+    H264NalUnitType, H264SampleEntryConfig, LengthSize, annexb_to_length_prefixed,
+    build_avc1_box_from_annexb, length_prefixed_to_annexb, parse_annexb_nal_units,
+};
+use shiguredo_mp4::boxes::{Avc1Box, SampleEntry, UnknownBox};
+use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
+use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_maximum_moov_box_size};
+use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
+use yoro_files::{self as files, FileError};
+
+use crate::{DEPTH_BOX, Decoder, Encoder, Planes, Rgbd, VideoError};
+
+/// How a video is coded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Format {
+    /// Pictures a second. Players can start once a second.
+    pub frame_rate: u32,
+    /// H.264's quantizer (QP), 0 to 51.
+    pub quantizer: u8,
+    /// The number of pictures, for which room is kept at the file's beginning: players need not read its end first.
+    pub frames: usize,
+    /// What the pictures mean where they have depth.
+    pub rgbd: Option<Rgbd>,
+}
+
+/// Writes the pictures that `next` returns until it returns `None`, all of one size, and returns the bytes of video.
+/// The file appears when it is complete.
+///
+/// # Errors
+/// [`VideoError`], and whatever `next` returns.
+pub fn write<E: From<VideoError>>(
+    path: &Path,
+    format: &Format,
+    mut next: impl FnMut() -> Result<Option<Planes>, E>,
+) -> Result<u64, E> {
+    let mut result = Ok(0);
+    let written = files::write_with(path, |out| match Muxer::new(out, path, format) {
+        Err(error) => error.stop(&mut result),
+        Ok(mut muxer) => loop {
+            match next() {
+                Ok(Some(picture)) => {
+                    if let Err(error) = muxer.add(&picture) {
+                        return error.stop(&mut result);
+                    }
+                }
+                Ok(None) => match muxer.finish() {
+                    Ok(bytes) => {
+                        result = Ok(bytes);
+                        return Ok(());
+                    }
+                    Err(error) => return error.stop(&mut result),
+                },
+                Err(error) => return Stop::Caller(error).stop(&mut result),
+            }
+        },
+    });
+    match written {
+        Ok(()) => result,
+        Err(error) => Err(result.err().unwrap_or_else(|| VideoError::from(error).into())),
+    }
+}
+
+/// The reason why a file is not finished.
+enum Stop<E> {
+    Io(io::Error),
+    Caller(E),
+}
+
+impl<E> Stop<E> {
+    /// Keeps the caller's error in `result`; the file is given up by the system's.
+    fn stop(self, result: &mut Result<u64, E>) -> io::Result<()> {
+        match self {
+            Stop::Io(error) => Err(error),
+            Stop::Caller(error) => {
+                *result = Err(error);
+                Err(io::Error::other("the video was not finished"))
+            }
+        }
+    }
+}
+
+impl<E> From<io::Error> for Stop<E> {
+    fn from(error: io::Error) -> Stop<E> {
+        Stop::Io(error)
+    }
+}
+
+impl<E: From<VideoError>> From<VideoError> for Stop<E> {
+    fn from(error: VideoError) -> Stop<E> {
+        Stop::Caller(error.into())
+    }
+}
+
+const LENGTH_SIZE: LengthSize = LengthSize::FourBytes;
+
+/// A file of which the pictures are written one after the other.
+struct Muxer<'a, W> {
+    out: &'a mut W,
+    path: &'a Path,
+    format: &'a Format,
+    encoder: Encoder,
+    muxer: Mp4FileMuxer,
+    offset: u64,
+    frames: u32,
+    bytes: u64,
+}
+
+impl<'a, W: Write + Seek> Muxer<'a, W> {
+    fn new<E: From<VideoError>>(
+        out: &'a mut W,
+        path: &'a Path,
+        format: &'a Format,
+    ) -> Result<Muxer<'a, W>, Stop<E>> {
+        let encoder = Encoder::new(format.quantizer, format.frame_rate as f32)?;
+        // The box of an RGBD video is below 1 KiB.
+        let room = estimate_maximum_moov_box_size(&[format.frames]) + 1024;
+        let options = Mp4FileMuxerOptions { reserved_moov_box_size: room, ..Mp4FileMuxerOptions::default() };
+        let muxer = Mp4FileMuxer::with_options(options)
+            .map_err(|error| VideoError::format(path, format!("{error:?}")))?;
+        out.write_all(muxer.initial_boxes_bytes())?;
+        let offset = muxer.initial_boxes_bytes().len() as u64;
+        Ok(Muxer { out, path, format, encoder, muxer, offset, frames: 0, bytes: 0 })
+    }
+
+    fn add<E: From<VideoError>>(&mut self, picture: &Planes) -> Result<(), Stop<E>> {
+        if self.frames.is_multiple_of(self.format.frame_rate) {
+            self.encoder.force_intra_frame();
+        }
+        let coded = self.encoder.encode(picture)?;
+        let failed = |error: &dyn std::fmt::Debug| VideoError::format(self.path, format!("{error:?}"));
+        let units = parse_annexb_nal_units(&coded).map_err(|error| failed(&error))?;
+        let keyframe = units.iter().any(|unit| unit.nal_unit_type == H264NalUnitType::IdrSlice);
+        let sample_entry = match self.frames {
+            0 => Some(SampleEntry::Avc1(self.entry(&coded)?)),
+            _ => None,
+        };
+        let data = annexb_to_length_prefixed(&coded, LENGTH_SIZE).map_err(|error| failed(&error))?;
+        self.out.write_all(&data)?;
+        let sample = Sample {
+            track_kind: TrackKind::Video,
+            sample_entry,
+            keyframe,
+            timescale: NonZeroU32::new(self.format.frame_rate).unwrap_or(NonZeroU32::MIN),
+            duration: 1,
+            composition_time_offset: None,
+            data_offset: self.offset,
+            data_size: data.len(),
+        };
+        self.muxer.append_sample(&sample).map_err(|error| failed(&error))?;
+        self.offset += data.len() as u64;
+        self.bytes += data.len() as u64;
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Returns the description of the coded pictures, with what their depth means.
+    fn entry(&self, coded: &[u8]) -> Result<Avc1Box, VideoError> {
+        let config = H264SampleEntryConfig { length_size: LENGTH_SIZE };
+        let mut entry = build_avc1_box_from_annexb(coded, &config)
+            .map_err(|error| VideoError::format(self.path, format!("{error:?}")))?;
+        if let Some(rgbd) = &self.format.rgbd {
+            let payload = serde_json::to_vec(rgbd).expect("numbers have a text");
+            let box_type = BoxType::Uuid(DEPTH_BOX);
+            let box_size = BoxSize::with_payload_size(box_type, payload.len() as u64);
+            entry.unknown_boxes.push(UnknownBox { box_type, box_size, payload });
+        }
+        Ok(entry)
+    }
+
+    fn finish<E: From<VideoError>>(mut self) -> Result<u64, Stop<E>> {
+        let boxes =
+            self.muxer.finalize().map_err(|error| VideoError::format(self.path, format!("{error:?}")))?;
+        for (offset, bytes) in boxes.offset_and_bytes_pairs() {
+            self.out.seek(SeekFrom::Start(offset))?;
+            self.out.write_all(bytes)?;
+        }
+        self.out.seek(SeekFrom::End(0))?;
+        Ok(self.bytes)
+    }
+}
+
+/// A video file that is decoded picture by picture.
+pub struct Reader {
+    path: PathBuf,
+    file: BufReader<File>,
+    /// Place and length of each picture.
+    samples: std::vec::IntoIter<(u64, usize)>,
+    /// Parameter sets in the format of Annex B, which come before the first picture.
+    parameters: Vec<u8>,
+    length_size: LengthSize,
+    decoder: Decoder,
+    frame_rate: u32,
+    rgbd: Option<Rgbd>,
+}
+
+impl Reader {
+    /// Opens a file and reads what is in it; pictures are read by [`Reader::read`].
+    ///
+    /// # Errors
+    /// [`VideoError::File`], and [`VideoError::Format`] for a file that is no MP4 or has no H.264 video.
+    pub fn open(path: &Path) -> Result<Reader, VideoError> {
+        if path.is_dir() {
+            return Err(FileError::IsFolder { path: path.into() }.into());
+        }
+        let failed = |source: io::Error| match source.kind() {
+            io::ErrorKind::NotFound => FileError::Missing { path: path.into() },
+            _ => FileError::Read { path: path.into(), source },
+        };
+        let mut file = BufReader::new(File::open(path).map_err(failed)?);
+        let length = file.get_ref().metadata().map_err(failed)?.len();
+        let mut demuxer = Mp4FileDemuxer::new();
+        while let Some(required) = demuxer.required_input() {
+            let rest = length.saturating_sub(required.position);
+            let size = required.size.map_or(rest, |size| size as u64);
+            if size == 0 || size > rest {
+                return Err(VideoError::format(path, "it is no MP4 file, or it is cut off"));
+            }
+            let data = read_at(&mut file, required.position, size as usize).map_err(failed)?;
+            demuxer.handle_input(Input { position: required.position, data: &data });
+        }
+        let damaged = |error: &dyn std::fmt::Debug| VideoError::format(path, format!("{error:?}"));
+        let mut samples = Vec::new();
+        let mut found = None;
+        while let Some(sample) = demuxer.next_sample().map_err(|error| damaged(&error))? {
+            if sample.track.kind != TrackKind::Video {
+                continue;
+            }
+            if let Some(SampleEntry::Avc1(entry)) = sample.sample_entry {
+                found.get_or_insert_with(|| {
+                    let ticks = u64::from(sample.track.timescale.get());
+                    (entry.clone(), ticks.div_ceil(u64::from(sample.duration.max(1))).min(1000) as u32)
+                });
+            }
+            if sample.data_offset.checked_add(sample.data_size as u64).is_none_or(|end| end > length) {
+                return Err(VideoError::format(path, "it is cut off"));
+            }
+            samples.push((sample.data_offset, sample.data_size));
+        }
+        let (entry, frame_rate) = found.ok_or_else(|| VideoError::format(path, "it has no H.264 video"))?;
+        let sets = entry.avcc_box.sps_list.iter().chain(&entry.avcc_box.pps_list);
+        Ok(Reader {
+            path: path.into(),
+            file,
+            samples: samples.into_iter(),
+            parameters: sets.flat_map(|set| [&[0, 0, 0, 1], &set[..]].concat()).collect(),
+            length_size: match entry.avcc_box.length_size_minus_one.get() {
+                0 => LengthSize::OneByte,
+                1 => LengthSize::TwoBytes,
+                _ => LengthSize::FourBytes,
+            },
+            decoder: Decoder::new()?,
+            frame_rate,
+            rgbd: rgbd(path, &entry)?,
+        })
+    }
+
+    /// Returns the number of pictures that are still to be read.
+    pub fn frames(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// Returns the pictures a second, rounded up.
+    pub fn frame_rate(&self) -> u32 {
+        self.frame_rate
+    }
+
+    /// Returns what the depth in the pictures means.
+    ///
+    /// # Errors
+    /// [`VideoError::NoDepth`] for an ordinary video.
+    pub fn rgbd(&self) -> Result<Rgbd, VideoError> {
+        self.rgbd.ok_or_else(|| VideoError::NoDepth { path: self.path.clone() })
+    }
+
+    /// Returns the next picture, or `None` after the last.
+    ///
+    /// # Errors
+    /// [`VideoError::File`], and [`VideoError::Format`] for a damaged picture or one of another size than its depth
+    /// says.
+    pub fn read(&mut self) -> Result<Option<Planes>, VideoError> {
+        let Some((offset, size)) = self.samples.next() else { return Ok(None) };
+        let data = read_at(&mut self.file, offset, size)
+            .map_err(|source| FileError::Read { path: self.path.clone(), source })?;
+        let annex_b = length_prefixed_to_annexb(&data, self.length_size)
+            .map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
+        let bytes = [std::mem::take(&mut self.parameters), annex_b].concat();
+        let picture = self.decoder.decode(&bytes).map_err(|error| VideoError::format(&self.path, error))?;
+        if let Some(rgbd) = self.rgbd {
+            let width = (rgbd.size[0] + rgbd.guard_columns).next_multiple_of(2) as usize;
+            let size = [2 * width, rgbd.size[1].next_multiple_of(2) as usize];
+            if picture.size != size {
+                let what = format!("a picture has {:?} pixels in place of {size:?}", picture.size);
+                return Err(VideoError::format(&self.path, what));
+            }
+        }
+        Ok(Some(picture))
+    }
+}
+
+fn rgbd(path: &Path, entry: &Avc1Box) -> Result<Option<Rgbd>, VideoError> {
+    let ours = entry.unknown_boxes.iter().find(|found| found.box_type == BoxType::Uuid(DEPTH_BOX));
+    let Some(ours) = ours else { return Ok(None) };
+    let rgbd: Rgbd =
+        serde_json::from_slice(&ours.payload).map_err(|error| VideoError::format(path, error))?;
+    match rgbd.is_valid() {
+        true => Ok(Some(rgbd)),
+        false => Err(VideoError::format(path, "what it says of its depth cannot be")),
+    }
+}
+
+fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize) -> io::Result<Vec<u8>> {
+    file.seek(SeekFrom::Start(position))?;
+    let mut bytes = vec![0; size];
+    file.read_exact(&mut bytes)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rgbd::tests::RGBD;
+    use image::{Rgb, RgbImage};
+    use std::fs;
+
+    const FORMAT: Format = Format { frame_rate: 3, quantizer: 20, frames: 7, rgbd: Some(RGBD) };
+
+    fn picture(frame: u32) -> Planes {
+        let color = RgbImage::from_fn(64, 32, |x, y| Rgb([(x * 3) as u8, (y * 5 + frame) as u8, 90]));
+        RGBD.pack(&color, |x, y| 0.5 + (x + y + frame) as f32 / 10.0)
+    }
+
+    fn video(path: &Path) -> u64 {
+        let mut pictures = (0..7).map(picture);
+        write::<VideoError>(path, &FORMAT, || Ok(pictures.next())).unwrap()
+    }
+
+    #[test]
+    fn what_was_written_is_read() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("v.mp4");
+        let bytes = video(&path);
+        let file = fs::read(&path).unwrap();
+        assert!(bytes > 0 && bytes < file.len() as u64);
+        let at = |name: &[u8]| file.windows(4).position(|four| four == name).unwrap();
+        assert!(at(b"moov") < at(b"mdat"), "players need not read the end first");
+        let mut reader = Reader::open(&path).unwrap();
+        assert_eq!((reader.frames(), reader.frame_rate(), reader.rgbd().unwrap()), (7, 3, RGBD));
+        for frame in 0..7 {
+            let (read, wanted) = (reader.read().unwrap().unwrap(), picture(frame));
+            let worst = read.planes[0].iter().zip(&wanted.planes[0]).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(read.size == wanted.size && worst.unwrap() < 24, "frame {frame}: {worst:?}");
+        }
+        assert!(reader.read().unwrap().is_none());
+    }
+
+    #[test]
+    fn a_caller_who_stops_leaves_the_old_file() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("v.mp4");
+        fs::write(&path, "old").unwrap();
+        let stopped = write(&path, &FORMAT, || Err(VideoError::Coder("enough".into())));
+        assert!(matches!(stopped, Err(VideoError::Coder(what)) if what == "enough"));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
+
+    /// Every byte of a file may be wrong, and it may end anywhere.
+    #[test]
+    fn damaged_files_are_errors() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("v.mp4");
+        video(&path);
+        let whole = fs::read(&path).unwrap();
+        let read = |bytes: &[u8]| -> Result<usize, VideoError> {
+            fs::write(&path, bytes).unwrap();
+            let mut reader = Reader::open(&path)?;
+            let mut frames = 0;
+            while reader.read()?.is_some() {
+                frames += 1;
+            }
+            Ok(frames)
+        };
+        assert_eq!(read(&whole).unwrap(), 7);
+        for length in (0..whole.len() - 1).step_by(whole.len() / 40) {
+            assert!(read(&whole[..length]).is_err(), "{length} bytes");
+        }
+        let mut seed = 1u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as usize
+        };
+        for _ in 0..300 {
+            let mut damaged = whole.clone();
+            for _ in 0..=next() % 4 {
+                let at = next() % damaged.len();
+                damaged[at] = next() as u8;
+            }
+            // No crash and no endless work; what can be read is read.
+            let _ = read(&damaged);
+        }
+        fs::write(&path, "no video").unwrap();
+        let error = Reader::open(&path).err().unwrap().to_string();
+        assert!(error.contains("v.mp4 cannot be read as a video"), "{error}");
+    }
+}
