@@ -117,7 +117,7 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
     bool unknown = surface.hole;
     // A loop, as in `fill_hole`.
     for (int i = surface.hole ? 0 : 1; i < 1; ++i) {
-        unknown = !recall(at.front, origin, row, color, surface.depth);
+        unknown = !recall(gl_FragCoord.xy - vec2(target_origin), at.front, origin, row, color, surface.depth);
     }
     color = fill_hole(unknown, color, away, x, surface.depth, row);
 #else

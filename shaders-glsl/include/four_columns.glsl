@@ -133,7 +133,7 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     surface.hole = !found && abs(away) >= 0.5;
     vec4 color = color_sample(vec2(column_at(surface.source), row_at(0.0)));
 #ifdef HISTORY
-    bool recalled = surface.hole && recall(front, origin, row, color, surface.depth);
+    bool recalled = surface.hole && recall(gl_FragCoord.xy - vec2(target_origin), front, origin, row, color, surface.depth);
     if ((PARTS & FILL) != 0 && surface.hole && !recalled) {
 #else
     if ((PARTS & FILL) != 0 && surface.hole) {

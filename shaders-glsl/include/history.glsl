@@ -38,12 +38,12 @@ int strip_of(vec3 target, out vec3 place) {
 }
 
 // Looks a pixel of a disocclusion up, at the depth of its background. If its surface is there, `color` and `depth` become those
-// of that surface, and the result is true. `front` is law.y * depth of the foreground beside it, `origin` as in the march.
+// of that surface, and the result is true. `pixel` is its middle, counted from the target's corner, `front` law.y * depth of
+// the foreground beside it, `origin` as in the march.
 //
 // What the history shows is taken if it is behind the foreground's edge and the rendered eye does not see past it: else it is not
 // what was uncovered, or it has moved since.
-bool recall(float front, float origin, int row, inout vec4 color, inout float depth) {
-    vec2 pixel = gl_FragCoord.xy - vec2(target_origin);
+bool recall(vec2 pixel, float front, float origin, int row, inout vec4 color, inout float depth) {
     vec3 place;
     int strip = strip_of(vec3(pixel, depth), place);
     if (strip < 0) {

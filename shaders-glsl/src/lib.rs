@@ -81,6 +81,7 @@ static FILES: &[(&str, &str)] = embed![
     "stereo/paper/patch.frag",
     "stereo/paper/reproject.frag",
     "stereo/paper/scatter.comp",
+    "stereo/uncovered.frag",
     "synthesis/gather/march.frag",
     "synthesis/gather/spans.frag",
     "synthesis/gather/tiles.frag",

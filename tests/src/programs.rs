@@ -10,7 +10,9 @@ use yoro::eyes::GuardBand;
 use yoro::synthesis::{self, Edges, Gather, GatherVariant, Outputs, SynthesisOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro_lab::inpaint::{self, PatcherKind, PatcherOptions};
-use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
+use yoro_render::stereo::{
+    self, AntiAliasing, History, ImBufferSize, Method, Paper, PaperOptions, StereoOptions,
+};
 use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::{Scene, ShadingStyle};
 use yoro_shaders::{Assembled, MissingFile};
@@ -36,6 +38,10 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     synthesis(gl, variants)?;
     rendering(gl, variants)?;
     stereo(gl)?;
+    if variants == Variants::Every {
+        let options = StereoOptions { history: History::Full, ..StereoOptions::default() };
+        stereo::create(gl, Method::Yoro, &RenderSettings::default(), &options)?;
+    }
     patchers(gl)?;
     viewer(gl)
 }

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DEPTH_BITS, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice,
-    Performance, Pipeline, RendererKind, Ssao,
+    AntiAliasing, DEPTH_BITS, DisplayKind, History, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method,
+    MethodChoice, Performance, Pipeline, RendererKind, Ssao,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Row;
@@ -149,6 +149,9 @@ settings! {
     /// How the synthesis reads the rendered eye's edges.
     "edges" edges: Option<Edges> = None;
         auto("hard; sample with several samples on OpenGL ES 3.0"),
+    /// What the other eye has really seen fills what is uncovered: while that grows, an eighth of its rows is rendered besides
+    /// in each frame. Not with the paper's pipeline.
+    "history" history: History = History::Off,
     /// Hybrid near field: render objects nearer than this (metres) for both eyes.
     "near-field" near_field: Option<f32> = None;
         value_name("METRES");

@@ -49,6 +49,7 @@ impl Group for Stereo {
         "guard-band",
         "anti-aliasing",
         "edges",
+        "history",
         "near-field",
         "switch",
         "split-disparity",

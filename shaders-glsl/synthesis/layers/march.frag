@@ -309,7 +309,7 @@ void main() {
 #ifdef HISTORY
         float depth = (edge.reach + far_nearness()) / law.y;
         float origin = origins.x * gl_FragCoord.x + origins.y;
-        if (away >= 0.5 && recall(beside + far_nearness(), origin, row, fill, depth)) {
+        if (away >= 0.5 && recall(gl_FragCoord.xy - vec2(target_origin), beside + far_nearness(), origin, row, fill, depth)) {
             edge.reach = law.y * depth - far_nearness();
         }
 #endif

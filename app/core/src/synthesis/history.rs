@@ -54,7 +54,7 @@ impl Strips {
 
     /// Sets the uniforms that a program has, which must be current.
     #[cfg(feature = "gl")]
-    pub(super) fn set(&self, program: &yoro_gl::Program) {
+    pub fn set(&self, program: &yoro_gl::Program) {
         program
             .set("to_history", &self.to_history[..])
             .set("from_history", &self.from_history[..])

@@ -5,7 +5,7 @@ use std::fmt;
 use crate::inpaint::PatcherKind;
 use yoro::eyes::GuardBand;
 use yoro::synthesis::Edges;
-use yoro_render::stereo::{Method, Pipeline, StereoOptions};
+use yoro_render::stereo::{History, Method, Pipeline, StereoOptions};
 
 /// A stereo method, for synthesis with its pipeline, or a patcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +18,8 @@ pub enum Contender {
     Edges(Edges),
     /// The pipeline gather with this guard band.
     Band(Band),
+    /// The pipeline gather with this history.
+    History(History),
     /// The paper's pipeline without interpolation between ImBuffer entries.
     PaperNearest,
     /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as its text says.
@@ -72,7 +74,7 @@ impl Contender {
     /// Returns every contender, in the order of tables.
     pub fn all() -> Vec<Contender> {
         let variants = [Contender::PaperNearest, Contender::PaperStrict];
-        let told = Contender::edges().into_iter().chain(Contender::bands());
+        let told = Contender::edges().into_iter().chain(Contender::bands()).chain(Contender::histories());
         Contender::methods().into_iter().chain(variants).chain(told).chain(Contender::patchers()).collect()
     }
 
@@ -84,6 +86,11 @@ impl Contender {
     /// Synthesis with each guard band.
     pub fn bands() -> Vec<Contender> {
         Band::ALL.map(Contender::Band).to_vec()
+    }
+
+    /// Synthesis without a history and with each.
+    pub fn histories() -> Vec<Contender> {
+        History::ALL.map(Contender::History).to_vec()
     }
 
     /// The stereo methods, synthesis with each of its pipelines.
@@ -110,6 +117,7 @@ impl Contender {
             Contender::Yoro(pipeline) => format!("yoro-{}", pipeline.name()),
             Contender::Edges(edges) => format!("yoro-edges-{}", edges.name()),
             Contender::Band(band) => format!("yoro-guard-{}", band.name()),
+            Contender::History(history) => format!("yoro-history-{}", history.name()),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
             Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
@@ -127,7 +135,9 @@ impl Contender {
         let (method, pipeline) = match self {
             Contender::Method(method) => (method, Pipeline::default()),
             Contender::Yoro(pipeline) => (Method::Yoro, pipeline),
-            Contender::Edges(_) | Contender::Band(_) => (Method::Yoro, Pipeline::Gather),
+            Contender::Edges(_) | Contender::Band(_) | Contender::History(_) => {
+                (Method::Yoro, Pipeline::Gather)
+            }
             Contender::PaperNearest | Contender::PaperStrict => (Method::Yoro, Pipeline::Paper),
             Contender::Patcher(_) => return None,
         };
@@ -138,6 +148,9 @@ impl Contender {
         }
         if let Contender::Band(band) = self {
             options.guard_band = band.guard_band();
+        }
+        if let Contender::History(history) = self {
+            options.history = history;
         }
         let paper = &mut options.synthesis.paper;
         paper.linear_interpolation &= self != Contender::PaperNearest;

@@ -7,7 +7,7 @@ use super::process;
 use yoro::eyes::{EyePair, GuardBand};
 use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
-    self, GuardBandUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
+    self, GuardBandUse, HistoryUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
 };
 use yoro_render::{PreparedScene, RenderSettings};
 
@@ -81,6 +81,11 @@ impl Entrant {
     /// Returns [`StereoMethod::guard_band`].
     pub fn guard_band(&self) -> Option<GuardBandUse> {
         self.method.guard_band()
+    }
+
+    /// Returns [`StereoMethod::history`].
+    pub fn history(&self) -> Option<HistoryUse> {
+        self.method.history()
     }
 
     /// Renders a frame, settled, with a timer around each pass: names in the order in which they first ran, and

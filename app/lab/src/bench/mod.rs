@@ -32,4 +32,4 @@ pub use runner::{Bounds, Inputs, Runner};
 pub use scenes::{LazyObject, Object};
 pub use suite::{Choices, Job, Measure, Source, Suite};
 pub use summary::text;
-pub use views::spread;
+pub use views::{Motion, spread};

@@ -10,6 +10,7 @@ use super::executed::{DEVICES, Device};
 use super::frame;
 use super::record::Setting;
 use super::scenes::LazyObject;
+use super::views::Motion;
 use crate::machine::Parameter;
 use yoro::eyes::EyeOptions;
 use yoro::synthesis::Edges;
@@ -65,6 +66,7 @@ suites! {
     AntiAliasing "anti-aliasing" "Quality and frame time by what edges are made of: one sample per pixel, FXAA, MSAA with each kind of depth",
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
+    History "history" "Quality, flicker and frame time with what the other eye has seen, as the head moves",
     Bandwidth "bandwidth" "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs that need not be here",
 }
@@ -83,6 +85,8 @@ pub enum Measure {
     Flicker,
     /// Use of the guard band along a piece of the camera path.
     GuardBand,
+    /// Frames of a moving head.
+    History(Motion),
     /// Patchers on reprojected images.
     Patchers,
     /// Coded sequences along a piece of the camera path.
@@ -199,6 +203,10 @@ const SMOOTHING: [(&str, RendererKind, AntiAliasing); 3] = [
 ];
 /// Frames of the suite `flicker`.
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
+/// Scenes of the suite `history`: those with the most to uncover, near and far.
+const HISTORY_SCENES: [&str; 6] = ["talk", "street", "stage", "conference", "atrium", "voxel"];
+/// Frames of the suite `history`.
+const HISTORY_FRAMES: [usize; 2] = [24, 4];
 /// Frames of the suite `guard-band`.
 const GUARD_BAND_FRAMES: [usize; 2] = [36, 6];
 
@@ -279,6 +287,19 @@ impl Choices {
                 plan(Measure::GuardBand, contenders).over(self.scenes(&every), [()], |job, ()| {
                     job.frames = GUARD_BAND_FRAMES[usize::from(self.quick)];
                 })
+            }
+            Suite::History => {
+                let contenders = [vec![Contender::MONO], Contender::histories()].concat();
+                let scenes = if self.quick { &QUICK_SCENES[..] } else { &HISTORY_SCENES };
+                plan(Measure::History(Motion::Still), contenders).over(
+                    self.scenes(scenes),
+                    Motion::ALL,
+                    |job, motion| {
+                        job.measure = Measure::History(motion);
+                        job.setting.label = Some(motion.name().to_owned());
+                        job.frames = HISTORY_FRAMES[usize::from(self.quick)];
+                    },
+                )
             }
             Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
             Suite::ShaderCost if self.whole_frames => plan(

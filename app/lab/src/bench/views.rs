@@ -1,6 +1,7 @@
 //! The viewpoints of a setting's frames.
 
 use anyhow::{bail, ensure};
+use glam::{Quat, Vec3};
 
 use super::record::SceneFacts;
 use super::suite::{Job, Source};
@@ -13,6 +14,53 @@ use yoro_scenes::BUILTINS;
 pub(super) const STEP: f32 = 0.045;
 /// The same at a headset's 72 frames a second.
 pub(super) const HEADSET_STEP: f32 = 0.01875;
+
+/// Frames before the measured ones of a moving head: the history is filled by then.
+const SETTLING: usize = 12;
+/// Frames a second of a moving head.
+const RATE: f32 = 72.0;
+
+/// The motion of a head, at 72 frames a second.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Sitting still: 2 mm and a third of a degree to either side, once in two seconds.
+    Still,
+    /// Seated: 3.2 cm and 9.5 degrees to either side, once in two seconds.
+    Sway,
+    /// Walking along the camera path, 1.35 m/s.
+    Walk,
+    /// Turning by 120 degrees a second.
+    Turn,
+}
+
+impl Motion {
+    /// All of them.
+    pub const ALL: [Motion; 4] = [Motion::Still, Motion::Sway, Motion::Walk, Motion::Turn];
+
+    /// Returns its name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Motion::Still => "still",
+            Motion::Sway => "sway",
+            Motion::Walk => "walk",
+            Motion::Turn => "turn",
+        }
+    }
+
+    /// Returns the pose after a time in seconds of a head that was at rest before; None for one that walks.
+    fn pose(self, from: Pose, seconds: f32) -> Option<Pose> {
+        let wave = (std::f32::consts::PI * seconds).sin();
+        let (aside, degrees) = match self {
+            Motion::Still => (0.002 * wave, 0.33 * wave),
+            Motion::Sway => (0.032 * wave, 9.5 * wave),
+            Motion::Walk => return None,
+            Motion::Turn => (0.0, 120.0 * seconds),
+        };
+        let moved = from.translated_local(Vec3::X * aside);
+        let turn = Quat::from_rotation_y(-degrees.to_radians());
+        Some(Pose { orientation: turn * moved.orientation, ..moved })
+    }
+}
 
 /// Returns `wanted` of `count` indices, evenly spread from the first.
 pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
@@ -49,6 +97,24 @@ impl Views {
         let step = if length > STEP { step / length } else { step / (600.0 * STEP) };
         let pose = |i: usize| (format!("frame {i}"), path.pose(0.5 + i as f32 * step));
         Views::new(job, (0..job.frames).map(pose).collect())
+    }
+
+    /// Frames of a moving head from the middle of the camera path on: the job's, and some before them.
+    pub fn of_motion(job: &Job, prepared: &PreparedScene, motion: Motion) -> anyhow::Result<Views> {
+        let frames = SETTLING + job.frames;
+        let walk = Views::along_path(&Job { frames, ..job.clone() }, prepared, HEADSET_STEP)?;
+        let path = CameraPath::new(&prepared.scene.viewpoints);
+        let pose = |i: usize| motion.pose(path.pose(0.5), i as f32 / RATE);
+        let heads: Option<Vec<_>> = (0..frames).map(|i| Some((format!("frame {i}"), pose(i)?))).collect();
+        heads.map_or(Ok(walk), |heads| Views::new(job, heads))
+    }
+
+    /// Splits the last `count` frames off.
+    pub fn split_at_last(self, count: usize) -> [Views; 2] {
+        let Views { mut names, mut pairs } = self;
+        let at = names.len().saturating_sub(count);
+        let last = Views { names: names.split_off(at), pairs: pairs.split_off(at) };
+        [Views { names, pairs }, last]
     }
 
     fn new(job: &Job, heads: Vec<(String, Pose)>) -> anyhow::Result<Views> {

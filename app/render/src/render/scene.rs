@@ -148,6 +148,11 @@ const MAP_NAMES: [&str; 4] = ["diffuse_map", "specular_map", "emissive_map", "no
 pub(super) const FREE_UNIT: u32 = MAP_NAMES.len() as u32;
 
 impl GpuScene {
+    /// Returns a number that is unique in this process.
+    pub(crate) fn id(&self) -> u64 {
+        self.id
+    }
+
     /// Uploads a scene as it stands at time 0, and sorts its triangles into clusters. Its memory is freed as soon as GL has
     /// copied it.
     ///

@@ -87,6 +87,17 @@ pub struct GuardBandUse {
     pub undrawn: u32,
 }
 
+/// What a method with [`super::StereoOptions::history`] rendered of the other eye, and what that was for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HistoryUse {
+    /// Pixels of the other eye that were rendered besides in the last frame.
+    pub rendered: u32,
+    /// Pixels that were uncovered two frames before, in the rows that are looked at: an estimate from the rendered eye.
+    pub uncovered: u32,
+    /// Those of them that the history did not show.
+    pub unknown: u32,
+}
+
 /// A method with its own programs and targets.
 pub trait StereoMethod {
     /// Compiles what the method needs for the materials of a scene, so that its first frame of that scene does not
@@ -101,6 +112,11 @@ pub trait StereoMethod {
     /// Returns the use of the guard band two frames before the last one, which is measured by now. `None` for methods and
     /// settings that always draw all of it, and before anything was measured.
     fn guard_band(&self) -> Option<GuardBandUse> {
+        None
+    }
+
+    /// Returns the use of the history. `None` for methods and settings without one.
+    fn history(&self) -> Option<HistoryUse> {
         None
     }
 

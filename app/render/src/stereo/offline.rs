@@ -36,7 +36,7 @@ impl Offline {
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         Ok(Offline {
             gl: gl.clone(),
-            pipeline: options.create(gl, edges, outputs)?,
+            pipeline: options.create(gl, edges, false, outputs)?,
             color: None,
             depth: None,
             target: RenderTarget::new(gl, [1, 1], &formats, None)?,

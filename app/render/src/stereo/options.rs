@@ -9,7 +9,7 @@ use yoro::eyes::GuardBand;
 use yoro::synthesis::{self, Edges, Outputs, Synthesis, SynthesisOptions};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_protocol::Settings;
-pub use yoro_protocol::{AntiAliasing, Method, MethodChoice, Pipeline};
+pub use yoro_protocol::{AntiAliasing, History, Method, MethodChoice, Pipeline};
 
 /// Returns what the forward renderer lacks for a method, if anything.
 fn lacking_forward(method: Method) -> Option<&'static str> {
@@ -59,7 +59,7 @@ pub struct PipelineOptions {
 }
 
 impl PipelineOptions {
-    /// Compiles the pipeline for a source with these edges.
+    /// Compiles the pipeline for a source with these edges, and with or without a history, which only [`Pipeline::Gather`] has.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for [`Pipeline::Paper`] or [`Edges::Multisample`] without OpenGL ES 3.1, and for
@@ -68,11 +68,13 @@ impl PipelineOptions {
         &self,
         gl: &Rc<Context>,
         edges: Edges,
+        history: bool,
         outputs: Outputs,
     ) -> Result<Box<dyn Synthesis>, GlError> {
         match self.pipeline {
             Pipeline::Gather => {
-                synthesis::create(gl, &SynthesisOptions { edges, ..SynthesisOptions::default() }, outputs)
+                let options = SynthesisOptions { edges, history, ..SynthesisOptions::default() };
+                synthesis::create(gl, &options, outputs)
             }
             Pipeline::Paper if edges == Edges::Hard => Ok(Box::new(Paper::new(gl, outputs, self.paper)?)),
             Pipeline::Paper => Err(GlError::Unsupported(format!(
@@ -92,6 +94,8 @@ pub struct StereoOptions {
     /// The meaning of the rendered eye's edges for the synthesis; `None` for that which fits the renderer
     /// ([`StereoOptions::edges`]).
     pub edges: Option<Edges>,
+    /// The resolution of what the other eye has really seen, for disocclusions; not with [`Pipeline::Paper`].
+    pub history: History,
     /// The band by which the dominant eye is rendered wider.
     pub guard_band: GuardBand,
     /// When anti-aliasing runs.
@@ -110,6 +114,7 @@ impl Default for StereoOptions {
         StereoOptions {
             synthesis: PipelineOptions::default(),
             edges: None,
+            history: History::default(),
             guard_band: GuardBand::Distance(1.0),
             anti_aliasing: AntiAliasing::default(),
             near_field: None,
@@ -153,6 +158,7 @@ impl StereoOptions {
         StereoOptions {
             synthesis: PipelineOptions { paper, ..options.synthesis },
             edges: settings.edges,
+            history: settings.history,
             guard_band: settings.guard_band.unwrap_or(options.guard_band),
             anti_aliasing: settings.anti_aliasing.unwrap_or(options.anti_aliasing),
             near_field: settings.near_field,
@@ -192,6 +198,7 @@ mod tests {
                 "guard-band=40px",
                 "anti-aliasing=off",
                 "edges=nearest",
+                "history=full",
                 "near-field=1",
                 "switch=false",
                 "split-disparity=2.5",

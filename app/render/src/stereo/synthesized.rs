@@ -7,11 +7,12 @@ use super::finish::Finish;
 use super::frame::{Frame, FrameMethod, Setup};
 use super::guard_band::AutoGuardBand;
 use super::kinds::StereoRenderer;
-use super::method::{GuardBandUse, StereoError};
+use super::method::{GuardBandUse, HistoryUse, StereoError};
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::{DepthMap, NearFraction};
-use super::options::{AntiAliasing, PipelineOptions, StereoOptions};
+use super::options::{AntiAliasing, History, Pipeline, PipelineOptions, StereoOptions};
 use super::overlay::{EyeSource, Over, Overlay, Smooth};
+use super::past::Past;
 use crate::render::{GpuScene, KeptSamples, PixelDepth, RenderSettings, Selection, ViewImages, ViewRequest};
 use yoro::eyes::{GuardBand, SynthesisViews};
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
@@ -24,6 +25,7 @@ pub struct Synthesized<R: StereoRenderer> {
     targets: R::Targets,
     synthesizers: Synthesizers,
     auto_guard_band: Option<AutoGuardBand>,
+    past: Option<Past<R>>,
     /// Anti-aliasing before synthesis, if it comes there.
     smooth: Option<Smooth>,
     overlay: R::Overlay,
@@ -36,6 +38,8 @@ struct Synthesizers {
     gl: Rc<Context>,
     options: PipelineOptions,
     edges: Edges,
+    /// True if the pipelines take a history.
+    history: bool,
     made: [Option<Synthesizer>; 2],
 }
 
@@ -64,7 +68,7 @@ impl Synthesizers {
         // A float depth texture can hold both conventions.
         let format = depth.then_some(Format::Depth32F);
         let image = RenderTarget::new(&self.gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], format)?;
-        let synthesis = self.options.create(&self.gl, self.edges, outputs)?;
+        let synthesis = self.options.create(&self.gl, self.edges, self.history, outputs)?;
         Ok(slot.insert(Synthesizer { synthesis, image }))
     }
 }
@@ -88,8 +92,19 @@ impl<R: StereoRenderer> Synthesized<R> {
         let has_near = options.near_field.is_some();
         let is_smooth = options.anti_aliasing == AntiAliasing::Before && settings.samples() == 1;
         let is_auto = matches!(options.guard_band, GuardBand::Auto(_));
-        let mut synthesizers =
-            Synthesizers { gl: gl.clone(), options: options.synthesis, edges, made: [None, None] };
+        let past = match options.history {
+            _ if options.synthesis.pipeline != Pipeline::Gather => None,
+            History::Off => None,
+            History::Half => Some(Past::new(setup, 2)?),
+            History::Full => Some(Past::new(setup, 1)?),
+        };
+        let mut synthesizers = Synthesizers {
+            gl: gl.clone(),
+            options: options.synthesis,
+            edges,
+            history: past.is_some(),
+            made: [None, None],
+        };
         synthesizers.get(has_near)?;
         Ok(Synthesized {
             options: *options,
@@ -97,6 +112,7 @@ impl<R: StereoRenderer> Synthesized<R> {
             targets: R::targets(gl, &RenderSettings { depth_bits, ..settings.clone() })?,
             synthesizers,
             auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
+            past,
             smooth: is_smooth.then(|| Smooth::new(gl)).transpose()?,
             overlay: R::Overlay::new(setup)?,
             finish: Finish::smoothing(setup, options.anti_aliasing == AntiAliasing::After)?,
@@ -116,10 +132,19 @@ impl<R: StereoRenderer> Synthesized<R> {
         if let Some(auto) = &mut self.auto_guard_band {
             auto.interrupt();
         }
+        if let Some(past) = &mut self.past {
+            past.interrupt();
+        }
         switch.conventional.render_frame(frame)?;
         let (pair, depth) = (frame.pair, DepthMap::Resolved(switch.conventional.depth()));
         switch.fraction.measure(depth, [0, 0], pair.size, &pair.depth, switch.policy.distance);
         Ok(true)
+    }
+
+    /// The objects that are synthesized.
+    fn selection(&self, frame: &Frame<R>) -> Selection {
+        let from = frame.pair.middle();
+        self.options.near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance })
     }
 
     /// Renders the dominant eye without near objects, in the columns that are needed.
@@ -129,14 +154,14 @@ impl<R: StereoRenderer> Synthesized<R> {
         views: &SynthesisViews,
         over: &Over,
     ) -> Result<(), GlError> {
-        let from = frame.pair.middle();
         let near_field = self.options.near_field;
         let multisample = self.edges == Edges::Multisample;
         // Near objects are drawn after synthesis, and renew the depth that is handed on.
         let hands_on = frame.wants_depth(frame.pair.dominant) && near_field.is_none();
-        let reads_depth = !multisample || self.auto_guard_band.is_some() || hands_on;
+        let measures = self.auto_guard_band.is_some() || self.past.is_some();
+        let reads_depth = !multisample || measures || hands_on;
         let request = ViewRequest {
-            selection: near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance }),
+            selection: self.selection(frame),
             columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(frame.pair, views, frame.scene)),
             depth: match self.edges {
                 _ if !reads_depth => PixelDepth::Unread,
@@ -163,6 +188,9 @@ impl<R: StereoRenderer> Synthesized<R> {
         let samples = self.depth_samples();
         if let Some(auto) = &mut self.auto_guard_band {
             auto.measure(self.targets.depth(), views);
+        }
+        if let Some(past) = &mut self.past {
+            past.measure(self.targets.depth(), views);
         }
         if let Some(switch) = &mut self.switch {
             // This is the far layer alone if near objects have their own: surfaces behind them are not too near.
@@ -193,12 +221,15 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
         let from = pair.middle();
         let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
         let over = Over { near, transparent: frame.scene.has_transparent() };
+        let selection = self.selection(frame);
+        let past = self.past.as_mut();
+        let history = past.map(|past| past.history(frame, &views, selection)).transpose()?;
         self.render_dominant(frame, &views, &over)?;
         let depth_samples = self.depth_samples();
         let color = self.smooth.as_ref().map_or(self.targets.color(), |smooth| &smooth.image);
         let depth = depth_samples.unwrap_or_else(|| self.targets.depth().raw());
         let samples = self.targets.color_samples();
-        let source = Source { samples, ..Source::new(color.color(0).raw(), depth) };
+        let source = Source { samples, history, ..Source::new(color.color(0).raw(), depth) };
         let needs_depth = over.is_any() || frame.wants_depth(other);
         // An eye that is complete once it is synthesized is not copied.
         let is_complete = !needs_depth && self.finish.is_copy();
@@ -222,6 +253,10 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
 
     fn guard_band_use(&self) -> Option<GuardBandUse> {
         self.auto_guard_band.as_ref()?.last()
+    }
+
+    fn history_use(&self) -> Option<HistoryUse> {
+        self.past.as_ref().map(Past::last)
     }
 
     fn has_rendered_both(&self) -> bool {

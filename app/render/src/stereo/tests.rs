@@ -606,3 +606,69 @@ fn undrawn_samples_are_seen_by_neither_eye() {
     }
     assert_eq!(gl.take_errors(), None);
 }
+
+/// Sums of squared errors of two images, over the pixels in which they differ.
+fn errors_where_different([a, b]: [&[u8]; 2], truth: &[u8]) -> [u64; 2] {
+    let pixels = || a.chunks(4).zip(b.chunks(4)).zip(truth.chunks(4)).filter(|((a, b), _)| a != b);
+    let error =
+        |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum::<u64>();
+    [
+        pixels().map(|((a, _), truth)| error(a, truth)).sum(),
+        pixels().map(|((_, b), truth)| error(b, truth)).sum(),
+    ]
+}
+
+#[test]
+fn a_history_shows_what_is_uncovered_and_is_renewed_by_need() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let forward = RenderSettings { renderer: RendererKind::Forward, ..local() };
+    for (settings, dominant) in [(local(), Eye::Right), (local(), Eye::Left), (forward, Eye::Right)] {
+        let what = format!("{:?}, {dominant:?} dominant", settings.renderer);
+        let mut rig = Rig::new(gl, &settings);
+        let make = |method, history| {
+            let plain =
+                StereoOptions { policy: None, anti_aliasing: AntiAliasing::Off, ..Default::default() };
+            create(gl, method, &settings, &StereoOptions { history, ..plain }).unwrap()
+        };
+        let mut without = make(Method::Yoro, History::Off);
+        assert_eq!(without.history(), None);
+        let mut truth = make(Method::Conventional, History::Off);
+        let other = dominant.other().index();
+        for history in [History::Full, History::Half] {
+            let mut method = make(Method::Yoro, history);
+            // A nearly still head; then another one far away, and eyes further apart.
+            for (place, ipd) in [(0.0, 0.063), (0.8, 0.063), (0.8, 0.07)] {
+                let mut strips = Vec::new();
+                for frame in 0..16 {
+                    let position = Vec3::new(0.0005 * frame as f32, 0.0, place);
+                    let pose = Pose { position, orientation: Quat::from_rotation_y(0.001 * frame as f32) };
+                    let still = pair(dominant, DepthConvention::Standard);
+                    let pair = EyePair::parallel(pose, still.frusta[0], ipd, still.depth, SIZE, dominant);
+                    let images = rig.render(&mut *method, &pair);
+                    strips.push(method.history().unwrap().rendered);
+                    if frame == 15 {
+                        let [plain, truth] =
+                            [&mut without, &mut truth].map(|method| rig.render(&mut **method, &pair));
+                        assert!(images[1 - other] == plain[1 - other], "{what}: the rendered eye stays");
+                        let eyes = [&images[other][..], &plain[other][..]];
+                        let [with, plain] = errors_where_different(eyes, &truth[other]);
+                        let share = with as f64 / plain as f64;
+                        // At half the resolution, posts of seven pixels before a plain wall come out no better than filled.
+                        let is_better = share < 0.8 || history == History::Half;
+                        assert!(is_better, "{what}: {share} of the error is left");
+                    }
+                }
+                // Measured two frames later; then every strip once, and none while nothing more is uncovered.
+                let count = strips.iter().filter(|pixels| **pixels > 0).count();
+                assert_eq!(count, 8, "{what}, {history:?}: {strips:?}");
+            }
+            let used = method.history().unwrap();
+            assert!(
+                used.uncovered > 50 && 3 * used.unknown < used.uncovered,
+                "{what}, {history:?}: {used:?}"
+            );
+        }
+    }
+    assert_eq!(gl.take_errors(), None);
+}

@@ -75,6 +75,11 @@ pub const UNDRAWN: &str = "undrawn";
 /// PSNR of red, green and blue in dB in the columns at the other eye's outer border that a guard band is for.
 pub const BORDER_PSNR: &str = "border_psnr";
 
+/// Share of the uncovered pixels that the history shows, 0 to 1, as the method counts it, two frames before.
+pub const SERVED: &str = "served";
+/// Pixels of the other eye that were rendered besides, as a share of an eye's.
+pub const RENDERED_BESIDES: &str = "rendered_besides";
+
 /// Share of the pixels whose tile has a law, 0 to 1.
 pub const LAW_PIXEL: &str = "law_pixel";
 /// Share of the waves all of whose pixels have one.

@@ -103,6 +103,7 @@ impl<'a> Runner<'a> {
             Measure::Frames { .. } => self.frames(job, &mut prepared, done),
             Measure::Flicker => self.flicker(job, &mut prepared),
             Measure::GuardBand => self.guard_band(job, &mut prepared),
+            Measure::History(motion) => self.history(job, motion, &mut prepared),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Bandwidth => self.bandwidth(job, &mut prepared),
             Measure::Executed(device) => self.executed(job, &device, &mut prepared),
@@ -131,7 +132,7 @@ impl<'a> Runner<'a> {
                 Views::spread(job, prepared)?
             }
             // Only the start of the path has to show something; a later frame may look past the scene.
-            Measure::Flicker | Measure::GuardBand | Measure::Bandwidth => {
+            Measure::Flicker | Measure::GuardBand | Measure::History(_) | Measure::Bandwidth => {
                 Views::along_path(job, prepared, views::STEP)?.first()
             }
         };
@@ -179,7 +180,7 @@ impl<'a> Runner<'a> {
     /// Saves the other eye as a contender shows it in the first view, for the report, in the suites that are about
     /// pictures.
     fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
-        if ![Suite::Scenes, Suite::AntiAliasing, Suite::Patchers]
+        if ![Suite::Scenes, Suite::AntiAliasing, Suite::History, Suite::Patchers]
             .iter()
             .any(|suite| suite.name() == job.setting.suite)
         {

@@ -9,8 +9,8 @@ use crate::bench::executed::{Device, Meter};
 use crate::bench::holes::HoleFinder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::suite::Job;
-use crate::bench::views::{self, Views};
-use crate::metrics::{Channels, FlickerMeter, psnr};
+use crate::bench::views::{self, Motion, Views};
+use crate::metrics::{Channels, Comparison, FlickerMeter, psnr};
 use crate::picture;
 use yoro::eyes::{Eye, EyePair};
 use yoro_files::interrupt;
@@ -75,6 +75,67 @@ impl Runner<'_> {
                 let border = psnr(&border(&images[at], pair)?, &truth, Channels::Rgb)?;
                 measurements[at].push(metric::BORDER_PSNR, border.0);
             }
+        }
+        self.finish_round(job, 0, field.first, measurements)
+    }
+
+    /// Renders every contender's frames in their order, each once, as a viewer does, and compares them once the history is
+    /// filled.
+    pub(super) fn history(
+        &mut self,
+        job: &Job,
+        motion: Motion,
+        prepared: &mut PreparedScene,
+    ) -> anyhow::Result<()> {
+        let views = Views::of_motion(job, prepared, motion)?;
+        let [settling, measured] = views.split_at_last(job.frames);
+        let mut field = self.field(job, prepared, &measured, true)?;
+        self.bar.set_message(job.setting.to_string());
+        let count = field.entrants.len();
+        for pair in &settling.pairs {
+            for (_, entrant) in &mut field.entrants {
+                interrupt::check()?;
+                entrant.render(prepared, pair, &mut field.frame)?;
+            }
+        }
+        let mut measurements = field.measurements(job, 0);
+        let mut finder = HoleFinder::new(self.gl)?;
+        let mut last: Option<(Vec<RgbImage>, Vec<bool>)> = None;
+        for (i, pair) in measured.pairs.iter().enumerate() {
+            let mut images = vec![RgbImage::default(); count];
+            for turn in 0..count {
+                interrupt::check()?;
+                let at = (turn + i) % count;
+                let entrant = &mut field.entrants[at].1;
+                let time = entrant.render(prepared, pair, &mut field.frame)?;
+                measurements[at].push(metric::FRAME_MS, milliseconds(time.wall));
+                if let Some(used) = entrant.history() {
+                    let served = 1.0 - f64::from(used.unknown) / f64::from(used.uncovered);
+                    measurements[at].push(metric::SERVED, served);
+                    let eye = f64::from(pair.size[0]) * f64::from(pair.size[1]);
+                    measurements[at].push(metric::RENDERED_BESIDES, f64::from(used.rendered) / eye);
+                }
+                images[at] = picture::eye_image(&field.frame, pair.dominant.other());
+                self.bar.inc(1);
+            }
+            let holes = finder.find(prepared, pair)?;
+            for at in 1..count {
+                interrupt::check()?;
+                measurements[at].push_comparison(&Comparison::of(&images[at], &images[0], Some(&holes))?);
+            }
+            if let Some((before, holes_before)) = &last {
+                let meter = FlickerMeter::new([&before[0], &images[0]], [holes_before, &holes])?;
+                measurements[0].push_flicker(&metric::CHANGES, &meter.change());
+                for at in 1..count {
+                    let flicker = meter.flicker([&before[at], &images[at]])?;
+                    measurements[at].push_flicker(&metric::FLICKERS, &flicker);
+                }
+            }
+            last = Some((images, holes));
+        }
+        let pictures = last.map(|(images, _)| images).unwrap_or_default();
+        for ((contender, _), image) in field.entrants.iter().zip(&pictures) {
+            self.save_picture(job, *contender, image)?;
         }
         self.finish_round(job, 0, field.first, measurements)
     }

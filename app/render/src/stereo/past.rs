@@ -1,0 +1,295 @@
+//! What the other eye has really seen: strips of it that are rendered besides, for the disocclusions of this frame and of later
+//! ones.
+
+use std::rc::Rc;
+
+use super::frame::{Frame, Setup};
+use super::kinds::StereoRenderer;
+use super::method::HistoryUse;
+use super::readback::Readback;
+use crate::render::{DepthCopy, DepthImage, Selection, ViewImages, ViewRequest};
+use yoro::eyes::{Eye, EyePair, Frustum, SynthesisViews, View};
+use yoro::synthesis::{History, Strips, Uniforms};
+use yoro_gl::{
+    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
+};
+
+/// Texels of the image of counts; `stereo/uncovered.frag`.
+const GRID: [u32; 2] = [32, 64];
+/// Rows that are rendered beyond either end of a strip, as far as ambient occlusion reaches at half size.
+const MARGIN: u32 = 8;
+/// All strips are renewed when the unknown pixels have grown by this share of the uncovered ones.
+const GROWTH: f32 = 0.1;
+/// A strip is given up when the head has moved by so many metres from where it was rendered, or turned by so much.
+const LEAP: f32 = 0.5;
+const TURN: f32 = std::f32::consts::FRAC_PI_4;
+
+/// The history of one method.
+pub(super) struct Past<R: StereoRenderer> {
+    /// Pixels of the eye to one of the history, in each direction.
+    scale: u32,
+    /// The strip that is being rendered.
+    targets: R::Targets,
+    color: RenderTarget,
+    depth: RenderTarget,
+    copy: DepthCopy,
+    strips: [Option<View>; Strips::MOST],
+    eyes: Option<Eyes>,
+    need: Need,
+    rounds: Rounds,
+    /// Pixels that were rendered in the last frame.
+    rendered: u32,
+}
+
+/// What all strips have in common.
+#[derive(Clone, Copy, PartialEq)]
+struct Eyes {
+    scene: u64,
+    target: View,
+    dominant: Eye,
+    ipd: f32,
+}
+
+impl Eyes {
+    fn new(scene: u64, pair: &EyePair, views: &SynthesisViews) -> Eyes {
+        Eyes { scene, target: views.target, dominant: pair.dominant, ipd: pair.ipd() }
+    }
+
+    /// True if strips of other eyes are of no use to these. Poses are the strips' own.
+    fn replaces(&self, other: &Eyes) -> bool {
+        let posed = Eyes { target: View { pose: self.target.pose, ..other.target }, ipd: self.ipd, ..*other };
+        // Rounding of poses.
+        *self != posed || (self.ipd - other.ipd).abs() > 1e-3 * self.ipd.abs()
+    }
+}
+
+/// Decides in which frames strips are rendered: a round of all of them, when the last one serves too little.
+#[derive(Debug, Default, PartialEq)]
+struct Rounds {
+    /// Strips of this round that are still to be rendered.
+    left: usize,
+    /// The number of this round.
+    round: u32,
+    /// The fewest unknown pixels since the last round.
+    least: Option<u32>,
+}
+
+impl Rounds {
+    /// Takes note of a frame that was measured in a round, or after it.
+    fn measured(&mut self, round: Option<u32>, use_: &HistoryUse) {
+        if self.left > 0 || round != Some(self.round) {
+            return;
+        }
+        let least = self.least.map_or(use_.unknown, |least| least.min(use_.unknown));
+        self.least = Some(least);
+        // Before the first round everything is unknown.
+        let known = if self.round == 0 { 0 } else { least };
+        if use_.unknown as f32 > known as f32 + GROWTH * use_.uncovered as f32 {
+            *self = Rounds { left: Strips::MOST, round: self.round + 1, least: None };
+        }
+    }
+
+    /// The number of the round that serves a frame, if it is complete.
+    fn complete(&self) -> Option<u32> {
+        (self.left == 0).then_some(self.round)
+    }
+}
+
+impl<R: StereoRenderer> Past<R> {
+    /// Makes the targets, for a history at the eye's size divided by `scale`.
+    pub(super) fn new(setup: &Setup, scale: u32) -> Result<Past<R>, GlError> {
+        let gl = setup.gl;
+        Ok(Past {
+            scale,
+            targets: R::targets(gl, setup.settings)?,
+            color: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None)?,
+            depth: RenderTarget::new(gl, [1, 1], &[], Some(Format::Depth32F))?,
+            copy: DepthCopy::new(gl)?,
+            strips: [None; Strips::MOST],
+            eyes: None,
+            need: Need::new(gl)?,
+            rounds: Rounds::default(),
+            rendered: 0,
+        })
+    }
+
+    /// Renders a strip, if one is needed, and returns what there is.
+    pub(super) fn history(
+        &mut self,
+        frame: &Frame<R>,
+        views: &SynthesisViews,
+        selection: Selection,
+    ) -> Result<History, GlError> {
+        let eyes = Eyes::new(frame.scene.id(), frame.pair, views);
+        if self.eyes.is_none_or(|before| eyes.replaces(&before)) {
+            self.strips = [None; Strips::MOST];
+            self.need.readback.forget();
+            self.rounds = Rounds::default();
+            self.color.resize(self.size(views))?;
+            self.depth.resize(self.size(views))?;
+        }
+        self.eyes = Some(eyes);
+        for strip in &mut self.strips {
+            let pose = views.target.pose;
+            *strip = strip.filter(|view| {
+                (view.pose.position - pose.position).length() < LEAP
+                    && view.pose.orientation.angle_between(pose.orientation) < TURN
+            });
+        }
+        if let Some((round, measured)) = self.need.take() {
+            self.rounds.measured(round, &measured);
+        }
+        self.rendered = 0;
+        if self.rounds.left > 0 {
+            self.render(frame, views, Strips::MOST - self.rounds.left, selection)?;
+            self.rounds.left -= 1;
+        }
+        Ok(self.relation(views))
+    }
+
+    fn size(&self, views: &SynthesisViews) -> [u32; 2] {
+        views.target.size.map(|n| n.div_ceil(self.scale))
+    }
+
+    fn relation(&self, views: &SynthesisViews) -> History {
+        History {
+            color: self.color.color(0).raw(),
+            depth: self.depth.depth().raw(),
+            strips: Strips::new(&views.target, &self.strips),
+        }
+    }
+
+    /// Renders a strip as a view of its own, so that nothing beside it is drawn.
+    fn render(
+        &mut self,
+        frame: &Frame<R>,
+        views: &SynthesisViews,
+        strip: usize,
+        selection: Selection,
+    ) -> Result<(), GlError> {
+        let whole = View { size: self.size(views), ..views.target };
+        let [width, height] = whole.size;
+        let rows = height.div_ceil(Strips::MOST as u32);
+        let first = strip as u32 * rows;
+        let shown = rows.min(height.saturating_sub(first));
+        if shown == 0 {
+            return Ok(());
+        }
+        let row = whole.frustum.height() / height as f32;
+        let bottom = whole.frustum.bottom + (first as f32 - MARGIN as f32) * row;
+        // As high for all strips, so that targets keep their size.
+        let high = rows + 2 * MARGIN;
+        let frustum = Frustum { bottom, top: bottom + high as f32 * row, ..whole.frustum };
+        let view = View { frustum, size: [width, high], ..whole };
+        let request = ViewRequest { selection, ..ViewRequest::default() };
+        frame.renderer.render(&mut self.targets, frame.scene, &view, &request)?;
+        let to = |target: &RenderTarget| Destination {
+            origin: [0, first],
+            size: [width, shown],
+            ..Destination::whole(target)
+        };
+        self.targets.color().copy_color([0, MARGIN], &to(&self.color));
+        let depth = DepthImage { origin: [0, MARGIN], ..DepthImage::whole(self.targets.depth()) };
+        self.copy.run(depth, &to(&self.depth));
+        self.strips[strip] = Some(whole);
+        self.rendered = width * high;
+        Ok(())
+    }
+
+    /// Starts to count what this frame uncovers, from the rendered eye's depth.
+    pub(super) fn measure(&mut self, depth: &Texture, views: &SynthesisViews) {
+        let history = self.relation(views);
+        self.need.measure(depth, views, &history, self.rounds.complete());
+    }
+
+    /// A frame goes by without synthesis.
+    pub(super) fn interrupt(&mut self) {
+        self.need.readback.forget();
+        self.rendered = 0;
+    }
+
+    /// What was rendered in the last frame, and what was counted two frames before it.
+    pub(super) fn last(&self) -> HistoryUse {
+        HistoryUse { rendered: self.rendered, ..self.need.last }
+    }
+}
+
+/// Counts the pixels that a frame uncovers and those that the history does not know. The result comes two frames late.
+struct Need {
+    gl: Rc<Context>,
+    program: Program,
+    readback: Readback<Option<u32>>,
+    last: HistoryUse,
+}
+
+impl Need {
+    fn new(gl: &Rc<Context>) -> Result<Need, GlError> {
+        let defines = [("HISTORY", String::new())];
+        Ok(Need {
+            gl: gl.clone(),
+            program: Program::new(gl, ShaderSource::Screen("stereo/uncovered.frag"), &defines)?,
+            readback: Readback::new(gl, GRID)?,
+            last: HistoryUse::default(),
+        })
+    }
+
+    fn measure(&mut self, depth: &Texture, views: &SynthesisViews, history: &History, round: Option<u32>) {
+        let uniforms = Uniforms::new(&views.warp, [0, 0]);
+        self.gl.pass("uncovered", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            self.readback.image().bind();
+            let program = self.program.bind();
+            program.texture("depth_map", 0, depth.raw()).texture("history_depth", 1, history.depth);
+            program.texture("history_color", 2, history.color);
+            uniforms.set(program);
+            history.strips.set(program);
+            self.gl.draw_screen();
+            self.readback.start(round);
+        });
+    }
+
+    /// Returns the counts of an earlier frame, and the round that served it.
+    fn take(&mut self) -> Option<(Option<u32>, HistoryUse)> {
+        let mut texels = [0u8; (GRID[0] * GRID[1] * 4) as usize];
+        let round = self.readback.take(&mut texels)?;
+        let mut counted = HistoryUse::default();
+        for texel in texels.as_chunks::<4>().0 {
+            // A driver that could not give them.
+            counted.uncovered += u32::from(u16::from_le_bytes([texel[0], texel[1]]).checked_sub(1)?);
+            counted.unknown += u32::from(u16::from_le_bytes([texel[2], texel[3]]));
+        }
+        self.last = counted;
+        Some((round, counted))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counted(uncovered: u32, unknown: u32) -> HistoryUse {
+        HistoryUse { uncovered, unknown, rendered: 0 }
+    }
+
+    #[test]
+    fn rounds_begin_when_the_unknown_has_grown() {
+        let mut rounds = Rounds::default();
+        rounds.measured(Some(0), &counted(0, 0));
+        assert_eq!(rounds, Rounds { least: Some(0), ..Rounds::default() }, "nothing is uncovered");
+        rounds.measured(Some(0), &counted(500, 500));
+        assert_eq!((rounds.left, rounds.round), (Strips::MOST, 1));
+        // Frames of the round itself, and of the time before it, tell nothing.
+        rounds.measured(Some(0), &counted(500, 500));
+        rounds.left = 0;
+        rounds.measured(Some(0), &counted(500, 500));
+        rounds.measured(None, &counted(500, 400));
+        assert_eq!(rounds, Rounds { round: 1, ..Rounds::default() });
+        // What no round serves does not begin one.
+        for unknown in [100, 140, 90, 135] {
+            rounds.measured(Some(1), &counted(500, unknown));
+            assert_eq!(rounds.left, 0, "{unknown}");
+        }
+        rounds.measured(Some(1), &counted(500, 141));
+        assert_eq!((rounds.left, rounds.round), (Strips::MOST, 2));
+    }
+}
