@@ -85,8 +85,12 @@ impl Rounds {
         // Before the first round everything is unknown.
         let known = if self.round == 0 { 0 } else { least };
         if use_.unknown as f32 > known as f32 + GROWTH * use_.uncovered as f32 {
-            *self = Rounds { left: Strips::MOST, round: self.round + 1, least: None };
+            self.begin();
         }
+    }
+
+    fn begin(&mut self) {
+        *self = Rounds { left: Strips::MOST, round: self.round + 1, least: None };
     }
 
     /// The number of the round that serves a frame, if it is complete.
@@ -138,6 +142,10 @@ impl<R: StereoRenderer> Past<R> {
         }
         if let Some((round, measured)) = self.need.take() {
             self.rounds.measured(round, &measured);
+        }
+        // What moves is no older than a round.
+        if frame.scene.moves() && self.rounds.left == 0 {
+            self.rounds.begin();
         }
         self.rendered = 0;
         if self.rounds.left > 0 {
