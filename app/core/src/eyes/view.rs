@@ -135,13 +135,15 @@ impl View {
     /// Returns the matrix from local to clip space for Vulkan: y points down, depth is 0..w, and the image has row 0 at the
     /// top. The depth buffer then has the values of [`DepthRange`], in both conventions.
     pub fn vulkan_projection(&self) -> Mat4 {
-        let to_vulkan = Mat4::from_cols(
-            Vec4::X,
-            Vec4::new(0.0, -1.0, 0.0, 0.0),
-            Vec4::new(0.0, 0.0, 0.5, 0.0),
-            Vec4::new(0.0, 0.0, 0.5, 1.0),
-        );
-        to_vulkan * self.projection()
+        Mat4::from_diagonal(Vec4::new(1.0, -1.0, 1.0, 1.0)) * self.wgpu_projection()
+    }
+
+    /// Returns the matrix from local to clip space for wgpu, WebGPU, Metal and Direct3D: y points up, depth is 0..w, and the
+    /// image has row 0 at the top. The depth buffer then has the values of [`DepthRange`], in both conventions.
+    pub fn wgpu_projection(&self) -> Mat4 {
+        let to_wgpu =
+            Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, 0.5, 0.0), Vec4::new(0.0, 0.0, 0.5, 1.0));
+        to_wgpu * self.projection()
     }
 
     /// Returns the matrix from world to clip space.
@@ -156,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn vulkan_projects_planes_to_0_and_w_and_up_to_small_y() {
+    fn planes_are_projected_to_0_and_w_and_up_to_where_row_0_is() {
         for (convention, far, at_planes) in [
             (DepthConvention::Standard, 50.0, [0.0, 1.0]),
             (DepthConvention::Reversed, 50.0, [1.0, 0.0]),
@@ -170,9 +172,11 @@ mod tests {
             };
             let project = |z: f32, depth: f32| {
                 let corner = Vec3::new(view.frustum.right * z, view.frustum.top * z, -z);
-                let clip = view.vulkan_projection() * corner.extend(1.0);
-                let ndc = clip.truncate() / clip.w;
-                assert!((ndc - Vec3::new(1.0, -1.0, depth)).length() < 1e-4, "{convention:?}: {ndc}");
+                for (projection, y) in [(view.vulkan_projection(), -1.0), (view.wgpu_projection(), 1.0)] {
+                    let clip = projection * corner.extend(1.0);
+                    let ndc = clip.truncate() / clip.w;
+                    assert!((ndc - Vec3::new(1.0, y, depth)).length() < 1e-4, "{convention:?}: {ndc}");
+                }
             };
             project(0.5, at_planes[0]);
             project(far.min(1e6), at_planes[1]);
