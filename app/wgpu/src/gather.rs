@@ -185,6 +185,12 @@ mod tests {
     }
 
     #[test]
+    fn an_engine_may_keep_it_in_any_thread() {
+        fn in_any_thread<T: Send + Sync>() {}
+        in_any_thread::<Gather>();
+    }
+
+    #[test]
     fn bindings_are_kept_while_the_views_are_used_and_buffers_only_grow() {
         // A device that draws nothing.
         let (device, queue) = Device::noop(&wgpu::DeviceDescriptor::default());

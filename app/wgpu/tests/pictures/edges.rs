@@ -65,22 +65,21 @@ fn on_opengl(
     [target.read_rgba8(0, [0, 0], warp.target_size), bytemuck::cast_slice(&map).to_vec()]
 }
 
-/// Both eyes in both depth conventions.
 fn wanted() -> Vec<Wanted> {
     let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
     let mut all = Vec::new();
     for (i, given) in GIVEN.into_iter().enumerate() {
-        for dominant in Eye::BOTH {
-            let convention = [DepthConvention::Standard, DepthConvention::Reversed][i % 2];
-            let depth = DepthRange { near: 0.3, far: 100.0, convention };
-            let frustum = Frustum::symmetric(1.2, 3.0);
-            let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
-            let warp = pair.synthesis(GuardBand::Pixels(21)).unwrap().warp;
-            let samples = picture(warp.source_size, depth, warp.target_eye == Eye::Right);
-            let [rgba, map] = on_opengl(headless.gl(), &samples, given, &warp);
-            let source_map = bytemuck::cast_slice(&map).to_vec();
-            all.push(Wanted { given, warp, samples, rgba, source_map });
-        }
+        // Each pass meets both eyes and both conventions.
+        let dominant = Eye::BOTH[i % 2];
+        let convention = [DepthConvention::Standard, DepthConvention::Reversed][(i + i / 2) % 2];
+        let depth = DepthRange { near: 0.3, far: 100.0, convention };
+        let frustum = Frustum::symmetric(1.2, 3.0);
+        let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
+        let warp = pair.synthesis(GuardBand::Pixels(21)).unwrap().warp;
+        let samples = picture(warp.source_size, depth, warp.target_eye == Eye::Right);
+        let [rgba, map] = on_opengl(headless.gl(), &samples, given, &warp);
+        let source_map = bytemuck::cast_slice(&map).to_vec();
+        all.push(Wanted { given, warp, samples, rgba, source_map });
     }
     all
 }

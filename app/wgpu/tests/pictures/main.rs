@@ -5,12 +5,16 @@ mod against_opengl;
 mod edges;
 mod harness;
 
+use std::time::Instant;
+
 use rand::{Rng, SeedableRng};
 
-use against_opengl::{Gl, Picture, assert_equal, cut, expected_depth, eyes, gl_srgb, pasted, picture, warps};
+use against_opengl::{
+    Gl, Picture, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture, warps,
+};
 use harness::{Gpu, depth_of, flipped, one_layer, with_gpus};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
-use yoro::synthesis::Edges;
+use yoro::synthesis::{self, Edges, Outputs, SynthesisOptions};
 use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
 use yoro_wgpu::{Gather, GatherVariant, Options, Source, Target, WgpuError};
 
@@ -270,7 +274,7 @@ fn sizes_and_rectangles_at_random() {
         convention: DepthConvention::Reversed,
     };
     let mut rng = rand_pcg::Pcg32::seed_from_u64(11);
-    let mut setups: Vec<(Warp, Setup)> = (0..40)
+    let mut setups: Vec<(Warp, Setup)> = (0..24)
         .map(|_| {
             let mut pair = |to: [u32; 2], from: u32| to.map(|n| rng.random_range(from..=n));
             let (source, target) = (pair([96, 70], 1), pair([96, 70], 1));
@@ -439,4 +443,48 @@ fn a_lost_device_is_an_error() {
     let (source, target) = (Source::new(&color, &depth), Target::new(&into));
     let lost = gather.record(&gpu.device, &gpu.queue, &mut encoder, &source, &warp, &target);
     assert_eq!(lost, Err(WgpuError::DeviceLost));
+}
+
+/// Measures the passes; docs/library.md has the figures.
+#[test]
+#[ignore = "measures: cargo test -p yoro-wgpu --test pictures -- --ignored --nocapture cost"]
+fn cost_of_the_passes() {
+    if std::env::var_os("YORO_TEST_WITHOUT_VULKAN").is_some() {
+        return println!("LEFT OUT: wgpu on Vulkan");
+    }
+    let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
+    let warp = eyes([1024; 2], Eye::Right, range).synthesis(GuardBand::Distance(1.0)).unwrap().warp;
+    let picture = picture(&warp, range, 1);
+    let gl = Gl::new();
+    let (textures, into) = gl_images(gl.headless.gl(), &picture, yoro_gl::Format::Rgba8);
+    let on_gl_source = synthesis::Source::new(textures[0].raw(), textures[1].raw());
+    let (options, outputs) = (SynthesisOptions::default(), Outputs::default());
+    let mut on_gl = synthesis::create(gl.headless.gl(), &options, outputs).unwrap();
+
+    let gpu = Gpu::open(Backends::VULKAN).unwrap();
+    let color = gpu.texture(Setup::PLAIN.color, warp.source_size, 1);
+    let depth = gpu.texture(Setup::PLAIN.depth, warp.source_size, 1);
+    let target = gpu.texture(Setup::PLAIN.target, warp.target_size, 1);
+    gpu.upload_rgba8(&color, 0, &picture.rgba);
+    gpu.upload_depth(&depth, 0, &picture.depth);
+    let [color, depth, target] = [color, depth, target].map(|texture| depth_of(&texture, 0));
+    let (source, target) = (Source::new(&color, &depth), Target::new(&target));
+    let mut gather = Setup::PLAIN.gather(&gpu, GatherVariant::Software);
+
+    let mut times: [Vec<f64>; 2] = Default::default();
+    for _ in 0..22 {
+        let start = Instant::now();
+        on_gl.synthesize(on_gl_source, &warp, &yoro_gl::Destination::whole(&into)).unwrap();
+        gl.headless.gl().finish();
+        times[0].push(start.elapsed().as_secs_f64() * 1e3);
+        let start = Instant::now();
+        gpu.run(|encoder| gather.record(&gpu.device, &gpu.queue, encoder, &source, &warp, &target)).unwrap();
+        times[1].push(start.elapsed().as_secs_f64() * 1e3);
+    }
+    for (name, times) in ["OpenGL", "wgpu"].into_iter().zip(&mut times) {
+        // The first one compiles.
+        times.remove(0);
+        times.sort_by(f64::total_cmp);
+        println!("{name}: {:.1} ms ({:.1} to {:.1})", times[10], times[0], times[20]);
+    }
 }
