@@ -337,6 +337,19 @@ impl Context {
         unsafe { self.raw.finish() }
     }
 
+    /// Blocks until the GPU has drawn into these. Browsers make little of glFinish: there a pixel of each is read.
+    pub fn finish_drawing(&self, to: &[Destination]) {
+        #[cfg(target_arch = "wasm32")]
+        for to in to {
+            self.read_rgba8(&Destination { size: [1, 1], ..*to });
+        }
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let _ = to;
+            self.finish();
+        }
+    }
+
     /// True if passes are timed now, by timer queries or by waiting for the GPU.
     pub fn times_passes(&self) -> bool {
         self.profiler.borrow().is_on()

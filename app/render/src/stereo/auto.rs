@@ -2,7 +2,11 @@
 
 use std::fmt::{self, Display};
 use std::rc::Rc;
+#[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
+
+#[cfg(target_arch = "wasm32")]
+use web_time::Instant;
 
 use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
 use super::options::{Method, MethodChoice, StereoOptions};
@@ -150,15 +154,16 @@ impl StereoMethod for Auto {
             self.methods[way.other().index()].render_to(renderer, scene, pair, to)?;
         }
         let is_clocked = self.chooser.is_measuring() && !self.gl.times_passes();
+        let targets = to.map(|eye| eye.color);
         let begin = is_clocked.then(|| {
-            self.gl.finish();
+            self.gl.finish_drawing(&targets);
             Instant::now()
         });
         let method = &mut self.methods[way.index()];
         method.render_to(renderer, scene, pair, to)?;
         self.rendered = (way == wanted && !method.is_substituted()).then_some(way);
         self.clock_ms = begin.map(|begin| {
-            self.gl.finish();
+            self.gl.finish_drawing(&targets);
             begin.elapsed().as_secs_f32() * 1e3
         });
         Ok(())
