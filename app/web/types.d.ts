@@ -6,7 +6,12 @@ declare module '*yoro_web.js' {
   export function builtinScenes(): string;
   export class Page extends Built {}
   export class Bench extends Built {}
-  export class Phone extends Built { static viewerFault(viewer: string): string | undefined }
+  export class Phone extends Built {
+    static viewerFault(viewer: string): string | undefined;
+    static viewerName(viewer: string): string;
+    static readCode(rgba: Uint8Array, width: number): string | undefined;
+  }
+  export class Why extends Built {}
   export class Headset extends Built { static planes(): Float32Array }
 }
 declare const XRWebGLLayer: any;

@@ -1,7 +1,7 @@
 // Two images of one size on a flat screen: the first one, an anaglyph of both, or their difference. For a headset that takes
-// depth: the first image with its depth.
+// depth: the first image with its depth. For a browser, which reads no depth: depth as colour.
 
-uniform sampler2D first;   // display-referred sRGB; the left eye's for an anaglyph
+uniform sampler2D first;   // display-referred sRGB; the left eye's for an anaglyph; with PACKED_DEPTH window depth
 #if defined(ANAGLYPH) || defined(DIFFERENCE)
 uniform sampler2D second;
 #endif
@@ -33,4 +33,9 @@ void main() {
     gl_FragDepth = texture(depth_map, uv).r;
 #endif
     out_color = vec4(color, 1.0);
+#ifdef PACKED_DEPTH
+    // 24 bits, the highest in red.
+    uint depth = uint(texture(first, uv).r * 16777215.0 + 0.5);
+    out_color = vec4(uvec4(depth >> 16u, (depth >> 8u) & 255u, depth & 255u, 255u)) / 255.0;
+#endif
 }

@@ -17,6 +17,7 @@ import { defaults } from './link.js';
  * @property {string} name
  * @property {string} end a sentence: how the user ends it
  * @property {() => void} stop
+ * @property {boolean} [immersive] true if it shows both eyes before the user's own
  */
 
 /**

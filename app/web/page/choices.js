@@ -42,6 +42,7 @@ export function showChoices() {
   for (const option of element('display').options) option.disabled = Boolean(source?.color) && comparing.includes(option.value);
   element('method-note').textContent = explanations[settings.method];
   element('ipd-value').textContent = `${settings.ipd} mm`;
+  element('divider').value = String(settings.divider);
   element('error').checked = settings.display === 'difference';
 }
 
@@ -53,7 +54,8 @@ export function apply() {
   const smoothing = settings['anti-aliasing'];
   app.page.configure(JSON.stringify({
     method: settings.method, renderer: settings.renderer, ipd: settings.ipd / 1000, dominant: settings.dominant,
-    display: settings.display,
+    // A viewer and a headset show both eyes, whatever the screen shows.
+    display: app.busy?.immersive ? 'side-by-side' : settings.display,
     ...(smoothing === 'msaa' ? { msaa: 4 } : { 'anti-aliasing': smoothing, msaa: 1 }),
   }));
   keep();
@@ -93,6 +95,12 @@ function choose(key, value) {
   }
 }
 
+/** Offers to go around what is shown, where it is the user's own: an object seen from outside is gone around at first. */
+export function offerOrbit() {
+  element('orbit').labels[0].hidden = !app.facts || Boolean(app.source?.builtin);
+  element('orbit').checked = Boolean(app.facts?.object);
+}
+
 /**
  * Listens to the elements.
  * @param {(name: string) => void} showScene shows a built-in scene
@@ -108,5 +116,10 @@ export function listenToChoices(showScene) {
     });
   }
   element('error').addEventListener('change', ({ target }) => choose('display', target.checked ? 'difference' : 'divider'));
+  element('divider').addEventListener('change', ({ target }) => {
+    app.settings.divider = target.valueAsNumber;
+    keep();
+  });
+  element('orbit').addEventListener('change', ({ target }) => app.page?.orbit(target.checked));
   element('reset').addEventListener('click', () => choose('viewpoint', app.settings.viewpoint));
 }

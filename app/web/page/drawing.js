@@ -3,15 +3,20 @@
 import { app, element } from './app.js';
 import { keepPlace } from './address.js';
 import { listen } from './controls.js';
-import { figures, forgetFigures } from './figures.js';
+import { choosing, figures, forgetFigures } from './figures.js';
 import { label } from './labels.js';
 import { magnify } from './magnifier.js';
 import { say } from './messages.js';
 import { sentence } from './sentence.js';
+import { explain } from './why.js';
 
 const { canvas } = app;
 /** The canvas has at most so many pixels. */
 const MAX_PIXELS = 4e6;
+/** So many slow frames in a row end the choice of the cheaper method: this device cannot show the scene. */
+const MOST_SLOW = 4;
+/** The width of a saved wiggle picture in pixels, at most. */
+const WIGGLE = 640;
 
 const controls = listen(canvas, {
   turn: (left, up) => { app.page?.turn(left, up); },
@@ -25,10 +30,14 @@ let scheduled = false;
 let last = 0;
 let real = false;
 let noted = false;
+let drawn = 0;
+/** Slow frames in a row. */
+let slow = 0;
 
 /** Draws soon: something has changed that is not rendered yet. */
 export function changed() {
   due = RENDER;
+  slow = 0;
   forgetFigures();
   if (!app.busy && app.page) schedule();
 }
@@ -84,14 +93,22 @@ function frame(now) {
         return;
       }
       app.page.draw(canvas.width, canvas.height, divider());
+      app.page.endFrame(now, 0);
+      // Frames of a second and more count as pauses: nothing can be chosen by them.
+      slow = now - drawn < 1000 ? 0 : slow + 1;
+      if (choosing() && slow < MOST_SLOW) due = RENDER;
+      drawn = now;
     }
     if (work !== NOTHING) {
       const magnified = magnify();
       if (magnified || work === SHOW) app.page.show(canvas.width, canvas.height, divider());
       label(real);
-      if (!moving) figures();
+      if (!moving) {
+        figures();
+        explain();
+      }
     }
-    if (moving || flicker) schedule();
+    if (moving || flicker || due !== NOTHING) schedule();
   } catch (error) {
     say(sentence(error));
   }
@@ -125,17 +142,30 @@ function noteFirst() {
   setTimeout(look);
 }
 
+/** Saves a picture of what is shown. @param {Blob} blob @param {string} kind the end of its name */
+function save(blob, kind) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = `yoro-${app.settings.scene ?? 'own'}-${kind}`;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
 /** Saves the picture that is shown as PNG. */
 export function savePicture() {
   if (!app.page || app.busy || !app.source) return;
   app.page.show(canvas.width, canvas.height, divider());
-  canvas.toBlob((blob) => {
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(blob);
-    link.download = `yoro-${app.settings.scene ?? 'own'}-${app.settings.display}.png`;
-    link.click();
-    URL.revokeObjectURL(link.href);
-  });
+  canvas.toBlob((blob) => save(blob, `${app.settings.display}.png`));
+}
+
+/** Saves both eyes in turn as an animated GIF. */
+export function saveWiggle() {
+  if (!app.page || app.busy || !app.source) return;
+  try {
+    save(new Blob([app.page.wiggle(WIGGLE)], { type: 'image/gif' }), 'wiggle.gif');
+  } catch (error) {
+    say(sentence(error));
+  }
 }
 
 /** Listens to the divider and the magnifier. */
@@ -145,4 +175,5 @@ export function listenToPicture() {
   element('magnifier').addEventListener('change', moved);
   for (const event of ['pointermove', 'pointerleave']) canvas.addEventListener(event, () => { if (element('magnifier').checked) moved(); });
   element('save').addEventListener('click', savePicture);
+  element('wiggle').addEventListener('click', saveWiggle);
 }

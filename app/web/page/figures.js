@@ -1,6 +1,7 @@
 // The figures of the picture in view, measured while nothing moves: the method against two renders.
 
 import { app, element } from './app.js';
+import { inUse } from './methods.js';
 import { median, nextTask } from './timing.js';
 
 /** The picture rests so long before it is measured, in ms. */
@@ -25,7 +26,7 @@ export function forgetFigures() {
   current = null;
   const { method, renderer, ipd, scale, scene, dominant } = app.settings;
   const now = [method, renderer, app.settings['anti-aliasing'], ipd, scale, scene, dominant, app.facts?.name].join();
-  if (about !== now || !compares()) element('figures').textContent = '';
+  if (about !== now || !(compares() || app.page?.reason)) element('figures').textContent = '';
   about = now;
 }
 
@@ -38,6 +39,17 @@ export function figures() {
     current = {};
     measure(current).catch(() => {});
   }, REST);
+}
+
+/** Says what `auto` has chosen, and why; true while it still measures, for which it needs frames. */
+export function choosing() {
+  const { reason, costs, isMeasuring } = app.page;
+  if (!reason) return false;
+  const text = isMeasuring ? 'Two renders and yoro take turns.'
+    : costs ? sentences('yoro', costs[1] / costs[0], costs[1], costs[0], null) : 'The two cannot be compared here.';
+  const said = `${inUse()}. ${text}`;
+  if (element('figures').textContent !== said) element('figures').textContent = said;
+  return isMeasuring;
 }
 
 /** Returns the ms of a frame of two batches, one by the method and one by two renders, and the frames of a batch. */
@@ -74,18 +86,18 @@ async function measure(run) {
   if (!pairs.length) return;
   const [made, real] = [0, 1].map((i) => median(pairs.map((times) => times[i])));
   const share = median(pairs.map(([a, b]) => a / b));
-  element('figures').textContent = sentences(app.settings.method, share, made, real, app.page.psnr);
+  element('figures').textContent = sentences(app.page.methodInUse, share, made, real, app.page.psnr);
   app.figures = { share, made, real };
 }
 
-/** Returns the figures in words. */
+/** Returns the figures in words; `psnr` is null where there is no real render to compare with. */
 export function sentences(method, share, made, real, psnr) {
   const digits = (ms) => `${ms.toFixed(ms < 10 ? 2 : ms < 100 ? 1 : 0)} ms`;
   const who = /llvmpipe|swiftshader|software|basic render/i.test(app.page.gpu) ? 'This device’s processor, without a GPU,' : 'Your GPU';
-  const seen = psnr === Infinity ? 'without any difference to a real render' : `at ${psnr.toFixed(1)} dB PSNR against a real render`;
+  const seen = psnr === null ? '' : psnr === Infinity ? ', without any difference to a real render' : `, at ${psnr.toFixed(1)} dB PSNR against a real render`;
   if (method === 'conventional') return `${who} draws this stereo picture by two renders in ${digits(real)}. Choose yoro to compare.`;
   const both = `${digits(made)} against ${digits(real)}`;
   const percent = Math.round(share * 100);
-  if (share < 0.995) return `${who} draws this stereo picture in ${percent} % of the time of two renders (${both}), ${seen}.`;
-  return `Two renders are cheaper for this picture here: ${method} takes ${percent} % of their time (${both}), ${seen}.`;
+  if (share < 0.995) return `${who} draws this stereo picture in ${percent} % of the time of two renders (${both})${seen}.`;
+  return `Two renders are cheaper for this picture here: ${method} takes ${percent} % of their time (${both})${seen}.`;
 }

@@ -3,9 +3,10 @@
 import { Headset } from './yoro_web.js';
 import { keepPlace } from './address.js';
 import { app, element } from './app.js';
-import { step } from './choices.js';
+import { apply, step } from './choices.js';
 import { startLoop } from './drawing.js';
 import { clear, isFree, say } from './messages.js';
+import { inUse } from './methods.js';
 import { sentence } from './sentence.js';
 
 /** xr-standard gamepads: trigger, squeeze, thumbstick; axes 2 and 3 are the thumbstick's. */
@@ -38,10 +39,28 @@ function listenToHands(session) {
   session.addEventListener('squeeze', (event) => { if (isHand(event)) step('viewpoint'); });
 }
 
+/** Asks for the wanted frames a second: of those that the session offers the nearest. */
+async function setRate(session) {
+  const wanted = Number(element('headset-rate').value);
+  const [nearest] = [...session.supportedFrameRates ?? []].sort((a, b) => Math.abs(a - wanted) - Math.abs(b - wanted));
+  if (!wanted) return;
+  if (!nearest) say('This browser does not let a page choose the frames a second.');
+  else if (nearest !== session.frameRate) await session.updateTargetFrameRate(nearest).catch((error) => say(`The headset refuses ${nearest} frames a second: ${error.message}`));
+}
+
+/** Has the borders of the picture drawn with fewer pixels, as wanted, where the browser can. */
+function foveate(layer) {
+  const wanted = element('headset-foveation').value;
+  if (wanted === '') return;
+  // It is null or missing where the browser cannot.
+  if (typeof layer.fixedFoveation === 'number') layer.fixedFoveation = Number(wanted);
+  else say('This browser has no foveation for pages.');
+}
+
 async function enter(button) {
   const { gl } = app;
   const session = await navigator.xr.requestSession('immersive-vr', { optionalFeatures: ['local'] });
-  const run = { name: 'headset', end: 'The headset shows the scene: leave VR first.', stop: () => session.end().catch(() => {}) };
+  const run = { name: 'headset', immersive: true, end: 'The headset shows the scene: leave VR first.', stop: () => session.end().catch(() => {}) };
   app.busy = run;
   button.textContent = 'Leave VR';
   let headset = null;
@@ -49,16 +68,24 @@ async function enter(button) {
     headset?.free();
     if (app.busy === run) app.busy = null;
     button.textContent = 'Enter VR';
-    if (app.page) keepPlace();
+    if (app.page) {
+      apply();
+      keepPlace();
+    }
     startLoop();
   });
   try {
     await gl.makeXRCompatible();
+    apply();
     headset = new Headset(app.page);
     listenToHands(session);
-    const layer = new XRWebGLLayer(session, gl, { antialias: false, alpha: false, depth: true, stencil: false });
+    const layer = new XRWebGLLayer(session, gl, {
+      antialias: false, alpha: false, depth: true, stencil: false, framebufferScaleFactor: app.settings.scale,
+    });
+    foveate(layer);
     const [depthNear, depthFar] = Headset.planes();
     await session.updateRenderState({ baseLayer: layer, depthNear, depthFar });
+    await setRate(session);
     const space = await session.requestReferenceSpace('local').catch(() => session.requestReferenceSpace('viewer'));
     const pressed = new Map();
     const times = [];
@@ -95,9 +122,9 @@ async function enter(button) {
         if (times.length >= 36) {
           const mean = times.reduce((sum, ms) => sum + ms, 0) / times.length;
           times.length = 0;
-          text = `${app.settings.method}\n${mean.toFixed(1)} ms, ${(1000 / mean).toFixed(0)} Hz\n${size.join('x')} per eye`;
+          text = `${inUse()}\n${mean.toFixed(1)} ms, ${(1000 / mean).toFixed(0)} Hz\n${size.join('x')} per eye`;
         } else if (presses[TRIGGER]) {
-          text = app.settings.method;
+          text = inUse();
           times.length = 0;
         }
         const fits = headset.draw(app.page, floats, ...size, shown ? text : '');
@@ -110,6 +137,7 @@ async function enter(button) {
           gl.viewport(x, y, width, height);
           headset.show(app.page, eye, x, y, width, height);
         });
+        app.page.endFrame(now, session.frameRate ?? 0);
         Object.assign(run, { frames: (run.frames ?? 0) + 1, views: floats, size });
       } catch (error) {
         run.stop();
@@ -136,6 +164,16 @@ export async function offerHeadset() {
         : 'WebXR needs https, or an address on this machine (localhost).';
     } else state.textContent = 'There is no headset for this browser.';
   };
+  for (const id of ['headset-rate', 'headset-foveation']) {
+    try {
+      // A value that is not offered leaves the field empty.
+      const kept = localStorage.getItem(id);
+      if ([...element(id).options].some(({ value }) => value === kept)) element(id).value = kept;
+    } catch { /* The fields keep what they have. */ }
+    element(id).addEventListener('change', ({ target }) => {
+      try { localStorage.setItem(id, target.value); } catch { /* To be chosen again next time. */ }
+    });
+  }
   navigator.xr?.addEventListener?.('devicechange', look);
   button.addEventListener('click', async () => {
     if (app.busy?.name === 'headset') {

@@ -7,13 +7,14 @@ const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
 /** Returns an eye, and how it was made. */
 function describe(eye) {
-  if (!app.source.color) return `${eye} eye: ${making(app.settings.method, eye === app.settings.dominant)}`;
+  if (!app.source.color) return `${eye} eye: ${making(app.page.methodInUse, eye === app.settings.dominant)}`;
   return `${eye} eye: ${element('picture-source').value === eye ? 'your picture' : 'synthesized'}`;
 }
 
 /** Returns the texts on the left and on the right. */
 function texts(real) {
-  const { display, dominant, method } = app.settings;
+  const { display, dominant } = app.settings;
+  const method = app.page.methodInUse;
   const other = dominant === 'right' ? 'left' : 'right';
   const made = describe(other);
   const rendered = `${other} eye: really rendered`;

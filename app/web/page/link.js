@@ -1,8 +1,8 @@
 // Settings in the address's fragment, without those that have their default.
 
 export const defaults = {
-  scene: 'prototype', viewpoint: 0, method: 'yoro', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 63,
-  dominant: 'right', display: 'divider', scale: 1, at: null,
+  scene: 'prototype', viewpoint: 0, method: 'auto', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 63,
+  dominant: 'right', display: 'divider', divider: 50, scale: 1, at: null,
 };
 
 /** The anti-aliasing that each renderer has, its default first. */
@@ -17,6 +17,9 @@ const allowed = {
   display: ['divider', 'difference', 'side-by-side', 'cross-eyed', 'anaglyph', 'left', 'right', 'flicker'],
   scale: ['1', '0.75', '0.5'],
 };
+
+/** Numbers go from 0 to this. */
+const most = { ipd: 80, divider: 100 };
 
 /** A head is no farther away than this, in metres: the module's limit. */
 const FARTHEST = 1e6;
@@ -43,7 +46,7 @@ export function parse(fragment, known) {
   for (const [key, value] of fields) {
     if (!Object.hasOwn(defaults, key)) {
       faults.push(`The link has a setting “${key}” that this page does not know; it was left out.`);
-    } else if (key === 'ipd' ? !(number(value) >= 0 && number(value) <= 80) : key === 'viewpoint' && !/^\d{1,3}$/.test(value)) {
+    } else if (Object.hasOwn(most, key) ? !(number(value) >= 0 && number(value) <= most[key]) : key === 'viewpoint' && !/^\d{1,3}$/.test(value)) {
       faults.push(`The link's ${key} is “${value}”, which cannot be; it was left out.`);
     } else if (key === 'at') {
       settings.at = place(value);

@@ -4,7 +4,7 @@ import init, { Page, builtinScenes } from './yoro_web.js';
 import { goThere, keepNow, readAddress } from './address.js';
 import { app, element } from './app.js';
 import { apply, listenToChoices, step } from './choices.js';
-import { changed, listenToPicture, savePicture, startLoop } from './drawing.js';
+import { changed, listenToPicture, savePicture, saveWiggle, startLoop } from './drawing.js';
 import { listenToFiles, take } from './files.js';
 import { offerHeadset } from './headset.js';
 import { listenToKeys } from './keys.js';
@@ -14,6 +14,7 @@ import { clear, loading, say } from './messages.js';
 import { offerPhone } from './phone.js';
 import { sentence } from './sentence.js';
 import { showAgain, showSource, stopLoading } from './sources.js';
+import { watchWhy } from './why.js';
 
 const { canvas } = app;
 Object.assign(app, { say, clear, changed, showSource, startLoop, step, take });
@@ -95,7 +96,8 @@ function listenToPage() {
   listenToChoices((name) => (name === 'own' ? stopLoading() : showSource({ builtin: name })));
   listenToPicture();
   listenToKeys({
-    KeyM: () => step('method'), KeyV: () => step('display'), KeyF: fillScreen, KeyP: savePicture,
+    KeyM: () => step('method'), KeyV: () => step('display'), KeyF: fillScreen, KeyP: savePicture, KeyG: saveWiggle,
+    KeyO: () => element('orbit').click(),
     KeyR: () => element('reset').click(), KeyX: () => element('error').click(), KeyZ: () => element('magnifier').click(),
   });
   element('share').addEventListener('click', share);
@@ -147,6 +149,7 @@ export async function start() {
   offerMeasure();
   offerPhone();
   offerHeadset();
+  watchWhy();
   await showSource({ builtin: app.settings.scene }, { keepPlace: true });
   app.ready = true;
   // Loaded once, the page works without a network, where browsers allow that: over https and on this machine. What is kept

@@ -3,8 +3,10 @@
 import { Phone } from './yoro_web.js';
 import { keepPlace } from './address.js';
 import { app, element } from './app.js';
+import { apply } from './choices.js';
 import { startLoop } from './drawing.js';
 import { clear, isFree, say } from './messages.js';
+import { scan } from './scan.js';
 import { sentence } from './sentence.js';
 
 /** Sensors that have not told anything for so long, in ms, are none. */
@@ -39,6 +41,7 @@ function checkFields() {
 /** A visit to the viewer: draws until it is left. */
 class Visit {
   name = 'phone';
+  immersive = true;
   end = 'The viewer shows the scene: leave it first.';
   /** The phone in the viewer, once the size of the screen is known. @type {Phone | undefined} */
   #phone;
@@ -62,7 +65,7 @@ class Visit {
     listen(element('phone-leave'), 'click', () => this.stop());
     this.#keepAwake();
     this.#silence = setTimeout(() => say('This device’s sensors report nothing: drag to look.'), SILENCE);
-    requestAnimationFrame(() => this.#frame());
+    requestAnimationFrame((now) => this.#frame(now));
   }
 
   async #keepAwake() {
@@ -89,11 +92,14 @@ class Visit {
     this.#phone?.free();
     this.#phone = undefined;
     if (document.fullscreenElement) document.exitFullscreen();
-    if (app.page) keepPlace();
+    if (app.page) {
+      apply();
+      keepPlace();
+    }
     startLoop();
   }
 
-  #frame() {
+  #frame(now) {
     if (app.busy !== this || !app.page) return;
     try {
       const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(16, Math.round(n * devicePixelRatio)));
@@ -110,12 +116,26 @@ class Visit {
       }
       if (this.#angles) this.#phone.turn(...this.#angles);
       this.#phone.draw(app.page, width, height, app.settings.scale);
-      requestAnimationFrame(() => this.#frame());
+      app.page.endFrame(now, 0);
+      requestAnimationFrame((then) => this.#frame(then));
     } catch (error) {
       this.stop();
       say(sentence(error));
     }
   }
+}
+
+/** Keeps viewer and screen for the next visit. */
+function remember() {
+  try {
+    localStorage.setItem('viewer', element('phone-viewer').value);
+    localStorage.setItem('screen', element('phone-width').value);
+  } catch { /* The fields are to be filled again next time. */ }
+}
+
+/** Says which viewer the field has. */
+function nameViewer() {
+  element('phone-name').textContent = Phone.viewerName(element('phone-viewer').value);
 }
 
 /** Makes the panel work. */
@@ -140,12 +160,19 @@ export function offerPhone() {
     }
     // Only some browsers can, and the phone may be locked upright.
     await screen.orientation?.lock?.('landscape').catch(() => {});
-    try {
-      localStorage.setItem('viewer', element('phone-viewer').value);
-      localStorage.setItem('screen', element('phone-width').value);
-    } catch { /* The fields are to be filled again next time. */ }
+    remember();
     app.busy = new Visit();
+    apply();
   });
+  element('phone-scan').addEventListener('click', async () => {
+    const text = await scan();
+    if (!text) return;
+    element('phone-viewer').value = text;
+    remember();
+    nameViewer();
+  });
+  element('phone-viewer').addEventListener('input', nameViewer);
+  nameViewer();
   for (const id of ['phone-viewer', 'phone-width']) {
     element(id).addEventListener('input', ({ target }) => target.setCustomValidity(''));
   }

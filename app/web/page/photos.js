@@ -1,5 +1,6 @@
 // Portrait photos that carry their depth: Google's GDepth in the XMP data of a JPEG
-// (https://developers.google.com/depthmap-metadata/reference).
+// (https://developers.google.com/depthmap-metadata/reference), or Dynamic Depth, whose XMP data lists the files that follow
+// the JPEG (https://developer.android.com/training/camera2/Dynamic-depth-v1.0.pdf).
 
 const XMP = 'http://ns.adobe.com/xap/1.0/\0';
 const EXTENDED = 'http://ns.adobe.com/xmp/extension/\0';
@@ -44,22 +45,54 @@ async function depthBuffer(depth, [width, height], { linear, near, far }) {
 }
 
 /**
+ * Returns the files that Dynamic Depth's directory lists, by their address.
+ * @param {string} text @param {ArrayBuffer} bytes
+ * @returns {Map<string, ArrayBuffer>}
+ */
+function listed(text, bytes) {
+  const items = text.split(/<rdf:li|<Container:Item/).map((part) => {
+    const value = (key) => new RegExp(`Item:${key}(?:="|>)([^"<]*)`).exec(part)?.[1];
+    return { address: value('DataURI') ?? value('Semantic') ?? '', length: Number(value('Length') ?? 0) };
+  });
+  const found = new Map();
+  // They lie one after the other at the end of the file.
+  let end = bytes.byteLength;
+  for (const { address, length } of items.filter((item) => item.length > 0).reverse()) {
+    found.set(address, bytes.slice(Math.max(0, end - length), end));
+    end -= length;
+  }
+  return found;
+}
+
+/**
+ * Returns what a photo says about its depth, and the picture before its background was blurred, if it has it; null without.
+ * @param {string} text @param {ArrayBuffer} bytes
+ */
+function carried(text, bytes) {
+  const value = (key) => new RegExp(`${key}(?:="|>)([^"<]*)`).exec(text)?.[1];
+  const data = value('GDepth:Data');
+  const kind = data ? 'GDepth' : 'DepthMap';
+  const files = data ? null : listed(text, bytes);
+  const [depth, original] = data
+    ? [decode(data).buffer, value('GImage:Data') && decode(value('GImage:Data')).buffer]
+    : [files.get(value('DepthMap:DepthURI') ?? 'Depth'), files.get(value('Image:ItemURI') ?? 'Original')];
+  const [near, far] = ['Near', 'Far'].map((key) => Number(value(`${kind}:${key}`)));
+  return depth ? { depth, original, near, far, linear: value(`${kind}:Format`) === 'RangeLinear' } : null;
+}
+
+/**
  * Returns colour and depth of a photo, and the values of the options' fields; null if it carries no depth.
  * @param {{name: string, bytes: ArrayBuffer}} file
  */
 export async function photo({ name, bytes }) {
-  const text = metadata(bytes);
-  const value = (key) => new RegExp(`${key}(?:="|>)([^"<]*)`).exec(text)?.[1];
-  const data = value('GDepth:Data');
-  if (!data) return null;
-  const [near, far] = ['GDepth:Near', 'GDepth:Far'].map((key) => Number(value(key)));
+  const found = carried(metadata(bytes), bytes);
+  if (!found) return null;
+  const { original, near, far, linear } = found;
   if (!(near > 0 && far > near)) throw new Error(`${name} carries a depth without its nearest and farthest distance.`);
-  // The picture before its background was blurred, if the photo has it.
-  const original = value('GImage:Data');
-  const color = original ? decode(original).buffer : bytes;
+  const color = original ?? bytes;
   const shown = await createImageBitmap(new Blob([color]), { imageOrientation: 'none' });
-  const depth = await depthBuffer(
-    new Blob([decode(data)]), [shown.width, shown.height], { linear: value('GDepth:Format') === 'RangeLinear', near, far });
+  const depth = await depthBuffer(new Blob([found.depth]), [shown.width, shown.height], { linear, near, far })
+    .catch(() => { throw new Error(`${name} carries a depth that cannot be decoded.`); });
   return {
     pair: { color: { name, bytes: color }, depth: { name: 'its depth.png', bytes: depth } },
     known: { source: 'center', encoding: 'standard-z', near, far },

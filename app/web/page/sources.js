@@ -2,7 +2,7 @@
 
 import { goThere } from './address.js';
 import { app, element } from './app.js';
-import { apply, showChoices } from './choices.js';
+import { apply, offerOrbit, showChoices } from './choices.js';
 import { changed, startLoop } from './drawing.js';
 import { loading, say, sayAlso } from './messages.js';
 import { sentence } from './sentence.js';
@@ -129,6 +129,7 @@ function describe() {
   const name = source?.builtin ?? source?.main ?? source?.color.name;
   element('scene').querySelector('[value=own]')?.remove();
   if (source && !source.builtin) element('scene').prepend(new Option(`your own: ${name}`, 'own'));
+  offerOrbit();
   element('picture-options').hidden = !source?.color;
   element('facts').textContent = facts
     ? `${name}: ${facts.triangles.toLocaleString('en')} triangles, ${facts.style}`

@@ -6,20 +6,26 @@
 //!
 //! It must never know HTML, nor ask a server for anything.
 
+mod explain;
 #[cfg(target_arch = "wasm32")]
 mod page;
 mod pictures;
 mod psnr;
+mod qr;
 mod sensors;
 mod settings;
 mod views;
 mod walker;
+mod wiggle;
 
+pub use explain::{Explanation, Frame};
 #[cfg(target_arch = "wasm32")]
 pub use page::Page;
 pub use pictures::{Encoding, PictureError, PictureOptions, PicturePair, SourceEye};
 pub use psnr::psnr;
+pub use qr::read_qr;
 pub use sensors::{Head, find_viewer, orientation};
 pub use settings::{Display, Settings};
 pub use views::{VIEW_FLOATS, view};
 pub use walker::Walker;
+pub use wiggle::wiggle;

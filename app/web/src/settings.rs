@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_protocol::Ipd;
-use yoro_render::stereo::{self, AntiAliasing, Method, StereoMethod, StereoOptions};
+use yoro_render::stereo::{self, AntiAliasing, Chosen, Method, MethodChoice, StereoMethod, StereoOptions};
 use yoro_render::{RenderSettings, RendererKind};
 
 /// The way to show two images on a flat screen.
@@ -61,8 +61,8 @@ impl Display {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Settings {
-    /// The stereo method.
-    pub method: Method,
+    /// The stereo method, or the cheaper one of two.
+    pub method: MethodChoice,
     /// The renderer of a view.
     pub renderer: RendererKind,
     /// Samples in each pixel of the forward renderer.
@@ -81,7 +81,7 @@ impl Default for Settings {
     fn default() -> Settings {
         let yoro_protocol::Settings { renderer, msaa, dominant, .. } = Default::default();
         Settings {
-            method: Method::default(),
+            method: MethodChoice::default(),
             renderer,
             msaa,
             anti_aliasing: AntiAliasing::After,
@@ -112,9 +112,15 @@ impl Settings {
         StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
     }
 
+    /// Returns the method that is in use, or the choice between two. Displays that compare with a real render show what
+    /// they compare.
+    pub fn choice(&self) -> MethodChoice {
+        if self.display.needs_truth() { self.method.first().into() } else { self.method }
+    }
+
     /// True if renderer and method of other choices are the same ones.
     pub fn makes_same(&self, other: &Settings) -> bool {
-        self.method == other.method
+        self.choice() == other.choice()
             && self.stereo_options() == other.stereo_options()
             && self.render_settings() == other.render_settings()
     }
@@ -139,6 +145,14 @@ impl Settings {
         stereo::create(gl, method, &self.render_settings(), &self.stereo_options())
     }
 
+    /// Compiles the method that is in use, or both of the choice.
+    ///
+    /// # Errors
+    /// Those of [`stereo::create`].
+    pub fn create_chosen(&self, gl: &Rc<Context>) -> Result<Chosen, GlError> {
+        Chosen::new(gl, self.choice(), &self.render_settings(), &self.stereo_options())
+    }
+
     /// Returns both eyes of a head, with images of `size` pixels.
     pub fn pair(&self, head: Pose, size: [u32; 2]) -> EyePair {
         let options = EyeOptions {
@@ -160,9 +174,13 @@ mod tests {
     fn settings_are_checked() {
         let json = r#"{"method":"shading-reprojection","ipd":0.07,"dominant":"left","display":"cross-eyed"}"#;
         let settings = Settings::parse(json).unwrap();
-        assert_eq!((settings.method, settings.dominant), (Method::ShadingReprojection, Eye::Left));
+        assert_eq!((settings.method, settings.dominant), (Method::ShadingReprojection.into(), Eye::Left));
         assert_eq!(settings.anti_aliasing, AntiAliasing::After);
         assert_eq!(settings.render_settings(), RenderSettings::default());
+        // What is compared is not chosen.
+        let chosen = |json| Settings::parse(json).unwrap().choice();
+        assert_eq!(chosen(r#"{"display":"anaglyph"}"#), MethodChoice::Auto);
+        assert_eq!(chosen(r#"{"display":"divider"}"#), Method::Yoro.into());
         let forward = Settings::parse(r#"{"renderer":"forward","msaa":1}"#).unwrap();
         assert_eq!(forward.render_settings().summary(), "forward, 1 samples a pixel");
         for wrong in [

@@ -1,4 +1,4 @@
-//! A head that is turned and walked about by hand.
+//! A head that is turned and walked about by hand, or goes around an object.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -13,6 +13,8 @@ pub struct Walker {
     heading: [f32; 2],
     /// The pose it began with, bit for bit, while it has not moved.
     start: Option<Pose>,
+    /// The middle of the object that it goes around, if so.
+    object: Option<Vec3>,
 }
 
 /// The steepest look up or down in radians: a little less than straight up, where a heading has no meaning.
@@ -23,7 +25,7 @@ impl Walker {
     pub fn new(pose: Pose) -> Walker {
         let ahead = pose.forward();
         let heading = [(-ahead.x).atan2(-ahead.z), ahead.y.clamp(-1.0, 1.0).asin()];
-        Walker { position: pose.position, heading, start: Some(pose) }
+        Walker { position: pose.position, heading, start: Some(pose), object: None }
     }
 
     /// Returns a walker at a place that [`Walker::place`] returned; none for numbers that are not a place.
@@ -33,6 +35,7 @@ impl Walker {
             position: Vec3::new(x, y, z),
             heading: [yaw.rem_euclid(TAU), pitch.clamp(-STEEPEST, STEEPEST)],
             start: None,
+            object: None,
         })
     }
 
@@ -42,24 +45,46 @@ impl Walker {
         self.start.is_none().then_some([x, y, z, yaw, pitch])
     }
 
-    /// Turns by radians to the left and upwards.
+    /// Goes around the object with this middle from now on; walks for none.
+    pub fn go_around(&mut self, object: Option<Vec3>) {
+        self.object = object;
+    }
+
+    /// Turns by radians to the left and upwards. Around an object it is the object that seems to turn, under the same hand:
+    /// it stays where it is in the picture.
     pub fn turn(&mut self, [left, up]: [f32; 2]) {
+        let seen = self.object.map(|object| self.orientation().inverse() * (object - self.position));
+        let sign = if self.object.is_some() { -1.0 } else { 1.0 };
         let [yaw, pitch] = self.heading;
-        self.heading = [(yaw + left).rem_euclid(TAU), (pitch + up).clamp(-STEEPEST, STEEPEST)];
+        self.heading = [(yaw + sign * left).rem_euclid(TAU), (pitch + sign * up).clamp(-STEEPEST, STEEPEST)];
+        if let Some((object, seen)) = self.object.zip(seen) {
+            self.position = object - self.orientation() * seen;
+        }
         self.start = None;
     }
 
-    /// Walks by metres to the right, upwards and ahead; the ground is level.
+    /// Walks by metres to the right, upwards and ahead; the ground is level. Around an object a metre ahead divides the
+    /// distance by e, and one to the right or upwards moves the object by a third of it.
     pub fn walk(&mut self, [right, up, ahead]: [f32; 3]) {
-        self.position += Quat::from_rotation_y(self.heading[0]) * Vec3::new(right, up, -ahead);
+        match self.object {
+            None => self.position += Quat::from_rotation_y(self.heading[0]) * Vec3::new(right, up, -ahead),
+            Some(object) => {
+                let away = self.position - object;
+                let aside = self.orientation() * Vec3::new(right, up, 0.0) * away.length() / 3.0;
+                self.position = object + away * (-ahead).exp() + aside;
+            }
+        }
         self.start = None;
+    }
+
+    fn orientation(&self) -> Quat {
+        let [yaw, pitch] = self.heading;
+        Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0)
     }
 
     /// Returns the head's pose.
     pub fn pose(&self) -> Pose {
-        let [yaw, pitch] = self.heading;
-        let turned = || Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
-        self.start.unwrap_or_else(|| Pose { position: self.position, orientation: turned() })
+        self.start.unwrap_or_else(|| Pose { position: self.position, orientation: self.orientation() })
     }
 
     /// Returns a pose in the world that is `pose` relative to the head's place and heading: metres, Y up, -Z ahead.
@@ -88,6 +113,24 @@ mod tests {
         walker.turn([0.0, 0.0]);
         close(walker.pose().forward(), pose.forward());
         close(walker.pose().right(), pose.right());
+    }
+
+    #[test]
+    fn an_object_is_gone_around() {
+        let object = Vec3::new(1.0, 2.0, 3.0);
+        let from = object + Vec3::new(0.0, 0.3, 2.0);
+        let mut walker = Walker::new(Pose::look_at(from, object));
+        walker.go_around(Some(object));
+        // Dragged a quarter to the right, the side that was on the left is in front.
+        walker.turn([FRAC_PI_2, 0.0]);
+        close(walker.pose().position, object + Vec3::new(-2.0, 0.3, 0.0));
+        walker.turn([0.0, 0.4]);
+        close(walker.pose().forward() * 2.0_f32.hypot(0.3), object - walker.pose().position);
+        assert!(walker.pose().position.y > object.y + 0.3, "dragged down, its upper side is seen");
+        let distance = |walker: &Walker| (walker.pose().position - object).length();
+        let before = distance(&walker);
+        walker.walk([0.0, 0.0, 1.0]);
+        assert!((distance(&walker) * 1f32.exp() / before - 1.0).abs() < 1e-4);
     }
 
     #[test]

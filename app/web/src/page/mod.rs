@@ -6,16 +6,18 @@ mod phone;
 mod picture_show;
 mod scene_show;
 mod show;
+mod why;
 mod work;
 mod xr;
 
 use std::rc::Rc;
 
+use glam::Vec3;
 use wasm_bindgen::prelude::*;
 use web_sys::WebGl2RenderingContext;
 use yoro::eyes::{Eye, Pose};
 use yoro_gl::{Context, RenderTarget};
-use yoro_render::stereo::Method;
+use yoro_render::stereo::{Auto, MethodChoice, StereoFrame};
 use yoro_scene::Scene;
 use yoro_scenes::BUILTINS;
 
@@ -27,6 +29,7 @@ use crate::pictures::{PictureOptions, PicturePair};
 use crate::psnr::psnr;
 use crate::settings::{Display, Settings};
 use crate::walker::Walker;
+use crate::wiggle::wiggle;
 
 /// The content of the canvas.
 enum Content {
@@ -42,6 +45,10 @@ pub struct Page {
     show: Show,
     settings: Settings,
     walker: Walker,
+    /// Drags turn what is shown, and do not turn the head.
+    orbits: bool,
+    /// The middle of the scene.
+    middle: Vec3,
     content: Content,
 }
 
@@ -58,6 +65,8 @@ impl Page {
             show: Show::new(&gl).map_err(sentence)?,
             settings: Settings::default(),
             walker: Walker::new(Pose::IDENTITY),
+            orbits: false,
+            middle: Vec3::ZERO,
             content: Content::Empty,
             gl,
         })
@@ -94,8 +103,13 @@ impl Page {
     /// A sentence.
     pub fn methods(&self, json: &str) -> Result<String, JsError> {
         let settings = Settings::parse(json).map_err(sentence)?;
-        let entry = |method: Method| serde_json::json!({ "name": method.name(), "reason": settings.lacks(method, self.gl.capabilities()) });
-        Ok(serde_json::Value::from_iter(Method::ALL.map(entry)).to_string())
+        let reason = |choice| match choice {
+            MethodChoice::Auto => None,
+            MethodChoice::Named(method) => settings.lacks(method, self.gl.capabilities()),
+        };
+        let entry =
+            |choice: MethodChoice| serde_json::json!({ "name": choice.name(), "reason": reason(choice) });
+        Ok(serde_json::Value::from_iter(MethodChoice::ALL.map(entry)).to_string())
     }
 
     /// Returns the renderer in a few words: `forward, 4 samples a pixel`.
@@ -124,7 +138,7 @@ impl Page {
     }
 
     /// Shows a scene as [`work`] packs it, from its first viewpoint. Returns facts about it as JSON: `{"name",
-    /// "standsFor", "style", "triangles", "lights", "viewpoints"}`.
+    /// "standsFor", "style", "triangles", "lights", "viewpoints", "object"}`: true for what is seen from outside, around which the head then goes.
     ///
     /// # Errors
     /// A sentence, when the GPU cannot take it; nothing is shown then.
@@ -140,7 +154,9 @@ impl Page {
             "triangles": scene.model.triangle_count(),
             "lights": scene.lights.len(),
             "viewpoints": scene.viewpoints.len(),
+            "object": is_object(&scene),
         });
+        (self.orbits, self.middle) = (is_object(&scene), scene.model.bounds().center());
         let scene = SceneShow::new(&self.gl, &self.settings, scene).map_err(sentence)?;
         self.content = Content::Scene(Box::new(scene));
         self.go_to(0);
@@ -195,7 +211,15 @@ impl Page {
             && let Some(viewpoint) = scene.prepared.scene.viewpoints.get(viewpoint)
         {
             self.walker = Walker::new(viewpoint.pose());
+            self.orbit(self.orbits);
+            self.measure_again();
         }
+    }
+
+    /// Goes around what is shown, or walks in it.
+    pub fn orbit(&mut self, on: bool) {
+        self.orbits = on;
+        self.walker.go_around(on.then_some(self.middle));
     }
 
     /// Goes to a place that [`Page::place`] returned; false if the numbers are not a place.
@@ -203,6 +227,8 @@ impl Page {
     pub fn put_at(&mut self, place: &[f32]) -> bool {
         let walker = place.try_into().ok().and_then(Walker::at);
         self.walker = walker.unwrap_or(self.walker);
+        self.orbit(self.orbits);
+        self.measure_again();
         walker.is_some()
     }
 
@@ -233,6 +259,39 @@ impl Page {
         }
         self.show(width, height, divider);
         Ok(())
+    }
+
+    /// Ends a frame that was handed to the display at `now_ms` of the page's clock. `refresh_hz` are the refreshes of the
+    /// display per second, 0 if unknown.
+    #[wasm_bindgen(js_name = endFrame)]
+    pub fn end_frame(&mut self, now_ms: f64, refresh_hz: f32) {
+        if let Content::Scene(scene) = &mut self.content {
+            scene.end(&self.gl, now_ms, refresh_hz);
+        }
+    }
+
+    /// True while the cheaper method is being found: it needs frames.
+    #[wasm_bindgen(getter, js_name = isMeasuring)]
+    pub fn is_measuring(&self) -> bool {
+        self.auto().is_some_and(Auto::is_measuring)
+    }
+
+    /// Returns the name of the method in use: of `auto` the one that was chosen last.
+    #[wasm_bindgen(getter, js_name = methodInUse)]
+    pub fn method_in_use(&self) -> String {
+        self.auto().map_or(self.settings.choice().first(), Auto::method).name().into()
+    }
+
+    /// Returns why `auto` uses its method, as in the viewer's log line; none for a method that was named.
+    #[wasm_bindgen(getter)]
+    pub fn reason(&self) -> Option<String> {
+        Some(self.auto()?.to_string())
+    }
+
+    /// Returns the times of a frame in ms that `auto` compared, two renders and synthesis; none where there are none.
+    #[wasm_bindgen(getter)]
+    pub fn costs(&self) -> Option<Vec<f32>> {
+        Some(self.auto().filter(|auto| !auto.is_measuring())?.choice().costs_ms?.to_vec())
     }
 
     /// Draws as [`Page::draw`] does, without the real images that a display compares with: sooner.
@@ -301,6 +360,22 @@ impl Page {
         target.read_rgba8(0, [0, 0], target.size())
     }
 
+    /// Returns both eyes in turn as an animated GIF, at most `width` pixels wide. Waits for the GPU.
+    ///
+    /// # Errors
+    /// A sentence, also with nothing in view.
+    pub fn wiggle(&mut self, width: u32) -> Result<Vec<u8>, JsError> {
+        let read = |frame: &StereoFrame| {
+            Eye::BOTH.map(|eye| frame.eye(eye).read_rgba8(0, [0, 0], frame.eye(eye).size()))
+        };
+        let (eyes, size) = match &mut self.content {
+            Content::Empty => return Err(JsError::new("There is no picture to save.")),
+            Content::Pictures(pictures) => (read(&pictures.frame), pictures.size()),
+            Content::Scene(scene) => (read(&scene.frame), scene.frame.eye(Eye::Left).size()),
+        };
+        wiggle(eyes, size, width).map_err(sentence)
+    }
+
     /// Returns the errors of GL since the last call, for tests.
     #[wasm_bindgen(js_name = takeErrors)]
     pub fn take_errors(&self) -> Option<String> {
@@ -309,6 +384,19 @@ impl Page {
 }
 
 impl Page {
+    fn auto(&self) -> Option<&Auto> {
+        match &self.content {
+            Content::Scene(scene) => scene.auto(),
+            Content::Empty | Content::Pictures(_) => None,
+        }
+    }
+
+    fn measure_again(&mut self) {
+        if let Some(scene) = self.scene() {
+            scene.measure_again();
+        }
+    }
+
     /// Returns the scene, if one is shown.
     fn scene(&mut self) -> Option<&mut SceneShow> {
         match &mut self.content {
@@ -316,6 +404,13 @@ impl Page {
             Content::Empty | Content::Pictures(_) => None,
         }
     }
+}
+
+/// True for a scene that is seen from outside.
+fn is_object(scene: &Scene) -> bool {
+    let bounds = scene.model.bounds();
+    let position = scene.viewpoints[0].position;
+    position.cmplt(bounds.min).any() || position.cmpgt(bounds.max).any()
 }
 
 fn parse_options(json: &str) -> Result<PictureOptions, JsError> {

@@ -10,6 +10,7 @@ use yoro_render::stereo::StereoFrame;
 use super::Page;
 use super::error::sentence;
 use super::scene_show::SceneShow;
+use crate::qr::read_qr;
 use crate::sensors::{Head, find_viewer, orientation};
 
 /// The widths and heights of screens, in metres.
@@ -30,6 +31,18 @@ impl Phone {
     #[wasm_bindgen(js_name = viewerFault)]
     pub fn viewer_fault(viewer: &str) -> Option<String> {
         find_viewer(viewer).err()
+    }
+
+    /// Returns maker and model of a viewer; empty for what is none.
+    #[wasm_bindgen(js_name = viewerName)]
+    pub fn viewer_name(viewer: &str) -> String {
+        find_viewer(viewer).map_or(String::new(), |params| format!("{} {}", params.vendor, params.model))
+    }
+
+    /// Returns the text of a QR code in a camera's picture, RGBA with rows from the top; none without one.
+    #[wasm_bindgen(js_name = readCode)]
+    pub fn read_code(rgba: &[u8], width: usize) -> Option<String> {
+        read_qr(rgba, width)
     }
 
     /// Puts a screen of this size in metres into a viewer: `v1`, `v2`, or the URI of a viewer's QR code. The direction
@@ -86,7 +99,10 @@ impl Phone {
             dominant: page.settings.dominant,
         };
         let Some(SceneShow { prepared, method, .. }) = page.scene() else { return Ok(()) };
-        method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame).map_err(sentence)?;
+        method
+            .method()
+            .render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame)
+            .map_err(sentence)?;
         let window = Destination { framebuffer: None, origin: [0, 0], size: [width, height] };
         self.lens.run(self.frame.images(), Quat::IDENTITY, &window);
         Ok(())

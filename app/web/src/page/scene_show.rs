@@ -2,9 +2,10 @@
 
 use std::rc::Rc;
 
+use yoro::choice::Cost;
 use yoro::eyes::{Eye, EyePair, Pose};
-use yoro_gl::{Context, GlError, RenderTarget, Texture};
-use yoro_render::stereo::{Method, StereoError, StereoFrame, StereoMethod};
+use yoro_gl::{Context, GlError, PassTime, Profiling, RenderTarget, Texture};
+use yoro_render::stereo::{Auto, Chosen, Method, StereoError, StereoFrame, StereoMethod};
 use yoro_render::{PreparedScene, Renderer};
 use yoro_scene::Scene;
 
@@ -13,12 +14,13 @@ use crate::settings::Settings;
 /// Everything that is needed to show a scene.
 pub struct SceneShow {
     pub prepared: PreparedScene,
-    pub method: Box<dyn StereoMethod>,
+    pub method: Chosen,
     /// The images of the last frame on the canvas.
     pub frame: StereoFrame,
     truth: Option<Truth>,
     /// The eyes of that frame.
     pair: Option<EyePair>,
+    passes: Vec<PassTime>,
 }
 
 /// A real render of both eyes, to compare the method's with.
@@ -35,10 +37,11 @@ impl SceneShow {
     pub fn new(gl: &Rc<Context>, settings: &Settings, scene: Scene) -> Result<SceneShow, GlError> {
         Ok(SceneShow {
             prepared: PreparedScene::new(gl, scene, &settings.render_settings())?,
-            method: settings.create(gl, settings.method)?,
+            method: settings.create_chosen(gl)?,
             frame: StereoFrame::new(gl, [1, 1])?,
             truth: None,
             pair: None,
+            passes: Vec::new(),
         })
     }
 
@@ -59,7 +62,7 @@ impl SceneShow {
         } else {
             Some(Renderer::new(gl, &render, &self.prepared.scene)?)
         };
-        self.method = settings.create(gl, settings.method)?;
+        self.method = settings.create_chosen(gl)?;
         if let Some(renderer) = renderer {
             self.prepared.renderer = renderer;
         }
@@ -77,9 +80,12 @@ impl SceneShow {
         head: Pose,
         size: [u32; 2],
     ) -> Result<(), StereoError> {
-        let PreparedScene { renderer, scene, .. } = &mut self.prepared;
         let pair = settings.pair(head, size);
-        self.method.render(renderer, scene, &pair, &mut self.frame)?;
+        if self.pair.is_some_and(|before| before.size != size) {
+            self.measure_again();
+        }
+        let PreparedScene { renderer, scene, .. } = &mut self.prepared;
+        self.method.method().render(renderer, scene, &pair, &mut self.frame)?;
         self.pair = Some(pair);
         if !settings.display.needs_truth() {
             self.truth = None;
@@ -102,14 +108,44 @@ impl SceneShow {
     pub fn repeat(&mut self, real: bool, count: u32) -> Result<(), StereoError> {
         let (Some(truth), Some(pair)) = (&mut self.truth, &self.pair) else { return Ok(()) };
         let PreparedScene { renderer, scene, .. } = &mut self.prepared;
-        let (method, frame) =
-            if real { (&mut truth.method, &mut truth.frame) } else { (&mut self.method, &mut self.frame) };
+        let (method, frame): (&mut dyn StereoMethod, _) = if real {
+            (&mut *truth.method, &mut truth.frame)
+        } else {
+            (self.method.method(), &mut self.frame)
+        };
         for _ in 0..count {
             method.render(renderer, scene, pair, frame)?;
         }
         // Browsers make little of glFinish; for a pixel they have to wait.
         frame.eye(Eye::Left).read_rgba8(0, [0, 0], [1, 1]);
         Ok(())
+    }
+
+    /// Ends a frame that was handed to the display at `now_ms`: counts it, where the cheaper method is used.
+    pub fn end(&mut self, gl: &Context, now_ms: f64, refresh_hz: f32) {
+        let wants_times = self.method.auto().is_some() && gl.capabilities().timer_queries;
+        if wants_times != gl.times_passes() {
+            gl.set_profiling(if wants_times { Profiling::Queries } else { Profiling::Off });
+        }
+        let Some(auto) = self.method.auto_mut() else { return };
+        self.passes.clear();
+        let gpu = gl.end_timed_frame(&mut self.passes).map(|frames_ago| Cost {
+            frames_ago,
+            ms: self.passes.iter().map(|pass| pass.time.as_secs_f32() * 1e3).sum(),
+        });
+        auto.end_frame((now_ms * 1e6) as i64, refresh_hz, gpu, None);
+    }
+
+    /// Measures again, where the cheaper method is used: another place in the scene, or another resolution.
+    pub fn measure_again(&mut self) {
+        if let Some(auto) = self.method.auto_mut() {
+            auto.scene_changed();
+        }
+    }
+
+    /// Returns the choice between two methods, if there is one.
+    pub fn auto(&self) -> Option<&Auto> {
+        self.method.auto()
     }
 
     /// Returns the real render of the eye that is not dominant, where the display needs it.

@@ -31,12 +31,14 @@ pub struct Show {
     with_depth: Program,
 }
 
+fn compile(gl: &Rc<Context>, define: Option<&'static str>) -> Result<Program, GlError> {
+    let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
+    Program::new(gl, ShaderSource::Screen("viewer/show.frag"), &defines)
+}
+
 impl Show {
     pub fn new(gl: &Rc<Context>) -> Result<Show, GlError> {
-        let program = |define: Option<&'static str>| {
-            let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
-            Program::new(gl, ShaderSource::Screen("viewer/show.frag"), &defines)
-        };
+        let program = |define| compile(gl, define);
         Ok(Show {
             gl: gl.clone(),
             plain: program(None)?,
@@ -44,6 +46,13 @@ impl Show {
             difference: program(Some("DIFFERENCE"))?,
             with_depth: program(Some("WITH_DEPTH"))?,
         })
+    }
+
+    /// Writes depth as 24 bits of colour, the highest in red: WebGL reads no depth. The program is made for this call.
+    pub fn packed_depth(&self, depth: &Texture, to: &Destination) -> Result<(), GlError> {
+        let program = compile(&self.gl, Some("PACKED_DEPTH"))?;
+        self.run(&program, depth, None, to, 0..to.size[0]);
+        Ok(())
     }
 
     /// Runs a program on some columns of a rectangle that the images fill as a whole.

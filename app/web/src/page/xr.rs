@@ -5,7 +5,7 @@ use yoro::eyes::{DepthRange, Eye, EyePair};
 use yoro_gl::{Destination, Format, RenderTarget};
 use yoro_lenses::{Content, Hud, Placement};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{DepthTarget, EyeTarget, StereoFrame, StereoMethod, Substitute};
+use yoro_render::stereo::{Chosen, DepthTarget, EyeTarget, StereoFrame, StereoMethod, Substitute};
 
 use super::Page;
 use super::error::sentence;
@@ -80,11 +80,12 @@ impl Headset {
         let Headset { frame, depth, copy, hud, substitute, .. } = self;
         frame.resize(size).map_err(sentence)?;
         depth.iter_mut().try_for_each(|depth| depth.resize(size)).map_err(sentence)?;
-        let fits = Substitute::reason(settings.method, &pair).is_none();
-        let method: &mut dyn StereoMethod = if fits {
-            method.as_mut()
-        } else {
-            substitute.get(|method| settings.create(&gl, method)).map_err(sentence)?
+        let fits = Substitute::reason(settings.choice().first(), &pair).is_none();
+        let method: &mut dyn StereoMethod = match method {
+            // It renders both eyes by itself.
+            Chosen::Auto(auto) => auto.as_mut(),
+            Chosen::Named(method) if fits => method.as_mut(),
+            Chosen::Named(_) => substitute.get(|method| settings.create(&gl, method)).map_err(sentence)?,
         };
         let colors = frame.targets();
         let to = [0, 1].map(|i| EyeTarget {
