@@ -1,0 +1,154 @@
+//! A headset, played by an emulator.
+
+use std::env;
+use std::path::PathBuf;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use image::RgbImage;
+use serde_json::{Value, json};
+use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
+use yoro_context::{Backend, Headless};
+use yoro_lab::picture::rgb_image;
+use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
+use yoro_render::{PreparedScene, RenderSettings};
+
+use super::{Page, close};
+
+/// The Immersive Web Emulation Runtime's script; without it the test is to end.
+fn emulator() -> Option<String> {
+    let Some(path) = env::var_os("YORO_TEST_WEBXR") else {
+        let without = env::var_os("YORO_TEST_WITHOUT_WEBXR").is_some();
+        assert!(without, "run `cargo xtask test web::`, or set YORO_TEST_WITHOUT_WEBXR=1");
+        eprintln!("LEFT OUT: the WebXR emulator could not be fetched");
+        return None;
+    };
+    Some(std::fs::read_to_string(PathBuf::from(path)).unwrap())
+}
+
+/// A Quest 3 with eyes that see further outwards, and a framebuffer of its own, as real ones have.
+const HEADSET: &str = "
+    globalThis.headset = new IWER.XRDevice(IWER.metaQuest3, { stereoEnabled: true });
+    headset.installRuntime({ forceInstall: true });
+    // It says when it is asked for another rate.
+    const log = console.log;
+    console.log = (text, ...more) => { if (!/frame rate updated/.test(text)) log(text, ...more); };
+    const matrix = Object.getOwnPropertyDescriptor(XRView.prototype, 'projectionMatrix').get;
+    Object.defineProperty(XRView.prototype, 'projectionMatrix', { get() {
+        const m = Float32Array.from(matrix.call(this));
+        m[8] += this.eye === 'left' ? -0.15 : 0.15;
+        m[9] -= 0.125;
+        return m;
+    } });
+    Object.defineProperty(XRWebGLLayer.prototype, 'fixedFoveation', { value: 0, writable: true });
+    Object.defineProperty(XRWebGLLayer.prototype, 'framebuffer', { get() {
+        if (!this.made) {
+            const gl = this.context;
+            this.made = gl.createFramebuffer();
+            gl.bindFramebuffer(gl.FRAMEBUFFER, this.made);
+            for (const [attachment, format] of [[gl.COLOR_ATTACHMENT0, gl.RGBA8], [gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT24]]) {
+                const buffer = gl.createRenderbuffer();
+                gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+                gl.renderbufferStorage(gl.RENDERBUFFER, format, this.framebufferWidth, this.framebufferHeight);
+                gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, buffer);
+            }
+            globalThis.layer = this;
+        }
+        return this.made;
+    } });
+    globalThis.readLayer = (eye) => {
+        const { context: gl, made, framebufferWidth: width, framebufferHeight: height } = layer;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, made);
+        const half = width / 2, bytes = new Uint8Array(half * height * 4);
+        gl.readPixels(eye * half, 0, half, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+        let text = '';
+        for (const byte of bytes) text += String.fromCharCode(byte);
+        return btoa(text);
+    };
+";
+
+#[test]
+fn a_headset_shows_both_eyes() {
+    let Some(emulator) = emulator() else { return };
+    let script = format!("{emulator}\n{HEADSET}");
+    let Some(mut page) = Page::open("#method=conventional&display=left", Some(&script)) else { return };
+    // The emulator's displays have the window's size.
+    page.browser.resize(400, 240);
+    page.until("!document.getElementById('headset').disabled");
+    let press = |page: &mut Page, button: &str| {
+        for value in [1, 0] {
+            let frames = page.evaluate("yoro.busy.frames").as_u64().unwrap();
+            page.evaluate(&format!("headset.controllers.right.updateButtonValue('{button}', {value}); 0"));
+            page.until(&format!("yoro.busy.frames > {}", frames + 1));
+        }
+    };
+    page.choose("headset-rate", "120");
+    page.choose("headset-foveation", "0.5");
+    for visit in 0..2 {
+        page.evaluate("document.getElementById('headset').click()");
+        page.until("yoro.busy?.frames > 1");
+        assert_eq!(page.message(), None);
+        assert_eq!(
+            page.evaluate("[headset.activeSession.frameRate, layer.fixedFoveation]"),
+            json!([120, 0.5])
+        );
+        // Without the figures, which change.
+        press(&mut page, "thumbstick");
+        let expected = if visit == 0 { "conventional" } else { "instanced" };
+        assert_eq!(page.evaluate("yoro.settings.method"), expected);
+        let number = |value: &Value| value.as_f64().unwrap() as f32;
+        let views: Vec<f32> =
+            page.evaluate("[...yoro.busy.views]").as_array().unwrap().iter().map(number).collect();
+        let size: Vec<u64> =
+            page.evaluate("yoro.busy.size").as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+        let size = [size[0] as u32, size[1] as u32];
+        let desktop = headset_pictures(&views, size);
+        for eye in Eye::BOTH {
+            let read = format!("readLayer({})", eye.index());
+            let bytes = STANDARD.decode(page.evaluate(&read).as_str().unwrap()).unwrap();
+            let name = format!("visit {visit}, {}", eye.name());
+            close(&name, &rgb_image(&bytes, size), &desktop[eye.index()]);
+        }
+        if visit == 0 {
+            press(&mut page, "trigger");
+            assert_eq!(page.evaluate("yoro.settings.method"), "instanced");
+        }
+        if visit == 1 {
+            page.evaluate("document.getElementById('measure').click()");
+            assert!(page.message().unwrap().contains("leave VR first"));
+            page.evaluate("yoro.clear(); yoro.page.walk(0, 0, 1)");
+        }
+        page.evaluate("document.getElementById('headset').click()");
+        page.until("yoro.busy === null && document.getElementById('headset').textContent === 'Enter VR'");
+        assert_eq!(page.message(), None);
+    }
+    // The way walked is in the link.
+    page.until("location.hash.includes('at=')");
+    page.browser.expect_silence();
+}
+
+/// The desktop's pictures for a headset's views at the scene's first viewpoint.
+fn headset_pictures(views: &[f32], size: [u32; 2]) -> [RgbImage; 2] {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let settings = RenderSettings::default();
+    let scene = yoro_scenes::build("prototype", yoro_scenes::DEFAULT_SEED).unwrap();
+    let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
+    let walker = yoro_web::Walker::new(prepared.scene.viewpoints[0].pose());
+    let (left, right) = views.split_at(yoro_web::VIEW_FLOATS);
+    let [left, right] = [left, right].map(|view| yoro_web::view(view).unwrap());
+    let outwards = |frustum: &Frustum| frustum.left + frustum.right;
+    assert!(outwards(&left.1) < -0.1 && outwards(&right.1) > 0.1, "{left:?}, {right:?}");
+    let pair = EyePair {
+        poses: [left.0, right.0].map(|pose| walker.locate(pose)),
+        frusta: [left.1, right.1],
+        depth: DepthRange { near: 0.1, ..DepthRange::PAPER },
+        size,
+        dominant: Eye::Right,
+    };
+    let options = StereoOptions { policy: None, ..StereoOptions::default() };
+    let mut method = stereo::create(gl, Method::Conventional, &settings, &options).unwrap();
+    let mut frame = StereoFrame::new(gl, size).unwrap();
+    method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut frame).unwrap();
+    Eye::BOTH.map(|eye| rgb_image(&frame.eye(eye).read_rgba8(0, [0, 0], size), size))
+}
