@@ -10,6 +10,7 @@ pub mod cargo;
 pub mod compiled;
 pub mod console;
 pub mod folders;
+pub mod godot;
 pub mod hello_xr;
 pub mod monado;
 pub mod ndk;

@@ -5,7 +5,7 @@ mod compile;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use yoro_tools::{console, hello_xr, monado, shader_cost};
+use yoro_tools::{console, godot, hello_xr, monado, shader_cost};
 
 /// Commands for maintainers of yoro
 #[derive(Parser)]
@@ -36,6 +36,8 @@ enum Task {
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
     HelloXr,
+    /// Set up Godot, a game engine, with Monado below target/, and print how to use it
+    Godot,
 }
 
 fn main() -> ExitCode {
@@ -54,6 +56,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Wgsl => (compile::wgsl()?, true),
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
+        Task::Godot => (godot::usage()?, true),
     };
     console::print(&text);
     Ok(passed)

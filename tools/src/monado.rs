@@ -19,7 +19,7 @@ const MONADO: [&str; 2] = ["monado-service=25.0.0+dfsg-2", "libopenxr1-monado=25
 /// Its drivers: lavapipe, and EGL for the application.
 const MESA: [&str; 5] = ["mesa-vulkan-drivers", "libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri"];
 /// Needed by nothing here, and large.
-const WITHOUT: [&str; 12] = [
+pub const WITHOUT: [&str; 12] = [
     "./usr/share/doc/*",
     "./usr/share/man/*",
     "./usr/share/locale/*",
@@ -119,13 +119,22 @@ pub fn run(root: &Path, first: &[PathBuf]) -> String {
 }
 
 fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
+    write_service(folder, root)?;
+    write_launcher(&folder.join("run"), &run(root, &[]))
+}
+
+/// Writes the launcher `monado-service` of the runtime in this root.
+///
+/// # Errors
+/// When the runtime is not there, or the launcher cannot be written.
+pub fn write_service(folder: &Path, root: &Path) -> anyhow::Result<()> {
     let usr = root.join("usr");
-    let linker = linker(root, &[]);
     let service = format!(
         "# Monado with a simulated headset, on the CPU and without a display.\n\
          export XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 XRT_NO_STDIN=1 VK_DRIVER_FILES={}\n\
-         exec {linker} {}\n",
+         exec {} {}\n",
         quoted(&usr.join("share/vulkan/icd.d/lvp_icd.json")),
+        linker(root, &[]),
         quoted(&usr.join("bin/monado-service")),
     );
     for file in [usr.join("bin/monado-service"), root.join(MANIFEST)] {
@@ -133,6 +142,5 @@ fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
             bail!("{} is not where Debian's packages have it", file.display());
         }
     }
-    write_launcher(&folder.join("monado-service"), &service)?;
-    write_launcher(&folder.join("run"), &run(root, &[]))
+    write_launcher(&folder.join("monado-service"), &service)
 }

@@ -1,7 +1,8 @@
 //! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`,
-//! `package`, `kit`, `web`. What maintainers run is in tools/.
+//! `package`, `kit`, `godot`, `web`. What maintainers run is in tools/.
 
 mod android;
+mod godot;
 mod kit;
 mod lint;
 mod package;
@@ -67,7 +68,8 @@ enum Task {
         /// The APK
         file: PathBuf,
     },
-    /// Pack the C library into target/package: with pkg-config and CMake files for Linux, as an AAR for Android
+    /// Pack the C library into target/package: with pkg-config and CMake files for Linux, as an AAR for
+    /// Android; the OpenXR layer for Android; the add-on for Godot
     Package {
         /// Make only these packages [default: all]
         #[arg(long = "target", value_name = "NAME", value_delimiter = ',')]
@@ -75,6 +77,11 @@ enum Task {
     },
     /// Write the shader kit into target/kit: synthesis for engines that want no library
     Kit,
+    /// The add-on for Godot: its project, its tests
+    Godot {
+        #[command(subcommand)]
+        task: godot::Task,
+    },
     /// Build the page, which shows every method in a browser's WebGL 2, as files for any static host
     Web {
         /// Then serve it to browsers on this machine and, by `adb reverse tcp:8080 tcp:8080`, on a phone or headset
@@ -134,6 +141,10 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Kit => {
             kit::kit()?;
         }
+        Task::Godot { task: godot::Task::Project } => {
+            godot::project()?;
+        }
+        Task::Godot { task: godot::Task::Test } => godot::test()?,
         Task::Web { serve, as_built, port, out } => {
             let folder = if as_built { web::built()? } else { web::build()? };
             if let Some(out) = out {

@@ -24,6 +24,34 @@ const APIS: [(&str, &str, Macros); 2] = [
     ("vulkan", "310 es", &[("UNIFORM_BLOCK", "layout(push_constant, std140)"), ("TEXTURE_GATHER", "")]),
 ];
 
+/// Vertex and fragment shader of each file for Godot, which has both in one, and its versions by name and macros.
+const GODOT: [(&str, &str, &str, Versions); 3] = [
+    (
+        "tiles.glsl",
+        "screen.vert",
+        "synthesis/gather/tiles.frag",
+        &[("every", &[]), ("short", &["SHORT_WAY"])],
+    ),
+    (
+        "spans.glsl",
+        "screen.vert",
+        "synthesis/gather/spans.frag",
+        &[("every", &[]), ("short", &["SHORT_WAY"])],
+    ),
+    (
+        "march.glsl",
+        "synthesis/march.vert",
+        "synthesis/gather/march.frag",
+        &[
+            ("every", &["WRITE_DEPTH"]),
+            ("short", &["WRITE_DEPTH", "SHORT_WAY"]),
+            ("every_map", &["WRITE_DEPTH", "SOURCE_MAP"]),
+            ("short_map", &["WRITE_DEPTH", "SHORT_WAY", "SOURCE_MAP"]),
+        ],
+    ),
+];
+type Versions = &'static [(&'static str, &'static [&'static str])];
+
 /// Writes all of them into a folder.
 ///
 /// # Errors
@@ -34,6 +62,10 @@ pub fn write(folder: &Path) -> io::Result<()> {
         for (name, source) in SHADERS {
             put(&folder.join(api).join(name), &shader(source, version, macros)?)?;
         }
+    }
+    fs::create_dir_all(folder.join("godot"))?;
+    for (name, vertex, fragment, versions) in GODOT {
+        put(&folder.join("godot").join(name), &godot(vertex, fragment, versions)?)?;
     }
     for (name, text) in [
         ("yoro_kit.h", include_str!("yoro_kit.h")),
@@ -84,6 +116,29 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
         own.push('\n');
     }
     Ok(own)
+}
+
+/// A file that Godot imports as RDShaderFile: the shaders for Vulkan between marks.
+fn godot(vertex: &str, fragment: &str, versions: Versions) -> io::Result<String> {
+    let [_, (_, version, macros)] = APIS;
+    let mut text = String::from("#[versions]\n");
+    for (name, defines) in versions {
+        let defines: Vec<String> = defines.iter().map(|name| format!("#define {name}")).collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name} = \"{}\";", defines.join("\\n"));
+    }
+    for (stage, source) in [("vertex", vertex), ("fragment", fragment)] {
+        let own = shader(source, version, macros)?;
+        let (first, rest) = own.split_once('\n').unwrap_or_default();
+        let rest: Vec<&str> = rest.lines().filter(|line| !is_setting(line)).collect();
+        let _ = write!(text, "\n#[{stage}]\n{first}\n#VERSION_DEFINES\n{}\n", rest.join("\n"));
+    }
+    Ok(text)
+}
+
+/// True for the lines by which a shader tells its settings, which are versions in Godot.
+fn is_setting(line: &str) -> bool {
+    line == "//" || line == "// Settings:" || line.starts_with("// #define ")
 }
 
 /// The block's members.

@@ -267,3 +267,36 @@ fn the_kits_shaders_for_vulkan_compile() {
         }
     }
 }
+
+/// Both stages of Godot's files, in every version, as Godot takes them apart.
+#[test]
+fn the_kits_shaders_for_godot_compile() {
+    const COMPILER: &str = "glslangValidator";
+    let kit = tempfile::tempdir().unwrap();
+    kit::write(kit.path()).unwrap();
+    let mut count = 0;
+    for name in ["tiles", "spans", "march"] {
+        let text = std::fs::read_to_string(kit.path().join(format!("godot/{name}.glsl"))).unwrap();
+        let (versions, stages) = text.split_once("\n#[vertex]\n").unwrap();
+        let (vertex, fragment) = stages.split_once("\n#[fragment]\n").unwrap();
+        for line in versions.lines().skip(1) {
+            let (version, defines) = line.split_once(" = \"").unwrap();
+            let defines = defines.strip_suffix("\";").unwrap().replace("\\n", "\n");
+            for (stage, text) in [("vert", vertex), ("frag", fragment)] {
+                assert_eq!(text.matches("#VERSION_DEFINES\n").count(), 1, "{name} {stage}");
+                assert!(!text.contains("// #define "), "{name} {stage}");
+                count += 1;
+                if is_here(COMPILER) {
+                    let file = kit.path().join(format!("{name}-{version}.{stage}"));
+                    std::fs::write(&file, text.replace("#VERSION_DEFINES", &defines)).unwrap();
+                    let mut command = Command::new(COMPILER);
+                    run(command.args(["-V", "-o"]).arg(kit.path().join("compiled")).arg(file));
+                }
+            }
+        }
+    }
+    assert_eq!(count, 16);
+    if !is_here(COMPILER) {
+        println!("SKIPPED: {COMPILER} is not here");
+    }
+}

@@ -1,6 +1,8 @@
-//! Packages for other people's builds: the C library for Linux and Android, and the OpenXR API layer for Android.
+//! Packages for other people's builds: the C library for Linux and Android, the OpenXR API layer for Android, and the add-on
+//! for Godot.
 
 mod android;
+mod godot;
 mod layer;
 mod linux;
 mod portable;
@@ -32,6 +34,8 @@ pub enum Target {
     Android,
     /// The OpenXR API layer for Android on arm64 and x86_64, an AAR
     AndroidLayer,
+    /// The add-on for Godot, a zip
+    Godot,
 }
 
 /// Makes packages, or all of them when none is named; where they are.
@@ -47,6 +51,7 @@ pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
         Target::LinuxAarch64 => linux::aarch64(&folder),
         Target::Android => android::aar(&folder),
         Target::AndroidLayer => layer::aar(&folder),
+        Target::Godot => godot::zip(&folder),
     };
     targets.iter().map(make).collect()
 }

@@ -1,0 +1,280 @@
+## An [XRCamera3D] that renders one eye, and synthesizes the other from its colour and depth.
+##
+## Put it in place of the [XRCamera3D] below the [XROrigin3D]. The whole scene is drawn once, for [member dominant_eye], a little
+## wider than it is shown. Only what is on [member stereo_layers] is drawn for both eyes by Godot, tested against the depth
+## of either eye: transparent objects, hands, interfaces.[br][br]
+## It needs one of the Vulkan renderers, Mobile or Forward+. Elsewhere, and for eyes that cannot be synthesized, it is an
+## [XRCamera3D] like any other: [method trouble] says why.
+@tool
+@icon("icon.svg")
+class_name YoroCamera3D
+extends XRCamera3D
+
+enum Mode {
+	ONE_VIEW, ## One eye is rendered, the other one synthesized.
+	BOTH_VIEWS, ## Godot renders both eyes, as without this add-on.
+	SAME_IMAGE, ## The rendered eye is shown to both eyes: for comparison.
+}
+enum Eye {
+	LEFT, ## The left eye.
+	RIGHT, ## The right eye.
+}
+enum DebugView {
+	NONE, ## The eyes as they are.
+	HOLES, ## What the rendered eye does not see, and is invented, in magenta.
+	DISPARITY, ## How far surfaces move between the eyes: white is a tenth of the image's width.
+	MADE_EYE, ## The synthesized eye's image to both eyes.
+}
+
+## What is different where both eyes are shown: the sky and screen-space light are the rendered eye's.
+const SHOWN_EXCEPT := {
+	background_mode = Environment.BG_COLOR, ssao_enabled = false, ssil_enabled = false, ssr_enabled = false, sdfgi_enabled = false,
+}
+## A script sees the last frame's eyes, and those of this frame may differ by rounding.
+const _PARALLEL := 1e-3
+
+## How the eyes are made. Can be changed at any time.
+@export var mode := Mode.ONE_VIEW
+## The eye that is rendered; the other one is synthesized. People look more closely with one of their eyes, mostly the right one.
+@export var dominant_eye := Eye.RIGHT
+## From this distance on, in metres, nothing is missing at the outer border of the synthesized eye. The nearer, the wider is
+## the image that is rendered: by 4 to 14 % at 1 m. 0 is no band.
+@export_range(0.0, 10.0, 0.05, "or_greater", "suffix:m") var guard_band := 1.0
+## The distance between the eyes, as a share of the headset's: 0 shows the same image to both. Things on [member stereo_layers]
+## keep the headset's in XR.
+@export_range(0.0, 2.0, 0.01) var ipd_scale := 1.0
+## What is on these layers Godot draws for both eyes. Everything else is drawn once and moved, transparent things with what lies
+## behind them. Lights must be on these layers, too, or things there are dark: the editor's yoro menu marks both.
+@export_flags_3d_render var stereo_layers := 1 << 19:
+	set(value):
+		stereo_layers = value
+		update_configuration_warnings()
+## Shows what the synthesis does.
+@export var debug_view := DebugView.NONE
+## Shows both eyes side by side when there is no headset.
+@export var preview_without_headset := false
+
+var _passes: YoroPasses
+var _eye: YoroEye
+var _put: YoroPut
+var _latch: YoroLatch
+var _first: SubViewport
+var _preview: CanvasLayer
+var _environment := YoroEnvironment.new(SHOWN_EXCEPT)
+var _compositor := Compositor.new()
+var _world_effects: Array[CompositorEffect] = []
+var _trouble := ""
+var _takes_part := false
+
+
+## Returns why Godot renders both eyes although [member mode] is another, in one sentence; empty if it does not.
+func trouble() -> String:
+	return _trouble
+
+
+## Returns the environment that both eyes are drawn with.
+func shown_environment() -> Environment:
+	return environment if environment != null or get_world_3d() == null else get_world_3d().environment
+
+
+## Returns the effects of the scene that are drawn after transparent objects, thus on both eyes, or those before.
+func effects(after_transparent: bool) -> Array[CompositorEffect]:
+	var all := _world_effects if compositor == null else compositor.compositor_effects
+	var of_kind: Array[CompositorEffect] = []
+	for effect in all:
+		if effect != null and (effect.effect_callback_type == CompositorEffect.EFFECT_CALLBACK_TYPE_POST_TRANSPARENT) == after_transparent:
+			of_kind.append(effect)
+	return of_kind
+
+
+## Returns the synthesis in use, or null.
+func synthesis() -> YoroSynthesis:
+	if _preview != null:
+		return (_preview.get_child(0) as YoroPreview).source.synthesis
+	return _eye.synthesis if _eye != null else null
+
+
+## Returns the viewport of the rendered eye, or null before the first frame with a headset.
+func source_viewport() -> SubViewport:
+	return _eye
+
+
+## Returns the preview, while there is one.
+func preview() -> YoroPreview:
+	return _preview.get_child(0) if _preview != null else null
+
+
+func _ready() -> void:
+	# After the scripts that move things.
+	process_priority = 1000
+	if Engine.is_editor_hint():
+		return
+	for node: WorldEnvironment in get_tree().root.find_children("*", "WorldEnvironment", true, false):
+		if node.compositor != null:
+			_world_effects = node.compositor.compositor_effects
+	if RenderingServer.get_rendering_device() == null:
+		_refuse("the Compatibility renderer has no effects: choose Mobile or Forward+")
+
+
+func _exit_tree() -> void:
+	if not Engine.is_editor_hint():
+		_step_back()
+
+
+func _process(_delta: float) -> void:
+	if Engine.is_editor_hint() or RenderingServer.get_rendering_device() == null:
+		return
+	var viewport := get_viewport()
+	var interface := XRServer.primary_interface
+	var in_xr := viewport.use_xr and interface != null and interface.is_initialized()
+	_show_preview(preview_without_headset and not in_xr)
+	if not in_xr or mode == Mode.BOTH_VIEWS or viewport.get_camera_3d() != self:
+		_refuse("")
+		return
+	if interface is OpenXRInterface and not _is_shown(interface):
+		# Nobody sees anything: the session is paused.
+		if _eye != null:
+			_eye.rest()
+		return
+	if _eye == null:
+		_make()
+	_draw(interface, viewport)
+
+
+func _is_shown(interface: OpenXRInterface) -> bool:
+	if not interface.has_method(&"get_session_state"):
+		return true
+	return interface.get_session_state() >= OpenXRInterface.SESSION_STATE_VISIBLE
+
+
+## Makes everything that is drawn before the viewport with the headset.
+func _make() -> void:
+	_passes = YoroPasses.new()
+	_eye = YoroEye.new(_passes)
+	_put = YoroPut.new(_eye.synthesis)
+	_latch = YoroLatch.new()
+	_latch.camera = _eye.camera.get_camera_rid()
+	_first = SubViewport.new()
+	_first.size = Vector2i(2, 2)
+	_first.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	var nothing := Camera3D.new()
+	nothing.cull_mask = 0
+	nothing.environment = Environment.new()
+	nothing.compositor = Compositor.new()
+	nothing.compositor.compositor_effects = [_latch]
+	_first.add_child(nothing)
+	# Viewports beside each other are drawn in this order, and before the one that they are in.
+	add_child(_first, false, Node.INTERNAL_MODE_FRONT)
+	add_child(_eye, false, Node.INTERNAL_MODE_FRONT)
+
+
+func _draw(interface: XRInterface, viewport: Viewport) -> void:
+	var pixels := Vector2i(interface.get_render_target_size() * viewport.scaling_3d_scale)
+	var frusta: Array = []
+	var at: Array[Transform3D] = []
+	for view in 2:
+		frusta.append(YoroViews.tangents(interface.get_projection_for_view(view, float(pixels.x) / maxi(pixels.y, 1), near, far)))
+		at.append(interface.get_transform_for_view(view, XRServer.world_origin))
+	var other := at[0].affine_inverse() * at[1]
+	var ipd := other.origin.length()
+	if pixels.x < 1 or pixels.y < 1 or interface.get_view_count() < 2:
+		return
+	if not other.basis.is_equal_approx(Basis.IDENTITY) and other.basis.get_rotation_quaternion().get_angle() > _PARALLEL:
+		_refuse("the headset's displays are turned against each other")
+		return
+	if absf(other.origin.y) + absf(other.origin.z) > 0.05 * ipd:
+		_refuse("the headset's eyes do not lie on a horizontal line")
+		return
+	# Godot's cameras have square pixels, a headset's need not be: as fine as the finer side of the headset's, so that one side
+	# is not resampled, and up to one more than covers the eye.
+	var first: Array = frusta[0]
+	var extent := Vector2(first[1] - first[0], first[2] - first[3])
+	var pitches := extent / Vector2(pixels)
+	var pitch := minf(pitches.x, pitches.y)
+	var eye := Vector2i(ceili(extent.x / pitch - 1e-3), ceili(extent.y / pitch - 1e-3))
+	for frustum: Array in frusta:
+		frustum[1] = frustum[0] + eye.x * pitch
+		frustum[3] = frustum[2] - eye.y * pitch
+	var views := YoroViews.of(frusta, ipd * ipd_scale, near, far, dominant_eye, eye, guard_band)
+	if views == null:
+		_refuse("the eyes' fields of view differ in size, or near objects move too far: increase near")
+		return
+	_trouble = ""
+	_put.covered = extent / (Vector2(eye) * pitch)
+	_put.debug_view = debug_view
+	_put.same_image = mode == Mode.SAME_IMAGE
+	_eye.synthesis.map = debug_view == DebugView.HOLES
+	_latch.interface = interface
+	_latch.rendered = dominant_eye
+	_eye.follow(self, viewport, effects(false))
+	_eye.draw(views, at[dominant_eye], near, far)
+	_take_part()
+
+
+## Tells the renderer what this camera draws itself. The properties stay what they are: they are the user's.
+func _take_part() -> void:
+	_environment.follow(shown_environment())
+	var wanted := effects(true)
+	wanted.push_front(_put)
+	if _compositor.compositor_effects != wanted:
+		_compositor.compositor_effects = wanted
+	var camera := get_camera_rid()
+	RenderingServer.camera_set_cull_mask(camera, cull_mask & stereo_layers)
+	RenderingServer.camera_set_environment(camera, _environment.copy.get_rid() if _environment.copy != null else RID())
+	RenderingServer.camera_set_compositor(camera, _compositor.get_rid())
+	_first.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	_takes_part = true
+
+
+## Lets Godot render both eyes, because of [param reason].
+func _refuse(reason: String) -> void:
+	if reason != "" and reason != _trouble:
+		push_warning("YoroCamera3D: Godot renders both eyes, since %s." % reason)
+	_trouble = reason
+	_step_back()
+
+
+func _step_back() -> void:
+	if not _takes_part:
+		return
+	_takes_part = false
+	_eye.rest()
+	_first.render_target_update_mode = SubViewport.UPDATE_DISABLED
+	var camera := get_camera_rid()
+	RenderingServer.camera_set_cull_mask(camera, cull_mask)
+	RenderingServer.camera_set_environment(camera, environment.get_rid() if environment != null else RID())
+	RenderingServer.camera_set_compositor(camera, compositor.get_rid() if compositor != null else RID())
+
+
+func _show_preview(shown: bool) -> void:
+	if shown == (_preview != null):
+		return
+	# Nothing is drawn behind the preview.
+	get_viewport().disable_3d = shown
+	if _preview != null:
+		_preview.queue_free()
+		_preview = null
+		return
+	_preview = CanvasLayer.new()
+	_preview.layer = -128
+	var eyes := YoroPreview.new(self)
+	eyes.set_anchors_preset(Control.PRESET_FULL_RECT)
+	_preview.add_child(eyes)
+	add_child(_preview, false, Node.INTERNAL_MODE_FRONT)
+
+
+func _get_configuration_warnings() -> PackedStringArray:
+	var warnings := PackedStringArray()
+	if RenderingServer.get_current_rendering_method() == "gl_compatibility":
+		warnings.append("The Compatibility renderer has no compositor effects: Godot renders both eyes. Choose Mobile or Forward+.")
+	if ProjectSettings.get_setting("rendering/anti_aliasing/quality/use_taa", false):
+		warnings.append("Temporal anti-aliasing needs motion vectors, which the synthesized eye does not have: use MSAA.")
+	if ProjectSettings.get_setting("rendering/driver/threads/thread_model", 1) == 2:
+		warnings.append("Rendering on a separate thread was not tried with this add-on: set Rendering > Driver > Thread Model to Safe.")
+	for effect in effects(true):
+		if effect.needs_normal_roughness or effect.needs_separate_specular or effect.needs_motion_vectors:
+			warnings.append("An effect after transparent objects reads normals, specular light or motion: it gets those of things on the stereo layers only.")
+			break
+	if is_inside_tree() and Engine.is_editor_hint():
+		warnings.append_array(YoroMarks.warnings(get_tree().edited_scene_root, stereo_layers))
+	return warnings

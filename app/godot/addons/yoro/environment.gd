@@ -1,0 +1,52 @@
+## A copy of an environment that follows it, but for some properties.
+@tool
+class_name YoroEnvironment
+extends RefCounted
+
+## Properties that are compared in a frame: all of them within a tenth of a second.
+const _EACH_FRAME := 12
+
+## The copy; null where there is nothing to copy.
+var copy: Environment
+
+var _of: Environment
+var _except: Dictionary
+var _names: PackedStringArray
+var _next := 0
+
+
+func _init(except: Dictionary) -> void:
+	_except = except
+	for property in ClassDB.class_get_property_list(&"Environment", true):
+		if property.usage & PROPERTY_USAGE_STORAGE and not except.has(property.name):
+			_names.append(property.name)
+
+
+## To be called in each frame.
+func follow(environment: Environment) -> void:
+	if environment != _of:
+		_of = environment
+		copy = environment.duplicate() if environment != null else null
+		if copy != null:
+			for name: String in _except:
+				copy.set(name, _except[name])
+			if _except.has("background_mode"):
+				_keep_light()
+	if copy == null:
+		return
+	for i in _EACH_FRAME:
+		var name := _names[_next]
+		_next = (_next + 1) % _names.size()
+		if copy.get(name) != _of.get(name):
+			copy.set(name, _of.get(name))
+			if _except.has("background_mode"):
+				_keep_light()
+
+
+## Light that comes from the background keeps coming from it.
+func _keep_light() -> void:
+	if _of.background_mode == Environment.BG_SKY:
+		if _of.ambient_light_source == Environment.AMBIENT_SOURCE_BG:
+			copy.ambient_light_source = Environment.AMBIENT_SOURCE_SKY
+		if _of.reflected_light_source == Environment.REFLECTION_SOURCE_BG:
+			copy.reflected_light_source = Environment.REFLECTION_SOURCE_SKY

@@ -1,0 +1,62 @@
+## The viewport of the rendered eye, with the synthesis of the other one.
+@tool
+class_name YoroEye
+extends SubViewport
+
+## Done once, for both eyes, where these are shown.
+const _LATER := {glow_enabled = false, adjustment_enabled = false, tonemap_mode = Environment.TONE_MAPPER_LINEAR}
+## Settings of the viewport that is shown which concern how things are drawn.
+const _SHARED: PackedStringArray = [
+	"msaa_3d", "use_occlusion_culling", "mesh_lod_threshold", "positional_shadow_atlas_size", "positional_shadow_atlas_16_bits",
+	"positional_shadow_atlas_quad_0", "positional_shadow_atlas_quad_1", "positional_shadow_atlas_quad_2",
+	"positional_shadow_atlas_quad_3", "anisotropic_filtering_level", "texture_mipmap_bias",
+]
+
+var camera := Camera3D.new()
+var synthesis: YoroSynthesis
+var _environment := YoroEnvironment.new(_LATER)
+var _effects: Array[CompositorEffect] = []
+
+
+func _init(passes: YoroPasses) -> void:
+	synthesis = YoroSynthesis.new(passes)
+	gui_disable_input = true
+	camera.keep_aspect = Camera3D.KEEP_HEIGHT
+	camera.compositor = Compositor.new()
+	camera.current = true
+	add_child(camera)
+
+
+## Takes over how the camera [param like] draws, but for what Godot draws for both eyes, and how [param shown] is drawn to.
+## [param effects] are drawn before the synthesis.
+func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect]) -> void:
+	for name in _SHARED:
+		if get(name) != shown.get(name):
+			set(name, shown.get(name))
+	if world_3d != like.get_world_3d():
+		world_3d = like.get_world_3d()
+	_environment.follow(like.shown_environment())
+	camera.environment = _environment.copy
+	camera.attributes = like.attributes
+	camera.cull_mask = like.cull_mask & ~like.stereo_layers
+	if effects != _effects or camera.compositor.compositor_effects.is_empty():
+		_effects = effects.duplicate()
+		var all := _effects.duplicate()
+		all.append(synthesis)
+		camera.compositor.compositor_effects = all
+
+
+## Draws [param views] from [param at] in this frame.
+func draw(views: YoroViews, at: Transform3D, near: float, far: float) -> void:
+	if size != views.size:
+		size = views.size
+	synthesis.views = views
+	var f := views.frustum
+	camera.set_frustum((f[2] - f[3]) * near, Vector2(f[0] + f[1], f[2] + f[3]) * 0.5 * near, near, far)
+	camera.global_transform = at
+	render_target_update_mode = SubViewport.UPDATE_ALWAYS
+
+
+## Draws nothing.
+func rest() -> void:
+	render_target_update_mode = SubViewport.UPDATE_DISABLED

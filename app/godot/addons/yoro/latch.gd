@@ -1,0 +1,18 @@
+## Places the rendered eye's camera when a frame is drawn. OpenXR locates the eyes anew after all scripts have run, so that what
+## they see is the last frame's. It is set for the camera of a tiny viewport that is drawn before the eye's.
+@tool
+class_name YoroLatch
+extends CompositorEffect
+
+var interface: XRInterface
+var camera: RID
+var rendered := 1
+
+
+func _init() -> void:
+	effect_callback_type = EFFECT_CALLBACK_TYPE_PRE_OPAQUE
+
+
+func _render_callback(_type: int, _data: RenderData) -> void:
+	if interface != null and interface.is_initialized():
+		RenderingServer.camera_set_transform(camera, interface.get_transform_for_view(rendered, XRServer.world_origin))

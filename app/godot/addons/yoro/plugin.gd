@@ -1,0 +1,113 @@
+## The editor's side: a menu above the 3D view, and a preview of both eyes.
+@tool
+extends EditorPlugin
+
+enum _Item { REPLACE, MARK, PREVIEW }
+
+var _menu := MenuButton.new()
+var _preview: YoroPreview
+
+
+func _enter_tree() -> void:
+	_menu.text = "yoro"
+	_menu.icon = preload("icon.svg")
+	_menu.tooltip_text = "One rendered eye, one synthesized."
+	var popup := _menu.get_popup()
+	popup.add_item("Put YoroCamera3D in Place of XRCamera3D", _Item.REPLACE)
+	popup.add_item("Draw Transparent Things for Both Eyes", _Item.MARK)
+	popup.add_check_item("Preview Both Eyes", _Item.PREVIEW)
+	popup.set_item_tooltip(_Item.MARK, "Puts transparent things, all lights and reflection probes onto the camera's stereo layers.")
+	popup.id_pressed.connect(_choose)
+	add_control_to_container(CONTAINER_SPATIAL_EDITOR_MENU, _menu)
+
+
+func _exit_tree() -> void:
+	_show_preview(false)
+	remove_control_from_container(CONTAINER_SPATIAL_EDITOR_MENU, _menu)
+	_menu.queue_free()
+
+
+func _choose(id: int) -> void:
+	var scene := EditorInterface.get_edited_scene_root()
+	match id:
+		_Item.REPLACE:
+			for camera: XRCamera3D in _cameras(scene):
+				if not camera is YoroCamera3D:
+					replace(camera)
+					return
+			_say("This scene has no XRCamera3D to replace.")
+		_Item.MARK:
+			var camera := _camera(scene)
+			if camera == null:
+				_say("This scene has no YoroCamera3D.")
+			else:
+				mark(scene, camera)
+		_Item.PREVIEW:
+			_show_preview(_preview == null)
+
+
+## Puts a YoroCamera3D in place of a camera, by its script: name, children and properties stay.
+func replace(camera: XRCamera3D) -> void:
+	var undo := get_undo_redo()
+	undo.create_action("Put YoroCamera3D in Place of XRCamera3D", UndoRedo.MERGE_DISABLE, camera)
+	undo.add_do_method(camera, &"set_script", load("res://addons/yoro/camera.gd"))
+	undo.add_undo_method(camera, &"set_script", camera.get_script())
+	undo.commit_action()
+	camera.update_configuration_warnings()
+
+
+## Puts transparent things and lights onto the stereo layers.
+func mark(scene: Node, camera: YoroCamera3D) -> void:
+	var undo := get_undo_redo()
+	undo.create_action("Draw Transparent Things for Both Eyes", UndoRedo.MERGE_DISABLE, scene)
+	for thing in YoroMarks.transparent(scene):
+		undo.add_do_property(thing, &"layers", camera.stereo_layers)
+		undo.add_undo_property(thing, &"layers", thing.layers)
+	for light in YoroMarks.lights(scene):
+		undo.add_do_property(light, &"layers", light.layers | camera.stereo_layers)
+		undo.add_undo_property(light, &"layers", light.layers)
+	undo.commit_action()
+	camera.update_configuration_warnings()
+
+
+func _process(_delta: float) -> void:
+	if _preview != null:
+		_preview.camera = _camera(EditorInterface.get_edited_scene_root())
+
+
+func _show_preview(shown: bool) -> void:
+	if shown == (_preview != null):
+		return
+	_menu.get_popup().set_item_checked(_Item.PREVIEW, shown)
+	if not shown:
+		remove_control_from_bottom_panel(_preview)
+		_preview.queue_free()
+		_preview = null
+		return
+	var camera := _camera(EditorInterface.get_edited_scene_root())
+	_preview = YoroPreview.new(camera)
+	_preview.custom_minimum_size = Vector2(0, 240)
+	add_control_to_bottom_panel(_preview, "yoro")
+	make_bottom_panel_item_visible(_preview)
+	if camera == null:
+		_say("This scene has no YoroCamera3D yet.")
+
+
+func _cameras(scene: Node) -> Array[Node]:
+	if scene == null:
+		return []
+	var found := scene.find_children("*", "XRCamera3D", true, false)
+	if scene is XRCamera3D:
+		found.push_front(scene)
+	return found
+
+
+func _camera(scene: Node) -> YoroCamera3D:
+	for camera in _cameras(scene):
+		if camera is YoroCamera3D:
+			return camera
+	return null
+
+
+func _say(sentence: String) -> void:
+	EditorInterface.get_editor_toaster().push_toast(sentence)

@@ -1,0 +1,87 @@
+## Both eyes of a [YoroCamera3D] side by side, without a headset: in the editor and on a screen.
+@tool
+class_name YoroPreview
+extends HBoxContainer
+
+## Metres between the eyes.
+const IPD := 0.063
+
+var camera: YoroCamera3D
+## The left eye's and the right eye's image.
+var eyes: Array[SubViewport] = []
+var source: YoroEye
+var _cameras: Array[Camera3D] = []
+var _puts: Array[YoroPut] = []
+var _environment := YoroEnvironment.new(YoroCamera3D.SHOWN_EXCEPT)
+
+
+func _init(of: YoroCamera3D) -> void:
+	camera = of
+	add_theme_constant_override("separation", 0)
+	# Viewports beside each other are drawn in this order: the source first.
+	source = YoroEye.new(YoroPasses.new())
+	add_child(source)
+	for eye in 2:
+		var viewport := SubViewport.new()
+		viewport.gui_disable_input = true
+		viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+		var shown := Camera3D.new()
+		var put := YoroPut.new(source.synthesis)
+		put.eye = eye
+		shown.compositor = Compositor.new()
+		viewport.add_child(shown)
+		add_child(viewport)
+		eyes.append(viewport)
+		_cameras.append(shown)
+		_puts.append(put)
+		var picture := TextureRect.new()
+		picture.texture = viewport.get_texture()
+		picture.expand_mode = TextureRect.EXPAND_IGNORE_SIZE
+		picture.stretch_mode = TextureRect.STRETCH_KEEP_ASPECT_CENTERED
+		picture.size_flags_horizontal = Control.SIZE_EXPAND_FILL
+		picture.size_flags_vertical = Control.SIZE_EXPAND_FILL
+		add_child(picture)
+
+
+func _process(_delta: float) -> void:
+	if not is_instance_valid(camera) or not camera.is_inside_tree() or not is_visible_in_tree():
+		source.rest()
+		return
+	var eye := Vector2i(maxi(int(size.x / 2.0), 16), maxi(int(size.y), 16))
+	var ipd := IPD * camera.ipd_scale
+	var up := tan(deg_to_rad(camera.fov) / 2.0)
+	var across := up * eye.x / eye.y
+	var frustum: Array[float] = [-across, across, up, -up]
+	var views := YoroViews.of([frustum, frustum], ipd, camera.near, camera.far, camera.dominant_eye, eye, camera.guard_band)
+	var both := views == null or camera.mode == YoroCamera3D.Mode.BOTH_VIEWS
+	_environment.follow(camera.shown_environment())
+	var effects := camera.effects(false)
+	for i in 2:
+		var shown := _cameras[i]
+		if eyes[i].size != eye:
+			eyes[i].size = eye
+		if eyes[i].world_3d != camera.get_world_3d():
+			eyes[i].world_3d = camera.get_world_3d()
+		for name in YoroEye._SHARED:
+			if eyes[i].get(name) != camera.get_viewport().get(name):
+				eyes[i].set(name, camera.get_viewport().get(name))
+		shown.set_perspective(camera.fov, camera.near, camera.far)
+		shown.global_transform = camera.global_transform * Transform3D(Basis(), Vector3((i - 0.5) * ipd, 0.0, 0.0))
+		shown.attributes = camera.attributes
+		shown.cull_mask = camera.cull_mask if both else camera.cull_mask & camera.stereo_layers
+		shown.environment = camera.shown_environment() if both else _environment.copy
+		var wanted: Array[CompositorEffect] = camera.effects(true)
+		if both:
+			wanted = effects + wanted
+		else:
+			wanted.push_front(_puts[i])
+			_puts[i].debug_view = camera.debug_view
+			_puts[i].same_image = camera.mode == YoroCamera3D.Mode.SAME_IMAGE
+		if shown.compositor.compositor_effects != wanted:
+			shown.compositor.compositor_effects = wanted
+	if both:
+		source.rest()
+		return
+	source.synthesis.map = camera.debug_view == YoroCamera3D.DebugView.HOLES
+	source.follow(camera, eyes[0], effects)
+	source.draw(views, _cameras[camera.dominant_eye].global_transform, camera.near, camera.far)

@@ -1,0 +1,84 @@
+## Makes the other eye of colour and depth of the camera that it is set for, after everything that the camera draws.
+@tool
+class_name YoroSynthesis
+extends CompositorEffect
+
+## Synthesizes by the way that is made for GPUs; the other one is for processors. Both give the same picture.
+var short_way := true
+## Also makes [member source_map], by which holes are known.
+var map := false
+## The eyes of the frame; to be set before it is drawn.
+var views: YoroViews
+var passes: YoroPasses
+## The rendered eye as it was drawn, of [member YoroViews.size], and the other one, of [member YoroViews.eye_size].
+var rendered_color: RID
+var rendered_depth: RID
+var made_color: RID
+var made_depth: RID
+var source_map: RID
+## Of the camera, when it was drawn.
+var pose: Transform3D
+## True if the textures are of a frame that was drawn with [member views].
+var ready := false
+
+var _tiles: RID
+var _spans: RID
+var _nearest: RID
+var _made_for: Array = []
+
+
+func _init(with: YoroPasses) -> void:
+	passes = with
+	effect_callback_type = EFFECT_CALLBACK_TYPE_POST_TRANSPARENT
+	access_resolved_color = true
+
+
+func _notification(what: int) -> void:
+	if what == NOTIFICATION_PREDELETE and passes != null:
+		# An object that goes can no longer call its own functions.
+		YoroPasses.free_all(passes.device, [made_color, made_depth, source_map, _tiles, _spans, _nearest])
+
+
+## Textures follow the sizes, which change when the viewport's do.
+func _allocate(format: RenderingDevice.DataFormat, multisampled: bool) -> void:
+	var want := [views.size, views.eye_size, format, multisampled, map]
+	if want == _made_for:
+		return
+	YoroPasses.free_all(passes.device, [made_color, made_depth, source_map, _tiles, _spans, _nearest])
+	_made_for = want
+	_tiles = passes.texture(views.tile_map, RenderingDevice.DATA_FORMAT_R32G32B32A32_UINT)
+	_spans = passes.texture(views.span_map, RenderingDevice.DATA_FORMAT_R32G32B32A32_UINT)
+	made_color = passes.texture(views.eye_size, format)
+	made_depth = passes.texture(views.eye_size, RenderingDevice.DATA_FORMAT_D32_SFLOAT)
+	_nearest = passes.texture(views.size, RenderingDevice.DATA_FORMAT_R32_SFLOAT) if multisampled else RID()
+	source_map = passes.texture(views.eye_size, RenderingDevice.DATA_FORMAT_R32_UINT) if map else RID()
+
+
+func _render_callback(_type: int, data: RenderData) -> void:
+	var buffers := data.get_render_scene_buffers() as RenderSceneBuffersRD
+	ready = buffers != null and views != null and buffers.get_internal_size() == views.size
+	if not ready:
+		return
+	pose = data.get_render_scene_data().get_cam_transform()
+	rendered_color = buffers.get_texture_slice("render_buffers", "color", 0, 0, 1, 1)
+	rendered_depth = buffers.get_depth_layer(0, false)
+	var multisampled := buffers.get_msaa_3d() != RenderingServer.VIEWPORT_MSAA_DISABLED
+	_allocate(passes.device.texture_get_format(rendered_color).format, multisampled)
+	passes.device.draw_command_begin_label("yoro", Color.WHITE)
+	if multisampled:
+		# Colour is resolved, and depth to be the nearest of the samples: averages belong to no surface.
+		var samples := buffers.get_depth_layer(0, true)
+		var push := PackedByteArray()
+		push.resize(16)
+		push.encode_s32(0, 1 << passes.device.texture_get_format(samples).samples)
+		passes.draw("nearest", [_nearest], [samples], push)
+		rendered_depth = _nearest
+	var way := "short" if short_way else "every"
+	passes.draw("tiles_" + way, [_tiles], [rendered_depth, rendered_color], views.uniforms)
+	passes.draw("spans_" + way, [_spans], [rendered_depth, rendered_color, _tiles], views.uniforms)
+	var targets: Array[RID] = [made_color, made_depth]
+	if map:
+		targets.insert(1, source_map)
+	passes.draw("march_" + way + ("_map" if map else ""), targets, [rendered_depth, rendered_color, _tiles, _spans],
+			views.uniforms, RenderingDevice.COMPARE_OP_ALWAYS)
+	passes.device.draw_command_end_label()

@@ -1,0 +1,130 @@
+## The demo on an OpenXR runtime whose head is held still: pictures of both eyes, one rendered and both, into `out=FOLDER`.
+extends Node
+
+@onready var camera: YoroCamera3D = $Demo/XROrigin3D/YoroCamera3D
+@onready var room: DemoRoom = $Demo/Room
+var out := ""
+## How many of them the run has, at least.
+var frames := 100
+var look := Look.new()
+
+
+## Holds the head: the headset is located anew after all scripts have run, so this is drawn before everything else.
+class Hold:
+	extends CompositorEffect
+	var at: Transform3D
+
+	func _init() -> void:
+		effect_callback_type = EFFECT_CALLBACK_TYPE_PRE_OPAQUE
+
+	func _render_callback(_type: int, _data: RenderData) -> void:
+		var interface := XRServer.primary_interface
+		var left := interface.get_transform_for_view(0, Transform3D.IDENTITY)
+		var right := interface.get_transform_for_view(1, Transform3D.IDENTITY)
+		XRServer.world_origin = at * Transform3D(left.basis, (left.origin + right.origin) / 2.0).affine_inverse()
+
+
+## Copies what both eyes are shown, before tone mapping, and compares the pose that was rendered with the one that is shown.
+class Look:
+	extends CompositorEffect
+	var synthesis: YoroSynthesis
+	var wanted := false
+	var pictures: Array[Image] = []
+	var radians := 0.0
+	var metres := 0.0
+	var frames := 0
+
+	func _init() -> void:
+		effect_callback_type = EFFECT_CALLBACK_TYPE_POST_TRANSPARENT
+
+	func _render_callback(_type: int, data: RenderData) -> void:
+		frames += 1
+		var buffers := data.get_render_scene_buffers() as RenderSceneBuffersRD
+		if synthesis != null and synthesis.ready:
+			var scene := data.get_render_scene_data()
+			var eye := scene.get_cam_transform().translated_local(scene.get_view_eye_offset(synthesis.views.rendered))
+			radians = maxf(radians, (eye.basis.inverse() * synthesis.pose.basis).get_rotation_quaternion().get_angle())
+			metres = maxf(metres, eye.origin.distance_to(synthesis.pose.origin))
+		if not wanted or synthesis == null:
+			return
+		wanted = false
+		pictures = []
+		var passes := synthesis.passes
+		if not passes._shaders.has("look"):
+			passes._shaders["look"] = passes.device.shader_create_from_spirv(preload("look.glsl").get_spirv())
+		var push := PackedByteArray()
+		push.resize(16)
+		push.encode_float(0, 2.0 if RenderingServer.get_current_rendering_method() == "mobile" else 1.0)
+		var size := buffers.get_internal_size()
+		for view in buffers.get_view_count():
+			# The buffers themselves cannot be copied from. They are linear, and encoded as they are written here.
+			var copy := passes.texture(size, RenderingDevice.DATA_FORMAT_R8G8B8A8_SRGB)
+			passes.draw("look", [copy], [buffers.get_texture_slice("render_buffers", "color", view, 0, 1, 1)], push)
+			pictures.append(Image.create_from_data(size.x, size.y, false, Image.FORMAT_RGBA8, passes.device.texture_get_data(copy, 0)))
+			YoroPasses.free_all(passes.device, [copy])
+
+
+func _ready() -> void:
+	for argument in OS.get_cmdline_user_args():
+		out = argument.trim_prefix("out=") if argument.begins_with("out=") else out
+		frames = int(argument.trim_prefix("frames=")) if argument.begins_with("frames=") else frames
+	var interface: OpenXRInterface = XRServer.primary_interface as OpenXRInterface
+	if interface == null or not interface.is_initialized():
+		print("fact runtime false")
+		get_tree().quit(1)
+		return
+	interface.render_target_size_multiplier = 2.0
+	var first := SubViewport.new()
+	first.size = Vector2i(2, 2)
+	first.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	var holder := Camera3D.new()
+	var hold := Hold.new()
+	hold.at = Transform3D(Basis(), Vector3(0, 1.5, 0.4))
+	holder.cull_mask = 0
+	holder.environment = Environment.new()
+	holder.compositor = Compositor.new()
+	holder.compositor.compositor_effects = [hold]
+	first.add_child(holder)
+	add_child(first)
+	move_child(first, 0)
+	camera.compositor = Compositor.new()
+	camera.compositor.compositor_effects = [look]
+	await _frames(12)
+	look.synthesis = camera.synthesis()
+	print("fact views %d, %s pixels" % [interface.get_view_count(), interface.get_render_target_size()])
+	await _case("plain")
+	get_viewport().msaa_3d = Viewport.MSAA_4X
+	await _case("msaa")
+	get_viewport().msaa_3d = Viewport.MSAA_DISABLED
+	camera.dominant_eye = YoroCamera3D.Eye.LEFT
+	await _case("swapped")
+	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
+	interface.render_target_size_multiplier = 1.5
+	await _case("resized")
+	# The head moves again.
+	first.queue_free()
+	look.radians = 0.0
+	look.metres = 0.0
+	await _frames(maxi(frames - look.frames, 10))
+	print("fact lag %.7f rad, %.7f m" % [look.radians, look.metres])
+	print("fact frames %d" % look.frames)
+	print("fact trouble %s" % [camera.trouble()])
+	print("fact done")
+	get_tree().quit()
+
+
+func _frames(count: int) -> void:
+	for i in count:
+		await RenderingServer.frame_post_draw
+
+
+func _case(name: String) -> void:
+	for mode: String in ["BOTH_VIEWS", "ONE_VIEW"]:
+		camera.mode = YoroCamera3D.Mode[mode]
+		await _frames(4)
+		look.wanted = true
+		while look.wanted:
+			await _frames(1)
+		for view in 2:
+			look.pictures[view].convert(Image.FORMAT_RGB8)
+			look.pictures[view].save_png("%s/%s-%s-%s.png" % [out, name, mode.to_lower(), ["left", "right"][view]])

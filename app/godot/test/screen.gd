@@ -1,0 +1,72 @@
+## The demo without a headset: pictures of both eyes as they are made, and as Godot draws them, into the folder `out=FOLDER`.
+extends Node
+
+@onready var camera: YoroCamera3D = $Demo/XROrigin3D/YoroCamera3D
+@onready var room: DemoRoom = $Demo/Room
+var out := ""
+
+
+func _ready() -> void:
+	for argument in OS.get_cmdline_user_args():
+		out = argument.trim_prefix("out=") if argument.begins_with("out=") else out
+	get_window().size = Vector2i(1024, 512)
+	await _frames(3)
+	print("fact warnings %d, transparent %d" % [YoroMarks.warnings(room, camera.stereo_layers).size(), YoroMarks.transparent(room).size()])
+	var light := YoroMarks.lights(room)[0]
+	var glass := YoroMarks.transparent(room)[0]
+	light.layers = 1
+	glass.layers = 1
+	print("fact warnings %d" % YoroMarks.warnings(room, camera.stereo_layers).size())
+	light.layers |= camera.stereo_layers
+	glass.layers = camera.stereo_layers
+	await _case("plain")
+	camera.dominant_eye = YoroCamera3D.Eye.LEFT
+	await _case("swapped")
+	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
+	camera.ipd_scale = 0.0
+	await _case("ipd0")
+	camera.ipd_scale = 1.0
+	get_viewport().msaa_3d = Viewport.MSAA_4X
+	await _case("msaa")
+	get_viewport().msaa_3d = Viewport.MSAA_DISABLED
+	room.environment.environment.glow_enabled = true
+	room.environment.environment.glow_bloom = 0.3
+	await _case("glow")
+	room.environment.environment.glow_enabled = false
+	camera.synthesis().short_way = false
+	await _case("every")
+	camera.synthesis().short_way = true
+	get_window().size = Vector2i(800, 300)
+	await _case("resized")
+	for view: int in [YoroCamera3D.DebugView.HOLES, YoroCamera3D.DebugView.DISPARITY, YoroCamera3D.DebugView.MADE_EYE]:
+		camera.debug_view = view as YoroCamera3D.DebugView
+		await _frames(4)
+		_save("debug-%d" % view)
+	camera.debug_view = YoroCamera3D.DebugView.NONE
+	# As it was at first, after everything above.
+	get_window().size = Vector2i(1024, 512)
+	await _frames(4)
+	_save("again")
+	camera.preview_without_headset = false
+	await _frames(3)
+	print("fact preview %s" % [camera.preview() == null])
+	print("fact done")
+	get_tree().quit()
+
+
+func _frames(count: int) -> void:
+	for i in count:
+		await RenderingServer.frame_post_draw
+
+
+## Both eyes with one view and with both, switched while running.
+func _case(name: String) -> void:
+	for mode: String in ["BOTH_VIEWS", "ONE_VIEW"]:
+		camera.mode = YoroCamera3D.Mode[mode]
+		await _frames(10 if name == "glow" else 4)
+		_save("%s-%s" % [name, mode.to_lower()])
+
+
+func _save(name: String) -> void:
+	for eye in 2:
+		camera.preview().eyes[eye].get_texture().get_image().save_png("%s/%s-%s.png" % [out, name, ["left", "right"][eye]])

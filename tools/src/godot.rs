@@ -1,0 +1,75 @@
+//! Godot, a game engine, with the runtime and the Vulkan driver that its tests need.
+//!
+//! Debian's release that [Monado](crate::monado) comes from has an older Godot, so this one is that of Debian's development,
+//! whatever its version is, with all that it needs: the C library, Monado and Mesa of the same day. The packages are only
+//! unpacked. Two programs are left: `godot`, and `monado-service`, which is its OpenXR runtime. Both meet in XDG_RUNTIME_DIR.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+
+use crate::folders::{make_once, target_folder};
+use crate::monado;
+use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
+
+const RELEASE: &str = "sid";
+/// A runtime and an application of different versions do not talk to each other.
+const PACKAGES: [&str; 4] = ["godot", "monado-service", "libopenxr1-monado", "mesa-vulkan-drivers"];
+
+/// Sets it up, and returns how to use it.
+///
+/// # Errors
+/// When it cannot be had on this machine.
+pub fn usage() -> anyhow::Result<String> {
+    let folder = make()?.display().to_string();
+    Ok(format!(
+        "{folder}/godot --path app/godot --xr-mode off                 # needs a display: xvfb-run without one\n\
+         export XDG_RUNTIME_DIR=$(mktemp -d)\n\
+         {folder}/monado-service &\n\
+         {folder}/godot --path app/godot --xr-mode on\n"
+    ))
+}
+
+/// The folder with the programs `godot` and `monado-service`: fetches and unpacks what is missing.
+///
+/// # Errors
+/// When it cannot be had on this machine.
+pub fn make() -> anyhow::Result<PathBuf> {
+    if !cfg!(target_arch = "x86_64") {
+        bail!("it is fetched for x86_64 only");
+    }
+    let folder = target_folder()?.join("godot");
+    let root = folder.join("root");
+    make_once(&folder, &format!("{RELEASE} {}\n", PACKAGES.join(" ")), || {
+        eprintln!("fetching Godot for its tests: 200 MB, once");
+        let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
+        apt.update()?;
+        for package in apt.download(&PACKAGES.map(str::to_owned))? {
+            unpack(&package, &root, &[], &monado::WITHOUT)?;
+        }
+        apt.remove();
+        Ok(())
+    })?;
+    write_programs(&folder, &root)?;
+    Ok(folder)
+}
+
+fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
+    let usr = root.join("usr");
+    let program = usr.join("bin/godot");
+    if !program.is_file() {
+        bail!("{} is not where Debian's packages have it", program.display());
+    }
+    let text = format!(
+        "# Godot with the libraries of its own Debian, its Vulkan on the CPU, and Monado as its OpenXR runtime.\n\
+         unset LD_LIBRARY_PATH\n\
+         export VK_DRIVER_FILES={} XR_RUNTIME_JSON={}\n\
+         exec {} {} \"$@\"\n",
+        quoted(&usr.join("share/vulkan/icd.d/lvp_icd.json")),
+        quoted(&root.join(monado::MANIFEST)),
+        monado::linker(root, &[]),
+        quoted(&program),
+    );
+    write_launcher(&folder.join("godot"), &text)?;
+    monado::write_service(folder, root)
+}

@@ -1,0 +1,72 @@
+//! The add-on for Godot: the project that it is developed in, and its tests.
+
+mod pictures;
+mod session;
+mod test;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use clap::Subcommand;
+use yoro_tools::folders::{copy, remove, root, target_folder};
+
+use crate::kit;
+
+pub use test::test;
+
+/// Where the add-on lies in a project.
+pub const ADDON: &str = "addons/yoro";
+
+#[derive(Subcommand)]
+pub enum Task {
+    /// Write the demo project with the add-on into target/godot-project, to be opened in Godot
+    Project,
+    /// Run the demo in both renderers, on a screen and on Monado, and compare both eyes with Godot's own
+    Test,
+}
+
+/// Writes the project with the shaders of the kit, and returns its folder. What Godot has imported there stays.
+///
+/// # Errors
+/// When the kit does not compile, or a file cannot be written.
+pub fn project() -> anyhow::Result<PathBuf> {
+    let folder = target_folder()?.join("godot-project");
+    for part in ["addons", "demo", "test"] {
+        remove(&folder.join(part))?;
+    }
+    for (name, file) in files()? {
+        copy(&file, &folder.join(name))?;
+    }
+    println!("{}", folder.display());
+    Ok(folder)
+}
+
+/// The project's files by their names in it.
+///
+/// # Errors
+/// When the kit does not compile, or a folder cannot be read.
+pub fn files() -> anyhow::Result<Vec<(String, PathBuf)>> {
+    let mut files = Vec::new();
+    list(&root().join("app/godot"), "", &mut files)?;
+    list(&kit::kit()?.join("godot"), &format!("{ADDON}/shaders/"), &mut files)?;
+    Ok(files)
+}
+
+/// Adds all files of a folder, of hidden ones only those by which Godot ignores a folder.
+fn list(folder: &Path, before: &str, files: &mut Vec<(String, PathBuf)>) -> anyhow::Result<()> {
+    let entries = fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))?;
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    for path in paths {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if name.starts_with('.') && name != ".gdignore" {
+            continue;
+        }
+        match path.is_dir() {
+            true => list(&path, &format!("{before}{name}/"), files)?,
+            false => files.push((format!("{before}{name}"), path)),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,83 @@
+//! Pictures of both eyes that Godot's tests write, compared by `yoro compare`.
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context as _, bail};
+use serde_json::Value;
+use yoro_tools::folders::copy;
+
+/// How close a picture is to another.
+#[derive(Clone, Copy, Debug)]
+pub struct Quality {
+    /// In dB over all three channels; infinite for identical pictures.
+    pub psnr: f64,
+    /// Of luma.
+    pub ssim: f64,
+}
+
+/// Returns for each case the synthesized eye and the rendered one, against what Godot draws for the synthesized eye. A case is
+/// its name and the eye that is synthesized.
+///
+/// # Errors
+/// When a picture is missing.
+pub fn compare(
+    yoro: &mut dyn FnMut() -> Command,
+    folder: &Path,
+    cases: &[(&str, &str)],
+) -> anyhow::Result<Vec<[Quality; 2]>> {
+    let place = |kind: &str, case: &str| folder.join("compared").join(kind).join(format!("{case}.png"));
+    for (case, made) in cases {
+        let other = if *made == "left" { "right" } else { "left" };
+        for (kind, mode, eye) in
+            [("made", "one_view", *made), ("same", "both_views", other), ("truth", "both_views", *made)]
+        {
+            copy(&folder.join(format!("{case}-{mode}-{eye}.png")), &place(kind, case))?;
+        }
+    }
+    let mut told = ["made", "same"].into_iter().map(|kind| {
+        let compared = folder.join("compared");
+        let output = yoro()
+            .args(["compare", "--json"])
+            .args([compared.join(kind), compared.join("truth")])
+            .output()
+            .context("yoro cannot be started")?;
+        if !output.status.success() {
+            bail!("pictures cannot be compared: {}", String::from_utf8_lossy(&output.stderr).trim());
+        }
+        Ok(serde_json::from_slice::<Value>(&output.stdout)?)
+    });
+    let (Some(made), Some(same)) = (told.next(), told.next()) else { bail!("nothing was compared") };
+    let (made, same) = (made?, same?);
+    cases
+        .iter()
+        .map(|(case, _)| {
+            let find = |told| quality(told, case).with_context(|| format!("{case} was not compared"));
+            Ok([find(&made)?, find(&same)?])
+        })
+        .collect()
+}
+
+/// Reads a pair of what `yoro compare --json` says.
+fn quality(told: &Value, case: &str) -> Option<Quality> {
+    let file = format!("{case}.png");
+    let pair = told["pairs"].as_array()?.iter().find(|pair| pair["name"] == *file)?;
+    let psnr = if pair["identical"] == true { f64::INFINITY } else { pair["rgb"]["psnr"].as_f64()? };
+    Some(Quality { psnr, ssim: pair["luma"]["ssim_gaussian"].as_f64()? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identical_pictures_have_no_error() {
+        let told = serde_json::json!({ "pairs": [
+            { "name": "a.png", "identical": false, "rgb": { "psnr": 36.5 }, "luma": { "ssim_gaussian": 0.98 } },
+            { "name": "b.png", "identical": true, "rgb": { "psnr": null }, "luma": { "ssim_gaussian": 1.0 } },
+        ]});
+        assert_eq!(quality(&told, "a").map(|it| (it.psnr, it.ssim)), Some((36.5, 0.98)));
+        assert!(quality(&told, "b").is_some_and(|it| it.psnr.is_infinite()));
+        assert!(quality(&told, "c").is_none());
+    }
+}

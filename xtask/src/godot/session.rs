@@ -1,0 +1,111 @@
+//! Programs that run beside each other for a limited time: a display without a screen, a runtime, Godot.
+
+use std::fs::{self, File};
+use std::io::{BufRead as _, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, bail};
+use yoro_tools::{apt, godot};
+
+/// Both programs of Godot's folder, and a display.
+pub struct Session {
+    godot: PathBuf,
+    display: String,
+    _screen: Running,
+}
+
+/// A program that ends with this.
+pub struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+impl Session {
+    /// Sets up what is missing, and starts the display.
+    ///
+    /// # Errors
+    /// When something cannot be had on this machine.
+    pub fn begin() -> anyhow::Result<Self> {
+        let godot = godot::make()?;
+        if apt::find_program("Xvfb").is_none() {
+            apt::install(&[&["xvfb"]])?;
+        }
+        let mut screen = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .context("Xvfb cannot be started")?;
+        let output = screen.stdout.take();
+        let screen = Running(screen);
+        let mut number = String::new();
+        BufReader::new(output.context("Xvfb says nothing")?).read_line(&mut number)?;
+        if number.trim().is_empty() {
+            bail!("Xvfb gives no display");
+        }
+        Ok(Self { godot, display: format!(":{}", number.trim()), _screen: screen })
+    }
+
+    /// Runs Godot with arguments, and returns what it printed. `folder` gets its log, and is where it meets the runtime.
+    ///
+    /// # Errors
+    /// When it takes longer than `limit`; its end is not looked at.
+    pub fn godot(&self, arguments: &[&str], folder: &Path, limit: Duration) -> anyhow::Result<String> {
+        let log = folder.join("log");
+        let file = File::create(&log).with_context(|| format!("{} cannot be written", log.display()))?;
+        let child = Command::new(self.godot.join("godot"))
+            .args(arguments)
+            .env("DISPLAY", &self.display)
+            .env("XDG_RUNTIME_DIR", folder)
+            .env("XDG_DATA_HOME", folder)
+            .env("XDG_CONFIG_HOME", folder)
+            // Compiled shaders are the same in all runs.
+            .env("XDG_CACHE_HOME", folder.with_file_name("cache"))
+            .stdin(Stdio::null())
+            .stdout(file.try_clone()?)
+            .stderr(file)
+            .spawn()
+            .context("Godot cannot be started")?;
+        let mut running = Running(child);
+        let start = Instant::now();
+        while running.0.try_wait().context("Godot is gone")?.is_none() {
+            if start.elapsed() > limit {
+                bail!("Godot took longer than {} s: {}", limit.as_secs(), log.display());
+            }
+            thread::sleep(Duration::from_millis(50));
+        }
+        Ok(String::from_utf8_lossy(&fs::read(&log)?).into_owned())
+    }
+
+    /// Starts the runtime, which programs with the same folder find.
+    ///
+    /// # Errors
+    /// When it does not start.
+    pub fn runtime(&self, folder: &Path) -> anyhow::Result<Running> {
+        let log = File::create(folder.join("runtime.log"))?;
+        let child = Command::new(self.godot.join("monado-service"))
+            .env("XDG_RUNTIME_DIR", folder)
+            .stdin(Stdio::null())
+            .stdout(log.try_clone()?)
+            .stderr(log)
+            .spawn()
+            .context("Monado cannot be started")?;
+        let running = Running(child);
+        let start = Instant::now();
+        while !folder.join("monado_comp_ipc").exists() {
+            if start.elapsed() > Duration::from_secs(20) {
+                bail!("Monado does not start: {}", folder.join("runtime.log").display());
+            }
+            thread::sleep(Duration::from_millis(50));
+        }
+        Ok(running)
+    }
+}

@@ -1,0 +1,229 @@
+//! The tests of the add-on: what the demo project shows, and what Godot says meanwhile.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, bail};
+use yoro_tools::cargo;
+use yoro_tools::folders::{make_parent, remove, target_folder};
+
+use super::pictures::{Quality, compare};
+use super::project;
+use super::session::Session;
+
+const RENDERERS: [&str; 2] = ["mobile", "forward_plus"];
+/// No run takes longer, on two busy processor cores.
+const LIMIT: Duration = Duration::from_secs(240);
+
+/// A scene of the project, and the pictures that it writes: the case, and the eye that is synthesized.
+struct Scene {
+    name: &'static str,
+    headset: bool,
+    cases: &'static [(&'static str, &'static str)],
+    /// The synthesized eye is not farther from Godot's own: PSNR in dB, SSIM.
+    floor: (f64, f64),
+    /// What it says when all is well, by its beginning.
+    facts: &'static [&'static str],
+}
+
+const SCENES: [Scene; 2] = [
+    Scene {
+        name: "screen",
+        headset: false,
+        cases: &[
+            ("plain", "left"),
+            ("swapped", "right"),
+            ("ipd0", "left"),
+            ("msaa", "left"),
+            ("glow", "left"),
+            ("every", "left"),
+            ("resized", "left"),
+        ],
+        // With 32 pixels for a pattern's square, 75 degrees high: less than in the headset.
+        floor: (32.5, 0.975),
+        facts: &["fact warnings 0, transparent 2", "fact warnings 2\n", "fact preview true"],
+    },
+    Scene {
+        name: "headset",
+        headset: true,
+        cases: &[("plain", "left"), ("msaa", "left"), ("swapped", "right"), ("resized", "left")],
+        floor: (35.0, 0.975),
+        facts: &["fact views 2", "fact trouble \n"],
+    },
+];
+/// The same image to both eyes is farther away by so many dB.
+const GAIN: f64 = 10.0;
+/// Without a distance between the eyes there is nothing to move.
+const IDENTITY: f64 = 60.0;
+/// The pose that was rendered and the one that is shown differ by less, in radians and metres.
+const LAG: f64 = 1e-4;
+/// What Godot 4.6 says at exit of any project with OpenXR on Monado.
+const USUAL: [&str; 2] = [
+    "Attempt to disconnect a nonexistent connection from '<OpenXRSpatialEntityExtension",
+    "RID allocations of type 'N9OpenXRAPI18InteractionProfileE' were leaked at exit",
+];
+
+/// Runs all of them, and prints a line for each picture.
+///
+/// # Errors
+/// When one fails. Where there is no Godot, they are left out with a word.
+pub fn test() -> anyhow::Result<()> {
+    let session = match Session::begin() {
+        Ok(session) => session,
+        Err(error) => {
+            println!("Godot cannot be had here: the add-on's tests were left out: {error:#}");
+            return Ok(());
+        }
+    };
+    let start = Instant::now();
+    let project = project()?.display().to_string();
+    let folder = target_folder()?.join("godot-tests");
+    remove(&folder)?;
+    let mut faults = Vec::new();
+    let import = folder.join("import");
+    make_parent(&import.join("log"))?;
+    let headless = ["--path", &project, "--xr-mode", "off", "--headless", "--import"];
+    faults.extend(errors(&session.godot(&headless, &import, LIMIT)?));
+    let program = cargo::program("yoro")?;
+    let program = program.get_program().to_owned();
+    for scene in &SCENES {
+        for renderer in RENDERERS {
+            let what = format!("{} {renderer}", scene.name);
+            let run = folder.join(what.replace(' ', "-"));
+            make_parent(&run.join("log"))?;
+            let printed = play(&session, scene, renderer, &project, &run)?;
+            let mut found = errors(&printed);
+            found.extend(missing(scene, &printed));
+            match compare(&mut || Command::new(&program), &run, scene.cases) {
+                Ok(figures) => {
+                    for ((case, _), [made, same]) in scene.cases.iter().zip(figures) {
+                        println!(
+                            "{what} {case}: {:.2} dB, SSIM {:.4}; the same image to both eyes {:.2} dB, {:.4}",
+                            made.psnr, made.ssim, same.psnr, same.ssim
+                        );
+                        found.extend(too_far(scene, case, made, same));
+                    }
+                }
+                Err(error) => found.push(format!("{error:#}")),
+            }
+            faults.extend(found.into_iter().map(|fault| format!("{what}: {fault}")));
+        }
+    }
+    println!("Godot: {} s", start.elapsed().as_secs());
+    if !faults.is_empty() {
+        bail!("the add-on has faults; logs and pictures are in {}:\n{}", folder.display(), faults.join("\n"));
+    }
+    Ok(())
+}
+
+fn play(
+    session: &Session,
+    scene: &Scene,
+    renderer: &str,
+    project: &str,
+    folder: &Path,
+) -> anyhow::Result<String> {
+    let runtime = scene.headset.then(|| session.runtime(folder)).transpose()?;
+    let file = format!("res://test/{}.tscn", scene.name);
+    let out = format!("out={}", folder.display());
+    let xr = if scene.headset { "on" } else { "off" };
+    // A hundred frames once: the other renderer's are the same scripts.
+    let frames = if renderer == RENDERERS[0] { "frames=100" } else { "frames=60" };
+    let arguments = [
+        "--path",
+        project,
+        "--audio-driver",
+        "Dummy",
+        "--xr-mode",
+        xr,
+        "--rendering-method",
+        renderer,
+        &file,
+        "--",
+        &out,
+        frames,
+    ];
+    let printed = session.godot(&arguments, folder, LIMIT);
+    drop(runtime);
+    printed.with_context(|| format!("{} {renderer}", scene.name))
+}
+
+/// Errors and warnings of Godot and of scripts that are not usual.
+fn errors(printed: &str) -> Vec<String> {
+    let is_one = |line: &&str| {
+        let text = line.trim_start_matches("USER ").trim_start_matches("SCRIPT ");
+        text.starts_with("ERROR:") || text.starts_with("WARNING:")
+    };
+    let new = |line: &&str| !USUAL.iter().any(|usual| line.contains(usual));
+    let mut found: Vec<String> = printed.lines().filter(is_one).filter(new).map(str::to_owned).collect();
+    found.dedup();
+    found
+}
+
+/// What a scene did not say.
+fn missing(scene: &Scene, printed: &str) -> Vec<String> {
+    let mut missing: Vec<String> = scene
+        .facts
+        .iter()
+        .chain(&["fact done"])
+        .filter(|fact| !printed.contains(**fact))
+        .map(|fact| format!("it does not say `{}`", fact.trim_end()))
+        .collect();
+    if scene.headset {
+        match lag(printed) {
+            Some(lag) if lag < LAG => {}
+            lag => missing.push(format!("the rendered pose is late: {lag:?}")),
+        }
+    }
+    missing
+}
+
+/// The larger number of `fact lag A rad, B m`.
+fn lag(printed: &str) -> Option<f64> {
+    let line = printed.lines().find_map(|line| line.strip_prefix("fact lag "))?;
+    let (radians, metres) = line.split_once(" rad, ")?;
+    let metres: f64 = metres.strip_suffix(" m")?.parse().ok()?;
+    Some(radians.parse::<f64>().ok()?.max(metres))
+}
+
+fn too_far(scene: &Scene, case: &str, made: Quality, same: Quality) -> Option<String> {
+    let sound = match case {
+        "ipd0" => made.psnr >= IDENTITY,
+        _ => made.psnr >= scene.floor.0 && made.ssim >= scene.floor.1 && made.psnr >= same.psnr + GAIN,
+    };
+    (!sound).then(|| format!("{case} is too far from Godot's own eye: {:.2} dB, {:.4}", made.psnr, made.ssim))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unusual_errors_are_found_once() {
+        let usual =
+            "ERROR: 10 RID allocations of type 'N9OpenXRAPI18InteractionProfileE' were leaked at exit.";
+        let printed =
+            format!("{usual}\nERROR: a\nERROR: a\n   at: b\nSCRIPT ERROR: c\nWARNING: 2 RIDs of type\n");
+        assert_eq!(errors(&printed), ["ERROR: a", "SCRIPT ERROR: c", "WARNING: 2 RIDs of type"]);
+    }
+
+    #[test]
+    fn a_late_pose_and_a_silent_scene_are_faults() {
+        let said = "fact views 2\nfact trouble \nfact lag 0.0000001 rad, 0.0000020 m\nfact done\n";
+        assert_eq!(lag(said), Some(0.000_002));
+        assert!(missing(&SCENES[1], said).is_empty());
+        assert_eq!(missing(&SCENES[1], &said.replace("0.0000001", "0.03")).len(), 1);
+        assert_eq!(missing(&SCENES[1], &said.replace("trouble ", "trouble canted")).len(), 1);
+        assert_eq!(missing(&SCENES[0], said).len(), 3);
+    }
+
+    #[test]
+    fn an_eye_like_the_other_one_is_too_far() {
+        let quality = |psnr| Quality { psnr, ssim: 0.98 };
+        assert!(too_far(&SCENES[1], "plain", quality(36.0), quality(22.0)).is_none());
+        assert!(too_far(&SCENES[1], "plain", quality(34.0), quality(22.0)).is_some());
+        assert!(too_far(&SCENES[1], "plain", quality(36.0), quality(30.0)).is_some());
+        assert!(too_far(&SCENES[0], "ipd0", quality(36.0), quality(36.0)).is_some());
+    }
+}
