@@ -40,7 +40,7 @@ func _ready() -> void:
 	await _case("resized")
 	for view: int in [YoroCamera3D.DebugView.HOLES, YoroCamera3D.DebugView.DISPARITY, YoroCamera3D.DebugView.MADE_EYE]:
 		camera.debug_view = view as YoroCamera3D.DebugView
-		await _frames(4)
+		await _frames(2)
 		_save("debug-%d" % view)
 	camera.debug_view = YoroCamera3D.DebugView.NONE
 	# As it was at first, after everything above.
@@ -63,7 +63,7 @@ func _frames(count: int) -> void:
 func _case(name: String) -> void:
 	for mode: String in ["BOTH_VIEWS", "ONE_VIEW"]:
 		camera.mode = YoroCamera3D.Mode[mode]
-		await _frames(10 if name == "glow" else 4)
+		await _frames(9 if name == "glow" else 3)
 		_save("%s-%s" % [name, mode.to_lower()])
 
 

@@ -14,7 +14,7 @@ use super::session::Session;
 
 const RENDERERS: [&str; 2] = ["mobile", "forward_plus"];
 /// No run takes longer, on two busy processor cores.
-const LIMIT: Duration = Duration::from_secs(240);
+const LIMIT: Duration = Duration::from_secs(300);
 
 /// A scene of the project, and the pictures that it writes: the case, and the eye that is synthesized.
 struct Scene {
