@@ -2,7 +2,7 @@
 //! count.
 //!
 //! [`load`] takes the name of a built-in scene or the path of a file, and returns the scene. Each built-in scene has a
-//! file; [`mod@build`], [`props`], [`sculpt`], [`figure`] and [`paint`] are their common tools. This crate must never know
+//! file; [`mod@build`], [`props`], [`sculpt`], [`figure`], [`paint`] and [`motion`] are their common tools. This crate must never know
 //! how a scene is drawn.
 
 use std::ops::RangeInclusive;
@@ -16,6 +16,7 @@ mod atrium;
 pub mod build;
 mod conference;
 pub mod figure;
+pub mod motion;
 pub mod paint;
 pub mod props;
 mod prototype;
@@ -326,7 +327,10 @@ mod tests {
             assert!(b.model.triangle_count() - last.triangles < build::WATCHED_STEP, "{}", builtin.name);
             assert!(a.model == b.model, "{}", builtin.name);
             assert!(
-                a.lights == b.lights && a.sky == b.sky && a.viewpoints == b.viewpoints,
+                a.lights == b.lights
+                    && a.sky == b.sky
+                    && a.viewpoints == b.viewpoints
+                    && a.motion == b.motion,
                 "{}",
                 builtin.name
             );
@@ -351,14 +355,58 @@ mod tests {
                 assert!(turn < 50.0, "{name}: a turn of {turn} degrees");
             }
             for (i, view) in views.iter().enumerate() {
-                let nearest = triangles(&scene.model)
-                    .map(|t| t.map(|v| v.position))
-                    .filter(|t| {
-                        t.iter().fold(Bounds::EMPTY, |b, &p| b.including(p)).distance(view.position) < 0.5
-                    })
-                    .map(|t| distance_to_triangle(view.position, t))
-                    .fold(f32::INFINITY, f32::min);
+                let nearest = nearest(&scene.model, view.position);
                 assert!(nearest > 0.25, "{name}: viewpoint {i} is {nearest} m from a surface");
+            }
+        });
+    }
+
+    /// Distance in metres from a point to the nearest surface, if that is nearer than half a metre.
+    fn nearest(model: &Model, point: Vec3) -> f32 {
+        triangles(model)
+            .map(|t| t.map(|v| v.position))
+            .filter(|t| t.iter().fold(Bounds::EMPTY, |b, &p| b.including(p)).distance(point) < 0.5)
+            .map(|t| distance_to_triangle(point, t))
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    #[test]
+    fn what_moves_starts_in_its_place_and_leaves_the_walk_free() {
+        each(|builtin, scene| {
+            let (name, motion) = (builtin.name, &scene.motion);
+            assert_eq!(motion.is_still(), !["talk", "stage"].contains(&name), "{name}");
+            if motion.is_still() {
+                return;
+            }
+            let start = scene.at(0.0);
+            // To the bit, so that the picture is that of the still scene.
+            assert!(start.model == scene.model && start.lights == scene.lights, "{name}");
+            assert!(
+                motion.meshes.iter().all(|mesh| !mesh.vertices.is_empty()),
+                "{name}: an object without triangles"
+            );
+            for part in &scene.model.parts {
+                let vertices = &scene.model.indices[part.indices.clone()];
+                let within = |mesh: &yoro_scene::motion::MovingMesh| {
+                    vertices.iter().filter(|&&v| mesh.vertices.contains(&(v as usize))).count()
+                };
+                let moved: Vec<usize> = motion.meshes.iter().map(within).filter(|count| *count > 0).collect();
+                assert!(moved.is_empty() || moved == [vertices.len()], "{name}: {} is torn", part.name);
+            }
+            for time in [0.4, 1.1, 2.7, 5.3] {
+                let later = scene.at(time);
+                let mut farthest: f32 = 0.0;
+                for (a, b) in scene.model.vertices.iter().zip(&later.model.vertices) {
+                    assert!(
+                        b.position.is_finite() && (b.normal.length() - 1.0).abs() < 1e-3,
+                        "{name}: {b:?}"
+                    );
+                    farthest = farthest.max(a.position.distance(b.position));
+                }
+                assert!((0.02..0.6).contains(&farthest), "{name}: moved {farthest} m at {time} s");
+                for view in &scene.viewpoints {
+                    assert!(nearest(&later.model, view.position) > 0.25, "{name}: in the way at {time} s");
+                }
             }
         });
     }

@@ -8,6 +8,7 @@ use rand_pcg::Pcg32;
 
 use super::build::{BoxFaces, Railing, SceneBuilder, around, moved, placed, random};
 use super::figure::{self, Hand, Joints};
+use super::motion::{Movers, about};
 use super::paint::{self, Face};
 use super::props::{self, palette};
 use super::sculpt::Clay;
@@ -965,6 +966,32 @@ fn confetti(s: &mut SceneBuilder, walk: &[Vec3], rng: &mut Pcg32) {
     }
 }
 
+/// The singer dances, the crowd hops, the spotlights sweep.
+fn dance(first_spot: usize, lights: &[PointLight]) -> Movers {
+    let mut movers = Movers::default();
+    let feet = vec3(0.03, STAGE, -0.02);
+    let body = movers.turn(None, feet, 4.0, |t| {
+        about(Vec3::Z, 0.05 * (2.0 * TAU * t).sin()) * about(Vec3::Y, 0.25 * (TAU * t).sin())
+    });
+    let parts = ["body", "skirt", "collar", "hands", "microphone"].map(|part| format!("singer-{part}"));
+    movers.carry(body, &parts.each_ref().map(String::as_str));
+    let head = movers.turn(Some(body), feet + vec3(-0.025, 1.285, 0.008), 2.0, |t| {
+        about(Vec3::Z, -0.12 * (TAU * t).sin()) * about(Vec3::X, 0.06 * (1.0 - (2.0 * TAU * t).cos()))
+    });
+    movers.carry(head, &["singer-head", "singer-hair"]);
+    for (row, seconds) in [0.5, 0.6, 0.7, 0.8].into_iter().enumerate() {
+        let hop = movers.shift(seconds, |t| Vec3::Y * (0.035 * (1.0 - (TAU * t).cos())));
+        let blocks: Vec<String> = (0..3).map(|block| format!("crowd-{row}-{block}")).collect();
+        movers.carry(hop, &blocks.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+    for light in first_spot..lights.len() {
+        let way = if light % 2 == 0 { 1.2 } else { -1.2 };
+        let sweep = movers.shift(4.0, move |t| vec3(way * (TAU * t).sin(), 0.0, 0.4 * (2.0 * TAU * t).sin()));
+        movers.carry_light(sweep, light, lights);
+    }
+    movers
+}
+
 /// The scene; see [`super::BUILTINS`].
 pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let mut rng = random(seed, "stage");
@@ -983,6 +1010,7 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
         }
     }
     s.within(moved(0.0, STAGE, 0.0), |s| singer(s, &p, noise, &mut rng));
+    let first_spot = lights.len();
     lights.extend(stage(&mut s, &p, noise));
     screens(&mut s, &p, noise);
     crowd(&mut s, &p, &mut rng);
@@ -1006,8 +1034,10 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     .map(|&(x, z)| vec3(x, STAGE + 1.5, z))
     .collect();
     confetti(&mut s, &walk, &mut rng);
+    let mut model = s.finish();
     Scene {
-        model: s.finish(),
+        motion: dance(first_spot, &lights).finish(&mut model),
+        model,
         sky: Sky {
             sun_direction: vec3(0.4, 0.7, 0.6).normalize(),
             sun_color: vec3(1.9, 1.75, 1.9),

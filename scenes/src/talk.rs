@@ -8,6 +8,7 @@ use rand_pcg::Pcg32;
 
 use super::build::{BoxFaces, SceneBuilder, around, moved, placed, random};
 use super::figure::{self, Hand, Joints};
+use super::motion::{Movers, about};
 use super::paint::{self, Face};
 use super::props::{self, palette};
 use super::sculpt::Clay;
@@ -176,12 +177,14 @@ fn dressed(s: &mut SceneBuilder, look: &Look, sole: usize, j: &Joints, hands: [H
             0.05,
             0.04,
         );
+        s.object(&format!("{name}-sleeve-{side}"));
         // A cuff.
         let back = (j.elbows[side] - j.wrists[side]).normalize_or(Vec3::Y);
         sleeve.limb(j.wrists[side] + back * 0.035, j.wrists[side] + back * 0.01, 0.042, 0.042);
         let center = (j.shoulders[side] + j.wrists[side]) * 0.5;
         figure::clad(s, &sleeve, 0.018, center - Vec3::Z * 0.2, 4.0, 0.5);
     }
+    s.object(&format!("{name}-body"));
     // The collar.
     s.within(
         Affine3A::from_rotation_translation(Quat::from_rotation_x(0.15), j.neck + Vec3::Y * 0.035),
@@ -211,8 +214,9 @@ fn dressed(s: &mut SceneBuilder, look: &Look, sole: usize, j: &Joints, hands: [H
         let toe = vec3(if side == 0 { 0.25 } else { -0.25 }, 0.0, 1.0);
         figure::shoe(s, [look.shoe, sole], j.ankles[side], toe, 1.0, 0.015);
     }
-    s.object(&format!("{name}-hands")).with_material(look.skin);
-    for hand in hands {
+    s.with_material(look.skin);
+    for (side, hand) in hands.into_iter().enumerate() {
+        s.object(&format!("{name}-hand-{side}"));
         figure::hand(s, &hand, 0.0074);
     }
     s.object(&format!("{name}-head"));
@@ -307,7 +311,37 @@ fn short_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
     }
 }
 
-fn people(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
+/// A head that looks about and nods, once in a loop. `frame` is where the figure sits.
+fn look_about(movers: &mut Movers, frame: Affine3A, j: &Joints, seconds: f32, yaw: f32) -> usize {
+    let side = frame.transform_vector3(Vec3::X);
+    movers.turn(None, frame.transform_point3(j.neck), seconds, move |t| {
+        let nod = 0.05 * (1.0 - (2.0 * TAU * t).cos());
+        about(Vec3::Y, yaw * (TAU * t).sin()) * about(side, nod)
+    })
+}
+
+/// A forearm that speaks: it bends at the elbow, and the hand at the wrist.
+fn gesture(movers: &mut Movers, frame: Affine3A, j: &Joints, side: usize, name: &str) {
+    let [shoulder, elbow, wrist] =
+        [j.shoulders[side], j.elbows[side], j.wrists[side]].map(|p| frame.transform_point3(p));
+    let across = frame.transform_vector3(Vec3::X);
+    let arm = movers.turn(None, elbow, 4.0, move |t| {
+        let lift = 0.11 * (1.0 - (TAU * t).cos());
+        about(Vec3::Y, 0.3 * (TAU * t).sin()) * about(across, -lift)
+    });
+    let hand = movers.turn(Some(arm), wrist, 4.0, move |t| about(across, 0.35 * (2.0 * TAU * t).sin()));
+    movers.carry(hand, &[&format!("{name}-hand-{side}")]);
+    let still = movers.still();
+    // From the upper arm to the forearm, across the plane halfway between them.
+    let along = ((wrist - elbow).normalize_or(Vec3::Y) - (shoulder - elbow).normalize_or(Vec3::Y))
+        .normalize_or(Vec3::Y);
+    movers.bend([still, arm], &format!("{name}-sleeve-{side}"), move |p| {
+        let t = ((p - elbow).dot(along) / 0.06 + 0.5).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    });
+}
+
+fn people(s: &mut SceneBuilder, p: &Palette, seed: u32, movers: &mut Movers, rng: &mut Pcg32) {
     let [first, second] = looks(s, seed);
     let seated = Joints {
         head: vec3(0.0, 1.275, 0.11),
@@ -323,7 +357,11 @@ fn people(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
         knees: [vec3(0.12, 0.54, 0.42), vec3(-0.12, 0.54, 0.42)],
         ankles: [vec3(0.13, 0.09, 0.36), vec3(-0.12, 0.09, 0.44)],
     };
-    s.within(placed(vec3(-0.92, 0.0, 0.0), FRAC_PI_2), |s| {
+    let ada = placed(vec3(-0.92, 0.0, 0.0), FRAC_PI_2);
+    let head = look_about(movers, ada, &seated, 6.0, 0.22);
+    movers.carry(head, &["ada-head", "ada-hair"]);
+    gesture(movers, ada, &seated, 1, "ada");
+    s.within(ada, |s| {
         let j = seated;
         let hands = [
             Hand {
@@ -347,7 +385,10 @@ fn people(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
         s.object("ada-hair").with_material(first.hair);
         s.within(figure::head_frame(&j), |s| long_hair(s, first.radii, rng));
     });
-    s.within(placed(vec3(0.92, 0.0, 0.0), -FRAC_PI_2), |s| {
+    let ben = placed(vec3(0.92, 0.0, 0.0), -FRAC_PI_2);
+    let head = look_about(movers, ben, &seated, 8.0, -0.16);
+    movers.carry(head, &["ben-head", "ben-hair", "ben-glasses"]);
+    s.within(ben, |s| {
         let mut j = seated;
         j.head += vec3(0.02, 0.015, -0.03);
         j.head_turn =
@@ -944,7 +985,8 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let p = palette(&mut s, noise);
     room(&mut s, &p, noise);
     table(&mut s, &p, &mut rng);
-    people(&mut s, &p, noise, &mut rng);
+    let mut movers = Movers::default();
+    people(&mut s, &p, noise, &mut movers, &mut rng);
     furniture(&mut s, &p, noise, &mut rng);
     garden(&mut s, &p, noise, &mut rng);
     let lamp = |position: Vec3, color: Vec3, range: f32| PointLight { position, color, range };
@@ -962,8 +1004,10 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
         (-1.15, 1.0, 0.7),
         (-1.4, 0.8, 0.85),
     ];
+    let mut model = s.finish();
     Scene {
-        model: s.finish(),
+        motion: movers.finish(&mut model),
+        model,
         sky: Sky {
             sun_direction: vec3(-0.35, 0.55, -0.75).normalize(),
             sun_color: vec3(3.2, 2.8, 2.2),

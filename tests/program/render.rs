@@ -19,6 +19,15 @@ usemtl red\nf 5/1 6/2 7/3 8/4
 const MTL: &str = "newmtl picture\nKd 1 1 1\nmap_Kd picture.png\nnewmtl red\nKd 0.8 0.1 0.1\n";
 const LOOK: &str = "--position 0,0,0 --target 0,0,-1 --size 96x64";
 
+/// A triangle that goes from left to right in a second.
+const MOVING: &str = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}],
+  "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,zczMvs3MzL4AAADAzczMPs3MzL4AAADAAAAAAM3MzD4AAADAAAAAAAAAgD+amRm/AAAAAAAAAACamRk/AAAAAAAAAAA="}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8}, {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+    {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"}, {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}]}"#;
+
 fn write_texture(dir: &Path) {
     let texture =
         RgbImage::from_fn(64, 64, |x, _| if x < 32 { Rgb([20, 220, 40]) } else { Rgb([30, 60, 230]) });
@@ -135,4 +144,27 @@ fn features_left_out_of_a_gltf_file_are_reported() {
         let lines: Vec<_> = told.lines().filter(|line| line.contains(words)).collect();
         assert!(lines.len() == 1 && lines[0].contains("paint"), "{told}");
     }
+}
+
+#[test]
+fn what_moves_is_rendered_at_a_time() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("m.gltf"), MOVING).unwrap();
+    let viewpoint = |x: f32| format!("{{\"position\": [{x}, 0, 1], \"target\": [0, 0, -2]}}");
+    let camera = format!("[{}, {}]", viewpoint(0.0), viewpoint(0.4));
+    fs::write(dir.path().join("camera.json"), camera).unwrap();
+    let render = |options: &str, name: &str| {
+        succeed(dir.path(), &format!("render m.gltf --size 96x64 --outputs right {options}"));
+        picture::load_color(&dir.path().join(format!("out/{name}.right.png"))).unwrap()
+    };
+    let [start, half] = ["", "--time 0.5"].map(|options| render(options, "m"));
+    assert!(start != half);
+    // Over and over, and before the start.
+    for (options, expected) in [("--time 0", &start), ("--time 3", &start), ("--time -1.5", &half)] {
+        assert!(render(options, "m") == *expected, "{options}");
+    }
+    // The fourth frame comes a tenth of a second after the first.
+    let last = render("--frames 4 --time 0.4", "m-0003");
+    assert!(last == render("--pose 1 --time 0.5", "m") && last != render("--pose 1 --time 0.4", "m"));
+    run(dir.path(), "render m.gltf --time soon").refuses(&["--time", "seconds"]);
 }

@@ -87,7 +87,8 @@ impl Track {
         if self.interpolation == Interpolation::Linear && after > 0 && after < self.times.len() {
             let key = |key: usize| unit(Quat::from_slice(&self.values[key * 4..]));
             let length = self.times[after] - self.times[after - 1];
-            return key(after - 1).slerp(key(after), (clocks[self.clock] - self.times[after - 1]) / length);
+            let t = (clocks[self.clock] - self.times[after - 1]) / length;
+            return if t > 0.0 { key(after - 1).slerp(key(after), t) } else { key(after - 1) };
         }
         self.sample(clocks, &mut out);
         unit(Quat::from_array(out))
@@ -366,8 +367,11 @@ fn carry(to_world: &Affine3A, vertices: &mut [Vertex]) {
     }
 }
 
-/// Carries vertices by the mean of their joints.
+/// Carries vertices by the mean of their joints. Joints that stand where they stood leave them as they are, to the bit.
 fn skin(joints: &[Affine3A], influences: &[Influence], vertices: &mut [Vertex]) {
+    if joints.iter().all(|joint| *joint == Affine3A::IDENTITY) {
+        return;
+    }
     for (v, influence) in vertices.iter_mut().zip(influences) {
         let mut to_world = Affine3A { matrix3: Mat3A::ZERO, translation: Vec3A::ZERO };
         for (&joint, &share) in

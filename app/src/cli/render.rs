@@ -78,6 +78,9 @@ pub struct RenderArgs {
     /// Render N frames along the scene's camera path instead of one viewpoint
     #[arg(long, value_name = "N", conflicts_with = "position", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: Option<u32>,
+    /// The time in seconds for what moves in the scene; of --frames that of the first
+    #[arg(long, default_value_t = 0.0, value_parser = seconds, value_name = "SECONDS", allow_hyphen_values = true)]
+    time: f64,
     /// Head position in metres, instead of a viewpoint of the scene
     #[arg(long, value_parser = eyes::parse_point, value_name = "X,Y,Z", allow_hyphen_values = true)]
     position: Option<Vec3>,
@@ -100,7 +103,7 @@ pub struct RenderArgs {
     /// depth beside it. `yoro synthesize FILE` makes stereo of it
     #[arg(long, value_name = "FILE", requires = "frames", conflicts_with_all = ["out", "outputs", "measure", "json", "method"])]
     video: Option<PathBuf>,
-    /// Videos: frames a second
+    /// Frames a second, of videos and for what moves
     #[arg(long, default_value_t = 30, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..=1000))]
     frame_rate: u32,
     #[command(flatten)]
@@ -119,6 +122,12 @@ pub struct RenderArgs {
     renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     gl: GlArgs,
+}
+
+/// Parses a time.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| seconds.is_finite());
+    seconds.ok_or_else(|| "give a number of seconds".into())
 }
 
 #[derive(Serialize)]
@@ -190,12 +199,13 @@ fn run(args: &RenderArgs) -> anyhow::Result<()> {
     let gl = headless.gl();
     settings.supports(args.method, gl.capabilities())?;
     let mut prepared = PreparedScene::new(gl, scene, &settings)?;
+    prepared.set_time(args.time)?;
     warn_of_blank(gl, args, &mut prepared, &heads)?;
     if let Some(file) = &args.video {
         let coding = (args.frame_rate, args.coding);
-        return video::render(gl, file, prepared, &heads, (&args.eyes, &options), coding);
+        return video::render(gl, file, prepared, (&heads, args.time), (&args.eyes, &options), coding);
     }
-    let PreparedScene { scene, mut renderer } = prepared;
+    let PreparedScene { mut scene, mut renderer } = prepared;
     let mut method = stereo::create(gl, args.method, &settings, &options)?;
     let measured = args.measure || args.outputs.iter().any(|o| o.needs_truth());
     let mut truth =
@@ -208,6 +218,7 @@ fn run(args: &RenderArgs) -> anyhow::Result<()> {
         interrupt::check()?;
         let pair = args.eyes.pair(head);
         let start = Instant::now();
+        renderer.set_time(&mut scene, args.time + i as f64 / f64::from(args.frame_rate))?;
         method.render(&mut renderer, &scene, &pair, &mut frame)?;
         gl.finish();
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;

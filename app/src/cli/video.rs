@@ -31,11 +31,12 @@ pub fn render(
     gl: &Rc<Context>,
     file: &Path,
     prepared: PreparedScene,
-    heads: &[Pose],
+    (heads, time): (&[Pose], f64),
     (eyes, stereo): (&EyeArgs, &StereoOptions),
     (frame_rate, coding): (u32, CodingArgs),
 ) -> anyhow::Result<()> {
-    let PreparedScene { scene, mut renderer } = prepared;
+    let PreparedScene { mut scene, mut renderer } = prepared;
+    let seconds = |frame: usize| time + frame as f64 / f64::from(frame_rate);
     let options =
         GroupOptions { synthesis: stereo.synthesis, guard_band: stereo.guard_band, anti_aliasing: true };
     let mut groups = GroupRenderer::new(gl, &options)?;
@@ -43,8 +44,9 @@ pub fn render(
     let bar = progress_bar(2 * heads.len() as u64);
     bar.set_message("distances");
     let [mut nearest, mut farthest, mut columns] = [f32::INFINITY, 0.0, 0.0f32];
-    for &head in heads {
+    for (i, &head) in heads.iter().enumerate() {
         interrupt::check()?;
+        renderer.set_time(&mut scene, seconds(i))?;
         let source = groups.render_source(&mut renderer, &scene, &eyes.pair(head))?;
         columns = columns.max((source.views.source.size[0] - eyes.size[0]) as f32);
         let distances = source.depth.iter().map(|depth| source.depth_range.distance(*depth));
@@ -69,10 +71,11 @@ pub fn render(
     };
     let format = Format { frame_rate, quantizer: coding.quantizer, frames: heads.len(), rgbd: Some(rgbd) };
     bar.set_message("video");
-    let mut rest = heads.iter();
+    let mut rest = heads.iter().enumerate();
     let bytes = yoro_video::write(file, &format, || -> anyhow::Result<Option<Planes>> {
         interrupt::check()?;
-        let Some(&head) = rest.next() else { return Ok(None) };
+        let Some((i, &head)) = rest.next() else { return Ok(None) };
+        renderer.set_time(&mut scene, seconds(i))?;
         let source = groups.render_source(&mut renderer, &scene, &eyes.pair(head))?;
         bar.inc(1);
         let distance = |x, y| source.depth_range.distance(source.depth.get_pixel(x, y).0[0]);

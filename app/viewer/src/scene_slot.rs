@@ -16,13 +16,29 @@ use yoro_scene::{Scene, Viewpoint};
 pub(crate) struct Shown {
     pub scene: GpuScene,
     pub renderer: Renderer,
+    /// Seconds for what moves in the scene, since it came into view.
+    seconds: f64,
+    /// The frame before, in nanoseconds; none after a pause.
+    last_ns: Option<i64>,
 }
 
 impl Shown {
     /// Uploads a scene and makes its renderer.
     pub fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Result<Shown, GlError> {
         let scene = GpuScene::upload(gl, scene)?;
-        Ok(Shown { renderer: Renderer::new(gl, settings, &scene)?, scene })
+        Ok(Shown { renderer: Renderer::new(gl, settings, &scene)?, scene, seconds: 0.0, last_ns: None })
+    }
+
+    /// Moves everything on to a frame at this time.
+    pub fn move_on(&mut self, now_ns: i64) -> Result<(), GlError> {
+        let past_ns = self.last_ns.replace(now_ns).map_or(0, |last_ns| (now_ns - last_ns).max(0));
+        self.seconds += past_ns as f64 * 1e-9;
+        self.renderer.set_time(&mut self.scene, self.seconds)
+    }
+
+    /// Stands still until the next frame.
+    pub fn pause(&mut self) {
+        self.last_ns = None;
     }
 }
 

@@ -12,7 +12,9 @@ use yoro_scenes::BUILTINS;
 
 /// Distance in metres between the frames of a sequence: walking pace, 30 frames a second.
 pub(super) const STEP: f32 = 0.045;
-/// The same at a headset's 72 frames a second.
+/// Frames a second of a sequence with [`STEP`].
+pub(super) const STEP_RATE: f64 = 30.0;
+/// The same distance at a headset's 72 frames a second.
 pub(super) const HEADSET_STEP: f32 = 0.01875;
 
 /// Frames before the measured ones of a moving head: the history is filled by then.

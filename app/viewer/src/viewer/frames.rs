@@ -40,6 +40,7 @@ impl Viewer {
             }
             return Ok(());
         };
+        shown.move_on(self.now_ns)?;
         self.method.render(gl, &self.settings, shown, pair, to)?;
         if let Some(used) = self.method.guard_band() {
             self.stats.guard_band(used);

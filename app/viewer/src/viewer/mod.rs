@@ -134,6 +134,9 @@ impl Viewer {
     /// Pauses in the background: nothing moves on, and the time until the next frame is not
     /// counted.
     pub fn pause(&mut self) {
+        if let Some(shown) = self.scene.shown() {
+            shown.pause();
+        }
         self.stats.pause();
         self.method.interrupt();
     }

@@ -404,3 +404,43 @@ fn mistakes_change_nothing() {
     }
     viewer.render(&TIMING).unwrap();
 }
+
+/// A triangle that goes from left to right in a second.
+const MOVING: &str = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}],
+  "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,zczMvs3MzL4AAADAzczMPs3MzL4AAADAAAAAAM3MzD4AAADAAAAAAAAAgD+amRm/AAAAAAAAAACamRk/AAAAAAAAAAA="}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8}, {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+    {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"}, {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}]}"#;
+
+#[test]
+fn what_moves_plays_and_rests_in_the_background() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.gltf");
+    std::fs::write(&path, MOVING).unwrap();
+    std::fs::write(folder.path().join("camera.json"), r#"[{"position": [0, 0, 1], "target": [0, 0, -2]}]"#)
+        .unwrap();
+    let scene = format!("scene={}", path.display());
+    let mut run = Run::new(headless.gl(), &[&scene, "hud=false"]);
+    run.load();
+    let mut after = |frames: u32| {
+        for _ in 0..frames {
+            run.frame();
+        }
+        run.image()
+    };
+    let [start, later] = [1, 15].map(&mut after);
+    assert!(start != later);
+    // A second after the start: the loop is over.
+    assert!(after(45) == start);
+    let half = after(30);
+    run.viewer.viewer_mut().pause();
+    run.now_ns += 10_200_000_000;
+    let resumed = {
+        run.frame();
+        run.image()
+    };
+    assert!(half == resumed && half != start);
+}

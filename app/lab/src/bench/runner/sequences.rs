@@ -24,7 +24,8 @@ impl Runner<'_> {
         let mut measurements = field.measurements(job, 0);
         let mut last: Option<(Vec<RgbImage>, Vec<bool>)> = None;
         self.bar.set_message(job.setting.to_string());
-        for pair in &views.pairs {
+        for (i, pair) in views.pairs.iter().enumerate() {
+            prepared.set_time(i as f64 / views::STEP_RATE)?;
             let holes = finder.find(prepared, pair)?;
             let mut images = Vec::new();
             for (_, entrant) in &mut field.entrants {
@@ -43,6 +44,7 @@ impl Runner<'_> {
             }
             last = Some((images, holes));
         }
+        prepared.set_time(0.0)?;
         self.finish_round(job, 0, field.first, measurements)
     }
 
