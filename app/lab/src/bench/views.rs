@@ -146,3 +146,27 @@ impl Views {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heads_move_as_far_as_their_motion_says() {
+        let from = Pose::look_at(Vec3::new(1.0, 1.6, 2.0), Vec3::new(4.0, 1.2, -3.0));
+        for (motion, metres, degrees) in
+            [(Motion::Still, 0.004, 0.66f32), (Motion::Sway, 0.064, 19.0), (Motion::Turn, 0.0, 240.0)]
+        {
+            let poses: Vec<Pose> = (0..=144).map(|i| motion.pose(from, i as f32 / RATE).unwrap()).collect();
+            let widest = poses.iter().map(|p| p.position.distance(poses[36].position)).fold(0.0, f32::max);
+            assert!((widest - metres).abs() < 1e-4, "{motion:?}: {widest} m");
+            let turned: f32 = poses.windows(2).map(|p| p[0].forward().distance(p[1].forward())).sum();
+            // To both sides and back.
+            let there = if motion == Motion::Turn { turned } else { turned / 2.0 };
+            let level = from.forward().with_y(0.0).length();
+            let expected = level * degrees.to_radians();
+            assert!((there / expected - 1.0).abs() < 0.02, "{motion:?}: {there} for {expected}");
+        }
+        assert_eq!(Motion::Walk.pose(from, 1.0), None);
+    }
+}
