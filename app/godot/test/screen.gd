@@ -33,6 +33,8 @@ func _ready() -> void:
 	room.environment.environment.glow_bloom = 0.3
 	await _case("glow")
 	room.environment.environment.glow_enabled = false
+	# What is shown follows the environment within a tenth of a second.
+	await _frames(9)
 	camera.synthesis().short_way = false
 	await _case("every")
 	camera.synthesis().short_way = true
