@@ -29,6 +29,8 @@ let due = RENDER;
 let scheduled = false;
 let last = 0;
 let real = false;
+/** Seconds that the scene has played. */
+let played = 0;
 let noted = false;
 let drawn = 0;
 /** Slow frames in a row. */
@@ -69,10 +71,17 @@ function divider() {
 function frame(now) {
   scheduled = false;
   if (!app.page || app.busy) return;
-  const moving = controls.step(last ? (now - last) / 1000 : 1 / 60);
+  const seconds = last ? (now - last) / 1000 : 1 / 60;
+  const walking = controls.step(seconds);
+  const playing = Boolean(app.facts?.moves) && element('play').checked;
+  const moving = walking || playing;
   last = moving ? now : 0;
+  if (walking) keepPlace();
+  if (playing) {
+    played += seconds;
+    app.page.setTime(played);
+  }
   if (moving) {
-    keepPlace();
     due = RENDER;
     forgetFigures();
   }
@@ -173,6 +182,7 @@ export function listenToPicture() {
   new ResizeObserver(changed).observe(canvas);
   element('divider').addEventListener('input', moved);
   element('magnifier').addEventListener('change', moved);
+  element('play').addEventListener('change', changed);
   for (const event of ['pointermove', 'pointerleave']) canvas.addEventListener(event, () => { if (element('magnifier').checked) moved(); });
   element('save').addEventListener('click', savePicture);
   element('wiggle').addEventListener('click', saveWiggle);

@@ -93,6 +93,7 @@ async function enter(button) {
     let shown = true;
     let turning = false;
     let last = 0;
+    let start = 0;
     const frame = (now, xr) => {
       if (app.busy !== run || !app.page) return;
       session.requestAnimationFrame(frame);
@@ -100,6 +101,8 @@ async function enter(button) {
         const dt = last ? Math.min((now - last) / 1000, 0.1) : 0;
         if (last) times.push(now - last);
         last = now;
+        start ||= now;
+        app.page.setTime((now - start) / 1000);
         const { presses, stick } = controllers(session, pressed);
         if (presses[TRIGGER]) step('method');
         if (presses[SQUEEZE]) step('viewpoint');

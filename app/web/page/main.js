@@ -99,6 +99,7 @@ function listenToPage() {
     KeyM: () => step('method'), KeyV: () => step('display'), KeyF: fillScreen, KeyP: savePicture, KeyG: saveWiggle,
     KeyO: () => element('orbit').click(),
     KeyR: () => element('reset').click(), KeyX: () => element('error').click(), KeyZ: () => element('magnifier').click(),
+    KeyT: () => element('play').click(),
   });
   element('share').addEventListener('click', share);
   element('loading-cancel').addEventListener('click', stopLoading);

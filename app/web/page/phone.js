@@ -50,6 +50,8 @@ class Visit {
   #angles = null;
   #awake = null;
   #silence = 0;
+  /** When the scene began to play, in ms. */
+  #start = performance.now();
   #listeners = new AbortController();
 
   constructor() {
@@ -115,6 +117,7 @@ class Visit {
         this.#phone = new Phone(app.page, element('phone-viewer').value, ...metres, before);
       }
       if (this.#angles) this.#phone.turn(...this.#angles);
+      app.page.setTime((performance.now() - this.#start) / 1000);
       this.#phone.draw(app.page, width, height, app.settings.scale);
       app.page.endFrame(now, 0);
       requestAnimationFrame((then) => this.#frame(then));

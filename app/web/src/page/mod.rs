@@ -138,7 +138,8 @@ impl Page {
     }
 
     /// Shows a scene as [`work`] packs it, from its first viewpoint. Returns facts about it as JSON: `{"name",
-    /// "standsFor", "style", "triangles", "lights", "viewpoints", "object"}`: true for what is seen from outside, around which the head then goes.
+    /// "standsFor", "style", "triangles", "lights", "viewpoints", "object", "moves"}`: `object` is true for what is seen from outside, around
+    /// which the head then goes.
     ///
     /// # Errors
     /// A sentence, when the GPU cannot take it; nothing is shown then.
@@ -155,6 +156,7 @@ impl Page {
             "lights": scene.lights.len(),
             "viewpoints": scene.viewpoints.len(),
             "object": is_object(&scene),
+            "moves": !scene.motion.is_still(),
         });
         (self.orbits, self.middle) = (is_object(&scene), scene.model.bounds().center());
         let scene = SceneShow::new(&self.gl, &self.settings, scene).map_err(sentence)?;
@@ -202,6 +204,15 @@ impl Page {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Moves everything in the scene to where it is at a time in seconds; nothing in a scene that stands still.
+    ///
+    /// # Errors
+    /// A sentence.
+    #[wasm_bindgen(js_name = setTime)]
+    pub fn set_time(&mut self, seconds: f64) -> Result<(), JsError> {
+        self.scene().map_or(Ok(()), |scene| scene.prepared.set_time(seconds)).map_err(sentence)
     }
 
     /// Goes to a viewpoint of the scene.
