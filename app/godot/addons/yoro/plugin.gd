@@ -10,7 +10,6 @@ var _preview: YoroPreview
 
 func _enter_tree() -> void:
 	_menu.text = "yoro"
-	_menu.icon = preload("icon.svg")
 	_menu.tooltip_text = "One rendered eye, one synthesized."
 	var popup := _menu.get_popup()
 	popup.add_item("Put YoroCamera3D in Place of XRCamera3D", _Item.REPLACE)
