@@ -14,13 +14,13 @@ use yoro_scenes::BUILTINS;
 pub(super) const STEP: f32 = 0.045;
 /// Frames a second of a sequence with [`STEP`].
 pub(super) const STEP_RATE: f64 = 30.0;
-/// The same distance at a headset's 72 frames a second.
+/// The same distance at [`HEADSET_RATE`].
 pub(super) const HEADSET_STEP: f32 = 0.01875;
+/// Frames a second of a headset.
+pub(super) const HEADSET_RATE: f64 = 72.0;
 
 /// Frames before the measured ones of a moving head: the history is filled by then.
 const SETTLING: usize = 12;
-/// Frames a second of a moving head.
-const RATE: f32 = 72.0;
 
 /// The motion of a head, at 72 frames a second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,7 +106,7 @@ impl Views {
         let frames = SETTLING + job.frames;
         let walk = Views::along_path(&Job { frames, ..job.clone() }, prepared, HEADSET_STEP)?;
         let path = CameraPath::new(&prepared.scene.viewpoints);
-        let pose = |i: usize| motion.pose(path.pose(0.5), i as f32 / RATE);
+        let pose = |i: usize| motion.pose(path.pose(0.5), i as f32 / HEADSET_RATE as f32);
         let heads: Option<Vec<_>> = (0..frames).map(|i| Some((format!("frame {i}"), pose(i)?))).collect();
         heads.map_or(Ok(walk), |heads| Views::new(job, heads))
     }
@@ -157,7 +157,8 @@ mod tests {
         for (motion, metres, degrees) in
             [(Motion::Still, 0.004, 0.66f32), (Motion::Sway, 0.064, 19.0), (Motion::Turn, 0.0, 240.0)]
         {
-            let poses: Vec<Pose> = (0..=144).map(|i| motion.pose(from, i as f32 / RATE).unwrap()).collect();
+            let poses: Vec<Pose> =
+                (0..=144).map(|i| motion.pose(from, i as f32 / HEADSET_RATE as f32).unwrap()).collect();
             let widest = poses.iter().map(|p| p.position.distance(poses[36].position)).fold(0.0, f32::max);
             assert!((widest - metres).abs() < 1e-4, "{motion:?}: {widest} m");
             let turned: f32 = poses.windows(2).map(|p| p[0].forward().distance(p[1].forward())).sum();

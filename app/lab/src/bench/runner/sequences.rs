@@ -57,6 +57,7 @@ impl Runner<'_> {
         self.bar.set_message(job.setting.to_string());
         let count = field.entrants.len();
         for (i, pair) in views.pairs.iter().enumerate() {
+            prepared.set_time(i as f64 / views::HEADSET_RATE)?;
             let mut images = vec![RgbImage::default(); count];
             for turn in 0..count {
                 interrupt::check()?;
@@ -78,6 +79,7 @@ impl Runner<'_> {
                 measurements[at].push(metric::BORDER_PSNR, border.0);
             }
         }
+        prepared.set_time(0.0)?;
         self.finish_round(job, 0, field.first, measurements)
     }
 
@@ -94,7 +96,8 @@ impl Runner<'_> {
         let mut field = self.field(job, prepared, &measured, true)?;
         self.bar.set_message(job.setting.to_string());
         let count = field.entrants.len();
-        for pair in &settling.pairs {
+        for (i, pair) in settling.pairs.iter().enumerate() {
+            prepared.set_time(i as f64 / views::HEADSET_RATE)?;
             for (_, entrant) in &mut field.entrants {
                 interrupt::check()?;
                 entrant.render(prepared, pair, &mut field.frame)?;
@@ -104,6 +107,7 @@ impl Runner<'_> {
         let mut finder = HoleFinder::new(self.gl)?;
         let mut last: Option<(Vec<RgbImage>, Vec<bool>)> = None;
         for (i, pair) in measured.pairs.iter().enumerate() {
+            prepared.set_time((settling.pairs.len() + i) as f64 / views::HEADSET_RATE)?;
             let mut images = vec![RgbImage::default(); count];
             for turn in 0..count {
                 interrupt::check()?;
@@ -139,6 +143,7 @@ impl Runner<'_> {
         for ((contender, _), image) in field.entrants.iter().zip(&pictures) {
             self.save_picture(job, *contender, image)?;
         }
+        prepared.set_time(0.0)?;
         self.finish_round(job, 0, field.first, measurements)
     }
 
