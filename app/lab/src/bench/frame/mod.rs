@@ -1,9 +1,9 @@
 //! The cost of whole stereo frames on mobile GPUs that need not be here: `yoro bench shader-cost --frame`.
 //!
 //! A frame is rendered here and [recorded](yoro_gl::Context::record): its passes, their images, and the samples that pass
-//! each depth test. [`costs`] knows what Mesa's compilers make of each shader, [`traffic`] what a tile-based GPU moves between
-//! its tiles and memory, [`lamps`] how many lights a wave computes, and [`super::executed`] what the synthesis executes.
-//! [`model`] adds up.
+//! each depth test. `costs` knows what Mesa's compilers make of each shader, `traffic` what a tile-based GPU moves between
+//! its tiles and memory, `lamps` how many lights a wave computes, and `executed` beside it what the synthesis executes.
+//! `model` adds up.
 
 mod costs;
 mod lamps;

@@ -11,7 +11,7 @@ use crate::bench::executed::Device;
 use yoro::synthesis::Edges;
 use yoro_gl::{Command, Draw, ProgramRecipe, Shape};
 
-/// Beginnings of the names of the passes that synthesize: what they execute is counted by [`crate::bench::executed`].
+/// Beginnings of the names of the passes that synthesize: what they execute is counted by `bench::executed`.
 pub const SYNTHESIS: [&str; 2] = ["gather ", "layers "];
 /// The pass that vertices are counted as.
 pub const VERTICES: &str = "vertices";
