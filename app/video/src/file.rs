@@ -36,28 +36,19 @@ pub struct Format {
 pub fn write<E: From<VideoError>>(
     path: &Path,
     format: &Format,
-    mut next: impl FnMut() -> Result<Option<Planes>, E>,
+    next: impl FnMut() -> Result<Option<Planes>, E>,
 ) -> Result<u64, E> {
     let mut result = Ok(0);
-    let written = files::write_with(path, |out| match Muxer::new(out, path, format) {
-        Err(error) => error.stop(&mut result),
-        Ok(mut muxer) => loop {
-            match next() {
-                Ok(Some(picture)) => {
-                    if let Err(error) = muxer.add(&picture) {
-                        return error.stop(&mut result);
-                    }
-                }
-                Ok(None) => match muxer.finish() {
-                    Ok(bytes) => {
-                        result = Ok(bytes);
-                        return Ok(());
-                    }
-                    Err(error) => return error.stop(&mut result),
-                },
-                Err(error) => return Stop::Caller(error).stop(&mut result),
-            }
-        },
+    let written = files::write_with(path, |out| match fill(out, path, format, next) {
+        Ok(bytes) => {
+            result = Ok(bytes);
+            Ok(())
+        }
+        Err(Stop::Io(error)) => Err(error),
+        Err(Stop::Caller(error)) => {
+            result = Err(error);
+            Err(io::Error::other("the video was not finished"))
+        }
     });
     match written {
         Ok(()) => result,
@@ -65,23 +56,24 @@ pub fn write<E: From<VideoError>>(
     }
 }
 
+/// Writes all pictures, and returns the bytes of video.
+fn fill<E: From<VideoError>>(
+    out: &mut (impl Write + Seek),
+    path: &Path,
+    format: &Format,
+    mut next: impl FnMut() -> Result<Option<Planes>, E>,
+) -> Result<u64, Stop<E>> {
+    let mut muxer = Muxer::new::<E>(out, path, format)?;
+    while let Some(picture) = next().map_err(Stop::Caller)? {
+        muxer.add::<E>(&picture)?;
+    }
+    muxer.finish()
+}
+
 /// The reason why a file is not finished.
 enum Stop<E> {
     Io(io::Error),
     Caller(E),
-}
-
-impl<E> Stop<E> {
-    /// Keeps the caller's error in `result`; the file is given up by the system's.
-    fn stop(self, result: &mut Result<u64, E>) -> io::Result<()> {
-        match self {
-            Stop::Io(error) => Err(error),
-            Stop::Caller(error) => {
-                *result = Err(error);
-                Err(io::Error::other("the video was not finished"))
-            }
-        }
-    }
 }
 
 impl<E> From<io::Error> for Stop<E> {
