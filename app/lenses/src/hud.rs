@@ -2,14 +2,9 @@
 
 use std::rc::Rc;
 
-use embedded_graphics::mono_font::MonoTextStyle;
-use embedded_graphics::mono_font::ascii::FONT_10X20;
-use embedded_graphics::pixelcolor::BinaryColor;
-use embedded_graphics::prelude::*;
-use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
-use embedded_graphics::text::{Baseline, Text};
 use glam::{Vec3, Vec4};
 
+use crate::text::{CELL, Letters};
 use yoro::eyes::{Eye, EyePair};
 use yoro_gl::{
     Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
@@ -18,10 +13,9 @@ use yoro_gl::{
 /// The characters that a line of the panel has room for; longer lines are cut.
 pub const COLUMNS: usize = 34;
 const LINES: usize = 4;
-const FONT: [usize; 2] = [10, 20];
-const MARGIN: usize = 8;
-const BAR_HEIGHT: usize = 12;
-const SIZE: [usize; 2] = [COLUMNS * FONT[0] + 2 * MARGIN, LINES * FONT[1] + 3 * MARGIN + BAR_HEIGHT];
+const MARGIN: usize = 11;
+const BAR_HEIGHT: usize = 16;
+const SIZE: [usize; 2] = [COLUMNS * CELL[0] + 2 * MARGIN, LINES * CELL[1] + 3 * MARGIN + BAR_HEIGHT];
 /// The width of the moving part of the progress bar, as a share of the bar.
 const BLOCK: f32 = 0.25;
 
@@ -39,50 +33,27 @@ pub struct Content<'a> {
     pub progress: Option<f32>,
 }
 
-/// The panel's pixels, rows from the top, 0 or 255.
+/// The panel's pixels, rows from the top, 0 to 255.
 struct Pixels(Vec<u8>);
 
-impl OriginDimensions for Pixels {
-    fn size(&self) -> Size {
-        Size::new(SIZE[0] as u32, SIZE[1] as u32)
-    }
-}
-
-impl DrawTarget for Pixels {
-    type Color = BinaryColor;
-    type Error = std::convert::Infallible;
-
-    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
-        &mut self,
-        pixels: I,
-    ) -> Result<(), Self::Error> {
-        for Pixel(Point { x, y }, color) in pixels {
-            if (0..SIZE[0] as i32).contains(&x) && (0..SIZE[1] as i32).contains(&y) {
-                self.0[y as usize * SIZE[0] + x as usize] = if color.is_on() { 255 } else { 0 };
-            }
-        }
-        Ok(())
-    }
-}
-
 impl Pixels {
-    fn draw(&mut self, content: Content) {
+    fn draw(&mut self, content: Content, letters: &Letters) {
         self.0.fill(0);
-        let style = MonoTextStyle::new(&FONT_10X20, BinaryColor::On);
         for (i, line) in content.text.lines().take(LINES).enumerate() {
-            let end = line.char_indices().nth(COLUMNS).map_or(line.len(), |(at, _)| at);
-            let at = Point::new(MARGIN as i32, (MARGIN + i * FONT[1]) as i32);
-            let Ok(_) = Text::with_baseline(&line[..end], at, style, Baseline::Top).draw(self);
+            letters.draw(line, COLUMNS, &mut self.0, SIZE[0], [MARGIN, MARGIN + i * CELL[1]]);
         }
         let Some(progress) = content.progress else { return };
-        let (x, y) = (MARGIN as i32, (2 * MARGIN + LINES * FONT[1]) as i32);
-        let width = (SIZE[0] - 2 * MARGIN) as u32;
-        let frame = Rectangle::new(Point::new(x, y), Size::new(width, BAR_HEIGHT as u32));
-        let Ok(()) = frame.into_styled(PrimitiveStyle::with_stroke(BinaryColor::On, 1)).draw(self);
-        let block = (width as f32 * BLOCK) as u32;
-        let left = x + (progress.clamp(0.0, 1.0) * (width - block) as f32) as i32;
-        let block = Rectangle::new(Point::new(left, y), Size::new(block, BAR_HEIGHT as u32));
-        let Ok(()) = block.into_styled(PrimitiveStyle::with_fill(BinaryColor::On)).draw(self);
+        let (top, width) = (2 * MARGIN + LINES * CELL[1], SIZE[0] - 2 * MARGIN);
+        let block = (width as f32 * BLOCK) as usize;
+        let left = (progress.clamp(0.0, 1.0) * (width - block) as f32) as usize;
+        for y in 0..BAR_HEIGHT {
+            for x in 0..width {
+                let is_frame = y == 0 || y + 1 == BAR_HEIGHT || x == 0 || x + 1 == width;
+                if is_frame || (left..left + block).contains(&x) {
+                    self.0[(top + y) * SIZE[0] + MARGIN + x] = 255;
+                }
+            }
+        }
     }
 
     /// Rows from the bottom, as GL takes them.
@@ -97,6 +68,7 @@ pub struct Hud {
     gl: Rc<Context>,
     program: Program,
     texture: Texture,
+    letters: Letters,
     pixels: Pixels,
     rows: Vec<u8>,
     /// The text that the texture shows.
@@ -118,6 +90,7 @@ impl Hud {
             gl: gl.clone(),
             program: Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?,
             texture: Texture::new(gl, SIZE.map(|n| n as u32), Format::R8, Filter::Linear)?,
+            letters: Letters::new(),
             pixels: Pixels(vec![0; SIZE[0] * SIZE[1]]),
             rows: Vec::with_capacity(SIZE[0] * SIZE[1]),
             text: String::with_capacity(256),
@@ -135,10 +108,10 @@ impl Hud {
             self.progress = content.progress;
             self.used = match content.progress {
                 Some(_) => SIZE[1],
-                None => 2 * MARGIN + content.text.lines().count().min(LINES) * FONT[1],
+                None => 2 * MARGIN + content.text.lines().count().min(LINES) * CELL[1],
             };
             self.version += 1;
-            self.pixels.draw(content);
+            self.pixels.draw(content, &self.letters);
             self.pixels.flip_into(&mut self.rows);
             self.texture.upload(&self.rows);
         }
@@ -249,20 +222,23 @@ mod tests {
 
     #[test]
     fn text_and_progress_bar_are_drawn_in_their_rows() {
+        let letters = Letters::new();
         let mut panel = Pixels(vec![0; SIZE[0] * SIZE[1]]);
         let lit = |panel: &Pixels, rows: std::ops::Range<usize>| {
-            panel.0[rows.start * SIZE[0]..rows.end * SIZE[0]].iter().filter(|&&p| p == 255).count()
+            panel.0[rows.start * SIZE[0]..rows.end * SIZE[0]].iter().filter(|&&p| p > 0).count()
         };
-        panel.draw(Content { text: "60 FPS\nyoro", progress: None });
-        assert!(lit(&panel, 8..28) > 100 && lit(&panel, 28..48) > 50);
-        assert_eq!(lit(&panel, 48..SIZE[1]), 0);
-        panel.draw(Content { text: "", progress: Some(0.5) });
-        assert_eq!(lit(&panel, 0..96), 0);
+        panel.draw(Content { text: "60 FPS\nyoro", progress: None }, &letters);
+        let line = |n: usize| MARGIN + n * CELL[1]..MARGIN + (n + 1) * CELL[1];
+        assert!(lit(&panel, line(0)) > 100 && lit(&panel, line(1)) > 50);
+        assert_eq!(lit(&panel, line(1).end..SIZE[1]), 0);
+        panel.draw(Content { text: "", progress: Some(0.5) }, &letters);
+        let top = 2 * MARGIN + LINES * CELL[1];
+        assert_eq!(lit(&panel, 0..top), 0);
         // The moving part is a quarter of the bar.
-        let bar = lit(&panel, 96..SIZE[1]);
-        assert!(bar > 340 * BAR_HEIGHT / 4 && bar < 340 * BAR_HEIGHT / 2, "{bar}");
-        panel.draw(Content { text: &"x".repeat(200), progress: Some(1.0) });
-        assert_eq!(panel.0[100 * SIZE[0] + SIZE[0] - MARGIN - 4], 255);
+        let (bar, width) = (lit(&panel, top..SIZE[1]), SIZE[0] - 2 * MARGIN);
+        assert!(bar > width * BAR_HEIGHT / 4 && bar < width * BAR_HEIGHT / 2, "{bar}");
+        panel.draw(Content { text: &"x".repeat(200), progress: Some(1.0) }, &letters);
+        assert_eq!(panel.0[(top + 4) * SIZE[0] + SIZE[0] - MARGIN - 4], 255);
         let mut rows = Vec::new();
         panel.flip_into(&mut rows);
         assert_eq!(rows[..SIZE[0]], panel.0[(SIZE[1] - 1) * SIZE[0]..]);

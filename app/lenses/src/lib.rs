@@ -10,6 +10,7 @@ mod hud;
 mod lens;
 mod optics;
 mod params;
+mod text;
 
 pub use head::{HeadTracker, MotionSample, neck_offset};
 pub use hud::{COLUMNS, Content, Hud, Panel, Placement};
