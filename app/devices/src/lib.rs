@@ -8,7 +8,7 @@
 //! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] is the
 //! interface to devices: [`program`] implements it with the program adb, [`replay`] with a script. [`follow`] reads a
 //! log across lost connections, [`reading`] parses its lines into samples ([`foreign`] finds the lines of other
-//! applications), [`run`] captures one run, [`experiment`] many, and [`report`] computes figures from them. [`study`]
+//! applications), [`run`] captures one run, [`experiment`] many, [`farm`] reads what device farms give back, and [`report`] computes figures from them. [`study`]
 //! plans and analyses user studies.
 //!
 //! This crate must not depend on OpenGL, rendering or the command line.
@@ -16,6 +16,7 @@
 pub mod adb;
 pub mod capture;
 pub mod experiment;
+pub mod farm;
 pub mod follow;
 pub mod foreign;
 mod latin;

@@ -1,6 +1,7 @@
 //! `yoro device`: measure on phones and headsets.
 
 pub mod experiment;
+pub mod farm;
 pub mod install;
 pub mod list;
 pub mod logcat;
@@ -25,6 +26,7 @@ enum Command {
     Run(Box<run::RunArgs>),
     Logcat(logcat::LogcatArgs),
     Experiment(experiment::ExperimentArgs),
+    Farm(farm::FarmArgs),
     Report(report::ReportArgs),
 }
 
@@ -36,6 +38,7 @@ impl DeviceArgs {
             Command::Run(args) => &**args,
             Command::Logcat(args) => args,
             Command::Experiment(args) => args,
+            Command::Farm(args) => args,
             Command::Report(args) => args,
         }
     }

@@ -1,0 +1,301 @@
+//! Device farms: the command that starts the application's game loops on many devices, and captures of what comes back.
+//!
+//! Firebase Test Lab keeps a folder for each device, `MODEL-VERSION-LOCALE-ORIENTATION`, with the device's log as
+//! `logcat` and the results of scenario N as `game_loop_results/results_scenario_N.json`: the log's lines without times,
+//! whatever that name says. AWS Device Farm has artefacts that are downloaded for each device, with other names. So a
+//! line is known by itself, and names of files only say which files are read.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use yoro_files::{self as files, FileError};
+use yoro_protocol::telemetry::{LOG_TAG, Line};
+
+use crate::capture::{CaptureError, DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
+use crate::log::{self, Kind, SIMULATED_MARK};
+use crate::reading::{LineContent, Reading};
+
+/// The beginning of the names that game loops give their runs: `loop-SCENARIO-STEP`.
+const RUN: &str = "loop-";
+/// Seconds at the beginning of a step that count for nothing.
+const WARM_UP_S: f64 = 5.0;
+/// Names of logs and results: all of it, or the extension.
+const LOGS: [&str; 4] = ["logcat", "log", "txt", "json"];
+
+/// The error when a farm's results cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FarmError {
+    /// A file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A capture cannot be written.
+    #[error(transparent)]
+    Capture(#[from] CaptureError),
+    /// There are no lines of a game loop.
+    #[error(
+        "no file below {} has a line of a game loop (run={RUN}...): name the folder with a folder for each device, with archives unpacked",
+        folder.display()
+    )]
+    Nothing {
+        /// The folder.
+        folder: PathBuf,
+    },
+}
+
+/// Returns the command that plays scenarios on devices of Firebase Test Lab. Each device is a model of `gcloud firebase
+/// test android models list`, with a version after `=` if it matters.
+pub fn command(apk: &str, scenarios: &[u32], devices: &[String]) -> String {
+    let scenarios: Vec<String> = scenarios.iter().map(u32::to_string).collect();
+    let mut command = format!(
+        "gcloud firebase test android run --type game-loop --app {apk} --scenario-numbers {} --timeout 25m",
+        scenarios.join(",")
+    );
+    for device in devices {
+        let (model, version) = device.split_once('=').unwrap_or((device, ""));
+        let version = if version.is_empty() { String::new() } else { format!(",version={version}") };
+        command += &format!(" \\\n    --device model={model}{version},orientation=landscape");
+    }
+    command
+}
+
+/// Writes a capture for each step of each device in a farm's results: `OUT/DEVICE/RUN`. Returns their descriptions.
+///
+/// A step that is in several files, as in the log and in the results, is taken from the one that has most of it.
+///
+/// # Errors
+/// [`FarmError`].
+pub fn read(folder: &Path, out: &Path) -> Result<Vec<RunInfo>, FarmError> {
+    if !folder.is_dir() {
+        return Err(FileError::NotFolder { path: folder.into() }.into());
+    }
+    let mut found: BTreeMap<(String, String), Step> = BTreeMap::new();
+    for path in logs(folder)? {
+        let bytes = files::read(&folder.join(&path))?;
+        let device = device_name(folder, &path);
+        for run in runs(&bytes) {
+            let step = Step::read(&bytes, &run);
+            let key = (device.clone(), run);
+            if found.get(&key).is_none_or(|before| before.rank() < step.rank()) {
+                found.insert(key, step);
+            }
+        }
+    }
+    if found.is_empty() {
+        return Err(FarmError::Nothing { folder: folder.into() });
+    }
+    found.into_iter().map(|((device, run), step)| Ok(step.write(&device, &run, out)?)).collect()
+}
+
+/// Returns the paths of logs and results, relative to the folder.
+fn logs(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let mut found = Vec::new();
+    let mut waiting = vec![PathBuf::new()];
+    while let Some(relative) = waiting.pop() {
+        let here = folder.join(&relative);
+        let failed = |source| FileError::Read { path: here.clone(), source };
+        for entry in fs::read_dir(&here).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let (kind, path) = (entry.file_type().map_err(failed)?, relative.join(entry.file_name()));
+            if kind.is_dir() {
+                waiting.push(path);
+            } else if kind.is_file() && (entry.file_name() == LOGS[0] || files::has_extension(&path, &LOGS)) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Returns the name of the device's folder: the first below `folder`, or `folder` itself.
+fn device_name(folder: &Path, path: &Path) -> String {
+    let first = path.parent().and_then(|parent| parent.iter().next());
+    let first = first.filter(|name| *name != "game_loop_results");
+    let own = || folder.canonicalize().ok()?.file_name().map(ToOwned::to_owned);
+    let name = first.map(ToOwned::to_owned).or_else(own).unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}
+
+fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    bytes.split_inclusive(|byte| *byte == b'\n')
+}
+
+/// Returns the names of the game loops' steps in a log.
+fn runs(bytes: &[u8]) -> BTreeSet<String> {
+    let run = |line: &[u8]| match log::parse(&log::text(line)) {
+        Kind::Entry(entry) if entry.tag == LOG_TAG => entry.message.parse::<Line>().ok()?.run,
+        _ => None,
+    };
+    // The name becomes that of a folder.
+    let is_name = |run: &String| {
+        run.starts_with(RUN) && run.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-')
+    };
+    lines(bytes).filter_map(run).filter(is_name).collect()
+}
+
+/// The lines of a step.
+struct Step {
+    reading: Reading,
+    samples: Vec<Sample>,
+    log: Vec<u8>,
+    is_whole: bool,
+    simulated: bool,
+}
+
+impl Step {
+    fn read(bytes: &[u8], run: &str) -> Step {
+        let (reading, samples) = (Reading::new(Some(run.into())), Vec::new());
+        let mut step = Step { reading, samples, log: Vec::new(), is_whole: false, simulated: false };
+        let mut is_last = false;
+        for line in lines(bytes) {
+            let text = log::text(line);
+            step.simulated |= text.starts_with(SIMULATED_MARK);
+            match step.reading.line(&text, None) {
+                LineContent::Sample(sample) => {
+                    step.samples.push(*sample);
+                    is_last = true;
+                }
+                LineContent::Summary => step.is_whole |= is_last,
+                LineContent::Other if text.contains(",run=") => is_last = false,
+                LineContent::Damaged(_) | LineContent::Other => {}
+            }
+            step.log.extend_from_slice(line);
+        }
+        // All steps of a scenario are one session.
+        let begin = step.samples.first().map_or(0.0, |first| first.time_s - 1.0);
+        step.samples.iter_mut().for_each(|sample| sample.time_s -= begin);
+        step
+    }
+
+    fn rank(&self) -> (bool, usize) {
+        (self.is_whole, self.samples.len())
+    }
+
+    fn write(self, device: &str, run: &str, out: &Path) -> Result<RunInfo, CaptureError> {
+        let length = self.samples.last().map_or(0.0, |last| last.time_s);
+        let warm_up_s = if length > 2.0 * WARM_UP_S { WARM_UP_S } else { 0.0 };
+        let mut faults = self.reading.faults();
+        if self.samples.iter().all(|sample| sample.current_ma.is_none() || sample.plugged.is_none()) {
+            let detail = "a farm's devices hang on chargers, and the log does not say otherwise".into();
+            faults.push(Fault { kind: FaultKind::PluggedIn, at_s: None, detail });
+        }
+        let scene = self.reading.methods().first().map_or("unknown", |(_, scene)| scene);
+        let info = RunInfo {
+            version: VERSION,
+            device: device_info(device, self.simulated),
+            experiment: None,
+            // The methods of scenario 2 are compared; a step of another scenario is no repetition of them.
+            method: run.strip_prefix("loop-2-").unwrap_or(run).into(),
+            scene: scene.into(),
+            repetition: 1,
+            order: 1,
+            settings: BTreeMap::new(),
+            started_unix_s: 0.0,
+            duration_s: length - warm_up_s,
+            warm_up_s,
+            start_celsius: self.samples.first().and_then(|sample| sample.battery_celsius),
+            application: None,
+            outcome: Outcome::Complete,
+            faults,
+        };
+        let mut writer = Writer::create(&out.join(device).join(run), info)?;
+        writer.log(&self.log)?;
+        self.samples.iter().try_for_each(|sample| writer.sample(sample))?;
+        writer.finish(if self.is_whole {
+            Outcome::Complete
+        } else {
+            Outcome::Interrupted {
+                reason: "the step has no summary: the farm ended it, or it crashed".into(),
+            }
+        })
+    }
+}
+
+/// Returns what a device's folder says: `MODEL-VERSION-LOCALE-ORIENTATION`, or only a name.
+fn device_info(folder: &str, simulated: bool) -> DeviceInfo {
+    let parts: Vec<&str> = folder.rsplitn(4, '-').collect();
+    let (model, android) = match parts[..] {
+        ["landscape" | "portrait", _, version, model] => (model, format!("API {version}")),
+        _ => (folder, String::new()),
+    };
+    DeviceInfo { serial: folder.into(), model: model.into(), android, simulated, ..DeviceInfo::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture;
+    use crate::report::DeviceReport;
+
+    fn line(t: u32, method: &str, fps: &str) -> String {
+        format!(
+            "v=1,t={t}.0s,method={method},pipeline=gather,scene=street,FPS={fps}/60,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms,CPU=na,RSS=na,mA_raw=512,mA=-512,mV=3921,level=90%,uAh=na,plug=2,Tbat=31.2C,Tskin=na,thermal=0,headroom=na,scale=1.00,imbuffer=na,frames=60,status=charging,run=loop-2-{method}"
+        )
+    }
+
+    /// The folders and names that Flutter's own tests read from Test Lab's bucket, with a log and results.
+    #[test]
+    fn the_results_of_two_farms_become_captures() {
+        let folder = tempfile::tempdir().unwrap();
+        let put = |path: &str, text: &str| {
+            let path = folder.path().join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        };
+        let mut results = String::from("yoro 0.1.0 starts\ngame loop: scenario 2\n");
+        for (step, method) in ["conventional", "yoro"].iter().enumerate() {
+            let second = |t: u32| line(65 * step as u32 + t, method, ["40.0", "59.0"][step]) + "\n";
+            results.extend((1..=65).map(second));
+            results += "v=1,summary=1,t=65.0s\n";
+        }
+        // The last step was cut off.
+        results += &(line(131, "mono", "60.0") + "\n");
+        put("pilot/husky-34-en-landscape/game_loop_results/results_scenario_2.json", &results);
+        let logcat = line(3, "yoro", "1.0");
+        let logcat = format!("11-14 22:13:20.123  4242  4260 I YORO    : {logcat}\n");
+        put("pilot/husky-34-en-landscape/logcat", &logcat);
+        put("pilot/husky-34-en-landscape/video.mp4", "no text");
+        put("pilot/Google Pixel 6/Logcat.logcat", &logcat);
+
+        let out = folder.path().join("captures");
+        let runs = read(&folder.path().join("pilot"), &out).unwrap();
+        let names: Vec<_> = runs.iter().map(|run| (&*run.device.model, &*run.method)).collect();
+        let expected =
+            [("Google Pixel 6", "yoro"), ("husky", "conventional"), ("husky", "mono"), ("husky", "yoro")];
+        assert_eq!(names, expected);
+        assert_eq!(runs[1].device.android, "API 34");
+        let is_whole = |run: &RunInfo| run.outcome == Outcome::Complete;
+        assert_eq!(runs.iter().map(is_whole).collect::<Vec<_>>(), [false, true, false, true]);
+        assert!(runs.iter().all(|run| run.faults.iter().any(|fault| fault.kind == FaultKind::PluggedIn)));
+        let whole = capture::read(&out.join("husky-34-en-landscape/loop-2-yoro")).unwrap();
+        assert_eq!(
+            (whole.samples.len(), whole.samples[0].time_s, whole.samples[64].fps),
+            (65, 1.0, Some(59.0))
+        );
+        assert_eq!((whole.info.warm_up_s, whole.info.duration_s), (5.0, 60.0));
+
+        // One report of both devices has the frame rates, and no power.
+        let set: Vec<_> = capture::find(std::slice::from_ref(&out)).unwrap().into_iter().collect();
+        let set: Vec<_> = set.into_iter().map(|run| (run.clone(), capture::read(&run).unwrap())).collect();
+        let report = DeviceReport::new(&[set], "conventional", &BTreeMap::new(), String::new());
+        let report = serde_json::to_string(&report).unwrap();
+        assert!(report.contains("husky") && report.contains("plugged in"), "{report}");
+
+        assert!(matches!(read(&out.join("nothing"), &out), Err(FarmError::File(_))));
+        put("empty/logcat", "11-14 22:13:20.123  1  2 I Other: hello\n");
+        assert!(matches!(read(&folder.path().join("empty"), &out), Err(FarmError::Nothing { .. })));
+    }
+
+    #[test]
+    fn the_command_names_every_device() {
+        let command = command("yoro.apk", &[1, 2], &["husky=34".into(), "shiba".into()]);
+        assert_eq!(
+            command,
+            "gcloud firebase test android run --type game-loop --app yoro.apk --scenario-numbers 1,2 --timeout 25m \\\n    \
+             --device model=husky,version=34,orientation=landscape \\\n    \
+             --device model=shiba,orientation=landscape"
+        );
+    }
+}

@@ -1,0 +1,64 @@
+//! `yoro device farm`.
+
+use std::path::PathBuf;
+
+use anyhow::ensure;
+
+use crate::cli::Subcommand;
+use crate::cli::outputs::Files;
+use yoro_devices::capture::{FaultKind, Outcome};
+use yoro_devices::farm;
+
+/// Measure on the devices of a farm: print the command that starts the scenarios, or read its results
+#[derive(clap::Args, Clone, Debug)]
+pub struct FarmArgs {
+    /// Models of Firebase Test Lab, with =VERSION if it matters: prints the command of gcloud that starts them
+    #[arg(required_unless_present = "read", conflicts_with = "read", value_name = "MODEL")]
+    devices: Vec<String>,
+    /// The release that is tested
+    #[arg(long, default_value = "target/apk/yoro.apk", value_name = "FILE")]
+    apk: String,
+    /// Scenarios: 1 every pipeline, 2 a minute of each method, 3 ten minutes for heat
+    #[arg(long, value_delimiter = ',', default_value = "1,2,3", value_name = "N,N",
+          value_parser = clap::value_parser!(u32).range(1..=3))]
+    scenarios: Vec<u32>,
+    /// Read results: a folder with a folder for each device, of Firebase Test Lab or AWS Device Farm
+    #[arg(long, value_name = "FOLDER")]
+    read: Option<PathBuf>,
+    /// Folder for the captures of --read
+    #[arg(long, default_value = "out/farm", value_name = "FOLDER")]
+    out: PathBuf,
+}
+
+impl Subcommand for FarmArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        // A capture replaces no file.
+        Ok(Files::default())
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        let Some(folder) = &self.read else {
+            let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-=/".contains(c);
+            for word in self.devices.iter().chain([&self.apk]) {
+                ensure!(word.chars().all(is_plain), "{word} has characters that a shell reads: rename it");
+            }
+            println!("{}", farm::command(&self.apk, &self.scenarios, &self.devices));
+            return Ok(());
+        };
+        for run in farm::read(folder, &self.out)? {
+            let simulated = if run.device.simulated { "SIMULATED: " } else { "" };
+            let end = match &run.outcome {
+                Outcome::Complete => "complete",
+                Outcome::Interrupted { reason } | Outcome::Failed { reason } => reason,
+            };
+            let is_plugged = run.faults.iter().any(|fault| fault.kind == FaultKind::PluggedIn);
+            let power = if is_plugged { "; power na: on a charger" } else { "" };
+            println!(
+                "{simulated}{}: {} in {}: {:.0} s, {end}{power}",
+                run.device.serial, run.method, run.scene, run.duration_s
+            );
+        }
+        println!("next: yoro device report {}", self.out.display());
+        Ok(())
+    }
+}
