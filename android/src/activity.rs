@@ -26,6 +26,7 @@ use crate::java::Java;
 use crate::pace::Refresh;
 use crate::performance::Performance;
 use crate::pulse::Pulse;
+use crate::results;
 use crate::screen::ScreenState;
 use crate::system::now_ns;
 
@@ -51,6 +52,9 @@ pub fn run(app: &AndroidApp) {
         WindowManagerFlags::empty(),
     );
     let mut activity = Activity::new(app);
+    if activity.configuration.is_unknown_scenario {
+        activity.finish();
+    }
     while !activity.is_over {
         activity.wait();
         activity.step();
@@ -344,6 +348,10 @@ impl Activity {
         }
         if report.session_over {
             self.summarize();
+            if let Some(settings) = self.configuration.next_step() {
+                self.is_summarized = false;
+                self.configuration.apply(settings, &mut self.display);
+            }
         }
         if report.exit {
             match &mut self.display {
@@ -584,6 +592,7 @@ impl Activity {
     fn end(&mut self) {
         self.pause();
         self.summarize();
+        results::end();
     }
 }
 

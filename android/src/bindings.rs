@@ -92,8 +92,10 @@ bind_java_type! {
 
 bind_java_type! {
     pub Intent => android.content.Intent,
-    type_map = { Bundle => android.os.Bundle },
+    type_map = { Bundle => android.os.Bundle, Uri => android.net.Uri },
     methods {
+        fn get_action() -> JString,
+        fn get_data() -> Uri,
         fn get_extras() -> Bundle,
         fn get_int_extra(name: JString, default: jint) -> jint,
     },
@@ -126,8 +128,13 @@ bind_java_type! {
 
 bind_java_type! {
     pub ContentResolver => android.content.ContentResolver,
-    type_map = { Cursor => android.database.Cursor, Uri => android.net.Uri },
+    type_map = {
+        Cursor => android.database.Cursor,
+        ParcelFileDescriptor => android.os.ParcelFileDescriptor,
+        Uri => android.net.Uri,
+    },
     methods {
+        fn open_file_descriptor(uri: Uri, mode: JString) -> ParcelFileDescriptor,
         fn query(
             uri: Uri,
             projection: JString[],
@@ -136,6 +143,11 @@ bind_java_type! {
             order: JString,
         ) -> Cursor,
     },
+}
+
+bind_java_type! {
+    pub ParcelFileDescriptor => android.os.ParcelFileDescriptor,
+    methods { fn detach_fd() -> jint },
 }
 
 bind_java_type! {

@@ -8,7 +8,9 @@ use yoro_scenes::BUILTINS;
 use yoro_viewer::{Viewer, ViewerError, list_scenes};
 
 use crate::display::Display;
+use crate::game_loop::GameLoop;
 use crate::java::Java;
+use crate::results;
 use crate::settings::{self, Pair, Sources};
 use crate::system;
 
@@ -20,6 +22,9 @@ pub struct Configuration {
     folders: Vec<PathBuf>,
     /// The mistakes in the settings when they were last read.
     mistakes: Vec<String>,
+    game_loop: Option<GameLoop>,
+    /// True if a scenario was asked for that there is not: the activity has nothing to do.
+    pub is_unknown_scenario: bool,
 }
 
 impl Configuration {
@@ -36,13 +41,38 @@ impl Configuration {
                 scenes.display()
             );
         }
+        let mut extras = java.extras();
+        let scenario = java.scenario();
+        let game_loop = scenario.and_then(|scenario| GameLoop::new(scenario, extras.clone()));
+        if let Some(scenario) = scenario {
+            results::begin(java.results());
+            match &game_loop {
+                Some(_) => log::info!("game loop: scenario {scenario}"),
+                None => log::error!("there is no scenario {scenario}: take 1, 2 or 3"),
+            }
+        }
+        if let Some(game_loop) = &game_loop {
+            extras = game_loop.settings();
+        }
         let sources = Sources {
             file: external.map(|folder| folder.join(settings::FILE_NAME)),
-            extras: java.extras(),
+            extras,
             properties: settings::properties(system::property),
             saved: Vec::new(),
         };
-        Configuration { sources, settings: Settings::default(), folders, mistakes: Vec::new() }
+        let is_unknown_scenario = scenario.is_some() && game_loop.is_none();
+        let (settings, mistakes) = (Settings::default(), Vec::new());
+        Configuration { sources, settings, folders, mistakes, game_loop, is_unknown_scenario }
+    }
+
+    /// Goes to the next step of a game loop, and returns its settings; none after the last, and without a game loop.
+    pub fn next_step(&mut self) -> Option<Settings> {
+        let game_loop = self.game_loop.as_mut()?;
+        if !game_loop.advance() {
+            return None;
+        }
+        self.sources.extras = game_loop.settings();
+        Some(self.resolve())
     }
 
     /// Takes over the changes saved when Android put the activity away.

@@ -1,6 +1,8 @@
 //! Questions that only Java answers.
 
 use std::ffi::c_void;
+use std::fs::File;
+use std::os::fd::FromRawFd as _;
 use std::sync::OnceLock;
 
 use android_activity::AndroidApp;
@@ -183,6 +185,38 @@ impl Java {
             Ok(pairs)
         });
         extras.unwrap_or_default()
+    }
+
+    /// Returns the number of the game loop's scenario that the activity was started for; none for any other start.
+    pub fn scenario(&self) -> Option<i32> {
+        let scenario = self.ask("the intent's scenario", |env, activity| {
+            let intent = activity.get_intent(env)?;
+            let action = if intent.is_null() { JString::null() } else { intent.get_action(env)? };
+            if action.is_null() || action.try_to_string(env)? != "com.google.intent.action.TEST_LOOP" {
+                return Ok(None);
+            }
+            let name = JString::new(env, "scenario")?;
+            intent.get_int_extra(env, &name, 0).map(Some)
+        });
+        scenario.flatten()
+    }
+
+    /// Opens the file that the intent's data names for a game loop's results; none if it names none, or Android refuses.
+    pub fn results(&self) -> Option<File> {
+        let file = self.ask("the game loop's results", |env, activity| {
+            let uri = activity.get_intent(env)?.get_data(env)?;
+            if uri.is_null() {
+                return Ok(None);
+            }
+            let mode = JString::new(env, "w")?;
+            let opened = activity.get_content_resolver(env)?.open_file_descriptor(env, &uri, &mode)?;
+            if opened.is_null() {
+                return Ok(None);
+            }
+            // SAFETY: a detached descriptor belongs to the caller, and nobody else closes it.
+            Ok(Some(unsafe { File::from_raw_fd(opened.detach_fd(env)?) }))
+        });
+        file.flatten()
     }
 
     /// Returns one of the battery's properties; none where the device does not support it, for which Android says

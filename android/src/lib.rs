@@ -5,6 +5,8 @@
 //! measured. On other systems only the parts without Android are built, for their tests.
 
 #[cfg(any(target_os = "android", test))]
+mod game_loop;
+#[cfg(any(target_os = "android", test))]
 mod pace;
 #[cfg(any(target_os = "android", test))]
 mod press;
@@ -32,6 +34,8 @@ mod performance;
 #[cfg(target_os = "android")]
 mod pulse;
 #[cfg(target_os = "android")]
+mod results;
+#[cfg(target_os = "android")]
 mod screen;
 #[cfg(target_os = "android")]
 mod sensors;
@@ -47,7 +51,7 @@ mod thermal;
 fn android_main(app: android_activity::AndroidApp) {
     // Scripts read these lines: nothing but the message may stand after the tag. In a second run the first logger
     // stays.
-    android_logger::init_once(
+    results::init_log(
         android_logger::Config::default()
             .with_max_level(log::LevelFilter::Info)
             .with_tag(yoro_protocol::telemetry::LOG_TAG)

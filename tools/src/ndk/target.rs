@@ -3,7 +3,7 @@
 /// The oldest Android that the application runs on (Android 10).
 pub const MIN_API: u32 = 29;
 /// The Android that it is made for.
-pub const TARGET_API: u32 = 34;
+pub const TARGET_API: u32 = 36;
 /// Android requires it of new applications: devices may have pages as large as this.
 pub const PAGE: u64 = 16 * 1024;
 

@@ -68,7 +68,16 @@ const HEADSETS: [Rule<'_>; 9] = [
     rule("meta-data", &[(NAME, "pvr.app.type"), (VALUE, "vr")], FLAT),
     rule("meta-data", &[(NAME, "pvr.sdk.version"), (VALUE, "OpenXR")], FLAT),
 ];
-const SCREEN: [Rule<'_>; 3] = [
+const NO_LOOP: &str = "device farms would not start its game loops";
+const GAME_LOOPS: [Rule<'_>; 5] = [
+    rule("action", &[(NAME, "com.google.intent.action.TEST_LOOP")], NO_LOOP),
+    rule("category", &[(NAME, "android.intent.category.DEFAULT")], NO_LOOP),
+    rule("data", &[("android:mimeType", "application/javascript")], NO_LOOP),
+    rule("meta-data", &[(NAME, "com.google.test.loops.compatibility"), (VALUE, ANY)], NO_LOOP),
+    rule("meta-data", &[(NAME, "com.google.test.loops.performance"), (VALUE, ANY)], NO_LOOP),
+];
+const SCREEN: [Rule<'_>; 4] = [
+    rule("application", &[("android:appCategory", "0x0")], "on a tablet the picture would be upright"),
     rule("activity", &[("android:screenOrientation", "0x0")], "the picture would be upright"),
     rule(
         "activity",
@@ -228,6 +237,7 @@ impl Manifest {
         report.equal("activity", self.one("activity").text(NAME), "android.app.NativeActivity");
         report.row("launcher", "exported, MAIN, LAUNCHER", self.broken(&LAUNCHER));
         report.row("headsets", "immersive by OpenXR", self.no_headset());
+        report.row("game loops", "TEST_LOOP, labels", self.broken(&GAME_LOOPS));
         let changes = self.one("activity").number("android:configChanges").unwrap_or(0);
         let lost = CONFIG_CHANGES & !changes;
         let problem = (lost != 0).then(|| format!("changes {lost:#x} of configChanges would start it anew"));
@@ -330,7 +340,7 @@ mod tests {
                 "minSdkVersion(0x0101020c)=(type 0x10)0x17",
                 "API level",
             ),
-            ("targetSdkVersion(0x01010270)=(type 0x10)0x22", "x=(type 0x10)0x22", "API level"),
+            ("targetSdkVersion(0x01010270)=(type 0x10)0x24", "x=(type 0x10)0x24", "API level"),
             ("(type 0x11)0x30000", "(type 0x11)0x30001", "OpenGL ES"),
             (
                 "E: application ",
@@ -351,6 +361,10 @@ mod tests {
             ("\"pvr.app.type\"", "\"pvr.app.kind\"", "headsets"),
             ("\"OpenXR\" (Raw", "\"PXR\" (Raw", "headsets"),
             ("quest3|", "", "headsets"),
+            ("com.google.intent.action.TEST_LOOP", "com.google.intent.action.OTHER", "game loops"),
+            ("application/javascript", "text/plain", "game loops"),
+            ("com.google.test.loops.performance", "com.google.test.loops.other", "game loops"),
+            ("appCategory(0x01010545)=(type 0x10)0x0", "appCategory(0x01010545)=(type 0x10)0x1", "screen"),
             ("\"all|", "\"", "headsets"),
             ("libopenxr.google.so", "libopenxr.other.so", "headsets"),
             ("libopenxr_forwardloader.oculus.so", "libother.so", "headsets"),

@@ -3,7 +3,8 @@
 use anyhow::Context as _;
 use yoro_tools::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
 
-/// Completes the manifest that cargo-apk has written: adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application.
+/// Completes the manifest that cargo-apk has written: adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application, and
+/// makes that a game: from API level 36 on Android lets only games keep their orientation on large screens.
 ///
 /// # Errors
 /// When there is no application in it.
@@ -16,7 +17,8 @@ pub fn complete(manifest: &str) -> anyhow::Result<String> {
         .map(|name| format!(r#"<uses-native-library android:name="{name}" android:required="false"/>"#));
     let properties = PROPERTIES
         .map(|(name, value)| format!(r#"<property android:name="{name}" android:value="{value}"/>"#));
-    Ok([before, &libraries.concat(), &properties.concat(), END, after].concat())
+    let before = before.replacen("<application", r#"<application android:appCategory="game""#, 1);
+    Ok([&before, &*libraries.concat(), &*properties.concat(), END, after].concat())
 }
 
 #[cfg(test)]
@@ -28,7 +30,7 @@ mod tests {
         let whole = complete("<manifest><application><activity/></application></manifest>").unwrap();
         assert_eq!(
             whole,
-            "<manifest><application><activity/>\
+            "<manifest><application android:appCategory=\"game\"><activity/>\
              <uses-native-library android:name=\"libopenxr.google.so\" android:required=\"false\"/>\
              <uses-native-library android:name=\"libopenxr_forwardloader.oculus.so\" android:required=\"false\"/>\
              <property android:name=\"android.window.PROPERTY_XR_ACTIVITY_START_MODE\" \

@@ -1,0 +1,52 @@
+//! The log, and its copy in the results of a game loop: the same lines, without logcat's times and tags.
+
+use std::fs::File;
+use std::io::Write as _;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use android_logger::{AndroidLogger, Config};
+use log::{LevelFilter, Log, Metadata, Record};
+
+/// The file for results while a game loop is played.
+static FILE: Mutex<Option<File>> = Mutex::new(None);
+
+fn file() -> MutexGuard<'static, Option<File>> {
+    FILE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Begins the log. In a second run of the process the first logger stays.
+pub fn init_log(config: Config) {
+    if log::set_boxed_logger(Box::new(Logger(AndroidLogger::new(config)))).is_ok() {
+        log::set_max_level(LevelFilter::Info);
+    }
+}
+
+/// From now on every line is written to this file, too.
+pub fn begin(results: Option<File>) {
+    *file() = results;
+}
+
+/// Closes the file.
+pub fn end() {
+    *file() = None;
+}
+
+struct Logger(AndroidLogger);
+
+impl Log for Logger {
+    fn enabled(&self, metadata: &Metadata) -> bool {
+        self.0.enabled(metadata)
+    }
+
+    fn log(&self, record: &Record) {
+        self.0.log(record);
+        if self.0.enabled(record.metadata())
+            && let Some(file) = &mut *file()
+        {
+            // A line is one write. If it fails, the same line is in the device's log.
+            _ = file.write_all(format!("{}\n", record.args()).as_bytes());
+        }
+    }
+
+    fn flush(&self) {}
+}
